@@ -1,0 +1,102 @@
+// Cost of one evaluation of the contact laws. The label of each is the cost floor: what a prototype took on one core of
+// about 3 GHz (g++ -O3, best of several runs).
+#include <array>
+#include <cstddef>
+
+#include <benchmark/benchmark.h>
+
+#include "elastic/hertz.hpp"
+#include "mdr/contact.hpp"
+
+namespace monograin::mdr {
+namespace {
+
+constexpr double k_radius = 1.05;
+constexpr double k_overlap_max = 0.3;
+constexpr std::size_t k_values = 64;
+
+/// Values spread evenly over an interval.
+std::array<double, k_values> values_between(double lower, double upper) {
+  std::array<double, k_values> values{};
+  for (std::size_t i = 0; i < k_values; ++i) {
+    values[i] = lower + (upper - lower) * (static_cast<double>(i) + 0.5) / k_values;
+  }
+  return values;
+}
+
+/// Time of one call of the law, over arguments from an interval.
+template <class Law>
+void run(benchmark::State& state, const char* floor, double lower, double upper, Law&& law) {
+  const auto arguments = values_between(lower, upper);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(law(arguments[i]));
+    i = (i + 1) % k_values;
+  }
+  state.SetLabel(floor);
+}
+
+/// A contact of a material with E/Y = 20 that has yielded.
+struct Dent {
+  Material material = make_material(1.0, 0.3, 0.05);
+  double area_constant = yield_area_constant(material.yield_overlap_ratio, k_radius);
+  double yield_overlap = material.yield_overlap_ratio * k_radius;
+  UnloadingShape shape = unloading_shape(material, k_radius, k_overlap_max, area_constant);
+};
+
+void hertz(benchmark::State& state) {
+  run(state, "floor 7 ns", 0.0, k_overlap_max,
+      [](double overlap) { return elastic_contact(ElasticProfile::parabola, 1.1, k_radius, overlap); });
+}
+BENCHMARK(hertz);
+
+void elastic_ellipse(benchmark::State& state) {
+  run(state, "floor 20 ns", 0.0, k_overlap_max,
+      [](double overlap) { return elastic_contact(ElasticProfile::ellipse, 1.1, k_radius, overlap); });
+}
+BENCHMARK(elastic_ellipse);
+
+void plastic_with_derivatives(benchmark::State& state) {
+  const Dent dent;
+  run(state, "floor 15-19 ns", dent.yield_overlap, k_overlap_max, [&](double overlap) {
+    return plastic_contact(dent.material.yield_stress, k_radius, overlap, dent.area_constant);
+  });
+}
+BENCHMARK(plastic_with_derivatives);
+
+void unloading_with_full_shape(benchmark::State& state) {
+  const Dent dent;
+  run(state, "floor 40 ns", k_overlap_max - dent.shape.recovery, k_overlap_max, [&](double overlap) {
+    const UnloadingShape shape = unloading_shape(dent.material, k_radius, k_overlap_max, dent.area_constant);
+    return unloading_contact(shape, dent.material.composite_modulus, overlap);
+  });
+}
+BENCHMARK(unloading_with_full_shape);
+
+void unloading_with_cached_shape(benchmark::State& state) {
+  const Dent dent;
+  run(state, "floor 13 ns", k_overlap_max - dent.shape.recovery, k_overlap_max,
+      [&](double overlap) { return unloading_contact(dent.shape, dent.material.composite_modulus, overlap); });
+}
+BENCHMARK(unloading_with_cached_shape);
+
+void unloading_energy_with_cached_shape(benchmark::State& state) {
+  const Dent dent;
+  run(state, "", k_overlap_max - dent.shape.recovery, k_overlap_max,
+      [&](double overlap) { return unloading_energy(dent.shape, overlap); });
+}
+BENCHMARK(unloading_energy_with_cached_shape);
+
+void plastic_work(benchmark::State& state) {
+  const Dent dent;
+  run(state, "", dent.yield_overlap, k_overlap_max, [&](double overlap) {
+    return plastic_work_primitive(dent.material.yield_stress, k_radius, overlap, dent.area_constant);
+  });
+}
+BENCHMARK(plastic_work);
+
+void yield_overlap(benchmark::State& state) { run(state, "", 20.0, 200.0, yield_overlap_ratio); }
+BENCHMARK(yield_overlap);
+
+}  // namespace
+}  // namespace monograin::mdr

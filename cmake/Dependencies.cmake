@@ -1,0 +1,37 @@
+# Finds every library; a missing one is reported with the Debian package that brings it.
+
+# A header-only library that ships no CMake package.
+function(monograin_require_header target header debian_package)
+  find_path(${target}_INCLUDE_DIR ${header})
+  if(NOT ${target}_INCLUDE_DIR)
+    message(FATAL_ERROR "<${header}> was not found. On Debian: apt-get install ${debian_package} (or run tools/install-deps).")
+  endif()
+  add_library(${target} INTERFACE IMPORTED GLOBAL)
+  target_include_directories(${target} SYSTEM INTERFACE "${${target}_INCLUDE_DIR}")
+endfunction()
+
+macro(monograin_find package debian_package)
+  find_package(${package} QUIET ${ARGN})
+  if(NOT ${package}_FOUND)
+    message(FATAL_ERROR "${package} was not found. On Debian: apt-get install ${debian_package} (or run tools/install-deps).")
+  endif()
+endmacro()
+
+monograin_find(SUNDIALS libsundials-dev COMPONENTS cvode ida)
+monograin_find(Eigen3 libeigen3-dev)
+monograin_find(Boost "libboost-dev libboost-iostreams-dev libboost-system-dev libboost-filesystem-dev"
+               COMPONENTS iostreams system filesystem)
+monograin_find(tomlplusplus libtomlplusplus-dev)
+monograin_find(CLI11 libcli11-dev)
+monograin_find(fmt libfmt-dev)
+monograin_find(nlohmann_json nlohmann-json3-dev)
+monograin_require_header(monograin_gnuplot_iostream gnuplot-iostream.h libgnuplot-iostream-dev)
+monograin_require_header(monograin_xxhash xxhash.h libxxhash-dev)
+target_compile_definitions(monograin_xxhash INTERFACE XXH_INLINE_ALL)
+if(MONOGRAIN_BUILD_TESTS)
+  monograin_find(GTest libgtest-dev)
+  monograin_require_header(monograin_valijson valijson/validator.hpp libvalijson-dev)
+endif()
+if(MONOGRAIN_BUILD_BENCHMARKS)
+  monograin_find(benchmark libbenchmark-dev)
+endif()

@@ -1,0 +1,84 @@
+/// What each contact law is called, which keys it reads, which regimes and events it knows, and where it comes from.
+///
+/// The catalogue is plain data. Reading and checking scenario files, the JSON Schema and `monograin models` are all
+/// made from it, so that a key is described in one place only.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace monograin {
+
+/// Physical dimension of a quantity; fixes which unit strings are accepted (a bare number is always SI).
+enum class Dimension { none, length, stress, surface_energy, force, time, velocity, force_rate, angle };
+
+/// Interval of admissible values; the bounds belong to it unless they are marked open.
+struct Range {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  bool lower_is_open = false;
+  bool upper_is_open = false;
+
+  [[nodiscard]] constexpr bool contains(double value) const noexcept {
+    return (lower_is_open ? value > lower : value >= lower) && (upper_is_open ? value < upper : value <= upper);
+  }
+};
+
+/// A quantity in `[material]` (or a number in a model's own table).
+struct QuantityKey {
+  std::string_view name;
+  std::string_view meaning;
+  Dimension dimension = Dimension::none;
+  Range range;
+  std::optional<double> default_value;  ///< none: the key must be given
+};
+
+/// A choice, a switch or a file name in the table that bears the model's name.
+struct OptionKey {
+  enum class Kind { choice, toggle, file };
+  std::string_view name;
+  std::string_view meaning;
+  Kind kind = Kind::choice;
+  std::span<const std::string_view> choices;  ///< of a choice; the first one is the default
+  bool default_toggle = false;
+};
+
+/// A regime or an event with one sentence about it.
+struct Term {
+  std::string_view name;
+  std::string_view meaning;
+};
+
+/// Something the scenario language offers but this version of the model does not compute; asking for it is refused by
+/// name.
+struct Refusal {
+  std::string_view key;      ///< e.g. "material.surface_energy", "mdr.pressure_table", "loading.steps.force"
+  std::string_view message;  ///< what is missing and what to write instead
+};
+
+struct ModelInfo {
+  std::string_view name;
+  std::string_view summary;
+  std::string_view source;
+  std::span<const QuantityKey> material;
+  std::span<const OptionKey> options;
+  std::span<const std::string_view> configurations;
+  bool has_free_centre = false;  ///< `[loading] centre = "equilibrium"` is defined
+  std::span<const Term> regimes;
+  std::span<const Term> events;
+  std::span<const std::string_view> domain;  ///< limits of validity, a sentence each
+  std::span<const Refusal> refusals;
+};
+
+/// All models this version can run, in the order in which they are listed to users.
+[[nodiscard]] std::span<const ModelInfo> model_catalogue() noexcept;
+
+/// Names of models the language reserves but this version cannot run.
+[[nodiscard]] std::span<const std::string_view> reserved_models() noexcept;
+
+/// The entry of that name, or nullptr.
+[[nodiscard]] const ModelInfo* find_model(std::string_view name) noexcept;
+
+}  // namespace monograin

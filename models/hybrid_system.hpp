@@ -1,0 +1,127 @@
+/// What every model is to the engine: continuous unknowns, a mode, guards alive in that mode, and transitions.
+///
+/// Time. All laws here are rate independent, so a system knows no seconds: within one step of the program its
+/// independent variable is the step coordinate xi, from 0 at the step's start to 1 at its end. The scene turns xi into
+/// time.
+///
+/// Unknowns. They stand in one array y, dimensionless and of order one: first the differential ones, then the
+/// quadratures (their rates depend on the others, nothing depends on them), then the algebraic ones. Three forms of the
+/// same system:
+///   explicit  rates() of differential unknowns and quadratures; complete() fills in the algebraic ones
+///   implicit  residual() = 0, as many as there are unknowns
+///   direct    solve() finds everything but the quadratures at one instant; closed_quadrature() where there is a closed
+///   form
+///
+/// A system evaluates its equations a little beyond the end of a regime (trial steps, root brackets), and throws
+/// std::domain_error where they end for good; the caller then comes nearer with smaller steps.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "walls.hpp"
+
+namespace monograin {
+
+struct Unknown {
+  enum class Kind { differential, quadrature, algebraic };
+  std::string_view name;
+  Kind kind = Kind::differential;
+  double scale = 1.0;                    ///< typical magnitude; absolute tolerances are relative to it
+  bool is_implicitly_algebraic = false;  ///< its rate does not stand in residual()
+};
+
+/// A root function that is alive in the present mode. Scaled to order one.
+struct Guard {
+  int kind = 0;           ///< the system's own code
+  int index = 0;          ///< contact class, or pair of classes, it belongs to
+  int direction = 1;      ///< fires when it crosses zero upwards (+1) or downwards (-1)
+  std::string_view name;  ///< of the event it stands for
+};
+
+/// A regime transition or other located instant.
+struct Event {
+  std::string_view name;
+  int contact_class = -1;  ///< -1: the particle
+  int other_class = -1;    ///< second class of an event of two
+};
+
+/// Something the user should know, with the number that shows it.
+struct Finding {
+  std::string_view message;
+  std::string_view quantity;  ///< what the value is, e.g. "E/Y"
+  double value = 0.0;
+};
+
+/// Why a system cannot go on: the limit, and by how much it is met.
+struct DomainEnd {
+  Event event;
+  Finding finding;
+};
+
+/// A column of the history that the system fills.
+struct Observable {
+  std::string name;
+  std::string unit;
+  std::span<const std::string_view> words;  ///< not empty: the value is an index into these
+};
+
+/// What a program's condition can ask for.
+enum class Quantity { force, displacement, pressure, contact_radius, apparent_radius };
+
+class HybridSystem {
+ public:
+  virtual ~HybridSystem() = default;
+
+  [[nodiscard]] virtual std::span<const Unknown> unknowns() const noexcept = 0;
+  [[nodiscard]] virtual std::span<const ContactClass> classes() const noexcept = 0;
+
+  /// State before the first step.
+  virtual void start(std::span<double> y) = 0;
+
+  /// Takes up the next step and decides the mode at its start; what changes there is logged.
+  virtual void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) = 0;
+
+  /// Fills the algebraic unknowns for given differential ones; their present values are the first guess.
+  virtual void complete(double xi, std::span<double> y) = 0;
+
+  /// d/dxi of differential unknowns and quadratures; y is complete.
+  virtual void rates(double xi, std::span<const double> y, std::span<double> dy) = 0;
+
+  /// d/dxi of every unknown, algebraic ones included, as a consistent start for implicit integrators.
+  virtual void all_rates(double xi, std::span<const double> y, std::span<double> dy) = 0;
+
+  virtual void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) = 0;
+
+  /// Solves for everything but the quadratures; the present values are the first guess.
+  /// @throws std::domain_error where there is no solution
+  virtual void solve(double xi, std::span<double> y) = 0;
+
+  /// Primitive of the quadrature along the present mode, up to a constant, where it has a closed form.
+  [[nodiscard]] virtual std::optional<double> closed_quadrature(double xi, std::span<const double> y) = 0;
+
+  /// Guards alive until the next transition or the end of the step, in the order in which they are applied.
+  [[nodiscard]] virtual std::span<const Guard> guards() const noexcept = 0;
+  virtual void guard_values(double xi, std::span<const double> y, std::span<double> values) = 0;
+
+  /// Applies the transitions of the guards with these indices, decides the mode anew, and logs all that changed.
+  /// @return the reason to stop, if the system ends here
+  virtual std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
+                                        std::vector<Event>& log) = 0;
+
+  [[nodiscard]] virtual std::span<const Observable> observables() const noexcept = 0;
+  virtual void observe(double xi, std::span<const double> y, std::span<double> values) = 0;
+
+  /// One quantity of one class, in SI.
+  [[nodiscard]] virtual double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) = 0;
+  /// Whether the walls of a class do not touch the particle.
+  [[nodiscard]] virtual bool is_open(int contact_class) const noexcept = 0;
+
+  /// What the user should know about this run, collected so far.
+  [[nodiscard]] virtual std::vector<Finding> warnings() const = 0;
+};
+
+}  // namespace monograin

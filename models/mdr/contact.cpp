@@ -1,0 +1,253 @@
+#include "mdr/contact.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <stdexcept>
+
+#include "elastic/hertz.hpp"
+
+namespace monograin::mdr {
+namespace {
+
+using std::numbers::pi;
+
+// The fitted pressure curve of eq. 28: p_Y/Y = 1 + k_excess exp(-k_decay delta/R); both constants as printed.
+constexpr double k_excess = 1.75;
+constexpr double k_decay = 4.4;
+
+// psi(theta) = sum_(k>=2) (-1)^k (3 - 4n + 3^(n-1)) theta^n / (4 n!), n = 2k + 1.
+constexpr int k_psi_terms = 12;
+constexpr auto k_psi_coefficients = [] {
+  std::array<double, k_psi_terms> coefficients{};
+  double factorial = 24.0;  // (n - 1)!
+  double power = 27.0;      // 3^(n-2)
+  for (int i = 0; i < k_psi_terms; ++i) {
+    const int n = 2 * (i + 2) + 1;
+    factorial *= n;
+    power *= 3.0;
+    coefficients[static_cast<std::size_t>(i)] = (i % 2 == 0 ? 0.25 : -0.25) * (3.0 - 4.0 * n + power) / factorial;
+    factorial *= n + 1;
+    power *= 3.0;
+  }
+  return coefficients;
+}();
+
+/// Angle of the ellipse's parametrisation from its versine y = 1 - cos(theta), without cancellation.
+double angle_from_versine(double y) noexcept { return 2.0 * std::asin(std::sqrt(0.5 * y)); }
+
+double elastic_versine(double radius, double overlap) {
+  const double y = overlap / (2.0 * radius);
+  if (y > 1.0) throw std::domain_error("overlap above twice the apparent radius");
+  return y;
+}
+
+struct DecayingMoments {
+  double zeroth, first, second;
+};
+
+/// int_0^x t^n exp(-t) dt for n = 0, 1, 2 and x > 0, to full relative accuracy.
+DecayingMoments decaying_moments(double x) noexcept {
+  const double decay = std::exp(-x);
+  double second = 2.0 - decay * (2.0 + x * (2.0 + x));
+  if (x < 2.0) {
+    // The closed form cancels; a series of positive terms instead, the last one below 1e-17 of the sum at x = 2.
+    double sum = 1.0;
+    for (int n = 24; n > 3; --n) sum = 1.0 + x / n * sum;
+    second = decay * x * x * x / 3.0 * sum;
+  }
+  // Downwards, where the recursion only adds positive terms.
+  const double first = 0.5 * (second + decay * x * x);
+  return {.zeroth = first + decay * x, .first = first, .second = second};
+}
+
+/// Angle theta with cos(theta) = u, for u in [0, 1), and slightly beyond the old maximum (u < 0).
+double unloading_angle(double u) noexcept { return u > 0.5 ? angle_from_versine(1.0 - u) : std::acos(u); }
+
+}  // namespace
+
+Material make_material(double youngs_modulus, double poisson_ratio, double yield_stress) {
+  const double modulus = composite_modulus(youngs_modulus, poisson_ratio);
+  return {.composite_modulus = modulus,
+          .poisson_ratio = poisson_ratio,
+          .yield_stress = yield_stress,
+          .bulk_compliance = (1.0 - 2.0 * poisson_ratio) / youngs_modulus,
+          .yield_overlap_ratio = yield_overlap_ratio(modulus / yield_stress)};
+}
+
+double yield_overlap_ratio(double modulus_over_yield) {
+  // In s = sqrt(d): the excess is smooth, increasing, and has its only root in the bracket when there is one.
+  const auto excess = [slope = 4.0 / (3.0 * pi) * modulus_over_yield](double s) {
+    return slope * s - 1.0 - k_excess * std::exp(-k_decay * s * s);
+  };
+  if (!(excess(1.0) > 0.0)) return std::numeric_limits<double>::infinity();
+  // The pressure ratio lies between 1 and 2.75, which brackets the root to within a factor of 2.75 however stiff the
+  // material.
+  const double lower = 0.75 * pi / modulus_over_yield;
+  const double upper = std::min(1.0, (1.0 + k_excess) * lower);
+  std::uintmax_t iterations = 100;
+  const auto [below, above] = boost::math::tools::toms748_solve(
+      excess, lower, upper, excess(lower), excess(upper), boost::math::tools::eps_tolerance<double>(), iterations);
+  const double s = 0.5 * (below + above);
+  return s * s;
+}
+
+double phi(double theta) noexcept {
+  if (theta >= 0.5) return theta - std::sin(theta) * std::cos(theta);
+  // (t - sin t)/2 with t = 2 theta as a nested Taylor series; the last term kept is below 1e-17 of the sum at t = 1.
+  const double t = 2.0 * theta;
+  const double s = t * t;
+  double sum = 1.0;
+  for (const double denominator : {342.0, 272.0, 210.0, 156.0, 110.0, 72.0, 42.0, 20.0})
+    sum = 1.0 - s / denominator * sum;
+  return t * s / 12.0 * sum;
+}
+
+double psi(double theta) noexcept {
+  if (theta >= 1.0) {
+    const double s = std::sin(theta);
+    return s - theta * std::cos(theta) - s * s * s / 3.0;
+  }
+  const double square = theta * theta;
+  double sum = 0.0;
+  for (auto c = k_psi_coefficients.rbegin(); c != k_psi_coefficients.rend(); ++c) sum = sum * square + *c;
+  return sum * square * square * theta;
+}
+
+Contact elastic_contact(ElasticProfile profile, double composite_modulus, double radius, double overlap) {
+  if (overlap <= 0.0) return {};
+  switch (profile) {
+    case ElasticProfile::ellipse: {
+      const double y = elastic_versine(radius, overlap);
+      const double theta = angle_from_versine(y);
+      const double sine = std::sin(theta);
+      const double phi_theta = phi(theta);
+      const double a = radius * sine;
+      return {.contact_radius = a,
+              .force = 2.0 * composite_modulus * radius * radius * phi_theta,
+              .by_overlap = 2.0 * composite_modulus * a,
+              .by_radius = 4.0 * composite_modulus * radius * (phi_theta - y * sine)};
+    }
+    case ElasticProfile::parabola: {
+      const double a = hertz_contact_radius(radius, overlap);
+      const double force = hertz_force(composite_modulus, radius, overlap);
+      return {.contact_radius = a,
+              .force = force,
+              .by_overlap = 2.0 * composite_modulus * a,
+              .by_radius = force / (2.0 * radius)};
+    }
+  }
+  return {};
+}
+
+PlasticPressure plastic_pressure(double yield_stress, double overlap_over_radius) noexcept {
+  const double excess = k_excess * yield_stress * std::exp(-k_decay * overlap_over_radius);
+  return {.pressure = yield_stress + excess, .decrement = k_decay * excess};
+}
+
+double yield_area_constant(double yield_overlap_ratio, double radius) noexcept {
+  return yield_overlap_ratio * (yield_overlap_ratio - 1.0) * radius * radius;
+}
+
+Contact plastic_contact(double yield_stress, double radius, double overlap, double area_constant) {
+  const double area = 2.0 * overlap * radius - overlap * overlap + area_constant;
+  if (!(area > 0.0)) throw std::domain_error("contact area of a plastic contact is not positive");
+  const auto [pressure, decrement] = plastic_pressure(yield_stress, overlap / radius);
+  return {.contact_radius = std::sqrt(area),
+          .force = pi * pressure * area,
+          .by_overlap = pi * (2.0 * pressure * (radius - overlap) - decrement / radius * area),
+          .by_radius = pi * (2.0 * pressure * overlap + decrement * overlap / (radius * radius) * area)};
+}
+
+UnloadingShape unloading_shape(const Material& material, double radius, double overlap_max, double area_constant) {
+  const double m = overlap_max;
+  const double area = 2.0 * m * radius - m * m + area_constant;
+  if (!(area > 0.0)) throw std::domain_error("contact area of a plastic contact is not positive");
+  const auto [pressure, decrement] = plastic_pressure(material.yield_stress, m / radius);
+  const double a = std::sqrt(area);
+
+  UnloadingShape shape{.radius = radius, .overlap_max = m, .contact_radius_max = a, .pressure = pressure};
+  shape.height = 4.0 * pressure * a / material.composite_modulus;
+  shape.pressure_by_max = -decrement / (radius * pressure);
+  shape.pressure_by_radius = decrement * m / (radius * radius * pressure);
+  shape.contact_radius_by_max = (radius - m) / area;
+  shape.contact_radius_by_radius = m / area;
+
+  // eq. 34 in the form rho(zeta, nu); zeta is the depth of the centre below the indenter's tip over a_max.
+  const double depth = radius - m + 0.5 * shape.height;
+  if (!(depth > 0.0)) throw std::domain_error("the wall has reached the centre of the particle");
+  const double zeta = depth / a;
+  const double s = std::sqrt(1.0 + zeta * zeta);
+  const double k = 1.0 / (2.0 * (1.0 - material.poisson_ratio));
+  shape.rho = (1.0 + k * zeta / s) / (s + zeta);
+  shape.recovery = 0.5 * shape.height * (1.0 - shape.rho);
+
+  // zeta/s - 1 = -1/(s (s + zeta)), which keeps its digits for small contacts (zeta >> 1).
+  const double rho_by_zeta = (k / (s * s) - (1.0 + k * zeta / s)) / (s * (s + zeta));
+  const double height_by_max = shape.height * (shape.pressure_by_max + shape.contact_radius_by_max);
+  const double height_by_radius = shape.height * (shape.pressure_by_radius + shape.contact_radius_by_radius);
+  shape.rho_by_max = rho_by_zeta * ((0.5 * height_by_max - 1.0) / a - zeta * shape.contact_radius_by_max);
+  shape.rho_by_radius = rho_by_zeta * ((0.5 * height_by_radius + 1.0) / a - zeta * shape.contact_radius_by_radius);
+  return shape;
+}
+
+double unloading_fraction(const UnloadingShape& shape, double overlap) noexcept {
+  return (shape.overlap_max - overlap) / shape.recovery;
+}
+
+Contact unloading_contact(const UnloadingShape& shape, double composite_modulus, double overlap) {
+  const double u = unloading_fraction(shape, overlap);
+  if (u >= 1.0) return {};
+  const double theta = unloading_angle(u);
+  const double sine = std::sqrt((1.0 - u) * (1.0 + u));
+  const double phi_theta = phi(theta);
+  const double yield_force = 2.0 * shape.pressure * shape.contact_radius_max * shape.contact_radius_max;
+  const double a = shape.contact_radius_max * sine;
+
+  const auto by = [&](double pressure_x, double contact_radius_x, double rho_x, double overlap_max_x) {
+    const double u_x =
+        overlap_max_x / shape.recovery - u * (pressure_x + contact_radius_x) + u * rho_x / (1.0 - shape.rho);
+    return yield_force * ((pressure_x + 2.0 * contact_radius_x) * phi_theta - 2.0 * sine * u_x);
+  };
+  return {.contact_radius = a,
+          .force = yield_force * phi_theta,
+          .by_overlap = 2.0 * composite_modulus * a / (1.0 - shape.rho),
+          .by_radius = by(shape.pressure_by_radius, shape.contact_radius_by_radius, shape.rho_by_radius, 0.0),
+          .by_overlap_max = by(shape.pressure_by_max, shape.contact_radius_by_max, shape.rho_by_max, 1.0)};
+}
+
+double elastic_energy(ElasticProfile profile, double composite_modulus, double radius, double overlap) {
+  if (overlap <= 0.0) return 0.0;
+  switch (profile) {
+    case ElasticProfile::ellipse:
+      return 4.0 * composite_modulus * radius * radius * radius *
+             psi(angle_from_versine(elastic_versine(radius, overlap)));
+    case ElasticProfile::parabola:
+      return hertz_energy(composite_modulus, radius, overlap);
+  }
+  return 0.0;
+}
+
+double plastic_energy(const UnloadingShape& shape) noexcept { return unloading_energy(shape, shape.overlap_max); }
+
+double unloading_energy(const UnloadingShape& shape, double overlap) noexcept {
+  const double u = unloading_fraction(shape, overlap);
+  if (u >= 1.0) return 0.0;
+  const double a = shape.contact_radius_max;
+  return 2.0 * shape.recovery * shape.pressure * a * a * psi(unloading_angle(u));
+}
+
+double plastic_work_primitive(double yield_stress, double radius, double overlap, double area_constant) noexcept {
+  // Counted from zero overlap, so that it is no larger than the work itself where the yield overlap is small.
+  const double decay_length = radius / k_decay;
+  const auto [zeroth, first, second] = decaying_moments(overlap / decay_length);
+  const double ideal = overlap * (overlap * (radius - overlap / 3.0) + area_constant);
+  const double excess = k_excess * decay_length *
+                        (area_constant * zeroth + decay_length * (2.0 * radius * first - decay_length * second));
+  return pi * yield_stress * (ideal + excess);
+}
+
+}  // namespace monograin::mdr

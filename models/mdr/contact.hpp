@@ -1,0 +1,108 @@
+/// Force, contact radius and stored energy of one contact of the MDR model, without adhesion.
+///
+/// Every function is homogeneous: lengths in any one unit, stresses in any one unit. Overlaps and forces are positive
+/// in compression. Derivatives are exact. Source, unless said otherwise: 002_000df8fc37500451.txt.
+#pragma once
+
+#include <limits>
+
+namespace monograin::mdr {
+
+/// Indenter of an elastic contact: the source's unified ellipse (height 4R, width 2R) or Hertz's parabola.
+enum class ElasticProfile { ellipse, parabola };
+
+/// What the contact laws need to know of the particle's material.
+struct Material {
+  double composite_modulus = 0.0;  ///< E* = E/(1 - nu^2), > 0
+  double poisson_ratio = 0.0;      ///< in (-1, 0.5]
+  double yield_stress = 0.0;       ///< Y, > 0; infinity: never yields
+  double bulk_compliance = 0.0;    ///< 1/(3 kappa) = (1 - 2 nu)/E, >= 0
+  /// Overlap over apparent radius at which an elastic contact yields; infinity: it never does.
+  double yield_overlap_ratio = std::numeric_limits<double>::infinity();
+};
+
+/// Derived constants from E, nu and Y.
+/// @param yield_stress  Y > 0; infinity for a material that never yields
+[[nodiscard]] Material make_material(double youngs_modulus, double poisson_ratio, double yield_stress);
+
+/// Overlap over apparent radius at first yield: the root d of (4 E*)/(3 pi Y) sqrt(d) = 1 + 1.75 exp(-4.4 d) (eq. 41).
+/// @param modulus_over_yield  E*/Y, > 0
+/// @return d in (0, 1), or infinity where E*/Y is so low that there is no root below 1
+[[nodiscard]] double yield_overlap_ratio(double modulus_over_yield);
+
+/// phi(theta) = theta - sin(theta) cos(theta), for theta in [0, pi/2], to full relative accuracy.
+[[nodiscard]] double phi(double theta) noexcept;
+
+/// psi(theta) = sin(theta) - theta cos(theta) - sin(theta)^3/3, for theta in [0, pi/2], to full relative accuracy.
+[[nodiscard]] double psi(double theta) noexcept;
+
+/// State of a contact under a given overlap.
+struct Contact {
+  double contact_radius = 0.0;
+  double force = 0.0;
+  double by_overlap = 0.0;      ///< dF/d(overlap) along the branch
+  double by_radius = 0.0;       ///< dF/dR at fixed overlap (and fixed largest overlap)
+  double by_overlap_max = 0.0;  ///< dF/d(largest overlap); 0 except on the unloading branch
+};
+
+/// Elastic contact (eqs. 23-25, 29-31).
+/// @param radius   apparent radius R > 0
+/// @param overlap  delta; <= 0 gives zeros
+/// @throws std::domain_error for delta > 2R
+[[nodiscard]] Contact elastic_contact(ElasticProfile profile, double composite_modulus, double radius, double overlap);
+
+/// Mean pressure of a fully plastic contact and its fall with the overlap (eq. 28).
+struct PlasticPressure {
+  double pressure = 0.0;   ///< p_Y = Y (1 + 1.75 exp(-4.4 delta/R))
+  double decrement = 0.0;  ///< -R dp_Y/d(delta) = 4.4 * 1.75 Y exp(-4.4 delta/R)
+};
+[[nodiscard]] PlasticPressure plastic_pressure(double yield_stress, double overlap_over_radius) noexcept;
+
+/// Area constant of a contact that yields at the apparent radius R, c = delta_Y^2 - delta_Y R (eqs. 42, 43; area/pi).
+[[nodiscard]] double yield_area_constant(double yield_overlap_ratio, double radius) noexcept;
+
+/// Fully plastic contact at its largest overlap (eqs. 16, 21, 28, 36): F = pi p_Y (2 delta R - delta^2 + c).
+/// @param area_constant  c of yield_area_constant
+/// @throws std::domain_error where the contact area is not positive
+[[nodiscard]] Contact plastic_contact(double yield_stress, double radius, double overlap, double area_constant);
+
+/// Elastic indenter that is left when a fully plastic contact unloads (eqs. 27-35), fixed while R and the largest
+/// overlap are.
+struct UnloadingShape {
+  double radius = 0.0;            ///< R
+  double overlap_max = 0.0;       ///< largest overlap m
+  double contact_radius_max = 0;  ///< a_max = B/2
+  double pressure = 0.0;          ///< p_Y
+  double height = 0.0;            ///< A = 4 p_Y a_max / E*
+  double rho = 0.0;               ///< share of the elastic recovery that moves the centre, in (0, 1)
+  double recovery = 0.0;          ///< A (1 - rho)/2: the contact opens at m - recovery
+  // Logarithmic derivatives with respect to m and R at the other fixed, and those of rho.
+  double pressure_by_max = 0, pressure_by_radius = 0;              ///< p_x / p_Y
+  double contact_radius_by_max = 0, contact_radius_by_radius = 0;  ///< a_x / a_max
+  double rho_by_max = 0, rho_by_radius = 0;                        ///< rho_x
+};
+
+/// @throws std::domain_error where a_max^2 or the distance of the indenter's tip from the centre is not positive
+[[nodiscard]] UnloadingShape unloading_shape(const Material& material, double radius, double overlap_max,
+                                             double area_constant);
+
+/// Distance from the largest overlap over the recovery, u = (m - delta)/recovery: 0 at the maximum, 1 where the contact
+/// opens.
+[[nodiscard]] double unloading_fraction(const UnloadingShape& shape, double overlap) noexcept;
+
+/// Contact on the unloading branch; zeros where it is open (u >= 1). Overlaps above m continue the branch analytically.
+[[nodiscard]] Contact unloading_contact(const UnloadingShape& shape, double composite_modulus, double overlap);
+
+// Stored energies: recoverable work of the walls at fixed R and fixed largest overlap; dPi = F d(delta_o).
+
+[[nodiscard]] double elastic_energy(ElasticProfile profile, double composite_modulus, double radius, double overlap);
+/// At its largest overlap: (1 - rho) (8/3) p_Y^2 a_max^3 / E*.
+[[nodiscard]] double plastic_energy(const UnloadingShape& shape) noexcept;
+/// On the unloading branch; 0 where the contact is open.
+[[nodiscard]] double unloading_energy(const UnloadingShape& shape, double overlap) noexcept;
+
+/// Primitive over the overlap of the force of plastic_contact at fixed R (up to a constant).
+[[nodiscard]] double plastic_work_primitive(double yield_stress, double radius, double overlap,
+                                            double area_constant) noexcept;
+
+}  // namespace monograin::mdr

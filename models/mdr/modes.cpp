@@ -1,0 +1,422 @@
+// Modes of the MDR system: which guards are alive, what their transitions change, and how a mode is decided.
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "mdr/system.hpp"
+
+namespace monograin::mdr {
+namespace {
+
+constexpr std::size_t k_radius = 0;
+
+enum GuardKind : int {
+  k_yield,
+  k_reload,
+  k_made,
+  k_dent_touched,
+  k_lost,
+  k_retreat,
+  k_growth_on,
+  k_growth_off,
+  k_caps,
+  k_singular,
+  k_volume,
+  k_centre_reached
+};
+
+// A guard this near to zero, and moving on, counts as crossed when a mode is decided.
+constexpr double k_touch = 1e-13;
+// A program that returns exactly to the old maximum does not pass it, whichever way its overlap is rounded.
+constexpr double k_same_overlap = 2e-15;
+// With a free centre, contacts along its directions open and close together; their guards agree to the integration
+// error only.
+constexpr double k_together = 1e-6;
+// Growth ends where the free surface is used up to this share (mdr.md's event "singular growth").
+constexpr double k_least_slope = 1e-3;
+// The volume's square root ends at 1 - 4w = 0; stop where its digits still count.
+constexpr double k_least_volume = 1e-9;
+// A wall this near to the centre of the particle (over R0) has reached it.
+constexpr double k_least_distance = 1e-3;
+
+}  // namespace
+
+double System::speed_scale() const noexcept {
+  double scale = 0.0;
+  for (const Ramp& ramp : ramps_) scale = std::max(scale, std::abs(ramp.end - ramp.start));
+  return scale > 0.0 ? scale : 1.0;
+}
+
+// --- transitions of one contact
+// -----------------------------------------------------------------------------------------------
+
+void System::start_unloading(std::size_t i, double r) {
+  Memory& memory = memory_[i];
+  memory.is_virgin = false;
+  memory.largest = now_[i].overlap - (settings_.delta_max_rule == DeltaMaxRule::shifted ? r : 0.0);
+  if (memory.regime == Regime::fully_plastic) memory.regime = Regime::unloading;
+}
+
+void System::resume_loading(std::size_t i) {
+  memory_[i].is_virgin = true;
+  if (memory_[i].regime == Regime::unloading) memory_[i].regime = Regime::fully_plastic;
+}
+
+void System::make_contact(std::size_t i) {
+  Memory& memory = memory_[i];
+  // An elastic contact that was pressed before keeps its running maximum; a new one starts at its own.
+  memory.regime = memory.regime == Regime::separated ? Regime::unloading : Regime::elastic;
+}
+
+void System::lose_contact(std::size_t i) {
+  memory_[i].regime = memory_[i].regime == Regime::unloading ? Regime::separated : Regime::open;
+}
+
+void System::yield(std::size_t i, double r) {
+  memory_[i].regime = Regime::fully_plastic;
+  memory_[i].area_constant = yield_area_constant(material_.yield_overlap_ratio, 1.0 + r);
+}
+
+/// Where the centre is free, a contact along its directions is carried by others only: they close and open together.
+void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log) {
+  if (free_count_ == 0 || directions_[i].norm() < 1e-10) return;
+  for (std::size_t j = 0; j < memory_.size(); ++j) {
+    if (j == i || directions_[j].norm() < 1e-10 || touches(memory_[j].regime) == is_made) continue;
+    const bool is_dent = memory_[j].regime == Regime::separated;
+    const int kind = is_made ? (is_dent ? k_dent_touched : k_made) : k_lost;
+    if (std::abs(contact_guard(kind, j, now_[j].overlap, r)) > k_together) continue;
+    if (is_made)
+      make_contact(j);
+    else
+      lose_contact(j);
+    log.push_back({is_made ? (is_dent ? "dent-touched" : "contact-made") : "contact-lost", static_cast<int>(j)});
+  }
+}
+
+// --- deciding a mode
+// ------------------------------------------------------------------------------------------------------------
+
+bool System::gate_is_open(const Motion& now) const noexcept {
+  const double least = k_touch * speed_scale();
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    if (!is_member(memory_[i])) continue;
+    if (settings_.radius_rule == RadiusRule::seed) return true;
+    if (memory_[i].is_virgin && inward_rate(i, now) > least) return true;
+  }
+  return false;
+}
+
+/// Whether the radius starts to grow, or goes on growing, at this instant.
+bool System::wants_growth(double xi, std::span<const double> y) {
+  if (settings_.radius_rule == RadiusRule::fixed) return false;
+  look(xi, y);
+  Motion now = motion(false);
+  if (!gate_is_open(now)) return false;
+  if (std::abs(now.demand) <= k_touch * sums_.time_scale) {
+    // Exactly balanced (first touch): the sign just after decides.
+    look(xi + 1e-9, y);
+    now = motion(false);
+    look(xi, y);
+  }
+  return now.demand > 0.0;
+}
+
+/// Fires the guards of one contact that are past already and moving on. Returns whether anything changed.
+bool System::settle_contact(std::size_t i, double xi, double r, const Motion& now, std::vector<Event>& log,
+                            std::vector<Event>& made) {
+  const double least = k_touch * speed_scale();
+  const double overlap = now_[i].overlap;
+  const double wall_rate = inward_rate(i, now);
+  const double rate = wall_rate + now.growth;
+  // At the very start of growth its rate is zero, and about to be positive.
+  const bool is_carried = is_growing_ && wall_rate >= -least;
+  const bool moves_in = rate > least || is_carried;
+  const bool moves_out = rate < -least && !is_carried;
+  const bool retreats = settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate < -least : moves_out;
+  const bool advances = settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate > least : moves_in;
+  const auto event = [&](std::string_view name) { return Event{name, static_cast<int>(i)}; };
+  const auto is_past = [&](int kind, double sign) { return sign * contact_guard(kind, i, overlap, r) >= -k_touch; };
+
+  Memory& memory = memory_[i];
+  switch (memory.regime) {
+    case Regime::open:
+      if (!moves_in || !is_past(k_made, 1.0)) return false;
+      make_contact(i);
+      made.push_back(event("contact-made"));
+      return true;
+    case Regime::separated:
+      if (!moves_in || !is_past(k_dent_touched, 1.0)) return false;
+      make_contact(i);
+      log.push_back(event("dent-touched"));
+      return true;
+    case Regime::elastic:
+      if (memory.is_virgin && retreats) {
+        start_unloading(i, r);
+        log.push_back(event(xi == 0.0 ? "load-reversal" : "retreat"));
+        return true;
+      }
+      if (memory.is_virgin && moves_in && std::isfinite(material_.yield_overlap_ratio) && is_past(k_yield, 1.0)) {
+        yield(i, r);
+        log.push_back(event("yield"));
+        return true;
+      }
+      break;
+    case Regime::fully_plastic:
+      if (!retreats) return false;
+      start_unloading(i, r);
+      log.push_back(event(xi == 0.0 ? "load-reversal" : "retreat"));
+      return true;
+    case Regime::unloading:
+      break;
+  }
+  if (memory.is_virgin) return false;
+  if (advances && is_past(k_reload, 1.0)) {
+    resume_loading(i);
+    log.push_back(event("reload"));
+    return true;
+  }
+  if (moves_out && is_past(k_lost, -1.0)) {
+    lose_contact(i);
+    log.push_back(event("contact-lost"));
+    return true;
+  }
+  return false;
+}
+
+/// Decides the mode: branch of every contact and growth depend on each other, so assume, look, correct, and repeat.
+/// @param growth  what a growth guard has just decided; none: the sign of the demand decides
+void System::settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log) {
+  const bool was_growing = is_growing_;
+  std::vector<Event> made;
+  complete(xi, y);
+  const std::size_t most_rounds = 4 * memory_.size() + 8;
+  for (std::size_t round = 0;; ++round) {
+    if (round == most_rounds) throw std::logic_error("the regimes of the contacts cannot be decided");
+    is_growing_ = growth ? *growth : wants_growth(xi, y);
+    look(xi, y);
+    const Motion now = motion(is_growing_);
+    const std::size_t events_before = log.size();
+    bool has_changed = false;
+    for (std::size_t i = 0; i < memory_.size(); ++i) {
+      has_changed = settle_contact(i, xi, y[k_radius], now, log, made) || has_changed;
+    }
+    if (!has_changed) break;
+    // A contact that has just been made carries no force yet and leaves the growth guard's decision standing.
+    if (log.size() > events_before) growth.reset();
+  }
+  if (is_growing_ != was_growing) log.push_back({is_growing_ ? "growth-on" : "growth-off"});
+  log.insert(log.end(), made.begin(), made.end());
+
+  look(xi, y);
+  held_radius_ = y[k_radius];
+  frozen_balance_ = is_growing_ ? sums_.balance : 0.0;
+  hold_centre(y);
+  watch(xi, y);
+}
+
+// --- guards
+// ---------------------------------------------------------------------------------------------------------------------
+
+double System::contact_guard(int kind, std::size_t i, double overlap, double r) {
+  switch (kind) {
+    case k_yield:
+      return overlap / (1.0 + r) - material_.yield_overlap_ratio;
+    case k_reload:
+      return overlap - largest_overlap(memory_[i], r) - k_same_overlap;
+    case k_lost:
+      if (memory_[i].regime == Regime::elastic) return overlap;
+      return 1.0 - unloading_fraction(shape(i, r), overlap);
+    case k_dent_touched:
+      return 1.0 - unloading_fraction(shape(i, r), overlap);
+    default:
+      return overlap;
+  }
+}
+
+double System::cap_guard(const CapPair& pair, double r) const {
+  const auto half_angle = [&](int i) {
+    const double distance = 1.0 - now_[static_cast<std::size_t>(i)].displacement;
+    return std::acos(std::min(1.0, distance / (1.0 + r)));
+  };
+  return half_angle(pair.first) + half_angle(pair.second) - pair.angle;
+}
+
+/// Lists the guards that can fire before the step ends.
+void System::watch(double xi, std::span<const double> y) {
+  guards_.clear();
+  look(xi, y);
+  const double r = y[k_radius];
+  const Motion now = motion(is_growing_);
+  for (std::size_t i = 0; i < memory_.size(); ++i) watch_contact(i, r, now);
+
+  if (is_growing_) {
+    guards_.push_back({k_growth_off, -1, -1, "growth-off"});
+    guards_.push_back({k_singular, -1, -1, "singular-growth"});
+  } else if (settings_.radius_rule != RadiusRule::fixed && gate_is_open(now)) {
+    guards_.push_back({k_growth_on, -1, 1, "growth-on"});
+  }
+  for (std::size_t p = 0; p < cap_pairs_.size(); ++p) {
+    const auto first = static_cast<std::size_t>(cap_pairs_[p].first);
+    const auto second = static_cast<std::size_t>(cap_pairs_[p].second);
+    if (touches(memory_[first].regime) && touches(memory_[second].regime)) {
+      guards_.push_back({k_caps, static_cast<int>(p), 1, "caps-intersect"});
+    }
+  }
+  if (settings_.radius_rule != RadiusRule::fixed && material_.bulk_compliance > 0.0) {
+    guards_.push_back({k_volume, -1, -1, "volume-limit"});
+  }
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    if (1.0 - ramps_[i].end < 2.0 * k_least_distance || free_count_ > 0) {
+      guards_.push_back({k_centre_reached, static_cast<int>(i), -1, "limit"});
+    }
+  }
+}
+
+void System::watch_contact(std::size_t i, double r, const Motion& now) {
+  const Memory& memory = memory_[i];
+  const bool is_free = free_count_ > 0 && directions_[i].norm() > 1e-10;
+  const double wall_rate = inward_rate(i, now);
+  const bool is_predictable = !is_growing_ && !is_free;  // overlap linear in xi, radius held
+  const double last_overlap = ramps_[i].end + r;
+
+  const auto add = [&](int kind, int direction, std::string_view name) {
+    // What a linear overlap does not reach by the end of the step needs no watching.
+    if (is_predictable && direction * contact_guard(kind, i, last_overlap, r) < -1e-9) return;
+    guards_.push_back({kind, static_cast<int>(i), direction, name});
+  };
+  const bool may_come_in = wall_rate > 0.0 || is_growing_ || is_free;
+  const bool may_go_out = wall_rate < 0.0 || is_growing_ || is_free;
+  switch (memory.regime) {
+    case Regime::open:
+      if (may_come_in) add(k_made, 1, "contact-made");
+      return;
+    case Regime::separated:
+      if (may_come_in) add(k_dent_touched, 1, "dent-touched");
+      return;
+    case Regime::elastic:
+    case Regime::fully_plastic:
+    case Regime::unloading:
+      break;
+  }
+  if (memory.is_virgin) {
+    if (memory.regime == Regime::elastic && may_come_in && std::isfinite(material_.yield_overlap_ratio)) {
+      add(k_yield, 1, "yield");
+    }
+    const bool may_retreat = is_free || (wall_rate < 0.0 && settings_.delta_max_rule == DeltaMaxRule::running_maximum);
+    if (may_retreat && !is_predictable) guards_.push_back({k_retreat, static_cast<int>(i), -1, "retreat"});
+    return;
+  }
+  if (may_come_in) add(k_reload, 1, "reload");
+  if (may_go_out) add(k_lost, -1, "contact-lost");
+}
+
+void System::guard_values(double xi, std::span<const double> y, std::span<double> values) {
+  look(xi, y);
+  const double r = y[k_radius];
+  const double speed = speed_scale();
+  const Motion now = motion(is_growing_);
+  for (std::size_t g = 0; g < guards_.size(); ++g) {
+    const auto i = static_cast<std::size_t>(std::max(0, guards_[g].index));
+    switch (guards_[g].kind) {
+      case k_growth_on:
+      case k_growth_off:
+        values[g] = now.demand / speed;
+        break;
+      case k_singular:
+        values[g] = now.slope / ((1.0 + r) * (1.0 + r)) - k_least_slope;
+        break;
+      case k_volume:
+        values[g] = 1.0 - 4.0 * sums_.relative_compression - k_least_volume;
+        break;
+      case k_caps:
+        values[g] = cap_guard(cap_pairs_[i], r);
+        break;
+      case k_centre_reached:
+        values[g] = 1.0 - now_[i].displacement - k_least_distance;
+        break;
+      case k_retreat: {
+        const double growth = settings_.delta_max_rule == DeltaMaxRule::shifted ? 0.0 : now.growth;
+        values[g] = (inward_rate(i, now) + growth) / speed;
+        break;
+      }
+      default:
+        values[g] = contact_guard(guards_[g].kind, i, now_[i].overlap, r);
+        break;
+    }
+  }
+}
+
+std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
+                                      std::vector<Event>& log) {
+  look(xi, y);
+  const double r = y[k_radius];
+  std::optional<bool> growth;
+  bool others_fired = false;
+  std::optional<DomainEnd> end;
+  for (const std::size_t g : fired) {
+    const Guard guard = guards_[g];
+    const auto i = static_cast<std::size_t>(std::max(0, guard.index));
+    const Event event{guard.name, guard.index};
+    const bool is_making = guard.kind == k_made || guard.kind == k_dent_touched;
+    const bool is_losing = guard.kind == k_lost;
+    // Closed or opened already, together with the contact it balances.
+    if ((is_making && touches(memory_[i].regime)) || (is_losing && !touches(memory_[i].regime))) continue;
+    switch (guard.kind) {
+      case k_yield:
+        yield(i, r);
+        break;
+      case k_reload:
+        resume_loading(i);
+        break;
+      case k_made:
+      case k_dent_touched:
+        make_contact(i);
+        break;
+      case k_lost:
+        lose_contact(i);
+        break;
+      case k_retreat:
+        start_unloading(i, r);
+        break;
+      case k_growth_on:
+      case k_growth_off:
+        growth = guard.kind == k_growth_on;
+        continue;  // settle() logs it
+      case k_caps: {
+        const CapPair& pair = cap_pairs_[i];
+        if (!caps_have_met_) radius_at_caps_ = 1.0 + r;
+        caps_have_met_ = true;
+        const Event caps{guard.name, pair.first, pair.first == pair.second ? -1 : pair.second};
+        log.push_back(caps);
+        if (settings_.stops_at_cap_intersection) {
+          end = DomainEnd{caps,
+                          {"contact caps intersect, the source's limit of validity (strict = true)", "R/R0", 1.0 + r}};
+        }
+        continue;
+      }
+      case k_singular:
+        end = DomainEnd{event,
+                        {"the free surface of the particle is used up and the apparent radius would run away",
+                         "growth slope D_eff/(4 pi R^2)", k_least_slope}};
+        continue;
+      case k_volume:
+        end = DomainEnd{event, {"the particle is compressed elastically to half its volume", "V/V0", 0.5}};
+        continue;
+      default:
+        end = DomainEnd{event, {"a wall has reached the centre of the particle", "distance/R0", k_least_distance}};
+        continue;
+    }
+    others_fired = true;
+    log.push_back(event);
+    if (is_making || is_losing) meet_balanced(i, is_making, r, log);
+  }
+  if (end) {
+    if (log.empty() || log.back().name != end->event.name) log.push_back(end->event);
+    return end;
+  }
+  settle(xi, y, others_fired ? std::nullopt : growth, log);
+  return std::nullopt;
+}
+
+}  // namespace monograin::mdr

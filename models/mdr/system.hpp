@@ -1,0 +1,193 @@
+/// The MDR particle between rigid walls as a hybrid system (displacement control, no adhesion).
+///
+/// Unknowns: r = (R - R0)/R0, the work of the walls, and with a free centre its displacement along the directions in
+/// which the walls can move it. Lengths in R0; stresses in the yield stress (in E* where nothing yields). Source:
+/// 002_000df8fc37500451.txt, stated as a continuous-time model: the published time-step recipe is its first-order
+/// explicit scheme. While the radius grows, the explicit form is the rate that keeps the volume balance
+///   V_geo,Q(R, delta_o) - V_Q(R, delta_o) = C
+/// and the implicit and direct forms are the balance itself, with C frozen at every transition.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "hybrid_system.hpp"
+#include "mdr/contact.hpp"
+
+namespace monograin::mdr {
+
+/// Which contacts make the apparent radius grow, and when.
+enum class RadiusRule {
+  gated,    ///< all touching contacts; only while a contact at its largest overlap is driven inwards
+  yielded,  ///< yielded contacts at their largest overlap; only while one of them is driven inwards
+  seed,     ///< all touching contacts; always (eq. 37 to the letter)
+  fixed     ///< R = R0 for ever (model hertz)
+};
+
+/// What the largest overlap of an unloaded contact does while R grows.
+enum class DeltaMaxRule {
+  running_maximum,  ///< stays: it is the running maximum of the overlap (Appendix E)
+  shifted           ///< moves with R: delta_o,max + R - R0 (eq. 19)
+};
+
+enum class Regime { open, elastic, fully_plastic, unloading, separated };
+
+struct Settings {
+  double initial_radius = 0.0;                                    ///< R0 [m], > 0
+  double youngs_modulus = 0.0;                                    ///< E [Pa], > 0
+  double poisson_ratio = 0.0;                                     ///< in (-1, 0.5]
+  double yield_stress = std::numeric_limits<double>::infinity();  ///< Y [Pa], > 0; infinity: elastic throughout
+  ElasticProfile elastic_profile = ElasticProfile::ellipse;
+  RadiusRule radius_rule = RadiusRule::gated;
+  DeltaMaxRule delta_max_rule = DeltaMaxRule::running_maximum;
+  bool stops_at_cap_intersection = false;
+  bool centre_is_free = false;  ///< the centre moves so that the wall forces balance
+  /// Largest displacement of a wall [m]: how large the unknowns become, which absolute tolerances are relative to. 0:
+  /// R0.
+  double largest_displacement = 0.0;
+};
+
+class System final : public HybridSystem {
+ public:
+  System(const Settings& settings, std::vector<ContactClass> classes);
+
+  [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return unknowns_; }
+  [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return classes_; }
+  void start(std::span<double> y) override;
+  void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override;
+  void complete(double xi, std::span<double> y) override;
+  void rates(double xi, std::span<const double> y, std::span<double> dy) override;
+  void all_rates(double xi, std::span<const double> y, std::span<double> dy) override;
+  void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
+  void solve(double xi, std::span<double> y) override;
+  [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override;
+  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
+  void guard_values(double xi, std::span<const double> y, std::span<double> values) override;
+  std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
+                                std::vector<Event>& log) override;
+  [[nodiscard]] std::span<const Observable> observables() const noexcept override { return observables_; }
+  void observe(double xi, std::span<const double> y, std::span<double> values) override;
+  [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
+  [[nodiscard]] bool is_open(int contact_class) const noexcept override;
+  [[nodiscard]] std::vector<Finding> warnings() const override;
+
+  /// Volume balance V_geo,Q - V_Q - C over 4 pi R0^3, the drift of an integrated solution; 0 while the radius is held.
+  [[nodiscard]] double balance_residual(double xi, std::span<const double> y);
+
+ private:
+  /// Vectors and matrices along the free directions of the centre; entries beyond their number are zero.
+  using Small = Eigen::Vector3d;
+  using SmallMatrix = Eigen::Matrix3d;
+
+  /// What a contact class remembers: changed by transitions only.
+  struct Memory {
+    Regime regime = Regime::open;
+    bool is_virgin = true;       ///< at its largest overlap, and not decreasing
+    double largest = 0.0;        ///< largest overlap (running maximum) or wall displacement (shifted), while not virgin
+    double area_constant = 0.0;  ///< c, set once at yield
+  };
+
+  /// One contact class at an instant.
+  struct Instant {
+    double displacement = 0.0;
+    double overlap = 0.0;
+    Contact contact;
+  };
+
+  /// Sums over the contacts at an instant; the volume balance is divided by 4 pi R0^3.
+  struct Sums {
+    double relative_compression = 0.0;  ///< w of all contacts: 1 - 4w > 0 while the volume is defined
+    double balance = 0.0;               ///< V_geo,Q - V_Q
+    double by_radius = 0.0;             ///< its partial derivatives
+    double by_time = 0.0;
+    Small by_centre = Small::Zero();
+    double power = 0.0;           ///< d(work)/dxi
+    Small force = Small::Zero();  ///< net force along the free directions, and its partial derivatives
+    Small force_by_time = Small::Zero();
+    Small force_by_radius = Small::Zero();
+    SmallMatrix stiffness = SmallMatrix::Zero();
+    double time_scale = 0.0;  ///< sum of the magnitudes in by_time
+  };
+
+  struct Motion {
+    double demand = 0.0;           ///< rate of volume that wants to become growth
+    double slope = 0.0;            ///< D_eff/(4 pi): growth rate = demand/slope
+    double growth = 0.0;           ///< dr/dxi
+    Small centre = Small::Zero();  ///< velocity of the centre
+  };
+
+  struct CapPair {
+    int first = 0;
+    int second = 0;
+    double angle = 0.0;  ///< smallest angle between two of their normals
+  };
+
+  [[nodiscard]] static bool touches(Regime regime) noexcept;
+  [[nodiscard]] bool is_member(const Memory& memory) const noexcept;
+  [[nodiscard]] double largest_overlap(const Memory& memory, double r) const noexcept;
+  [[nodiscard]] const UnloadingShape& shape(std::size_t i, double r);
+  [[nodiscard]] double inward_rate(std::size_t i, const Motion& motion) const noexcept;
+
+  void look(double xi, std::span<const double> y);
+  void sum_up(double r);
+  void regularise_first_touch();
+  [[nodiscard]] Small balance_step(const Small& force) const;
+  [[nodiscard]] Motion motion(bool growing) const;
+  [[nodiscard]] Motion growing_motion() const;
+  void move_centre(double xi, std::span<double> y);
+  void grow(double xi, std::span<double> y);
+  void hold_centre(std::span<const double> y);
+
+  // Modes (modes.cpp).
+  void settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log);
+  [[nodiscard]] bool wants_growth(double xi, std::span<const double> y);
+  bool settle_contact(std::size_t i, double xi, double r, const Motion& now, std::vector<Event>& log,
+                      std::vector<Event>& made);
+  [[nodiscard]] bool gate_is_open(const Motion& now) const noexcept;
+  [[nodiscard]] double speed_scale() const noexcept;
+  void start_unloading(std::size_t i, double r);
+  void make_contact(std::size_t i);
+  void lose_contact(std::size_t i);
+  void yield(std::size_t i, double r);
+  void resume_loading(std::size_t i);
+  void meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log);
+  void watch(double xi, std::span<const double> y);
+  void watch_contact(std::size_t i, double r, const Motion& now);
+  [[nodiscard]] double contact_guard(int kind, std::size_t i, double overlap, double r);
+  [[nodiscard]] double cap_guard(const CapPair& pair, double r) const;
+
+  [[nodiscard]] double stored_energy(double r);
+  [[nodiscard]] double work_scale(double displacement) const noexcept;
+
+  Settings settings_;
+  Material material_;  ///< stresses over the stress unit
+  double stress_unit_ = 1.0;
+  std::vector<ContactClass> classes_;
+  std::vector<Unknown> unknowns_;
+  std::vector<Observable> observables_;
+  std::vector<Small> directions_;  ///< mean normal of each class along the free directions of the centre
+  int free_count_ = 0;             ///< free directions of the centre, 0 to 3
+  Eigen::Matrix3d free_directions_ = Eigen::Matrix3d::Zero();  ///< their orthonormal basis, in the first columns
+  std::vector<CapPair> cap_pairs_;
+
+  std::vector<Ramp> ramps_;  ///< over R0
+  bool has_begun_ = false;
+  std::vector<Memory> memory_;
+  bool is_growing_ = false;
+  double held_radius_ = 0.0;                  ///< r while it is held
+  double frozen_balance_ = 0.0;               ///< C while it grows
+  Small held_centre_ = Small::Zero();         ///< of a free centre, where the present mode began
+  SmallMatrix unheld_ = SmallMatrix::Zero();  ///< projector on the directions in which nothing holds it
+  std::vector<Guard> guards_;
+
+  // Work space, so that nothing is allocated while integrating.
+  std::vector<Instant> now_;
+  std::vector<UnloadingShape> shapes_;
+  Sums sums_;
+  double largest_work_ = 0.0;
+  double lowest_dissipation_ = 0.0;
+  bool caps_have_met_ = false;
+  double radius_at_caps_ = 0.0;
+};
+
+}  // namespace monograin::mdr

@@ -1,0 +1,26 @@
+/// Walls as the models see them: contact classes, and what a step of the program makes them do.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace monograin {
+
+/// Walls that share the same history. One of them is computed; it counts as often as the class has walls.
+struct ContactClass {
+  std::string name;
+  std::vector<Eigen::Vector3d> normals;  ///< unit, outward, one per wall; never empty
+  double gap = 0.0;                      ///< distance from the undeformed particle at the start [m], >= 0
+
+  [[nodiscard]] double multiplicity() const noexcept { return static_cast<double>(normals.size()); }
+};
+
+/// What one class does during one step: its wall displacement goes linearly from start to end [m], towards the centre
+/// positive.
+struct Ramp {
+  double start = 0.0;
+  double end = 0.0;
+};
+
+}  // namespace monograin

@@ -1,0 +1,37 @@
+/// The commands of the program. Each adds itself to the command line; what it did comes back as the process's exit
+/// code.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace monograin {
+
+/// Exit codes that scripts rely on.
+enum ExitCode : int {
+  k_success = 0,
+  k_unexpected = 1,      ///< a bug, or something outside the program (disk full, gnuplot missing for `plot`)
+  k_usage = 2,           ///< command line or scenario fault; nothing was run or written
+  k_left_domain = 3,     ///< a run left its model's domain; the history up to there is kept
+  k_solver_failure = 4,  ///< a solver gave up; the history up to there is kept
+  k_differs = 5          ///< a comparison was above its tolerance
+};
+
+/// A fault in how the program was called; what() is shown as it is.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Set by the command that was named; runs it.
+using Action = std::function<int()>;
+
+void add_run_command(CLI::App& app, Action& action);
+void add_check_command(CLI::App& app, Action& action);
+void add_models_command(CLI::App& app, Action& action);
+void add_plot_command(CLI::App& app, Action& action);
+void add_compare_command(CLI::App& app, Action& action);
+void add_regress_command(CLI::App& app, Action& action);
+void add_schema_command(CLI::App& app, Action& action);
+
+}  // namespace monograin

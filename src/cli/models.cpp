@@ -1,0 +1,175 @@
+// `monograin models` and `monograin schema`.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "catalogue.hpp"
+#include "cli/commands.hpp"
+#include "mdr/contact.hpp"
+#include "scenario/scenario.hpp"
+#include "scenario/schema.hpp"
+
+namespace monograin {
+namespace {
+
+struct ModelsOptions {
+  std::string name;
+  std::string file;
+};
+
+std::string_view si_unit(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::none:
+      return "-";
+    case Dimension::length:
+      return "m";
+    case Dimension::stress:
+      return "Pa";
+    case Dimension::surface_energy:
+      return "J/m^2";
+    case Dimension::force:
+      return "N";
+    case Dimension::time:
+      return "s";
+    case Dimension::velocity:
+      return "m/s";
+    case Dimension::force_rate:
+      return "N/s";
+    case Dimension::angle:
+      return "rad";
+  }
+  return "";
+}
+
+std::string to_text(const Range& range) {
+  return fmt::format("{}{}, {}{}", range.lower_is_open || std::isinf(range.lower) ? '(' : '[', range.lower, range.upper,
+                     range.upper_is_open || std::isinf(range.upper) ? ')' : ']');
+}
+
+void print_list() {
+  for (const ModelInfo& model : model_catalogue()) fmt::print("{:<16}{}\n", model.name, model.summary);
+  fmt::print("\nreserved for later: {}\n", fmt::join(reserved_models(), ", "));
+}
+
+void print_terms(std::string_view title, std::span<const Term> terms) {
+  fmt::print("\n{}\n", title);
+  for (const Term& term : terms) fmt::print("  {:<18}{}\n", term.name, term.meaning);
+}
+
+void print_model(const ModelInfo& model) {
+  fmt::print("{}: {}\nsource: {}\n\n[material]\n", model.name, model.summary, model.source);
+  for (const QuantityKey& key : model.material) {
+    const std::string default_text = key.default_value ? fmt::format("default {}", *key.default_value) : "required";
+    fmt::print("  {:<18}{} [{}], in {}; {}\n", key.name, key.meaning, si_unit(key.dimension), to_text(key.range),
+               default_text);
+  }
+  if (!model.options.empty()) fmt::print("\n[{}]\n", model.name);
+  for (const OptionKey& key : model.options) {
+    switch (key.kind) {
+      case OptionKey::Kind::choice:
+        fmt::print("  {:<18}{}: {} (default {})\n", key.name, key.meaning, fmt::join(key.choices, ", "),
+                   key.choices.front());
+        break;
+      case OptionKey::Kind::toggle:
+        fmt::print("  {:<18}{}: true, false (default {})\n", key.name, key.meaning, key.default_toggle);
+        break;
+      case OptionKey::Kind::file:
+        fmt::print("  {:<18}{}: a file (default none)\n", key.name, key.meaning);
+        break;
+    }
+  }
+  fmt::print("\nconfigurations: {}\n", fmt::join(model.configurations, ", "));
+  fmt::print("centre: fixed{}\n", model.has_free_centre ? ", equilibrium" : "");
+  print_terms("regimes", model.regimes);
+  print_terms("events", model.events);
+  fmt::print("\nvalidity\n");
+  for (const std::string_view line : model.domain) fmt::print("  {}\n", line);
+  fmt::print("\nnot available yet\n");
+  for (const Refusal& refusal : model.refusals) fmt::print("  {:<24}{}\n", refusal.key, refusal.message);
+}
+
+/// Derived constants of a scenario's material and particle.
+void print_parameters(const Scenario& scenario) {
+  const auto constant = [&](const char* key) {
+    const auto found = scenario.material.find(key);
+    return found == scenario.material.end() ? std::numeric_limits<double>::infinity() : found->second;
+  };
+  const double youngs_modulus = constant("youngs_modulus");
+  const double poisson_ratio = constant("poisson_ratio");
+  const double yield_stress = constant("yield_stress");
+  const mdr::Material material = mdr::make_material(youngs_modulus, poisson_ratio, yield_stress);
+  const auto print = [](std::string_view name, double value, std::string_view unit) {
+    fmt::print("{:<28}{:.17g} {}\n", name, value, unit);
+  };
+  print("radius", scenario.radius, "m");
+  print("youngs_modulus", youngs_modulus, "Pa");
+  print("poisson_ratio", poisson_ratio, "-");
+  print("composite_modulus", material.composite_modulus, "Pa");
+  print("shear_modulus", youngs_modulus / (2.0 * (1.0 + poisson_ratio)), "Pa");
+  print("bulk_compliance", material.bulk_compliance, "1/Pa");
+  if (!std::isfinite(yield_stress)) return;
+  print("yield_stress", yield_stress, "Pa");
+  print("modulus_over_yield", youngs_modulus / yield_stress, "-");
+  const double d_yield = material.yield_overlap_ratio;
+  print("yield_overlap_over_radius", d_yield, "-");
+  if (!std::isfinite(d_yield)) return;
+  const mdr::PlasticPressure pressure = mdr::plastic_pressure(yield_stress, d_yield);
+  const double area_constant = mdr::yield_area_constant(d_yield, scenario.radius);
+  const double overlap = d_yield * scenario.radius;
+  print("yield_overlap", overlap, "m");
+  print("yield_pressure", pressure.pressure, "Pa");
+  print("yield_contact_radius",
+        mdr::plastic_contact(yield_stress, scenario.radius, overlap, area_constant).contact_radius, "m");
+  print("yield_force", mdr::plastic_contact(yield_stress, scenario.radius, overlap, area_constant).force, "N");
+}
+
+int run_models(const ModelsOptions& options) {
+  const ModelInfo* model = options.name.empty() ? nullptr : find_model(options.name);
+  if (!options.name.empty() && model == nullptr) {
+    std::vector<std::string_view> names;
+    for (const ModelInfo& known : model_catalogue()) names.push_back(known.name);
+    throw UsageError(fmt::format("no model is called '{}'; there are {}", options.name, fmt::join(names, ", ")));
+  }
+  if (options.file.empty()) {
+    if (model == nullptr)
+      print_list();
+    else
+      print_model(*model);
+    return k_success;
+  }
+  const Scenario scenario = read_scenario(options.file);
+  if (model != nullptr && scenario.model != model->name) {
+    throw UsageError(fmt::format("{}: its model is '{}', not '{}'", options.file, scenario.model, model->name));
+  }
+  print_parameters(scenario);
+  return k_success;
+}
+
+}  // namespace
+
+void add_models_command(CLI::App& app, Action& action) {
+  auto options = std::make_shared<ModelsOptions>();
+  CLI::App* command = app.add_subcommand("models", "List models, or describe one: keys, regimes, events, validity");
+  command->add_option("NAME", options->name, "Model to describe");
+  command->add_option("--parameters", options->file, "Print the derived parameters of this scenario instead")
+      ->type_name("FILE");
+  command->footer("Example: monograin models mdr");
+  command->callback([options, &action] { action = [options] { return run_models(*options); }; });
+}
+
+void add_schema_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("schema", "Print a JSON Schema of scenario files, for editors");
+  command->footer("Example: monograin schema > monograin.schema.json");
+  command->callback([&action] {
+    action = [] {
+      fmt::print("{}\n", scenario_schema());
+      return static_cast<int>(k_success);
+    };
+  });
+}
+
+}  // namespace monograin

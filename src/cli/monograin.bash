@@ -1,0 +1,29 @@
+# Completion of monograin for bash; installed where bash-completion looks for it.
+
+_monograin() {
+  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} options
+  if ((COMP_CWORD == 1)); then
+    mapfile -t COMPREPLY < <(compgen -W "run check models plot compare regress schema --help --version" -- "$current")
+    return
+  fi
+  if [[ $previous == models ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$(monograin models 2>/dev/null | awk 'NF == 0 { exit } { print $1 }') --parameters" -- "$current")
+    return
+  fi
+  case ${COMP_WORDS[1]} in
+    run) options="--output --set --plot --quiet --help" ;;
+    check) options="--set --help" ;;
+    models) options="--parameters --help" ;;
+    plot) options="--output --help" ;;
+    compare) options="--x --y --tol --help" ;;
+    regress) options="--accept --scenarios --curves --help" ;;
+    *) options="--help" ;;
+  esac
+  if [[ $current == -* ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$options" -- "$current")
+  else
+    mapfile -t COMPREPLY < <(compgen -f -- "$current")
+  fi
+}
+
+complete -o filenames -F _monograin monograin

@@ -1,0 +1,163 @@
+// `monograin run` and `monograin check`.
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "cli/commands.hpp"
+#include "figure/figure.hpp"
+#include "history/run_files.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunOptions {
+  std::vector<std::string> files;
+  std::string output;
+  std::vector<std::string> overrides;
+  bool draws_figure = false;
+  bool is_quiet = false;
+};
+
+struct Job {
+  Scenario scenario;
+  fs::path folder;
+  double parse_time = 0.0;
+};
+
+template <class Read>
+Job make_job(Read&& read) {
+  const auto start = std::chrono::steady_clock::now();
+  Job job{.scenario = read(), .folder = {}, .parse_time = 0.0};
+  job.parse_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return job;
+}
+
+/// Reads all files before anything is run; faults of all of them are reported together.
+std::vector<Job> read_jobs(const RunOptions& options) {
+  std::vector<Job> jobs;
+  if (options.files.empty()) {
+    jobs.push_back(make_job([&] { return parse_scenario(default_scenario_text(), "die.toml", options.overrides); }));
+    return jobs;
+  }
+  std::vector<Fault> faults;
+  for (const std::string& file : options.files) {
+    try {
+      jobs.push_back(make_job([&] { return read_scenario(file, options.overrides); }));
+    } catch (const ScenarioError& error) {
+      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    }
+  }
+  if (!faults.empty()) throw ScenarioError(std::move(faults));
+  return jobs;
+}
+
+void choose_folders(std::vector<Job>& jobs, const std::string& output) {
+  std::set<fs::path> taken;
+  for (Job& job : jobs) {
+    const bool is_own_folder = !output.empty() && jobs.size() == 1;
+    const fs::path base = output.empty() ? fs::path("runs") : fs::path(output);
+    job.folder = is_own_folder ? base : base / job.scenario.name;
+    if (!taken.insert(fs::weakly_canonical(job.folder)).second) {
+      throw UsageError(
+          fmt::format("two scenarios are named '{}' and would write to the same folder {}; run them one by one "
+                      "with -o",
+                      job.scenario.name, job.folder.string()));
+    }
+    try {
+      check_run_folder(job.folder);
+    } catch (const std::runtime_error& error) {
+      throw UsageError(error.what());
+    }
+  }
+}
+
+/// A run never fails because its figure could not be drawn.
+void draw_figure(const fs::path& folder) {
+  try {
+    draw_runs({folder}, folder / "figure.svg");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "warning: no figure: {}\n", error.what());
+  }
+}
+
+void report(const Run& run, const fs::path& folder) {
+  fmt::print(stderr, "{}: {}, {} rows, {} events -> {}\n", run.scenario.name, to_string(run.record.status),
+             run.record.history.row_count(), run.record.events.row_count(), folder.string());
+}
+
+int exit_code_of(RunStatus status) {
+  switch (status) {
+    case RunStatus::complete:
+      return k_success;
+    case RunStatus::stopped:
+      return k_left_domain;
+    case RunStatus::failed:
+      return k_solver_failure;
+  }
+  return k_unexpected;
+}
+
+int run(const RunOptions& options) {
+  std::vector<Job> jobs = read_jobs(options);
+  choose_folders(jobs, options.output);
+  int worst = k_success;
+  for (const Job& job : jobs) {
+    Run result = run_scenario(job.scenario);
+    result.timings.parse = job.parse_time;
+    write_run(result, job.folder, options.draws_figure ? draw_figure : std::function<void(const fs::path&)>());
+    if (!options.is_quiet) {
+      for (const std::string& warning : result.record.warnings) fmt::print(stderr, "warning: {}\n", warning);
+      report(result, job.folder);
+    }
+    if (!result.record.message.empty()) {
+      fmt::print(stderr, "{}: {}: {}\n", result.scenario.name, to_string(result.record.status), result.record.message);
+    }
+    worst = std::max(worst, exit_code_of(result.record.status));
+  }
+  return worst;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, Action& action) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command =
+      app.add_subcommand("run", "Run scenarios; without a file: the die compaction that comes with the program");
+  command->add_option("FILE", options->files, "Scenario files (TOML)");
+  command->add_option("-o,--output", options->output,
+                      "Folder of the run (of several files: the folder that holds theirs) [runs/NAME]");
+  command->add_option("--set", options->overrides, "Override a key: key=value, e.g. material.yield_stress='30 MPa'")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->take_all();
+  command->add_flag("--plot", options->draws_figure, "Draw figure.svg beside the curves");
+  command->add_flag("--quiet", options->is_quiet, "Say nothing but errors");
+  command->footer("Example: monograin run scenarios/die.toml --set loading.steps[0].displacement='0.3 R0' --plot");
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+void add_check_command(CLI::App& app, Action& action) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("check", "Check scenario files without running them");
+  command->add_option("FILE", options->files, "Scenario files (TOML)")->required();
+  command->add_option("--set", options->overrides, "Override a key: key=value")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->take_all();
+  command->footer("Example: monograin check scenarios/die.toml");
+  command->callback([options, &action] {
+    action = [options] {
+      static_cast<void>(read_jobs(*options));
+      return static_cast<int>(k_success);
+    };
+  });
+}
+
+}  // namespace monograin

@@ -1,0 +1,372 @@
+#include "engine/drive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "engine/watch.hpp"
+#include "history/recorder.hpp"
+
+namespace monograin {
+namespace {
+
+// What is left of a step, or lies between an event and an output point, and is too short to be integrated (step
+// coordinates).
+constexpr double k_round_off = 1e-13;
+// Events in a row without progress after which two modes are chattering.
+constexpr int k_most_idle_events = 50;
+// Durations of walls that end their steps together (relative).
+constexpr double k_same_duration = 1e-9;
+
+/// The run has left the model's domain.
+struct Stop {
+  std::string message;
+};
+
+Quantity to_quantity(Until::Quantity quantity) {
+  switch (quantity) {
+    case Until::Quantity::force:
+      return Quantity::force;
+    case Until::Quantity::displacement:
+      return Quantity::displacement;
+    case Until::Quantity::pressure:
+      return Quantity::pressure;
+    case Until::Quantity::contact_radius:
+      return Quantity::contact_radius;
+    case Until::Quantity::apparent_radius:
+      return Quantity::apparent_radius;
+    case Until::Quantity::event:
+      break;
+  }
+  throw std::logic_error("an event is not a quantity");
+}
+
+/// One step of the program, worked out from where the walls stand when it begins.
+struct Plan {
+  std::vector<Ramp> ramps;
+  double duration = -1.0;  ///< [s]; negative while no wall has said
+  std::vector<Condition> conditions;
+  std::vector<std::string> ending_events;
+  std::vector<int> detaching;  ///< classes that are withdrawn until they are open
+};
+
+/// An output point of the present step.
+struct OutputPoint {
+  double xi = 0.0;
+  double time = 0.0;
+};
+
+class Drive {
+ public:
+  Drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output)
+      : scene_(scene),
+        system_(*scene.system),
+        watch_(system_),
+        integrator_(make_integrator(integrator, system_, watch_, tolerances)),
+        recorder_(system_),
+        output_(output),
+        y_(system_.unknowns().size()),
+        output_state_(y_.size()) {
+    for (const ContactClass& c : scene.classes) positions_.push_back(-c.gap);
+    const std::size_t rows =
+        output.times.empty() ? static_cast<std::size_t>(output.points) * scene.step_count() : output.times.size();
+    recorder_.reserve_rows(rows + 64);
+  }
+
+  RunRecord run() {
+    RunRecord result;
+    try {
+      run_program();
+    } catch (const Stop& stop) {
+      result.status = RunStatus::stopped;
+      result.message = stop.message;
+    } catch (const std::domain_error& error) {
+      result.status = RunStatus::stopped;
+      result.message = where(xi_) + error.what();
+      open_instant(xi_);
+      close_instant(time(xi_), xi_, {{"limit"}});
+    } catch (const SolverError& error) {
+      result.status = RunStatus::failed;
+      result.message = where(error.xi()) + error.what();
+    }
+    result.history = recorder_.take_history();
+    result.events = recorder_.take_events();
+    result.statistics = integrator_->statistics();
+    result.statistics.events = event_count_;
+    for (const Finding& warning : system_.warnings()) {
+      result.warnings.push_back(fmt::format("{} ({} = {:.6g})", warning.message, warning.quantity, warning.value));
+    }
+    return result;
+  }
+
+ private:
+  void run_program() {
+    system_.start(y_);
+    std::vector<Event> log;
+    for (step_ = 0; step_ < scene_.step_count(); ++step_) {
+      plan_ = make_plan();
+      if (step_ > 0) {
+        // The rows before this corner stand already; what comes after belongs to the step that begins.
+        system_.begin_step(plan_.ramps, y_, log);
+        close_instant(step_start_, 0.0, log);
+      } else {
+        begin_history();
+      }
+      const bool is_met = integrate_step();
+      open_instant(xi_);
+      log.clear();
+      if (is_met) log.push_back({"until-met"});
+      log.push_back({"step-end"});
+      step_start_ = time(xi_);
+      for (std::size_t c = 0; c < positions_.size(); ++c) {
+        positions_[c] = std::lerp(plan_.ramps[c].start, plan_.ramps[c].end, xi_);
+      }
+    }
+    --step_;
+    close_instant(step_start_, xi_, log);
+  }
+
+  [[nodiscard]] double time(double xi) const { return step_start_ + xi * plan_.duration; }
+  [[nodiscard]] int step_label() const { return static_cast<int>(step_ + 1); }
+  [[nodiscard]] std::string where(double xi) const {
+    return fmt::format("step {}, t = {:.9g} s: ", step_ + 1, time(xi));
+  }
+
+  // --- the program
+  // ----------------------------------------------------------------------------------------------------------
+
+  [[nodiscard]] Plan make_plan() {
+    Plan plan;
+    for (std::size_t c = 0; c < scene_.programs.size(); ++c) {
+      plan.ramps.push_back({positions_[c], positions_[c]});
+      if (step_ < scene_.programs[c].size()) add_to_plan(scene_.programs[c][step_], static_cast<int>(c), plan);
+    }
+    return plan;
+  }
+
+  void add_to_plan(const Step& step, int contact_class, Plan& plan) {
+    Ramp& ramp = plan.ramps.back();
+    switch (step.kind) {
+      case Step::Kind::displacement:
+        ramp.end = step.target;
+        break;
+      case Step::Kind::detach:
+        // One apparent radius back: farther than any contact stays closed.
+        ramp.end = ramp.start - system_.quantity(Quantity::apparent_radius, contact_class, xi_, y_);
+        plan.detaching.push_back(contact_class);
+        break;
+      case Step::Kind::hold:
+        break;
+      case Step::Kind::force:
+        throw std::logic_error("a force step reached a model without force control");
+    }
+    const double duration = step.duration ? *step.duration : std::abs(ramp.end - ramp.start) / *step.rate;
+    if (plan.duration >= 0.0 &&
+        std::abs(duration - plan.duration) > k_same_duration * std::max(duration, plan.duration)) {
+      throw Stop{fmt::format(
+          "step {}: the walls of class '{}' need {:.6g} s where others need {:.6g} s, and steps end "
+          "together; give equal durations",
+          step_ + 1, scene_.classes[static_cast<std::size_t>(contact_class)].name, duration, plan.duration)};
+    }
+    plan.duration = std::max(plan.duration, duration);
+    for (const Until& until : step.until) {
+      if (until.quantity == Until::Quantity::event)
+        plan.ending_events.push_back(until.event);
+      else
+        plan.conditions.push_back({to_quantity(until.quantity), contact_class, until.value});
+    }
+  }
+
+  [[nodiscard]] bool is_detached() const {
+    return !plan_.detaching.empty() && std::ranges::all_of(plan_.detaching, [&](int c) { return system_.is_open(c); });
+  }
+
+  // --- one step
+  // -------------------------------------------------------------------------------------------------------------
+
+  /// Integrates the step that has begun; leaves xi_ and y_ where it ends. Returns whether a condition ended it.
+  bool integrate_step() {
+    xi_ = 0.0;
+    watch_.begin_step(plan_.conditions, 0.0, y_);
+    plan_outputs();
+    if (is_detached()) return false;
+    int idle_events = 0;
+    while (plan_.duration > 0.0 && 1.0 - xi_ > k_round_off) {
+      const double segment_start = xi_;
+      integrator_->begin(xi_, y_);
+      Integrator::Advance advance{};
+      double last = xi_;
+      do {
+        last = xi_;
+        advance = integrator_->advance();
+        xi_ = advance.xi;
+        emit_outputs_before(xi_);
+        integrator_->dense_output(xi_, y_);
+      } while (!advance.hit_guard && xi_ < 1.0);
+      if (!advance.hit_guard) break;
+
+      ++event_count_;
+      idle_events = xi_ - segment_start < k_round_off ? idle_events + 1 : 0;
+      if (idle_events > k_most_idle_events) throw chattering();
+      if (handle_event(last)) return true;
+      if (is_detached()) return false;
+    }
+    xi_ = 1.0;
+    return false;
+  }
+
+  /// Applies what has fired at xi_. Returns whether a condition of the program ends the step here.
+  /// @param last  where the integrator's last step began
+  bool handle_event(double last) {
+    const std::vector<std::size_t> fired = collect_fired(last);
+    std::vector<std::size_t> of_system;
+    for (const std::size_t guard : fired) {
+      if (guard < watch_.system_guards()) of_system.push_back(guard);
+    }
+    bool is_met = of_system.size() < fired.size();
+    if (!of_system.empty()) {
+      open_instant(xi_);
+      std::vector<Event> log;
+      const auto end = system_.fire(of_system, xi_, y_, log);
+      close_instant(time(xi_), xi_, log);
+      if (end) {
+        const Finding& finding = end->finding;
+        throw Stop{fmt::format("{}{} ({} = {:.9g})", where(xi_), finding.message, finding.quantity, finding.value)};
+      }
+      is_met = is_met || watch_.is_met(xi_, y_) || std::ranges::any_of(log, [&](const Event& event) {
+                 return std::ranges::find(plan_.ending_events, event.name) != plan_.ending_events.end();
+               });
+    }
+    watch_.renew(xi_, y_);
+    return is_met;
+  }
+
+  /// Guards that fire at xi_: those the integrator found, and those that reach zero within its accuracy at the same
+  /// instant.
+  [[nodiscard]] std::vector<std::size_t> collect_fired(double last) {
+    std::vector<std::size_t> fired(integrator_->fired().begin(), integrator_->fired().end());
+    std::vector<double> now(watch_.size());
+    std::vector<double> before(watch_.size());
+    watch_.values(xi_, y_, now);
+    const double middle = std::midpoint(last, xi_);
+    integrator_->dense_output(middle, output_state_);
+    watch_.values(middle, output_state_, before);
+    for (std::size_t g = 0; g < watch_.size(); ++g) {
+      if (std::ranges::find(fired, g) != fired.end()) continue;
+      const double side = before[g] < 0.0 ? 1.0 : -1.0;
+      const bool counts = watch_.directions()[g] == 0 || watch_.directions()[g] == static_cast<int>(side);
+      const bool has_arrived = side * now[g] >= -integrator_->guard_tolerance() && side * now[g] > side * before[g];
+      if (counts && before[g] != 0.0 && has_arrived) fired.push_back(g);
+    }
+    std::ranges::sort(fired);
+    return fired;
+  }
+
+  [[nodiscard]] SolverError chattering() const {
+    std::string names;
+    for (const std::size_t guard : integrator_->fired()) names += (names.empty() ? "" : ", ") + watch_.name(guard);
+    return {"event location", "chattering", xi_, 0.0, "events without progress: " + names};
+  }
+
+  // --- recording
+  // ------------------------------------------------------------------------------------------------------------
+
+  void plan_outputs() {
+    outputs_.clear();
+    next_output_ = 0;
+    for (int j = 1; output_.times.empty() && j <= output_.points; ++j) {
+      const double xi = static_cast<double>(j) / output_.points;
+      outputs_.push_back({xi, time(xi)});
+    }
+    for (const double instant : output_.times) {
+      if (plan_.duration == 0.0) break;
+      const double xi = (instant - step_start_) / plan_.duration;
+      if (xi > k_round_off && xi < 1.0 + k_round_off) outputs_.push_back({xi > 1.0 - k_round_off ? 1.0 : xi, instant});
+    }
+  }
+
+  [[nodiscard]] bool records_internal_steps() const { return output_.times.empty() && output_.points == 0; }
+
+  /// Output points up to, but not at, xi.
+  void emit_outputs_before(double xi) {
+    if (records_internal_steps() && xi < 1.0 && integrator_->fired().empty()) {
+      integrator_->dense_output(xi, output_state_);
+      recorder_.observe(time(xi), step_label(), xi, output_state_);
+      recorder_.append(RowSide::output);
+    }
+    for (; next_output_ < outputs_.size() && outputs_[next_output_].xi < xi - k_round_off; ++next_output_) {
+      const auto [at, instant] = outputs_[next_output_];
+      integrator_->dense_output(at, output_state_);
+      recorder_.observe(instant, step_label(), at, output_state_);
+      recorder_.append(RowSide::output);
+    }
+  }
+
+  /// The first row. Nothing jumps at the start: before and after an event there are the same.
+  void begin_history() {
+    std::vector<Event> log;
+    system_.begin_step(plan_.ramps, y_, log);
+    recorder_.observe(0.0, 1, 0.0, y_);
+    if (!log.empty()) recorder_.append(RowSide::before);
+    recorder_.append(RowSide::output);
+    if (!log.empty()) close_instant(0.0, 0.0, log);
+  }
+
+  /// Rows just before an event or corner, and its output point if one falls on it.
+  void open_instant(double xi) {
+    recorder_.observe(time(xi), step_label(), xi, y_);
+    recorder_.append(RowSide::before);
+    if (next_output_ < outputs_.size() && outputs_[next_output_].xi <= xi + k_round_off) {
+      ++next_output_;
+      recorder_.append(RowSide::output);
+    }
+  }
+
+  /// Row just after it, and the events that lie in between.
+  void close_instant(double instant, double xi, const std::vector<Event>& log) {
+    recorder_.observe(instant, step_label(), xi, y_);
+    recorder_.append(RowSide::after);
+    for (const Event& event : log) recorder_.event(event);
+  }
+
+  Scene& scene_;
+  HybridSystem& system_;
+  Watch watch_;
+  std::unique_ptr<Integrator> integrator_;
+  Recorder recorder_;
+  const Output& output_;
+  std::vector<double> y_;
+  std::vector<double> output_state_;
+  std::vector<double> positions_;  ///< where the program has taken the walls [m]
+
+  std::size_t step_ = 0;
+  Plan plan_;
+  double step_start_ = 0.0;  ///< [s]
+  double xi_ = 0.0;          ///< present step coordinate
+  std::vector<OutputPoint> outputs_;
+  std::size_t next_output_ = 0;
+  long event_count_ = 0;
+};
+
+}  // namespace
+
+std::string_view to_string(RunStatus status) noexcept {
+  switch (status) {
+    case RunStatus::complete:
+      return "complete";
+    case RunStatus::stopped:
+      return "stopped";
+    case RunStatus::failed:
+      return "failed";
+  }
+  return "";
+}
+
+RunRecord drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output) {
+  return Drive(scene, integrator, tolerances, output).run();
+}
+
+}  // namespace monograin

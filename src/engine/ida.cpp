@@ -1,0 +1,178 @@
+// The implicit form integrated by IDA.
+
+#include <fmt/format.h>
+#include <ida/ida.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "engine/sundials.hpp"
+
+namespace monograin {
+namespace {
+
+using namespace sundials_boundary;
+
+struct IdaDeleter {
+  void operator()(void* memory) const noexcept { IDAFree(&memory); }
+};
+using IdaMemory = std::unique_ptr<void, IdaDeleter>;
+
+constexpr long k_most_steps = 200'000;  // internal steps of one segment
+
+class Ida final : public Integrator {
+ public:
+  Ida(HybridSystem& system, Watch& watch, const Tolerances& tolerances)
+      : system_(system), watch_(watch), tolerances_(tolerances), quadratures_(system.unknowns()) {
+    const auto unknowns = system.unknowns();
+    const auto size = static_cast<sunindextype>(unknowns.size());
+    for (NVector* vector : {&y_, &dy_, &id_, &atol_, &weights_, &errors_}) vector->reset(N_VNew_Serial(size, context_));
+    N_VConst(0.0, y_.get());
+    N_VConst(0.0, dy_.get());
+    for (std::size_t k = 0; k < unknowns.size(); ++k) {
+      view(atol_.get())[k] = tolerances.atol * unknowns[k].scale;
+      view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
+    }
+    memory_.reset(IDACreate(context_));
+    check("IDASetErrHandlerFn", IDASetErrHandlerFn(memory_.get(), keep_message, &message_));
+    check("IDAInit", IDAInit(memory_.get(), residual, 0.0, y_.get(), dy_.get()));
+    check("IDASetUserData", IDASetUserData(memory_.get(), this));
+    check("IDASVtolerances", IDASVtolerances(memory_.get(), local_rtol(tolerances), atol_.get()));
+    check("IDASetMaxNumSteps", IDASetMaxNumSteps(memory_.get(), k_most_steps));
+    check("IDASetId", IDASetId(memory_.get(), id_.get()));
+    matrix_.reset(SUNDenseMatrix(size, size, context_));
+    linear_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_));
+    check("IDASetLinearSolver", IDASetLinearSolver(memory_.get(), linear_.get(), matrix_.get()));
+  }
+
+  void begin(double xi, std::span<const double> y) override {
+    past_ = statistics();  // counters are reset by IDAReInit
+    ++past_.segments;
+    segment_steps_ = 0;
+    end_ = xi;
+    std::ranges::copy(y, view(y_.get()).begin());
+    quadratures_.begin(view(y_.get()));
+    system_.all_rates(xi, y, view(dy_.get()));
+    check("IDAReInit", IDAReInit(memory_.get(), xi, y_.get(), dy_.get()));
+    check("IDASetStopTime", IDASetStopTime(memory_.get(), 1.0));
+    // The system's own rates are consistent; IDACalcIC brings the rest within the tolerance and says so if it cannot.
+    check("IDACalcIC", IDACalcIC(memory_.get(), IDA_YA_YDP_INIT, 1.0));
+    check("IDARootInit", IDARootInit(memory_.get(), 0, nullptr));
+    roots_.found.assign(watch_.size(), 0);
+    if (watch_.size() == 0) return;
+    check("IDARootInit", IDARootInit(memory_.get(), static_cast<int>(watch_.size()), guards));
+    std::vector<int> directions(watch_.directions().begin(), watch_.directions().end());
+    check("IDASetRootDirection", IDASetRootDirection(memory_.get(), directions.data()));
+    check("IDASetNoInactiveRootWarn", IDASetNoInactiveRootWarn(memory_.get()));
+  }
+
+  Advance advance() override {
+    if (++segment_steps_ > k_most_steps) throw failure("IDASolve", "IDA_TOO_MUCH_WORK");
+    pending_.forget();
+    roots_.fired.clear();
+    const int flag = IDASolve(memory_.get(), 1.0, &end_, y_.get(), dy_.get(), IDA_ONE_STEP);
+    pending_.rethrow();
+    if (flag < 0 && pending_.saw_domain_end()) throw std::domain_error(message_);
+    check("IDASolve", flag);
+    if (flag == IDA_ROOT_RETURN) {
+      check("IDAGetRootInfo", IDAGetRootInfo(memory_.get(), roots_.found.data()));
+      roots_.collect();
+    } else if (flag == IDA_TSTOP_RETURN) {
+      end_ = 1.0;
+    }
+    return {.xi = end_, .hit_guard = flag == IDA_ROOT_RETURN};
+  }
+
+  [[nodiscard]] std::span<const std::size_t> fired() const noexcept override { return roots_.fired; }
+
+  void dense_output(double xi, std::span<double> y) override {
+    check("IDAGetDky", IDAGetDky(memory_.get(), xi, 0, errors_.get()));
+    std::ranges::copy(view(errors_.get()), y.begin());
+    quadratures_.add_to(y);
+  }
+
+  [[nodiscard]] double guard_tolerance() const noexcept override { return 1e-2 * tolerances_.rtol; }
+
+  [[nodiscard]] Statistics statistics() const override {
+    Statistics total = past_;
+    long steps = 0, residuals = 0, linear_residuals = 0, jacobians = 0, errors = 0, convergence = 0, guards_seen = 0;
+    if (past_.segments > 0) {
+      IDAGetNumSteps(memory_.get(), &steps);
+      IDAGetNumResEvals(memory_.get(), &residuals);
+      IDAGetNumLinResEvals(memory_.get(), &linear_residuals);
+      IDAGetNumJacEvals(memory_.get(), &jacobians);
+      IDAGetNumErrTestFails(memory_.get(), &errors);
+      IDAGetNumNonlinSolvConvFails(memory_.get(), &convergence);
+      IDAGetNumGEvals(memory_.get(), &guards_seen);
+      IDAGetLastOrder(memory_.get(), &total.last_order);
+      IDAGetLastStep(memory_.get(), &total.last_step);
+    }
+    total.steps += steps;
+    total.rhs_evaluations += residuals + linear_residuals;
+    total.jacobian_evaluations += jacobians;
+    total.error_test_failures += errors;
+    total.convergence_failures += convergence;
+    total.guard_evaluations += guards_seen;
+    return total;
+  }
+
+ private:
+  static int residual(realtype xi, N_Vector y, N_Vector dy, N_Vector res, void* self) noexcept {
+    auto& ida = *static_cast<Ida*>(self);
+    return ida.pending_.guard([&] {
+      ida.system_.residual(xi, view(y), view(dy), view(res));
+      return all_finite(view(res));
+    });
+  }
+
+  static int guards(realtype xi, N_Vector y, N_Vector, realtype* values, void* self) noexcept {
+    auto& ida = *static_cast<Ida*>(self);
+    return ida.pending_.guard([&] {
+      ida.watch_.values(xi, view(y), {values, ida.watch_.size()});
+      return true;
+    });
+  }
+
+  void check(const char* call, int flag) {
+    if (flag < 0) throw failure(call, flag_name(IDAGetReturnFlagName(flag)));
+  }
+
+  [[nodiscard]] SolverError failure(const char* call, std::string flag) {
+    double step = 0.0;
+    std::string details = message_;
+    if (memory_ && IDAGetCurrentStep(memory_.get(), &step) == IDA_SUCCESS &&
+        IDAGetErrWeights(memory_.get(), weights_.get()) == IDA_SUCCESS &&
+        IDAGetEstLocalErrors(memory_.get(), errors_.get()) == IDA_SUCCESS) {
+      details += (details.empty() ? "" : "; ") +
+                 worst_components(system_.unknowns(), view(weights_.get()), view(errors_.get()));
+    }
+    return {call, std::move(flag), end_, step, details};
+  }
+
+  HybridSystem& system_;
+  Watch& watch_;
+  Tolerances tolerances_;
+  SegmentQuadratures quadratures_;
+  std::string message_;
+  Pending pending_;
+  RootList roots_;
+  double end_ = 0.0;
+  long segment_steps_ = 0;
+  Statistics past_;
+
+  sundials::Context context_;  // first in, last out
+  NVector y_, dy_, id_, atol_, weights_, errors_;
+  Matrix matrix_;
+  LinearSolver linear_;
+  IdaMemory memory_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_ida(HybridSystem& system, Watch& watch, const Tolerances& tolerances) {
+  return std::make_unique<Ida>(system, watch, tolerances);
+}
+
+}  // namespace monograin

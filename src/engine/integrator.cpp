@@ -1,0 +1,21 @@
+#include "engine/integrator.hpp"
+
+#include <fmt/format.h>
+
+namespace monograin {
+
+SolverError::SolverError(std::string call, std::string flag, double xi, double step, std::string details)
+    : std::runtime_error(fmt::format("{} failed with {} at {:.6g} of the step (step size {:.3g}){}{}", call, flag, xi,
+                                     step, details.empty() ? "" : ": ", details)),
+      xi_(xi) {}
+
+std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
+                                            const Tolerances& tolerances) {
+  if (name == "direct") return make_direct(system, watch);
+  if (name == "cvode-adams") return make_cvode(CvodeMethod::adams, system, watch, tolerances);
+  if (name == "cvode-bdf") return make_cvode(CvodeMethod::bdf, system, watch, tolerances);
+  if (name == "ida") return make_ida(system, watch, tolerances);
+  throw std::logic_error(fmt::format("no integrator is called '{}'", name));
+}
+
+}  // namespace monograin

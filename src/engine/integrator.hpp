@@ -1,0 +1,85 @@
+/// What the engine asks of an integrator, and the integrators there are.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/watch.hpp"
+#include "hybrid_system.hpp"
+
+namespace monograin {
+
+struct Tolerances {
+  double rtol = 1e-8;
+  double atol = 1e-12;  ///< relative to each unknown's own scale
+};
+
+/// Counts of one run, summed over its segments.
+struct Statistics {
+  long steps = 0;
+  long rhs_evaluations = 0;  ///< right-hand sides, residuals, or solutions at an instant
+  long jacobian_evaluations = 0;
+  long error_test_failures = 0;
+  long convergence_failures = 0;
+  long guard_evaluations = 0;
+  long segments = 0;
+  long events = 0;
+  int last_order = 0;
+  double last_step = 0.0;  ///< in step coordinates
+};
+
+/// An integrator gave up. Carries its own words, where it was, and the unknowns with the largest local errors.
+class SolverError : public std::runtime_error {
+ public:
+  SolverError(std::string call, std::string flag, double xi, double step, std::string details);
+  [[nodiscard]] double xi() const noexcept { return xi_; }
+
+ private:
+  double xi_;
+};
+
+/// Integrates one system over segments: pieces of a step without a kink, from one restart to the next.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  /// Starts a segment at xi < 1 that ends at 1, from a state the system has settled.
+  virtual void begin(double xi, std::span<const double> y) = 0;
+
+  /// Where an internal step has ended: at xi = 1 exactly, at a guard's root, or in between.
+  struct Advance {
+    double xi = 0.0;
+    bool hit_guard = false;
+  };
+  /// One internal step. @throws SolverError, or std::domain_error where the equations end
+  virtual Advance advance() = 0;
+
+  /// Guards that fired at the end of the last step, by index into the watch.
+  [[nodiscard]] virtual std::span<const std::size_t> fired() const noexcept = 0;
+
+  /// The complete state anywhere in the last internal step.
+  virtual void dense_output(double xi, std::span<double> y) = 0;
+
+  /// How near to zero a guard counts as fired together with one that has just fired.
+  [[nodiscard]] virtual double guard_tolerance() const noexcept = 0;
+
+  [[nodiscard]] virtual Statistics statistics() const = 0;
+};
+
+/// @param name  direct, cvode-bdf, cvode-adams or ida
+/// @throws std::logic_error for another name
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
+                                                          const Tolerances& tolerances);
+
+// One adapter per library.
+[[nodiscard]] std::unique_ptr<Integrator> make_direct(HybridSystem& system, Watch& watch);
+enum class CvodeMethod { adams, bdf };
+[[nodiscard]] std::unique_ptr<Integrator> make_cvode(CvodeMethod method, HybridSystem& system, Watch& watch,
+                                                     const Tolerances& tolerances);
+[[nodiscard]] std::unique_ptr<Integrator> make_ida(HybridSystem& system, Watch& watch, const Tolerances& tolerances);
+
+}  // namespace monograin

@@ -1,0 +1,92 @@
+#include "engine/run.hpp"
+
+#include <fmt/format.h>
+#include <sundials/sundials_version.h>
+#include <xxhash.h>
+
+#include <chrono>
+
+namespace monograin {
+namespace {
+
+class Stopwatch {
+ public:
+  /// Seconds since construction or the last lap.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Symbols under which material constants stand in the header of a history.
+constexpr std::pair<std::string_view, std::string_view> k_symbols[] = {
+    {"youngs_modulus", "E"}, {"poisson_ratio", "nu"}, {"yield_stress", "Y"}, {"surface_energy", "surface_energy"}};
+
+std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
+  const Scenario& scenario = run.scenario;
+  std::vector<std::pair<std::string, std::string>> header{{"program", fmt::format("monograin {}", version())},
+                                                          {"scenario", scenario.name},
+                                                          {"scenario_digest", scenario_digest(scenario)},
+                                                          {"status", std::string(to_string(run.record.status))},
+                                                          {"model", scenario.model},
+                                                          {"integrator", run.integrator.used},
+                                                          {"rtol", fmt::format("{}", scenario.numerics.rtol)},
+                                                          {"atol", fmt::format("{}", scenario.numerics.atol)},
+                                                          {"R0", fmt::format("{}", scenario.radius)}};
+  for (const auto& [key, symbol] : k_symbols) {
+    const auto found = scenario.material.find(std::string(key));
+    if (found != scenario.material.end()) header.emplace_back(symbol, fmt::format("{}", found->second));
+  }
+  if (!run.record.message.empty()) header.insert(header.begin() + 4, {"message", run.record.message});
+  if (!scenario.title.empty()) header.insert(header.begin() + 1, {"title", scenario.title});
+  return header;
+}
+
+}  // namespace
+
+std::string_view version() noexcept { return MONOGRAIN_VERSION; }
+
+std::string sundials_version() {
+  char text[32] = {};
+  SUNDIALSGetVersion(text, sizeof text);
+  return text;
+}
+
+std::string scenario_digest(const Scenario& scenario) {
+  std::string text = scenario.text;
+  for (const std::string& override_text : scenario.overrides) text += "\n--set " + override_text;
+  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
+  return fmt::format("xxh128:{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+IntegratorChoice choose_integrator(const Scenario& scenario) {
+  const std::string& asked = scenario.numerics.integrator;
+  if (asked != "auto") return {asked, asked, "asked for"};
+  return {asked, "direct",
+          "the state at any instant follows from equations that need no history: nothing is integrated"};
+}
+
+Run run_scenario(const Scenario& scenario) {
+  Run run;
+  run.scenario = scenario;
+  Stopwatch watch;
+  Scene scene = make_scene(scenario);
+  run.integrator = choose_integrator(scenario);
+  run.timings.setup = watch.lap();
+  run.record = drive(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
+  run.timings.integration = watch.lap();
+
+  for (std::size_t c = 0; c < scene.classes.size(); ++c) run.classes.push_back({scene.classes[c].name, scene.walls[c]});
+  run.skipped = std::move(scene.skipped);
+  if (run.integrator.used == "direct") run.skipped.emplace_back("time integration: every state is solved for directly");
+  run.record.history.header = header_of(run);
+  run.record.events.header = run.record.history.header;
+  return run;
+}
+
+}  // namespace monograin

@@ -1,0 +1,53 @@
+/// From a scenario to a recorded run: the one way every command takes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/drive.hpp"
+#include "scenario/scenario.hpp"
+
+namespace monograin {
+
+/// Which integrator ran, and why that one.
+struct IntegratorChoice {
+  std::string asked;
+  std::string used;
+  std::string why;
+};
+
+struct ClassSummary {
+  std::string name;
+  std::vector<std::string> walls;
+};
+
+/// Wall-clock times [s].
+struct Timings {
+  double parse = 0.0;
+  double setup = 0.0;
+  double integration = 0.0;
+  double output = 0.0;
+};
+
+struct Run {
+  Scenario scenario;
+  RunRecord record;
+  IntegratorChoice integrator;
+  std::vector<ClassSummary> classes;
+  std::vector<std::string> skipped;
+  Timings timings;
+};
+
+/// Runs a checked scenario. Histories and events carry the header lines that make their files self-describing.
+[[nodiscard]] Run run_scenario(const Scenario& scenario);
+
+/// The integrator for a scene: the one asked for, or the cheapest that reaches the accuracy.
+[[nodiscard]] IntegratorChoice choose_integrator(const Scenario& scenario);
+
+/// Digest of a scenario's text and overrides, e.g. "xxh128:3f...".
+[[nodiscard]] std::string scenario_digest(const Scenario& scenario);
+
+[[nodiscard]] std::string_view version() noexcept;
+[[nodiscard]] std::string sundials_version();
+
+}  // namespace monograin

@@ -1,0 +1,167 @@
+#include "figure/legend.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "figure/data_file.hpp"
+#include "figure/gnuplot.hpp"
+
+namespace monograin::figure {
+namespace {
+
+/// Okabe and Ito's colours, which survive colour-blindness and grey print.
+constexpr std::array k_colours{0x0072B2u, 0xD55E00u, 0x009E73u, 0xCC79A7u, 0xE69F00u, 0x56B4E9u};
+constexpr unsigned k_neutral = 0x303030u;
+
+constexpr double k_first_width = 2.0;
+constexpr double k_last_width = 1.5;
+constexpr double k_palest = 0.55;  ///< share of white in the last run's shade
+
+/// Open points (circle, square, triangles, diamond, pentagon), then crosses, and only then filled points.
+constexpr std::array k_points{6, 4, 8, 10, 12, 14, 2, 1, 3, 7, 5, 9, 11, 13, 15};
+
+// What text takes in the legend, on the generous side: the font is the reader's.
+constexpr double k_character_cm = 0.19;
+constexpr double k_sample_cm = 1.3;
+constexpr double k_heading_cm = 1.7;
+
+[[nodiscard]] unsigned mixed_with_white(unsigned colour, double share) noexcept {
+  unsigned mixed = 0;
+  for (const unsigned shift : {16u, 8u, 0u}) {
+    const double channel = (colour >> shift) & 0xFFu;
+    mixed |= static_cast<unsigned>(std::lround(std::lerp(channel, 255.0, share))) << shift;
+  }
+  return mixed;
+}
+
+[[nodiscard]] std::size_t columns_of(const LegendRow& row, double width_cm) {
+  std::size_t longest = 0;
+  for (const auto& entry : row.entries) longest = std::max(longest, entry.title.size());
+  const double entry_cm = k_sample_cm + k_character_cm * static_cast<double>(longest);
+  const auto fitting = static_cast<std::size_t>(std::max(1.0, (width_cm - k_heading_cm) / entry_cm));
+  return std::min(fitting, row.entries.size());
+}
+
+[[nodiscard]] std::size_t lines_of(const LegendRow& row, double width_cm) {
+  const std::size_t columns = columns_of(row, width_cm);
+  return (row.entries.size() + columns - 1) / columns;
+}
+
+[[nodiscard]] LegendRow contact_row(const Palette& palette) {
+  LegendRow row{"Contact", {}};
+  for (const std::string& name : palette.contacts()) {
+    row.entries.push_back({name, "with lines " + palette.contact_line(0, name)});
+  }
+  return row;
+}
+
+[[nodiscard]] LegendRow run_row(const std::vector<RunCurves>& runs, const Palette& palette) {
+  LegendRow row{"Run", {}};
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    row.entries.push_back({runs[k].name, "with lines " + palette.particle_line(k)});
+  }
+  return row;
+}
+
+[[nodiscard]] LegendRow phase_row(const std::vector<RunCurves>& runs, const Palette& palette) {
+  LegendRow row{"Path", {}};
+  for (const Phase phase : k_phases) {
+    if (std::ranges::none_of(runs, [=](const RunCurves& run) { return has_phase(run, phase); })) continue;
+    const auto line =
+        runs.size() > 1 ? fmt::format("lc rgb '#{:06X}' lw {}", k_neutral, k_first_width) : palette.particle_line(0);
+    row.entries.push_back({std::string(phase_name(phase)), fmt::format("with lines {} {}", line, dash(phase))});
+  }
+  return row;
+}
+
+[[nodiscard]] LegendRow event_row(const std::vector<RunCurves>& runs) {
+  LegendRow row{"Events", {}};
+  for (const std::string& name : event_names(runs)) {
+    row.entries.push_back({name, "with points " + event_points(row.entries.size())});
+  }
+  return row;
+}
+
+}  // namespace
+
+Palette::Palette(const std::vector<RunCurves>& runs) : run_count_(runs.size()) {
+  for (const RunCurves& run : runs) {
+    for (const ContactCurve& contact : run.contacts) {
+      if (std::ranges::find(contacts_, contact.name) == contacts_.end()) contacts_.push_back(contact.name);
+    }
+  }
+}
+
+std::string Palette::line(std::size_t run, unsigned colour) const {
+  const double share = run_count_ > 1 ? static_cast<double>(run) / static_cast<double>(run_count_ - 1) : 0.0;
+  const unsigned shade = colours_tell_runs() ? colour : mixed_with_white(colour, k_palest * share);
+  return fmt::format("lc rgb '#{:06X}' lw {:.3g}", shade, std::lerp(k_first_width, k_last_width, share));
+}
+
+std::string Palette::contact_line(std::size_t run, std::string_view contact) const {
+  const auto place = static_cast<std::size_t>(std::ranges::find(contacts_, contact) - contacts_.begin());
+  return line(run, k_colours[(colours_tell_runs() ? run : place) % k_colours.size()]);
+}
+
+std::string Palette::particle_line(std::size_t run) const {
+  return line(run, colours_tell_runs() ? k_colours[run % k_colours.size()] : k_neutral);
+}
+
+std::string_view dash(Phase phase) noexcept {
+  switch (phase) {
+    case Phase::loading:
+      return "dt 1";
+    case Phase::unloading:
+      return "dt (7,4)";
+    case Phase::reloading:
+      return "dt (2,4)";
+  }
+  return {};
+}
+
+std::string event_points(std::size_t place) {
+  return fmt::format("pt {} ps 0.9 lw 1.1 lc rgb '#000000'", k_points[place % k_points.size()]);
+}
+
+std::vector<LegendRow> legend_rows(const std::vector<RunCurves>& runs, const Palette& palette) {
+  std::vector<LegendRow> rows;
+  if (runs.size() == 1 || palette.contacts().size() > 1) rows.push_back(contact_row(palette));
+  if (runs.size() > 1) rows.push_back(run_row(runs, palette));
+  rows.push_back(phase_row(runs, palette));
+  rows.push_back(event_row(runs));
+  std::erase_if(rows, [](const LegendRow& row) { return row.entries.empty(); });
+  return rows;
+}
+
+std::size_t line_count(const std::vector<LegendRow>& rows, double width_cm) {
+  std::size_t lines = 0;
+  for (const LegendRow& row : rows) lines += lines_of(row, width_cm);
+  return lines;
+}
+
+std::string legend_text(const std::vector<LegendRow>& rows, const Layout& layout) {
+  std::string text =
+      "\n# The legend: empty plots that show nothing but their keys.\n"
+      "unset border; unset tics; unset xlabel; unset label\n"
+      "set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0\n";
+  const Box& place = layout.legend;
+  double top = place.top();
+  for (const LegendRow& row : rows) {
+    text += fmt::format("set label 1 {} at screen {:.4f}, {:.4f} left\n", gnuplot_string(row.heading),
+                        place.left / layout.width, (top - 0.5 * k_legend_line_cm) / layout.height);
+    text += fmt::format("set key at screen {:.4f}, {:.4f} left top horizontal Left reverse noenhanced maxcols {} ",
+                        (place.left + k_heading_cm) / layout.width, top / layout.height, columns_of(row, place.width));
+    text += "spacing 1.2 samplen 2.5 noautotitle\nplot [0:1] [0:1] NaN";
+    for (const auto& entry : row.entries) {
+      text += fmt::format(", \\\n  keyentry {} title {}", entry.style, gnuplot_string(entry.title));
+    }
+    text += '\n';
+    top -= static_cast<double>(lines_of(row, place.width)) * k_legend_line_cm;
+  }
+  return text;
+}
+
+}  // namespace monograin::figure

@@ -1,0 +1,212 @@
+#include "figure/run_curves.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "figure/figure.hpp"
+#include "history/table.hpp"
+
+namespace monograin::figure {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::string_view k_displacement = ".displacement";
+
+[[nodiscard]] Table read_table(const fs::path& file) {
+  try {
+    return read_csv(file);
+  } catch (const std::runtime_error& fault) {
+    throw FigureError(fault.what());
+  }
+}
+
+[[nodiscard]] std::optional<double> header_number(const Table& table, std::string_view key) {
+  const std::string_view text = table.header_value(key);
+  double value = 0.0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (result.ec != std::errc{} || !(value > 0.0)) return std::nullopt;
+  return value;
+}
+
+/// The names in front of ".displacement", in the order of the columns.
+[[nodiscard]] std::vector<std::string> contact_classes(const Table& history) {
+  std::vector<std::string> names;
+  for (const Column& column : history.columns()) {
+    if (!column.name.ends_with(k_displacement)) continue;
+    names.push_back(column.name.substr(0, column.name.size() - k_displacement.size()));
+  }
+  return names;
+}
+
+/// The first class that moves; the first of all where none does.
+[[nodiscard]] std::string driven_class(const Table& history, const std::vector<std::string>& classes) {
+  const auto moves = [&](const std::string& name) {
+    const auto displacement = history.column(name + std::string(k_displacement));
+    return std::ranges::adjacent_find(displacement, std::ranges::not_equal_to{}) != displacement.end();
+  };
+  const auto found = std::ranges::find_if(classes, moves);
+  return found == classes.end() ? classes.front() : *found;
+}
+
+/// Finds the columns of one contact once, to read its state from any row of a history or of an events table.
+class StateReader {
+ public:
+  StateReader(const Table& table, const std::string& driven, const std::string& contact)
+      : table_(table),
+        displacement_(table.find(driven + std::string(k_displacement))),
+        force_(table.find(contact + ".force")),
+        pressure_(table.find(contact + ".pressure")),
+        contact_radius_(table.find(contact + ".contact_radius")),
+        apparent_radius_(table.find("apparent_radius")) {}
+
+  [[nodiscard]] ContactState at(std::size_t row) const {
+    const double a = cell(row, contact_radius_);
+    return {.displacement = cell(row, displacement_),
+            .values = {cell(row, force_), cell(row, pressure_), std::numbers::pi * a * a, cell(row, apparent_radius_)}};
+  }
+
+ private:
+  [[nodiscard]] double cell(std::size_t row, std::optional<std::size_t> column) const {
+    return column ? table_.at(row, *column) : k_nan;
+  }
+
+  const Table& table_;
+  std::optional<std::size_t> displacement_, force_, pressure_, contact_radius_, apparent_radius_;
+};
+
+[[nodiscard]] ContactCurve contact_curve(const Table& history, const std::string& driven, const std::string& contact) {
+  const StateReader reader(history, driven, contact);
+  ContactCurve curve{.name = contact, .states = {}};
+  curve.states.reserve(history.row_count());
+  for (std::size_t row = 0; row < history.row_count(); ++row) curve.states.push_back(reader.at(row));
+  curve.is_ever_made = std::ranges::any_of(curve.states, [](const ContactState& state) {
+    return std::isfinite(state[Quantity::force]) && state[Quantity::force] != 0.0;
+  });
+  return curve;
+}
+
+/// A hold goes on with the phase it interrupts.
+[[nodiscard]] std::vector<Phase> phases_along(const std::vector<ContactState>& states) {
+  std::vector<Phase> phases(states.size(), Phase::loading);
+  double largest = states.front().displacement;
+  for (std::size_t row = 1; row < states.size(); ++row) {
+    const double from = states[row - 1].displacement;
+    const double to = states[row].displacement;
+    if (to > from) {
+      phases[row] = to > largest ? Phase::loading : Phase::reloading;
+    } else {
+      phases[row] = to < from ? Phase::unloading : phases[row - 1];
+    }
+    largest = std::max(largest, to);
+  }
+  return phases;
+}
+
+/// The program's own corners are where the curves turn; marking them too would say nothing new.
+[[nodiscard]] bool is_of_program(std::string_view event) { return event == "step-end" || event == "until-met"; }
+
+/// An event of two classes ("axial/lateral") is marked on both.
+[[nodiscard]] std::vector<std::string> classes_of_event(std::string_view cell) {
+  std::vector<std::string> names;
+  for (std::size_t slash = cell.find('/'); slash != std::string_view::npos; slash = cell.find('/')) {
+    names.emplace_back(cell.substr(0, slash));
+    cell.remove_prefix(slash + 1);
+  }
+  names.emplace_back(cell);
+  return names;
+}
+
+[[nodiscard]] std::vector<EventMark> event_marks(const Table& events, const std::string& driven) {
+  const auto name = events.find("event");
+  const auto contact_class = events.find("class");
+  std::vector<EventMark> marks;
+  if (events.row_count() == 0) return marks;
+  if (!name || !events.columns()[*name].holds_words() || !contact_class) {
+    throw FigureError("it has no columns 'class' and 'event'");
+  }
+  const bool names_classes = events.columns()[*contact_class].holds_words();
+  for (std::size_t row = 0; row < events.row_count(); ++row) {
+    const std::string_view event = events.word(row, *name);
+    if (is_of_program(event)) continue;
+    for (const std::string& contact : classes_of_event(names_classes ? events.word(row, *contact_class) : "")) {
+      marks.push_back({std::string(event), contact, StateReader(events, driven, contact).at(row)});
+    }
+  }
+  return marks;
+}
+
+[[nodiscard]] std::vector<EventMark> read_events(const fs::path& file, const std::string& driven) {
+  std::error_code ignored;  // what cannot be looked at cannot be read either, and is reported then
+  if (!fs::exists(file, ignored) && !ignored) return {};
+  const Table events = read_table(file);
+  try {
+    return event_marks(events, driven);
+  } catch (const FigureError& fault) {
+    throw FigureError(fmt::format("{}: {}", file.string(), fault.what()));
+  }
+}
+
+}  // namespace
+
+bool ContactCurve::has(Quantity quantity) const {
+  return std::ranges::any_of(states, [=](const ContactState& state) {
+    return std::isfinite(state.displacement) && std::isfinite(state[quantity]);
+  });
+}
+
+bool RunCurves::has(Quantity quantity) const {
+  return std::ranges::any_of(contacts, [=](const ContactCurve& contact) { return contact.has(quantity); });
+}
+
+RunCurves read_run(const fs::path& run) {
+  std::error_code ignored;
+  const fs::path file = fs::is_directory(run, ignored) ? run / "history.csv" : run;
+  const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
+  const Table history = read_table(file);
+  const auto classes = contact_classes(history);
+  if (classes.empty()) {
+    throw FigureError(fmt::format("{}: no contacts to draw (no column ending in '{}')", file.string(), k_displacement));
+  }
+  if (history.row_count() < 2) {
+    throw FigureError(
+        fmt::format("{}: a curve needs two rows, the history has {}", file.string(), history.row_count()));
+  }
+
+  const std::string driven = driven_class(history, classes);
+  RunCurves curves{.name = folder.filename().string(),
+                   .radius = header_number(history, "R0"),
+                   .youngs_modulus = header_number(history, "E"),
+                   .yield_stress = header_number(history, "Y"),
+                   .contacts = {},
+                   .phases = {},
+                   .events = read_events(folder / "events.csv", driven)};
+  for (const std::string& name : classes) curves.contacts.push_back(contact_curve(history, driven, name));
+  if (std::ranges::none_of(k_quantities, [&](Quantity quantity) { return curves.has(quantity); })) {
+    throw FigureError(fmt::format("{}: all values are undefined", file.string()));
+  }
+  curves.phases = phases_along(curves.contacts.front().states);
+  return curves;
+}
+
+std::vector<RunCurves> read_runs(const std::vector<fs::path>& runs) {
+  std::vector<RunCurves> curves;
+  std::vector<std::string> names;
+  curves.reserve(runs.size());
+  names.reserve(runs.size());
+  for (const fs::path& run : runs) names.push_back(curves.emplace_back(read_run(run)).name);
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (std::ranges::count(names, names[k]) > 1) curves[k].name = runs[k].generic_string();
+  }
+  return curves;
+}
+
+}  // namespace monograin::figure

@@ -1,0 +1,64 @@
+/// What a figure shows of a recorded run: contact states along the path of the driven class, cut into phases.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace monograin::figure {
+
+enum class Quantity { force, pressure, area, apparent_radius };
+inline constexpr std::array k_quantities{Quantity::force, Quantity::pressure, Quantity::area,
+                                         Quantity::apparent_radius};
+
+/// Where the driven class moves: beyond its largest displacement so far, back, or forth again below it.
+enum class Phase { loading, unloading, reloading };
+inline constexpr std::array k_phases{Phase::loading, Phase::unloading, Phase::reloading};
+
+/// One contact at one instant, in SI; nan where the run does not have the quantity.
+struct ContactState {
+  double displacement;                             ///< of the driven class, whichever contact this is
+  std::array<double, k_quantities.size()> values;  ///< in the order of Quantity; area is pi a^2
+
+  [[nodiscard]] double operator[](Quantity quantity) const { return values[static_cast<std::size_t>(quantity)]; }
+};
+
+struct ContactCurve {
+  std::string name;                  ///< contact class
+  std::vector<ContactState> states;  ///< one for each row of the history
+  bool is_ever_made = false;         ///< bears a force at some time
+
+  /// Whether there is anything to draw of it.
+  [[nodiscard]] bool has(Quantity quantity) const;
+};
+
+/// A located instant to be marked on the curve of a contact, or on the apparent radius.
+struct EventMark {
+  std::string name;
+  std::string contact_class;  ///< empty: an event of the particle
+  ContactState state;
+};
+
+struct RunCurves {
+  std::string name;
+  std::optional<double> radius;          ///< R0 [m]
+  std::optional<double> youngs_modulus;  ///< E [Pa]
+  std::optional<double> yield_stress;    ///< Y [Pa]
+  std::vector<ContactCurve> contacts;    ///< in the order of the history's columns; at least one
+  std::vector<Phase> phases;             ///< of the way that ends at each row
+  std::vector<EventMark> events;         ///< of contacts, material and particle; not of the program
+
+  [[nodiscard]] bool has(Quantity quantity) const;
+};
+
+/// Reads a run from its folder, or from the path of its history.csv. A missing events.csv means no events.
+/// @throws FigureError when a file cannot be read, or does not hold a curve of a contact
+[[nodiscard]] RunCurves read_run(const std::filesystem::path& run);
+
+/// Reads several runs; those that would bear the same name bear their paths instead.
+[[nodiscard]] std::vector<RunCurves> read_runs(const std::vector<std::filesystem::path>& runs);
+
+}  // namespace monograin::figure

@@ -1,0 +1,70 @@
+#include "history/recorder.hpp"
+
+#include <algorithm>
+
+namespace monograin {
+namespace {
+
+constexpr std::size_t k_leading = 3;  // time, step, row
+
+/// The columns of a system's observables after some leading ones.
+std::vector<Column> with_observables(std::vector<Column> columns, const HybridSystem& system) {
+  for (const Observable& o : system.observables()) {
+    columns.push_back({o.name, o.unit, std::vector<std::string>(o.words.begin(), o.words.end())});
+  }
+  return columns;
+}
+
+/// Index of a word in a list that grows as new words come.
+double index_of(std::string_view word, std::vector<std::string>& words) {
+  auto found = std::ranges::find(words, word);
+  if (found == words.end()) found = words.insert(words.end(), std::string(word));
+  return static_cast<double>(found - words.begin());
+}
+
+}  // namespace
+
+Recorder::Recorder(HybridSystem& system)
+    : system_(system),
+      history_(with_observables({{"time", "s", {}}, {"step", "", {}}, {"row", "", {}}}, system)),
+      row_(history_.columns().size()) {}
+
+void Recorder::observe(double time, int step, double xi, std::span<const double> y) {
+  row_[0] = time;
+  row_[1] = step;
+  system_.observe(xi, y, std::span(row_).subspan(k_leading));
+}
+
+void Recorder::append(RowSide side) {
+  row_[2] = static_cast<double>(side);
+  history_.append(row_);
+}
+
+void Recorder::event(const Event& event) {
+  std::string name;
+  if (event.contact_class >= 0) name = system_.classes()[static_cast<std::size_t>(event.contact_class)].name;
+  if (event.other_class >= 0) name += "/" + system_.classes()[static_cast<std::size_t>(event.other_class)].name;
+  events_.push_back({index_of(name, class_words_), index_of(event.name, event_words_), row_});
+}
+
+Table Recorder::take_events() const {
+  // A column without labels would hold numbers; an empty events table has none of either.
+  const auto or_empty_word = [](std::vector<std::string> words) {
+    if (words.empty()) words.emplace_back();
+    return words;
+  };
+  Table table(with_observables({{"time", "s", {}},
+                                {"class", "", or_empty_word(class_words_)},
+                                {"event", "", or_empty_word(event_words_)},
+                                {"step", "", {}}},
+                               system_));
+  std::vector<double> values;
+  for (const Entry& entry : events_) {
+    values = {entry.state[0], entry.contact_class, entry.name, entry.state[1]};
+    values.insert(values.end(), entry.state.begin() + k_leading, entry.state.end());
+    table.append(values);
+  }
+  return table;
+}
+
+}  // namespace monograin

@@ -1,0 +1,38 @@
+/// The files a run leaves: history.csv, events.csv, run.json, and a figure if asked for.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "engine/run.hpp"
+
+namespace monograin {
+
+/// A folder that is filled out of sight and then takes its place in one stroke, replacing what was there.
+/// Whatever happens before publish(), the old content of the target stays untouched.
+class StagedFolder {
+ public:
+  /// @throws std::runtime_error if the target exists and is neither empty nor an earlier result (has no run.json)
+  explicit StagedFolder(std::filesystem::path target);
+  ~StagedFolder();
+  StagedFolder(const StagedFolder&) = delete;
+  StagedFolder& operator=(const StagedFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return staged_; }
+  void publish();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path staged_;
+};
+
+/// Throws what StagedFolder would, without creating anything: to be asked before a run is started.
+void check_run_folder(const std::filesystem::path& target);
+
+/// Writes a run into a folder, whole or not at all.
+/// @param draw  called with the folder before it is published, for figures; may be empty
+/// @throws std::runtime_error naming the file that could not be written
+void write_run(Run& run, const std::filesystem::path& folder,
+               const std::function<void(const std::filesystem::path&)>& draw = {});
+
+}  // namespace monograin

@@ -1,0 +1,321 @@
+#include "history/table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <ostream>
+#include <stdexcept>
+#include <system_error>
+#include <unordered_map>
+#include <unordered_set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace monograin {
+namespace {
+
+/// Digits after which a double read back is the double that was written.
+constexpr int k_digits = std::numeric_limits<double>::max_digits10;
+/// Longest text of one number: sign, 17 digits, point, exponent such as e-308.
+constexpr std::size_t k_longest_number = 32;
+
+// --- writing
+
+[[nodiscard]] bool prints_as_integer(double value) noexcept {
+  constexpr double k_largest = 1e15;  // below this, 17 digits would print the same without an exponent
+  return std::abs(value) < k_largest && value == std::trunc(value) && !(value == 0.0 && std::signbit(value));
+}
+
+void append_number(std::string& text, double value) {
+  if (std::isnan(value)) {
+    text += "nan";  // to_chars may print the sign of a NaN, which says nothing
+    return;
+  }
+  std::array<char, k_longest_number> digits;
+  char* const end = digits.data() + digits.size();
+  const auto printed = prints_as_integer(value)
+                           ? std::to_chars(digits.data(), end, static_cast<long long>(value))
+                           : std::to_chars(digits.data(), end, value, std::chars_format::general, k_digits);
+  text.append(digits.data(), printed.ptr);
+}
+
+/// Words and headings are written without quotes, so they must not contain what separates cells and rows.
+void require_plain(std::string_view cell) {
+  if (cell.find_first_of(",\"\r\n") != std::string_view::npos) {
+    throw std::invalid_argument(
+        fmt::format("'{}' cannot be a cell of a CSV file: it contains a comma, a quote or a line break", cell));
+  }
+}
+
+void append_header(std::string& text, const Table& table) {
+  for (const auto& [key, value] : table.header) {
+    std::string line = value.empty() ? fmt::format("# {}", key) : fmt::format("# {}: {}", key, value);
+    std::ranges::replace_if(
+        line, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    text += line + '\n';
+  }
+}
+
+void append_headings(std::string& text, const std::vector<Column>& columns) {
+  for (const Column& column : columns) {
+    require_plain(column.heading());
+    std::ranges::for_each(column.labels, require_plain);
+    if (&column != &columns.front()) text += ',';
+    text += column.heading();
+  }
+  text += '\n';
+}
+
+void append_row(std::string& text, const Table& table, std::size_t row) {
+  const auto& columns = table.columns();
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (k > 0) text += ',';
+    if (columns[k].holds_words()) {
+      text += table.word(row, k);
+    } else {
+      append_number(text, table.at(row, k));
+    }
+  }
+  text += '\n';
+}
+
+// --- reading
+
+[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept {
+  constexpr std::string_view k_blank = " \t\r";
+  const std::size_t first = text.find_first_not_of(k_blank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(k_blank) - first + 1);
+}
+
+/// What strtod would give for a number beyond the range of double: zero or infinity.
+[[nodiscard]] double out_of_range_value(std::string_view cell) noexcept {
+  const bool is_tiny = cell.find("e-") != std::string_view::npos || cell.find("E-") != std::string_view::npos;
+  const double magnitude = is_tiny ? 0.0 : std::numeric_limits<double>::infinity();
+  return cell.starts_with('-') ? -magnitude : magnitude;
+}
+
+/// The number a cell holds, if all of it is one. Independent of the locale.
+[[nodiscard]] std::optional<double> parsed_number(std::string_view cell) noexcept {
+  if (cell.starts_with('+')) cell.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (end != cell.data() + cell.size()) return std::nullopt;
+  if (error == std::errc::result_out_of_range) return out_of_range_value(cell);
+  if (error != std::errc{}) return std::nullopt;
+  return value;
+}
+
+[[nodiscard]] Column parsed_heading(std::string_view heading) {
+  const std::size_t bracket = heading.rfind('[');
+  const bool has_unit =
+      bracket != std::string_view::npos && bracket > 0 && heading.ends_with(']') && heading.size() > bracket + 2;
+  if (!has_unit) return {.name = std::string(heading), .unit = {}, .labels = {}};
+  return {.name = std::string(heading.substr(0, bracket)),
+          .unit = std::string(heading.substr(bracket + 1, heading.size() - bracket - 2)),
+          .labels = {}};
+}
+
+[[nodiscard]] std::pair<std::string, std::string> parsed_header_line(std::string_view line) {
+  line = trimmed(line.substr(1));
+  const std::size_t colon = line.ends_with(':') ? std::min(line.find(": "), line.size() - 1) : line.find(": ");
+  if (colon == std::string_view::npos) return {std::string(line), {}};
+  return {std::string(line.substr(0, colon)), std::string(trimmed(line.substr(colon + 1)))};
+}
+
+/// The rows of a file as text, before it is known which columns hold numbers.
+class CsvText {
+ public:
+  CsvText(std::string name, std::string_view text) : name_(std::move(name)) {
+    constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
+    if (text.starts_with(k_byte_order_mark)) text.remove_prefix(k_byte_order_mark.size());
+    while (!text.empty()) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      ++line_;
+      take_line(trimmed(text.substr(0, end)));
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    if (columns_.empty()) fail("no row of headings");
+  }
+
+  [[nodiscard]] Table table() && {
+    std::vector<double> values(cells_.size());
+    for (std::size_t k = 0; k < columns_.size(); ++k) fill_column(k, values);
+    const std::size_t width = columns_.size();
+    Table table(std::move(columns_));
+    table.header = std::move(header_);
+    table.reserve_rows(values.size() / width);
+    for (std::size_t first = 0; first < values.size(); first += width) {
+      table.append(std::span(values).subspan(first, width));
+    }
+    return table;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& fault) const {
+    throw std::runtime_error(fmt::format("{}:{}: {}", name_, std::max<std::size_t>(line_, 1), fault));
+  }
+
+  void take_line(std::string_view line) {
+    if (line.empty()) return;
+    if (line.starts_with('#')) {
+      header_.push_back(parsed_header_line(line));
+    } else if (columns_.empty()) {
+      take_headings(line);
+    } else {
+      take_row(line);
+    }
+  }
+
+  void take_headings(std::string_view line) {
+    std::unordered_set<std::string_view> seen;
+    for_each_cell(line, [&](std::string_view heading) {
+      if (heading.empty()) fail(fmt::format("column {} has no heading", columns_.size() + 1));
+      if (!seen.insert(heading).second) fail(fmt::format("two columns are called '{}'", heading));
+      columns_.push_back(parsed_heading(heading));
+    });
+    if (std::ranges::any_of(seen, [](std::string_view heading) { return parsed_number(heading).has_value(); })) {
+      fail("numbers where a row of headings is expected");
+    }
+  }
+
+  void take_row(std::string_view line) {
+    const std::size_t before = cells_.size();
+    for_each_cell(line, [&](std::string_view cell) { cells_.push_back(cell); });
+    const std::size_t width = cells_.size() - before;
+    if (width != columns_.size()) {
+      fail(fmt::format("the row has {} cells, but there are {} headings", width, columns_.size()));
+    }
+  }
+
+  template <class Visit>
+  static void for_each_cell(std::string_view line, Visit visit) {
+    for (;;) {
+      const std::size_t comma = line.find(',');
+      visit(trimmed(line.substr(0, comma)));
+      if (comma == std::string_view::npos) return;
+      line.remove_prefix(comma + 1);
+    }
+  }
+
+  void fill_column(std::size_t column, std::vector<double>& values) {
+    for (std::size_t k = column; k < cells_.size(); k += columns_.size()) {
+      const auto number = parsed_number(cells_[k]);
+      if (!number) {
+        fill_words(column, values);
+        return;
+      }
+      values[k] = *number;
+    }
+  }
+
+  void fill_words(std::size_t column, std::vector<double>& values) {
+    std::unordered_map<std::string_view, std::size_t> indices;
+    auto& labels = columns_[column].labels;
+    for (std::size_t k = column; k < cells_.size(); k += columns_.size()) {
+      const auto [entry, is_new] = indices.try_emplace(cells_[k], labels.size());
+      if (is_new) labels.emplace_back(cells_[k]);
+      values[k] = static_cast<double>(entry->second);
+    }
+  }
+
+  std::string name_;
+  std::size_t line_ = 0;
+  std::vector<std::pair<std::string, std::string>> header_;
+  std::vector<Column> columns_;
+  std::vector<std::string_view> cells_;  ///< row by row, pointing into the text
+};
+
+/// Whether a column bears that name, alone or with its unit. Compared in place, so that looking up cannot throw.
+[[nodiscard]] bool is_called(const Column& column, std::string_view name) noexcept {
+  if (!name.starts_with(column.name)) return false;
+  name.remove_prefix(column.name.size());
+  if (name.empty()) return true;
+  return !column.unit.empty() && name.starts_with('[') && name.ends_with(']') &&
+         name.substr(1, name.size() - 2) == column.unit;
+}
+
+[[nodiscard]] std::string file_contents(const std::filesystem::path& file) {
+  const auto fail = [&](const std::string& reason) {
+    throw std::runtime_error(fmt::format("{}:1: cannot be read: {}", file.string(), reason));
+  };
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) fail("it is a directory");
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) fail(std::generic_category().message(errno));
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (in.bad()) fail("reading failed");
+  return text;
+}
+
+}  // namespace
+
+std::string Column::heading() const { return unit.empty() ? name : name + '[' + unit + ']'; }
+
+std::span<const double> Table::row(std::size_t index) const {
+  return std::span(values_).subspan(index * columns_.size(), columns_.size());
+}
+
+void Table::append(std::span<const double> row) {
+  if (row.size() != columns_.size()) {
+    throw std::logic_error(
+        fmt::format("a row of {} values does not fit a table of {} columns", row.size(), columns_.size()));
+  }
+  values_.insert(values_.end(), row.begin(), row.end());
+}
+
+void Table::reserve_rows(std::size_t count) { values_.reserve(values_.size() + count * columns_.size()); }
+
+std::optional<std::size_t> Table::find(std::string_view name) const noexcept {
+  const auto found = std::ranges::find_if(columns_, [name](const Column& column) { return is_called(column, name); });
+  if (found == columns_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - columns_.begin());
+}
+
+std::vector<double> Table::column(std::string_view name) const {
+  const auto index = find(name);
+  if (!index) {
+    std::vector<std::string> headings;
+    for (const Column& column : columns_) headings.push_back(column.heading());
+    throw std::out_of_range(fmt::format("no column '{}'; there are: {}", name, fmt::join(headings, ", ")));
+  }
+  std::vector<double> values;
+  values.reserve(row_count());
+  for (std::size_t k = *index; k < values_.size(); k += columns_.size()) values.push_back(values_[k]);
+  return values;
+}
+
+std::string_view Table::word(std::size_t row, std::size_t column) const {
+  const double index = at(row, column);
+  if (!(index >= 0.0)) throw std::out_of_range(fmt::format("row {}, column {} holds no word", row, column));
+  return columns_.at(column).labels.at(static_cast<std::size_t>(index));
+}
+
+std::string_view Table::header_value(std::string_view key) const noexcept {
+  const auto found = std::ranges::find(header, key, &std::pair<std::string, std::string>::first);
+  return found == header.end() ? std::string_view{} : std::string_view(found->second);
+}
+
+void write_csv(const Table& table, std::ostream& out) {
+  constexpr std::size_t k_usual_cell = 22;
+  std::string text;
+  text.reserve((table.row_count() + 1) * table.columns().size() * k_usual_cell);
+  append_header(text, table);
+  append_headings(text, table.columns());
+  for (std::size_t row = 0; row < table.row_count(); ++row) append_row(text, table, row);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+}
+
+Table read_csv(const std::filesystem::path& file) {
+  const std::string text = file_contents(file);
+  return CsvText(file.string(), text).table();
+}
+
+}  // namespace monograin

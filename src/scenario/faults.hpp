@@ -1,0 +1,26 @@
+/// Collects what is wrong with a scenario, so that a user sees all of it at once.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.hpp"
+
+namespace monograin {
+
+class FaultList {
+ public:
+  void add(SourceLocation where, std::string message);
+  [[nodiscard]] std::size_t size() const noexcept { return faults_.size(); }
+
+  /// @throws ScenarioError with every fault, those of files before those of overrides, each in the order of the text
+  void throw_if_any() const;
+
+ private:
+  std::vector<Fault> faults_;
+};
+
+/// @throws ScenarioError with this one fault
+[[noreturn]] void throw_fault(SourceLocation where, std::string message);
+
+}  // namespace monograin

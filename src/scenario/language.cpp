@@ -1,0 +1,471 @@
+#include "scenario/language.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <utility>
+
+#include "scenario/units.hpp"
+
+namespace monograin {
+namespace {
+
+using std::string_view;
+using Kind = KeySpec::Kind;
+
+constexpr Range k_positive{.lower = 0.0, .lower_is_open = true};
+constexpr Range k_not_negative{.lower = 0.0};
+constexpr Range k_right_angle{
+    .lower = 0.0, .upper = std::numbers::pi / 2.0, .lower_is_open = true, .upper_is_open = true};
+constexpr double k_default_oblique_angle = 37.5 * std::numbers::pi / 180.0;
+
+constexpr std::array<string_view, 5> k_integrators{"auto", "direct", "cvode-bdf", "cvode-adams", "ida"};
+constexpr std::array<string_view, 10> k_reserved_integrators{
+    "arkode-erk",         "arkode-dirk", "odeint-dopri5", "odeint-fehlberg78", "odeint-bulirsch-stoer",
+    "odeint-rosenbrock4", "gsl-rk8pd",   "gsl-msadams",   "gsl-msbdf",         "explicit"};
+constexpr std::array<string_view, 7> k_configurations{"simple", "die",      "hydrostatic", "oblique-die",
+                                                      "walls",  "triaxial", "strain-path"};
+constexpr std::array<string_view, 2> k_centres{"fixed", "equilibrium"};
+
+// Stands in for a model that is missing or misspelt, so that the loading is checked as far as no model is needed.
+constexpr ModelInfo k_any_model{.name = {},
+                                .summary = {},
+                                .source = {},
+                                .material = {},
+                                .options = {},
+                                .configurations = k_configurations,
+                                .has_free_centre = true,
+                                .regimes = {},
+                                .events = {},
+                                .domain = {},
+                                .refusals = {}};
+
+// Keys of models that the language reserves; those of available models come from the catalogue.
+constexpr std::array<string_view, 23> k_reserved_material{"strength",
+                                                          "hardening_exponent",
+                                                          "ludwik",
+                                                          "stiffness_ratio",
+                                                          "shear_ratio",
+                                                          "tensile_ratio",
+                                                          "eta",
+                                                          "xi",
+                                                          "zeta",
+                                                          "omega",
+                                                          "xi1",
+                                                          "xi2",
+                                                          "eps0",
+                                                          "nu0",
+                                                          "relative_density",
+                                                          "reference_density",
+                                                          "yield_pressure",
+                                                          "preset",
+                                                          "yield_model",
+                                                          "transition_width",
+                                                          "hardening_modulus",
+                                                          "surface_energy",
+                                                          "yield_stress"};
+constexpr std::array<string_view, 5> k_reserved_step_keys{"strain", "stress", "lateral_strain", "lateral_stress",
+                                                          "packing_fraction"};
+constexpr std::array<string_view, 3> k_reserved_until_keys{"stress_axial", "stress_lateral", "relative_density"};
+
+bool is_in(std::span<const string_view> words, string_view word) {
+  return std::ranges::find(words, word) != words.end();
+}
+
+std::vector<string_view> words_of(std::span<const string_view> words) { return {words.begin(), words.end()}; }
+
+std::vector<string_view> words_without(std::span<const string_view> words, std::span<const string_view> excluded) {
+  std::vector<string_view> result;
+  for (const string_view word : words) {
+    if (!is_in(excluded, word)) result.push_back(word);
+  }
+  return result;
+}
+
+std::vector<string_view> model_names() {
+  std::vector<string_view> names;
+  for (const ModelInfo& model : model_catalogue()) names.push_back(model.name);
+  return names;
+}
+
+string_view refusal_of(const ModelInfo& model, string_view key) {
+  const auto found = std::ranges::find(model.refusals, key, &Refusal::key);
+  return found == model.refusals.end() ? string_view{} : found->message;
+}
+
+// --- tables that do not depend on the model ------------------------------------------------------------------------
+
+std::vector<KeySpec> root_keys() {
+  return {
+      {.name = "title", .meaning = "what the scenario is about", .kind = Kind::text, .example = "\"die compaction\""},
+      {.name = "model",
+       .meaning = "contact law",
+       .kind = Kind::choice,
+       .is_required = true,
+       .choices = model_names(),
+       .reserved = words_of(reserved_models()),
+       .reserved_where = "in this version",
+       .example = "\"mdr\""},
+      {.name = "particle", .meaning = "the particle", .kind = Kind::table, .example = "[particle]"},
+      {.name = "material", .meaning = "parameters of the contact law", .kind = Kind::table, .example = "[material]"},
+      {.name = "loading", .meaning = "what the walls do", .kind = Kind::table, .example = "[loading]"},
+      {.name = "output", .meaning = "what is recorded", .kind = Kind::table, .example = "[output]"},
+      {.name = "numerics", .meaning = "how the equations are solved", .kind = Kind::table, .example = "[numerics]"},
+  };
+}
+
+std::vector<KeySpec> particle_keys(bool is_required) {
+  return {{.name = "radius",
+           .meaning = "initial radius R0",
+           .kind = Kind::quantity,
+           .is_required = is_required,
+           .dimension = Dimension::length,
+           .range = k_positive,
+           .knows_initial_radius = false}};
+}
+
+std::vector<KeySpec> output_keys() {
+  return {
+      {.name = "points",
+       .meaning = "equal intervals in time per step; 0: the integrator's own steps",
+       .kind = Kind::integer,
+       .range = {.lower = 0.0, .upper = k_most_points},
+       .default_value = 200.0},
+      {.name = "times",
+       .meaning = "record at these instants instead",
+       .kind = Kind::instants,
+       .dimension = Dimension::time,
+       .range = k_not_negative,
+       .example = "[0.1, 0.25]"},
+  };
+}
+
+std::vector<KeySpec> numerics_keys() {
+  return {
+      {.name = "integrator",
+       .meaning = "method; auto picks the cheapest",
+       .kind = Kind::choice,
+       .choices = words_of(k_integrators),
+       .reserved = words_of(k_reserved_integrators),
+       .reserved_where = "in this version",
+       .default_value = "auto"},
+      {.name = "rtol",
+       .meaning = "relative tolerance",
+       .kind = Kind::quantity,
+       .range = {.lower = 1e-14, .upper = 1e-1},
+       .default_value = 1e-8,
+       .example = "1e-8"},
+      {.name = "atol",
+       .meaning = "absolute tolerance, relative to the state's own scale",
+       .kind = Kind::quantity,
+       .range = {.lower = 0.0, .upper = 1e-1, .lower_is_open = true},
+       .default_value = 1e-12,
+       .example = "1e-12"},
+  };
+}
+
+std::vector<KeySpec> wall_keys() {
+  return {
+      {.name = "name",
+       .meaning = "unique name",
+       .kind = Kind::identifier,
+       .is_required = true,
+       .example = "\"bottom\""},
+      {.name = "normal",
+       .meaning = "direction from the particle's centre to the wall",
+       .kind = Kind::direction,
+       .is_required = true,
+       .example = "[0, 0, 1]"},
+      {.name = "gap",
+       .meaning = "distance from first touch at the start",
+       .kind = Kind::quantity,
+       .dimension = Dimension::length,
+       .range = k_not_negative,
+       .default_value = 0.0},
+      {.name = "fixed", .meaning = "the wall does not move", .kind = Kind::toggle, .default_value = false},
+      {.name = "steps",
+       .meaning = "program of this wall alone",
+       .kind = Kind::tables,
+       .example = "[[loading.wall.steps]]"},
+  };
+}
+
+// --- tables that depend on the model -------------------------------------------------------------------------------
+
+std::vector<KeySpec> material_keys(const ModelInfo& model) {
+  std::vector<KeySpec> keys;
+  for (const QuantityKey& key : model.material) {
+    KeySpec spec{.name = key.name,
+                 .meaning = key.meaning,
+                 .kind = Kind::quantity,
+                 .is_required = !key.default_value.has_value(),
+                 .dimension = key.dimension,
+                 .range = key.range,
+                 .refusal = refusal_of(model, fmt::format("material.{}", key.name))};
+    if (key.default_value) spec.default_value = *key.default_value;
+    keys.push_back(std::move(spec));
+  }
+  return keys;
+}
+
+KeySpec option_key(const ModelInfo& model, const OptionKey& option) {
+  KeySpec spec{.name = option.name,
+               .meaning = option.meaning,
+               .refusal = refusal_of(model, fmt::format("{}.{}", model.name, option.name))};
+  switch (option.kind) {
+    case OptionKey::Kind::choice:
+      spec.kind = Kind::choice;
+      spec.choices = words_of(option.choices);
+      spec.default_value = option.choices.front();
+      break;
+    case OptionKey::Kind::toggle:
+      spec.kind = Kind::toggle;
+      spec.default_value = option.default_toggle;
+      break;
+    case OptionKey::Kind::file:
+      spec.kind = Kind::file;
+      spec.example = "\"file.csv\"";
+      break;
+  }
+  return spec;
+}
+
+std::vector<KeySpec> loading_keys(const ModelInfo& model) {
+  std::vector<string_view> centres{"fixed"};
+  if (model.has_free_centre) centres.push_back("equilibrium");
+  const std::string for_model = fmt::format("for model '{}'", model.name);
+  return {
+      {.name = "configuration",
+       .meaning = "walls around the particle",
+       .kind = Kind::choice,
+       .is_required = true,
+       .choices = words_of(model.configurations),
+       .reserved = words_without(k_configurations, model.configurations),
+       .reserved_where = for_model},
+      {.name = "centre",
+       .meaning = "equilibrium: the centre moves so that the forces balance",
+       .kind = Kind::choice,
+       .choices = centres,
+       .reserved = words_without(k_centres, centres),
+       .reserved_where = for_model,
+       .default_value = "fixed"},
+      {.name = "angle",
+       .meaning = "inclination of the oblique walls",
+       .kind = Kind::quantity,
+       .dimension = Dimension::angle,
+       .range = k_right_angle,
+       .default_value = k_default_oblique_angle,
+       .only_with = "oblique-die"},
+      {.name = "oblique_walls",
+       .meaning = "number of oblique walls, 2 or 4",
+       .kind = Kind::integer,
+       .range = {.lower = 2.0, .upper = 4.0},
+       .multiple_of = 2,
+       .default_value = 2.0,
+       .only_with = "oblique-die"},
+      {.name = "wall",
+       .meaning = "the walls, one by one",
+       .kind = Kind::tables,
+       .example = "[[loading.wall]]",
+       .only_with = "walls"},
+      {.name = "steps",
+       .meaning = "what the driven walls do, one step after another",
+       .kind = Kind::tables,
+       .example = "[[loading.steps]]"},
+  };
+}
+
+std::vector<KeySpec> until_keys(const ModelInfo& model) {
+  std::vector<string_view> events;
+  for (const Term& event : model.events) events.push_back(event.name);
+  return {
+      {.name = "force",
+       .meaning = "force on the wall, compression positive",
+       .kind = Kind::quantity,
+       .dimension = Dimension::force},
+      {.name = "displacement",
+       .meaning = "displacement of the wall",
+       .kind = Kind::quantity,
+       .dimension = Dimension::length,
+       .example = "\"0.4 R0\""},
+      {.name = "pressure", .meaning = "mean contact pressure", .kind = Kind::quantity, .dimension = Dimension::stress},
+      {.name = "contact_radius",
+       .meaning = "contact radius",
+       .kind = Kind::quantity,
+       .dimension = Dimension::length,
+       .range = k_not_negative},
+      {.name = "apparent_radius",
+       .meaning = "apparent radius of the particle",
+       .kind = Kind::quantity,
+       .dimension = Dimension::length,
+       .range = k_positive},
+      {.name = "event",
+       .meaning = "name of an event",
+       .kind = Kind::choice,
+       .choices = events,
+       .example = "\"contact-lost\""},
+  };
+}
+
+// --- steps ---------------------------------------------------------------------------------------------------------
+
+KeySpec duration_key(bool is_required) {
+  return {.name = "duration",
+          .meaning = "how long the step takes",
+          .kind = Kind::quantity,
+          .is_required = is_required,
+          .dimension = Dimension::time,
+          .range = k_positive};
+}
+
+KeySpec rate_key(Dimension dimension, bool is_required) {
+  return {.name = "rate",
+          .meaning = "how fast the controlled quantity changes",
+          .kind = Kind::quantity,
+          .is_required = is_required,
+          .dimension = dimension,
+          .range = k_positive};
+}
+
+KeySpec until_key() {
+  return {.name = "until",
+          .meaning = "the step ends when the first of these is met",
+          .kind = Kind::table,
+          .may_be_empty = false,
+          .example = "{ force = \"0 N\" }"};
+}
+
+StepForm ramp_form(StepForm::Kind kind, KeySpec target, Dimension rate) {
+  const string_view key = target.name;
+  return {kind, key, {std::move(target), duration_key(false), rate_key(rate, false), until_key()}, true};
+}
+
+KeySpec mark_key(string_view name, string_view meaning) {
+  return {.name = name, .meaning = meaning, .kind = Kind::mark, .is_required = true, .example = "true"};
+}
+
+std::vector<StepForm> step_forms(const ModelInfo& model) {
+  KeySpec displacement{.name = "displacement",
+                       .meaning = "ramp to this displacement of the wall",
+                       .kind = Kind::quantity,
+                       .is_required = true,
+                       .dimension = Dimension::length,
+                       .example = "\"0.4 R0\"",
+                       .refusal = refusal_of(model, "loading.steps.displacement")};
+  KeySpec force{.name = "force",
+                .meaning = "ramp to this force",
+                .kind = Kind::quantity,
+                .is_required = true,
+                .dimension = Dimension::force,
+                .refusal = refusal_of(model, "loading.steps.force")};
+  KeySpec count{.name = "cycle",
+                .meaning = "repeat the nested steps so many times",
+                .kind = Kind::integer,
+                .is_required = true,
+                .range = {.lower = 1.0, .upper = k_most_steps},
+                .example = "5"};
+  KeySpec nested{.name = "steps",
+                 .meaning = "the steps that are repeated",
+                 .kind = Kind::tables,
+                 .is_required = true,
+                 .example = "[[loading.steps.steps]]"};
+  return {
+      ramp_form(StepForm::Kind::displacement, std::move(displacement), Dimension::velocity),
+      ramp_form(StepForm::Kind::force, std::move(force), Dimension::force_rate),
+      {StepForm::Kind::hold, "hold", {mark_key("hold", "keep the wall where it is"), duration_key(true), until_key()}},
+      {StepForm::Kind::detach,
+       "detach",
+       {mark_key("detach", "withdraw the wall until contact is lost"), rate_key(Dimension::velocity, true)}},
+      {StepForm::Kind::cycle, "cycle", {std::move(count), std::move(nested)}},
+  };
+}
+
+// --- keys of other models ------------------------------------------------------------------------------------------
+
+std::vector<ForeignKey> foreign_keys(std::span<const string_view> names, std::span<const KeySpec> own,
+                                     const std::string& reason) {
+  std::vector<ForeignKey> foreign;
+  for (const string_view name : names) {
+    if (find_key(own, name) == nullptr) foreign.push_back({name, reason});
+  }
+  return foreign;
+}
+
+std::vector<string_view> material_names_of_all_models() {
+  std::vector<string_view> names = words_of(k_reserved_material);
+  for (const ModelInfo& model : model_catalogue()) {
+    for (const QuantityKey& key : model.material) {
+      if (!is_in(names, key.name)) names.push_back(key.name);
+    }
+  }
+  return names;
+}
+
+void add_model_tables(Language& language, string_view model) {
+  std::vector<string_view> names = model_names();
+  names.insert(names.end(), reserved_models().begin(), reserved_models().end());
+  // Without a valid model nobody can say whose options are the right ones.
+  const bool is_known = is_in(names, model);
+  for (const string_view name : names) {
+    if (is_known && name != model) {
+      language.foreign_tables.push_back({name, fmt::format("is the table of another model; this one is '{}'", model)});
+    } else {
+      language.root.push_back({.name = name,
+                               .meaning = "options of this model alone",
+                               .kind = Kind::table,
+                               .example = fmt::format("[{}]", name)});
+    }
+  }
+}
+
+void add_loading(Language& language, const ModelInfo& model) {
+  language.loading = loading_keys(model);
+  language.wall = wall_keys();
+  language.until = until_keys(model);
+  language.steps = step_forms(model);
+
+  const std::string unused = fmt::format("is not used by model '{}'", model.name);
+  language.foreign_step_keys = foreign_keys(k_reserved_step_keys, {}, unused);
+  language.foreign_until_keys = foreign_keys(k_reserved_until_keys, language.until, unused);
+}
+
+void add_material_and_options(Language& language, const ModelInfo& model) {
+  language.model = &model;
+  language.material = material_keys(model);
+  for (const OptionKey& option : model.options) language.options.push_back(option_key(model, option));
+  const std::string unused = fmt::format("is not used by model '{}'", model.name);
+  language.foreign_material = foreign_keys(material_names_of_all_models(), language.material, unused);
+}
+
+}  // namespace
+
+Language language_of(string_view model) {
+  Language language;
+  // Reserved models need no particle; whether they do is theirs to say once they are there.
+  const bool is_reserved = is_in(reserved_models(), model);
+  language.root = root_keys();
+  language.particle = particle_keys(!is_reserved);
+  language.output = output_keys();
+  language.numerics = numerics_keys();
+  add_model_tables(language, model);
+  if (is_reserved) return language;
+  const ModelInfo* info = find_model(model);
+  if (info != nullptr) add_material_and_options(language, *info);
+  add_loading(language, info != nullptr ? *info : k_any_model);
+  return language;
+}
+
+const KeySpec* find_key(std::span<const KeySpec> keys, string_view name) noexcept {
+  const auto found = std::ranges::find(keys, name, &KeySpec::name);
+  return found == keys.end() ? nullptr : &*found;
+}
+
+std::vector<string_view> names_of(std::span<const KeySpec> keys) {
+  std::vector<string_view> names;
+  for (const KeySpec& key : keys) names.push_back(key.name);
+  return names;
+}
+
+}  // namespace monograin

@@ -1,0 +1,112 @@
+/// The scenario language as one table: every key with its kind, range, default and meaning.
+///
+/// The reader checks files against these tables and the JSON Schema is written from them, so that the two agree.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "catalogue.hpp"
+#include "scenario/scenario.hpp"
+
+namespace monograin {
+
+/// What a key accepts.
+struct KeySpec {
+  enum class Kind {
+    text,
+    identifier,  ///< a name that can stand in a column of the output
+    toggle,
+    mark,  ///< `true`, and nothing else
+    choice,
+    file,
+    integer,
+    quantity,   ///< a number in SI, or a text with a unit where the dimension has units
+    instants,   ///< strictly ascending list of quantities
+    direction,  ///< three numbers, not all zero
+    table,
+    tables,  ///< not empty
+  };
+  using Default = std::variant<std::monostate, bool, double, std::string_view>;
+
+  std::string_view name;
+  std::string_view meaning;
+  Kind kind = Kind::text;
+  bool is_required = false;
+  Dimension dimension = Dimension::none;
+  Range range{};
+  bool knows_initial_radius = true;  ///< R0 may be used as a unit
+  int multiple_of = 1;               ///< of an integer
+  bool may_be_empty = true;          ///< of a table
+  std::vector<std::string_view> choices{};
+  std::vector<std::string_view> reserved{};  ///< choices that the language knows but that are not available here
+  std::string reserved_where{};              ///< where not: "in this version"
+  Default default_value{};
+  std::string example{};         ///< as written in a file; empty: that of the dimension, or the first choice
+  std::string_view only_with{};  ///< `[loading]`: the configuration that the key belongs to; empty: any
+  std::string_view
+      refusal{};  ///< message for a use (or a value other than the default) that the model does not compute
+};
+
+/// A key that is known to the language but does not belong where it was found, and why.
+struct ForeignKey {
+  std::string_view name;
+  std::string reason;  ///< goes on from "key 'x' ..."
+};
+
+/// One form of a step: the key it is told by and the keys it may have.
+struct StepForm {
+  enum class Kind { displacement, force, hold, detach, cycle };
+  Kind kind = Kind::hold;
+  std::string_view key;
+  std::vector<KeySpec> keys;
+  bool takes_duration_or_rate = false;  ///< exactly one of the two
+};
+
+inline constexpr int k_most_points = 1'000'000;
+inline constexpr int k_most_steps = 100'000;  ///< of all programs, cycles written out
+inline constexpr int k_most_walls = 50;
+inline constexpr double k_least_normal = 1e-6;  ///< magnitude that one component of a normal has to reach
+inline constexpr double k_greatest_normal = 1e6;
+
+/// The language as one model understands it.
+struct Language {
+  const ModelInfo* model = nullptr;  ///< null: unknown or reserved
+  std::vector<KeySpec> root;
+  std::vector<KeySpec> particle;
+  std::vector<KeySpec> material;  ///< empty without a model
+  std::vector<KeySpec> options;   ///< empty without a model
+  std::vector<KeySpec> loading;   ///< empty with a reserved model: its steps are other ones
+  std::vector<KeySpec> wall;
+  std::vector<KeySpec> until;
+  std::vector<KeySpec> output;
+  std::vector<KeySpec> numerics;
+  std::vector<StepForm> steps;
+
+  std::vector<ForeignKey> foreign_tables;  ///< tables of other models
+  std::vector<ForeignKey> foreign_material;
+  std::vector<ForeignKey> foreign_step_keys;
+  std::vector<ForeignKey> foreign_until_keys;
+};
+
+/// @param model  name as written in the file; any text
+[[nodiscard]] Language language_of(std::string_view model);
+
+/// The spec of that name, or nullptr.
+[[nodiscard]] const KeySpec* find_key(std::span<const KeySpec> keys, std::string_view name) noexcept;
+
+[[nodiscard]] std::vector<std::string_view> names_of(std::span<const KeySpec> keys);
+
+/// What the key accepts, to follow "expected ": `a stress, for example "50 MPa"`.
+[[nodiscard]] std::string expectation(const KeySpec& spec);
+
+/// A line with the key as it could stand in a file: `youngs_modulus = "50 MPa"`.
+[[nodiscard]] std::string example_line(const KeySpec& spec);
+
+/// The finite range of a quantity or integer.
+[[nodiscard]] Range finite_range(const KeySpec& spec) noexcept;
+
+}  // namespace monograin

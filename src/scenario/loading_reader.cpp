@@ -1,0 +1,209 @@
+#include "scenario/loading_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "scenario/program_reader.hpp"
+
+namespace monograin {
+namespace {
+
+using Configuration = Loading::Configuration;
+
+constexpr double k_same_direction = 1e-9;  // [rad]
+constexpr double k_same_duration = 1e-9;   // relative
+
+Configuration to_configuration(const std::string& word) {
+  if (word == "die") return Configuration::die;
+  if (word == "hydrostatic") return Configuration::hydrostatic;
+  if (word == "oblique-die") return Configuration::oblique_die;
+  if (word == "walls") return Configuration::walls;
+  return Configuration::simple;
+}
+
+/// Angle between two directions, as its sine; 2 where they point apart.
+double sine_between(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  const double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  if (dot <= 0.0) return 2.0;
+  const double cross = std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+  return cross / (std::hypot(a[0], a[1], a[2]) * std::hypot(b[0], b[1], b[2]));
+}
+
+/// Reads one `[loading]` table.
+class LoadingReader {
+ public:
+  LoadingReader(Reading& reading, Section::Origin table, const Language& language)
+      : reading_(reading),
+        language_(language),
+        section_(reading, std::move(table), language.loading),
+        programs_(reading, language) {}
+
+  Loading read() {
+    const std::string configuration = section_.text("configuration");
+    check_keys_of_configurations(configuration);
+    loading_.configuration = to_configuration(configuration);
+    loading_.centre_is_free = section_.text("centre") == "equilibrium";
+    loading_.oblique_angle = section_.number("angle").value_or(0.0);
+    loading_.oblique_walls = static_cast<int>(section_.number("oblique_walls").value_or(0.0));
+    loading_.steps = programs_.read(section_, "steps", "[[loading.steps]]");
+    for (const Section::Origin& wall : section_.tables("wall", "[[loading.wall]]")) read_wall(wall);
+    if (configuration == "walls") {
+      check_walls();
+    } else if (!section_.has_or_misspells("steps")) {
+      report_missing("steps");
+    }
+    return std::move(loading_);
+  }
+
+ private:
+  void check_keys_of_configurations(const std::string& configuration) {
+    if (configuration.empty()) return;
+    for (const KeySpec& spec : language_.loading) {
+      if (spec.only_with.empty() || spec.only_with == configuration || !section_.has(spec.name)) continue;
+      reading_.faults.add(section_.key_place(spec.name),
+                          fmt::format("key '{}' goes with configuration = \"{}\" only", spec.name, spec.only_with));
+    }
+  }
+
+  void report_missing(std::string_view key) {
+    reading_.faults.add(section_.place(), fmt::format("key '{}' is missing in [loading]; expected for example {}", key,
+                                                      example_line(*find_key(language_.loading, key))));
+  }
+
+  void read_wall(const Section::Origin& table) {
+    const Section section(reading_, table, language_.wall);
+    WallSpec wall;
+    wall.where = section.place();
+    wall.name = section.text("name");
+    if (const auto normal = section.numbers("normal"); normal.size() == 3)
+      std::ranges::copy(normal, wall.normal.begin());
+    wall.gap = section.number("gap").value_or(0.0);
+    wall.is_fixed = section.toggle("fixed").value_or(false);
+    wall.steps = programs_.read(section, "steps", "[[loading.wall.steps]]");
+    if (wall.is_fixed && section.has("steps")) {
+      reading_.faults.add(section.key_place("steps"),
+                          "key 'steps' does not go with fixed = true; expected one of them");
+    }
+    const bool follows = !wall.is_fixed && !section.has_or_misspells("steps");
+    if (follows) followers_.push_back(loading_.walls.size());
+    loading_.walls.push_back(std::move(wall));
+  }
+
+  // --- rules between the walls --------------------------------------------------------------------------------------
+
+  void check_walls() {
+    if (!section_.has_or_misspells("wall")) return report_missing("wall");
+    if (loading_.walls.size() > static_cast<std::size_t>(k_most_walls)) {
+      reading_.faults.add(loading_.walls[k_most_walls].where,
+                          fmt::format("there are {} walls; expected at most {}", loading_.walls.size(), k_most_walls));
+      return;
+    }
+    check_names();
+    check_directions();
+    check_driven();
+    // Programs with faults would only seem to differ from one another.
+    if (reading_.faults.size() == faults_before_) check_programs();
+  }
+
+  void check_names() {
+    std::set<std::string_view> names;
+    for (const WallSpec& wall : loading_.walls) {
+      if (wall.name.empty() || names.insert(wall.name).second) continue;
+      reading_.faults.add(wall.where,
+                          fmt::format("wall '{}' bears the name of an earlier wall; expected unique names", wall.name));
+    }
+  }
+
+  void check_directions() {
+    for (std::size_t i = 0; i < loading_.walls.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const WallSpec& wall = loading_.walls[i];
+        const WallSpec& earlier = loading_.walls[j];
+        if (sine_between(wall.normal, earlier.normal) < k_same_direction) {
+          reading_.faults.add(
+              wall.where, fmt::format("walls '{}' and '{}' have the same normal; expected different ones", earlier.name,
+                                      wall.name));
+        }
+      }
+    }
+  }
+
+  void check_driven() {
+    const auto is_fixed = [](const WallSpec& wall) { return wall.is_fixed; };
+    if (!loading_.walls.empty() && std::ranges::all_of(loading_.walls, is_fixed)) {
+      reading_.faults.add(section_.key_place("wall"), "no wall is driven; expected steps for one wall at least");
+    } else if (section_.has("steps") && followers_.empty()) {
+      reading_.faults.add(section_.key_place("steps"),
+                          "no wall follows the steps of [loading]: each is fixed or has steps of its own");
+    }
+    if (section_.has_or_misspells("steps")) return;
+    for (const std::size_t follower : followers_) {
+      const WallSpec& wall = loading_.walls[follower];
+      reading_.faults.add(wall.where, fmt::format("wall '{}' has neither steps nor fixed = true, and [loading] has no "
+                                                  "steps for it to follow",
+                                                  wall.name));
+    }
+  }
+
+  [[nodiscard]] std::span<const Step> program_of(const WallSpec& wall) const {
+    if (wall.is_fixed) return {};
+    return wall.steps.empty() ? loading_.steps : wall.steps;
+  }
+
+  /// Steps end for all walls together, so that programs must have as many steps and, where they say so, as long ones.
+  void check_programs() {
+    const WallSpec* first = nullptr;
+    for (const WallSpec& wall : loading_.walls) {
+      const auto program = program_of(wall);
+      if (program.empty()) continue;
+      if (first == nullptr) {
+        first = &wall;
+      } else if (program.data() != program_of(*first).data()) {
+        compare_programs(*first, wall);
+      }
+    }
+  }
+
+  void compare_programs(const WallSpec& first, const WallSpec& wall) {
+    const auto expected = program_of(first);
+    const auto program = program_of(wall);
+    if (program.size() != expected.size()) {
+      reading_.faults.add(
+          wall.where, fmt::format("wall '{}' has {} steps where wall '{}' has {}; expected equal numbers", wall.name,
+                                  program.size(), first.name, expected.size()));
+      return;
+    }
+    for (std::size_t k = 0; k < program.size(); ++k) {
+      if (!program[k].duration || !expected[k].duration) continue;
+      const double a = *program[k].duration;
+      const double b = *expected[k].duration;
+      if (std::abs(a - b) <= k_same_duration * std::max(a, b)) continue;
+      reading_.faults.add(program[k].where,
+                          fmt::format("step {} of wall '{}' takes {:.9g} s where that of wall '{}' takes {:.9g} s; "
+                                      "steps end together, so expected equal durations",
+                                      k + 1, wall.name, a, first.name, b));
+      return;
+    }
+  }
+
+  Reading& reading_;
+  const Language& language_;
+  std::size_t faults_before_ = reading_.faults.size();
+  Section section_;
+  ProgramReader programs_;
+  Loading loading_;
+  std::vector<std::size_t> followers_;  ///< walls that have neither steps of their own nor are fixed
+};
+
+}  // namespace
+
+Loading read_loading(Reading& reading, Section::Origin table, const Language& language) {
+  return LoadingReader(reading, std::move(table), language).read();
+}
+
+}  // namespace monograin

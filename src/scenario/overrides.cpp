@@ -1,0 +1,228 @@
+#include "scenario/overrides.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "scenario/document.hpp"
+#include "scenario/words.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr std::string_view k_prefix = "--set '";
+constexpr std::size_t k_most_path_parts = 32;
+
+using PathPart = std::variant<std::string, std::size_t>;  // a key or an index
+
+std::string origin_of(const std::string& text) { return fmt::format("{}{}'", k_prefix, on_one_line(text)); }
+
+bool is_key_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+}
+
+/// Splits `loading.steps[0].rate`; none where the text is not such a path.
+class PathParser {
+ public:
+  explicit PathParser(std::string_view text) : text_(text) {}
+
+  std::optional<std::vector<PathPart>> parse() {
+    std::vector<PathPart> path;
+    do {
+      const std::string_view key = take_key();
+      if (key.empty()) return std::nullopt;
+      path.emplace_back(std::string(key));
+      while (take('[')) {
+        const std::optional<std::size_t> index = take_index();
+        if (!index || !take(']')) return std::nullopt;
+        path.emplace_back(*index);
+      }
+      if (path.size() > k_most_path_parts) return std::nullopt;
+    } while (take('.'));
+    if (!text_.empty()) return std::nullopt;
+    return path;
+  }
+
+ private:
+  bool take(char c) {
+    if (text_.empty() || text_.front() != c) return false;
+    text_.remove_prefix(1);
+    return true;
+  }
+
+  std::string_view take_key() {
+    const auto end = std::ranges::find_if_not(text_, is_key_character);
+    const std::string_view key = text_.substr(0, static_cast<std::size_t>(end - text_.begin()));
+    text_.remove_prefix(key.size());
+    return key;
+  }
+
+  std::optional<std::size_t> take_index() {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), index);
+    if (error != std::errc{}) return std::nullopt;
+    text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
+    return index;
+  }
+
+  std::string_view text_;
+};
+
+/// The text as a TOML string.
+std::string in_quotes(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else if (byte < 0x20U || byte == 0x7FU) {
+      quoted += fmt::format("\\u{:04X}", byte);
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + '"';
+}
+
+bool begins_like_a_bare_text(std::string_view value) {
+  const auto first = value.find_first_not_of(" \t");
+  return first != std::string_view::npos && std::string_view("[{\"'").find(value[first]) == std::string_view::npos;
+}
+
+/// One override while it is being applied.
+class Override {
+ public:
+  Override(const std::string& text, FaultList& faults) : text_(text), here_{origin_of(text)}, faults_(faults) {}
+
+  void apply(toml::table& root) {
+    const std::size_t equals = text_.find('=');
+    if (equals == std::string::npos) return fault("expected key=value");
+    const auto path = PathParser(trimmed_key(equals)).parse();
+    if (!path) {
+      return fault(fmt::format("'{}' is not the path of a key; expected for example loading.steps[0].rate",
+                               shown(std::string_view(text_).substr(0, equals))));
+    }
+    std::optional<toml::table> holder = parse_value(equals);
+    if (!holder) return;
+    put(root, *path, *holder);
+  }
+
+ private:
+  [[nodiscard]] std::string_view trimmed_key(std::size_t equals) const {
+    std::string_view key = std::string_view(text_).substr(0, equals);
+    while (!key.empty() && key.front() == ' ') key.remove_prefix(1);
+    while (!key.empty() && key.back() == ' ') key.remove_suffix(1);
+    return key;
+  }
+
+  /// A table with the value as its only entry. The key is replaced by one of the same length, so that the places in
+  /// the tree are those in the override.
+  std::optional<toml::table> parse_value(std::size_t equals) {
+    const std::string_view value = std::string_view(text_).substr(equals + 1);
+    const std::string key(equals, 'x');
+    try {
+      toml::table holder = parse_document(key + "=" + std::string(value), here_.file);
+      if (holder.size() == 1) return holder;
+    } catch (const ScenarioError& error) {
+      if (!begins_like_a_bare_text(value)) return report(error);
+    }
+    try {
+      return parse_document(key + "=" + in_quotes(value), here_.file);
+    } catch (const ScenarioError& error) {
+      return report(error);
+    }
+  }
+
+  std::nullopt_t report(const ScenarioError& error) {
+    for (const Fault& problem : error.faults()) faults_.add(problem.where, problem.message);
+    return std::nullopt;
+  }
+
+  void put(toml::table& root, const std::vector<PathPart>& path, toml::table& holder) {
+    toml::node* node = &root;
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+      const bool wants_table = std::holds_alternative<std::string>(path[i + 1]);
+      node = std::visit([&](const auto& part) { return descend(*node, part, wants_table); }, path[i]);
+      if (node == nullptr) return;
+    }
+    toml::node& value = holder.begin()->second;
+    std::visit([&](const auto& part) { place(*node, part, value); }, path.back());
+  }
+
+  toml::node* descend(toml::node& node, const std::string& key, bool wants_table) {
+    toml::table* table = as_table(node, key);
+    if (table == nullptr) return nullptr;
+    if (toml::node* next = table->get(key)) return next;
+    if (!wants_table) {
+      fault(fmt::format("there is no '{}' to pick an entry from", key));
+      return nullptr;
+    }
+    toml::table made = parse_document("x={}", here_.file);
+    insert(*table, key, made.begin()->second);
+    return table->get(key);
+  }
+
+  toml::node* descend(toml::node& node, std::size_t index, bool /*wants_table*/) {
+    toml::array* array = as_array(node, index);
+    return array == nullptr ? nullptr : array->get(index);
+  }
+
+  void place(toml::node& node, const std::string& key, toml::node& value) {
+    if (toml::table* table = as_table(node, key)) insert(*table, key, value);
+  }
+
+  void place(toml::node& node, std::size_t index, toml::node& value) {
+    toml::array* array = as_array(node, index);
+    if (array == nullptr) return;
+    value.visit([&](auto& concrete) {
+      array->insert(array->erase(array->cbegin() + static_cast<std::ptrdiff_t>(index)), std::move(concrete));
+    });
+  }
+
+  void insert(toml::table& table, const std::string& key, toml::node& value) {
+    table.erase(key);  // an assignment would keep the place of the old key
+    toml::source_region region = value.source();
+    region.begin = {1, 1};
+    value.visit([&](auto& concrete) { table.insert(toml::key(key, region), std::move(concrete)); });
+  }
+
+  toml::table* as_table(toml::node& node, const std::string& key) {
+    toml::table* table = node.as_table();
+    if (table == nullptr) fault(fmt::format("'{}' cannot be set inside {}", key, shown(node)));
+    return table;
+  }
+
+  toml::array* as_array(toml::node& node, std::size_t index) {
+    toml::array* array = node.as_array();
+    if (array == nullptr) {
+      fault(fmt::format("index [{}] cannot be used on {}; expected an array", index, shown(node)));
+    } else if (index >= array->size()) {
+      fault(fmt::format("index [{}] is out of range; the array has {} entries, counted from 0", index, array->size()));
+      return nullptr;
+    }
+    return array;
+  }
+
+  void fault(std::string message) { faults_.add(here_, std::move(message)); }
+
+  const std::string& text_;
+  SourceLocation here_;
+  FaultList& faults_;
+};
+
+}  // namespace
+
+void apply_override(toml::table& root, const std::string& text, FaultList& faults) {
+  Override(text, faults).apply(root);
+}
+
+bool is_override(const SourceLocation& where) noexcept { return where.file.starts_with(k_prefix); }
+
+}  // namespace monograin

@@ -1,0 +1,169 @@
+#include "scenario/program_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace monograin {
+namespace {
+
+constexpr int k_deepest_cycle = 16;
+
+Step::Kind to_step_kind(StepForm::Kind kind) {
+  switch (kind) {
+    case StepForm::Kind::displacement:
+      return Step::Kind::displacement;
+    case StepForm::Kind::force:
+      return Step::Kind::force;
+    case StepForm::Kind::hold:
+    case StepForm::Kind::cycle:
+      break;
+    case StepForm::Kind::detach:
+      return Step::Kind::detach;
+  }
+  return Step::Kind::hold;
+}
+
+Until::Quantity to_until_quantity(std::string_view key) {
+  using Quantity = Until::Quantity;
+  if (key == "force") return Quantity::force;
+  if (key == "displacement") return Quantity::displacement;
+  if (key == "pressure") return Quantity::pressure;
+  if (key == "contact_radius") return Quantity::contact_radius;
+  if (key == "apparent_radius") return Quantity::apparent_radius;
+  return Quantity::event;
+}
+
+}  // namespace
+
+std::vector<Step> ProgramReader::read(const Section& parent, std::string_view key, const std::string& label) {
+  std::vector<Step> steps = read_list(parent, key, label, 0);
+  if (!is_within_limit(steps_so_far_ + steps.size(), parent.key_place(key))) return {};
+  steps_so_far_ += steps.size();
+  return steps;
+}
+
+std::vector<Step> ProgramReader::read_list(const Section& parent, std::string_view key, const std::string& label,
+                                           int depth) {
+  std::vector<Step> steps;
+  for (const Section::Origin& table : parent.tables(key, label)) {
+    std::vector<Step> written_out = read_step(table, depth);
+    if (!is_within_limit(steps.size() + written_out.size(), table.place)) return {};
+    std::ranges::move(written_out, std::back_inserter(steps));
+  }
+  return steps;
+}
+
+bool ProgramReader::is_within_limit(std::size_t steps, const SourceLocation& where) {
+  if (steps <= static_cast<std::size_t>(k_most_steps)) return true;
+  reading_.faults.add(
+      where, fmt::format("the program has {} steps or more with its cycles written out; expected at most {}", steps,
+                         k_most_steps));
+  return false;
+}
+
+std::vector<Step> ProgramReader::read_step(const Section::Origin& table, int depth) {
+  const StepForm* form = form_of(*table.table);
+  if (form == nullptr) {
+    report_formless(table);
+    return {};
+  }
+  const Section section(reading_, table, form->keys, foreign_keys_of(*form));
+  if (form->kind == StepForm::Kind::cycle) return read_cycle(section, depth);
+  if (form->takes_duration_or_rate) check_duration_or_rate(section);
+  return {read_plain_step(section, *form)};
+}
+
+const StepForm* ProgramReader::form_of(const toml::table& table) const {
+  const auto found =
+      std::ranges::find_if(language_.steps, [&](const StepForm& form) { return table.contains(form.key); });
+  return found == language_.steps.end() ? nullptr : &*found;
+}
+
+void ProgramReader::report_formless(const Section::Origin& table) {
+  std::vector<KeySpec> all_keys;
+  std::vector<std::string_view> forms;
+  for (const StepForm& form : language_.steps) {
+    forms.push_back(form.key);
+    for (const KeySpec& spec : form.keys) {
+      if (find_key(all_keys, spec.name) == nullptr) all_keys.push_back(spec);
+    }
+  }
+  const std::size_t faults_before = reading_.faults.size();
+  check_names(reading_.faults, *table.table, table.place, table.label, all_keys, language_.foreign_step_keys);
+  // The form is most likely the key that has just been reported as misspelt.
+  if (reading_.faults.size() != faults_before) return;
+  reading_.faults.add(table.place,
+                      fmt::format("the step has nothing to do; expected exactly one of {}", fmt::join(forms, ", ")));
+}
+
+std::vector<ForeignKey> ProgramReader::foreign_keys_of(const StepForm& form) const {
+  std::vector<ForeignKey> foreign = language_.foreign_step_keys;
+  for (const StepForm& other : language_.steps) {
+    for (const KeySpec& spec : other.keys) {
+      if (find_key(form.keys, spec.name) == nullptr) {
+        foreign.push_back({spec.name, fmt::format("does not go with '{}' in one step", form.key)});
+      }
+    }
+  }
+  return foreign;
+}
+
+void ProgramReader::check_duration_or_rate(const Section& section) {
+  const bool has_duration = section.has_or_misspells("duration");
+  const bool has_rate = section.has_or_misspells("rate");
+  if (has_duration && has_rate) {
+    reading_.faults.add(section.key_place("rate"),
+                        "key 'rate' does not go with 'duration'; expected exactly one of them");
+  } else if (!has_duration && !has_rate) {
+    reading_.faults.add(section.place(),
+                        "the step has neither duration nor rate; expected one of them, for example "
+                        "duration = \"1 s\"");
+  }
+}
+
+std::vector<Step> ProgramReader::read_cycle(const Section& section, int depth) {
+  if (depth >= k_deepest_cycle) {
+    reading_.faults.add(section.key_place("cycle"),
+                        fmt::format("cycles are nested too deeply; expected at most {} levels", k_deepest_cycle));
+    return {};
+  }
+  const std::vector<Step> once = read_list(section, "steps", "the steps of a cycle", depth + 1);
+  const auto count = static_cast<std::size_t>(section.number("cycle").value_or(1.0));
+  // Both factors are within the limit, so that their product cannot overflow.
+  if (!is_within_limit(count * once.size(), section.key_place("cycle"))) return {};
+  std::vector<Step> steps;
+  steps.reserve(count * once.size());
+  for (std::size_t i = 0; i < count; ++i) std::ranges::copy(once, std::back_inserter(steps));
+  return steps;
+}
+
+Step ProgramReader::read_plain_step(const Section& section, const StepForm& form) {
+  Step step;
+  step.where = section.place();
+  step.kind = to_step_kind(form.kind);
+  if (form.takes_duration_or_rate) step.target = section.number(form.key).value_or(0.0);
+  step.duration = section.number("duration");
+  step.rate = section.number("rate");
+  if (section.has("until")) step.until = read_until(section);
+  return step;
+}
+
+std::vector<Until> ProgramReader::read_until(const Section& step) {
+  const Section section(reading_, step.table("until", "until"), language_.until, language_.foreign_until_keys);
+  std::vector<Until> conditions;
+  for (const KeySpec& spec : language_.until) {
+    if (!section.has(spec.name)) continue;
+    const Until::Quantity quantity = to_until_quantity(spec.name);
+    if (quantity == Until::Quantity::event) {
+      conditions.push_back({.quantity = quantity, .value = 0.0, .event = section.text(spec.name)});
+    } else {
+      conditions.push_back({.quantity = quantity, .value = section.number(spec.name).value_or(0.0), .event = {}});
+    }
+  }
+  return conditions;
+}
+
+}  // namespace monograin

@@ -1,0 +1,40 @@
+/// Reads programs: lists of steps, cycles written out. Internal: includes the TOML library.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenario/language.hpp"
+#include "scenario/scenario.hpp"
+#include "scenario/section.hpp"
+
+namespace monograin {
+
+class ProgramReader {
+ public:
+  ProgramReader(Reading& reading, const Language& language) : reading_(reading), language_(language) {}
+
+  /// The steps below `key` of `parent`; empty where there are none or too many.
+  /// @param label  how messages call one of them: "[[loading.steps]]"
+  [[nodiscard]] std::vector<Step> read(const Section& parent, std::string_view key, const std::string& label);
+
+ private:
+  [[nodiscard]] std::vector<Step> read_list(const Section& parent, std::string_view key, const std::string& label,
+                                            int depth);
+  [[nodiscard]] std::vector<Step> read_step(const Section::Origin& table, int depth);
+  [[nodiscard]] std::vector<Step> read_cycle(const Section& section, int depth);
+  [[nodiscard]] Step read_plain_step(const Section& section, const StepForm& form);
+  [[nodiscard]] std::vector<Until> read_until(const Section& step);
+  void check_duration_or_rate(const Section& section);
+  [[nodiscard]] bool is_within_limit(std::size_t steps, const SourceLocation& where);
+  [[nodiscard]] const StepForm* form_of(const toml::table& table) const;
+  void report_formless(const Section::Origin& table);
+  [[nodiscard]] std::vector<ForeignKey> foreign_keys_of(const StepForm& form) const;
+
+  Reading& reading_;
+  const Language& language_;
+  std::size_t steps_so_far_ = 0;  ///< of all programs
+};
+
+}  // namespace monograin

@@ -1,0 +1,17 @@
+/// From a parsed tree to a checked scenario. Internal: includes the TOML library.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <string>
+
+#include "scenario/faults.hpp"
+#include "scenario/scenario.hpp"
+
+namespace monograin {
+
+/// Fills all of a scenario but its name, text and overrides. What comes back is only meaningful if nothing was added
+/// to `faults`.
+[[nodiscard]] Scenario read_tree(const toml::table& root, const std::string& origin, FaultList& faults);
+
+}  // namespace monograin

@@ -1,0 +1,119 @@
+/// A scenario: checked data, in SI units, of what a scenario file says.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace monograin {
+
+/// A place in a text that a user wrote: a file, or an override given on the command line.
+struct SourceLocation {
+  std::string file;
+  std::size_t line = 1;
+  std::size_t column = 1;
+};
+
+struct Fault {
+  SourceLocation where;
+  std::string message;
+};
+
+/// All faults of a scenario, in the order of their places. what() has one line per fault: `file:line:column: message`.
+class ScenarioError : public std::runtime_error {
+ public:
+  explicit ScenarioError(std::vector<Fault> faults);
+  [[nodiscard]] const std::vector<Fault>& faults() const noexcept { return faults_; }
+
+ private:
+  std::vector<Fault> faults_;
+};
+
+/// A condition that ends a step before its time. Values in SI.
+struct Until {
+  enum class Quantity { force, displacement, pressure, contact_radius, apparent_radius, event };
+  Quantity quantity = Quantity::force;
+  double value = 0.0;
+  std::string event;  ///< name of the event, where quantity is `event`
+};
+
+/// One step of a wall's program. Cycles are already written out. Exactly one of duration and rate is given.
+struct Step {
+  enum class Kind { displacement, force, hold, detach };
+  Kind kind = Kind::hold;
+  double target = 0.0;             ///< of a ramp: displacement [m] or force [N] at its end
+  std::optional<double> duration;  ///< [s], > 0
+  std::optional<double> rate;      ///< [m/s] or [N/s], > 0
+  std::vector<Until> until;
+  SourceLocation where;
+};
+
+struct WallSpec {
+  std::string name;
+  std::array<double, 3> normal{};  ///< outward, as given (not normalised), not zero
+  double gap = 0.0;                ///< [m], >= 0
+  bool is_fixed = false;
+  std::vector<Step> steps;  ///< empty: the steps of `[loading]` (unless fixed)
+  SourceLocation where;
+};
+
+struct Loading {
+  enum class Configuration { simple, die, hydrostatic, oblique_die, walls };
+  Configuration configuration = Configuration::simple;
+  bool centre_is_free = false;  ///< centre = "equilibrium"
+  double oblique_angle = 0.0;   ///< [rad]
+  int oblique_walls = 2;
+  std::vector<Step> steps;
+  std::vector<WallSpec> walls;  ///< of configuration `walls`
+};
+
+struct Output {
+  int points = 200;           ///< equal intervals per step; 0: the integrator's own steps
+  std::vector<double> times;  ///< [s], ascending; not empty: used instead of points
+};
+
+struct Numerics {
+  std::string integrator = "auto";
+  double rtol = 1e-8;
+  double atol = 1e-12;  ///< relative to the state's own scale
+};
+
+using OptionValue = std::variant<bool, double, std::string>;
+
+struct Scenario {
+  std::string name;  ///< file name without folder and extension; names the run's folder
+  std::string text;  ///< the file as it was read
+  std::vector<std::string> overrides;
+  std::string title;
+  std::string model;
+  double radius = 0.0;                         ///< initial radius [m]
+  std::map<std::string, double> material;      ///< SI, every key of the model (defaults filled in)
+  std::map<std::string, OptionValue> options;  ///< table named after the model, defaults filled in
+  Loading loading;
+  Output output;
+  Numerics numerics;
+};
+
+/// Reads and checks a scenario file.
+///
+/// @param overrides  `key=value` texts as of `--set`; the value is TOML, a bare word is a string. Keys are dotted
+/// paths, an
+///                   index in brackets picks from an array: `loading.steps[0].displacement=0.3`. Checked like the file.
+/// @throws ScenarioError with every fault found: wrong syntax, unknown or missing keys, types, units, ranges,
+/// combinations
+[[nodiscard]] Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// The same from a text in memory; `origin` stands for the file's name in messages and names the scenario.
+[[nodiscard]] Scenario parse_scenario(std::string_view text, const std::string& origin,
+                                      const std::vector<std::string>& overrides = {});
+
+/// Text of the scenario that `monograin run` takes when no file is named.
+[[nodiscard]] std::string_view default_scenario_text() noexcept;
+
+}  // namespace monograin

@@ -1,0 +1,170 @@
+#include "scenario/schema.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "scenario/language.hpp"
+#include "scenario/schema_value.hpp"
+
+namespace monograin {
+namespace {
+
+using nlohmann::json;
+
+/// Schemas of what is below the keys of kind table and tables, by key.
+using Contents = std::map<std::string_view, json>;
+
+/// A key that is refused whatever its value; one with a numeric default is refused only for other values.
+bool is_refused(const KeySpec& spec) {
+  return !spec.refusal.empty() && !std::holds_alternative<double>(spec.default_value);
+}
+
+json properties_of(std::span<const KeySpec> keys, const Contents& contents = {}) {
+  json properties = json::object();
+  for (const KeySpec& spec : keys) {
+    if (is_refused(spec)) continue;
+    const auto content = contents.find(spec.name);
+    properties[std::string(spec.name)] =
+        content == contents.end() ? value_schema(spec) : value_schema(spec, content->second);
+  }
+  return properties;
+}
+
+json required_of(std::span<const KeySpec> keys) {
+  json required = json::array();
+  for (const KeySpec& spec : keys) {
+    if (spec.is_required) required.push_back(spec.name);
+  }
+  return required;
+}
+
+json table_schema(std::span<const KeySpec> keys, const Contents& contents = {}) {
+  return object_schema(properties_of(keys, contents), required_of(keys));
+}
+
+json exactly_one_of(std::string_view a, std::string_view b) {
+  return json::array({{{"required", {a}}}, {{"required", {b}}}});
+}
+
+/// The definitions of one model and where they refer to one another.
+class ModelSchema {
+ public:
+  explicit ModelSchema(const ModelInfo& model) : language_(language_of(model.name)), name_(model.name) {}
+
+  void add_to(json& definitions) const {
+    definitions[name_ + "-step"] = step();
+    definitions[name_ + "-loading"] = loading();
+    definitions[name_] = root();
+  }
+
+ private:
+  [[nodiscard]] json reference(std::string_view part) const {
+    return {{"$ref", fmt::format("#/definitions/{}-{}", name_, part)}};
+  }
+
+  [[nodiscard]] json step() const {
+    const Contents contents{{"until", table_schema(language_.until)}, {"steps", reference("step")}};
+    json forms = json::array();
+    for (const StepForm& form : language_.steps) {
+      if (is_refused(*find_key(form.keys, form.key))) continue;
+      json schema = table_schema(form.keys, contents);
+      if (form.takes_duration_or_rate) schema["oneOf"] = exactly_one_of("duration", "rate");
+      forms.push_back(std::move(schema));
+    }
+    return {{"oneOf", std::move(forms)}};
+  }
+
+  [[nodiscard]] json wall() const {
+    json schema = table_schema(language_.wall, {{"steps", reference("step")}});
+    const json is_fixed{{"properties", {{"fixed", {{"const", true}}}}}, {"required", {"fixed"}}};
+    schema["not"] = {{"allOf", {is_fixed, {{"required", {"steps"}}}}}};
+    return schema;
+  }
+
+  /// One alternative for each configuration that has keys of its own, and one for all others.
+  [[nodiscard]] json loading() const {
+    const KeySpec& configuration = *find_key(language_.loading, "configuration");
+    std::vector<std::string_view> common;
+    json alternatives = json::array();
+    for (const std::string_view word : configuration.choices) {
+      const auto is_its_own = [&](const KeySpec& spec) { return spec.only_with == word; };
+      if (std::ranges::any_of(language_.loading, is_its_own)) {
+        alternatives.push_back(loading_of({word}));
+      } else {
+        common.push_back(word);
+      }
+    }
+    if (!common.empty()) alternatives.insert(alternatives.begin(), loading_of(common));
+    return {{"oneOf", std::move(alternatives)}};
+  }
+
+  [[nodiscard]] json loading_of(const std::vector<std::string_view>& configurations) const {
+    std::vector<KeySpec> keys;
+    for (const KeySpec& spec : language_.loading) {
+      if (!spec.only_with.empty() && spec.only_with != configurations.front()) continue;
+      keys.push_back(spec);
+      if (spec.name == "configuration") keys.back().choices = configurations;
+    }
+    json schema = table_schema(keys, {{"wall", wall()}, {"steps", reference("step")}});
+    if (configurations.front() == "walls") {
+      add_rules_of_walls(schema);
+    } else {
+      schema["required"].push_back("steps");
+    }
+    return schema;
+  }
+
+  /// Walls have steps of their own, are fixed, or follow the steps of `[loading]`; one at least is driven.
+  static void add_rules_of_walls(json& schema) {
+    const json is_fixed{{"properties", {{"fixed", {{"const", true}}}}}, {"required", {"fixed"}}};
+    const json is_on_its_own{{"anyOf", {is_fixed, {{"required", {"steps"}}}}}};
+    json& walls = schema["properties"]["wall"];
+    walls["maxItems"] = k_most_walls;
+    walls["contains"] = {{"not", is_fixed}};
+    schema["required"].push_back("wall");
+    const json some_follow{{"properties", {{"wall", {{"contains", {{"not", is_on_its_own}}}}}}},
+                           {"required", {"steps"}}};
+    const json none_follows{{"properties", {{"wall", {{"items", is_on_its_own}}}}}, {"not", {{"required", {"steps"}}}}};
+    schema["oneOf"] = {some_follow, none_follows};
+  }
+
+  [[nodiscard]] json root() const {
+    const Contents contents{{"particle", table_schema(language_.particle)},
+                            {"material", table_schema(language_.material)},
+                            {"loading", reference("loading")},
+                            {"output", table_schema(language_.output)},
+                            {"numerics", table_schema(language_.numerics)},
+                            {name_, table_schema(language_.options)}};
+    json schema = table_schema(language_.root, contents);
+    schema["properties"]["model"]["enum"] = {name_};
+    schema["required"] = {"model", "particle", "material", "loading"};
+    return schema;
+  }
+
+  Language language_;
+  std::string name_;
+};
+
+}  // namespace
+
+std::string scenario_schema() {
+  json definitions = json::object();
+  json alternatives = json::array();
+  for (const ModelInfo& model : model_catalogue()) {
+    ModelSchema(model).add_to(definitions);
+    alternatives.push_back({{"$ref", fmt::format("#/definitions/{}", model.name)}});
+  }
+  const json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
+                    {"title", "monograin scenario"},
+                    {"type", "object"},
+                    {"oneOf", std::move(alternatives)},
+                    {"definitions", std::move(definitions)}};
+  return schema.dump(2);
+}
+
+}  // namespace monograin

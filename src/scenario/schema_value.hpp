@@ -1,0 +1,18 @@
+/// JSON Schema of single keys.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "scenario/language.hpp"
+
+namespace monograin {
+
+/// What the key accepts, with its description and default. Tables are left to who knows what is in them: this gives
+/// `content` for a table, an array of `content` for tables.
+[[nodiscard]] nlohmann::json value_schema(const KeySpec& spec,
+                                          const nlohmann::json& content = nlohmann::json::object());
+
+/// An object with these properties and no others.
+[[nodiscard]] nlohmann::json object_schema(nlohmann::json properties, nlohmann::json required);
+
+}  // namespace monograin

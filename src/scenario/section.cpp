@@ -1,0 +1,275 @@
+#include "scenario/section.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scenario/document.hpp"
+#include "scenario/units.hpp"
+#include "scenario/words.hpp"
+
+namespace monograin {
+namespace {
+
+using Kind = KeySpec::Kind;
+
+const toml::table k_empty_table;
+
+bool is_identifier(std::string_view text) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto may_follow = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-'; };
+  return !text.empty() && is_letter(text.front()) && std::ranges::all_of(text, may_follow);
+}
+
+bool is_whole(double value) { return std::trunc(value) == value; }
+
+std::optional<double> as_number(const toml::node& node) {
+  if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
+  if (const auto* floating = node.as_floating_point()) return floating->get();
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string_view> check_names(FaultList& faults, const toml::table& table, const SourceLocation& place,
+                                          std::string_view label, std::span<const KeySpec> keys,
+                                          std::span<const ForeignKey> foreign) {
+  const std::vector<std::string_view> names = names_of(keys);
+  std::vector<std::string_view> suggested;
+  for (const auto& [key, value] : table) {
+    if (find_key(keys, key.str()) != nullptr) continue;
+    const SourceLocation where = place_of(key.source(), place);
+    const auto known = std::ranges::find(foreign, key.str(), &ForeignKey::name);
+    if (known != foreign.end()) {
+      faults.add(where, fmt::format("key '{}' {}", known->name, known->reason));
+      continue;
+    }
+    const std::string_view nearest = nearest_word(key.str(), names);
+    if (!nearest.empty()) suggested.push_back(nearest);
+    faults.add(where,
+               fmt::format("unknown key '{}' in {}{}", shown(key.str()), label,
+                           nearest.empty() ? "; expected one of " + listed(names) : did_you_mean(key.str(), names)));
+  }
+  return suggested;
+}
+
+Section::Section(Reading& reading, Origin origin, std::span<const KeySpec> keys, std::span<const ForeignKey> foreign)
+    : reading_(reading), origin_(std::move(origin)), keys_(keys) {
+  misspelt_ = check_names(reading_.faults, *origin_.table, origin_.place, origin_.label, keys_, foreign);
+  for (const KeySpec& spec : keys_) {
+    if (const toml::node* node = origin_.table->get(spec.name)) check_value(spec, *node);
+  }
+  check_required();
+}
+
+bool Section::has_or_misspells(std::string_view key) const {
+  return has(key) || std::ranges::find(misspelt_, key) != misspelt_.end();
+}
+
+std::string Section::text(std::string_view key) const {
+  if (const auto found = values_.find(key); found != values_.end()) return std::get<std::string>(found->second);
+  const KeySpec* spec = find_key(keys_, key);
+  const auto* word = spec == nullptr ? nullptr : std::get_if<std::string_view>(&spec->default_value);
+  return word == nullptr ? std::string() : std::string(*word);
+}
+
+std::vector<double> Section::numbers(std::string_view key) const {
+  const auto found = values_.find(key);
+  return found == values_.end() ? std::vector<double>{} : std::get<std::vector<double>>(found->second);
+}
+
+Section::Origin Section::table(std::string_view key, std::string label) const {
+  const toml::node* node = origin_.table->get(key);
+  const toml::table* table = node == nullptr ? nullptr : node->as_table();
+  if (table == nullptr) return {&k_empty_table, origin_.place, std::move(label)};
+  return {table, value_place(key), std::move(label)};
+}
+
+std::vector<Section::Origin> Section::tables(std::string_view key, const std::string& label) const {
+  std::vector<Origin> result;
+  const toml::node* node = origin_.table->get(key);
+  if (node == nullptr || !node->is_array()) return result;
+  for (const toml::node& entry : *node->as_array()) {
+    if (const auto* table = entry.as_table()) result.push_back({table, place_of(entry.source(), origin_.place), label});
+  }
+  return result;
+}
+
+SourceLocation Section::key_place(std::string_view key) const {
+  const auto found = origin_.table->find(key);
+  return found == origin_.table->end() ? origin_.place : place_of(found->first.source(), origin_.place);
+}
+
+SourceLocation Section::value_place(std::string_view key) const {
+  const toml::node* node = origin_.table->get(key);
+  return node == nullptr ? origin_.place : place_of(node->source(), origin_.place);
+}
+
+void Section::check_required() {
+  for (const KeySpec& spec : keys_) {
+    // A key that is there but misspelt is one fault, not two.
+    if (!spec.is_required || has_or_misspells(spec.name)) continue;
+    reading_.faults.add(origin_.place, fmt::format("key '{}' is missing in {}; expected for example {}", spec.name,
+                                                   origin_.label, example_line(spec)));
+  }
+}
+
+void Section::check_value(const KeySpec& spec, const toml::node& node) {
+  if (std::optional<Value> value = read(spec, node)) values_.emplace(spec.name, std::move(*value));
+  check_refusal(spec, place_of(node.source(), origin_.place));
+}
+
+void Section::check_refusal(const KeySpec& spec, const SourceLocation& where) {
+  if (spec.refusal.empty()) return;
+  const auto* default_number = std::get_if<double>(&spec.default_value);
+  const auto found = values_.find(spec.name);
+  const bool is_harmless =
+      default_number != nullptr && (found == values_.end() || std::get<double>(found->second) == *default_number);
+  if (!is_harmless) reading_.faults.add(where, std::string(spec.refusal));
+}
+
+std::optional<Section::Value> Section::read(const KeySpec& spec, const toml::node& node) {
+  switch (spec.kind) {
+    case Kind::text:
+    case Kind::identifier:
+    case Kind::file:
+      return read_text(spec, node);
+    case Kind::toggle:
+    case Kind::mark:
+      return read_toggle(spec, node);
+    case Kind::choice:
+      return read_choice(spec, node);
+    case Kind::integer:
+      return read_integer(spec, node);
+    case Kind::quantity:
+      return read_quantity(spec, node);
+    case Kind::instants:
+      return read_instants(spec, node);
+    case Kind::direction:
+      return read_direction(spec, node);
+    case Kind::table:
+      if (!node.is_table() || (node.as_table()->empty() && !spec.may_be_empty)) unexpected(spec, node);
+      return std::nullopt;
+    case Kind::tables:
+      check_tables(spec, node);
+      return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::optional<Section::Value> Section::read_text(const KeySpec& spec, const toml::node& node) {
+  const auto* text = node.as_string();
+  if (text == nullptr) return unexpected(spec, node);
+  if (spec.kind == Kind::identifier && !is_identifier(text->get())) return unexpected(spec, node);
+  return text->get();
+}
+
+std::optional<Section::Value> Section::read_choice(const KeySpec& spec, const toml::node& node) {
+  const auto* text = node.as_string();
+  if (text == nullptr) return unexpected(spec, node);
+  const std::string& word = text->get();
+  // Without a model there are no events to choose from.
+  if (spec.choices.empty() || std::ranges::find(spec.choices, word) != spec.choices.end()) return word;
+  if (std::ranges::find(spec.reserved, word) != spec.reserved.end()) {
+    reading_.faults.add(place_of(node.source(), origin_.place),
+                        fmt::format("{} '{}' is not available {}; available: {}", spec.name, word, spec.reserved_where,
+                                    listed(spec.choices)));
+    return std::nullopt;
+  }
+  return unexpected(spec, node, did_you_mean(word, spec.choices));
+}
+
+std::optional<Section::Value> Section::read_toggle(const KeySpec& spec, const toml::node& node) {
+  const auto* toggle = node.as_boolean();
+  if (toggle == nullptr || (spec.kind == Kind::mark && !toggle->get())) return unexpected(spec, node);
+  return toggle->get();
+}
+
+std::optional<double> Section::read_integer(const KeySpec& spec, const toml::node& node) {
+  const std::optional<double> value = as_number(node);
+  const bool is_good = value && spec.range.contains(*value) && is_whole(*value / spec.multiple_of);
+  if (!is_good) return unexpected(spec, node);
+  return value;
+}
+
+std::optional<double> Section::read_quantity(const KeySpec& spec, const toml::node& node) {
+  std::optional<double> value = as_number(node);
+  const auto* text = node.as_string();
+  if (text != nullptr && spec.dimension != Dimension::none) {
+    const auto radius = spec.knows_initial_radius ? std::optional(reading_.initial_radius) : std::nullopt;
+    const Quantity quantity = parse_quantity(text->get(), spec.dimension, radius);
+    if (!quantity.value) return fault(spec, node, quantity.problem);
+    value = quantity.value;
+  }
+  if (!value) return unexpected(spec, node);
+  if (const Range range = finite_range(spec); !range.contains(*value)) {
+    return fault(spec, node, "out of range; expected " + describe(spec.dimension, range));
+  }
+  return value;
+}
+
+std::optional<Section::Value> Section::read_instants(const KeySpec& spec, const toml::node& node) {
+  const auto* array = node.as_array();
+  if (array == nullptr || array->empty()) return unexpected(spec, node);
+  std::vector<double> instants;
+  bool is_good = true;
+  for (const toml::node& entry : *array) {
+    const std::optional<double> instant = read_quantity(spec, entry);
+    is_good = is_good && instant;
+    if (!instant) continue;
+    if (!instants.empty() && *instant <= instants.back()) {
+      fault(spec, entry, "not later than the one before; expected ascending times");
+      is_good = false;
+    }
+    instants.push_back(*instant);
+  }
+  if (!is_good) return std::nullopt;
+  return instants;
+}
+
+std::optional<Section::Value> Section::read_direction(const KeySpec& spec, const toml::node& node) {
+  const auto* array = node.as_array();
+  if (array == nullptr || array->size() != 3) return unexpected(spec, node);
+  std::vector<double> components;
+  for (const toml::node& entry : *array) {
+    const std::optional<double> component = as_number(entry);
+    if (!component) return unexpected(spec, entry);
+    if (!(std::abs(*component) <= k_greatest_normal)) {
+      return fault(
+          spec, entry,
+          fmt::format("out of range; expected a number from {:.6g} to {:.6g}", -k_greatest_normal, k_greatest_normal));
+    }
+    components.push_back(*component);
+  }
+  const auto is_tiny = [](double component) { return std::abs(component) < k_least_normal; };
+  if (std::ranges::all_of(components, is_tiny))
+    return fault(spec, node, "it has no direction; expected " + expectation(spec));
+  return components;
+}
+
+void Section::check_tables(const KeySpec& spec, const toml::node& node) {
+  const auto* array = node.as_array();
+  if (array == nullptr || array->empty()) {
+    unexpected(spec, node);
+    return;
+  }
+  for (const toml::node& entry : *array) {
+    if (!entry.is_table()) unexpected(spec, entry);
+  }
+}
+
+std::nullopt_t Section::fault(const KeySpec& spec, const toml::node& node, std::string_view problem) {
+  reading_.faults.add(place_of(node.source(), origin_.place),
+                      fmt::format("{} = {}: {}", spec.name, shown(node), problem));
+  return std::nullopt;
+}
+
+std::nullopt_t Section::unexpected(const KeySpec& spec, const toml::node& node, std::string_view suggestion) {
+  reading_.faults.add(place_of(node.source(), origin_.place),
+                      fmt::format("{} = {}: expected {}{}", spec.name, shown(node), expectation(spec), suggestion));
+  return std::nullopt;
+}
+
+}  // namespace monograin

@@ -1,0 +1,99 @@
+/// One table of a scenario, checked against the keys that the language gives it. Internal: includes the TOML library.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "scenario/faults.hpp"
+#include "scenario/language.hpp"
+
+namespace monograin {
+
+/// What the reading of a scenario shares: where faults go, and the length of R0.
+struct Reading {
+  FaultList& faults;
+  double initial_radius = 1.0;  ///< [m]
+};
+
+/// Reports keys that are neither among `keys` nor, with their reason, among `foreign`.
+/// @return the suggestions made for misspelt keys
+std::vector<std::string_view> check_names(FaultList& faults, const toml::table& table, const SourceLocation& place,
+                                          std::string_view label, std::span<const KeySpec> keys,
+                                          std::span<const ForeignKey> foreign);
+
+/// Checks everything that a key's spec says when it is made: names, kinds, units, ranges, required keys.
+///
+/// What remains, rules between keys, is its user's. Faulty values read as absent; the faults already tell of them.
+class Section {
+ public:
+  struct Origin {
+    const toml::table* table = nullptr;
+    SourceLocation place;
+    std::string label;  ///< for messages: "[particle]"
+  };
+
+  Section(Reading& reading, Origin origin, std::span<const KeySpec> keys, std::span<const ForeignKey> foreign = {});
+
+  /// Whether the key stands in the text, be its value good or not.
+  [[nodiscard]] bool has(std::string_view key) const { return origin_.table->contains(key); }
+
+  /// Whether the key stands in the text, or one that was reported as its misspelling.
+  [[nodiscard]] bool has_or_misspells(std::string_view key) const;
+
+  /// The value, else the default, else nothing.
+  [[nodiscard]] std::optional<double> number(std::string_view key) const { return get<double>(key); }
+  [[nodiscard]] std::optional<bool> toggle(std::string_view key) const { return get<bool>(key); }
+  [[nodiscard]] std::string text(std::string_view key) const;
+  [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
+
+  /// The table below this key; where it is absent or faulty an empty one at this section's place.
+  [[nodiscard]] Origin table(std::string_view key, std::string label) const;
+  /// The tables of the array below this key; those entries that are tables.
+  [[nodiscard]] std::vector<Origin> tables(std::string_view key, const std::string& label) const;
+
+  [[nodiscard]] const SourceLocation& place() const noexcept { return origin_.place; }
+  [[nodiscard]] SourceLocation key_place(std::string_view key) const;
+  [[nodiscard]] SourceLocation value_place(std::string_view key) const;
+
+ private:
+  using Value = std::variant<bool, double, std::string, std::vector<double>>;
+
+  void check_value(const KeySpec& spec, const toml::node& node);
+  void check_required();
+  void check_refusal(const KeySpec& spec, const SourceLocation& where);
+  [[nodiscard]] std::optional<Value> read(const KeySpec& spec, const toml::node& node);
+  [[nodiscard]] std::optional<Value> read_text(const KeySpec& spec, const toml::node& node);
+  [[nodiscard]] std::optional<Value> read_choice(const KeySpec& spec, const toml::node& node);
+  [[nodiscard]] std::optional<Value> read_toggle(const KeySpec& spec, const toml::node& node);
+  [[nodiscard]] std::optional<double> read_integer(const KeySpec& spec, const toml::node& node);
+  [[nodiscard]] std::optional<double> read_quantity(const KeySpec& spec, const toml::node& node);
+  [[nodiscard]] std::optional<Value> read_instants(const KeySpec& spec, const toml::node& node);
+  [[nodiscard]] std::optional<Value> read_direction(const KeySpec& spec, const toml::node& node);
+  void check_tables(const KeySpec& spec, const toml::node& node);
+  std::nullopt_t fault(const KeySpec& spec, const toml::node& node, std::string_view problem);
+  std::nullopt_t unexpected(const KeySpec& spec, const toml::node& node, std::string_view suggestion = {});
+
+  template <class T>
+  [[nodiscard]] std::optional<T> get(std::string_view key) const {
+    const auto found = values_.find(key);
+    if (found != values_.end()) return std::get<T>(found->second);
+    const KeySpec* spec = find_key(keys_, key);
+    if (spec != nullptr && std::holds_alternative<T>(spec->default_value)) return std::get<T>(spec->default_value);
+    return std::nullopt;
+  }
+
+  Reading& reading_;
+  Origin origin_;
+  std::span<const KeySpec> keys_;
+  std::vector<std::string_view> misspelt_;  ///< keys that were suggested for unknown ones
+  std::map<std::string_view, Value> values_;
+};
+
+}  // namespace monograin

@@ -1,0 +1,150 @@
+#include "scenario/units.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <system_error>
+
+#include "scenario/words.hpp"
+
+namespace monograin {
+namespace {
+
+// The sign of micro has two code points that look alike: U+00B5 (keyboards) and U+03BC (Greek letter).
+constexpr std::array k_lengths{
+    Unit{"m", 1.0},   Unit{"cm", 1e-2}, Unit{"mm", 1e-3}, Unit{"um", 1e-6},
+    Unit{"µm", 1e-6}, Unit{"μm", 1e-6}, Unit{"nm", 1e-9}, Unit{"km", 1e3},
+};
+constexpr std::array k_stresses{Unit{"Pa", 1.0}, Unit{"kPa", 1e3}, Unit{"MPa", 1e6}, Unit{"GPa", 1e9}};
+constexpr std::array k_surface_energies{
+    Unit{"J/m^2", 1.0},
+    Unit{"mJ/m^2", 1e-3},
+    Unit{"N/m", 1.0},
+    Unit{"mN/m", 1e-3},
+};
+constexpr std::array k_forces{
+    Unit{"N", 1.0},   Unit{"kN", 1e3},  Unit{"MN", 1e6},  Unit{"mN", 1e-3},
+    Unit{"uN", 1e-6}, Unit{"µN", 1e-6}, Unit{"μN", 1e-6}, Unit{"nN", 1e-9},
+};
+constexpr std::array k_times{
+    Unit{"s", 1.0},   Unit{"ms", 1e-3}, Unit{"us", 1e-6},  Unit{"µs", 1e-6},
+    Unit{"μs", 1e-6}, Unit{"ns", 1e-9}, Unit{"min", 60.0}, Unit{"h", 3600.0},
+};
+constexpr std::array k_velocities{
+    Unit{"m/s", 1.0},   Unit{"cm/s", 1e-2}, Unit{"mm/s", 1e-3}, Unit{"um/s", 1e-6},
+    Unit{"µm/s", 1e-6}, Unit{"μm/s", 1e-6}, Unit{"nm/s", 1e-9}, Unit{"km/s", 1e3},
+};
+constexpr std::array k_force_rates{
+    Unit{"N/s", 1.0},   Unit{"kN/s", 1e3},  Unit{"MN/s", 1e6},  Unit{"mN/s", 1e-3},
+    Unit{"uN/s", 1e-6}, Unit{"µN/s", 1e-6}, Unit{"μN/s", 1e-6}, Unit{"nN/s", 1e-9},
+};
+constexpr std::array k_angles{Unit{"deg", std::numbers::pi / 180.0}, Unit{"rad", 1.0}};
+
+// Wide enough for a nanometre grain and a kilometre one, from gels to diamond, and for durations over 24 decades.
+const std::array<DimensionInfo, 9> k_dimensions{{
+    {Dimension::none, "a number", "", "0.3", "", 0.0, 1e100, {}},
+    {Dimension::length, "a length", "m", "\"10 mm\"", "R0", 1e-12, 1e6, k_lengths},
+    {Dimension::stress, "a stress", "Pa", "\"50 MPa\"", "", 1e-6, 1e18, k_stresses},
+    {Dimension::surface_energy, "a surface energy", "J/m^2", "\"0.1 J/m^2\"", "", 1e-24, 1e24, k_surface_energies},
+    {Dimension::force, "a force", "N", "\"10 N\"", "", 1e-30, 1e30, k_forces},
+    {Dimension::time, "a time", "s", "\"1 s\"", "", 1e-15, 1e18, k_times},
+    {Dimension::velocity, "a velocity", "m/s", "\"1 mm/s\"", "R0/s", 1e-30, 1e24, k_velocities},
+    {Dimension::force_rate, "a force rate", "N/s", "\"1 N/s\"", "", 1e-48, 1e45, k_force_rates},
+    {Dimension::angle, "an angle", "rad", "\"37.5 deg\"", "", 1e-9, 1e3, k_angles},
+}};
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+bool begins_a_number(std::string_view text) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (!text.empty() && (text.front() == '+' || text.front() == '-')) text.remove_prefix(1);
+  if (!text.empty() && text.front() == '.') text.remove_prefix(1);
+  return !text.empty() && is_digit(text.front());
+}
+
+struct LeadingNumber {
+  double value = 1.0;
+  bool is_there = false;
+  bool is_out_of_range = false;
+  std::string_view rest{};
+};
+
+LeadingNumber split_number(std::string_view text) {
+  // from_chars would also take "inf" and "nan", and refuses a leading plus.
+  if (!begins_a_number(text)) return {.rest = text};
+  if (text.front() == '+') text.remove_prefix(1);
+  LeadingNumber number{.is_there = true};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number.value);
+  number.is_out_of_range = error != std::errc{};
+  number.rest = trimmed(text.substr(static_cast<std::size_t>(end - text.data())));
+  return number;
+}
+
+std::string with_expectation(std::string problem, const DimensionInfo& info) {
+  return fmt::format("{}; expected {}, for example {}", problem, info.noun, info.example);
+}
+
+std::optional<double> unit_factor(std::string_view symbol, const DimensionInfo& info,
+                                  std::optional<double> initial_radius) {
+  if (symbol == info.relative && !info.relative.empty()) return initial_radius;
+  const auto found = std::ranges::find(info.units, symbol, &Unit::symbol);
+  return found == info.units.end() ? std::nullopt : std::optional(found->factor);
+}
+
+std::string unknown_unit(std::string_view symbol, const DimensionInfo& info) {
+  if (symbol.empty()) return with_expectation("the unit is missing", info);
+  if (symbol == info.relative) return with_expectation("the initial radius cannot be given in itself", info);
+  return with_expectation(fmt::format("unknown unit '{}'", shown(symbol)), info);
+}
+
+}  // namespace
+
+const DimensionInfo& dimension_info(Dimension dimension) noexcept {
+  return *std::ranges::find(k_dimensions, dimension, &DimensionInfo::dimension);
+}
+
+Range plausible_range(Dimension dimension, Range range) noexcept {
+  const DimensionInfo& info = dimension_info(dimension);
+  if (range.lower == 0.0 && range.lower_is_open && info.smallest > 0.0) {
+    range.lower = info.smallest;
+    range.lower_is_open = false;
+  }
+  range.lower = std::max(range.lower, -info.largest);
+  range.upper = std::min(range.upper, info.largest);
+  return range;
+}
+
+std::string describe(Dimension dimension, const Range& range) {
+  const DimensionInfo& info = dimension_info(dimension);
+  const std::string_view space = info.si.empty() ? "" : " ";
+  const std::string lower = fmt::format("{:.6g}{}{}", range.lower, space, info.si);
+  const std::string upper = fmt::format("{:.6g}{}{}", range.upper, space, info.si);
+  if (!range.lower_is_open && !range.upper_is_open) return fmt::format("{} from {} to {}", info.noun, lower, upper);
+  return fmt::format("{} {} {} and {} {}", info.noun, range.lower_is_open ? "above" : "of at least", lower,
+                     range.upper_is_open ? "below" : "up to", upper);
+}
+
+Quantity parse_quantity(std::string_view text, Dimension dimension, std::optional<double> initial_radius) {
+  const DimensionInfo& info = dimension_info(dimension);
+  const std::string_view content = trimmed(text);
+  const LeadingNumber number = split_number(content);
+  if (number.is_out_of_range) {
+    return {{}, with_expectation("the number is too large or too small", info)};
+  }
+  if (!number.is_there && (content.empty() || content != info.relative)) {
+    return {{}, with_expectation("it does not begin with a number", info)};
+  }
+  const std::optional<double> factor = unit_factor(number.rest, info, initial_radius);
+  if (!factor) return {{}, unknown_unit(number.rest, info)};
+  return {number.value * *factor, {}};
+}
+
+}  // namespace monograin

@@ -1,0 +1,26 @@
+/// Words in messages: what a misspelt one was meant to be, lists of them, and showing a user's text safely.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace monograin {
+
+/// The candidate nearest to `word`, if it takes at most two insertions, deletions, replacements or swaps of neighbours
+/// and fewer than the word has letters; otherwise an empty view.
+[[nodiscard]] std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates);
+
+/// `; did you mean 'x'?`, or nothing where no candidate is near.
+[[nodiscard]] std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
+
+/// The words with commas between them.
+[[nodiscard]] std::string listed(std::span<const std::string_view> words);
+
+/// The text with its control characters replaced, so that it cannot break a message's line.
+[[nodiscard]] std::string on_one_line(std::string_view text);
+
+/// The same, and cut where it is long.
+[[nodiscard]] std::string shown(std::string_view text);
+
+}  // namespace monograin

@@ -1,0 +1,70 @@
+// From a checked scenario to the hybrid system of its model.
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "mdr/system.hpp"
+#include "scene/scene.hpp"
+
+namespace monograin {
+namespace {
+
+/// One of an option's words as the enumerator at the same place.
+template <class Enum, std::size_t N>
+Enum choice(const Scenario& scenario, const char* key, const std::pair<const char*, Enum> (&table)[N]) {
+  const std::string& word = std::get<std::string>(scenario.options.at(key));
+  for (const auto& [name, value] : table) {
+    if (word == name) return value;
+  }
+  throw std::logic_error(fmt::format("option {} = '{}' was checked but is not bound", key, word));
+}
+
+mdr::Settings common_settings(const Scenario& scenario, double largest_displacement) {
+  mdr::Settings settings;
+  settings.largest_displacement = largest_displacement;
+  settings.initial_radius = scenario.radius;
+  settings.youngs_modulus = scenario.material.at("youngs_modulus");
+  settings.poisson_ratio = scenario.material.at("poisson_ratio");
+  settings.centre_is_free = scenario.loading.centre_is_free;
+  return settings;
+}
+
+mdr::Settings hertz_settings(const Scenario& scenario, double largest_displacement) {
+  mdr::Settings settings = common_settings(scenario, largest_displacement);
+  settings.elastic_profile = mdr::ElasticProfile::parabola;
+  settings.radius_rule = mdr::RadiusRule::fixed;
+  return settings;
+}
+
+mdr::Settings mdr_settings(const Scenario& scenario, double largest_displacement) {
+  using namespace mdr;
+  Settings settings = common_settings(scenario, largest_displacement);
+  settings.yield_stress = scenario.material.at("yield_stress");
+  settings.radius_rule =
+      choice<RadiusRule>(scenario, "radius_rule",
+                         {{"gated", RadiusRule::gated}, {"yielded", RadiusRule::yielded}, {"seed", RadiusRule::seed}});
+  settings.elastic_profile = choice<ElasticProfile>(
+      scenario, "elastic_profile", {{"ellipse", ElasticProfile::ellipse}, {"parabola", ElasticProfile::parabola}});
+  settings.delta_max_rule =
+      choice<DeltaMaxRule>(scenario, "delta_max_rule",
+                           {{"running-maximum", DeltaMaxRule::running_maximum}, {"shifted", DeltaMaxRule::shifted}});
+  settings.stops_at_cap_intersection = std::get<bool>(scenario.options.at("strict"));
+  return settings;
+}
+
+}  // namespace
+
+std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<ContactClass> classes,
+                                         double largest_displacement) {
+  // A Hertz particle is an MDR particle that neither yields nor grows.
+  if (scenario.model == "hertz") {
+    return std::make_unique<mdr::System>(hertz_settings(scenario, largest_displacement), std::move(classes));
+  }
+  if (scenario.model == "mdr") {
+    return std::make_unique<mdr::System>(mdr_settings(scenario, largest_displacement), std::move(classes));
+  }
+  throw std::logic_error(fmt::format("model '{}' is in the catalogue but not bound", scenario.model));
+}
+
+}  // namespace monograin

@@ -1,0 +1,145 @@
+#include "scene/scene.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace monograin {
+namespace {
+
+std::vector<Wall> preset_walls(const Scenario& scenario) {
+  const Loading& loading = scenario.loading;
+  const bool is_hydrostatic = loading.configuration == Loading::Configuration::hydrostatic;
+  const std::vector<Step> lateral_steps = is_hydrostatic ? loading.steps : std::vector<Step>{};
+  const std::string lateral = is_hydrostatic ? "axial" : "lateral";
+  std::vector<Wall> walls;
+  const auto add_pair = [&](const std::string& name, const std::string& group, const Eigen::Vector3d& normal,
+                            const std::vector<Step>& steps) {
+    walls.push_back({name + "+", group, normal, 0.0, steps});
+    walls.push_back({name + "-", group, -normal, 0.0, steps});
+  };
+  add_pair("axial-z", "axial", Eigen::Vector3d::UnitZ(), loading.steps);
+  if (loading.configuration == Loading::Configuration::simple) return walls;
+  add_pair(lateral + "-x", lateral, Eigen::Vector3d::UnitX(), lateral_steps);
+  add_pair(lateral + "-y", lateral, Eigen::Vector3d::UnitY(), lateral_steps);
+  if (loading.configuration == Loading::Configuration::oblique_die) {
+    // In the y-z plane, the angle counted from y (seed 003).
+    const double c = std::cos(loading.oblique_angle);
+    const double s = std::sin(loading.oblique_angle);
+    add_pair("oblique-1", "oblique", {0.0, c, s}, {});
+    if (loading.oblique_walls == 4) add_pair("oblique-2", "oblique", {0.0, c, -s}, {});
+  }
+  return walls;
+}
+
+std::string axis_of(const Eigen::Vector3d& normal) {
+  Eigen::Index axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  return axis == 0 ? "x" : axis == 1 ? "y" : "z";
+}
+
+/// Class names: the group's where it is one class, with its axis where symmetry splits it, else the first wall's.
+std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::vector<std::size_t>& first_wall) {
+  std::vector<std::string> names;
+  for (const std::size_t first : first_wall) {
+    const std::string& group = walls[first].group;
+    const auto in_group =
+        std::ranges::count_if(first_wall, [&](std::size_t other) { return walls[other].group == group; });
+    if (group.empty())
+      names.push_back(walls[first].name);
+    else if (in_group == 1)
+      names.push_back(group);
+    else
+      names.push_back(group + "-" + axis_of(walls[first].normal));
+  }
+  std::vector<std::string> sorted = names;
+  std::ranges::sort(sorted);
+  if (std::ranges::adjacent_find(sorted) == sorted.end()) return names;
+  // Not told apart by their axes (walls not merged at all): each class by its first wall.
+  for (std::size_t c = 0; c < names.size(); ++c) names[c] = walls[first_wall[c]].name;
+  return names;
+}
+
+double largest_displacement(const std::vector<std::vector<Step>>& programs) {
+  double largest = 0.0;
+  for (const auto& program : programs) {
+    for (const Step& step : program) {
+      if (step.kind == Step::Kind::displacement) largest = std::max(largest, std::abs(step.target));
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::size_t Scene::step_count() const noexcept {
+  std::size_t count = 0;
+  for (const auto& program : programs) count = std::max(count, program.size());
+  return count;
+}
+
+std::vector<Wall> make_walls(const Scenario& scenario) {
+  if (scenario.loading.configuration != Loading::Configuration::walls) return preset_walls(scenario);
+  std::vector<Wall> walls;
+  for (const WallSpec& spec : scenario.loading.walls) {
+    const Eigen::Vector3d normal(spec.normal[0], spec.normal[1], spec.normal[2]);
+    const std::vector<Step>& steps = spec.steps.empty() ? scenario.loading.steps : spec.steps;
+    walls.push_back({spec.name, "", normal.stableNormalized(), spec.gap, spec.is_fixed ? std::vector<Step>{} : steps});
+  }
+  return walls;
+}
+
+Scene make_scene(const Scenario& scenario, bool merges_walls) {
+  const std::vector<Wall> walls = make_walls(scenario);
+  std::vector<std::size_t> class_of(walls.size());
+  if (merges_walls) {
+    class_of = symmetry_classes(walls);
+  } else {
+    for (std::size_t i = 0; i < walls.size(); ++i) class_of[i] = i;
+  }
+  const std::size_t class_count = walls.empty() ? 0 : *std::ranges::max_element(class_of) + 1;
+  std::vector<std::size_t> first_wall(class_count, walls.size());
+  for (std::size_t i = walls.size(); i-- > 0;) first_wall[class_of[i]] = i;
+
+  Scene scene;
+  scene.classes.resize(class_count);
+  scene.walls.resize(class_count);
+  const std::vector<std::string> names = class_names(walls, first_wall);
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    scene.classes[class_of[i]].normals.push_back(walls[i].normal);
+    scene.walls[class_of[i]].push_back(walls[i].name);
+  }
+  for (std::size_t c = 0; c < class_count; ++c) {
+    scene.classes[c].name = names[c];
+    scene.classes[c].gap = walls[first_wall[c]].gap;
+    scene.programs.push_back(walls[first_wall[c]].steps);
+  }
+  if (class_count < walls.size()) {
+    std::vector<std::string> parts;
+    for (const ContactClass& c : scene.classes) parts.push_back(fmt::format("{} x{}", c.name, c.normals.size()));
+    scene.skipped.push_back(fmt::format("{} of {} walls, the same by symmetry: {}", walls.size() - class_count,
+                                        walls.size(), fmt::join(parts, ", ")));
+  }
+  scene.system = bind_model(scenario, scene.classes, largest_displacement(scene.programs));
+
+  const auto unknowns = scene.system->unknowns();
+  const auto is_algebraic = [](const Unknown& u) { return u.kind == Unknown::Kind::algebraic; };
+  if (std::ranges::none_of(unknowns, is_algebraic)) {
+    scene.skipped.emplace_back(scenario.loading.centre_is_free
+                                   ? "algebraic unknowns: by symmetry the wall forces balance on the centre at rest"
+                                   : "algebraic unknowns: displacements are prescribed and the centre is fixed");
+  }
+  if (const auto energy = scenario.material.find("surface_energy");
+      energy != scenario.material.end() && energy->second == 0.0) {
+    scene.skipped.emplace_back("adhesion: the surface energy is zero");
+  }
+  if (scenario.model == "hertz")
+    scene.skipped.emplace_back("yield and growth of the apparent radius: not part of the model");
+  scene.skipped.emplace_back("guards that cannot fire before the end of a step");
+  scene.skipped.emplace_back("observables between output points");
+  return scene;
+}
+
+}  // namespace monograin

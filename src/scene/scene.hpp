@@ -1,0 +1,50 @@
+/// The scene of a scenario: walls grouped into contact classes, their programs, and the model bound to them.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hybrid_system.hpp"
+#include "scenario/scenario.hpp"
+#include "walls.hpp"
+
+namespace monograin {
+
+/// A wall of the scene with its program.
+struct Wall {
+  std::string name;
+  std::string group;                                  ///< axial, lateral, oblique; empty in free wall sets
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, outward
+  double gap = 0.0;                                   ///< [m]
+  std::vector<Step> steps;                            ///< empty: fixed
+};
+
+struct Scene {
+  std::vector<ContactClass> classes;
+  std::vector<std::vector<std::string>> walls;  ///< names of each class's walls
+  std::vector<std::vector<Step>> programs;      ///< one per class; empty: fixed
+  std::vector<std::string> skipped;             ///< what is not computed because the scene does not need it
+  std::unique_ptr<HybridSystem> system;
+
+  [[nodiscard]] std::size_t step_count() const noexcept;
+};
+
+/// Walls of a scenario: those of the preset configuration, or the free ones.
+[[nodiscard]] std::vector<Wall> make_walls(const Scenario& scenario);
+
+/// Groups walls that symmetry makes share one history: two walls are of one class if a rotation or reflection of the
+/// whole wall set takes one to the other and every wall to one with the same program and gap.
+/// @return for each wall the index of its class, numbered in the order of their first walls
+[[nodiscard]] std::vector<std::size_t> symmetry_classes(const std::vector<Wall>& walls);
+
+/// @param merges_walls  false: every wall is a class of its own (to test the merging)
+/// @throws ScenarioError where the walls' programs do not go together
+[[nodiscard]] Scene make_scene(const Scenario& scenario, bool merges_walls = true);
+
+/// The model of a scenario over given classes.
+/// @param largest_displacement  that a wall of the program is taken to [m]
+[[nodiscard]] std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<ContactClass> classes,
+                                                       double largest_displacement);
+
+}  // namespace monograin

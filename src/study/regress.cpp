@@ -1,0 +1,143 @@
+#include "study/regress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+#include "engine/run.hpp"
+#include "history/compare.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The direct form reproduces a stored curve but for the rounding of another compiler or library.
+constexpr double k_direct_tolerance = 1e-10;
+// Integrated curves: so many times their rtol.
+constexpr double k_rtol_multiple = 50.0;
+
+// Share of a curve that has to be there; events at its ends may be a rounding error apart.
+constexpr double k_whole = 0.999;
+
+constexpr std::array<std::string_view, 4> k_integrators{"direct", "cvode-adams", "cvode-bdf", "ida"};
+
+std::vector<fs::path> scenario_files(const fs::path& folder) {
+  if (!fs::is_directory(folder)) {
+    throw std::runtime_error(
+        fmt::format("{}: no such folder; run this in the project's folder, or name it", folder.string()));
+  }
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+Run run_with(Scenario scenario, std::string_view integrator) {
+  scenario.numerics.integrator = integrator;
+  return run_scenario(scenario);
+}
+
+/// Names of the events in their order; event tables of different runs number their words differently.
+std::vector<std::string> event_names(const Table& events) {
+  std::vector<std::string> names;
+  const auto class_column = *events.find("class");
+  const auto event = *events.find("event");
+  for (std::size_t i = 0; i < events.row_count(); ++i) {
+    names.push_back(fmt::format("{} {}", events.word(i, event), events.word(i, class_column)));
+  }
+  return names;
+}
+
+double event_time_difference(const Table& stored, const Table& now) {
+  const std::vector<double> a = stored.column("time");
+  const std::vector<double> b = now.column("time");
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return a.empty() || a.back() == 0.0 ? largest : largest / a.back();
+}
+
+void compare_with_stored(const Run& run, const fs::path& curves, RegressionResult& result) {
+  const fs::path curve = curves / (run.scenario.name + ".csv");
+  if (!fs::exists(curve)) {
+    result.fault = fmt::format("{} is missing; 'monograin regress --accept' stores it", curve.string());
+    return;
+  }
+  const Table history = read_csv(curve);
+  const Table events = read_csv(curves / (run.scenario.name + ".events.csv"));
+  if (history.header_value("scenario_digest") != scenario_digest(run.scenario)) {
+    result.fault = "the scenario has changed since its curve was stored";
+  } else if (run.record.status != RunStatus::complete) {
+    result.fault = run.record.message;
+  } else if (event_names(events) != event_names(run.record.events)) {
+    result.fault = "other events, or in another order, than stored";
+  }
+  if (!result.fault.empty()) return;
+  result.event_time = event_time_difference(events, run.record.events);
+  for (const CurveDifference& difference : compare_tables(history, run.record.history, "time", "")) {
+    if (difference.coverage < k_whole) result.fault = fmt::format("{} is not as long as stored", difference.y);
+    if (!(difference.linf <= result.difference)) {
+      result.difference = difference.linf;
+      result.column = difference.y;
+    }
+  }
+}
+
+RegressionResult compare(const Run& run, const fs::path& curves) {
+  RegressionResult result{.scenario = run.scenario.name, .integrator = run.integrator.used, .column = {}, .fault = {}};
+  result.tolerance =
+      run.integrator.used == "direct" ? k_direct_tolerance : k_rtol_multiple * run.scenario.numerics.rtol;
+  try {
+    compare_with_stored(run, curves, result);
+  } catch (const std::runtime_error& error) {
+    result.fault = error.what();
+  }
+  return result;
+}
+
+void store(const fs::path& file, const Table& table) {
+  const fs::path partial = file.string() + ".partial";
+  std::ofstream out(partial, std::ios::binary);
+  if (out) write_csv(table, out);
+  out.close();
+  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", partial.string()));
+  fs::rename(partial, file);
+}
+
+}  // namespace
+
+std::vector<RegressionResult> regress(const fs::path& scenarios, const fs::path& curves) {
+  std::vector<RegressionResult> results;
+  for (const fs::path& file : scenario_files(scenarios)) {
+    const Scenario scenario = read_scenario(file);
+    for (const std::string_view integrator : k_integrators)
+      results.push_back(compare(run_with(scenario, integrator), curves));
+  }
+  return results;
+}
+
+std::vector<RegressionResult> accept_curves(const fs::path& scenarios, const fs::path& curves) {
+  fs::create_directories(curves);
+  std::vector<RegressionResult> results;
+  for (const fs::path& file : scenario_files(scenarios)) {
+    Run run = run_with(read_scenario(file), "direct");
+    results.push_back(compare(run, curves));
+    if (run.record.status != RunStatus::complete) {
+      throw std::runtime_error(fmt::format("{}: does not run to its end: {}", file.string(), run.record.message));
+    }
+    const std::pair<std::string, std::string> claim{"accuracy",
+                                                    "direct solution, 1e-12 of each column's largest magnitude"};
+    for (Table* table : {&run.record.history, &run.record.events}) table->header.push_back(claim);
+    store(curves / (run.scenario.name + ".csv"), run.record.history);
+    store(curves / (run.scenario.name + ".events.csv"), run.record.events);
+  }
+  return results;
+}
+
+}  // namespace monograin
