@@ -201,6 +201,7 @@ double unloading_fraction(const UnloadingShape& shape, double overlap) noexcept 
 Contact unloading_contact(const UnloadingShape& shape, double composite_modulus, double overlap) {
   const double u = unloading_fraction(shape, overlap);
   if (u >= 1.0) return {};
+  if (u < -1.0) throw std::domain_error("overlap beyond the end of the unloading branch");
   const double theta = unloading_angle(u);
   const double sine = std::sqrt((1.0 - u) * (1.0 + u));
   const double phi_theta = phi(theta);

@@ -35,8 +35,8 @@ constexpr double k_same_overlap = 2e-15;
 constexpr double k_together = 1e-6;
 // Growth ends where the free surface is used up to this share (mdr.md's event "singular growth").
 constexpr double k_least_slope = 1e-3;
-// The volume's square root ends at 1 - 4w = 0; stop where its digits still count.
-constexpr double k_least_volume = 1e-9;
+// The volume's square root ends at 1 - 4w = 0; stop before an implicit code's difference quotients reach over that edge.
+constexpr double k_least_volume = 1e-6;
 // A wall this near to the centre of the particle (over R0) has reached it.
 constexpr double k_least_distance = 1e-3;
 

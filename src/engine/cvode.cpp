@@ -81,7 +81,7 @@ class Cvode final : public Integrator {
     roots_.fired.clear();
     const int flag = CVode(memory_.get(), 1.0, y_.get(), &end_, CV_ONE_STEP);
     pending_.rethrow();
-    if (flag < 0 && pending_.saw_domain_end()) throw std::domain_error(message_);
+    if (flag < 0 && !pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
     check("CVode", flag);
     if (flag == CV_ROOT_RETURN) {
       check("CVodeGetRootInfo", CVodeGetRootInfo(memory_.get(), roots_.found.data()));

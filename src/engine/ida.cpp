@@ -74,7 +74,7 @@ class Ida final : public Integrator {
     roots_.fired.clear();
     const int flag = IDASolve(memory_.get(), 1.0, &end_, y_.get(), dy_.get(), IDA_ONE_STEP);
     pending_.rethrow();
-    if (flag < 0 && pending_.saw_domain_end()) throw std::domain_error(message_);
+    if (flag < 0 && !pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
     check("IDASolve", flag);
     if (flag == IDA_ROOT_RETURN) {
       check("IDAGetRootInfo", IDAGetRootInfo(memory_.get(), roots_.found.data()));

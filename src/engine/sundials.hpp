@@ -69,8 +69,8 @@ class Pending {
   int guard(Function&& function) noexcept {
     try {
       return function() ? 0 : 1;
-    } catch (const std::domain_error&) {
-      saw_domain_end_ = true;
+    } catch (const std::domain_error& error) {
+      domain_end_ = error.what();
       return 1;
     } catch (...) {
       exception_ = std::current_exception();
@@ -80,17 +80,17 @@ class Pending {
 
   void forget() noexcept {
     exception_ = nullptr;
-    saw_domain_end_ = false;
+    domain_end_.clear();
   }
   void rethrow() {
     if (exception_) std::rethrow_exception(std::exchange(exception_, nullptr));
   }
-  /// Whether the equations ended at some trial since the last forget().
-  [[nodiscard]] bool saw_domain_end() const noexcept { return saw_domain_end_; }
+  /// Why the equations ended at some trial since the last forget(); empty if they did not.
+  [[nodiscard]] const std::string& domain_end() const noexcept { return domain_end_; }
 
  private:
   std::exception_ptr exception_;
-  bool saw_domain_end_ = false;
+  std::string domain_end_;
 };
 
 /// Relative tolerance of one step for a wanted accuracy of the curve. Work and radius only ever grow, so the errors of

@@ -93,7 +93,7 @@ std::string in_quotes(std::string_view text) {
 
 bool begins_like_a_bare_text(std::string_view value) {
   const auto first = value.find_first_not_of(" \t");
-  return first != std::string_view::npos && std::string_view("[{\"'").find(value[first]) == std::string_view::npos;
+  return first == std::string_view::npos || std::string_view("[{\"'").find(value[first]) == std::string_view::npos;
 }
 
 /// One override while it is being applied.

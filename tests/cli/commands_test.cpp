@@ -1,0 +1,308 @@
+// Every command, run as a user runs it: as a process of its own, in a folder of its own.
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "history/table.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+  std::string err;
+};
+
+std::string read_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+void write_text(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+
+class Commands : public ::testing::Test {
+ protected:
+  /// Runs `monograin ARGUMENTS` in the test's folder.
+  Outcome monograin(const std::string& arguments) {
+    const std::string command = "cd '" + folder().string() + "' && '" MONOGRAIN_PROGRAM "' " + arguments +
+                                " > stdout.txt 2> stderr.txt < /dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder() / "stdout.txt"),
+            read_text(folder() / "stderr.txt")};
+  }
+
+  [[nodiscard]] const fs::path& folder() const { return folder_.path(); }
+
+  /// All files below the folder, but the two that catch the output.
+  [[nodiscard]] std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder())) {
+      const std::string name = fs::relative(entry.path(), folder()).string();
+      if (name != "stdout.txt" && name != "stderr.txt") names.push_back(name);
+    }
+    return names;
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+constexpr const char* k_small = R"(title = "small"
+model = "mdr"
+[particle]
+radius = "1 mm"
+[material]
+youngs_modulus = "1 GPa"
+poisson_ratio = 0.3
+yield_stress = "20 MPa"
+[loading]
+configuration = "simple"
+[[loading.steps]]
+displacement = "0.2 R0"
+duration = "1 s"
+[[loading.steps]]
+displacement = "0.15 R0"
+duration = "1 s"
+[output]
+points = 10
+)";
+
+TEST_F(Commands, RunWithoutAFileLeavesTheDefaultSceneInRunsDie) {
+  const Outcome outcome = monograin("run");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  for (const char* file : {"history.csv", "events.csv", "run.json"})
+    EXPECT_TRUE(fs::exists(folder() / "runs/die" / file)) << file;
+  const Table history = read_csv(folder() / "runs/die/history.csv");
+  EXPECT_EQ(history.header_value("status"), "complete");
+  EXPECT_EQ(history.columns()[0].heading(), "time[s]");
+  EXPECT_EQ(history.columns()[1].heading(), "step");
+  EXPECT_EQ(history.columns()[2].heading(), "row");
+  for (const char* column : {"apparent_radius[m]", "volume[m3]", "work[J]", "stored_energy[J]", "dissipation[J]",
+                             "axial.displacement[m]", "axial.overlap[m]", "axial.force[N]", "axial.contact_radius[m]",
+                             "axial.pressure[Pa]", "axial.regime", "lateral.force[N]", "lateral.regime"}) {
+    EXPECT_TRUE(history.find(column)) << column;
+  }
+}
+
+TEST_F(Commands, RunWritesWhatIsNeededToRepeatIt) {
+  write_text(folder() / "small.toml", k_small);
+  ASSERT_EQ(monograin("run small.toml --set output.points=5").code, 0);
+  const auto json = nlohmann::json::parse(read_text(folder() / "runs/small/run.json"));
+  EXPECT_EQ(json["status"], "complete");
+  EXPECT_EQ(json["classes"],
+            nlohmann::json::parse(R"([{"name": "axial", "multiplicity": 2, "walls": ["axial-z+", "axial-z-"]}])"));
+  EXPECT_EQ(json["integrator"]["asked"], "auto");
+  EXPECT_EQ(json["integrator"]["used"], "direct");
+  EXPECT_EQ(json["scenario"]["text"], k_small);
+  EXPECT_EQ(json["scenario"]["overrides"], nlohmann::json::parse(R"(["output.points=5"])"));
+  for (const char* key : {"skipped", "statistics", "timings_s", "warnings", "versions"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  for (const char* key : {"parse", "setup", "integration", "output"})
+    EXPECT_GE(json["timings_s"][key].get<double>(), 0.0) << key;
+}
+
+TEST_F(Commands, TheSameInputGivesTheSameBytes) {
+  write_text(folder() / "small.toml", k_small);
+  ASSERT_EQ(monograin("run small.toml -o first").code, 0);
+  ASSERT_EQ(monograin("run small.toml -o second").code, 0);
+  EXPECT_EQ(read_text(folder() / "first/history.csv"), read_text(folder() / "second/history.csv"));
+  EXPECT_EQ(read_text(folder() / "first/events.csv"), read_text(folder() / "second/events.csv"));
+}
+
+TEST_F(Commands, AFaultInOneFileRunsNothingAtAll) {
+  write_text(folder() / "good.toml", k_small);
+  std::string bad = k_small;
+  bad.replace(bad.find("yield_stress"), 12, "yeild_stress");
+  write_text(folder() / "bad.toml", bad);
+  const Outcome outcome = monograin("run good.toml bad.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("bad.toml:8:1: "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("yield_stress"), std::string::npos) << outcome.err;
+  EXPECT_EQ(files().size(), 2U);
+}
+
+TEST_F(Commands, OverridesAreCheckedLikeTheFile) {
+  write_text(folder() / "small.toml", k_small);
+  const Outcome outcome = monograin("run small.toml --set material.poisson_ratio=0.7");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("material.poisson_ratio=0.7"), std::string::npos) << outcome.err;
+  EXPECT_EQ(files().size(), 1U);
+}
+
+TEST_F(Commands, ARunThatLeavesTheDomainKeepsItsHistory) {
+  write_text(folder() / "small.toml", k_small);
+  const Outcome outcome =
+      monograin("run small.toml --set loading.configuration=hydrostatic --set loading.steps[0].displacement='0.35 R0'");
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_NE(outcome.err.find("stopped"), std::string::npos) << outcome.err;
+  const Table history = read_csv(folder() / "runs/small/history.csv");
+  EXPECT_EQ(history.header_value("status"), "stopped");
+  EXPECT_GT(history.row_count(), 5U);
+  const Table events = read_csv(folder() / "runs/small/events.csv");
+  EXPECT_EQ(events.word(events.row_count() - 1, *events.find("event")), "singular-growth");
+}
+
+TEST_F(Commands, ANewRunReplacesTheOldOneAsAWhole) {
+  write_text(folder() / "small.toml", k_small);
+  ASSERT_EQ(monograin("run small.toml --plot").code, 0);
+  ASSERT_TRUE(fs::exists(folder() / "runs/small/figure.svg"));
+  ASSERT_EQ(monograin("run small.toml").code, 0);
+  EXPECT_FALSE(fs::exists(folder() / "runs/small/figure.svg"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder() / "runs"), fs::directory_iterator{}), 1);
+}
+
+TEST_F(Commands, AFolderThatHoldsSomethingElseIsNotReplaced) {
+  write_text(folder() / "small.toml", k_small);
+  fs::create_directory(folder() / "mine");
+  write_text(folder() / "mine/notes.txt", "keep me");
+  EXPECT_EQ(monograin("run small.toml -o mine").code, 2);
+  EXPECT_EQ(read_text(folder() / "mine/notes.txt"), "keep me");
+}
+
+TEST_F(Commands, AKillAtAnyMomentLeavesTheLastGoodResult) {
+  write_text(folder() / "small.toml", k_small);
+  ASSERT_EQ(monograin("run small.toml").code, 0);
+  const std::string good = read_text(folder() / "runs/small/history.csv");
+  const std::string file = (folder() / "small.toml").string();
+  for (int delay_us = 0; delay_us < 24'000; delay_us += 600) {
+    const pid_t child = fork();
+    if (child == 0) {
+      if (chdir(folder().c_str()) != 0) _exit(9);
+      execl(MONOGRAIN_PROGRAM, MONOGRAIN_PROGRAM, "run", file.c_str(), "--quiet", static_cast<char*>(nullptr));
+      _exit(9);
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(delay_us));
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_EQ(read_text(folder() / "runs/small/history.csv"), good) << "killed after " << delay_us << " us";
+    ASSERT_TRUE(fs::exists(folder() / "runs/small/run.json")) << "killed after " << delay_us << " us";
+  }
+}
+
+TEST_F(Commands, CheckSaysNothingOfAGoodFile) {
+  write_text(folder() / "small.toml", k_small);
+  const Outcome outcome = monograin("check small.toml");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_TRUE(outcome.out.empty() && outcome.err.empty()) << outcome.out << outcome.err;
+}
+
+TEST_F(Commands, ModelsListsAndDescribes) {
+  EXPECT_NE(monograin("models").out.find("mdr"), std::string::npos);
+  const Outcome mdr = monograin("models mdr");
+  EXPECT_EQ(mdr.code, 0);
+  for (const char* word : {"yield_stress", "radius_rule", "gated", "fully-plastic", "growth-on", "caps"}) {
+    EXPECT_NE(mdr.out.find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(monograin("models nonsense").code, 2);
+  write_text(folder() / "small.toml", k_small);
+  const Outcome parameters = monograin("models mdr --parameters small.toml");
+  EXPECT_EQ(parameters.code, 0) << parameters.err;
+  EXPECT_NE(parameters.out.find("yield_overlap_over_radius"), std::string::npos) << parameters.out;
+}
+
+TEST_F(Commands, CompareExitsWithFiveAboveTheTolerance) {
+  write_text(folder() / "small.toml", k_small);
+  ASSERT_EQ(monograin("run small.toml -o a").code, 0);
+  ASSERT_EQ(monograin("run small.toml -o b --set material.yield_stress='20.2 MPa'").code, 0);
+  EXPECT_EQ(monograin("compare a/history.csv a/history.csv --tol 0").code, 0);
+  const Outcome differs = monograin("compare a/history.csv b/history.csv --y axial.force --tol 1e-6");
+  EXPECT_EQ(differs.code, 5) << differs.out << differs.err;
+  EXPECT_NE(differs.out.find("axial.force"), std::string::npos);
+  EXPECT_EQ(monograin("compare a/history.csv missing.csv").code, 2);
+}
+
+TEST_F(Commands, PlotDrawsRecordedRunsInEveryFormat) {
+  write_text(folder() / "small.toml", k_small);
+  ASSERT_EQ(monograin("run small.toml").code, 0);
+  for (const char* file : {"f.svg", "f.pdf", "f.png"}) {
+    const Outcome outcome = monograin(std::string("plot runs/small -o ") + file);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_GT(fs::file_size(folder() / file), 1000U) << file;
+  }
+  EXPECT_NE(monograin("plot runs/small -o f.bmp").code, 0);
+  EXPECT_EQ(monograin("plot runs/nowhere").code, 2);
+}
+
+TEST_F(Commands, SchemaPrintsJson) {
+  const auto schema = nlohmann::json::parse(monograin("schema").out);
+  EXPECT_TRUE(schema.contains("$schema"));
+}
+
+TEST_F(Commands, RegressFindsAMovedCurve) {
+  fs::create_directory(folder() / "scenarios");
+  write_text(folder() / "scenarios/small.toml", k_small);
+  ASSERT_EQ(monograin("regress --accept --curves curves").code, 0);
+  const Outcome same = monograin("regress --curves curves");
+  EXPECT_EQ(same.code, 0) << same.out;
+  const Table stored = read_csv(folder() / "curves/small.csv");
+  Table moved(stored.columns());
+  moved.header = stored.header;
+  for (std::size_t i = 0; i < stored.row_count(); ++i) {
+    std::vector<double> row(stored.row(i).begin(), stored.row(i).end());
+    if (i == stored.row_count() / 2) row[*stored.find("axial.force")] *= 1.0 + 1e-9;
+    moved.append(row);
+  }
+  std::ofstream out(folder() / "curves/small.csv", std::ios::binary);
+  write_csv(moved, out);
+  out.close();
+  EXPECT_EQ(monograin("regress --curves curves").code, 5);
+}
+
+TEST_F(Commands, WrongUseExitsWithTwo) {
+  for (const char* arguments : {"", "nonsense", "run --nonsense", "run missing.toml", "compare", "plot"}) {
+    EXPECT_EQ(monograin(arguments).code, 2) << "monograin " << arguments;
+  }
+  EXPECT_EQ(monograin("--version").out.substr(0, 10), "monograin ");
+}
+
+TEST_F(Commands, HelpEndsWithAnExample) {
+  for (const char* command : {"", "run", "check", "models", "plot", "compare", "regress", "schema"}) {
+    const Outcome help = monograin(std::string(command) + " --help");
+    EXPECT_EQ(help.code, 0);
+    EXPECT_NE(help.out.find("Example: monograin "), std::string::npos) << command;
+  }
+}
+
+TEST_F(Commands, ManualAndCompletionKnowEveryCommand) {
+  const std::string manual = read_text(MONOGRAIN_SOURCE_DIR "/src/cli/monograin.1");
+  const std::string completion = read_text(MONOGRAIN_SOURCE_DIR "/src/cli/monograin.bash");
+  std::istringstream lines(monograin("--help").out);
+  bool in_commands = false;
+  int count = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("Subcommands:")) {
+      in_commands = true;
+      continue;
+    }
+    std::istringstream words(line);
+    std::string command;
+    if (!in_commands || !(words >> command) || line.starts_with("Example")) continue;
+    if (line[0] != ' ' || line[2] == ' ') continue;
+    ++count;
+    EXPECT_NE(manual.find(command), std::string::npos) << command;
+    EXPECT_NE(completion.find(command), std::string::npos) << command;
+  }
+  EXPECT_GE(count, 7);
+}
+
+}  // namespace
+}  // namespace monograin

@@ -1,0 +1,231 @@
+#include "figure/figure.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Sets an environment variable and puts the old value back.
+class Environment {
+ public:
+  Environment(const char* name, const std::string& value) : name_(name), before_(std::getenv(name)) {
+    setenv(name, value.c_str(), 1);
+  }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+  ~Environment() { setenv(name_, before_.c_str(), 1); }
+
+ private:
+  const char* name_;
+  std::string before_;
+};
+
+std::string contents(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+/// Loading, unloading and reloading of one contact, with an undefined pressure.
+constexpr const char* k_mdr_history =
+    "# R0: 0.01\n# E: 1e9\n# Y: 5e7\n# status: complete\n"
+    "time[s],step,row,apparent_radius[m],axial.displacement[m],axial.force[N],axial.contact_radius[m],"
+    "axial.pressure[Pa],axial.regime\n"
+    "0,1,0,0.01,0,0,0,nan,elastic\n"
+    "1,1,0,0.0101,0.002,1000,0.002,8e7,fully-plastic\n"
+    "2,2,0,0.0101,0.001,0,0,0,separated\n"
+    "3,3,0,0.0101,0.0015,500,0.001,5e7,unloading\n"
+    "4,3,0,0.0102,0.003,2000,0.003,7e7,fully-plastic\n";
+constexpr const char* k_mdr_events =
+    "time[s],class,event,step,apparent_radius[m],axial.displacement[m],axial.force[N],axial.contact_radius[m],"
+    "axial.pressure[Pa],axial.regime\n"
+    "0.5,axial,yield,1,0.01,0.001,500,0.001,9e7,fully-plastic\n"
+    "0.5,,growth-on,1,0.01,0.001,500,0.001,9e7,fully-plastic\n"
+    "1,,step-end,1,0.0101,0.002,1000,0.002,8e7,fully-plastic\n";
+constexpr const char* k_hertz_history =
+    "# R0: 0.01\n# E: 1e9\n"
+    "time[s],step,row,axial.displacement[m],axial.force[N],axial.contact_radius[m],axial.pressure[Pa],axial.regime,"
+    "lateral.displacement[m],lateral.force[N],lateral.contact_radius[m],lateral.pressure[Pa],lateral.regime\n"
+    "0,1,0,0,0,0,0,elastic,0,0,0,0,open\n"
+    "1,1,0,0.001,50,0.001,1.6e7,elastic,0,0,0,0,open\n";
+
+class Figure : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "monograin-figure-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+    write(run() / "history.csv", k_mdr_history);
+    write(run() / "events.csv", k_mdr_events);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] fs::path in_folder(const std::string& name) const { return folder_ / name; }
+  [[nodiscard]] fs::path run() const {
+    return folder_ / "runs" / "it's_a_run";
+  }  // a name gnuplot has to be told with care
+  [[nodiscard]] std::string fault_of(const std::vector<fs::path>& runs, const fs::path& output) const {
+    try {
+      draw_runs(runs, output);
+    } catch (const FigureError& fault) {
+      return fault.what();
+    }
+    return "no fault";
+  }
+  /// A program called gnuplot that does what the shell commands say; returns its folder.
+  [[nodiscard]] fs::path false_gnuplot(const std::string& commands) const {
+    const fs::path program = folder_ / "bin" / "gnuplot";
+    write(program, "#!/bin/sh\n" + commands + "\n");
+    fs::permissions(program, fs::perms::owner_all);
+    return program.parent_path();
+  }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(Figure, IsWrittenInEachFormat) {
+  struct Case {
+    const char* name;
+    const char* begins;
+  };
+  for (const auto& [name, begins] : {Case{"a.svg", "<?xml"}, Case{"a.pdf", "%PDF"}, Case{"a.png", "\x89PNG"}}) {
+    draw_runs({run()}, in_folder(name));
+    EXPECT_TRUE(contents(in_folder(name)).starts_with(begins)) << name;
+  }
+}
+
+TEST_F(Figure, LeavesScriptAndDataBesideItAndNothingElse) {
+  draw_runs({run()}, in_folder("out/die.svg"));
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(in_folder("out"))) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"die.dat", "die.gp", "die.svg"}));
+}
+
+TEST_F(Figure, CanBeDrawnAgainFromItsScript) {
+  draw_runs({run()}, in_folder("die.svg"));
+  const std::string first = contents(in_folder("die.svg"));
+  fs::remove(in_folder("die.svg"));
+  const std::string command = "cd '" + in_folder("").string() + "' && gnuplot die.gp 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(contents(in_folder("die.svg")), first);
+}
+
+TEST_F(Figure, TellsLoadingUnloadingAndReloadingApart) {
+  draw_runs({run()}, in_folder("die.svg"));
+  const std::string data = contents(in_folder("die.dat"));
+  const auto holds = [&](const char* block) { return data.find(block) != std::string::npos; };
+  EXPECT_TRUE(holds("# run 1 axial unloading\n0.2 0.01 1.6 0.04 1.01\n0.1 0 0 0 1.01\n")) << data;
+  EXPECT_TRUE(holds("# run 1 axial reloading\n0.1 0 0 0 1.01\n0.15 0.005 1 0.01 1.01\n")) << data;
+  // Beyond the old largest displacement it is loading again, cut off from the first way by a blank line.
+  EXPECT_TRUE(holds("# run 1 axial loading\n0 0 NaN 0 1\n0.2 0.01 1.6 0.04 1.01\n\n0.15 0.005 1 0.01 1.01\n0.3 "))
+      << data;
+}
+
+TEST_F(Figure, MarksEventsOfContactsAndOfTheParticleButNotOfTheProgram) {
+  draw_runs({run()}, in_folder("die.svg"));
+  const std::string data = contents(in_folder("die.dat"));
+  EXPECT_NE(data.find("# event yield.\n0.1 0.005 1.8 0.01 NaN\n"), std::string::npos) << data;
+  EXPECT_NE(data.find("# event growth-on.\n0.1 NaN NaN NaN 1\n"), std::string::npos) << data;
+  EXPECT_EQ(data.find("step-end"), std::string::npos) << data;
+}
+
+TEST_F(Figure, NeedsNoEvents) {
+  fs::remove(run() / "events.csv");
+  EXPECT_EQ(fault_of({run()}, in_folder("die.svg")), "no fault");
+  EXPECT_EQ(contents(in_folder("die.gp")).find("Events"), std::string::npos);
+}
+
+TEST_F(Figure, LeavesOutWhatARunDoesNotHave) {
+  write(in_folder("hertz/history.csv"), k_hertz_history);
+  EXPECT_EQ(fault_of({in_folder("hertz")}, in_folder("hertz.svg")), "no fault");
+  const std::string script = contents(in_folder("hertz.gp"));
+  EXPECT_EQ(script.find("Apparent radius"), std::string::npos);
+  EXPECT_EQ(script.find("'run 1 lateral loading' using 1:3"), std::string::npos) << "pressure of an open contact";
+  EXPECT_NE(script.find("'run 1 lateral loading' using 1:2"), std::string::npos) << "force of an open contact";
+  EXPECT_NE(script.find("{/:Italic p} / {/:Italic E}"), std::string::npos) << "without Y, the modulus is the scale";
+}
+
+TEST_F(Figure, CanShowARunInWhichNothingHappens) {
+  write(in_folder("still/history.csv"), "time[s],axial.displacement[m],axial.force[N]\n0,0,0\n1,0,0\n");
+  EXPECT_EQ(fault_of({in_folder("still")}, in_folder("still.svg")), "no fault");
+}
+
+TEST_F(Figure, OverlaysRunsUnderNamesThatDiffer) {
+  write(in_folder("other/it's_a_run/history.csv"), k_mdr_history);
+  EXPECT_EQ(fault_of({run(), in_folder("other/it's_a_run/history.csv")}, in_folder("both.svg")), "no fault");
+  const std::string script = contents(in_folder("both.gp"));
+  EXPECT_NE(script.find("runs/it''s_a_run'"), std::string::npos) << script;
+  EXPECT_NE(script.find("other/it''s_a_run/history.csv'"), std::string::npos) << script;
+}
+
+TEST_F(Figure, StaysInUnitsWhereARunHasNoScales) {
+  std::string bare = k_mdr_history;
+  bare.erase(0, bare.find("time[s]"));
+  write(in_folder("bare/history.csv"), bare);
+  EXPECT_EQ(fault_of({run(), in_folder("bare")}, in_folder("bare.svg")), "no fault");
+  EXPECT_NE(contents(in_folder("bare.gp")).find("Force {/:Italic F} [N]"), std::string::npos);
+}
+
+TEST_F(Figure, RefusesAnUnknownFormatAndListsTheKnown) {
+  EXPECT_EQ(fault_of({run()}, "a.jpg"), "a.jpg: unknown figure format '.jpg'; expected .svg, .pdf or .png");
+  EXPECT_EQ(fault_of({run()}, "a"), "a: unknown figure format ''; expected .svg, .pdf or .png");
+}
+
+TEST_F(Figure, SaysWhichRunCannotBeRead) {
+  EXPECT_NE(fault_of({in_folder("none")}, in_folder("a.svg")).find("none:1: cannot be read"), std::string::npos);
+  write(in_folder("packing/history.csv"), "time[s],stress[Pa]\n0,1\n");
+  EXPECT_NE(fault_of({in_folder("packing")}, in_folder("a.svg")).find("no contacts to draw"), std::string::npos);
+  write(in_folder("short/history.csv"), "time[s],axial.displacement[m],axial.force[N]\n0,0,0\n");
+  EXPECT_NE(fault_of({in_folder("short")}, in_folder("a.svg")).find("needs two rows"), std::string::npos);
+  write(in_folder("blank/history.csv"), "time[s],axial.displacement[m],axial.force[N]\n0,0,nan\n1,1,nan\n");
+  EXPECT_NE(fault_of({in_folder("blank")}, in_folder("a.svg")).find("all values are undefined"), std::string::npos);
+  EXPECT_FALSE(fs::exists(in_folder("a.gp")));
+  EXPECT_EQ(fault_of({}, in_folder("a.svg")), "there is no run to draw");
+}
+
+TEST_F(Figure, WithoutGnuplotSaysWhatToInstallAndWritesNothing) {
+  const Environment path("PATH", in_folder("").string());
+  EXPECT_NE(fault_of({run()}, in_folder("out/a.svg")).find("apt-get install gnuplot-nox"), std::string::npos);
+  EXPECT_FALSE(fs::exists(in_folder("out")));
+}
+
+TEST_F(Figure, NamesTheScriptWhenGnuplotFailsAndKeepsTheOldFigure) {
+  write(in_folder("a.svg"), "old");
+  const Environment path("PATH", false_gnuplot("echo 'line 3: no such terminal'; exit 1").string());
+  const std::string fault = fault_of({run()}, in_folder("a.svg"));
+  EXPECT_NE(fault.find(in_folder("a.gp").string()), std::string::npos) << fault;
+  EXPECT_NE(fault.find("no such terminal"), std::string::npos) << fault;
+  EXPECT_EQ(contents(in_folder("a.svg")), "old");
+}
+
+TEST_F(Figure, PutsTheHandlerOfSigpipeBack) {
+  struct sigaction before = {};
+  struct sigaction ours = {};
+  ours.sa_handler = [](int) {};
+  sigaction(SIGPIPE, &ours, &before);
+  draw_runs({run()}, in_folder("a.svg"));
+  struct sigaction after = {};
+  sigaction(SIGPIPE, &before, &after);
+  EXPECT_EQ(after.sa_handler, ours.sa_handler);
+}
+
+}  // namespace
+}  // namespace monograin

@@ -1,0 +1,218 @@
+#include "history/compare.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace monograin {
+namespace {
+
+using Values = std::vector<double>;
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+/// A handful of additions and one square root.
+constexpr double k_rounding = 8 * std::numeric_limits<double>::epsilon();
+
+TEST(CompareCurves, FindsNoDifferenceBetweenACurveAndItself) {
+  const Values x{0, 1, 2, 1, 0};
+  const Values y{0, 3, k_nan, 2, -1};
+  const auto difference = compare_curves(x, y, x, y);
+  EXPECT_EQ(difference.linf, 0.0);
+  EXPECT_EQ(difference.l2, 0.0);
+  EXPECT_EQ(difference.area_error, 0.0);
+  EXPECT_EQ(difference.peak_error, 0.0);
+}
+
+TEST(CompareCurves, GivesTheHandComputedMeasures) {
+  // a = 2, 4, 2 and b - a = 0, -1, 0.5 at x = 0, 1, 3:
+  // int (b - a)^2 = 0.5*1*(0 + 1) + 0.5*2*(1 + 0.25) = 1.75, int a^2 = 0.5*(4 + 16) + (16 + 4) = 30,
+  // int a = 3 + 6 = 9, a at the largest x is 2.
+  const Values x{0, 1, 3};
+  const auto difference = compare_curves(x, Values{2, 4, 2}, x, Values{2, 3, 2.5});
+  EXPECT_DOUBLE_EQ(difference.linf, 0.25);
+  EXPECT_EQ(difference.linf_at, 1.0);
+  EXPECT_DOUBLE_EQ(difference.l2, std::sqrt(1.75 / 30.0));
+  EXPECT_DOUBLE_EQ(difference.area_error, std::sqrt(1.75) / 9.0);
+  EXPECT_DOUBLE_EQ(difference.peak_error, 0.5);
+  EXPECT_EQ(difference.coverage, 1.0);
+}
+
+TEST(CompareCurves, HasTheClosedFormOfAUniformErrorOfAStraightLine) {
+  // e_a = 2 r/sqrt(3 x_max); the trapezoidal rule on n intervals adds a relative error below 1/(2 n^2) to the integral.
+  constexpr int k_intervals = 1000;
+  constexpr double k_error = 0.01;
+  constexpr double k_end = 0.5;
+  Values x, a, b;
+  for (int k = 0; k <= k_intervals; ++k) {
+    x.push_back(k_end * k / k_intervals);
+    a.push_back(3.0 * x.back());
+    b.push_back((1.0 + k_error) * a.back());
+  }
+  const auto difference = compare_curves(x, a, x, b);
+  const double exact = 2.0 * k_error / std::sqrt(3.0 * k_end);
+  EXPECT_NEAR(difference.area_error, exact, exact / (2.0 * k_intervals * k_intervals));
+  EXPECT_NEAR(difference.peak_error, k_error, k_rounding);
+  EXPECT_NEAR(difference.l2, k_error, k_rounding);
+}
+
+TEST(CompareCurves, MeasuresAbsolutelyWhereTheReferenceIsZero) {
+  const Values x{0, 4};
+  const auto difference = compare_curves(x, Values{0, 0}, x, Values{3, 3});
+  EXPECT_EQ(difference.linf, 3.0);
+  EXPECT_EQ(difference.l2, 6.0);
+  EXPECT_EQ(difference.area_error, 6.0);
+  EXPECT_EQ(difference.peak_error, 3.0);
+}
+
+TEST(CompareCurves, TakesTheLargestReferenceForThePeakWhereTheLastIsZero) {
+  const Values x{0, 1, 2};
+  EXPECT_DOUBLE_EQ(compare_curves(x, Values{0, 4, 0}, x, Values{0, 5, 0}).peak_error, 0.25);
+}
+
+TEST(CompareCurves, HasTheSameLargestDifferenceBothWaysForCurvesOfOneSize) {
+  const Values x{0, 1, 2};
+  const Values a{0, 1, 4};
+  const Values b{0, 2, 4};
+  EXPECT_EQ(compare_curves(x, a, x, b).linf, compare_curves(x, b, x, a).linf);
+}
+
+TEST(CompareCurves, InterpolatesTheSecondCurveAtThePlacesOfTheFirst) {
+  const auto difference =
+      compare_curves(Values{0, 0.25, 0.5, 1}, Values{0, 0.5, 1, 2}, Values{0, 0.4, 1}, Values{0, 0.8, 2});
+  EXPECT_LT(difference.linf, k_rounding);
+}
+
+TEST(CompareCurves, SetsPiecesOfACurveThatTurnsBackAgainstEachOther) {
+  // Up along y = x, down along y = 2 x - 1: the same curve in two samplings.
+  const Values x_a{0, 0.5, 1, 0.75, 0.5};
+  const Values y_a{0, 0.5, 1, 0.5, 0};
+  const Values x_b{0, 0.2, 1, 0.9, 0.5};
+  const Values y_b{0, 0.2, 1, 0.8, 0};
+  EXPECT_LT(compare_curves(x_a, y_a, x_b, y_b).linf, k_rounding);
+}
+
+TEST(CompareCurves, CountsAPieceBackAsMuchAsOneForth) {
+  const Values x{0, 1, 0};
+  const auto difference = compare_curves(x, Values{1, 1, 1}, x, Values{1, 1, 3});
+  EXPECT_DOUBLE_EQ(difference.l2, 1.0);  // int (b - a)^2 = 2 on the way back, int a^2 = 2 on both
+}
+
+TEST(CompareCurves, SeesAJumpFromBothSides) {
+  // Both jump from 1 to 5 at x = 1, written as two rows; the sampling differs.
+  const Values x_a{0, 0.5, 1, 1, 2};
+  const Values y_a{1, 1, 1, 5, 5};
+  const Values x_b{0, 1, 1, 1, 1.7, 2};
+  const Values y_b{1, 1, 1, 5, 5, 5};
+  EXPECT_EQ(compare_curves(x_a, y_a, x_b, y_b).linf, 0.0);
+}
+
+TEST(CompareCurves, TakesAJumpLocatedALittleApartForTheSame) {
+  for (const double shift : {-1e-9, 1e-9}) {
+    const Values x_b{0, 1 + shift, 1 + shift, 2};
+    const auto difference = compare_curves(Values{0, 1, 1, 2}, Values{1, 1, 5, 5}, x_b, Values{1, 1, 5, 5});
+    EXPECT_LT(difference.linf, k_rounding) << "shift " << shift;
+  }
+}
+
+TEST(CompareCurves, DoesNotForgiveAJumpThatIsElsewhere) {
+  const auto difference =
+      compare_curves(Values{0, 1, 1, 2}, Values{1, 1, 5, 5}, Values{0, 1.1, 1.1, 2}, Values{1, 1, 5, 5});
+  EXPECT_DOUBLE_EQ(difference.linf, 0.8);
+  EXPECT_EQ(difference.linf_at, 1.0);
+}
+
+TEST(CompareCurves, LeavesTheJumpAtATurnToNeitherPiece) {
+  // The value drops from 3 to 2 while x stands at 1, then x goes back.
+  const Values x_a{0, 1, 1, 0};
+  const Values y_a{0, 3, 2, 0};
+  const Values x_b{0, 0.5, 1, 1, 0.5, 0};
+  const Values y_b{0, 1.5, 3, 2, 1, 0};
+  EXPECT_LT(compare_curves(x_a, y_a, x_b, y_b).linf, k_rounding);
+}
+
+TEST(CompareCurves, ComparesWhereBothAreAndSaysHowFarThatIs) {
+  const auto difference = compare_curves(Values{0, 1, 2, 4}, Values{1, 1, 1, 1}, Values{0, 2.5}, Values{1, 1});
+  EXPECT_EQ(difference.linf, 0.0);
+  EXPECT_DOUBLE_EQ(difference.coverage, 0.5);
+}
+
+TEST(CompareCurves, IsInfinitelyApartWhereOnlyOneIsDefined) {
+  const Values x{0, 1, 2};
+  EXPECT_TRUE(std::isinf(compare_curves(x, Values{1, 1, 1}, x, Values{1, k_nan, 1}).linf));
+  EXPECT_TRUE(std::isinf(compare_curves(x, Values{1, k_nan, 1}, x, Values{1, 1, 1}).linf));
+}
+
+TEST(CompareCurves, LeavesOutUndefinedValuesWhereItInterpolates) {
+  const auto difference =
+      compare_curves(Values{0, 1, 2, 3}, Values{1, 1, k_nan, 1}, Values{0, 0.5, 3}, Values{1, 1, 1});
+  EXPECT_EQ(difference.linf, 0.0);
+  EXPECT_LT(difference.coverage, 1.0);
+}
+
+TEST(CompareCurves, RefusesCurvesThatCannotBeBroughtTogether) {
+  const Values two{0, 1};
+  EXPECT_THROW(static_cast<void>(compare_curves(two, two, Values{2, 3}, two)), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(compare_curves(two, two, Values{1, 0}, two)), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(compare_curves(two, two, Values{0, 1, 0}, Values{0, 1, 0})), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(compare_curves({}, {}, two, two)), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(compare_curves(two, Values{1}, two, two)), std::invalid_argument);
+}
+
+Table history(double force_at_end) {
+  Table table({{"time", "s", {}}, {"step", "", {}}, {"force", "N", {}}, {"area", "m2", {}}, {"regime", "", {"open"}}});
+  table.append(std::array{0.0, 1.0, 0.0, 2.0, 0.0});
+  table.append(std::array{1.0, 1.0, force_at_end, 2.0, 0.0});
+  return table;
+}
+
+std::string fault_of(const Table& a, const Table& b, const std::string& x, const std::string& y) {
+  try {
+    static_cast<void>(compare_tables(a, b, x, y));
+  } catch (const std::runtime_error& fault) {
+    return fault.what();
+  }
+  return "no fault";
+}
+
+TEST(CompareTables, TakesEveryResultTheyShare) {
+  const auto differences = compare_tables(history(2.0), history(3.0), "time", "");
+  ASSERT_EQ(differences.size(), 2u);
+  EXPECT_EQ(differences[0].y, "force[N]");
+  EXPECT_DOUBLE_EQ(differences[0].linf, 0.5);
+  EXPECT_EQ(differences[1].y, "area[m2]");
+  EXPECT_EQ(differences[1].linf, 0.0);
+}
+
+TEST(CompareTables, TakesTheColumnThatIsNamed) {
+  const auto differences = compare_tables(history(2.0), history(3.0), "", "force[N]");
+  ASSERT_EQ(differences.size(), 1u);
+  EXPECT_EQ(differences[0].y, "force[N]");
+}
+
+TEST(CompareTables, SaysWhichColumnIsMissingOrWrong) {
+  Table other({{"time", "s", {}}, {"force", "kN", {}}});
+  other.append(std::array{0.0, 0.0});
+  EXPECT_EQ(fault_of(history(1), other, "time", "area"), "the second table has no column 'area'");
+  EXPECT_EQ(fault_of(history(1), history(1), "tme", ""), "the first table has no column 'tme'");
+  EXPECT_EQ(fault_of(history(1), history(1), "time", "regime"),
+            "column 'regime' of the first table holds words, not numbers");
+  EXPECT_EQ(fault_of(history(1), other, "time", "force"),
+            "'force' is 'force[N]' in the first table and 'force[kN]' in the second");
+  EXPECT_EQ(fault_of(history(1), other, "time", ""), "the tables share no numeric column besides 'time[s]'");
+}
+
+TEST(CompareTables, NamesTheColumnThatCannotBeCompared) {
+  Table later({{"time", "s", {}}, {"force", "N", {}}});
+  later.append(std::array{5.0, 0.0});
+  later.append(std::array{6.0, 0.0});
+  EXPECT_EQ(fault_of(history(1), later, "time", "force"),
+            "force[N]: the curves cannot be compared: there is no x at which both are defined");
+}
+
+}  // namespace
+}  // namespace monograin

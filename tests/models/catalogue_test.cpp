@@ -1,0 +1,156 @@
+#include "catalogue.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <set>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+namespace monograin {
+namespace {
+
+using std::string_view;
+
+// Event names are a contract with the readers of events.csv.
+constexpr auto k_contract_events = std::to_array<string_view>(
+    {// contacts
+     "contact-made", "contact-lost", "pull-off", "stick", "peel", "follow", "dent-touched", "impingement",
+     "caps-intersect",
+     // material
+     "yield", "fully-plastic", "low-compressibility", "zero-porosity", "secondary-onset", "load-reversal", "reload",
+     "retreat", "transition", "plastic-off", "segment-change", "plastic-softening",
+     // particle, program
+     "growth-on", "growth-off", "jamming", "step-end", "until-met",
+     // ends of the domain
+     "limit", "singular-growth", "volume-limit", "radius-limit", "density-limit", "loss-of-uniqueness",
+     "cap-centre-tensile", "cap-axis-nonpositive", "poisson-half", "full", "stiffening"});
+
+constexpr auto k_configurations = std::to_array<string_view>({"simple", "die", "hydrostatic", "oblique-die", "walls"});
+
+// What a step of `[[loading.steps]]` may hold.
+constexpr auto k_step_keys =
+    std::to_array<string_view>({"displacement", "force", "hold", "detach", "cycle", "rate", "until", "duration"});
+
+template <class Range>
+bool contains(const Range& range, string_view name) {
+  return std::ranges::find(range, name) != std::ranges::end(range);
+}
+
+/// Names of a list of keys or terms that occur more than once, or are empty.
+template <class Items>
+std::set<string_view> faulty_names(const Items& items) {
+  std::set<string_view> seen;
+  std::set<string_view> faulty;
+  for (const auto& item : items) {
+    if (item.name.empty() || !seen.insert(item.name).second) faulty.insert(item.name);
+  }
+  return faulty;
+}
+
+template <class Items>
+bool has_name(const Items& items, string_view name) {
+  return std::ranges::any_of(items, [&](const auto& item) { return item.name == name; });
+}
+
+bool is_key_of_the_language(const ModelInfo& model, string_view key) {
+  const auto dot = key.rfind('.');
+  if (dot == string_view::npos) return false;
+  const string_view table = key.substr(0, dot);
+  const string_view name = key.substr(dot + 1);
+  if (table == "material") return has_name(model.material, name);
+  if (table == "loading.steps") return contains(k_step_keys, name);
+  return table == model.name && has_name(model.options, name);
+}
+
+using Names = std::set<string_view>;
+
+TEST(Catalogue, FindsEveryModelByItsName) {
+  ASSERT_FALSE(model_catalogue().empty());
+  for (const ModelInfo& model : model_catalogue()) EXPECT_EQ(find_model(model.name), &model) << model.name;
+}
+
+TEST(Catalogue, HasNoModelOfAReservedOrUnknownName) {
+  EXPECT_FALSE(reserved_models().empty());
+  for (const string_view name : reserved_models()) EXPECT_EQ(find_model(name), nullptr) << name;
+  for (const string_view name : {"", "MDR", "mdr ", "herz"}) EXPECT_EQ(find_model(name), nullptr) << name;
+}
+
+TEST(Catalogue, NamesEverythingOnce) {
+  EXPECT_EQ(faulty_names(model_catalogue()), Names{});
+  for (const ModelInfo& model : model_catalogue()) {
+    EXPECT_EQ(faulty_names(model.material), Names{}) << model.name;
+    EXPECT_EQ(faulty_names(model.options), Names{}) << model.name;
+    EXPECT_EQ(faulty_names(model.regimes), Names{}) << model.name;
+    EXPECT_EQ(faulty_names(model.events), Names{}) << model.name;
+  }
+}
+
+TEST(Catalogue, DescribesEverythingItNames) {
+  for (const ModelInfo& model : model_catalogue()) {
+    EXPECT_FALSE(model.summary.empty() || model.source.empty()) << model.name;
+    for (const auto& key : model.material) EXPECT_FALSE(key.meaning.empty()) << model.name << ": " << key.name;
+    for (const auto& key : model.options) EXPECT_FALSE(key.meaning.empty()) << model.name << ": " << key.name;
+    for (const auto& term : model.regimes) EXPECT_FALSE(term.meaning.empty()) << model.name << ": " << term.name;
+    for (const auto& term : model.events) EXPECT_FALSE(term.meaning.empty()) << model.name << ": " << term.name;
+    for (const auto& refusal : model.refusals)
+      EXPECT_FALSE(refusal.message.empty()) << model.name << ": " << refusal.key;
+  }
+}
+
+TEST(Catalogue, OffersChoicesWhereItAsksForOneAndOnlyThere) {
+  for (const ModelInfo& model : model_catalogue()) {
+    for (const OptionKey& option : model.options) {
+      EXPECT_EQ(option.choices.empty(), option.kind != OptionKey::Kind::choice) << model.name << "." << option.name;
+      EXPECT_EQ(Names(option.choices.begin(), option.choices.end()).size(), option.choices.size())
+          << model.name << "." << option.name;
+    }
+  }
+}
+
+TEST(Catalogue, HasDefaultsInsideTheirRanges) {
+  for (const ModelInfo& model : model_catalogue()) {
+    for (const QuantityKey& key : model.material) {
+      EXPECT_TRUE(!key.default_value || key.range.contains(*key.default_value)) << model.name << ": " << key.name;
+    }
+  }
+}
+
+TEST(Catalogue, RefusesOnlyKeysOfTheLanguage) {
+  for (const ModelInfo& model : model_catalogue()) {
+    for (const Refusal& refusal : model.refusals) {
+      EXPECT_TRUE(is_key_of_the_language(model, refusal.key)) << model.name << ": " << refusal.key;
+    }
+  }
+}
+
+TEST(Catalogue, KnowsOnlyEventsOfTheContract) {
+  for (const ModelInfo& model : model_catalogue()) {
+    for (const Term& event : model.events) {
+      EXPECT_TRUE(contains(k_contract_events, event.name)) << model.name << ": " << event.name;
+    }
+  }
+}
+
+TEST(Catalogue, KnowsOnlyWallConfigurationsOfTheLanguage) {
+  for (const ModelInfo& model : model_catalogue()) {
+    EXPECT_FALSE(model.configurations.empty()) << model.name;
+    for (const string_view name : model.configurations) {
+      EXPECT_TRUE(contains(k_configurations, name)) << model.name << ": " << name;
+    }
+  }
+}
+
+TEST(Range, ContainsItsBoundsUnlessTheyAreOpen) {
+  constexpr Range closed{.lower = 0.0, .upper = 1.0};
+  EXPECT_TRUE(closed.contains(0.0) && closed.contains(0.5) && closed.contains(1.0));
+  EXPECT_FALSE(closed.contains(-0.1) || closed.contains(1.1));
+  constexpr Range open{.lower = 0.0, .upper = 1.0, .lower_is_open = true, .upper_is_open = true};
+  EXPECT_TRUE(open.contains(0.5));
+  EXPECT_FALSE(open.contains(0.0) || open.contains(1.0));
+  EXPECT_FALSE(closed.contains(std::numeric_limits<double>::quiet_NaN()));
+}
+
+}  // namespace
+}  // namespace monograin

@@ -1,0 +1,434 @@
+// Every kind of fault, with the place and the wording that users meet.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.hpp"
+#include "scenario/support.hpp"
+
+namespace monograin {
+namespace {
+
+struct FaultRow {
+  const char* name;
+  std::size_t line;  ///< of the small scenario, replaced by
+  const char* replacement;
+  std::vector<std::string> messages;
+};
+
+class FaultTable : public ::testing::TestWithParam<FaultRow> {};
+
+TEST_P(FaultTable, IsReportedAtItsPlace) {
+  const FaultRow& row = GetParam();
+  EXPECT_EQ(faults_of(with_line(row.line, row.replacement)), row.messages) << row.replacement;
+}
+
+const std::vector<FaultRow> k_rows{
+    FaultRow{"TitleIsNoText",
+             1,
+             "title = 3",
+             {"die.toml:1:9: title = 3: expected a text in quotes, for example \"die compaction\""}},
+    FaultRow{"UnknownTable",
+             1,
+             "[outptu]\npoints = 3\n[_]",
+             {"die.toml:1:1: key 'model' is missing in the scenario; expected for example model = \"mdr\"",
+              "die.toml:1:2: unknown key 'outptu' in the scenario; did you mean 'output'?",
+              "die.toml:3:2: unknown key '_' in the scenario; expected one of title, model, particle, material, "
+              "loading, output, numerics, hertz, mdr, similarity, semimech, hardening, nonlocal, compressible, "
+              "material-point, packing"}},
+    FaultRow{"UnknownRootKey",
+             1,
+             "titel = \"t\"",
+             {"die.toml:1:1: unknown key 'titel' in the scenario; did you mean 'title'?"}},
+    FaultRow{"MissingModel",
+             2,
+             "",
+             {"die.toml:1:1: key 'model' is missing in the scenario; expected for example model = \"mdr\""}},
+    FaultRow{"MisspeltModel",
+             2,
+             "model = \"mrd\"",
+             {"die.toml:2:9: model = \"mrd\": expected one of hertz, mdr; did you mean 'mdr'?"}},
+    FaultRow{
+        "UnknownModel", 2, "model = \"granite\"", {"die.toml:2:9: model = \"granite\": expected one of hertz, mdr"}},
+    FaultRow{"ReservedModel",
+             2,
+             "model = \"nonlocal\"",
+             {"die.toml:2:9: model 'nonlocal' is not available in this version; available: hertz, mdr"}},
+    FaultRow{"ModelIsNoText", 2, "model = 1", {"die.toml:2:9: model = 1: expected one of hertz, mdr"}},
+    FaultRow{"MissingRadius",
+             4,
+             "",
+             {"die.toml:3:1: key 'radius' is missing in [particle]; expected for example radius = \"10 mm\""}},
+    FaultRow{"RadiusInR0",
+             4,
+             "radius = \"1 R0\"",
+             {"die.toml:4:10: radius = \"1 R0\": the initial radius cannot be given in itself; expected a length, for "
+              "example \"10 mm\""}},
+    FaultRow{"NegativeRadius",
+             4,
+             "radius = \"-10 mm\"",
+             {"die.toml:4:10: radius = \"-10 mm\": out of range; expected a length from 1e-12 m to 1e+06 m"}},
+    FaultRow{"ZeroRadius",
+             4,
+             "radius = 0",
+             {"die.toml:4:10: radius = 0: out of range; expected a length from 1e-12 m to 1e+06 m"}},
+    FaultRow{"NanRadius",
+             4,
+             "radius = nan",
+             {"die.toml:4:10: radius = nan: out of range; expected a length from 1e-12 m to 1e+06 m"}},
+    FaultRow{"InfiniteRadius",
+             4,
+             "radius = inf",
+             {"die.toml:4:10: radius = inf: out of range; expected a length from 1e-12 m to 1e+06 m"}},
+    FaultRow{"HugeRadius",
+             4,
+             "radius = \"1e9 m\"",
+             {"die.toml:4:10: radius = \"1e9 m\": out of range; expected a length from 1e-12 m to 1e+06 m"}},
+    FaultRow{"OverflowingRadius",
+             4,
+             "radius = \"1e400 m\"",
+             {"die.toml:4:10: radius = \"1e400 m\": the number is too large or too small; expected a length, for "
+              "example \"10 mm\""}},
+    FaultRow{"RadiusIsBoolean",
+             4,
+             "radius = true",
+             {"die.toml:4:10: radius = true: expected a length, for example \"10 mm\""}},
+    FaultRow{"RadiusIsTable",
+             4,
+             "radius = { value = 1 }",
+             {"die.toml:4:10: radius = a table: expected a length, for example \"10 mm\""}},
+    FaultRow{"RadiusWithoutUnit",
+             4,
+             "radius = \"10\"",
+             {"die.toml:4:10: radius = \"10\": the unit is missing; expected a length, for example \"10 mm\""}},
+    FaultRow{"RadiusWithUnknownUnit",
+             4,
+             "radius = \"10 MM\"",
+             {"die.toml:4:10: radius = \"10 MM\": unknown unit 'MM'; expected a length, for example \"10 mm\""}},
+    FaultRow{"MisspeltMaterialKey",
+             7,
+             "poison_ratio = 0.3",
+             {"die.toml:7:1: unknown key 'poison_ratio' in [material]; did you mean 'poisson_ratio'?"}},
+    FaultRow{
+        "MissingMaterialKey",
+        8,
+        "",
+        {"die.toml:5:1: key 'yield_stress' is missing in [material]; expected for example yield_stress = \"50 MPa\""}},
+    FaultRow{"KeyOfAnotherModel",
+             8,
+             "yield_stress = \"50 MPa\"\nstrength = \"1 MPa\"",
+             {"die.toml:9:1: key 'strength' is not used by model 'mdr'"}},
+    FaultRow{"PoissonAboveHalf",
+             7,
+             "poisson_ratio = 0.6",
+             {"die.toml:7:17: poisson_ratio = 0.6: out of range; expected a number above -1 and up to 0.5"}},
+    FaultRow{"PoissonAsText",
+             7,
+             "poisson_ratio = \"0.3\"",
+             {"die.toml:7:17: poisson_ratio = \"0.3\": expected a number above -1 and up to 0.5"}},
+    FaultRow{
+        "UnknownStressUnit",
+        8,
+        "yield_stress = \"50 MPA\"",
+        {"die.toml:8:16: yield_stress = \"50 MPA\": unknown unit 'MPA'; expected a stress, for example \"50 MPa\""}},
+    FaultRow{"NegativeSurfaceEnergy",
+             8,
+             "yield_stress = \"50 MPa\"\nsurface_energy = \"-1 J/m^2\"",
+             {"die.toml:9:18: surface_energy = \"-1 J/m^2\": out of range; expected a surface energy from 0 J/m^2 to "
+              "1e+24 J/m^2"}},
+    FaultRow{"SurfaceEnergyRefused",
+             8,
+             "yield_stress = \"50 MPa\"\nsurface_energy = \"1 J/m^2\"",
+             {"die.toml:9:18: adhesion is not available in model 'mdr' yet; expected 0 J/m^2"}},
+    FaultRow{"MisspeltConfiguration",
+             10,
+             "configuration = \"dei\"",
+             {"die.toml:10:17: configuration = \"dei\": expected one of simple, die, hydrostatic, oblique-die, walls; "
+              "did you mean 'die'?"}},
+    FaultRow{"ConfigurationOfAnotherModel",
+             10,
+             "configuration = \"triaxial\"",
+             {"die.toml:10:17: configuration 'triaxial' is not available for model 'mdr'; available: simple, die, "
+              "hydrostatic, oblique-die, walls"}},
+    FaultRow{"AngleOutsideObliqueDie",
+             10,
+             "configuration = \"die\"\nangle = \"30 deg\"",
+             {"die.toml:11:1: key 'angle' goes with configuration = \"oblique-die\" only"}},
+    FaultRow{"RightAngle",
+             10,
+             "configuration = \"oblique-die\"\nangle = \"90 deg\"",
+             {"die.toml:11:9: angle = \"90 deg\": out of range; expected an angle of at least 1e-09 rad and below "
+              "1.5708 rad"}},
+    FaultRow{"ThreeObliqueWalls",
+             10,
+             "configuration = \"oblique-die\"\noblique_walls = 3",
+             {"die.toml:11:17: oblique_walls = 3: expected 2 or 4"}},
+    FaultRow{"WallOutsideWalls",
+             10,
+             "configuration = \"die\"\nwall = [{ name = \"a\", normal = [0, 0, 1] }]",
+             {"die.toml:11:1: key 'wall' goes with configuration = \"walls\" only"}},
+    FaultRow{"UnknownCentre",
+             10,
+             "configuration = \"die\"\ncentre = \"free\"",
+             {"die.toml:11:10: centre = \"free\": expected one of fixed, equilibrium"}},
+    FaultRow{"StepsAsTable",
+             11,
+             "[loading.steps]",
+             {"die.toml:11:1: steps = a table: expected an array of tables, written [[loading.steps]]"}},
+    FaultRow{"StepSaysNothing",
+             12,
+             "",
+             {"die.toml:11:1: the step has nothing to do; expected exactly one of displacement, force, hold, detach, "
+              "cycle"}},
+    FaultRow{"MisspeltStepKey",
+             12,
+             "dispalcement = \"0.1 R0\"",
+             {"die.toml:12:1: unknown key 'dispalcement' in [[loading.steps]]; did you mean 'displacement'?"}},
+    FaultRow{"TwoFormsInOneStep",
+             12,
+             "displacement = \"0.1 R0\"\nhold = true",
+             {"die.toml:13:1: key 'hold' does not go with 'displacement' in one step"}},
+    FaultRow{"ForceStepRefused",
+             12,
+             "force = \"1 N\"",
+             {"die.toml:12:9: force control is not available for this model yet; prescribe displacements, or end a "
+              "displacement ramp at a force with until = { force = ... }"}},
+    FaultRow{"HoldFalse", 12, "hold = false", {"die.toml:12:8: hold = false: expected true"}},
+    FaultRow{"DetachWithDuration",
+             12,
+             "detach = true\nrate = 1",
+             {"die.toml:14:1: key 'duration' does not go with 'detach' in one step"}},
+    FaultRow{"StepOfAnotherModel",
+             12,
+             "displacement = 0\nstrain = 0.1",
+             {"die.toml:13:1: key 'strain' is not used by model 'mdr'"}},
+    FaultRow{"NoDurationNorRate",
+             13,
+             "",
+             {"die.toml:11:1: the step has neither duration nor rate; expected one of them, for example duration = \"1 "
+              "s\""}},
+    FaultRow{"DurationAndRate",
+             13,
+             "duration = \"1 s\"\nrate = \"1 mm/s\"",
+             {"die.toml:14:1: key 'rate' does not go with 'duration'; expected exactly one of them"}},
+    FaultRow{"ZeroDuration",
+             13,
+             "duration = 0",
+             {"die.toml:13:12: duration = 0: out of range; expected a time from 1e-15 s to 1e+18 s"}},
+    FaultRow{"RateInWrongUnit",
+             13,
+             "rate = \"1 N/s\"",
+             {"die.toml:13:8: rate = \"1 N/s\": unknown unit 'N/s'; expected a velocity, for example \"1 mm/s\""}},
+    FaultRow{"UntilIsEmpty",
+             13,
+             "duration = 1\nuntil = {}",
+             {"die.toml:14:9: until = an empty table: expected a table, written until = { force = \"0 N\" }"}},
+    FaultRow{"UntilIsNumber",
+             13,
+             "duration = 1\nuntil = 3",
+             {"die.toml:14:9: until = 3: expected a table, written until = { force = \"0 N\" }"}},
+    FaultRow{"UntilUnknownKey",
+             13,
+             "duration = 1\nuntil = { froce = 0 }",
+             {"die.toml:14:11: unknown key 'froce' in until; did you mean 'force'?"}},
+    FaultRow{"UntilKeyOfMaterialPoint",
+             13,
+             "duration = 1\nuntil = { stress_axial = 0 }",
+             {"die.toml:14:11: key 'stress_axial' is not used by model 'mdr'"}},
+    FaultRow{"UntilUnknownEvent",
+             13,
+             "duration = 1\nuntil = { event = \"yeild\" }",
+             {"die.toml:14:19: event = \"yeild\": expected one of contact-made, contact-lost, dent-touched, yield, "
+              "load-reversal, retreat, reload, growth-on, growth-off, caps-intersect, step-end, until-met, "
+              "singular-growth, volume-limit, limit; did you mean 'yield'?"}},
+    FaultRow{"CycleOfZero",
+             12,
+             "cycle = 0\nsteps = [{ hold = true, duration = 1 }]\n[[loading.steps]]\nhold = true",
+             {"die.toml:12:9: cycle = 0: expected a whole number from 1 to 100000"}},
+    FaultRow{
+        "CycleWithoutSteps",
+        12,
+        "cycle = 3\n[[loading.steps]]\nhold = true",
+        {"die.toml:11:1: key 'steps' is missing in [[loading.steps]]; expected for example [[loading.steps.steps]]"}},
+    FaultRow{"CycleWithDuration",
+             12,
+             "cycle = 2\nsteps = [{ hold = true, duration = 1 }]",
+             {"die.toml:14:1: key 'duration' does not go with 'cycle' in one step"}},
+    FaultRow{
+        "CycleTooLong",
+        12,
+        "cycle = 100000\nsteps = [{ hold = true, duration = 1 }, { hold = true, duration = 1 "
+        "}]\n[[loading.steps]]\nhold = true",
+        {"die.toml:12:1: the program has 200000 steps or more with its cycles written out; expected at most 100000"}},
+    FaultRow{"PointsAreFractional",
+             13,
+             "duration = 1\n[output]\npoints = 1.5",
+             {"die.toml:15:10: points = 1.5: expected a whole number from 0 to 1000000"}},
+    FaultRow{"TooManyPoints",
+             13,
+             "duration = 1\n[output]\npoints = 1000001",
+             {"die.toml:15:10: points = 1000001: expected a whole number from 0 to 1000000"}},
+    FaultRow{"TimesDescend",
+             13,
+             "duration = 1\n[output]\ntimes = [0.1, 0.3, 0.2]",
+             {"die.toml:15:20: times = 0.2: not later than the one before; expected ascending times"}},
+    FaultRow{"NegativeTime",
+             13,
+             "duration = 1\n[output]\ntimes = [-1]",
+             {"die.toml:15:10: times = -1: out of range; expected a time from 0 s to 1e+18 s"}},
+    FaultRow{"TimesAreEmpty",
+             13,
+             "duration = 1\n[output]\ntimes = []",
+             {"die.toml:15:9: times = an empty array: expected a list of ascending times, for example [0.1, 0.25]"}},
+    FaultRow{"ReservedIntegrator",
+             13,
+             "duration = 1\n[numerics]\nintegrator = \"explicit\"",
+             {"die.toml:15:14: integrator 'explicit' is not available in this version; available: auto, direct, "
+              "cvode-bdf, cvode-adams, ida"}},
+    FaultRow{"MisspeltIntegrator",
+             13,
+             "duration = 1\n[numerics]\nintegrator = \"cvode-bfd\"",
+             {"die.toml:15:14: integrator = \"cvode-bfd\": expected one of auto, direct, cvode-bdf, cvode-adams, ida; "
+              "did you mean 'cvode-bdf'?"}},
+    FaultRow{"RtolTooSmall",
+             13,
+             "duration = 1\n[numerics]\nrtol = 1e-15",
+             {"die.toml:15:8: rtol = 1e-15: out of range; expected a number from 1e-14 to 0.1"}},
+    FaultRow{"ZeroAtol",
+             13,
+             "duration = 1\n[numerics]\natol = 0",
+             {"die.toml:15:8: atol = 0: out of range; expected a number above 0 and up to 0.1"}},
+    FaultRow{"UnknownOption",
+             13,
+             "duration = 1\n[mdr]\nradius_ruel = \"seed\"",
+             {"die.toml:15:1: unknown key 'radius_ruel' in [mdr]; did you mean 'radius_rule'?"}},
+    FaultRow{"UnknownChoice",
+             13,
+             "duration = 1\n[mdr]\nradius_rule = \"seeds\"",
+             {"die.toml:15:15: radius_rule = \"seeds\": expected one of gated, yielded, seed; did you mean 'seed'?"}},
+    FaultRow{"StrictIsText",
+             13,
+             "duration = 1\n[mdr]\nstrict = \"yes\"",
+             {"die.toml:15:10: strict = \"yes\": expected true or false"}},
+    FaultRow{"PressureTableRefused",
+             13,
+             "duration = 1\n[mdr]\npressure_table = \"p.csv\"",
+             {"die.toml:15:18: an own pressure curve is not available in model 'mdr' yet; leave the key out"}},
+    FaultRow{"TableOfAnotherModel",
+             13,
+             "duration = 1\n[nonlocal]\nterms = 4",
+             {"die.toml:14:2: key 'nonlocal' is the table of another model; this one is 'mdr'"}},
+    FaultRow{"DuplicateKey",
+             13,
+             "duration = 1\nduration = 2",
+             {"die.toml:14:12: not valid TOML: cannot redefine existing integer 'duration' (reading key-value pair)"}},
+    FaultRow{"CutOff",
+             13,
+             "duration = \"1 s",
+             {"die.toml:13:16: not valid TOML: unescaped control characters other than TAB (U+0009) are explicitly "
+              "prohibited (reading string)"}},
+    FaultRow{"UnquotedUnit",
+             13,
+             "duration = 1 s",
+             {"die.toml:13:14: not valid TOML: expected a comment or whitespace, saw 's' (reading key-value pair)"}},
+    FaultRow{"ControlCharacter",
+             13,
+             "duration = \x01",
+             {"die.toml:13:12: not valid TOML: unexpected control character (reading value)"}}};
+
+INSTANTIATE_TEST_SUITE_P(Scenario, FaultTable, ::testing::ValuesIn(k_rows),
+                         [](const auto& row) { return std::string(row.param.name); });
+
+TEST(ScenarioFaults, AreReportedTogetherInTheOrderOfTheText) {
+  const std::vector<std::string> faults = faults_of(
+      "model = \"mdr\"\n[loading]\nconfiguration = \"dei\"\n[[loading.steps]]\nhold = 1\nduration = 1\n"
+      "[material]\npoison_ratio = 0.3\nyoungs_modulus = \"1 GPa\"\nyield_stress = \"50 MPA\"\n"
+      "[particle]\nradius = \"-1 mm\"\n");
+  ASSERT_EQ(faults.size(), 5U);
+  const std::vector<std::string> places{
+      "die.toml:3:17: ", "die.toml:5:8: ", "die.toml:8:1: ", "die.toml:10:16: ", "die.toml:12:10: "};
+  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_TRUE(faults[i].starts_with(places[i])) << faults[i];
+}
+
+TEST(ScenarioFaults, CarryTheirPlaceAsData) {
+  try {
+    static_cast<void>(parse_scenario(with_line(7, "poisson_ratio = 2"), "a.toml"));
+    FAIL() << "accepted";
+  } catch (const ScenarioError& error) {
+    ASSERT_EQ(error.faults().size(), 1U);
+    EXPECT_EQ(error.faults()[0].where.file, "a.toml");
+    EXPECT_EQ(error.faults()[0].where.line, 7U);
+    EXPECT_EQ(error.faults()[0].where.column, 17U);
+  }
+}
+
+TEST(ScenarioFaults, OfAnEmptyFileNameWhatIsMissing) {
+  const std::vector<std::string> faults = faults_of("");
+  ASSERT_EQ(faults.size(), 4U);
+  EXPECT_NE(faults[0].find("'model' is missing"), std::string::npos) << faults[0];
+}
+
+TEST(ScenarioFaults, OfTextsInTheFileStayOnOneLine) {
+  for (const std::string& fault : faults_of(with_line(4, "radius = \"1\\n\\u0007\\nmm\"\n\"a\\nb\" = 1"))) {
+    EXPECT_TRUE(fault.starts_with("die.toml:")) << fault;
+  }
+}
+
+TEST(ReservedModel, IsRefusedOnceAndItsKeysAreKnown) {
+  const std::vector<std::string> faults = faults_of(
+      "model = \"material-point\"\n[material]\nyield_model = \"dpc\"\n[loading]\nconfiguration = \"triaxial\"\n"
+      "[[loading.steps]]\nstrain = -0.1\nduration = 1\n");
+  EXPECT_EQ(faults,
+            std::vector<std::string>{
+                "die.toml:1:9: model 'material-point' is not available in this version; available: hertz, mdr"});
+}
+
+TEST(ReservedModel, DoesNotHideFaultsThatNeedNoModel) {
+  const std::vector<std::string> faults =
+      faults_of("model = \"nonlocal\"\n[nonlocal]\nterms = 4\n[particle]\nradius = \"1 MPa\"\n[mdr]\n");
+  ASSERT_EQ(faults.size(), 3U);
+  EXPECT_TRUE(faults[1].starts_with("die.toml:5:10: radius")) << faults[1];
+  EXPECT_TRUE(faults[2].starts_with("die.toml:6:2: key 'mdr' is the table of another model")) << faults[2];
+}
+
+TEST(MisspeltModel, IsCheckedAsTheOneThatWasMeant) {
+  std::string text = with_line(7, "poison_ratio = 0.3");
+  text.replace(text.find("\"mdr\""), 5, "\"mrd\"");
+  EXPECT_EQ(faults_of(text).size(), 2U);
+}
+
+// --- files ---------------------------------------------------------------------------------------------------------
+
+std::string message_for_file(const std::filesystem::path& file) {
+  try {
+    static_cast<void>(read_scenario(file));
+  } catch (const ScenarioError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(ScenarioFile, ThatIsMissingIsNamed) {
+  EXPECT_EQ(message_for_file("no/such.toml"), "no/such.toml:1:1: there is no such file; expected a scenario file");
+}
+
+TEST(ScenarioFile, ThatIsADirectoryIsRefused) {
+  const std::string folder = std::filesystem::temp_directory_path().string();
+  EXPECT_EQ(message_for_file(folder), folder + ":1:1: this is a directory; expected a scenario file");
+}
+
+TEST(ScenarioFile, ThatIsHugeIsRefused) {
+  const std::string text = std::string(k_good_scenario) + "#" + std::string(17U * 1024U * 1024U, 'x');
+  EXPECT_EQ(faults_of(text), std::vector<std::string>{"die.toml:1:1: the file is too large; expected at most 16 MiB"});
+}
+
+TEST(ScenarioText, WithManyDotsOutsideKeysIsAccepted) {
+  const std::string dots(500, '.');
+  EXPECT_EQ(faults_of(with_line(1, "title = \"\"\"" + dots + "\n\"" + dots + "\"\"\" # " + dots)).size(), 0U);
+  EXPECT_EQ(faults_of(with_line(1, "title = '" + dots + "\"'")).size(), 0U);
+}
+
+}  // namespace
+}  // namespace monograin
