@@ -90,8 +90,8 @@ struct UnloadingShape {
 /// opens.
 [[nodiscard]] double unloading_fraction(const UnloadingShape& shape, double overlap) noexcept;
 
-/// Contact on the unloading branch; zeros where it is open (u >= 1). Overlaps above m continue the branch analytically, up to
-/// one recovery above.
+/// Contact on the unloading branch; zeros where it is open (u >= 1). Overlaps above m continue the branch analytically,
+/// up to one recovery above.
 /// @throws std::domain_error beyond that (u < -1)
 [[nodiscard]] Contact unloading_contact(const UnloadingShape& shape, double composite_modulus, double overlap);
 

@@ -35,7 +35,8 @@ constexpr double k_same_overlap = 2e-15;
 constexpr double k_together = 1e-6;
 // Growth ends where the free surface is used up to this share (mdr.md's event "singular growth").
 constexpr double k_least_slope = 1e-3;
-// The volume's square root ends at 1 - 4w = 0; stop before an implicit code's difference quotients reach over that edge.
+// The volume's square root ends at 1 - 4w = 0; stop before an implicit code's difference quotients reach over that
+// edge.
 constexpr double k_least_volume = 1e-6;
 // A wall this near to the centre of the particle (over R0) has reached it.
 constexpr double k_least_distance = 1e-3;
@@ -259,7 +260,9 @@ void System::watch(double xi, std::span<const double> y) {
   for (std::size_t p = 0; p < cap_pairs_.size(); ++p) {
     const auto first = static_cast<std::size_t>(cap_pairs_[p].first);
     const auto second = static_cast<std::size_t>(cap_pairs_[p].second);
-    if (touches(memory_[first].regime) && touches(memory_[second].regime)) {
+    const bool both_touch = touches(memory_[first].regime) && touches(memory_[second].regime);
+    // Caps that have just met change no mode; met a rounding error short of zero, they would meet again at once.
+    if (both_touch && cap_guard(cap_pairs_[p], r) < -k_touch) {
       guards_.push_back({k_caps, static_cast<int>(p), 1, "caps-intersect"});
     }
   }

@@ -454,52 +454,35 @@ void System::grow(double xi, std::span<double> y) {
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
   if (is_growing_) return std::nullopt;
   look(xi, y);
-  const double r = y[k_radius];
-  double work = 0.0;
-  for (std::size_t i = 0; i < now_.size(); ++i) {
-    const double count = classes_[i].multiplicity();
-    switch (memory_[i].regime) {
-      case Regime::open:
-      case Regime::separated:
-        break;
-      case Regime::elastic:
-        work +=
-            count * elastic_energy(settings_.elastic_profile, material_.composite_modulus, 1.0 + r, now_[i].overlap);
-        break;
-      case Regime::fully_plastic:
-        work +=
-            count * plastic_work_primitive(material_.yield_stress, 1.0 + r, now_[i].overlap, memory_[i].area_constant);
-        break;
-      case Regime::unloading:
-        work += count * unloading_energy(shape(i, r), now_[i].overlap);
-        break;
-    }
-  }
-  return work;
+  return energy(y[k_radius], PlasticPart::work_done);
 }
 
-/// Energy the walls can get back, of what look() found.
-double System::stored_energy(double r) {
-  double energy = 0.0;
+/// Energy of the contacts that look() found.
+double System::energy(double r, PlasticPart plastic_part) {
+  const double radius = 1.0 + r;
+  double sum = 0.0;
   for (std::size_t i = 0; i < now_.size(); ++i) {
     const double count = classes_[i].multiplicity();
+    const double overlap = now_[i].overlap;
     switch (memory_[i].regime) {
       case Regime::open:
       case Regime::separated:
         break;
       case Regime::elastic:
-        energy +=
-            count * elastic_energy(settings_.elastic_profile, material_.composite_modulus, 1.0 + r, now_[i].overlap);
+        sum += count * elastic_energy(settings_.elastic_profile, material_.composite_modulus, radius, overlap);
         break;
       case Regime::fully_plastic:
-        energy += count * plastic_energy(shape(i, r));
+        sum +=
+            count * (plastic_part == PlasticPart::recoverable
+                         ? plastic_energy(shape(i, r))
+                         : plastic_work_primitive(material_.yield_stress, radius, overlap, memory_[i].area_constant));
         break;
       case Regime::unloading:
-        energy += count * unloading_energy(shape(i, r), now_[i].overlap);
+        sum += count * unloading_energy(shape(i, r), overlap);
         break;
     }
   }
-  return energy;
+  return sum;
 }
 
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
@@ -508,7 +491,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   const double length = settings_.initial_radius;
   const double force_unit = stress_unit_ * length * length;
   const double energy_unit = force_unit * length;
-  const double stored = stored_energy(r);
+  const double stored = energy(r, PlasticPart::recoverable);
   const double dissipation = y[k_work] - stored;
   largest_work_ = std::max(largest_work_, y[k_work]);
   lowest_dissipation_ = std::min(lowest_dissipation_, dissipation);

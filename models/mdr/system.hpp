@@ -156,7 +156,10 @@ class System final : public HybridSystem {
   [[nodiscard]] double contact_guard(int kind, std::size_t i, double overlap, double r);
   [[nodiscard]] double cap_guard(const CapPair& pair, double r) const;
 
-  [[nodiscard]] double stored_energy(double r);
+  /// What counts of a contact at its largest overlap: the energy it would give back, or the work done on it (up to a
+  /// constant). On all other branches the two are the same.
+  enum class PlasticPart { recoverable, work_done };
+  [[nodiscard]] double energy(double r, PlasticPart plastic_part);
   [[nodiscard]] double work_scale(double displacement) const noexcept;
 
   Settings settings_;

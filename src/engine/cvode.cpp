@@ -34,7 +34,7 @@ class Cvode final : public Integrator {
     const auto size = static_cast<sunindextype>(explicit_size_);
     y_.reset(N_VNew_Serial(size, context_));
     atol_.reset(N_VNew_Serial(size, context_));
-    for (std::size_t k = 0; k < explicit_size_; ++k) view(atol_.get())[k] = tolerances.atol * unknowns[k].scale;
+    for (std::size_t k = 0; k < explicit_size_; ++k) view(atol_.get())[k] = local_atol(tolerances) * unknowns[k].scale;
     weights_.reset(N_VNew_Serial(size, context_));
     errors_.reset(N_VNew_Serial(size, context_));
 
@@ -105,28 +105,22 @@ class Cvode final : public Integrator {
   [[nodiscard]] double guard_tolerance() const noexcept override { return 1e-2 * tolerances_.rtol; }
 
   [[nodiscard]] Statistics statistics() const override {
-    Statistics total = past_;
-    long steps = 0, rhs = 0, linear_rhs = 0, jacobians = 0, errors = 0, convergence = 0, guards_seen = 0;
-    if (past_.segments > 0) {
-      CVodeGetNumSteps(memory_.get(), &steps);
-      CVodeGetNumRhsEvals(memory_.get(), &rhs);
-      if (linear_) {
-        CVodeGetNumLinRhsEvals(memory_.get(), &linear_rhs);
-        CVodeGetNumJacEvals(memory_.get(), &jacobians);
-      }
-      CVodeGetNumErrTestFails(memory_.get(), &errors);
-      CVodeGetNumNonlinSolvConvFails(memory_.get(), &convergence);
-      CVodeGetNumGEvals(memory_.get(), &guards_seen);
-      CVodeGetLastOrder(memory_.get(), &total.last_order);
-      CVodeGetLastStep(memory_.get(), &total.last_step);
+    if (past_.segments == 0) return past_;
+    Statistics now;
+    long for_jacobian = 0;
+    CVodeGetNumSteps(memory_.get(), &now.steps);
+    CVodeGetNumRhsEvals(memory_.get(), &now.rhs_evaluations);
+    if (linear_) {
+      CVodeGetNumLinRhsEvals(memory_.get(), &for_jacobian);
+      CVodeGetNumJacEvals(memory_.get(), &now.jacobian_evaluations);
     }
-    total.steps += steps;
-    total.rhs_evaluations += rhs + linear_rhs;
-    total.jacobian_evaluations += jacobians;
-    total.error_test_failures += errors;
-    total.convergence_failures += convergence;
-    total.guard_evaluations += guards_seen;
-    return total;
+    now.rhs_evaluations += for_jacobian;
+    CVodeGetNumErrTestFails(memory_.get(), &now.error_test_failures);
+    CVodeGetNumNonlinSolvConvFails(memory_.get(), &now.convergence_failures);
+    CVodeGetNumGEvals(memory_.get(), &now.guard_evaluations);
+    CVodeGetLastOrder(memory_.get(), &now.last_order);
+    CVodeGetLastStep(memory_.get(), &now.last_step);
+    return now += past_;
   }
 
  private:
@@ -162,11 +156,11 @@ class Cvode final : public Integrator {
   [[nodiscard]] SolverError failure(const char* call, std::string flag) {
     double step = 0.0;
     std::string details = message_;
+    // Weights and errors are there once a step has been tried.
     if (memory_ && CVodeGetCurrentStep(memory_.get(), &step) == CV_SUCCESS &&
         CVodeGetErrWeights(memory_.get(), weights_.get()) == CV_SUCCESS &&
         CVodeGetEstLocalErrors(memory_.get(), errors_.get()) == CV_SUCCESS) {
-      details += (details.empty() ? "" : "; ") +
-                 worst_components(system_.unknowns(), view(weights_.get()), view(errors_.get()));
+      details += worst_components(system_.unknowns(), view(weights_.get()), view(errors_.get()));
     }
     return {call, std::move(flag), end_, step, details};
   }

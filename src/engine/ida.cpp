@@ -32,7 +32,7 @@ class Ida final : public Integrator {
     N_VConst(0.0, y_.get());
     N_VConst(0.0, dy_.get());
     for (std::size_t k = 0; k < unknowns.size(); ++k) {
-      view(atol_.get())[k] = tolerances.atol * unknowns[k].scale;
+      view(atol_.get())[k] = local_atol(tolerances) * unknowns[k].scale;
       view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
     }
     memory_.reset(IDACreate(context_));
@@ -96,26 +96,20 @@ class Ida final : public Integrator {
   [[nodiscard]] double guard_tolerance() const noexcept override { return 1e-2 * tolerances_.rtol; }
 
   [[nodiscard]] Statistics statistics() const override {
-    Statistics total = past_;
-    long steps = 0, residuals = 0, linear_residuals = 0, jacobians = 0, errors = 0, convergence = 0, guards_seen = 0;
-    if (past_.segments > 0) {
-      IDAGetNumSteps(memory_.get(), &steps);
-      IDAGetNumResEvals(memory_.get(), &residuals);
-      IDAGetNumLinResEvals(memory_.get(), &linear_residuals);
-      IDAGetNumJacEvals(memory_.get(), &jacobians);
-      IDAGetNumErrTestFails(memory_.get(), &errors);
-      IDAGetNumNonlinSolvConvFails(memory_.get(), &convergence);
-      IDAGetNumGEvals(memory_.get(), &guards_seen);
-      IDAGetLastOrder(memory_.get(), &total.last_order);
-      IDAGetLastStep(memory_.get(), &total.last_step);
-    }
-    total.steps += steps;
-    total.rhs_evaluations += residuals + linear_residuals;
-    total.jacobian_evaluations += jacobians;
-    total.error_test_failures += errors;
-    total.convergence_failures += convergence;
-    total.guard_evaluations += guards_seen;
-    return total;
+    if (past_.segments == 0) return past_;
+    Statistics now;
+    long for_jacobian = 0;
+    IDAGetNumSteps(memory_.get(), &now.steps);
+    IDAGetNumResEvals(memory_.get(), &now.rhs_evaluations);
+    IDAGetNumLinResEvals(memory_.get(), &for_jacobian);
+    IDAGetNumJacEvals(memory_.get(), &now.jacobian_evaluations);
+    now.rhs_evaluations += for_jacobian;
+    IDAGetNumErrTestFails(memory_.get(), &now.error_test_failures);
+    IDAGetNumNonlinSolvConvFails(memory_.get(), &now.convergence_failures);
+    IDAGetNumGEvals(memory_.get(), &now.guard_evaluations);
+    IDAGetLastOrder(memory_.get(), &now.last_order);
+    IDAGetLastStep(memory_.get(), &now.last_step);
+    return now += past_;
   }
 
  private:
@@ -142,11 +136,11 @@ class Ida final : public Integrator {
   [[nodiscard]] SolverError failure(const char* call, std::string flag) {
     double step = 0.0;
     std::string details = message_;
+    // Weights and errors are there once a step has been tried.
     if (memory_ && IDAGetCurrentStep(memory_.get(), &step) == IDA_SUCCESS &&
         IDAGetErrWeights(memory_.get(), weights_.get()) == IDA_SUCCESS &&
         IDAGetEstLocalErrors(memory_.get(), errors_.get()) == IDA_SUCCESS) {
-      details += (details.empty() ? "" : "; ") +
-                 worst_components(system_.unknowns(), view(weights_.get()), view(errors_.get()));
+      details += worst_components(system_.unknowns(), view(weights_.get()), view(errors_.get()));
     }
     return {call, std::move(flag), end_, step, details};
   }

@@ -9,6 +9,18 @@ SolverError::SolverError(std::string call, std::string flag, double xi, double s
                                      step, details.empty() ? "" : ": ", details)),
       xi_(xi) {}
 
+Statistics& Statistics::operator+=(const Statistics& other) noexcept {
+  steps += other.steps;
+  rhs_evaluations += other.rhs_evaluations;
+  jacobian_evaluations += other.jacobian_evaluations;
+  error_test_failures += other.error_test_failures;
+  convergence_failures += other.convergence_failures;
+  guard_evaluations += other.guard_evaluations;
+  segments += other.segments;
+  events += other.events;
+  return *this;
+}
+
 std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
                                             const Tolerances& tolerances) {
   if (name == "direct") return make_direct(system, watch);

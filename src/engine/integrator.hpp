@@ -30,6 +30,9 @@ struct Statistics {
   long events = 0;
   int last_order = 0;
   double last_step = 0.0;  ///< in step coordinates
+
+  /// Adds counts; keeps its own last order and step.
+  Statistics& operator+=(const Statistics& other) noexcept;
 };
 
 /// An integrator gave up. Carries its own words, where it was, and the unknowns with the largest local errors.

@@ -98,6 +98,11 @@ class Pending {
 [[nodiscard]] inline double local_rtol(const Tolerances& tolerances) noexcept {
   return std::max(0.1 * tolerances.rtol, 1e-14);
 }
+/// Absolute tolerance of one step over an unknown's scale; finer than this, round-off keeps a corrector from
+/// converging.
+[[nodiscard]] inline double local_atol(const Tolerances& tolerances) noexcept {
+  return std::max(tolerances.atol, 1e-14);
+}
 
 /// Quadratures counted anew from every segment's start: their relative tolerance then refers to the segment's own
 /// share, and a hundred cycles of loading and unloading do not wear the total away.

@@ -51,6 +51,9 @@ json exactly_one_of(std::string_view a, std::string_view b) {
   return json::array({{{"required", {a}}}, {{"required", {b}}}});
 }
 
+/// What a fixed wall is told by.
+json is_fixed_wall() { return {{"properties", {{"fixed", {{"const", true}}}}}, {"required", {"fixed"}}}; }
+
 /// The definitions of one model and where they refer to one another.
 class ModelSchema {
  public:
@@ -81,8 +84,7 @@ class ModelSchema {
 
   [[nodiscard]] json wall() const {
     json schema = table_schema(language_.wall, {{"steps", reference("step")}});
-    const json is_fixed{{"properties", {{"fixed", {{"const", true}}}}}, {"required", {"fixed"}}};
-    schema["not"] = {{"allOf", {is_fixed, {{"required", {"steps"}}}}}};
+    schema["not"] = {{"allOf", {is_fixed_wall(), {{"required", {"steps"}}}}}};
     return schema;
   }
 
@@ -121,11 +123,10 @@ class ModelSchema {
 
   /// Walls have steps of their own, are fixed, or follow the steps of `[loading]`; one at least is driven.
   static void add_rules_of_walls(json& schema) {
-    const json is_fixed{{"properties", {{"fixed", {{"const", true}}}}}, {"required", {"fixed"}}};
-    const json is_on_its_own{{"anyOf", {is_fixed, {{"required", {"steps"}}}}}};
+    const json is_on_its_own{{"anyOf", {is_fixed_wall(), {{"required", {"steps"}}}}}};
     json& walls = schema["properties"]["wall"];
     walls["maxItems"] = k_most_walls;
-    walls["contains"] = {{"not", is_fixed}};
+    walls["contains"] = {{"not", is_fixed_wall()}};
     schema["required"].push_back("wall");
     const json some_follow{{"properties", {{"wall", {{"contains", {{"not", is_on_its_own}}}}}}},
                            {"required", {"steps"}}};
