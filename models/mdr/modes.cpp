@@ -185,6 +185,41 @@ bool System::settle_contact(std::size_t i, double xi, double r, const Motion& no
   return false;
 }
 
+/// Whether the other touching contacts can balance a push of one of them on the free centre: non-negative least squares
+/// by coordinates, which ends with nothing left over if they can.
+bool System::is_backed(std::size_t i) const {
+  constexpr int k_most_sweeps = 1000;
+  constexpr double k_nothing = 1e-6;
+  Small left_over = directions_[i];
+  std::vector<double> shares(memory_.size(), 0.0);
+  for (int sweep = 0; sweep < k_most_sweeps; ++sweep) {
+    double largest_change = 0.0;
+    for (std::size_t j = 0; j < memory_.size(); ++j) {
+      if (j == i || !touches(memory_[j].regime) || directions_[j].norm() < 1e-10) continue;
+      const double change = std::max(-shares[j], -left_over.dot(directions_[j]) / directions_[j].squaredNorm());
+      shares[j] += change;
+      left_over += change * directions_[j];
+      largest_change = std::max(largest_change, std::abs(change));
+    }
+    if (left_over.norm() < k_nothing * directions_[i].norm()) return true;
+    if (largest_change < k_nothing * k_nothing) return false;
+  }
+  return false;
+}
+
+/// A wall that pushes a particle which nothing holds from the other side has no equilibrium.
+/// @throws std::domain_error there
+void System::check_support() const {
+  if (free_count_ == 0) return;
+  const double least = k_touch * speed_scale();
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    const bool pushes = touches(memory_[i].regime) && ramps_[i].end - ramps_[i].start > least;
+    if (pushes && directions_[i].norm() > 1e-10 && !is_backed(i)) {
+      throw std::domain_error("no contact holds the free centre of the particle against a wall that pushes it");
+    }
+  }
+}
+
 /// Decides the mode: branch of every contact and growth depend on each other, so assume, look, correct, and repeat.
 /// @param growth  what a growth guard has just decided; none: the sign of the demand decides
 void System::settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log) {
@@ -206,6 +241,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
     // A contact that has just been made carries no force yet and leaves the growth guard's decision standing.
     if (log.size() > events_before) growth.reset();
   }
+  check_support();
   if (is_growing_ != was_growing) log.push_back({is_growing_ ? "growth-on" : "growth-off"});
   log.insert(log.end(), made.begin(), made.end());
 

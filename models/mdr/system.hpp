@@ -145,6 +145,8 @@ class System final : public HybridSystem {
                       std::vector<Event>& made);
   [[nodiscard]] bool gate_is_open(const Motion& now) const noexcept;
   [[nodiscard]] double speed_scale() const noexcept;
+  [[nodiscard]] bool is_backed(std::size_t i) const;
+  void check_support() const;
   void start_unloading(std::size_t i, double r);
   void make_contact(std::size_t i);
   void lose_contact(std::size_t i);

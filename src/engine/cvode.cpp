@@ -79,10 +79,15 @@ class Cvode final : public Integrator {
     if (++segment_steps_ > k_most_steps) throw failure("CVode", "CV_TOO_MUCH_WORK");
     pending_.forget();
     roots_.fired.clear();
+    const double begin = end_;
     const int flag = CVode(memory_.get(), 1.0, y_.get(), &end_, CV_ONE_STEP);
     pending_.rethrow();
     if (flag < 0 && !pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
     check("CVode", flag);
+    // Ever smaller steps towards the end of the equations would never get there.
+    if (!pending_.domain_end().empty() && end_ - begin < k_least_progress) {
+      throw std::domain_error(pending_.domain_end());
+    }
     if (flag == CV_ROOT_RETURN) {
       check("CVodeGetRootInfo", CVodeGetRootInfo(memory_.get(), roots_.found.data()));
       roots_.collect();

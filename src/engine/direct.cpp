@@ -19,6 +19,8 @@ namespace {
 constexpr double k_pieces = 32.0;
 // A piece is not made smaller than this, in step coordinates.
 constexpr double k_smallest = 1e-13;
+// How far ahead the side of a guard that begins at zero is read.
+constexpr double k_ahead = 1e-9;
 constexpr std::size_t k_nodes = 12;
 // Share of the last Legendre coefficients below which a quadrature has converged.
 constexpr double k_tail = 1e-13;
@@ -106,6 +108,7 @@ class Direct final : public Integrator {
     begin_values_.resize(watch_.size());
     end_values_.resize(watch_.size());
     look(end_, end_state_, end_values_);
+    read_sides();
     is_closed_ = !quadrature_;
     if (const auto primitive = system_.closed_quadrature(xi, y); quadrature_ && primitive) {
       is_closed_ = true;
@@ -149,6 +152,23 @@ class Direct final : public Integrator {
   void look(double xi, std::span<const double> y, std::span<double> values) {
     ++statistics_.guard_evaluations;
     watch_.values(xi, y, values);
+  }
+
+  /// A guard that is zero, or just past it, where the segment begins (first touch) is on the side to which it leaves.
+  void read_sides() {
+    const auto is_open = [this](std::size_t g) {
+      return std::abs(end_values_[g]) <= guard_tolerance() && watch_.directions()[g] * end_values_[g] >= 0.0;
+    };
+    bool any = false;
+    for (std::size_t g = 0; g < end_values_.size(); ++g) any = any || is_open(g);
+    if (!any) return;
+    const double ahead = end_ + std::min(k_ahead, 0.5 * (1.0 - end_));
+    std::ranges::copy(end_state_, trial_.begin());
+    system_.solve(ahead, trial_);
+    look(ahead, trial_, values_);
+    for (std::size_t g = 0; g < end_values_.size(); ++g) {
+      if (is_open(g)) end_values_[g] = values_[g];
+    }
   }
 
   /// State at xi; the line through the ends of the present piece is the first guess.

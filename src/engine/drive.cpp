@@ -1,10 +1,12 @@
 #include "engine/drive.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 
 #include "engine/watch.hpp"
@@ -108,6 +110,7 @@ class Drive {
     std::vector<Event> log;
     for (step_ = 0; step_ < scene_.step_count(); ++step_) {
       plan_ = make_plan();
+      xi_ = 0.0;
       if (step_ > 0) {
         // The rows before this corner stand already; what comes after belongs to the step that begins.
         system_.begin_step(plan_.ramps, y_, log);
@@ -209,8 +212,12 @@ class Drive {
       if (!advance.hit_guard) break;
 
       ++event_count_;
-      idle_events = xi_ - segment_start < k_round_off ? idle_events + 1 : 0;
-      if (idle_events > k_most_idle_events) throw chattering();
+      if (xi_ - segment_start >= k_round_off) {
+        idle_events = 0;
+        idle_guards_.clear();
+      }
+      for (const std::size_t guard : integrator_->fired()) idle_guards_.insert(watch_.name(guard));
+      if (++idle_events > k_most_idle_events) throw chattering();
       if (handle_event(last)) return true;
       if (is_detached()) return false;
     }
@@ -266,9 +273,8 @@ class Drive {
   }
 
   [[nodiscard]] SolverError chattering() const {
-    std::string names;
-    for (const std::size_t guard : integrator_->fired()) names += (names.empty() ? "" : ", ") + watch_.name(guard);
-    return {"event location", "chattering", xi_, 0.0, "events without progress: " + names};
+    return {"event location", "chattering", xi_, 0.0,
+            fmt::format("events without progress: {}", fmt::join(idle_guards_, ", "))};
   }
 
   // --- recording
@@ -349,6 +355,7 @@ class Drive {
   std::vector<OutputPoint> outputs_;
   std::size_t next_output_ = 0;
   long event_count_ = 0;
+  std::set<std::string> idle_guards_;  ///< that have fired since the last progress
 };
 
 }  // namespace

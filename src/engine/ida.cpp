@@ -72,10 +72,15 @@ class Ida final : public Integrator {
     if (++segment_steps_ > k_most_steps) throw failure("IDASolve", "IDA_TOO_MUCH_WORK");
     pending_.forget();
     roots_.fired.clear();
+    const double begin = end_;
     const int flag = IDASolve(memory_.get(), 1.0, &end_, y_.get(), dy_.get(), IDA_ONE_STEP);
     pending_.rethrow();
     if (flag < 0 && !pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
     check("IDASolve", flag);
+    // Ever smaller steps towards the end of the equations would never get there.
+    if (!pending_.domain_end().empty() && end_ - begin < k_least_progress) {
+      throw std::domain_error(pending_.domain_end());
+    }
     if (flag == IDA_ROOT_RETURN) {
       check("IDAGetRootInfo", IDAGetRootInfo(memory_.get(), roots_.found.data()));
       roots_.collect();

@@ -93,6 +93,9 @@ class Pending {
   std::string domain_end_;
 };
 
+/// A step this short that has met the end of the equations has arrived there (step coordinates).
+inline constexpr double k_least_progress = 1e-13;
+
 /// Relative tolerance of one step for a wanted accuracy of the curve. Work and radius only ever grow, so the errors of
 /// the steps have one sign and add up; a tenth keeps the curve's error within a few rtol over some hundred steps.
 [[nodiscard]] inline double local_rtol(const Tolerances& tolerances) noexcept {

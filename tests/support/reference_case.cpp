@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 
@@ -33,7 +34,8 @@ std::vector<Step> wall_program(const nlohmann::json& program, std::size_t wall) 
   bool is_fixed = true;
   for (const auto& segment : program) {
     const auto& control = segment["controls"][wall];
-    Step step{.duration = segment["duration"].get<double>()};
+    Step step;
+    step.duration = segment["duration"].get<double>();
     if (control.is_object()) {
       step.kind = Step::Kind::displacement;
       step.target = number(control["displacement_to"].get<std::string>());
@@ -128,7 +130,7 @@ CurveErrors errors_against(const ReferenceCase& reference, const RunRecord& run,
     double scale;
   };
   std::vector<Pair> pairs{{"R_over_R0", "apparent_radius", 1.0},
-                          {"V_over_V0", "volume", 3.0 / (4.0 * M_PI)},
+                          {"V_over_V0", "volume", 3.0 / (4.0 * std::numbers::pi)},
                           {"work_over_ER03", "work", 1.0},
                           {"stored_over_ER03", "stored_energy", 1.0},
                           {"dissipation_over_ER03", "dissipation", 1.0}};
@@ -161,7 +163,8 @@ CurveErrors errors_against(const ReferenceCase& reference, const RunRecord& run,
       }
       if (best == ours.end() || best->first.first != key.first ||
           std::abs(best->first.second - key.second) > 1e-5 * length) {
-        if (key.first == 0) errors.mismatch += "no row at t = " + std::to_string(key.second) + "; ";
+        if (key.first == 0 && errors.mismatch.empty())
+          errors.mismatch = "no row at t = " + std::to_string(key.second) + "; ";
         continue;
       }
       // Contact radius and pressure follow a square root at loss of contact: an event time's error is not theirs.

@@ -21,19 +21,35 @@ Scenario unit_scenario(const std::string& model, Configuration configuration, st
   return scenario;
 }
 
+Step timed(Step::Kind kind, double target, std::optional<double> duration) {
+  Step step;
+  step.kind = kind;
+  step.target = target;
+  step.duration = duration;
+  return step;
+}
+
 bool ends_with_class_column(const std::string& column, std::string_view name) {
   return column.size() > name.size() + 1 && column.ends_with(name) && column[column.size() - name.size() - 1] == '.';
 }
 
 }  // namespace
 
-Step ramp(double displacement, double duration) {
-  return {.kind = Step::Kind::displacement, .target = displacement, .duration = duration};
+Step ramp(double displacement, double duration) { return timed(Step::Kind::displacement, displacement, duration); }
+
+Step ramp_at(double displacement, double rate) {
+  Step step = timed(Step::Kind::displacement, displacement, {});
+  step.rate = rate;
+  return step;
 }
 
-Step hold(double duration) { return {.kind = Step::Kind::hold, .duration = duration}; }
+Step hold(double duration) { return timed(Step::Kind::hold, 0.0, duration); }
 
-Step detach(double rate) { return {.kind = Step::Kind::detach, .rate = rate}; }
+Step detach(double rate) {
+  Step step = timed(Step::Kind::detach, 0.0, {});
+  step.rate = rate;
+  return step;
+}
 
 Step until(Step step, Until::Quantity quantity, double value) {
   step.until.push_back({.quantity = quantity, .value = value, .event = {}});

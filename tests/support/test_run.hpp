@@ -1,7 +1,7 @@
 /// Scenarios of a unit particle (R0 = 1, E = 1) written in code, and what tests ask of their runs.
 #pragma once
 
-#include <functional>
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,9 +17,11 @@ using Configuration = Loading::Configuration;
 /// All forms of the equations: solved at every instant, explicit (two methods), implicit.
 inline constexpr const char* k_integrators[] = {"direct", "cvode-adams", "cvode-bdf", "ida"};
 
-// --- programs -----------------------------------------------------------------------------------------------------------
+// --- programs
+// -----------------------------------------------------------------------------------------------------------
 
 [[nodiscard]] Step ramp(double displacement, double duration = 1.0);
+[[nodiscard]] Step ramp_at(double displacement, double rate);
 [[nodiscard]] Step hold(double duration = 1.0);
 [[nodiscard]] Step detach(double rate = 1.0);
 /// A step with a condition that ends it.
@@ -28,7 +30,8 @@ inline constexpr const char* k_integrators[] = {"direct", "cvode-adams", "cvode-
 /// One ramp of unit duration to each displacement.
 [[nodiscard]] std::vector<Step> path(const std::vector<double>& displacements);
 
-// --- scenarios ----------------------------------------------------------------------------------------------------------
+// --- scenarios
+// ----------------------------------------------------------------------------------------------------------
 
 [[nodiscard]] Scenario hertz_scenario(Configuration configuration, std::vector<Step> steps);
 [[nodiscard]] Scenario mdr_scenario(Configuration configuration, double modulus_over_yield, double poisson_ratio,
@@ -48,7 +51,8 @@ inline constexpr const char* k_integrators[] = {"direct", "cvode-adams", "cvode-
 /// One line that identifies a scenario in a failure message.
 [[nodiscard]] std::string describe(const Scenario& scenario);
 
-// --- runs ---------------------------------------------------------------------------------------------------------------
+// --- runs
+// ---------------------------------------------------------------------------------------------------------------
 
 struct TestRun {
   Scene scene;
@@ -79,8 +83,8 @@ struct TestRun {
 /// Largest difference over the largest magnitude of `expected`; infinity for different lengths.
 [[nodiscard]] double difference(const std::vector<double>& actual, const std::vector<double>& expected);
 
-/// How far two runs are apart at their output points: forces, overlaps, radius, volume, each over its largest value, and
-/// energies over the largest work. Names of classes may differ; they are taken in order.
+/// How far two runs are apart at their output points: forces, overlaps, radius, volume, each over its largest value,
+/// and energies over the largest work. Names of classes may differ; they are taken in order.
 [[nodiscard]] double difference(const TestRun& actual, const TestRun& expected);
 
 /// Least dissipation over the largest work; and the sum of its decreases over the largest work.

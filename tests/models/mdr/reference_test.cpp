@@ -12,9 +12,8 @@
 namespace monograin {
 namespace {
 
-constexpr const char* k_curves[] = {"uniaxial_EY25",    "uniaxial_cycles_EY200",  "uniaxial_parabola_EY12p5",
-                                    "die_EY20",         "hydrostatic_EY50",       "die_EY20_yielded",
-                                    "uniaxial_EY6p25_yielded"};
+constexpr const char* k_curves[] = {"uniaxial_EY25",    "uniaxial_cycles_EY200", "uniaxial_parabola_EY12p5", "die_EY20",
+                                    "hydrostatic_EY50", "die_EY20_yielded",      "uniaxial_EY6p25_yielded"};
 
 CurveErrors errors_of(const ReferenceCase& reference, const std::string& integrator, double rtol) {
   const TestRun result = run(reference.scenario, integrator, relative(rtol));
@@ -27,7 +26,7 @@ class DirectAgainstReference : public ::testing::TestWithParam<const char*> {};
 TEST_P(DirectAgainstReference, MeetsCurveAndEventTimes) {
   const CurveErrors errors = errors_of(load_reference(GetParam()), "direct", 1e-8);
   EXPECT_EQ(errors.mismatch, "");
-  EXPECT_LE(errors.largest, 2e-12);     // 7e-13 measured: the dissipation of an almost closed cycle is a small difference
+  EXPECT_LE(errors.largest, 2e-12);  // 7e-13 measured: the dissipation of an almost closed cycle is a small difference
   EXPECT_LE(errors.event_time, 2e-14);  // 5e-15 measured: the last bits of the time
 }
 
@@ -51,24 +50,25 @@ TEST_P(IntegratorAgainstReference, GainsADecadeFromTwoDecadesOfTolerance) {
 }
 
 TEST_P(IntegratorAgainstReference, ErrorIsBoundedByTheTolerance) {
-  constexpr double k_error_per_rtol = 60.0;
-  constexpr double k_rounding = 2e-12;  // what is left with `direct`
+  constexpr double k_error_per_rtol = 60.0;       // 19 measured (die_EY20, BDF)
+  constexpr double k_time_error_per_rtol = 10.0;  // 2.3 measured (die_EY20, BDF)
+  constexpr double k_rounding = 2e-12;            // what is left with `direct`
+  constexpr double k_time_rounding = 2e-14;
   for (const double rtol : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12}) {
     const CurveErrors errors = errors_of(reference_, integrator_, rtol);
     EXPECT_EQ(errors.mismatch, "") << "rtol = " << rtol;
     EXPECT_LE(errors.largest, k_error_per_rtol * rtol + k_rounding) << "rtol = " << rtol;
-    RecordProperty("ratio_" + std::to_string(static_cast<int>(-std::log10(rtol) + 0.5)), std::to_string(errors.largest / rtol));
-    std::printf("%s %s %g: %g  %g\n", std::get<0>(GetParam()), integrator_.c_str(), rtol, errors.largest / rtol, errors.event_time/rtol);
+    EXPECT_LE(errors.event_time, k_time_error_per_rtol * rtol + k_time_rounding) << "rtol = " << rtol;
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Mdr, DirectAgainstReference, ::testing::ValuesIn(k_curves),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& test) { return std::string(test.param); });
 INSTANTIATE_TEST_SUITE_P(Mdr, IntegratorAgainstReference,
                          ::testing::Combine(::testing::ValuesIn(k_curves),
                                             ::testing::Values("cvode-adams", "cvode-bdf", "ida")),
-                         [](const auto& info) {
-                           std::string name = std::string(std::get<0>(info.param)) + "_" + std::get<1>(info.param);
+                         [](const auto& test) {
+                           std::string name = std::string(std::get<0>(test.param)) + "_" + std::get<1>(test.param);
                            std::ranges::replace(name, '-', '_');
                            return name;
                          });

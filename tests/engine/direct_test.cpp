@@ -1,0 +1,92 @@
+// What the direct integrator does between the instants at which it looks.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "engine/integrator.hpp"
+#include "support/test_run.hpp"
+#include "support/toy_system.hpp"
+
+namespace monograin {
+namespace {
+
+using View = ToySystem::View;
+
+// Guards are looked at 32 times in a step: these instants lie within one piece.
+constexpr double k_first = 0.505;
+constexpr double k_second = 0.510;
+constexpr double k_third = 0.520;
+
+/// Above zero between two instants only.
+double window(double y, double from, double to) { return 1e3 * (y - from) * (to - y); }
+
+TestRun run_directly(std::unique_ptr<ToySystem> toy) {
+  TestRun result{toy_scene(std::move(toy)), {}};
+  result.record = drive(result.scene, "direct", {}, {.points = 4, .times = {}});
+  return result;
+}
+
+TEST(Direct, FindsAnEarlierRootOnceALaterOneHasShortenedThePiece) {
+  auto toy = std::make_unique<ToySystem>();
+  toy->watched = {
+      {"second", 1, [](double, View y) { return y[0] - k_second; }, [](std::span<double> y) { y[0] += 1e-9; }},
+      {"first", 1, [](double, View y) { return window(y[0], k_first, k_third); },
+       [](std::span<double> y) { y[0] += 1e-9; }}};
+  const TestRun result = run_directly(std::move(toy));
+  EXPECT_EQ(result.events(), (std::vector<std::string>{"first", "second"}));
+  EXPECT_NEAR(result.time_of("first"), k_first, 1e-15);
+  EXPECT_NEAR(result.time_of("second"), k_second - 1e-9, 1e-15);
+}
+
+TEST(Direct, AppliesRootsOfOnePieceInTheOrderOfTheirTimes) {
+  auto toy = std::make_unique<ToySystem>();
+  toy->watched = {
+      {"third", 1, [](double, View y) { return y[0] - k_third; }, [](std::span<double> y) { y[0] += 1e-9; }},
+      {"second", 1, [](double, View y) { return y[0] - k_second; }, [](std::span<double> y) { y[0] += 1e-9; }},
+      {"first", 1, [](double, View y) { return std::cbrt(y[0] - k_first); },
+       [](std::span<double> y) { y[0] += 1e-9; }}};
+  const TestRun result = run_directly(std::move(toy));
+  EXPECT_EQ(result.events(), (std::vector<std::string>{"first", "second", "third"}));
+}
+
+TEST(Direct, SeesAGuardThatBeginsAtZeroAndReturnsWithinTheFirstPiece) {
+  for (const int direction : {1, -1}) {
+    auto toy = std::make_unique<ToySystem>();
+    toy->watched = {{"return", direction, [direction](double, View y) { return direction * y[0] * (y[0] - 0.01); },
+                     [](std::span<double> y) { y[0] += 1e-9; }}};
+    const TestRun result = run_directly(std::move(toy));
+    EXPECT_EQ(result.events(), std::vector<std::string>{"return"}) << "direction " << direction;
+    EXPECT_NEAR(result.time_of("return"), 0.01, 1e-15) << "direction " << direction;
+  }
+}
+
+TEST(Direct, StateDoesNotDependOnWhatWasAskedBefore) {
+  auto toy = decaying_toy();
+  toy->finish();
+  Watch watch(*toy);
+  std::vector<double> y{1.0};
+  std::vector<Event> log;
+  toy->begin_step({}, y, log);
+  watch.begin_step({}, 0.0, y);
+  const auto direct = make_integrator("direct", *toy, watch, {});
+  direct->begin(0.0, y);
+  const double end = direct->advance().xi;
+  double before = 0.0;
+  double after = 0.0;
+  direct->dense_output(0.5 * end, {&before, 1});
+  direct->dense_output(0.9 * end, {&after, 1});
+  direct->dense_output(0.5 * end, {&after, 1});
+  EXPECT_EQ(before, after);
+  EXPECT_EQ(before, std::exp(-0.5 * end));
+}
+
+TEST(Direct, ReachesTheEndOfTheStepExactly) {
+  const TestRun result = run_directly(decaying_toy());
+  EXPECT_EQ(result.last("time"), 1.0);
+  EXPECT_EQ(result.last("y0"), std::exp(-1.0));
+}
+
+}  // namespace
+}  // namespace monograin

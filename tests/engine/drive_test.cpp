@@ -1,0 +1,259 @@
+// Programs, conditions, output points and rows of whole runs.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastic/hertz.hpp"
+#include "support/test_run.hpp"
+
+namespace monograin {
+namespace {
+
+using enum Until::Quantity;
+
+Scenario hertz_pair(std::vector<Step> steps, int points = 4) {
+  return with_points(hertz_scenario(Configuration::simple, std::move(steps)), points);
+}
+
+Scenario die(std::vector<Step> steps) { return mdr_scenario(Configuration::die, 20.0, 0.3, std::move(steps)); }
+
+double hertz(double displacement) { return hertz_force(composite_modulus(1.0, 0.3), 1.0, displacement); }
+
+/// Time, rounded to a nanosecond, and side of every row.
+std::vector<std::pair<double, int>> rows(const TestRun& result) {
+  std::vector<std::pair<double, int>> list;
+  const auto time = result.column("time");
+  const auto side = result.column("row");
+  for (std::size_t i = 0; i < time.size(); ++i)
+    list.emplace_back(std::round(1e9 * time[i]) / 1e9, static_cast<int>(side[i]));
+  return list;
+}
+
+using Rows = std::vector<std::pair<double, int>>;
+
+// --- rows
+// ---------------------------------------------------------------------------------------------------------------
+
+TEST(Rows, StandAtOutputPointsAndOnBothSidesOfACorner) {
+  const TestRun result = run(hertz_pair(path({0.1, 0.2}), 2));
+  EXPECT_EQ(rows(result), (Rows{{0, 0}, {0.5, 0}, {1, -1}, {1, 0}, {1, 1}, {1.5, 0}, {2, -1}, {2, 0}, {2, 1}}));
+}
+
+TEST(Rows, StandOnBothSidesOfAnEvent) {
+  const Scenario scenario = between(hertz_pair({}, 1), {wall("a", {0, 0, 1}, path({0.3}), 0.1)});
+  EXPECT_EQ(rows(run(scenario)), (Rows{{0, 0}, {0.25, -1}, {0.25, 1}, {1, -1}, {1, 0}, {1, 1}}));
+}
+
+TEST(Rows, OfAnOutputPointOnAnEventStandBetweenItsSides) {
+  const Scenario scenario = between(hertz_pair({}, 4), {wall("a", {0, 0, 1}, path({0.3}), 0.1)});
+  const TestRun result = run(scenario);
+  EXPECT_EQ(rows(result),
+            (Rows{{0, 0}, {0.25, -1}, {0.25, 0}, {0.25, 1}, {0.5, 0}, {0.75, 0}, {1, -1}, {1, 0}, {1, 1}}));
+  const auto regime = result.column("a.regime");
+  EXPECT_EQ(regime[1], regime[2]);  // the row of the output point is the state before
+  EXPECT_NE(regime[2], regime[3]);
+}
+
+TEST(Rows, StandAtAskedInstants) {
+  Scenario scenario = hertz_pair(path({0.1, 0.2}));
+  scenario.output.times = {0.1, 0.25, 1.0, 1.75};
+  EXPECT_EQ(rows(run(scenario)),
+            (Rows{{0, 0}, {0.1, 0}, {0.25, 0}, {1, -1}, {1, 0}, {1, 1}, {1.75, 0}, {2, -1}, {2, 1}}));
+}
+
+TEST(Rows, CarryTheNumberOfTheirStep) {
+  const TestRun result = run(hertz_pair(path({0.1, 0.2}), 2));
+  EXPECT_EQ(result.column("step"), (std::vector<double>{1, 1, 1, 1, 2, 2, 2, 2, 2}));
+}
+
+TEST(Rows, AreTheIntegratorsOwnStepsWithoutOutputPoints) {
+  for (const char* integrator : k_integrators) {
+    const TestRun result = run(with_points(die(path({0.3})), 0), integrator);
+    const auto time = result.column("time");
+    EXPECT_TRUE(std::ranges::is_sorted(time)) << integrator;
+    // All but the step that ends at the corner, and those that end at an event; and the start.
+    const auto own = static_cast<long>(result.outputs("time").size());
+    EXPECT_EQ(own, result.record.statistics.steps - result.record.statistics.events) << integrator;
+    EXPECT_GT(own, 20) << integrator;
+  }
+}
+
+TEST(Rows, LieOnTheSameCurveWhereverTheyAre) {
+  for (const char* integrator : k_integrators) {
+    // An odd spacing, so that points lie anywhere in the integrator's steps.
+    const TestRun coarse = run(with_points(die(path({0.3, 0.25})), 7), integrator);
+    const TestRun fine = run(with_points(die(path({0.3, 0.25})), 7 * 13), integrator);
+    const auto few = coarse.outputs("axial.force");
+    const auto many = fine.outputs("axial.force");
+    for (std::size_t k = 0; k < few.size(); ++k)
+      EXPECT_NEAR(few[k], many[13 * k], 1e-15) << integrator << ", point " << k;
+  }
+}
+
+TEST(Rows, DoNotChangeWhereARunEnds) {
+  for (const char* integrator : k_integrators) {
+    const TestRun two = run(with_points(die(path({0.3, 0.2, 0.35})), 2), integrator);
+    for (const int points : {20, 2000}) {
+      const TestRun more = run(with_points(die(path({0.3, 0.2, 0.35})), points), integrator);
+      for (const char* column : {"apparent_radius", "work", "axial.force", "lateral.force"}) {
+        // Output is interpolated: the steps themselves are the same, bit for bit.
+        EXPECT_EQ(more.last(column), two.last(column)) << integrator << ", " << column << ", " << points << " points";
+      }
+      EXPECT_EQ(more.record.statistics.steps, two.record.statistics.steps) << integrator;
+    }
+  }
+}
+
+TEST(Events, CarryTheStateJustAfter) {
+  const TestRun result = run(die(path({0.3})));
+  const double yield = result.time_of("yield");
+  const auto time = result.column("time");
+  const auto after = std::ranges::find(time.rbegin(), time.rend(), yield).base() - time.begin() - 1;
+  EXPECT_EQ(result.column("row")[static_cast<std::size_t>(after)], 1.0);
+  EXPECT_EQ(result.at_event("yield", "axial.force"), result.column("axial.force")[static_cast<std::size_t>(after)]);
+  EXPECT_EQ(result.at_event("yield", "step"), 1.0);
+}
+
+// --- steps
+// --------------------------------------------------------------------------------------------------------------
+
+TEST(Steps, RampFromWhereTheLastOneEnded) {
+  const TestRun result = run(hertz_pair({ramp(0.1), ramp_at(0.3, 0.4), ramp_at(0.2, 0.2)}, 1));
+  EXPECT_EQ(result.outputs("axial.displacement"), (std::vector<double>{0.0, 0.1, 0.3, 0.2}));
+  const auto time = result.outputs("time");
+  EXPECT_NEAR(time[2], 1.5, 1e-15);
+  EXPECT_NEAR(time[3], 2.0, 1e-15);
+}
+
+TEST(Steps, OfAHoldChangeNothing) {
+  const TestRun result = run(die({ramp(0.3), hold(2.0), ramp(0.35)}));
+  const TestRun without = run(die(path({0.3, 0.35})));
+  const auto force = result.outputs("axial.force");
+  for (std::size_t k = 50; k <= 100; ++k) EXPECT_EQ(force[k], force[50]) << "row " << k;
+  EXPECT_NEAR(result.last("axial.force"), without.last("axial.force"), 1e-15);
+  EXPECT_EQ(result.last("time"), 4.0);
+}
+
+TEST(Steps, ThatLastNoTimeLeaveTheirCornerOnly) {
+  for (const char* integrator : k_integrators) {
+    const TestRun result = run(hertz_pair({ramp(0.1), ramp_at(0.1, 1.0), ramp(0.2)}, 1), integrator);
+    EXPECT_EQ(result.record.status, RunStatus::complete) << result.record.message;
+    EXPECT_EQ(result.last("time"), 2.0) << integrator;
+    EXPECT_NEAR(result.last("axial.force"), hertz(0.2), 1e-16) << integrator;
+  }
+}
+
+TEST(Steps, WithdrawUntilContactIsLost) {
+  for (const char* integrator : k_integrators) {
+    const TestRun result = run(die({ramp(0.3), detach(0.5)}), integrator);
+    EXPECT_EQ(result.record.status, RunStatus::complete) << result.record.message;
+    EXPECT_EQ(result.events().back(), "axial:contact-lost") << integrator;
+    EXPECT_EQ(result.last("axial.force"), 0.0) << integrator;
+    EXPECT_EQ(result.last("time"), result.time_of("contact-lost")) << integrator;
+    // At the step's rate.
+    EXPECT_NEAR(result.last("axial.displacement"), 0.3 - 0.5 * (result.last("time") - 1.0), 1e-15) << integrator;
+  }
+}
+
+TEST(Steps, ThatWithdrawAnOpenWallEndAtOnce) {
+  const TestRun result = run(hertz_pair({ramp(-0.1), detach(), ramp(0.1)}, 1));
+  EXPECT_EQ(result.outputs("time").size(), 3u);
+  EXPECT_EQ(result.last("time"), 2.0);
+}
+
+TEST(Steps, OfWallsThatNeedDifferentTimesStopTheRun) {
+  const Scenario scenario =
+      between(hertz_pair({}), {wall("a", {0, 0, 1}, {ramp(0.1, 1.0)}), wall("b", {1, 0, 0}, {ramp(0.1, 2.0)})});
+  const TestRun result = run(scenario);
+  EXPECT_EQ(result.record.status, RunStatus::stopped);
+  EXPECT_NE(result.record.message.find("give equal durations"), std::string::npos) << result.record.message;
+}
+
+// --- conditions
+// ----------------------------------------------------------------------------------------------------------
+
+struct ConditionRow {
+  const char* name;
+  Until::Quantity quantity;
+  const char* column;
+  double value;
+};
+
+class EveryQuantity : public ::testing::TestWithParam<ConditionRow> {};
+
+TEST_P(EveryQuantity, EndsAStepWhereItReachesItsValue) {
+  const ConditionRow& row = GetParam();
+  for (const char* integrator : k_integrators) {
+    const TestRun result = run(die({until(ramp(0.4), row.quantity, row.value), hold()}), integrator);
+    ASSERT_TRUE(result.has_event("until-met")) << integrator;
+    const double tolerance = std::string_view(integrator) == "direct" ? 1e-14 : 1e-7;  // last bits; ten rtol
+    EXPECT_NEAR(result.last(row.column) / row.value, 1.0, tolerance) << integrator;
+    EXPECT_LT(result.last("axial.displacement"), 0.4) << integrator;
+    // The next step begins where this one ended.
+    EXPECT_NEAR(result.last("time"), result.time_of("until-met") + 1.0, 1e-15) << integrator;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Conditions, EveryQuantity,
+                         ::testing::Values(ConditionRow{"force", force, "axial.force", 0.1},
+                                           ConditionRow{"displacement", displacement, "axial.displacement", 0.2},
+                                           ConditionRow{"pressure", pressure, "axial.pressure", 0.08},
+                                           ConditionRow{"contact_radius", contact_radius, "axial.contact_radius", 0.5},
+                                           ConditionRow{"apparent_radius", apparent_radius, "apparent_radius", 1.05}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Conditions, OfNoForceEndUnloadingWhereContactIsLost) {
+  for (const char* integrator : k_integrators) {
+    const TestRun result = run(die({ramp(0.3), until(ramp(0.0), force, 0.0), hold()}), integrator);
+    EXPECT_EQ(result.events().back(), "until-met") << integrator;
+    EXPECT_EQ(result.time_of("until-met"), result.time_of("contact-lost")) << integrator;
+    EXPECT_GT(result.last("axial.displacement"), 0.2) << integrator;
+  }
+}
+
+TEST(Conditions, OfAnEventEndTheStepThere) {
+  for (const char* integrator : k_integrators) {
+    const TestRun result = run(die({until_event(ramp(0.3), "growth-on")}), integrator);
+    EXPECT_EQ(result.last("time"), result.time_of("growth-on")) << integrator;
+    EXPECT_EQ(result.events(), (std::vector<std::string>{"growth-on", "lateral:contact-made", "until-met"}))
+        << integrator;
+  }
+}
+
+TEST(Conditions, ThatHoldAtTheStartWaitUntilTheyAreMetAgain) {
+  // The force is above its target already: it is met on the way down, not at once and not on the way up.
+  const TestRun above =
+      run(hertz_pair({ramp(0.2), until(ramp(0.3), force, hertz(0.1)), until(ramp(0.0), force, hertz(0.1))}));
+  EXPECT_NEAR(above.last("axial.displacement"), 0.1, 1e-15);
+  EXPECT_NEAR(above.last("time"), 2.0 + 2.0 / 3.0, 1e-14);
+  // A step that begins on its target.
+  const TestRun on = run(hertz_pair({ramp(0.2), until(ramp(0.3), displacement, 0.2)}));
+  EXPECT_EQ(on.last("axial.displacement"), 0.3);
+  EXPECT_FALSE(on.has_event("until-met"));
+}
+
+TEST(Conditions, EndTheStepOfAllWalls) {
+  const Scenario scenario = between(
+      hertz_pair({}), {wall("a", {0, 0, 1}, {until(ramp(0.4), displacement, 0.1)}), wall("b", {1, 0, 0}, {ramp(0.2)})});
+  const TestRun result = run(scenario);
+  EXPECT_NEAR(result.last("time"), 0.25, 1e-15);
+  EXPECT_NEAR(result.last("b.displacement"), 0.05, 1e-15);
+}
+
+TEST(Conditions, AreMetByWhicheverComesFirst) {
+  for (const double target : {0.15, 0.25}) {
+    Step step = until(until(ramp(0.4), displacement, 0.2), force, hertz(target));
+    EXPECT_NEAR(run(hertz_pair({step})).last("axial.displacement"), std::min(target, 0.2), 1e-15) << target;
+  }
+}
+
+TEST(RunStatus, HasAWord) {
+  EXPECT_EQ(to_string(RunStatus::complete), "complete");
+  EXPECT_EQ(to_string(RunStatus::stopped), "stopped");
+  EXPECT_EQ(to_string(RunStatus::failed), "failed");
+}
+
+}  // namespace
+}  // namespace monograin

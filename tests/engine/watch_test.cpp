@@ -1,0 +1,88 @@
+// The guards of a system and the conditions of the program, as an integrator sees them.
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "engine/watch.hpp"
+#include "support/toy_system.hpp"
+
+namespace monograin {
+namespace {
+
+class WatchTest : public ::testing::Test {
+ protected:
+  WatchTest() {
+    toy_.watched = {{"yield", 1, [](double, ToySystem::View y) { return y[0] - 7.0; }},
+                    {"reload", -1, [](double, ToySystem::View y) { return y[0] - 8.0; }}};
+    toy_.finish();
+  }
+  /// Watches conditions from a state in which every quantity has this value.
+  void begin(const std::vector<Condition>& conditions, double value) {
+    y_ = {value};
+    watch_.begin_step(conditions, 0.0, y_);
+  }
+  [[nodiscard]] bool is_met_at(double value) { return watch_.is_met(0.5, std::vector<double>{value}); }
+
+  ToySystem toy_;
+  Watch watch_{toy_};
+  std::vector<double> y_;
+};
+
+TEST_F(WatchTest, ListsTheGuardsOfTheSystemFirst) {
+  begin({{Quantity::displacement, 0, 2.0}}, 0.0);
+  ASSERT_EQ(watch_.size(), 3u);
+  EXPECT_EQ(watch_.system_guards(), 2u);
+  EXPECT_EQ(std::vector<int>(watch_.directions().begin(), watch_.directions().end()), (std::vector<int>{1, -1, 1}));
+  EXPECT_EQ(watch_.name(0), "yield of toy");
+  EXPECT_EQ(watch_.name(2), "until");
+}
+
+TEST_F(WatchTest, ScalesAConditionToOrderOne) {
+  begin({{Quantity::force, 0, 4e6}}, 1e6);
+  std::vector<double> values(watch_.size());
+  watch_.values(0.0, y_, values);
+  EXPECT_DOUBLE_EQ(values[2], -0.75);
+  EXPECT_DOUBLE_EQ(values[0], 1e6 - 7.0);
+}
+
+TEST_F(WatchTest, MeetsATargetFromTheSideWhereTheStepBegan) {
+  begin({{Quantity::displacement, 0, 2.0}}, 1.0);
+  EXPECT_FALSE(is_met_at(1.9));
+  EXPECT_TRUE(is_met_at(2.0));
+  EXPECT_TRUE(is_met_at(2.1));
+  begin({{Quantity::displacement, 0, 2.0}}, 3.0);
+  EXPECT_EQ(watch_.directions()[2], -1);
+  EXPECT_FALSE(is_met_at(2.1));
+  EXPECT_TRUE(is_met_at(1.9));
+}
+
+TEST_F(WatchTest, DoesNotMeetATargetTheStepBeganOn) {
+  begin({{Quantity::displacement, 0, 2.0}}, 2.0);
+  EXPECT_EQ(watch_.directions()[2], 0);
+  EXPECT_FALSE(is_met_at(2.0));
+  // Once it has left, the way back counts.
+  watch_.renew(0.5, std::vector<double>{2.5});
+  EXPECT_EQ(watch_.directions()[2], -1);
+  EXPECT_TRUE(is_met_at(2.0));
+}
+
+TEST_F(WatchTest, HasNoRootFunctionForWhatVanishesWithTheContact) {
+  for (const Quantity quantity : {Quantity::force, Quantity::pressure, Quantity::contact_radius}) {
+    begin({{quantity, 0, 0.0}}, 1.0);
+    EXPECT_EQ(watch_.size(), 2u);
+    EXPECT_TRUE(is_met_at(0.0));
+  }
+  begin({{Quantity::displacement, 0, 0.0}}, 1.0);
+  EXPECT_EQ(watch_.size(), 3u);
+}
+
+TEST_F(WatchTest, IsMetByAnyOfItsConditions) {
+  begin({{Quantity::displacement, 0, 2.0}, {Quantity::force, 0, 5.0}}, 1.0);
+  EXPECT_TRUE(is_met_at(3.0));
+  begin({}, 1.0);
+  EXPECT_FALSE(is_met_at(3.0));
+}
+
+}  // namespace
+}  // namespace monograin

@@ -1,0 +1,113 @@
+// Where the MDR model ends, and how a run says so.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "support/test_run.hpp"
+
+namespace monograin {
+namespace {
+
+Scenario die_to(double displacement) { return mdr_scenario(Configuration::die, 20.0, 0.3, path({displacement})); }
+Scenario hydrostatic_to(double displacement) {
+  return mdr_scenario(Configuration::hydrostatic, 20.0, 0.3, path({displacement}));
+}
+
+Scenario strict(Scenario scenario) {
+  scenario.options["strict"] = true;
+  return scenario;
+}
+
+bool warns(const TestRun& result, std::string_view words) {
+  for (const std::string& warning : result.record.warnings) {
+    if (warning.find(words) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST(MdrCaps, IntersectWhereTheTableSays) {
+  constexpr double k_printed = 1e-12;  // digits of the table
+  EXPECT_NEAR(run(die_to(0.45)).at_event("caps-intersect", "axial.displacement"), 0.438125765118, k_printed);
+  EXPECT_NEAR(run(hydrostatic_to(0.2026)).at_event("caps-intersect", "axial.displacement"), 0.202502982795, k_printed);
+}
+
+TEST(MdrCaps, WarnAndGoOn) {
+  const TestRun result = run(die_to(0.45));
+  EXPECT_EQ(result.record.status, RunStatus::complete);
+  EXPECT_TRUE(warns(result, "contact caps intersect"));
+  EXPECT_FALSE(warns(run(die_to(0.43)), "contact caps intersect"));
+}
+
+TEST(MdrCaps, StopAStrictRun) {
+  for (const char* integrator : k_integrators) {
+    const TestRun result = run(strict(die_to(0.45)), integrator);
+    EXPECT_EQ(result.record.status, RunStatus::stopped) << integrator;
+    EXPECT_NE(result.record.message.find("contact caps intersect"), std::string::npos) << result.record.message;
+    EXPECT_EQ(result.events().back(), "axial/lateral:caps-intersect") << integrator;
+    EXPECT_NEAR(result.last("axial.displacement"), 0.438125765118, 1e-7) << integrator;  // ten rtol
+  }
+}
+
+TEST(MdrCaps, AreReportedOncePerPair) {
+  const TestRun result = run(mdr_scenario(Configuration::die, 20.0, 0.3, path({0.44, 0.435, 0.445})));
+  int count = 0;
+  for (const std::string& event : result.events()) count += event == "axial/lateral:caps-intersect" ? 1 : 0;
+  EXPECT_EQ(count, 1);
+}
+
+TEST(MdrSingularGrowth, StopsTheRunWithItsHistory) {
+  for (const char* integrator : k_integrators) {
+    for (const Scenario& scenario :
+         {hydrostatic_to(0.22), mdr_scenario(Configuration::die, 200.0, 0.3, path({0.48}))}) {
+      const TestRun result = run(scenario, integrator);
+      EXPECT_EQ(result.record.status, RunStatus::stopped) << integrator << ", " << describe(scenario);
+      EXPECT_EQ(result.events().back(), "singular-growth") << integrator << ", " << describe(scenario);
+      EXPECT_NE(result.record.message.find("free surface"), std::string::npos) << result.record.message;
+      EXPECT_GT(result.record.history.row_count(), 40u) << integrator << ", " << describe(scenario);
+      // The fold: sum of the overlaps 2R less a thousandth, lowered a little by the elastic volume.
+      EXPECT_GT(result.last("axial.displacement"), 0.18) << integrator << ", " << describe(scenario);
+    }
+  }
+}
+
+TEST(MdrVolume, BelowHalfStopsTheRun) {
+  for (const double modulus_over_yield : {5.0, 8.0, 10.0}) {
+    for (const char* integrator : k_integrators) {
+      const TestRun result =
+          run(mdr_scenario(Configuration::hydrostatic, modulus_over_yield, 0.0, path({0.5})), integrator);
+      EXPECT_EQ(result.record.status, RunStatus::stopped) << integrator << ", E/Y = " << modulus_over_yield;
+      EXPECT_EQ(result.events().back(), "volume-limit") << integrator << ", E/Y = " << modulus_over_yield;
+      // Stops at 1 - 4w = 1e-6, where V/V0 = (1 + 1e-3)/2.
+      EXPECT_NEAR(result.last("volume") / (4.0 / 3.0 * std::numbers::pi), 0.5005, 1e-5)
+          << integrator << ", E/Y = " << modulus_over_yield;
+    }
+  }
+}
+
+TEST(MdrVolume, FeedbackOnTheRadiusIsStable) {
+  const Scenario scenario = mdr_scenario(Configuration::hydrostatic, 8.0, 0.0, path({0.27}));
+  EXPECT_NEAR(run(scenario).last("apparent_radius"), 1.029865077150424, 5e-16);  // printed digits
+  for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
+    for (const double rtol : {1e-6, 1e-8, 1e-10}) {
+      const double radius = run(scenario, integrator, relative(rtol)).last("apparent_radius");
+      EXPECT_NEAR(radius, 1.029865077150424, rtol) << integrator << ", rtol = " << rtol;
+    }
+  }
+}
+
+TEST(MdrWarnings, NameMaterialsBeyondTheModel) {
+  EXPECT_TRUE(warns(run(mdr_scenario(Configuration::simple, 8.0, 0.3, path({0.1}))), "elastic strains are not small"));
+  EXPECT_FALSE(
+      warns(run(mdr_scenario(Configuration::simple, 12.0, 0.3, path({0.1}))), "elastic strains are not small"));
+}
+
+TEST(MdrWarnings, TellThatAMaterialNeverYields) {
+  // E*/Y = 2.2, below 2.407.
+  const TestRun result = run(mdr_scenario(Configuration::simple, 2.0, 0.3, path({0.4})));
+  EXPECT_TRUE(warns(result, "too compliant to yield"));
+  EXPECT_FALSE(result.has_event("yield"));
+}
+
+}  // namespace
+}  // namespace monograin

@@ -1,0 +1,100 @@
+// From a scenario to classes, names, programs and unknowns.
+
+#include "scene/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/test_run.hpp"
+
+namespace monograin {
+namespace {
+
+std::vector<std::pair<std::string, double>> names_and_multiplicities(const Scene& scene) {
+  std::vector<std::pair<std::string, double>> result;
+  for (const ContactClass& c : scene.classes) result.emplace_back(c.name, c.multiplicity());
+  return result;
+}
+
+using Named = std::vector<std::pair<std::string, double>>;
+
+Scenario preset(Configuration configuration) { return hertz_scenario(configuration, path({0.1, 0.0})); }
+
+Scenario oblique(int walls) {
+  Scenario scenario = preset(Configuration::oblique_die);
+  scenario.loading.oblique_angle = 0.65;
+  scenario.loading.oblique_walls = walls;
+  return scenario;
+}
+
+bool skips(const Scene& scene, const std::string& words) {
+  return std::ranges::any_of(scene.skipped,
+                             [&](const std::string& text) { return text.find(words) != std::string::npos; });
+}
+
+TEST(Scene, NamesItsClassesAfterTheirRole) {
+  EXPECT_EQ(names_and_multiplicities(make_scene(preset(Configuration::simple))), (Named{{"axial", 2}}));
+  EXPECT_EQ(names_and_multiplicities(make_scene(preset(Configuration::die))), (Named{{"axial", 2}, {"lateral", 4}}));
+  EXPECT_EQ(names_and_multiplicities(make_scene(preset(Configuration::hydrostatic))), (Named{{"axial", 6}}));
+}
+
+TEST(Scene, TellsLateralWallsApartWhereSymmetryDoes) {
+  EXPECT_EQ(names_and_multiplicities(make_scene(oblique(2))),
+            (Named{{"axial", 2}, {"lateral-x", 2}, {"lateral-y", 2}, {"oblique", 2}}));
+  EXPECT_EQ(names_and_multiplicities(make_scene(oblique(4))),
+            (Named{{"axial", 2}, {"lateral-x", 2}, {"lateral-y", 2}, {"oblique", 4}}));
+}
+
+TEST(Scene, NamesTheClassesOfAFreeSetAfterTheirFirstWalls) {
+  const Scenario scenario =
+      between(hertz_scenario(Configuration::walls, {}),
+              {wall("top", {0, 0, 2}, path({0.1})), wall("side", {1, 0, 0}, {}, 0.05),
+               wall("bottom", {0, 0, -1}, path({0.1})), wall("other side", {-3, 0, 0}, {}, 0.05)});
+  const Scene scene = make_scene(scenario);
+  EXPECT_EQ(names_and_multiplicities(scene), (Named{{"top", 2}, {"side", 2}}));
+  EXPECT_EQ(scene.walls[1], (std::vector<std::string>{"side", "other side"}));
+  EXPECT_EQ(scene.classes[1].gap, 0.05);
+  EXPECT_TRUE(scene.programs[1].empty());
+  for (const ContactClass& c : scene.classes) {
+    for (const Eigen::Vector3d& normal : c.normals) EXPECT_DOUBLE_EQ(normal.norm(), 1.0) << c.name;
+  }
+}
+
+TEST(Scene, GivesEveryWallAClassOfItsOwnWhenAsked) {
+  const Scene scene = make_scene(preset(Configuration::die), false);
+  EXPECT_EQ(scene.classes.size(), 6u);
+  for (std::size_t c = 0; c < 6; ++c) EXPECT_EQ(scene.classes[c].name, scene.walls[c].front());
+  EXPECT_FALSE(skips(scene, "the same by symmetry"));
+}
+
+TEST(Scene, CountsItsStepsByTheLongestProgram) {
+  EXPECT_EQ(make_scene(preset(Configuration::die)).step_count(), 2u);
+  const Scenario scenario = between(hertz_scenario(Configuration::walls, {}),
+                                    {wall("a", {0, 0, 1}, path({0.1})), wall("b", {1, 0, 0}, path({0.1, 0.2, 0.3}))});
+  EXPECT_EQ(make_scene(scenario).step_count(), 3u);
+}
+
+TEST(Scene, LetsWallsWithoutStepsFollowTheLoading) {
+  Scenario scenario = hertz_scenario(Configuration::walls, path({0.1}));
+  scenario.loading.walls = {wall("a", {0, 0, 1}), wall("b", {1, 0, 0})};
+  scenario.loading.walls[0].is_fixed = false;
+  const std::vector<Wall> walls = make_walls(scenario);
+  EXPECT_EQ(walls[0].steps.size(), 1u);
+  EXPECT_TRUE(walls[1].steps.empty());
+}
+
+TEST(Scene, SaysWhatItSkips) {
+  const Scene hydrostatic = make_scene(mdr_scenario(Configuration::hydrostatic, 20.0, 0.3, path({0.1})));
+  EXPECT_TRUE(skips(hydrostatic, "5 of 6 walls, the same by symmetry: axial x6"));
+  EXPECT_TRUE(skips(hydrostatic, "adhesion"));
+  EXPECT_TRUE(skips(hydrostatic, "algebraic unknowns: displacements are prescribed"));
+  EXPECT_FALSE(skips(hydrostatic, "yield"));
+  EXPECT_TRUE(skips(make_scene(preset(Configuration::simple)), "yield and growth"));
+  Scenario free = preset(Configuration::die);
+  free.loading.centre_is_free = true;
+  EXPECT_TRUE(skips(make_scene(free), "by symmetry the wall forces balance"));
+}
+
+}  // namespace
+}  // namespace monograin
