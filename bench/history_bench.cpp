@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/drive.hpp"
+#include "history/run.hpp"
 #include "scenario/scenario.hpp"
 #include "scene/scene.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 RunRecord history(const Scenario& scenario, const std::string& integrator, double rtol) {
   Scene scene = make_scene(scenario);
-  return drive(scene, integrator, {rtol, 1e-4 * rtol}, scenario.output);
+  return record_run(scene, integrator, {rtol, 1e-4 * rtol}, scenario.output);
 }
 
 /// Largest difference of a force over its largest magnitude; rows of both runs stand at the same instants.

@@ -228,7 +228,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
   complete(xi, y);
   const std::size_t most_rounds = 4 * memory_.size() + 8;
   for (std::size_t round = 0;; ++round) {
-    if (round == most_rounds) throw std::logic_error("the regimes of the contacts cannot be decided");
+    if (round == most_rounds) throw std::domain_error("the regimes of the contacts do not settle");
     is_growing_ = growth ? *growth : wants_growth(xi, y);
     look(xi, y);
     const Motion now = motion(is_growing_);

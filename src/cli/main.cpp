@@ -4,7 +4,7 @@
 #include <exception>
 
 #include "cli/commands.hpp"
-#include "engine/run.hpp"
+#include "history/run.hpp"
 #include "scenario/scenario.hpp"
 
 namespace {

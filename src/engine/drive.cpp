@@ -10,7 +10,6 @@
 #include <stdexcept>
 
 #include "engine/watch.hpp"
-#include "history/recorder.hpp"
 
 namespace monograin {
 namespace {
@@ -63,23 +62,21 @@ struct OutputPoint {
 
 class Drive {
  public:
-  Drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output)
+  Drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output,
+        HistorySink& sink)
       : scene_(scene),
         system_(*scene.system),
         watch_(system_),
         integrator_(make_integrator(integrator, system_, watch_, tolerances)),
-        recorder_(system_),
+        sink_(sink),
         output_(output),
         y_(system_.unknowns().size()),
         output_state_(y_.size()) {
     for (const ContactClass& c : scene.classes) positions_.push_back(-c.gap);
-    const std::size_t rows =
-        output.times.empty() ? static_cast<std::size_t>(output.points) * scene.step_count() : output.times.size();
-    recorder_.reserve_rows(rows + 64);
   }
 
-  RunRecord run() {
-    RunRecord result;
+  DriveResult run() {
+    DriveResult result;
     try {
       run_program();
     } catch (const Stop& stop) {
@@ -94,8 +91,6 @@ class Drive {
       result.status = RunStatus::failed;
       result.message = where(error.xi()) + error.what();
     }
-    result.history = recorder_.take_history();
-    result.events = recorder_.take_events();
     result.statistics = integrator_->statistics();
     result.statistics.events = event_count_;
     for (const Finding& warning : system_.warnings()) {
@@ -300,14 +295,14 @@ class Drive {
   void emit_outputs_before(double xi) {
     if (records_internal_steps() && xi < 1.0 && integrator_->fired().empty()) {
       integrator_->dense_output(xi, output_state_);
-      recorder_.observe(time(xi), step_label(), xi, output_state_);
-      recorder_.append(RowSide::output);
+      sink_.observe(time(xi), step_label(), xi, output_state_);
+      sink_.append(RowSide::output);
     }
     for (; next_output_ < outputs_.size() && outputs_[next_output_].xi < xi - k_round_off; ++next_output_) {
       const auto [at, instant] = outputs_[next_output_];
       integrator_->dense_output(at, output_state_);
-      recorder_.observe(instant, step_label(), at, output_state_);
-      recorder_.append(RowSide::output);
+      sink_.observe(instant, step_label(), at, output_state_);
+      sink_.append(RowSide::output);
     }
   }
 
@@ -315,34 +310,34 @@ class Drive {
   void begin_history() {
     std::vector<Event> log;
     system_.begin_step(plan_.ramps, y_, log);
-    recorder_.observe(0.0, 1, 0.0, y_);
-    if (!log.empty()) recorder_.append(RowSide::before);
-    recorder_.append(RowSide::output);
+    sink_.observe(0.0, 1, 0.0, y_);
+    if (!log.empty()) sink_.append(RowSide::before);
+    sink_.append(RowSide::output);
     if (!log.empty()) close_instant(0.0, 0.0, log);
   }
 
   /// Rows just before an event or corner, and its output point if one falls on it.
   void open_instant(double xi) {
-    recorder_.observe(time(xi), step_label(), xi, y_);
-    recorder_.append(RowSide::before);
+    sink_.observe(time(xi), step_label(), xi, y_);
+    sink_.append(RowSide::before);
     if (next_output_ < outputs_.size() && outputs_[next_output_].xi <= xi + k_round_off) {
       ++next_output_;
-      recorder_.append(RowSide::output);
+      sink_.append(RowSide::output);
     }
   }
 
   /// Row just after it, and the events that lie in between.
   void close_instant(double instant, double xi, const std::vector<Event>& log) {
-    recorder_.observe(instant, step_label(), xi, y_);
-    recorder_.append(RowSide::after);
-    for (const Event& event : log) recorder_.event(event);
+    sink_.observe(instant, step_label(), xi, y_);
+    sink_.append(RowSide::after);
+    for (const Event& event : log) sink_.event(event);
   }
 
   Scene& scene_;
   HybridSystem& system_;
   Watch watch_;
   std::unique_ptr<Integrator> integrator_;
-  Recorder recorder_;
+  HistorySink& sink_;
   const Output& output_;
   std::vector<double> y_;
   std::vector<double> output_state_;
@@ -372,8 +367,9 @@ std::string_view to_string(RunStatus status) noexcept {
   return "";
 }
 
-RunRecord drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output) {
-  return Drive(scene, integrator, tolerances, output).run();
+DriveResult drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output,
+                  HistorySink& sink) {
+  return Drive(scene, integrator, tolerances, output, sink).run();
 }
 
 }  // namespace monograin

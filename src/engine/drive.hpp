@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "engine/integrator.hpp"
-#include "history/table.hpp"
 #include "scenario/scenario.hpp"
 #include "scene/scene.hpp"
 
@@ -19,22 +18,35 @@ enum class RunStatus {
 
 [[nodiscard]] std::string_view to_string(RunStatus status) noexcept;
 
-/// What a run leaves behind. The history goes up to where the run ended, however it ended.
-struct RunRecord {
+/// Where a row of the history stands: at an output point, or just before or after an event or corner.
+enum class RowSide : signed char { before = -1, output = 0, after = 1 };
+
+/// Takes what a drive comes by. Rows are first observed, then appended, once or more often.
+class HistorySink {
+ public:
+  virtual ~HistorySink() = default;
+  /// Evaluates the observables. @param step  number of the program's step, from 1
+  virtual void observe(double time, int step, double xi, std::span<const double> y) = 0;
+  /// Appends what was observed last as a row of the history.
+  virtual void append(RowSide side) = 0;
+  /// An event, with the state observed last.
+  virtual void event(const Event& event) = 0;
+};
+
+/// How a drive has ended, and what it took.
+struct DriveResult {
   RunStatus status = RunStatus::complete;
   std::string message;  ///< why it stopped or failed
-  Table history;
-  Table events;
   Statistics statistics;
   std::vector<std::string> warnings;
 };
 
-/// Integrates a scene.
+/// Integrates a scene; its history, up to where the run ended however it ended, goes to the sink.
 ///
 /// @param integrator  direct, cvode-bdf, cvode-adams or ida
 /// @param output      output points of every step, or instants of the whole run
-/// Never throws for what the model or the solver cannot do: that is the record's status.
-[[nodiscard]] RunRecord drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances,
-                              const Output& output);
+/// Never throws for what the model or the solver cannot do: that is the result's status.
+[[nodiscard]] DriveResult drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances,
+                                const Output& output, HistorySink& sink);
 
 }  // namespace monograin

@@ -1,6 +1,7 @@
 #include "engine/integrator.hpp"
 
 #include <fmt/format.h>
+#include <sundials/sundials_version.h>
 
 namespace monograin {
 
@@ -28,6 +29,18 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem&
   if (name == "cvode-bdf") return make_cvode(CvodeMethod::bdf, system, watch, tolerances);
   if (name == "ida") return make_ida(system, watch, tolerances);
   throw std::logic_error(fmt::format("no integrator is called '{}'", name));
+}
+
+IntegratorChoice choose_integrator(const std::string& asked) {
+  if (asked != "auto") return {asked, asked, "asked for"};
+  return {asked, "direct",
+          "the state at any instant follows from equations that need no history: nothing is integrated"};
+}
+
+std::string sundials_version() {
+  char text[32] = {};
+  SUNDIALSGetVersion(text, sizeof text);
+  return text;
 }
 
 }  // namespace monograin

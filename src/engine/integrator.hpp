@@ -78,6 +78,19 @@ class Integrator {
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
                                                           const Tolerances& tolerances);
 
+/// Which integrator runs, and why that one.
+struct IntegratorChoice {
+  std::string asked;
+  std::string used;
+  std::string why;
+};
+
+/// The integrator asked for, or for "auto" the cheapest that reaches the accuracy.
+[[nodiscard]] IntegratorChoice choose_integrator(const std::string& asked);
+
+/// Version of the SUNDIALS library in use.
+[[nodiscard]] std::string sundials_version();
+
 // One adapter per library.
 [[nodiscard]] std::unique_ptr<Integrator> make_direct(HybridSystem& system, Watch& watch);
 enum class CvodeMethod { adams, bdf };

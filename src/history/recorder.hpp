@@ -4,26 +4,21 @@
 #include <string>
 #include <vector>
 
+#include "engine/drive.hpp"
 #include "history/table.hpp"
 #include "hybrid_system.hpp"
 
 namespace monograin {
 
-/// Where a row of the history stands: at an output point, or just before or after an event or corner.
-enum class RowSide : signed char { before = -1, output = 0, after = 1 };
-
-class Recorder {
+class Recorder final : public HistorySink {
  public:
   explicit Recorder(HybridSystem& system);
 
   void reserve_rows(std::size_t count) { history_.reserve_rows(count); }
 
-  /// Evaluates the observables. @param step  number of the program's step, from 1
-  void observe(double time, int step, double xi, std::span<const double> y);
-  /// Appends what was observed last as a row of the history.
-  void append(RowSide side);
-  /// An event, with the state observed last.
-  void event(const Event& event);
+  void observe(double time, int step, double xi, std::span<const double> y) override;
+  void append(RowSide side) override;
+  void event(const Event& event) override;
 
   [[nodiscard]] Table take_history() { return std::move(history_); }
   [[nodiscard]] Table take_events() const;

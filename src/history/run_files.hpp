@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "engine/run.hpp"
+#include "history/run.hpp"
 
 namespace monograin {
 

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "engine/run.hpp"
 #include "history/compare.hpp"
+#include "history/run.hpp"
 
 namespace monograin {
 namespace {

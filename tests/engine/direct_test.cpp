@@ -24,7 +24,7 @@ double window(double y, double from, double to) { return 1e3 * (y - from) * (to 
 
 TestRun run_directly(std::unique_ptr<ToySystem> toy) {
   TestRun result{toy_scene(std::move(toy)), {}};
-  result.record = drive(result.scene, "direct", {}, {.points = 4, .times = {}});
+  result.record = record_run(result.scene, "direct", {}, {.points = 4, .times = {}});
   return result;
 }
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <numbers>
 
-#include "engine/drive.hpp"
+#include "history/run.hpp"
 #include "support/test_run.hpp"
 #include "support/toy_system.hpp"
 
@@ -21,7 +21,7 @@ TestRun run_toy(std::unique_ptr<ToySystem> toy, std::string_view integrator, dou
   TestRun result{toy_scene(std::move(toy), steps), {}};
   Output output;
   output.points = 20;
-  result.record = drive(result.scene, integrator, relative(rtol), output);
+  result.record = record_run(result.scene, integrator, relative(rtol), output);
   return result;
 }
 

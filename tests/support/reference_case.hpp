@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/drive.hpp"
+#include "history/run.hpp"
 #include "history/table.hpp"
 #include "scenario/scenario.hpp"
 

@@ -176,7 +176,7 @@ double TestRun::at_event(std::string_view name, std::string_view column) const {
 
 TestRun run(const Scenario& scenario, std::string_view integrator, const Tolerances& tolerances, bool merges_walls) {
   TestRun result{make_scene(scenario, merges_walls), {}};
-  result.record = drive(result.scene, integrator, tolerances, scenario.output);
+  result.record = record_run(result.scene, integrator, tolerances, scenario.output);
   return result;
 }
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/drive.hpp"
+#include "history/run.hpp"
 #include "scenario/scenario.hpp"
 #include "scene/scene.hpp"
 

@@ -1,13 +1,17 @@
-#include "engine/run.hpp"
+#include "history/run.hpp"
 
 #include <fmt/format.h>
-#include <sundials/sundials_version.h>
 #include <xxhash.h>
 
 #include <chrono>
 
+#include "history/recorder.hpp"
+
 namespace monograin {
 namespace {
+
+// Room for the rows around events, so that recording them does not allocate.
+constexpr std::size_t k_event_rows = 64;
 
 class Stopwatch {
  public:
@@ -51,12 +55,6 @@ std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
 
 std::string_view version() noexcept { return MONOGRAIN_VERSION; }
 
-std::string sundials_version() {
-  char text[32] = {};
-  SUNDIALSGetVersion(text, sizeof text);
-  return text;
-}
-
 std::string scenario_digest(const Scenario& scenario) {
   std::string text = scenario.text;
   for (const std::string& override_text : scenario.overrides) text += "\n--set " + override_text;
@@ -64,11 +62,16 @@ std::string scenario_digest(const Scenario& scenario) {
   return fmt::format("xxh128:{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-IntegratorChoice choose_integrator(const Scenario& scenario) {
-  const std::string& asked = scenario.numerics.integrator;
-  if (asked != "auto") return {asked, asked, "asked for"};
-  return {asked, "direct",
-          "the state at any instant follows from equations that need no history: nothing is integrated"};
+RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output) {
+  Recorder recorder(*scene.system);
+  const std::size_t rows =
+      output.times.empty() ? static_cast<std::size_t>(output.points) * scene.step_count() : output.times.size();
+  recorder.reserve_rows(rows + k_event_rows);
+  RunRecord record;
+  static_cast<DriveResult&>(record) = drive(scene, integrator, tolerances, output, recorder);
+  record.history = recorder.take_history();
+  record.events = recorder.take_events();
+  return record;
 }
 
 Run run_scenario(const Scenario& scenario) {
@@ -76,9 +79,10 @@ Run run_scenario(const Scenario& scenario) {
   run.scenario = scenario;
   Stopwatch watch;
   Scene scene = make_scene(scenario);
-  run.integrator = choose_integrator(scenario);
+  run.integrator = choose_integrator(scenario.numerics.integrator);
   run.timings.setup = watch.lap();
-  run.record = drive(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
+  run.record =
+      record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
   run.timings.integration = watch.lap();
 
   for (std::size_t c = 0; c < scene.classes.size(); ++c) run.classes.push_back({scene.classes[c].name, scene.walls[c]});

@@ -5,16 +5,20 @@
 #include <vector>
 
 #include "engine/drive.hpp"
+#include "history/table.hpp"
 #include "scenario/scenario.hpp"
 
 namespace monograin {
 
-/// Which integrator ran, and why that one.
-struct IntegratorChoice {
-  std::string asked;
-  std::string used;
-  std::string why;
+/// What a drive leaves behind.
+struct RunRecord : DriveResult {
+  Table history;
+  Table events;
 };
+
+/// Drives a scene and records it.
+[[nodiscard]] RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances,
+                                   const Output& output);
 
 struct ClassSummary {
   std::string name;
@@ -41,13 +45,9 @@ struct Run {
 /// Runs a checked scenario. Histories and events carry the header lines that make their files self-describing.
 [[nodiscard]] Run run_scenario(const Scenario& scenario);
 
-/// The integrator for a scene: the one asked for, or the cheapest that reaches the accuracy.
-[[nodiscard]] IntegratorChoice choose_integrator(const Scenario& scenario);
-
 /// Digest of a scenario's text and overrides, e.g. "xxh128:3f...".
 [[nodiscard]] std::string scenario_digest(const Scenario& scenario);
 
 [[nodiscard]] std::string_view version() noexcept;
-[[nodiscard]] std::string sundials_version();
 
 }  // namespace monograin
