@@ -20,7 +20,6 @@ constexpr Refusal k_no_force_control{
     "ramp at a force with until = { force = ... }"};
 
 // --- hertz
-// -----------------------------------------------------------------------------------------------------------------
 
 constexpr std::array k_hertz_material{
     QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive, {}},
@@ -51,7 +50,6 @@ constexpr std::array<string_view, 2> k_hertz_domain{
 constexpr std::array k_hertz_refusals{k_no_force_control};
 
 // --- mdr
-// -------------------------------------------------------------------------------------------------------------------
 
 constexpr std::array k_mdr_material{
     QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive, {}},

@@ -50,7 +50,6 @@ double System::speed_scale() const noexcept {
 }
 
 // --- transitions of one contact
-// -----------------------------------------------------------------------------------------------
 
 void System::start_unloading(std::size_t i, double r) {
   Memory& memory = memory_[i];
@@ -96,7 +95,6 @@ void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Ev
 }
 
 // --- deciding a mode
-// ------------------------------------------------------------------------------------------------------------
 
 bool System::gate_is_open(const Motion& now) const noexcept {
   const double least = k_touch * speed_scale();
@@ -112,15 +110,26 @@ bool System::gate_is_open(const Motion& now) const noexcept {
 bool System::wants_growth(double xi, std::span<const double> y) {
   if (settings_.radius_rule == RadiusRule::fixed) return false;
   look(xi, y);
-  Motion now = motion(false);
+  const Motion now = motion(false);
   if (!gate_is_open(now)) return false;
-  if (std::abs(now.demand) <= k_touch * sums_.time_scale) {
-    // Exactly balanced (first touch): the sign just after decides.
+  double drive = growth_drive(now);
+  if (std::abs(drive) <= k_touch) {
+    // Balanced to round-off: the sign just after decides.
     look(xi + 1e-9, y);
-    now = motion(false);
+    drive = growth_drive(motion(false));
     look(xi, y);
   }
-  return now.demand > 0.0;
+  return drive > 0.0;
+}
+
+/// Demand for growth over the magnitudes it is the difference of: -1 where elastic volume loss rules, +1 where the caps
+/// do. The demand itself starts at zero with every first touch, and near nu = 0.5 comes back to zero within no time: as
+/// a root function it would be taken to leave where it has already returned.
+double System::growth_drive(const Motion& now) const noexcept {
+  if (sums_.time_scale > 0.0) return now.demand / sums_.time_scale;
+  if (now.demand != 0.0) return std::copysign(1.0, now.demand);
+  // First touch: of two things that vanish, the elastic volume (square root of the overlap) vanishes last.
+  return material_.bulk_compliance > 0.0 ? -1.0 : 1.0;
 }
 
 /// Fires the guards of one contact that are past already and moving on. Returns whether anything changed.
@@ -253,7 +262,6 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
 }
 
 // --- guards
-// ---------------------------------------------------------------------------------------------------------------------
 
 double System::contact_guard(int kind, std::size_t i, double overlap, double r) {
   switch (kind) {
@@ -360,7 +368,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
     switch (guards_[g].kind) {
       case k_growth_on:
       case k_growth_off:
-        values[g] = now.demand / speed;
+        values[g] = growth_drive(now);
         break;
       case k_singular:
         values[g] = now.slope / ((1.0 + r) * (1.0 + r)) - k_least_slope;

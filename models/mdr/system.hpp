@@ -141,6 +141,7 @@ class System final : public HybridSystem {
   // Modes (modes.cpp).
   void settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log);
   [[nodiscard]] bool wants_growth(double xi, std::span<const double> y);
+  [[nodiscard]] double growth_drive(const Motion& now) const noexcept;
   bool settle_contact(std::size_t i, double xi, double r, const Motion& now, std::vector<Event>& log,
                       std::vector<Event>& made);
   [[nodiscard]] bool gate_is_open(const Motion& now) const noexcept;

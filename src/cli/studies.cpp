@@ -17,7 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 // --- plot
-// -------------------------------------------------------------------------------------------------------------------
 
 struct PlotOptions {
   std::vector<std::string> runs;
@@ -37,7 +36,6 @@ int plot(const PlotOptions& options) {
 }
 
 // --- compare
-// ----------------------------------------------------------------------------------------------------------------
 
 struct CompareOptions {
   std::string reference;
@@ -69,7 +67,6 @@ int compare(const CompareOptions& options) {
 }
 
 // --- regress
-// ----------------------------------------------------------------------------------------------------------------
 
 struct RegressOptions {
   std::string scenarios = "scenarios";

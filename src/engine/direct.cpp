@@ -124,7 +124,7 @@ class Direct final : public Integrator {
     fired_.clear();
     const double next = std::min(1.0, (std::floor(begin_ * k_pieces + 1e-9) + 1.0) / k_pieces);
     reach(next);
-    while (locate_event(), !integrate()) reach(0.5 * (begin_ + end_));
+    while (!finish_piece()) reach(0.5 * (begin_ + end_));
     statistics_.last_step = end_ - begin_;
     return {.xi = end_, .hit_guard = !fired_.empty()};
   }
@@ -164,8 +164,12 @@ class Direct final : public Integrator {
     if (!any) return;
     const double ahead = end_ + std::min(k_ahead, 0.5 * (1.0 - end_));
     std::ranges::copy(end_state_, trial_.begin());
-    system_.solve(ahead, trial_);
-    look(ahead, trial_, values_);
+    try {
+      system_.solve(ahead, trial_);
+      look(ahead, trial_, values_);
+    } catch (const std::domain_error&) {
+      return;  // no solution ahead: the first piece will find out how far there is one
+    }
     for (std::size_t g = 0; g < end_values_.size(); ++g) {
       if (is_open(g)) end_values_[g] = values_[g];
     }
@@ -200,6 +204,18 @@ class Direct final : public Integrator {
     if (direction > 0) return before < 0.0 && after >= 0.0;
     if (direction < 0) return before > 0.0 && after <= 0.0;
     return (before < 0.0 && after >= 0.0) || (before > 0.0 && after <= 0.0);
+  }
+
+  /// Locates the piece's event and integrates over it; false where the piece is too long for either.
+  bool finish_piece() {
+    try {
+      locate_event();
+      return integrate();
+    } catch (const std::domain_error&) {
+      // From a guess far off, Newton's method can leave the domain although there is a solution.
+      if (end_ - begin_ < k_smallest) throw;
+      return false;
+    }
   }
 
   /// Moves the end of the piece to the first root in it, if there is one.

@@ -95,7 +95,7 @@ string_view refusal_of(const ModelInfo& model, string_view key) {
   return found == model.refusals.end() ? string_view{} : found->message;
 }
 
-// --- tables that do not depend on the model ------------------------------------------------------------------------
+// --- tables that do not depend on the model
 
 std::vector<KeySpec> root_keys() {
   return {
@@ -192,7 +192,7 @@ std::vector<KeySpec> wall_keys() {
   };
 }
 
-// --- tables that depend on the model -------------------------------------------------------------------------------
+// --- tables that depend on the model
 
 std::vector<KeySpec> material_keys(const ModelInfo& model) {
   std::vector<KeySpec> keys;
@@ -309,7 +309,7 @@ std::vector<KeySpec> until_keys(const ModelInfo& model) {
   };
 }
 
-// --- steps ---------------------------------------------------------------------------------------------------------
+// --- steps
 
 KeySpec duration_key(bool is_required) {
   return {.name = "duration",
@@ -382,7 +382,7 @@ std::vector<StepForm> step_forms(const ModelInfo& model) {
   };
 }
 
-// --- keys of other models ------------------------------------------------------------------------------------------
+// --- keys of other models
 
 std::vector<ForeignKey> foreign_keys(std::span<const string_view> names, std::span<const KeySpec> own,
                                      const std::string& reason) {

@@ -94,7 +94,7 @@ class LoadingReader {
     loading_.walls.push_back(std::move(wall));
   }
 
-  // --- rules between the walls --------------------------------------------------------------------------------------
+  // --- rules between the walls
 
   void check_walls() {
     if (!section_.has_or_misspells("wall")) return report_missing("wall");

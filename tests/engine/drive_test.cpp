@@ -34,7 +34,6 @@ std::vector<std::pair<double, int>> rows(const TestRun& result) {
 using Rows = std::vector<std::pair<double, int>>;
 
 // --- rows
-// ---------------------------------------------------------------------------------------------------------------
 
 TEST(Rows, StandAtOutputPointsAndOnBothSidesOfACorner) {
   const TestRun result = run(hertz_pair(path({0.1, 0.2}), 2));
@@ -117,7 +116,6 @@ TEST(Events, CarryTheStateJustAfter) {
 }
 
 // --- steps
-// --------------------------------------------------------------------------------------------------------------
 
 TEST(Steps, RampFromWhereTheLastOneEnded) {
   const TestRun result = run(hertz_pair({ramp(0.1), ramp_at(0.3, 0.4), ramp_at(0.2, 0.2)}, 1));
@@ -172,7 +170,6 @@ TEST(Steps, OfWallsThatNeedDifferentTimesStopTheRun) {
 }
 
 // --- conditions
-// ----------------------------------------------------------------------------------------------------------
 
 struct ConditionRow {
   const char* name;

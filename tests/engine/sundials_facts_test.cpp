@@ -220,7 +220,7 @@ class Ida {
   std::unique_ptr<void, MemoryDeleter> memory_{IDACreate(context_)};
 };
 
-// --- Only sign changes between the ends of a step are seen. ---
+// --- Only sign changes between the ends of a step are seen.
 
 TEST(SundialsRootFinding, MissesTwoCrossingsInsideOneStep) {
   Cvode solver(constant(1), 0, 0);
@@ -246,7 +246,7 @@ TEST(SundialsRootFinding, FindsBothCrossingsOfABandSplitIntoTwoGuards) {
   EXPECT_EQ(solver.fired(), (std::vector{0, 1}));
 }
 
-// --- A guard that is zero at the start. ---
+// --- A guard that is zero at the start.
 
 TEST(SundialsRootFinding, LooksAtAZeroGuardAgainATenthOfTheFirstStepLater) {
   Cvode solver(constant(1), 0, 0);
@@ -284,7 +284,7 @@ TEST(SundialsRootFinding, AGuardWatchedInTheOtherDirectionDoesNotFireWhereItIsLe
   EXPECT_EQ(solver.advance(1), CV_SUCCESS);
 }
 
-// --- A guard that is identically zero at the start. ---
+// --- A guard that is identically zero at the start.
 
 TEST(SundialsRootFinding, SwitchesOffAGuardThatIsIdenticallyZeroAndWarns) {
   Cvode solver(constant(1), 0, 0);
@@ -312,7 +312,7 @@ TEST(SundialsRootFinding, SwitchesAZeroGuardOnOnceItIsNonzeroAtTheEndOfAStep) {
   EXPECT_NEAR(solver.t(), 0.6, 1e-12);
 }
 
-// --- A guard that is switched off. ---
+// --- A guard that is switched off.
 
 /// A solver at t = 1 whose only guard was zero all the way, hence is off; from now on the guard is y - 0.5.
 class SundialsGuardSwitchedOff : public ::testing::Test {
@@ -347,7 +347,7 @@ TEST_F(SundialsGuardSwitchedOff, IsOnAgainAfterRootInitWithNoGuards) {
   EXPECT_NEAR(solver_.t(), 0.5, 1e-12);
 }
 
-// --- A guard that stays zero after its root. ---
+// --- A guard that stays zero after its root.
 
 TEST(SundialsRootFinding, AGuardThatStaysZeroFiresAtTheWrongTimeAndIsAnErrorThen) {
   Cvode solver(constant(1), 0, 0);
@@ -368,7 +368,7 @@ TEST(SundialsRootFinding, ASignedGuardFiresAtItsRootAndLetsTheRunGoOn) {
   EXPECT_EQ(solver.advance(2), CV_SUCCESS);
 }
 
-// --- A restart at a guard that has just fired. ---
+// --- A restart at a guard that has just fired.
 
 TEST(SundialsRestart, OnTheOldSideOfTheGuardFiresItAgainAndAgain) {
   Cvode solver(constant(1), 0, 0);
@@ -399,7 +399,7 @@ TEST(SundialsRestart, ExactlyOnTheGuardDoesNotFire) {
   EXPECT_EQ(solver.advance(1), CV_SUCCESS);
 }
 
-// --- Guards that are meant to fire together. ---
+// --- Guards that are meant to fire together.
 
 TEST(SundialsRootFinding, FiresEqualGuardsTogether) {
   Cvode solver(constant(1), 0, 0);
@@ -421,7 +421,7 @@ TEST(SundialsRootFinding, FiresGuardsThatDifferByARoundingErrorOneByOneWithinABr
   EXPECT_LE(solver.t() - first, 100 * k_epsilon * (1 + 1)) << "the bracket of the search, 100 U (|t| + |h|)";
 }
 
-// --- The accuracy of a root. ---
+// --- The accuracy of a root.
 
 class SundialsRootAccuracy : public ::testing::TestWithParam<double> {};
 
@@ -442,7 +442,7 @@ INSTANTIATE_TEST_SUITE_P(Tolerances, SundialsRootAccuracy, ::testing::Values(1e-
   return "Digits" + std::to_string(std::lround(-std::log10(row.param)));
 });
 
-// --- Stop times. ---
+// --- Stop times.
 
 TEST(SundialsStopTime, EqualToToutComesBackTwiceTheSecondTimeWithoutProgress) {
   Cvode solver(constant(1), 0, 0);
@@ -517,7 +517,7 @@ TEST(SundialsStopTime, WithoutOneTheRightHandSideIsEvaluatedBeyondTout) { EXPECT
 
 TEST(SundialsStopTime, KeepsTheRightHandSideFromBeingEvaluatedBeyondIt) { EXPECT_LE(latest_evaluation(true), 1); }
 
-// --- A segment without length. ---
+// --- A segment without length.
 
 TEST(SundialsStart, WithinRoundingOfToutIsAnError) {
   Cvode solver(constant(1), 1, 0);
@@ -534,7 +534,7 @@ TEST(SundialsStart, AtToutWithAGivenStepChangesTheStateInNoTime) {
   EXPECT_NEAR(solver.y(), 1, 1e-8);
 }
 
-// --- Consistent values for IDA. ---
+// --- Consistent values for IDA.
 
 double linear_spring(double overlap) { return 3 * overlap; }
 
@@ -562,7 +562,7 @@ TEST(SundialsIda, FailsToFindConsistentValuesWithTheStartAsTout1AtTimeZero) {
   EXPECT_EQ(solver.make_consistent(0), IDA_LINESEARCH_FAIL) << "the distance to t0 is compared with a roundoff of zero";
 }
 
-// --- A singular balance in IDA: at first touch the stiffness of a sphere is zero. ---
+// --- A singular balance in IDA: at first touch the stiffness of a sphere is zero.
 
 double sphere_force(double overlap) { return overlap * std::sqrt(std::abs(overlap)); }
 double sphere_stiffness(double overlap) { return 1.5 * std::sqrt(std::abs(overlap)); }

@@ -60,7 +60,7 @@ TEST(Corpus, IsRefusedByTheSchemaWhereItIsToml) {
   EXPECT_GE(checked, 80);
 }
 
-// --- mutations -----------------------------------------------------------------------------------------------------
+// --- mutations
 
 using Lines = std::vector<std::string>;
 using Random = std::mt19937;

@@ -399,7 +399,7 @@ TEST(MisspeltModel, IsCheckedAsTheOneThatWasMeant) {
   EXPECT_EQ(faults_of(text).size(), 2U);
 }
 
-// --- files ---------------------------------------------------------------------------------------------------------
+// --- files
 
 std::string message_for_file(const std::filesystem::path& file) {
   try {

@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(Scenario, Scales,
                                            ScaleRow{"long_hold", "\"10 km\"", "\"1 Pa\"", "\"1e9 h\""}),
                          [](const auto& row) { return std::string(row.param.name); });
 
-// --- steps ---------------------------------------------------------------------------------------------------------
+// --- steps
 
 std::vector<Step> steps_of(std::string_view steps) {
   return good(with_loading("[loading]\nconfiguration = \"simple\"\nsteps = [" + std::string(steps) + "]\n"))
@@ -178,7 +178,7 @@ TEST(Steps, UpToTheLimitAreAccepted) {
   EXPECT_EQ(steps_of("{ cycle = 100000, steps = [{ hold = true, duration = 1 }] }").size(), 100000U);
 }
 
-// --- walls ---------------------------------------------------------------------------------------------------------
+// --- walls
 
 TEST(Loading, ReadsWallSets) {
   const Scenario scenario = good(with_loading(
@@ -210,7 +210,7 @@ TEST(Loading, ReadsTheObliqueDie) {
   EXPECT_EQ(loading("oblique_walls = 4").oblique_walls, 4);
 }
 
-// --- ready scenarios -----------------------------------------------------------------------------------------------
+// --- ready scenarios
 
 TEST(ReadyScenarios, AreAllAccepted) {
   const auto files = toml_files("scenarios");

@@ -18,7 +18,6 @@ using Configuration = Loading::Configuration;
 inline constexpr const char* k_integrators[] = {"direct", "cvode-adams", "cvode-bdf", "ida"};
 
 // --- programs
-// -----------------------------------------------------------------------------------------------------------
 
 [[nodiscard]] Step ramp(double displacement, double duration = 1.0);
 [[nodiscard]] Step ramp_at(double displacement, double rate);
@@ -31,7 +30,6 @@ inline constexpr const char* k_integrators[] = {"direct", "cvode-adams", "cvode-
 [[nodiscard]] std::vector<Step> path(const std::vector<double>& displacements);
 
 // --- scenarios
-// ----------------------------------------------------------------------------------------------------------
 
 [[nodiscard]] Scenario hertz_scenario(Configuration configuration, std::vector<Step> steps);
 [[nodiscard]] Scenario mdr_scenario(Configuration configuration, double modulus_over_yield, double poisson_ratio,
@@ -52,7 +50,6 @@ inline constexpr const char* k_integrators[] = {"direct", "cvode-adams", "cvode-
 [[nodiscard]] std::string describe(const Scenario& scenario);
 
 // --- runs
-// ---------------------------------------------------------------------------------------------------------------
 
 struct TestRun {
   Scene scene;

@@ -154,7 +154,6 @@ TEST(MdrInvariance, UnloadingAndReloadingIsAClosedLoopWhileTheRadiusRests) {
 }
 
 // --- along one curve
-// -----------------------------------------------------------------------------------------------------
 
 /// Largest drift of the volume balance at the ends of all internal steps of one ramp.
 double largest_drift(const Scenario& scenario, std::string_view integrator, double rtol) {
