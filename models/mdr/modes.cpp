@@ -33,7 +33,7 @@ constexpr double k_same_overlap = 2e-15;
 // With a free centre, contacts along its directions open and close together; their guards agree to the integration
 // error only.
 constexpr double k_together = 1e-6;
-// Growth ends where the free surface is used up to this share (mdr.md's event "singular growth").
+// Growth ends where the free surface is used up to this share.
 constexpr double k_least_slope = 1e-3;
 // The volume's square root ends at 1 - 4w = 0; stop before an implicit code's difference quotients reach over that
 // edge.
