@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdio>
 #include <exception>
@@ -29,6 +30,18 @@ int run_action(const Action& action) {
   }
 }
 
+/// Whether the first word is no command of this version; says so, which "a subcommand is required" would not.
+bool names_no_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return false;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == argv[1]) return false;
+    names.push_back(command->get_name());
+  }
+  fmt::print(stderr, "monograin: this version has no command '{}'; it has {}\n", argv[1], fmt::join(names, ", "));
+  return true;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -46,6 +59,7 @@ int main(int argc, char** argv) {
   add_regress_command(app, action);
   add_schema_command(app, action);
 
+  if (names_no_command(app, argc, argv)) return k_usage;
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version

@@ -274,6 +274,13 @@ TEST_F(Commands, WrongUseExitsWithTwo) {
   EXPECT_EQ(monograin("--version").out.substr(0, 10), "monograin ");
 }
 
+TEST_F(Commands, AnUnknownCommandIsAnsweredWithThoseThereAre) {
+  const Outcome outcome = monograin("sweep file.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("no command 'sweep'"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("regress"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Commands, HelpEndsWithAnExample) {
   for (const char* command : {"", "run", "check", "models", "plot", "compare", "regress", "schema"}) {
     const Outcome help = monograin(std::string(command) + " --help");
