@@ -337,6 +337,7 @@ double System::inward_rate(std::size_t i, const Motion& motion) const noexcept {
 }
 
 void System::complete(double xi, std::span<double> y) {
+  if (!is_growing_) y[k_radius] = held_radius_;
   if (free_count_ > 0) move_centre(xi, y);
 }
 
@@ -422,7 +423,6 @@ void System::solve(double xi, std::span<double> y) {
   if (is_growing_) {
     grow(xi, y);
   } else {
-    y[k_radius] = held_radius_;
     complete(xi, y);
   }
 }

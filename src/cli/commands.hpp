@@ -10,8 +10,8 @@ namespace monograin {
 /// Exit codes that scripts rely on.
 enum ExitCode : int {
   k_success = 0,
-  k_unexpected = 1,      ///< a bug, or something outside the program (disk full, gnuplot missing for `plot`)
-  k_usage = 2,           ///< command line or scenario fault; nothing was run or written
+  k_unexpected = 1,      ///< a bug
+  k_usage = 2,           ///< command line, scenario or file fault; nothing was run or written
   k_left_domain = 3,     ///< a run left its model's domain; the history up to there is kept
   k_solver_failure = 4,  ///< a solver gave up; the history up to there is kept
   k_differs = 5          ///< a comparison was above its tolerance

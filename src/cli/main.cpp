@@ -24,9 +24,9 @@ int run_action(const Action& action) {
   } catch (const std::logic_error& error) {
     fmt::print(stderr, "monograin: this is a bug, please report it with the command and its files: {}\n", error.what());
     return k_unexpected;
-  } catch (const std::exception& error) {
+  } catch (const std::exception& error) {  // a file, a folder, or gnuplot
     fmt::print(stderr, "monograin: {}\n", error.what());
-    return k_unexpected;
+    return k_usage;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -132,7 +133,10 @@ int run_models(const ModelsOptions& options) {
   if (!options.name.empty() && model == nullptr) {
     std::vector<std::string_view> names;
     for (const ModelInfo& known : model_catalogue()) names.push_back(known.name);
-    throw UsageError(fmt::format("no model is called '{}'; there are {}", options.name, fmt::join(names, ", ")));
+    const bool is_reserved = std::ranges::find(reserved_models(), options.name) != reserved_models().end();
+    throw UsageError(fmt::format("{} '{}'; available: {}",
+                                 is_reserved ? "this version does not have model" : "there is no model", options.name,
+                                 fmt::join(names, ", ")));
   }
   if (options.file.empty()) {
     if (model == nullptr)

@@ -201,7 +201,7 @@ class Drive {
         last = xi_;
         advance = integrator_->advance();
         xi_ = advance.xi;
-        emit_outputs_before(xi_);
+        emit_outputs_before(last, xi_);
         integrator_->dense_output(xi_, y_);
       } while (!advance.hit_guard && xi_ < 1.0);
       if (!advance.hit_guard) break;
@@ -291,15 +291,17 @@ class Drive {
 
   [[nodiscard]] bool records_internal_steps() const { return output_.times.empty() && output_.points == 0; }
 
-  /// Output points up to, but not at, xi.
-  void emit_outputs_before(double xi) {
+  /// Output points up to, but not at, xi. One that lies a rounding error before the integrator's last step is taken at
+  /// its beginning.
+  void emit_outputs_before(double last, double xi) {
     if (records_internal_steps() && xi < 1.0 && integrator_->fired().empty()) {
       integrator_->dense_output(xi, output_state_);
       sink_.observe(time(xi), step_label(), xi, output_state_);
       sink_.append(RowSide::output);
     }
     for (; next_output_ < outputs_.size() && outputs_[next_output_].xi < xi - k_round_off; ++next_output_) {
-      const auto [at, instant] = outputs_[next_output_];
+      const double at = std::max(outputs_[next_output_].xi, last);
+      const double instant = outputs_[next_output_].time;
       integrator_->dense_output(at, output_state_);
       sink_.observe(instant, step_label(), at, output_state_);
       sink_.append(RowSide::output);

@@ -96,6 +96,7 @@ class Ida final : public Integrator {
     check("IDAGetDky", IDAGetDky(memory_.get(), xi, 0, errors_.get()));
     std::ranges::copy(view(errors_.get()), y.begin());
     quadratures_.add_to(y);
+    system_.complete(xi, y);
   }
 
   [[nodiscard]] double guard_tolerance() const noexcept override { return 1e-2 * tolerances_.rtol; }
