@@ -24,6 +24,8 @@ constexpr double k_ahead = 1e-9;
 constexpr std::size_t k_nodes = 12;
 // Share of the last Legendre coefficients below which a quadrature has converged.
 constexpr double k_tail = 1e-13;
+// Share of the work that is round-off in it.
+constexpr double k_round_off = 1e-16;
 // Quadrature pieces are not refined below this; what is left is below round-off of the whole.
 constexpr double k_smallest_quadrature = 1e-6;
 
@@ -47,10 +49,12 @@ class LegendreIntegral {
     }
   }
 
-  [[nodiscard]] bool has_converged() const noexcept {
+  /// @param negligible  error of the integral that does not count, however large a share of it that is
+  [[nodiscard]] bool has_converged(double negligible) const noexcept {
     double largest = 0.0;
     for (const double c : coefficients_) largest = std::max(largest, std::abs(c));
-    return std::abs(coefficients_[k_nodes - 1]) + std::abs(coefficients_[k_nodes - 2]) <= k_tail * largest;
+    const double tail = std::abs(coefficients_[k_nodes - 1]) + std::abs(coefficients_[k_nodes - 2]);
+    return tail <= k_tail * largest || tail * (end_ - begin_) <= negligible;
   }
 
   /// Integral from the interval's beginning to x.
@@ -283,7 +287,8 @@ class Direct final : public Integrator {
       system_.rates(xi, trial_, rates_);
       return rates_[*quadrature_];
     });
-    if (!integral_.has_converged() && end_ - begin_ > k_smallest_quadrature) return false;
+    const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
+    if (!integral_.has_converged(k_round_off * scale) && end_ - begin_ > k_smallest_quadrature) return false;
     end_state_[*quadrature_] = begin_state_[*quadrature_] + integral_(end_);
     return true;
   }
