@@ -21,21 +21,13 @@
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sundials/sundials_context.hpp>
 
+#include "engine/sundials.hpp"
+
 namespace {
 
-template <auto Free>
-struct HandleDeleter {
-  template <class T>
-  void operator()(T* p) const noexcept {
-    Free(p);
-  }
-};
-template <class H, auto Free>
-using Handle = std::unique_ptr<std::remove_pointer_t<H>, HandleDeleter<Free>>;
-
-using NVector = Handle<N_Vector, N_VDestroy>;
-using Matrix = Handle<SUNMatrix, SUNMatDestroy>;
-using LinearSolver = Handle<SUNLinearSolver, SUNLinSolFree>;
+using monograin::sundials_boundary::LinearSolver;
+using monograin::sundials_boundary::Matrix;
+using monograin::sundials_boundary::NVector;
 
 constexpr double k_rtol = 1e-8;
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
