@@ -14,11 +14,6 @@ constexpr Range k_poisson{.lower = -1.0, .upper = 0.5, .lower_is_open = true};
 
 constexpr std::array<string_view, 5> k_wall_configurations{"simple", "die", "hydrostatic", "oblique-die", "walls"};
 
-constexpr Refusal k_no_force_control{
-    "loading.steps.force",
-    "force control is not available for this model yet; prescribe displacements, or end a displacement "
-    "ramp at a force with until = { force = ... }"};
-
 // --- hertz
 
 constexpr std::array k_hertz_material{
@@ -46,8 +41,6 @@ constexpr std::array<string_view, 2> k_hertz_domain{
     "small contacts: contact radius well below the particle radius (no check)",
     "the overlap stays below the diameter",
 };
-
-constexpr std::array k_hertz_refusals{k_no_force_control};
 
 // --- mdr
 
@@ -80,6 +73,8 @@ constexpr std::array k_mdr_regimes{
     Term{"fully-plastic", "yielded contact at its largest overlap"},
     Term{"unloading", "yielded contact below its largest overlap, unloading or reloading elastically"},
     Term{"separated", "yielded contact that has opened over its dent: no force"},
+    Term{"adhering", "adhesive contact below its largest load: its edge sticks, the contact radius stays"},
+    Term{"peeling", "adhesive contact whose edge recedes in equilibrium between elastic and surface energy"},
 };
 
 constexpr std::array k_mdr_events{
@@ -91,6 +86,10 @@ constexpr std::array k_mdr_events{
          "a contact at its largest overlap starts to unload at a corner of the program or of the growth"},
     Term{"retreat", "a contact at its largest overlap starts to unload in the middle of a step"},
     Term{"reload", "a contact passes its old maximum overlap"},
+    Term{"stick", "the edge of an adhesive contact comes to rest as the load is reversed"},
+    Term{"peel", "the springs at the edge of an adhesive contact tear, and the edge begins to recede"},
+    Term{"follow", "no spring at the edge is stretched any more, and the edge advances with the load again"},
+    Term{"pull-off", "the edge of an adhesive contact turns unstable and the contact opens at once"},
     Term{"growth-on", "the apparent radius starts to grow"},
     Term{"growth-off", "the apparent radius stops growing"},
     Term{"caps-intersect", "the caps of two contacts meet: the source's limit of validity (warning; stop if strict)"},
@@ -109,9 +108,7 @@ constexpr std::array<string_view, 4> k_mdr_domain{
 };
 
 constexpr std::array k_mdr_refusals{
-    Refusal{"material.surface_energy", "adhesion is not available in model 'mdr' yet; expected 0 J/m^2"},
     Refusal{"mdr.pressure_table", "an own pressure curve is not available in model 'mdr' yet; leave the key out"},
-    k_no_force_control,
 };
 
 constexpr std::array k_models{
@@ -125,7 +122,7 @@ constexpr std::array k_models{
               k_hertz_regimes,
               k_hertz_events,
               k_hertz_domain,
-              k_hertz_refusals},
+              {}},
     ModelInfo{"mdr", "elastic-perfectly plastic particle by dimensionality reduction, with growing apparent radius",
               "002_000df8fc37500451.txt (Zunker and Kamrin, Part I)", k_mdr_material, k_mdr_options,
               k_wall_configurations, true, k_mdr_regimes, k_mdr_events, k_mdr_domain, k_mdr_refusals},

@@ -32,6 +32,9 @@ struct Unknown {
   Kind kind = Kind::differential;
   double scale = 1.0;                    ///< typical magnitude; absolute tolerances are relative to it
   bool is_implicitly_algebraic = false;  ///< its rate does not stand in residual()
+  /// Its row of residual() gives it outright as a function of xi and the other unknowns, and so does complete(): it has
+  /// no error of its own, and may be singular in xi where those are smooth.
+  bool is_slaved = false;
 };
 
 /// A root function that is alive in the present mode. Scaled to order one.
@@ -107,7 +110,8 @@ class HybridSystem {
   [[nodiscard]] virtual std::span<const Guard> guards() const noexcept = 0;
   virtual void guard_values(double xi, std::span<const double> y, std::span<double> values) = 0;
 
-  /// Applies the transitions of the guards with these indices, decides the mode anew, and logs all that changed.
+  /// Applies the transitions of the guards with these indices, decides the mode anew, and logs all that changed. What
+  /// jumps because of that stands in y as it was just before; solve() then lets it jump.
   /// @return the reason to stop, if the system ends here
   virtual std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                         std::vector<Event>& log) = 0;
@@ -117,6 +121,8 @@ class HybridSystem {
 
   /// One quantity of one class, in SI.
   [[nodiscard]] virtual double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) = 0;
+  /// Where the walls of a class stand [m], as displacement towards the place where the centre started.
+  [[nodiscard]] virtual double wall_position(int contact_class, double xi, std::span<const double> y) = 0;
   /// Whether the walls of a class do not touch the particle.
   [[nodiscard]] virtual bool is_open(int contact_class) const noexcept = 0;
 

@@ -12,15 +12,20 @@ struct ContactClass {
   std::string name;
   std::vector<Eigen::Vector3d> normals;  ///< unit, outward, one per wall; never empty
   double gap = 0.0;                      ///< distance from the undeformed particle at the start [m], >= 0
+  bool takes_force = false;              ///< whether the program ever prescribes its force
 
   [[nodiscard]] double multiplicity() const noexcept { return static_cast<double>(normals.size()); }
 };
 
-/// What one class does during one step: its wall displacement goes linearly from start to end [m], towards the centre
-/// positive.
+/// What is prescribed at a wall.
+enum class Control { displacement, force };
+
+/// What one class does during one step: its wall displacement, towards the centre positive [m], or the force of one
+/// wall, compression positive [N], goes linearly from start to end.
 struct Ramp {
   double start = 0.0;
   double end = 0.0;
+  Control control = Control::displacement;
 };
 
 }  // namespace monograin

@@ -106,6 +106,18 @@ double phi(double theta) noexcept {
   return t * s / 12.0 * sum;
 }
 
+double inverse_phi(double value) noexcept {
+  double theta = std::cbrt(1.5 * value);  // phi = (2/3) theta^3 (1 - theta^2/5 + ...)
+  if (theta == 0.0) return 0.0;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    const double sine = std::sin(theta);
+    const double step = (value - phi(theta)) / (2.0 * sine * sine);
+    theta += step;
+    if (std::abs(step) < 1e-9 * theta) break;  // the next step is round-off
+  }
+  return theta;
+}
+
 double psi(double theta) noexcept {
   if (theta >= 1.0) {
     const double s = std::sin(theta);
@@ -143,19 +155,19 @@ Contact elastic_contact(ElasticProfile profile, double composite_modulus, double
   return {};
 }
 
-PlasticPressure plastic_pressure(double yield_stress, double overlap_over_radius) noexcept {
-  const double excess = k_excess * yield_stress * std::exp(-k_decay * overlap_over_radius);
-  return {.pressure = yield_stress + excess, .decrement = k_decay * excess};
+PlasticPressure plastic_pressure(const Material& material, double overlap_over_radius) noexcept {
+  const double excess = k_excess * material.yield_stress * std::exp(-k_decay * overlap_over_radius);
+  return {.pressure = material.yield_stress + excess, .decrement = k_decay * excess};
 }
 
 double yield_area_constant(double yield_overlap_ratio, double radius) noexcept {
   return yield_overlap_ratio * (yield_overlap_ratio - 1.0) * radius * radius;
 }
 
-Contact plastic_contact(double yield_stress, double radius, double overlap, double area_constant) {
+Contact plastic_contact(const Material& material, double radius, double overlap, double area_constant) {
   const double area = 2.0 * overlap * radius - overlap * overlap + area_constant;
   if (!(area > 0.0)) throw std::domain_error("contact area of a plastic contact is not positive");
-  const auto [pressure, decrement] = plastic_pressure(yield_stress, overlap / radius);
+  const auto [pressure, decrement] = plastic_pressure(material, overlap / radius);
   return {.contact_radius = std::sqrt(area),
           .force = pi * pressure * area,
           .by_overlap = pi * (2.0 * pressure * (radius - overlap) - decrement / radius * area),
@@ -166,7 +178,7 @@ UnloadingShape unloading_shape(const Material& material, double radius, double o
   const double m = overlap_max;
   const double area = 2.0 * m * radius - m * m + area_constant;
   if (!(area > 0.0)) throw std::domain_error("contact area of a plastic contact is not positive");
-  const auto [pressure, decrement] = plastic_pressure(material.yield_stress, m / radius);
+  const auto [pressure, decrement] = plastic_pressure(material, m / radius);
   const double a = std::sqrt(area);
 
   UnloadingShape shape{.radius = radius, .overlap_max = m, .contact_radius_max = a, .pressure = pressure};
@@ -220,6 +232,49 @@ Contact unloading_contact(const UnloadingShape& shape, double composite_modulus,
           .by_overlap_max = by(shape.pressure_by_max, shape.contact_radius_by_max, shape.rho_by_max, 1.0)};
 }
 
+double elastic_overlap(ElasticProfile profile, double composite_modulus, double radius, double force) {
+  if (force <= 0.0) return 0.0;
+  switch (profile) {
+    case ElasticProfile::ellipse: {
+      const double value = force / (2.0 * composite_modulus * radius * radius);
+      if (value > 0.5 * pi) throw std::domain_error("overlap above twice the apparent radius");
+      const double sine = std::sin(0.5 * inverse_phi(value));
+      return 4.0 * radius * sine * sine;
+    }
+    case ElasticProfile::parabola: {
+      const double root = std::cbrt(0.75 * force / (composite_modulus * std::sqrt(radius)));
+      return root * root;
+    }
+  }
+  return 0.0;
+}
+
+double plastic_overlap(const Material& material, double radius, double force, double area_constant, double guess) {
+  // The overlap without any area; the force rises from there to its largest value not far below the radius.
+  const double least = radius - std::sqrt(radius * radius + area_constant);
+  double overlap = std::clamp(guess, least + 1e-3 * (radius - least), 0.999 * radius);
+  double last_step = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    const Contact contact = plastic_contact(material, radius, overlap, area_constant);
+    if (!(contact.by_overlap > 0.0)) break;
+    const double next = overlap + (force - contact.force) / contact.by_overlap;
+    const double step = std::clamp(next, 0.5 * (overlap + least), 0.5 * (overlap + radius)) - overlap;
+    overlap += step;
+    const double size = std::abs(step);
+    if (size <= 1e-16 * overlap || (size >= last_step && size < 1e-13 * overlap)) return overlap;
+    last_step = size;
+  }
+  throw std::domain_error("the force is above the largest that a plastic contact bears");
+}
+
+double unloading_overlap(const UnloadingShape& shape, double force) {
+  const double a = shape.contact_radius_max;
+  const double value = force / (2.0 * shape.pressure * a * a);
+  if (value > 2.5) throw std::domain_error("overlap beyond the end of the unloading branch");
+  const double sine = value > 0.0 ? std::sin(0.5 * inverse_phi(value)) : 0.0;
+  return shape.overlap_max - shape.recovery * (1.0 - 2.0 * sine * sine);
+}
+
 double elastic_energy(ElasticProfile profile, double composite_modulus, double radius, double overlap) {
   if (overlap <= 0.0) return 0.0;
   switch (profile) {
@@ -241,14 +296,14 @@ double unloading_energy(const UnloadingShape& shape, double overlap) noexcept {
   return 2.0 * shape.recovery * shape.pressure * a * a * psi(unloading_angle(u));
 }
 
-double plastic_work_primitive(double yield_stress, double radius, double overlap, double area_constant) noexcept {
+double plastic_work_primitive(const Material& material, double radius, double overlap, double area_constant) noexcept {
   // Counted from zero overlap, so that it is no larger than the work itself where the yield overlap is small.
   const double decay_length = radius / k_decay;
   const auto [zeroth, first, second] = decaying_moments(overlap / decay_length);
   const double ideal = overlap * (overlap * (radius - overlap / 3.0) + area_constant);
   const double excess = k_excess * decay_length *
                         (area_constant * zeroth + decay_length * (2.0 * radius * first - decay_length * second));
-  return pi * yield_stress * (ideal + excess);
+  return pi * material.yield_stress * (ideal + excess);
 }
 
 }  // namespace monograin::mdr

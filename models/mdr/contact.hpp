@@ -33,6 +33,9 @@ struct Material {
 /// phi(theta) = theta - sin(theta) cos(theta), for theta in [0, pi/2], to full relative accuracy.
 [[nodiscard]] double phi(double theta) noexcept;
 
+/// The angle with phi(theta) = value, for value in [0, 2.5], to full relative accuracy.
+[[nodiscard]] double inverse_phi(double value) noexcept;
+
 /// psi(theta) = sin(theta) - theta cos(theta) - sin(theta)^3/3, for theta in [0, pi/2], to full relative accuracy.
 [[nodiscard]] double psi(double theta) noexcept;
 
@@ -56,7 +59,7 @@ struct PlasticPressure {
   double pressure = 0.0;   ///< p_Y = Y (1 + 1.75 exp(-4.4 delta/R))
   double decrement = 0.0;  ///< -R dp_Y/d(delta) = 4.4 * 1.75 Y exp(-4.4 delta/R)
 };
-[[nodiscard]] PlasticPressure plastic_pressure(double yield_stress, double overlap_over_radius) noexcept;
+[[nodiscard]] PlasticPressure plastic_pressure(const Material& material, double overlap_over_radius) noexcept;
 
 /// Area constant of a contact that yields at the apparent radius R, c = delta_Y^2 - delta_Y R (eqs. 42, 43; area/pi).
 [[nodiscard]] double yield_area_constant(double yield_overlap_ratio, double radius) noexcept;
@@ -64,7 +67,7 @@ struct PlasticPressure {
 /// Fully plastic contact at its largest overlap (eqs. 16, 21, 28, 36): F = pi p_Y (2 delta R - delta^2 + c).
 /// @param area_constant  c of yield_area_constant
 /// @throws std::domain_error where the contact area is not positive
-[[nodiscard]] Contact plastic_contact(double yield_stress, double radius, double overlap, double area_constant);
+[[nodiscard]] Contact plastic_contact(const Material& material, double radius, double overlap, double area_constant);
 
 /// Elastic indenter that is left when a fully plastic contact unloads (eqs. 27-35), fixed while R and the largest
 /// overlap are.
@@ -95,6 +98,18 @@ struct UnloadingShape {
 /// @throws std::domain_error beyond that (u < -1)
 [[nodiscard]] Contact unloading_contact(const UnloadingShape& shape, double composite_modulus, double overlap);
 
+// The overlap at which a contact bears a force >= 0, on each branch.
+
+/// @throws std::domain_error for a force above that of an overlap of twice the radius (ellipse)
+[[nodiscard]] double elastic_overlap(ElasticProfile profile, double composite_modulus, double radius, double force);
+/// @param guess  an overlap nearby, to begin with
+/// @throws std::domain_error where no overlap below the radius bears the force
+[[nodiscard]] double plastic_overlap(const Material& material, double radius, double force, double area_constant,
+                                     double guess);
+/// Forces above that of the largest overlap continue the branch analytically, up to half a recovery above.
+/// @throws std::domain_error beyond that
+[[nodiscard]] double unloading_overlap(const UnloadingShape& shape, double force);
+
 // Stored energies: recoverable work of the walls at fixed R and fixed largest overlap; dPi = F d(delta_o).
 
 [[nodiscard]] double elastic_energy(ElasticProfile profile, double composite_modulus, double radius, double overlap);
@@ -104,7 +119,7 @@ struct UnloadingShape {
 [[nodiscard]] double unloading_energy(const UnloadingShape& shape, double overlap) noexcept;
 
 /// Primitive over the overlap of the force of plastic_contact at fixed R (up to a constant).
-[[nodiscard]] double plastic_work_primitive(double yield_stress, double radius, double overlap,
+[[nodiscard]] double plastic_work_primitive(const Material& material, double radius, double overlap,
                                             double area_constant) noexcept;
 
 }  // namespace monograin::mdr

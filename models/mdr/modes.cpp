@@ -10,6 +10,7 @@ namespace monograin::mdr {
 namespace {
 
 constexpr std::size_t k_radius = 0;
+constexpr std::size_t k_work = 1;
 
 enum GuardKind : int {
   k_yield,
@@ -18,6 +19,10 @@ enum GuardKind : int {
   k_dent_touched,
   k_lost,
   k_retreat,
+  k_turn,
+  k_peel,
+  k_follow,
+  k_pull_off,
   k_growth_on,
   k_growth_off,
   k_caps,
@@ -45,21 +50,71 @@ constexpr double k_least_distance = 1e-3;
 
 double System::speed_scale() const noexcept {
   double scale = 0.0;
-  for (const Ramp& ramp : ramps_) scale = std::max(scale, std::abs(ramp.end - ramp.start));
+  for (const Ramp& ramp : ramps_) {
+    if (ramp.control == Control::displacement) scale = std::max(scale, std::abs(ramp.end - ramp.start));
+  }
   return scale > 0.0 ? scale : 1.0;
+}
+
+/// How fast a wall goes in, of order one. Under force only the sign means something: what the force asks for over the
+/// sum of that and what the growth takes away.
+double System::wall_rate(std::size_t i, const Motion& now) const noexcept {
+  if (!is_loaded(i)) return inward_rate(i, now) / speed_scale();
+  const Contact& c = now_[i].contact;
+  return loaded_rate(ramps_[i].end - ramps_[i].start, c.by_overlap + c.by_radius, now.growth);
+}
+
+/// How fast the overlap goes up, likewise.
+double System::overlap_rate(std::size_t i, const Motion& now) const noexcept {
+  if (!is_loaded(i)) return (inward_rate(i, now) + now.growth) / speed_scale();
+  return loaded_rate(ramps_[i].end - ramps_[i].start, now_[i].contact.by_radius, now.growth);
+}
+
+double System::loaded_rate(double loading, double by_radius, double growth) const noexcept {
+  const double taken = by_radius * growth;
+  const double scale = std::abs(loading) + std::abs(taken);
+  if (scale > 0.0) return (loading - taken) / scale;
+  // At the very start of growth its rate is zero, and about to be positive.
+  return is_growing_ && by_radius > 0.0 ? -1.0 : 0.0;
 }
 
 // --- transitions of one contact
 
-void System::start_unloading(std::size_t i, double r) {
+void System::start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log) {
   Memory& memory = memory_[i];
   memory.is_virgin = false;
   memory.largest = now_[i].overlap - (settings_.delta_max_rule == DeltaMaxRule::shifted ? r : 0.0);
   if (memory.regime == Regime::fully_plastic) memory.regime = Regime::unloading;
+  log.push_back({why, static_cast<int>(i)});
+  if (adheres()) stick(i, log);
+}
+
+void System::stick(std::size_t i, std::vector<Event>& log) {
+  memory_[i].edge = Edge::sticking;
+  memory_[i].edge_radius = now_[i].contact.contact_radius;
+  log.push_back({"stick", static_cast<int>(i)});
+}
+
+/// Pull-off: the edge is no longer stable, and the contact opens at once.
+void System::separate(std::size_t i, double r, std::span<double> y, std::vector<Event>& log) {
+  Memory& memory = memory_[i];
+  const bool is_touch = memory.edge == Edge::sticking && memory.edge_radius == 0.0;
+  if (is_loaded(i)) {
+    const Instant& now = now_[i];
+    // The wall keeps the work done on it so far. Where the contact holds negative energy, the load has at least to
+    // supply that in the snap.
+    const double supplied = std::max(0.0, -contact_energy(i, r, PlasticPart::recoverable));
+    y[k_work] += classes_[i].multiplicity() * (now.contact.force * now.displacement + supplied);
+    memory.resting = now.displacement;
+  }
+  memory.edge = Edge::following;
+  lose_contact(i);
+  log.push_back({is_touch ? "contact-lost" : "pull-off", static_cast<int>(i)});
 }
 
 void System::resume_loading(std::size_t i) {
   memory_[i].is_virgin = true;
+  memory_[i].edge = Edge::following;
   if (memory_[i].regime == Regime::unloading) memory_[i].regime = Regime::fully_plastic;
 }
 
@@ -70,6 +125,7 @@ void System::make_contact(std::size_t i) {
 }
 
 void System::lose_contact(std::size_t i) {
+  memory_[i].resting = now_[i].displacement;
   memory_[i].regime = memory_[i].regime == Regime::unloading ? Regime::separated : Regime::open;
 }
 
@@ -80,12 +136,12 @@ void System::yield(std::size_t i, double r) {
 
 /// Where the centre is free, a contact along its directions is carried by others only: they close and open together.
 void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log) {
-  if (free_count_ == 0 || directions_[i].norm() < 1e-10) return;
+  if (free_count_ == 0 || directions_[i].norm() < 1e-10 || adheres()) return;
   for (std::size_t j = 0; j < memory_.size(); ++j) {
     if (j == i || directions_[j].norm() < 1e-10 || touches(memory_[j].regime) == is_made) continue;
     const bool is_dent = memory_[j].regime == Regime::separated;
     const int kind = is_made ? (is_dent ? k_dent_touched : k_made) : k_lost;
-    if (std::abs(contact_guard(kind, j, now_[j].overlap, r)) > k_together) continue;
+    if (is_loaded(j) || std::abs(contact_guard(kind, j, 0.0, now_[j].overlap, r)) > k_together) continue;
     if (is_made)
       make_contact(j);
     else
@@ -101,13 +157,14 @@ bool System::gate_is_open(const Motion& now) const noexcept {
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (!is_member(memory_[i])) continue;
     if (settings_.radius_rule == RadiusRule::seed) return true;
-    if (memory_[i].is_virgin && inward_rate(i, now) > least) return true;
+    const bool is_driven = is_loaded(i) ? ramps_[i].end > ramps_[i].start : inward_rate(i, now) > least;
+    if (memory_[i].is_virgin && is_driven) return true;
   }
   return false;
 }
 
 /// Whether the radius starts to grow, or goes on growing, at this instant.
-bool System::wants_growth(double xi, std::span<const double> y) {
+bool System::wants_growth(double xi, std::span<double> y) {
   if (settings_.radius_rule == RadiusRule::fixed) return false;
   look(xi, y);
   const Motion now = motion(false);
@@ -115,8 +172,10 @@ bool System::wants_growth(double xi, std::span<const double> y) {
   double drive = growth_drive(now);
   if (std::abs(drive) <= k_touch) {
     // Balanced to round-off: the sign just after decides.
+    move_walls(xi + 1e-9, y);
     look(xi + 1e-9, y);
     drive = growth_drive(motion(false));
+    move_walls(xi, y);
     look(xi, y);
   }
   return drive > 0.0;
@@ -133,37 +192,38 @@ double System::growth_drive(const Motion& now) const noexcept {
 }
 
 /// Fires the guards of one contact that are past already and moving on. Returns whether anything changed.
-bool System::settle_contact(std::size_t i, double xi, double r, const Motion& now, std::vector<Event>& log,
+bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log,
                             std::vector<Event>& made) {
-  const double least = k_touch * speed_scale();
+  const double r = y[k_radius];
   const double overlap = now_[i].overlap;
-  const double wall_rate = inward_rate(i, now);
-  const double rate = wall_rate + now.growth;
+  const double of_wall = wall_rate(i, now);
+  const double of_overlap = overlap_rate(i, now);
   // At the very start of growth its rate is zero, and about to be positive.
-  const bool is_carried = is_growing_ && wall_rate >= -least;
-  const bool moves_in = rate > least || is_carried;
-  const bool moves_out = rate < -least && !is_carried;
-  const bool retreats = settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate < -least : moves_out;
-  const bool advances = settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate > least : moves_in;
+  const bool is_carried = is_growing_ && !is_loaded(i) && of_wall >= -k_touch;
+  const bool moves_in = of_overlap > k_touch || is_carried;
+  const bool moves_out = of_overlap < -k_touch && !is_carried;
+  const bool retreats = settings_.delta_max_rule == DeltaMaxRule::shifted ? of_wall < -k_touch : moves_out;
+  const bool advances = settings_.delta_max_rule == DeltaMaxRule::shifted ? of_wall > k_touch : moves_in;
+  const bool is_pressed = is_loaded(i) && prescribed_force(i, xi) > 0.0;
   const auto event = [&](std::string_view name) { return Event{name, static_cast<int>(i)}; };
-  const auto is_past = [&](int kind, double sign) { return sign * contact_guard(kind, i, overlap, r) >= -k_touch; };
+  const auto is_past = [&](int kind, double sign) { return sign * contact_guard(kind, i, xi, overlap, r) >= -k_touch; };
+  const std::string_view why = xi == 0.0 ? "load-reversal" : "retreat";
 
   Memory& memory = memory_[i];
   switch (memory.regime) {
     case Regime::open:
-      if (!moves_in || !is_past(k_made, 1.0)) return false;
+      if (!(moves_in || is_pressed) || !is_past(k_made, 1.0)) return false;
       make_contact(i);
       made.push_back(event("contact-made"));
       return true;
     case Regime::separated:
-      if (!moves_in || !is_past(k_dent_touched, 1.0)) return false;
+      if (!(moves_in || is_pressed) || !is_past(k_dent_touched, 1.0)) return false;
       make_contact(i);
       log.push_back(event("dent-touched"));
       return true;
     case Regime::elastic:
       if (memory.is_virgin && retreats) {
-        start_unloading(i, r);
-        log.push_back(event(xi == 0.0 ? "load-reversal" : "retreat"));
+        start_unloading(i, r, why, log);
         return true;
       }
       if (memory.is_virgin && moves_in && std::isfinite(material_.yield_overlap_ratio) && is_past(k_yield, 1.0)) {
@@ -174,8 +234,7 @@ bool System::settle_contact(std::size_t i, double xi, double r, const Motion& no
       break;
     case Regime::fully_plastic:
       if (!retreats) return false;
-      start_unloading(i, r);
-      log.push_back(event(xi == 0.0 ? "load-reversal" : "retreat"));
+      start_unloading(i, r, why, log);
       return true;
     case Regime::unloading:
       break;
@@ -186,12 +245,59 @@ bool System::settle_contact(std::size_t i, double xi, double r, const Motion& no
     log.push_back(event("reload"));
     return true;
   }
+  if (adheres()) return settle_edge(i, xi, y, moves_in, moves_out, log);
   if (moves_out && is_past(k_lost, -1.0)) {
     lose_contact(i);
     log.push_back(event("contact-lost"));
     return true;
   }
   return false;
+}
+
+/// The same for the edge of an adhesive contact below its largest overlap.
+bool System::settle_edge(std::size_t i, double xi, std::span<double> y, bool moves_in, bool moves_out,
+                         std::vector<Event>& log) {
+  const double r = y[k_radius];
+  const double overlap = now_[i].overlap;
+  const auto is_past = [&](int kind, double sign) { return sign * edge_guard(kind, i, xi, overlap, r) >= -k_touch; };
+  Memory& memory = memory_[i];
+  switch (memory.edge) {
+    case Edge::following:
+      if (!moves_out) return false;
+      stick(i, log);
+      return true;
+    case Edge::sticking:
+      if (moves_in && is_past(k_follow, 1.0)) {
+        memory.edge = Edge::following;
+        log.push_back({"follow", static_cast<int>(i)});
+        return true;
+      }
+      if (!moves_out || !is_past(k_peel, -1.0)) return false;
+      start_peeling(i, r, y, log);
+      return true;
+    case Edge::peeling:
+      // A force that is held where only a displacement could be has the edge run away.
+      if (is_past(k_pull_off, -1.0) && (moves_out || is_loaded(i))) {
+        separate(i, r, y, log);
+        return true;
+      }
+      if (!moves_in) return false;
+      stick(i, log);
+      return true;
+  }
+  return false;
+}
+
+/// The springs at a sticking edge tear: it recedes in equilibrium, or, within the critical radius, at once.
+void System::start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log) {
+  const PullOff& limits = pull_off(i, frame(i, now_[i].overlap, r).indenter);
+  const PeelState& critical = is_loaded(i) ? limits.by_force : limits.by_displacement;
+  if (memory_[i].edge_radius <= critical.contact_radius) {
+    separate(i, r, y, log);
+    return;
+  }
+  memory_[i].edge = Edge::peeling;
+  log.push_back({"peel", static_cast<int>(i)});
 }
 
 /// Whether the other touching contacts can balance a push of one of them on the free centre: non-negative least squares
@@ -219,10 +325,10 @@ bool System::is_backed(std::size_t i) const {
 /// A wall that pushes a particle which nothing holds from the other side has no equilibrium.
 /// @throws std::domain_error there
 void System::check_support() const {
-  if (free_count_ == 0) return;
+  if (free_count_ == 0 || adheres()) return;
   const double least = k_touch * speed_scale();
   for (std::size_t i = 0; i < memory_.size(); ++i) {
-    const bool pushes = touches(memory_[i].regime) && ramps_[i].end - ramps_[i].start > least;
+    const bool pushes = touches(memory_[i].regime) && !is_loaded(i) && ramps_[i].end - ramps_[i].start > least;
     if (pushes && directions_[i].norm() > 1e-10 && !is_backed(i)) {
       throw std::domain_error("no contact holds the free centre of the particle against a wall that pushes it");
     }
@@ -231,10 +337,13 @@ void System::check_support() const {
 
 /// Decides the mode: branch of every contact and growth depend on each other, so assume, look, correct, and repeat.
 /// @param growth  what a growth guard has just decided; none: the sign of the demand decides
-void System::settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log) {
+/// @param has_jumped  the force of a contact has jumped, and its wall has not given way yet
+void System::settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log,
+                    bool has_jumped) {
   const bool was_growing = is_growing_;
   std::vector<Event> made;
-  complete(xi, y);
+  if (!has_jumped) complete(xi, y);
+  held_radius_ = y[k_radius];
   const std::size_t most_rounds = 4 * memory_.size() + 8;
   for (std::size_t round = 0;; ++round) {
     if (round == most_rounds) throw std::domain_error("the regimes of the contacts do not settle");
@@ -244,9 +353,12 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
     const std::size_t events_before = log.size();
     bool has_changed = false;
     for (std::size_t i = 0; i < memory_.size(); ++i) {
-      has_changed = settle_contact(i, xi, y[k_radius], now, log, made) || has_changed;
+      has_changed = settle_contact(i, xi, y, now, log, made) || has_changed;
     }
     if (!has_changed) break;
+    // Where a contact has pulled off, the others have to balance anew.
+    if (!has_jumped && adheres()) complete(xi, y);
+    if (!has_jumped && !adheres()) move_walls(xi, y);
     // A contact that has just been made carries no force yet and leaves the growth guard's decision standing.
     if (log.size() > events_before) growth.reset();
   }
@@ -255,7 +367,6 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
   log.insert(log.end(), made.begin(), made.end());
 
   look(xi, y);
-  held_radius_ = y[k_radius];
   frozen_balance_ = is_growing_ ? sums_.balance : 0.0;
   hold_centre(y);
   watch(xi, y);
@@ -263,7 +374,12 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
 
 // --- guards
 
-double System::contact_guard(int kind, std::size_t i, double overlap, double r) {
+double System::contact_guard(int kind, std::size_t i, double xi, double overlap, double r) {
+  // Under force a contact lasts as long as the force presses; a program that returns exactly to zero does not leave it.
+  if (is_loaded(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost)) {
+    const double scale = std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
+    return scale > 0.0 ? prescribed_force(i, xi) / scale + (kind == k_lost ? k_same_overlap : 0.0) : 0.0;
+  }
   switch (kind) {
     case k_yield:
       return overlap / (1.0 + r) - material_.yield_overlap_ratio;
@@ -277,6 +393,22 @@ double System::contact_guard(int kind, std::size_t i, double overlap, double r) 
     default:
       return overlap;
   }
+}
+
+/// Distances from the states in which the edge of an adhesive contact changes, over what tears it.
+double System::edge_guard(int kind, std::size_t i, double xi, double overlap, double r) {
+  const Frame now = frame(i, overlap, r);
+  if (kind == k_pull_off) {
+    const PullOff& limits = pull_off(i, now.indenter);
+    if (is_loaded(i)) return (prescribed_force(i, xi) - limits.by_force.force) / std::abs(limits.by_force.force);
+    const double critical = limits.by_displacement.displacement_1d;
+    return (now.displacement - critical) / std::abs(critical);
+  }
+  const double a = memory_[i].edge_radius;
+  const double w = now.displacement - profile_height(now.indenter, a);
+  const double stretch = critical_stretch(material_.composite_modulus, surface_energy_, a);
+  if (stretch == 0.0) return w;
+  return kind == k_peel ? w / stretch + 1.0 : w / stretch;
 }
 
 double System::cap_guard(const CapPair& pair, double r) const {
@@ -314,7 +446,7 @@ void System::watch(double xi, std::span<const double> y) {
     guards_.push_back({k_volume, -1, -1, "volume-limit"});
   }
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
-    if (1.0 - ramps_[i].end < 2.0 * k_least_distance || free_count_ > 0) {
+    if (is_loaded(i) || 1.0 - ramps_[i].end < 2.0 * k_least_distance || free_count_ > 0) {
       guards_.push_back({k_centre_reached, static_cast<int>(i), -1, "limit"});
     }
   }
@@ -322,18 +454,21 @@ void System::watch(double xi, std::span<const double> y) {
 
 void System::watch_contact(std::size_t i, double r, const Motion& now) {
   const Memory& memory = memory_[i];
-  const bool is_free = free_count_ > 0 && directions_[i].norm() > 1e-10;
-  const double wall_rate = inward_rate(i, now);
-  const bool is_predictable = !is_growing_ && !is_free;  // overlap linear in xi, radius held
+  const int index = static_cast<int>(i);
+  const bool is_free = !is_loaded(i) && free_count_ > 0 && directions_[i].norm() > 1e-10;
+  const bool may_turn = is_growing_ || is_free;            // in mid-step
+  const bool is_predictable = !may_turn && !is_loaded(i);  // overlap linear in xi, radius held
   const double last_overlap = ramps_[i].end + r;
 
   const auto add = [&](int kind, int direction, std::string_view name) {
-    // What a linear overlap does not reach by the end of the step needs no watching.
-    if (is_predictable && direction * contact_guard(kind, i, last_overlap, r) < -1e-9) return;
-    guards_.push_back({kind, static_cast<int>(i), direction, name});
+    // What a linear overlap, or a prescribed force, does not reach by the end of the step needs no watching.
+    const bool is_by_force = is_loaded(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost);
+    if ((is_predictable || is_by_force) && direction * contact_guard(kind, i, 1.0, last_overlap, r) < -1e-9) return;
+    guards_.push_back({kind, index, direction, name});
   };
-  const bool may_come_in = wall_rate > 0.0 || is_growing_ || is_free;
-  const bool may_go_out = wall_rate < 0.0 || is_growing_ || is_free;
+  const double rate = overlap_rate(i, now);
+  const bool may_come_in = rate > 0.0 || may_turn;
+  const bool may_go_out = rate < 0.0 || may_turn;
   switch (memory.regime) {
     case Regime::open:
       if (may_come_in) add(k_made, 1, "contact-made");
@@ -350,18 +485,42 @@ void System::watch_contact(std::size_t i, double r, const Motion& now) {
     if (memory.regime == Regime::elastic && may_come_in && std::isfinite(material_.yield_overlap_ratio)) {
       add(k_yield, 1, "yield");
     }
-    const bool may_retreat = is_free || (wall_rate < 0.0 && settings_.delta_max_rule == DeltaMaxRule::running_maximum);
-    if (may_retreat && !is_predictable) guards_.push_back({k_retreat, static_cast<int>(i), -1, "retreat"});
+    const bool is_shifted = settings_.delta_max_rule == DeltaMaxRule::shifted;
+    const bool may_retreat = is_free || (may_turn && (is_loaded(i) || (wall_rate(i, now) < 0.0 && !is_shifted)));
+    if (may_retreat) guards_.push_back({k_retreat, index, -1, "retreat"});
     return;
   }
   if (may_come_in) add(k_reload, 1, "reload");
-  if (may_go_out) add(k_lost, -1, "contact-lost");
+  if (adheres())
+    watch_edge(i, r, may_come_in, may_go_out, may_turn);
+  else if (may_go_out)
+    add(k_lost, -1, "contact-lost");
+}
+
+void System::watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_out, bool may_turn) {
+  const Memory& memory = memory_[i];
+  const int index = static_cast<int>(i);
+  switch (memory.edge) {
+    case Edge::following:
+      if (may_turn) guards_.push_back({k_turn, index, -1, "stick"});
+      break;
+    case Edge::sticking: {
+      // An edge that sticks since the largest overlap follows again when that is passed.
+      const double at_largest = edge_guard(k_follow, i, 0.0, largest_overlap(memory, r), r);
+      if (may_come_in && (may_turn || at_largest > 1e-9)) guards_.push_back({k_follow, index, 1, "follow"});
+      if (may_go_out) guards_.push_back({k_peel, index, -1, "peel"});
+      break;
+    }
+    case Edge::peeling:
+      if (may_go_out) guards_.push_back({k_pull_off, index, -1, "pull-off"});
+      if (may_turn) guards_.push_back({k_turn, index, 1, "stick"});
+      break;
+  }
 }
 
 void System::guard_values(double xi, std::span<const double> y, std::span<double> values) {
   look(xi, y);
   const double r = y[k_radius];
-  const double speed = speed_scale();
   const Motion now = motion(is_growing_);
   for (std::size_t g = 0; g < guards_.size(); ++g) {
     const auto i = static_cast<std::size_t>(std::max(0, guards_[g].index));
@@ -382,13 +541,19 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
       case k_centre_reached:
         values[g] = 1.0 - now_[i].displacement - k_least_distance;
         break;
-      case k_retreat: {
-        const double growth = settings_.delta_max_rule == DeltaMaxRule::shifted ? 0.0 : now.growth;
-        values[g] = (inward_rate(i, now) + growth) / speed;
+      case k_retreat:
+        values[g] = settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate(i, now) : overlap_rate(i, now);
         break;
-      }
+      case k_turn:
+        values[g] = overlap_rate(i, now);
+        break;
+      case k_peel:
+      case k_follow:
+      case k_pull_off:
+        values[g] = edge_guard(guards_[g].kind, i, xi, now_[i].overlap, r);
+        break;
       default:
-        values[g] = contact_guard(guards_[g].kind, i, now_[i].overlap, r);
+        values[g] = contact_guard(guards_[g].kind, i, xi, now_[i].overlap, r);
         break;
     }
   }
@@ -400,6 +565,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   const double r = y[k_radius];
   std::optional<bool> growth;
   bool others_fired = false;
+  bool has_jumped = false;
   std::optional<DomainEnd> end;
   for (const std::size_t g : fired) {
     const Guard guard = guards_[g];
@@ -412,6 +578,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     switch (guard.kind) {
       case k_yield:
         yield(i, r);
+        has_jumped = has_jumped || is_loaded(i);
         break;
       case k_reload:
         resume_loading(i);
@@ -424,7 +591,23 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         lose_contact(i);
         break;
       case k_retreat:
-        start_unloading(i, r);
+        start_unloading(i, r, guard.name, log);
+        others_fired = true;
+        continue;
+      case k_turn:
+        stick(i, log);
+        others_fired = true;
+        continue;
+      case k_peel:
+        start_peeling(i, r, y, log);
+        others_fired = true;
+        continue;
+      case k_pull_off:
+        separate(i, r, y, log);
+        others_fired = true;
+        continue;
+      case k_follow:
+        memory_[i].edge = Edge::following;
         break;
       case k_growth_on:
       case k_growth_off:
@@ -462,7 +645,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     if (log.empty() || log.back().name != end->event.name) log.push_back(end->event);
     return end;
   }
-  settle(xi, y, others_fired ? std::nullopt : growth, log);
+  settle(xi, y, others_fired ? std::nullopt : growth, log, has_jumped);
   return std::nullopt;
 }
 

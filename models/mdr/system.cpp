@@ -23,8 +23,12 @@ constexpr std::size_t k_centre = 2;
 constexpr double k_round_off = std::numeric_limits<double>::epsilon();
 constexpr int k_newton_limit = 60;
 
-constexpr std::array<std::string_view, 5> k_regime_words{"open", "elastic", "fully-plastic", "unloading", "separated"};
+// In the order of Regime, then what replaces them where the edge of an adhesive contact sticks or peels.
+constexpr std::array<std::string_view, 7> k_regime_words{"open",      "elastic",  "fully-plastic", "unloading",
+                                                         "separated", "adhering", "peeling"};
 constexpr std::array<std::string_view, 2> k_hertz_words{"open", "elastic"};
+constexpr double k_adhering_word = 5.0;
+constexpr double k_peeling_word = 6.0;
 
 constexpr std::array<std::string_view, 3> k_centre_names{"centre displacement 1", "centre displacement 2",
                                                          "centre displacement 3"};
@@ -42,12 +46,15 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   material_.composite_modulus /= stress_unit_;
   material_.yield_stress /= stress_unit_;
   material_.bulk_compliance *= stress_unit_;
+  surface_energy_ = settings_.surface_energy / (stress_unit_ * settings_.initial_radius);
 
   const std::size_t count = classes_.size();
   memory_.resize(count);
   now_.resize(count);
   shapes_.resize(count);
+  pull_offs_.resize(count);
   ramps_.resize(count);
+  wall_places_.resize(count);
 
   Eigen::Matrix3Xd means(3, static_cast<Eigen::Index>(count));
   for (std::size_t i = 0; i < count; ++i) {
@@ -72,6 +79,11 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
                {"work", Unknown::Kind::quadrature, work_scale(reach), false}};
   for (int k = 0; k < free_count_; ++k) {
     unknowns_.push_back({k_centre_names[static_cast<std::size_t>(k)], Unknown::Kind::algebraic, reach, true});
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!classes_[i].takes_force) continue;
+    wall_places_[i] = unknowns_.size();
+    unknowns_.push_back({classes_[i].name, Unknown::Kind::algebraic, reach, true, true});
   }
 
   const bool grows = settings_.radius_rule != RadiusRule::fixed;
@@ -115,7 +127,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
 /// Work of one wall up to a displacement, whichever is less of an elastic and a fully plastic contact.
 double System::work_scale(double displacement) const noexcept {
   const double elastic = hertz_energy(material_.composite_modulus, 1.0, displacement);
-  const double plastic = plastic_pressure(material_.yield_stress, 0.0).pressure * pi * displacement * displacement;
+  const double plastic = plastic_pressure(material_, 0.0).pressure * pi * displacement * displacement;
   return std::isfinite(material_.yield_overlap_ratio) ? std::min(elastic, plastic) : elastic;
 }
 
@@ -130,7 +142,9 @@ void System::start(std::span<double> y) {
   has_begun_ = false;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const double gap = classes_[i].gap / settings_.initial_radius;
-    ramps_[i] = {-gap, -gap};
+    ramps_[i] = {-gap, -gap, Control::displacement};
+    memory_[i].resting = -gap;
+    if (classes_[i].takes_force) y[wall_places_[i]] = -gap;
     // A free centre is held by whatever it touches; otherwise resting walls stay open until the particle grows against
     // them.
     if (gap == 0.0 && directions_[i].norm() > 1e-10) memory_[i].regime = Regime::elastic;
@@ -138,12 +152,18 @@ void System::start(std::span<double> y) {
 }
 
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
+  if (has_begun_) y[k_work] += force_work(y);
+  const double length = settings_.initial_radius;
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
-    ramps_[i] = {ramps[i].start / settings_.initial_radius, ramps[i].end / settings_.initial_radius};
+    const double unit = ramps[i].control == Control::force ? stress_unit_ * length * length : length;
+    ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
+    if (is_loaded(i)) memory_[i].resting = y[wall_places_[i]];
     // A driven wall that touches the fresh particle and approaches is in contact from the start, without an event.
-    if (!has_begun_ && ramps_[i].start == 0.0 && ramps_[i].end > 0.0) memory_[i].regime = Regime::elastic;
+    const bool touches_at_once = is_loaded(i) ? classes_[i].gap == 0.0 : ramps_[i].start == 0.0;
+    if (!has_begun_ && touches_at_once && ramps_[i].end > 0.0) memory_[i].regime = Regime::elastic;
   }
   has_begun_ = true;
+  y[k_work] -= force_work(y);
   settle(0.0, y, std::nullopt, log);
 }
 
@@ -193,14 +213,25 @@ const UnloadingShape& System::shape(std::size_t i, double r) {
 
 /// Contacts of all classes at an instant.
 void System::look(double xi, std::span<const double> y) {
-  const double r = y[k_radius];
-  const double radius = 1.0 + r;
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    Instant& now = now_[i];
-    const Memory& memory = memory_[i];
-    now.displacement = std::lerp(ramps_[i].start, ramps_[i].end, xi);
-    for (int k = 0; k < free_count_; ++k) now.displacement += directions_[i][k] * y[centre_place(k)];
-    now.overlap = now.displacement + r;
+    look_at(i, is_loaded(i) ? y[wall_places_[i]] : displacement_as_told(i, xi, y), y[k_radius]);
+  }
+  sum_up(xi, y[k_radius]);
+}
+
+void System::look_at(std::size_t i, double displacement, double r) {
+  const double radius = 1.0 + r;
+  Instant& now = now_[i];
+  const Memory& memory = memory_[i];
+  now.displacement = displacement;
+  now.overlap = displacement + r;
+  if (memory.edge != Edge::following) {
+    const Frame adhesive = frame(i, now.overlap, r);
+    now.contact = memory.edge == Edge::sticking
+                      ? sticking_contact(adhesive, material_.composite_modulus, memory.edge_radius)
+                      : peeling_contact(adhesive, material_.composite_modulus, surface_energy_,
+                                        pull_off(i, adhesive.indenter).by_displacement.contact_radius);
+  } else {
     switch (memory.regime) {
       case Regime::open:
       case Regime::separated:
@@ -210,20 +241,134 @@ void System::look(double xi, std::span<const double> y) {
         now.contact = elastic_contact(settings_.elastic_profile, material_.composite_modulus, radius, now.overlap);
         break;
       case Regime::fully_plastic:
-        now.contact = plastic_contact(material_.yield_stress, radius, now.overlap, memory.area_constant);
+        now.contact = plastic_contact(material_, radius, now.overlap, memory.area_constant);
         break;
       case Regime::unloading:
         now.contact = unloading_contact(shape(i, r), material_.composite_modulus, now.overlap);
-        if (settings_.delta_max_rule == DeltaMaxRule::shifted) now.contact.by_radius += now.contact.by_overlap_max;
         break;
     }
   }
-  sum_up(r);
+  if (settings_.delta_max_rule == DeltaMaxRule::shifted) now.contact.by_radius += now.contact.by_overlap_max;
+}
+
+/// Force times displacement of the contacts under force.
+double System::force_work(std::span<const double> y) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    if (!is_loaded(i)) continue;
+    look_at(i, y[wall_places_[i]], y[k_radius]);
+    sum += classes_[i].multiplicity() * now_[i].contact.force * now_[i].displacement;
+  }
+  return sum;
+}
+
+/// The one-dimensional space of an elastic contact, or of one below its largest overlap.
+Frame System::frame(std::size_t i, double overlap, double r) {
+  return memory_[i].regime == Regime::elastic ? elastic_frame(settings_.elastic_profile, 1.0 + r, overlap)
+                                              : unloading_frame(shape(i, r), overlap);
+}
+
+const System::PullOff& System::pull_off(std::size_t i, const Indenter& indenter) {
+  PullOff& known = pull_offs_[i];
+  if (known.indenter.height != indenter.height || known.indenter.half_width != indenter.half_width) {
+    const double modulus = material_.composite_modulus;
+    const auto state = [&](Control control) {
+      return peel_state(indenter, modulus, surface_energy_,
+                        critical_radius(indenter, modulus, surface_energy_, control));
+    };
+    known = {indenter, state(Control::displacement), state(Control::force)};
+  }
+  return known;
+}
+
+double System::prescribed_force(std::size_t i, double xi) const noexcept {
+  return std::lerp(ramps_[i].start, ramps_[i].end, xi);
+}
+
+/// Overlap at which an open wall begins to touch.
+double System::touching_overlap(std::size_t i, double r) {
+  if (memory_[i].regime != Regime::separated) return 0.0;
+  const UnloadingShape& dent = shape(i, r);
+  return dent.overlap_max - dent.recovery;
+}
+
+/// Displacement of a wall under its prescribed force. Where no contact bears that force, the nearest that one bears: an
+/// event lies between.
+double System::displacement_under_force(std::size_t i, double xi, double r, double guess) {
+  const Memory& memory = memory_[i];
+  const double radius = 1.0 + r;
+  const double modulus = material_.composite_modulus;
+  const double force = prescribed_force(i, xi);
+  if (memory.edge != Edge::following) {
+    const Indenter indenter = frame(i, 0.0, r).indenter;
+    double displacement_1d = 0.0;
+    if (memory.edge == Edge::sticking) {
+      const double a = memory.edge_radius;
+      displacement_1d = profile_height(indenter, a) + (force - free_force(indenter, modulus, a)) / (2.0 * modulus * a);
+    } else {
+      displacement_1d =
+          peel_at_force(indenter, modulus, surface_energy_, pull_off(i, indenter).by_force.contact_radius, force)
+              .displacement_1d;
+    }
+    return (memory.regime == Regime::elastic ? displacement_1d : overlap_at(shape(i, r), displacement_1d)) - r;
+  }
+  switch (memory.regime) {
+    case Regime::open:
+    case Regime::separated:
+      // A growing particle pushes an idle wall along.
+      return std::min(memory.resting, touching_overlap(i, r) - r);
+    case Regime::elastic:
+      return elastic_overlap(settings_.elastic_profile, modulus, radius, force) - r;
+    case Regime::fully_plastic:
+      return plastic_overlap(material_, radius, force, memory.area_constant, guess + r) - r;
+    case Regime::unloading:
+      return unloading_overlap(shape(i, r), force) - r;
+  }
+  return guess;
+}
+
+/// Displacement of a wall as the program and a free centre make it.
+double System::displacement_as_told(std::size_t i, double xi, std::span<const double> y) const noexcept {
+  double displacement = std::lerp(ramps_[i].start, ramps_[i].end, xi);
+  for (int k = 0; k < free_count_; ++k) displacement += directions_[i][k] * y[centre_place(k)];
+  return displacement;
+}
+
+/// The walls under force, at a given radius.
+void System::move_walls(double xi, std::span<double> y) {
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    if (!is_loaded(i)) continue;
+    double& place = y[wall_places_[i]];
+    place = displacement_under_force(i, xi, y[k_radius], place);
+  }
+}
+
+/// The unknowns of walls that are under force at other times only.
+void System::note_walls(double xi, std::span<double> y) const noexcept {
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    if (classes_[i].takes_force && !is_loaded(i)) y[wall_places_[i]] = displacement_as_told(i, xi, y);
+  }
+}
+
+/// How the displacement of a wall goes with xi and R.
+void System::set_rates(std::size_t i, double r) {
+  Instant& now = now_[i];
+  const double speed = ramps_[i].end - ramps_[i].start;
+  now.rate_by_time = is_loaded(i) ? 0.0 : speed;
+  now.rate_by_growth = 0.0;
+  if (!is_loaded(i)) return;
+  const Contact& c = now.contact;
+  if (touches(memory_[i].regime) && c.by_overlap > 0.0) {
+    now.rate_by_time = speed / c.by_overlap;
+    now.rate_by_growth = -1.0 - c.by_radius / c.by_overlap;
+  } else if (touches(memory_[i].regime) || memory_[i].resting >= touching_overlap(i, r) - r) {
+    now.rate_by_growth = -1.0;  // without load the wall stays at the surface
+  }
 }
 
 /// Volume balance, power and force balance of what look() found. Equations (37) and (38) in the form that can be
 /// integrated.
-void System::sum_up(double r) {
+void System::sum_up(double xi, double r) {
   const double radius = 1.0 + r;
   sums_.by_centre.setZero();
   sums_.force.setZero();
@@ -231,6 +376,7 @@ void System::sum_up(double r) {
   sums_.force_by_radius.setZero();
   sums_.stiffness.setZero();
   sums_.power = 0.0;
+  sums_.force_work = 0.0;
 
   double virial_of_all = 0.0;
   double virial = 0.0;  // of the members of the growth set
@@ -253,17 +399,25 @@ void System::sum_up(double r) {
   sums_.time_scale = 0.0;
   sums_.by_radius = 0.0;
   for (std::size_t i = 0; i < now_.size(); ++i) {
+    set_rates(i, r);
     if (!touches(memory_[i].regime)) continue;
     const Instant& now = now_[i];
     const Contact& c = now.contact;
     const double count = classes_[i].multiplicity();
     const double speed = ramps_[i].end - ramps_[i].start;
-    sums_.power += count * c.force * speed;
+    if (is_loaded(i)) {
+      sums_.power -= count * now.displacement * speed;
+      sums_.force_work += count * prescribed_force(i, xi) * now.displacement;
+    } else {
+      sums_.power += count * c.force * speed;
+    }
     if (free_count_ > 0) {
       sums_.force += count * c.force * directions_[i];
-      sums_.force_by_time += count * c.by_overlap * speed * directions_[i];
-      sums_.force_by_radius += count * (c.by_overlap + c.by_radius) * directions_[i];
-      sums_.stiffness += count * c.by_overlap * directions_[i] * directions_[i].transpose();
+      sums_.force_by_time += count * (is_loaded(i) ? speed : c.by_overlap * speed) * directions_[i];
+      if (!is_loaded(i)) {
+        sums_.force_by_radius += count * (c.by_overlap + c.by_radius) * directions_[i];
+        sums_.stiffness += count * c.by_overlap * directions_[i] * directions_[i].transpose();
+      }
     }
     if (!is_member(memory_[i])) continue;
     const double distance = 1.0 - now.displacement;
@@ -272,10 +426,10 @@ void System::sum_up(double r) {
     const double cap_rate = 0.25 * now.overlap * (2.0 * radius - now.overlap);
     const double volume_rate = weight * (c.by_overlap * distance - c.force);
     const double by_displacement = count * (volume_rate - cap_rate);
-    sums_.by_time += by_displacement * speed;
-    sums_.time_scale += count * (std::abs(volume_rate) + std::abs(cap_rate)) * std::abs(speed);
-    sums_.by_radius += count * weight * (c.by_overlap + c.by_radius) * distance;
-    if (free_count_ > 0) sums_.by_centre += by_displacement * directions_[i];
+    sums_.by_time += by_displacement * now.rate_by_time;
+    sums_.time_scale += count * (std::abs(volume_rate) + std::abs(cap_rate)) * std::abs(now.rate_by_time);
+    sums_.by_radius += count * weight * (c.by_overlap + c.by_radius) * distance + by_displacement * now.rate_by_growth;
+    if (free_count_ > 0 && !is_loaded(i)) sums_.by_centre += by_displacement * directions_[i];
   }
   sums_.balance = r * (1.0 + r * (1.0 + r / 3.0)) - caps + 2.0 * w / (3.0 * (1.0 + root));
   sums_.by_radius += radius * radius - 0.5 * radius * overlaps;
@@ -286,7 +440,7 @@ void System::sum_up(double r) {
 void System::regularise_first_touch() {
   if (sums_.stiffness.trace() > 0.0) return;
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    if (!touches(memory_[i].regime)) continue;
+    if (!touches(memory_[i].regime) || is_loaded(i)) continue;
     const double count = classes_[i].multiplicity();
     sums_.stiffness += count * directions_[i] * directions_[i].transpose();
     sums_.force_by_time += count * (ramps_[i].end - ramps_[i].start) * directions_[i];
@@ -333,12 +487,15 @@ System::Motion System::growing_motion() const {
 
 /// d(delta_o)/dxi of a wall, towards the centre positive.
 double System::inward_rate(std::size_t i, const Motion& motion) const noexcept {
-  return ramps_[i].end - ramps_[i].start + directions_[i].dot(motion.centre);
+  const double carried = is_loaded(i) ? 0.0 : directions_[i].dot(motion.centre);
+  return now_[i].rate_by_time + now_[i].rate_by_growth * motion.growth + carried;
 }
 
 void System::complete(double xi, std::span<double> y) {
   if (!is_growing_) y[k_radius] = held_radius_;
+  move_walls(xi, y);
   if (free_count_ > 0) move_centre(xi, y);
+  note_walls(xi, y);
 }
 
 /// Newton on the balance of forces at a given radius; the force grows with the overlap, so damping is all it needs.
@@ -378,6 +535,11 @@ void System::all_rates(double xi, std::span<const double> y, std::span<double> d
   dy[k_radius] = now.growth;
   dy[k_work] = sums_.power;
   for (int k = 0; k < free_count_; ++k) dy[centre_place(k)] = now.centre[k];
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    if (classes_[i].takes_force) {
+      dy[wall_places_[i]] = inward_rate(i, now);
+    }
+  }
 }
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
@@ -391,6 +553,12 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
     double row = stiffness > 0.0 ? sums_.force[k] / stiffness : 0.0;
     for (int j = 0; j < free_count_; ++j) row += unheld_(k, j) * (y[centre_place(j)] - held_centre_[j]);
     res[centre_place(k)] = row;
+  }
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    if (!classes_[i].takes_force) continue;
+    const double displacement = y[wall_places_[i]];
+    res[wall_places_[i]] = displacement - (is_loaded(i) ? displacement_under_force(i, xi, y[k_radius], displacement)
+                                                        : displacement_as_told(i, xi, y));
   }
 }
 
@@ -422,6 +590,8 @@ double System::balance_residual(double xi, std::span<const double> y) {
 void System::solve(double xi, std::span<double> y) {
   if (is_growing_) {
     grow(xi, y);
+    move_walls(xi, y);  // to the radius of the last iteration
+    note_walls(xi, y);
   } else {
     complete(xi, y);
   }
@@ -431,6 +601,7 @@ void System::solve(double xi, std::span<double> y) {
 void System::grow(double xi, std::span<double> y) {
   double step_size = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
+    move_walls(xi, y);
     look(xi, y);
     const Small to_balance = balance_step(sums_.force);
     const Small by_radius = balance_step(sums_.force_by_radius);
@@ -454,35 +625,42 @@ void System::grow(double xi, std::span<double> y) {
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
   if (is_growing_) return std::nullopt;
   look(xi, y);
-  return energy(y[k_radius], PlasticPart::work_done);
+  return energy(y[k_radius], PlasticPart::work_done) - sums_.force_work;
 }
 
 /// Energy of the contacts that look() found.
 double System::energy(double r, PlasticPart plastic_part) {
-  const double radius = 1.0 + r;
   double sum = 0.0;
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    const double count = classes_[i].multiplicity();
-    const double overlap = now_[i].overlap;
-    switch (memory_[i].regime) {
-      case Regime::open:
-      case Regime::separated:
-        break;
-      case Regime::elastic:
-        sum += count * elastic_energy(settings_.elastic_profile, material_.composite_modulus, radius, overlap);
-        break;
-      case Regime::fully_plastic:
-        sum +=
-            count * (plastic_part == PlasticPart::recoverable
-                         ? plastic_energy(shape(i, r))
-                         : plastic_work_primitive(material_.yield_stress, radius, overlap, memory_[i].area_constant));
-        break;
-      case Regime::unloading:
-        sum += count * unloading_energy(shape(i, r), overlap);
-        break;
-    }
+    if (touches(memory_[i].regime)) sum += classes_[i].multiplicity() * contact_energy(i, r, plastic_part);
   }
   return sum;
+}
+
+double System::contact_energy(std::size_t i, double r, PlasticPart plastic_part) {
+  const Memory& memory = memory_[i];
+  const double overlap = now_[i].overlap;
+  const double a = now_[i].contact.contact_radius;
+  if (memory.edge != Edge::following) {
+    return adhesive_energy(frame(i, overlap, r), material_.composite_modulus, surface_energy_, a);
+  }
+  // A contact closes without attraction: the surface energy is lost, but can be got back.
+  const double surface = plastic_part == PlasticPart::recoverable ? pi * a * a * surface_energy_ : 0.0;
+  switch (memory.regime) {
+    case Regime::open:
+    case Regime::separated:
+      break;
+    case Regime::elastic:
+      return elastic_energy(settings_.elastic_profile, material_.composite_modulus, 1.0 + r, overlap) - surface;
+    case Regime::fully_plastic:
+      if (plastic_part == PlasticPart::work_done) {
+        return plastic_work_primitive(material_, 1.0 + r, overlap, memory.area_constant);
+      }
+      return plastic_energy(shape(i, r)) - (1.0 - shape(i, r).rho) * surface;
+    case Regime::unloading:
+      return unloading_energy(shape(i, r), overlap) - (1.0 - shape(i, r).rho) * surface;
+  }
+  return 0.0;
 }
 
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
@@ -491,9 +669,10 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   const double length = settings_.initial_radius;
   const double force_unit = stress_unit_ * length * length;
   const double energy_unit = force_unit * length;
+  const double work = y[k_work] + sums_.force_work;
   const double stored = energy(r, PlasticPart::recoverable);
-  const double dissipation = y[k_work] - stored;
-  largest_work_ = std::max(largest_work_, y[k_work]);
+  const double dissipation = work - stored;
+  largest_work_ = std::max(largest_work_, work);
   lowest_dissipation_ = std::min(lowest_dissipation_, dissipation);
 
   auto out = values.begin();
@@ -503,7 +682,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
     *out++ = (1.0 + r) * length;
     *out++ = 4.0 * pi / 3.0 * length * length * length * volume;
   }
-  *out++ = y[k_work] * energy_unit;
+  *out++ = work * energy_unit;
   *out++ = stored * energy_unit;
   *out++ = dissipation * energy_unit;
   for (std::size_t i = 0; i < now_.size(); ++i) {
@@ -513,7 +692,9 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
     *out++ = c.force * force_unit;
     *out++ = c.contact_radius * length;
     *out++ = c.contact_radius > 0.0 ? c.force / (pi * c.contact_radius * c.contact_radius) * stress_unit_ : 0.0;
-    *out++ = static_cast<double>(memory_[i].regime);
+    *out++ = memory_[i].edge == Edge::sticking  ? k_adhering_word
+             : memory_[i].edge == Edge::peeling ? k_peeling_word
+                                                : static_cast<double>(memory_[i].regime);
   }
   if (settings_.centre_is_free) {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -541,6 +722,15 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
       return (1.0 + y[k_radius]) * length;
   }
   return 0.0;
+}
+
+double System::wall_position(int contact_class, double xi, std::span<const double> y) {
+  look(xi, y);
+  double position = now_[static_cast<std::size_t>(contact_class)].displacement;
+  for (int k = 0; k < free_count_; ++k) {
+    position -= directions_[static_cast<std::size_t>(contact_class)][k] * y[centre_place(k)];
+  }
+  return position * settings_.initial_radius;
 }
 
 std::vector<Finding> System::warnings() const {

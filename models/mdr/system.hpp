@@ -1,9 +1,11 @@
-/// The MDR particle between rigid walls as a hybrid system (displacement control, no adhesion).
+/// The MDR particle between rigid walls as a hybrid system.
 ///
-/// Unknowns: r = (R - R0)/R0, the work of the walls, and with a free centre its displacement along the directions in
-/// which the walls can move it. Lengths in R0; stresses in the yield stress (in E* where nothing yields). Source:
-/// 002_000df8fc37500451.txt, stated as a continuous-time model: the published time-step recipe is its first-order
-/// explicit scheme. While the radius grows, the explicit form is the rate that keeps the volume balance
+/// Unknowns: r = (R - R0)/R0, the work of the walls, with a free centre its displacement along the directions in which
+/// the walls can move it, and the displacement of every wall whose force is prescribed at some time. Where a force is
+/// prescribed, the work is counted less force times displacement, -int delta_o dF: unlike int F d(delta_o) it has no
+/// singularity where a contact is made or snaps off. Lengths in R0; stresses in the yield stress (in E* where nothing
+/// yields). Source: 002_000df8fc37500451.txt, stated as a continuous-time model: the published time-step recipe is its
+/// first-order explicit scheme. While the radius grows, the explicit form is the rate that keeps the volume balance
 ///   V_geo,Q(R, delta_o) - V_Q(R, delta_o) = C
 /// and the implicit and direct forms are the balance itself, with C frozen at every transition.
 #pragma once
@@ -12,6 +14,7 @@
 #include <vector>
 
 #include "hybrid_system.hpp"
+#include "mdr/adhesion.hpp"
 #include "mdr/contact.hpp"
 
 namespace monograin::mdr {
@@ -32,11 +35,20 @@ enum class DeltaMaxRule {
 
 enum class Regime { open, elastic, fully_plastic, unloading, separated };
 
+/// What the edge of an adhesive contact does. The contact radius is a play operator between the radius without adhesion
+/// and the one in equilibrium.
+enum class Edge {
+  following,  ///< advances with the load, as without adhesion
+  sticking,   ///< stays where it was when the load was reversed
+  peeling     ///< recedes in equilibrium
+};
+
 struct Settings {
   double initial_radius = 0.0;                                    ///< R0 [m], > 0
   double youngs_modulus = 0.0;                                    ///< E [Pa], > 0
   double poisson_ratio = 0.0;                                     ///< in (-1, 0.5]
   double yield_stress = std::numeric_limits<double>::infinity();  ///< Y [Pa], > 0; infinity: elastic throughout
+  double surface_energy = 0.0;                                    ///< dg of the particle-wall contact [J/m2], >= 0
   ElasticProfile elastic_profile = ElasticProfile::ellipse;
   RadiusRule radius_rule = RadiusRule::gated;
   DeltaMaxRule delta_max_rule = DeltaMaxRule::running_maximum;
@@ -68,6 +80,7 @@ class System final : public HybridSystem {
   [[nodiscard]] std::span<const Observable> observables() const noexcept override { return observables_; }
   void observe(double xi, std::span<const double> y, std::span<double> values) override;
   [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
+  [[nodiscard]] double wall_position(int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
 
@@ -85,6 +98,9 @@ class System final : public HybridSystem {
     bool is_virgin = true;       ///< at its largest overlap, and not decreasing
     double largest = 0.0;        ///< largest overlap (running maximum) or wall displacement (shifted), while not virgin
     double area_constant = 0.0;  ///< c, set once at yield
+    Edge edge = Edge::following;
+    double edge_radius = 0.0;  ///< of a sticking edge
+    double resting = 0.0;      ///< displacement at which an open wall without load was left
   };
 
   /// One contact class at an instant.
@@ -92,6 +108,15 @@ class System final : public HybridSystem {
     double displacement = 0.0;
     double overlap = 0.0;
     Contact contact;
+    double rate_by_time = 0.0;    ///< of the displacement, at fixed R and centre, with xi
+    double rate_by_growth = 0.0;  ///< and with R, where the force is prescribed
+  };
+
+  /// Where the edge of a contact pulls off, under either control; fixed while its indenter is.
+  struct PullOff {
+    Indenter indenter;
+    PeelState by_displacement;
+    PeelState by_force;
   };
 
   /// Sums over the contacts at an instant; the volume balance is divided by 4 pi R0^3.
@@ -101,7 +126,8 @@ class System final : public HybridSystem {
     double by_radius = 0.0;             ///< its partial derivatives
     double by_time = 0.0;
     Small by_centre = Small::Zero();
-    double power = 0.0;           ///< d(work)/dxi
+    double power = 0.0;           ///< d(work)/dxi, less d(force times displacement) where the force is prescribed
+    double force_work = 0.0;      ///< force times displacement of those contacts
     Small force = Small::Zero();  ///< net force along the free directions, and its partial derivatives
     Small force_by_time = Small::Zero();
     Small force_by_radius = Small::Zero();
@@ -127,9 +153,20 @@ class System final : public HybridSystem {
   [[nodiscard]] double largest_overlap(const Memory& memory, double r) const noexcept;
   [[nodiscard]] const UnloadingShape& shape(std::size_t i, double r);
   [[nodiscard]] double inward_rate(std::size_t i, const Motion& motion) const noexcept;
+  [[nodiscard]] double prescribed_force(std::size_t i, double xi) const noexcept;
+  [[nodiscard]] Frame frame(std::size_t i, double overlap, double r);
+  [[nodiscard]] const PullOff& pull_off(std::size_t i, const Indenter& indenter);
+  [[nodiscard]] double touching_overlap(std::size_t i, double r);
+  [[nodiscard]] double displacement_under_force(std::size_t i, double xi, double r, double guess);
+  void set_rates(std::size_t i, double r);
+  [[nodiscard]] double displacement_as_told(std::size_t i, double xi, std::span<const double> y) const noexcept;
+  void move_walls(double xi, std::span<double> y);
+  void note_walls(double xi, std::span<double> y) const noexcept;
 
   void look(double xi, std::span<const double> y);
-  void sum_up(double r);
+  void look_at(std::size_t i, double displacement, double r);
+  [[nodiscard]] double force_work(std::span<const double> y);
+  void sum_up(double xi, double r);
   void regularise_first_touch();
   [[nodiscard]] Small balance_step(const Small& force) const;
   [[nodiscard]] Motion motion(bool growing) const;
@@ -139,16 +176,25 @@ class System final : public HybridSystem {
   void hold_centre(std::span<const double> y);
 
   // Modes (modes.cpp).
-  void settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log);
-  [[nodiscard]] bool wants_growth(double xi, std::span<const double> y);
+  void settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log,
+              bool has_jumped = false);
+  [[nodiscard]] bool wants_growth(double xi, std::span<double> y);
   [[nodiscard]] double growth_drive(const Motion& now) const noexcept;
-  bool settle_contact(std::size_t i, double xi, double r, const Motion& now, std::vector<Event>& log,
+  bool settle_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log,
                       std::vector<Event>& made);
+  bool settle_edge(std::size_t i, double xi, std::span<double> y, bool moves_in, bool moves_out,
+                   std::vector<Event>& log);
   [[nodiscard]] bool gate_is_open(const Motion& now) const noexcept;
   [[nodiscard]] double speed_scale() const noexcept;
+  [[nodiscard]] double wall_rate(std::size_t i, const Motion& now) const noexcept;
+  [[nodiscard]] double overlap_rate(std::size_t i, const Motion& now) const noexcept;
+  [[nodiscard]] double loaded_rate(double loading, double by_radius, double growth) const noexcept;
   [[nodiscard]] bool is_backed(std::size_t i) const;
   void check_support() const;
-  void start_unloading(std::size_t i, double r);
+  void start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log);
+  void stick(std::size_t i, std::vector<Event>& log);
+  void start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);
+  void separate(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);
   void make_contact(std::size_t i);
   void lose_contact(std::size_t i);
   void yield(std::size_t i, double r);
@@ -156,18 +202,24 @@ class System final : public HybridSystem {
   void meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log);
   void watch(double xi, std::span<const double> y);
   void watch_contact(std::size_t i, double r, const Motion& now);
-  [[nodiscard]] double contact_guard(int kind, std::size_t i, double overlap, double r);
+  void watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_out, bool may_turn);
+  [[nodiscard]] double contact_guard(int kind, std::size_t i, double xi, double overlap, double r);
+  [[nodiscard]] double edge_guard(int kind, std::size_t i, double xi, double overlap, double r);
   [[nodiscard]] double cap_guard(const CapPair& pair, double r) const;
 
   /// What counts of a contact at its largest overlap: the energy it would give back, or the work done on it (up to a
   /// constant). On all other branches the two are the same.
   enum class PlasticPart { recoverable, work_done };
   [[nodiscard]] double energy(double r, PlasticPart plastic_part);
+  [[nodiscard]] double contact_energy(std::size_t i, double r, PlasticPart plastic_part);
+  [[nodiscard]] bool adheres() const noexcept { return surface_energy_ > 0.0; }
+  [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return ramps_[i].control == Control::force; }
   [[nodiscard]] double work_scale(double displacement) const noexcept;
 
   Settings settings_;
   Material material_;  ///< stresses over the stress unit
   double stress_unit_ = 1.0;
+  double surface_energy_ = 0.0;  ///< over the stress unit and R0
   std::vector<ContactClass> classes_;
   std::vector<Unknown> unknowns_;
   std::vector<Observable> observables_;
@@ -175,8 +227,9 @@ class System final : public HybridSystem {
   int free_count_ = 0;             ///< free directions of the centre, 0 to 3
   Eigen::Matrix3d free_directions_ = Eigen::Matrix3d::Zero();  ///< their orthonormal basis, in the first columns
   std::vector<CapPair> cap_pairs_;
+  std::vector<std::size_t> wall_places_;  ///< in y, of the displacement of each class that takes a force; else 0
 
-  std::vector<Ramp> ramps_;  ///< over R0
+  std::vector<Ramp> ramps_;  ///< displacements over R0, forces over the stress unit and R0^2
   bool has_begun_ = false;
   std::vector<Memory> memory_;
   bool is_growing_ = false;
@@ -189,6 +242,7 @@ class System final : public HybridSystem {
   // Work space, so that nothing is allocated while integrating.
   std::vector<Instant> now_;
   std::vector<UnloadingShape> shapes_;
+  std::vector<PullOff> pull_offs_;
   Sums sums_;
   double largest_work_ = 0.0;
   double lowest_dissipation_ = 0.0;

@@ -118,14 +118,14 @@ void print_parameters(const Scenario& scenario) {
   const double d_yield = material.yield_overlap_ratio;
   print("yield_overlap_over_radius", d_yield, "-");
   if (!std::isfinite(d_yield)) return;
-  const mdr::PlasticPressure pressure = mdr::plastic_pressure(yield_stress, d_yield);
+  const mdr::PlasticPressure pressure = mdr::plastic_pressure(material, d_yield);
   const double area_constant = mdr::yield_area_constant(d_yield, scenario.radius);
   const double overlap = d_yield * scenario.radius;
   print("yield_overlap", overlap, "m");
   print("yield_pressure", pressure.pressure, "Pa");
-  print("yield_contact_radius",
-        mdr::plastic_contact(yield_stress, scenario.radius, overlap, area_constant).contact_radius, "m");
-  print("yield_force", mdr::plastic_contact(yield_stress, scenario.radius, overlap, area_constant).force, "N");
+  print("yield_contact_radius", mdr::plastic_contact(material, scenario.radius, overlap, area_constant).contact_radius,
+        "m");
+  print("yield_force", mdr::plastic_contact(material, scenario.radius, overlap, area_constant).force, "N");
 }
 
 int run_models(const ModelsOptions& options) {

@@ -72,7 +72,7 @@ class Drive {
         output_(output),
         y_(system_.unknowns().size()),
         output_state_(y_.size()) {
-    for (const ContactClass& c : scene.classes) positions_.push_back(-c.gap);
+    for (const ContactClass& c : scene.classes) held_.push_back({-c.gap, -c.gap, Control::displacement});
   }
 
   DriveResult run() {
@@ -119,9 +119,7 @@ class Drive {
       if (is_met) log.push_back({"until-met"});
       log.push_back({"step-end"});
       step_start_ = time(xi_);
-      for (std::size_t c = 0; c < positions_.size(); ++c) {
-        positions_[c] = std::lerp(plan_.ramps[c].start, plan_.ramps[c].end, xi_);
-      }
+      for (std::size_t c = 0; c < held_.size(); ++c) held_[c] = where_it_stands(static_cast<int>(c));
     }
     --step_;
     close_instant(step_start_, xi_, log);
@@ -139,7 +137,7 @@ class Drive {
   [[nodiscard]] Plan make_plan() {
     Plan plan;
     for (std::size_t c = 0; c < scene_.programs.size(); ++c) {
-      plan.ramps.push_back({positions_[c], positions_[c]});
+      plan.ramps.push_back(held_[c]);
       if (step_ < scene_.programs[c].size()) add_to_plan(scene_.programs[c][step_], static_cast<int>(c), plan);
     }
     return plan;
@@ -147,19 +145,30 @@ class Drive {
 
   void add_to_plan(const Step& step, int contact_class, Plan& plan) {
     Ramp& ramp = plan.ramps.back();
+    // A ramp starts from the present value of what it controls from here on.
+    const auto take_control = [&](Control control) {
+      if (ramp.control == control) return;
+      const double present = control == Control::force ? system_.quantity(Quantity::force, contact_class, xi_, y_)
+                                                       : system_.wall_position(contact_class, xi_, y_);
+      ramp = {present, present, control};
+    };
     switch (step.kind) {
       case Step::Kind::displacement:
+        take_control(Control::displacement);
+        ramp.end = step.target;
+        break;
+      case Step::Kind::force:
+        take_control(Control::force);
         ramp.end = step.target;
         break;
       case Step::Kind::detach:
+        take_control(Control::displacement);
         // One apparent radius back: farther than any contact stays closed.
         ramp.end = ramp.start - system_.quantity(Quantity::apparent_radius, contact_class, xi_, y_);
         plan.detaching.push_back(contact_class);
         break;
       case Step::Kind::hold:
         break;
-      case Step::Kind::force:
-        throw std::logic_error("a force step reached a model without force control");
     }
     const double duration = step.duration ? *step.duration : std::abs(ramp.end - ramp.start) / *step.rate;
     if (plan.duration >= 0.0 &&
@@ -176,6 +185,15 @@ class Drive {
       else
         plan.conditions.push_back({to_quantity(until.quantity), contact_class, until.value});
     }
+  }
+
+  /// What a class keeps when nothing else is said: the end of its ramp, or where that was interrupted. A wall whose
+  /// contact has snapped off bears no force any more.
+  [[nodiscard]] Ramp where_it_stands(int contact_class) {
+    const Ramp& ramp = plan_.ramps[static_cast<std::size_t>(contact_class)];
+    const bool is_lost = ramp.control == Control::force && system_.is_open(contact_class);
+    const double value = is_lost ? 0.0 : std::lerp(ramp.start, ramp.end, xi_);
+    return {value, value, ramp.control};
   }
 
   [[nodiscard]] bool is_detached() const {
@@ -238,6 +256,7 @@ class Drive {
         const Finding& finding = end->finding;
         throw Stop{fmt::format("{}{} ({} = {:.9g})", where(xi_), finding.message, finding.quantity, finding.value)};
       }
+      system_.solve(xi_, y_);
       is_met = is_met || watch_.is_met(xi_, y_) || std::ranges::any_of(log, [&](const Event& event) {
                  return std::ranges::find(plan_.ending_events, event.name) != plan_.ending_events.end();
                });
@@ -343,7 +362,7 @@ class Drive {
   const Output& output_;
   std::vector<double> y_;
   std::vector<double> output_state_;
-  std::vector<double> positions_;  ///< where the program has taken the walls [m]
+  std::vector<Ramp> held_;  ///< where the program has taken the walls
 
   std::size_t step_ = 0;
   Plan plan_;

@@ -20,7 +20,8 @@ struct IdaDeleter {
 };
 using IdaMemory = std::unique_ptr<void, IdaDeleter>;
 
-constexpr long k_most_steps = 200'000;  // internal steps of one segment
+constexpr double k_slave_tolerance = 1e-4;  // loose, but small enough for difference quotients
+constexpr long k_most_steps = 200'000;      // internal steps of one segment
 
 class Ida final : public Integrator {
  public:
@@ -29,10 +30,14 @@ class Ida final : public Integrator {
     const auto unknowns = system.unknowns();
     const auto size = static_cast<sunindextype>(unknowns.size());
     for (NVector* vector : {&y_, &dy_, &id_, &atol_, &weights_, &errors_}) vector->reset(N_VNew_Serial(size, context_));
+    complete_.resize(unknowns.size());
     N_VConst(0.0, y_.get());
     N_VConst(0.0, dy_.get());
     for (std::size_t k = 0; k < unknowns.size(); ++k) {
-      view(atol_.get())[k] = local_atol(tolerances) * unknowns[k].scale;
+      // A slaved unknown has no error of its own: hardly weighted, and completed wherever it is used.
+      const double absolute = unknowns[k].is_slaved ? k_slave_tolerance : local_atol(tolerances);
+      has_slaves_ = has_slaves_ || unknowns[k].is_slaved;
+      view(atol_.get())[k] = absolute * unknowns[k].scale;
       view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
     }
     memory_.reset(IDACreate(context_));
@@ -130,7 +135,9 @@ class Ida final : public Integrator {
   static int guards(realtype xi, N_Vector y, N_Vector, realtype* values, void* self) noexcept {
     auto& ida = *static_cast<Ida*>(self);
     return ida.pending_.guard([&] {
-      ida.watch_.values(xi, view(y), {values, ida.watch_.size()});
+      std::ranges::copy(view(y), ida.complete_.begin());
+      if (ida.has_slaves_) ida.system_.complete(xi, ida.complete_);
+      ida.watch_.values(xi, ida.complete_, {values, ida.watch_.size()});
       return true;
     });
   }
@@ -155,6 +162,8 @@ class Ida final : public Integrator {
   Watch& watch_;
   Tolerances tolerances_;
   SegmentQuadratures quadratures_;
+  bool has_slaves_ = false;
+  std::vector<double> complete_;
   std::string message_;
   Pending pending_;
   RootList roots_;

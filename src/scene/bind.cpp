@@ -41,6 +41,7 @@ mdr::Settings mdr_settings(const Scenario& scenario, double largest_displacement
   using namespace mdr;
   Settings settings = common_settings(scenario, largest_displacement);
   settings.yield_stress = scenario.material.at("yield_stress");
+  settings.surface_energy = scenario.material.at("surface_energy");
   settings.radius_rule =
       choice<RadiusRule>(scenario, "radius_rule",
                          {{"gated", RadiusRule::gated}, {"yielded", RadiusRule::yielded}, {"seed", RadiusRule::seed}});

@@ -115,6 +115,8 @@ Scene make_scene(const Scenario& scenario, bool merges_walls) {
     scene.classes[c].name = names[c];
     scene.classes[c].gap = walls[first_wall[c]].gap;
     scene.programs.push_back(walls[first_wall[c]].steps);
+    scene.classes[c].takes_force =
+        std::ranges::any_of(scene.programs[c], [](const Step& step) { return step.kind == Step::Kind::force; });
   }
   if (class_count < walls.size()) {
     std::vector<std::string> parts;

@@ -138,10 +138,6 @@ const std::vector<FaultRow> k_rows{
              "yield_stress = \"50 MPa\"\nsurface_energy = \"-1 J/m^2\"",
              {"die.toml:9:18: surface_energy = \"-1 J/m^2\": out of range; expected a surface energy from 0 J/m^2 to "
               "1e+24 J/m^2"}},
-    FaultRow{"SurfaceEnergyRefused",
-             8,
-             "yield_stress = \"50 MPa\"\nsurface_energy = \"1 J/m^2\"",
-             {"die.toml:9:18: adhesion is not available in model 'mdr' yet; expected 0 J/m^2"}},
     FaultRow{"MisspeltConfiguration",
              10,
              "configuration = \"dei\"",
@@ -190,11 +186,6 @@ const std::vector<FaultRow> k_rows{
              12,
              "displacement = \"0.1 R0\"\nhold = true",
              {"die.toml:13:1: key 'hold' does not go with 'displacement' in one step"}},
-    FaultRow{"ForceStepRefused",
-             12,
-             "force = \"1 N\"",
-             {"die.toml:12:9: force control is not available for this model yet; prescribe displacements, or end a "
-              "displacement ramp at a force with until = { force = ... }"}},
     FaultRow{"HoldFalse", 12, "hold = false", {"die.toml:12:8: hold = false: expected true"}},
     FaultRow{"DetachWithDuration",
              12,
@@ -241,7 +232,8 @@ const std::vector<FaultRow> k_rows{
              13,
              "duration = 1\nuntil = { event = \"yeild\" }",
              {"die.toml:14:19: event = \"yeild\": expected one of contact-made, contact-lost, dent-touched, yield, "
-              "load-reversal, retreat, reload, growth-on, growth-off, caps-intersect, step-end, until-met, "
+              "load-reversal, retreat, reload, "
+              "stick, peel, follow, pull-off, growth-on, growth-off, caps-intersect, step-end, until-met, "
               "singular-growth, volume-limit, limit; did you mean 'yield'?"}},
     FaultRow{"CycleOfZero",
              12,

@@ -96,6 +96,7 @@ class ToySystem final : public HybridSystem {
   [[nodiscard]] std::span<const Observable> observables() const noexcept override { return observables_; }
   void observe(double, View y, std::span<double> values) override { std::ranges::copy(y, values.begin()); }
   [[nodiscard]] double quantity(Quantity, int, double, View y) override { return y[0]; }
+  [[nodiscard]] double wall_position(int, double xi, std::span<const double>) override { return xi; }
   [[nodiscard]] bool is_open(int) const noexcept override { return false; }
   [[nodiscard]] std::vector<Finding> warnings() const override { return {}; }
 

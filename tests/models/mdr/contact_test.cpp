@@ -187,8 +187,7 @@ struct YieldJump {
     overlap_ratio = material.yield_overlap_ratio;
     const double overlap = overlap_ratio * grain.radius;
     before = elastic_contact(profile, material.composite_modulus, grain.radius, overlap);
-    after =
-        plastic_contact(material.yield_stress, grain.radius, overlap, yield_area_constant(overlap_ratio, grain.radius));
+    after = plastic_contact(material, grain.radius, overlap, yield_area_constant(overlap_ratio, grain.radius));
   }
 };
 
@@ -375,7 +374,7 @@ void expect_the_same_in_other_units(const Dent& dent, const Units& units) {
     expect_identical(elastic_contact(profile, material.composite_modulus, radius, units.length * m),
                      units.convert(elastic_contact(profile, ours.composite_modulus, grain.radius, m)));
   }
-  expect_identical(plastic_contact(material.yield_stress, radius, units.length * m, area_constant),
+  expect_identical(plastic_contact(material, radius, units.length * m, area_constant),
                    units.convert(dent.plastic(grain.radius, m)));
   const UnloadingShape shape = unloading_shape(material, radius, units.length * m, area_constant);
   const double overlap = dent.overlap_at(0.5);

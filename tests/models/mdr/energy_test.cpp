@@ -79,7 +79,7 @@ TEST(MdrPlasticWork, IsTheIntegralOfTheForce) {
   for (const Dent& dent : dents()) {
     const double radius = dent.grain.radius;
     const auto primitive = [&](double overlap) {
-      return plastic_work_primitive(dent.material.yield_stress, radius, overlap, dent.area_constant);
+      return plastic_work_primitive(dent.material, radius, overlap, dent.area_constant);
     };
     const double yield = dent.material.yield_overlap_ratio * radius;
     const double work = boost::math::quadrature::gauss_kronrod<double, 31>::integrate(

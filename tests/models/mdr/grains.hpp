@@ -45,7 +45,7 @@ struct Dent {
     return unloading_shape(material, radius, largest_overlap, area_constant);
   }
   [[nodiscard]] Contact plastic(double radius, double overlap) const {
-    return plastic_contact(material.yield_stress, radius, overlap, area_constant);
+    return plastic_contact(material, radius, overlap, area_constant);
   }
   [[nodiscard]] Contact unloading(double radius, double largest_overlap, double overlap) const {
     return unloading_contact(shape_of(radius, largest_overlap), material.composite_modulus, overlap);

@@ -91,10 +91,8 @@ TEST(MdrPointValues, PlasticContactIsMet) {
   const auto rows = rows_without_adhesion("pv");
   ASSERT_EQ(rows.size(), 2u);
   for (const Row& row : rows) {
-    expect_contact(
-        row,
-        plastic_contact(row.material().yield_stress, row["R_over_R0"], row["delta_over_R0"], row["cA_over_pi_R02"]),
-        k_rounding);
+    expect_contact(row, plastic_contact(row.material(), row["R_over_R0"], row["delta_over_R0"], row["cA_over_pi_R02"]),
+                   k_rounding);
     expect_shape(row, shape_of(row));
     row.expect("delta_1D_over_R0", 0.5 * shape_of(row).height, k_rounding);
   }

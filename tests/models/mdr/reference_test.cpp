@@ -12,8 +12,17 @@
 namespace monograin {
 namespace {
 
-constexpr const char* k_curves[] = {"uniaxial_EY25",    "uniaxial_cycles_EY200", "uniaxial_parabola_EY12p5", "die_EY20",
-                                    "hydrostatic_EY50", "die_EY20_yielded",      "uniaxial_EY6p25_yielded"};
+constexpr const char* k_curves[] = {"uniaxial_EY25",
+                                    "uniaxial_cycles_EY200",
+                                    "uniaxial_parabola_EY12p5",
+                                    "die_EY20",
+                                    "hydrostatic_EY50",
+                                    "die_EY20_yielded",
+                                    "uniaxial_EY6p25_yielded",
+                                    "jkr_elastic_disp",
+                                    "adhesive_plastic_EY50",
+                                    "force_control_EY30",
+                                    "triaxial_EY30"};
 
 CurveErrors errors_of(const ReferenceCase& reference, const std::string& integrator, double rtol) {
   const TestRun result = run(reference.scenario, integrator, relative(rtol));
@@ -26,8 +35,10 @@ class DirectAgainstReference : public ::testing::TestWithParam<const char*> {};
 TEST_P(DirectAgainstReference, MeetsCurveAndEventTimes) {
   const CurveErrors errors = errors_of(load_reference(GetParam()), "direct", 1e-8);
   EXPECT_EQ(errors.mismatch, "");
-  EXPECT_LE(errors.largest, 2e-12);  // 7e-13 measured: the dissipation of an almost closed cycle is a small difference
-  EXPECT_LE(errors.event_time, 2e-14);  // 5e-15 measured: the last bits of the time
+  for (const auto& [quantity, error] : errors.by_quantity)
+    EXPECT_LE(error, 2e-12)
+        << quantity;  // 7e-13 measured: the dissipation of an almost closed cycle is a small difference
+  EXPECT_LE(errors.event_time, 5e-14);  // 2.5e-14 measured (force control), else 5e-15: the last bits of the time
 }
 
 class IntegratorAgainstReference : public ::testing::TestWithParam<std::tuple<const char*, const char*>> {
@@ -50,7 +61,7 @@ TEST_P(IntegratorAgainstReference, GainsADecadeFromTwoDecadesOfTolerance) {
 }
 
 TEST_P(IntegratorAgainstReference, ErrorIsBoundedByTheTolerance) {
-  constexpr double k_error_per_rtol = 60.0;       // 19 measured (die_EY20, BDF)
+  constexpr double k_error_per_rtol = 100.0;      // 91 measured (force_control_EY30, BDF, 1e-12), else 19
   constexpr double k_time_error_per_rtol = 10.0;  // 2.3 measured (die_EY20, BDF)
   constexpr double k_rounding = 2e-12;            // what is left with `direct`
   constexpr double k_time_rounding = 2e-14;

@@ -1,0 +1,87 @@
+/// Adhesive contact of the MDR model: stuck, peeling and critical states of the edge, their forces and energies.
+///
+/// In the one-dimensional space a contact is a relaxed profile g(x) pressed by delta_1D into independent springs, which
+/// stand for |x| < a. The springs at the edge are stretched by -w(a) = g(a) - delta_1D, and tear where that reaches
+/// Dl(a) = sqrt(2 pi a dg/E*). Functions are homogeneous: lengths in any one unit, stresses in any one unit, the
+/// surface energy dg (of the particle-wall contact) in stress times length. Forces are positive in compression.
+/// Source: 002_000df8fc37500451.txt, sections 3.2 and 6, Appendix A.
+#pragma once
+
+#include "mdr/contact.hpp"
+#include "walls.hpp"
+
+namespace monograin::mdr {
+
+/// Relaxed profile of a contact: an ellipse of height A and width 2b, or the parabola A x^2/(4 b^2) of the same tip.
+struct Indenter {
+  ElasticProfile profile = ElasticProfile::ellipse;
+  double height = 0.0;      ///< A
+  double half_width = 0.0;  ///< b
+};
+
+/// Of an elastic contact: A = 4R, b = R.
+[[nodiscard]] Indenter elastic_indenter(ElasticProfile profile, double radius) noexcept;
+/// Of a yielded contact below its largest overlap: the ellipse of its unloading shape.
+[[nodiscard]] Indenter unloading_indenter(const UnloadingShape& shape) noexcept;
+
+/// g(a), for a in [0, b]. eqs. 23, 28.
+[[nodiscard]] double profile_height(const Indenter& indenter, double a) noexcept;
+/// Contact radius without adhesion under delta_1D, where g(a) = delta_1D; 0 for delta_1D <= 0, b from A/2 on.
+[[nodiscard]] double free_contact_radius(const Indenter& indenter, double displacement_1d) noexcept;
+/// Force without adhesion at that radius: 2 E* int_0^a (g(a) - g(x)) dx.
+[[nodiscard]] double free_force(const Indenter& indenter, double composite_modulus, double a) noexcept;
+
+/// Stretch at which the springs at the edge tear, Dl(a) = sqrt(2 pi a dg/E*) (eq. 14).
+[[nodiscard]] double critical_stretch(double composite_modulus, double surface_energy, double a) noexcept;
+
+/// Contact radius at pull-off, which depends on what is prescribed while the contact is torn off: where g' = xi Dl'
+/// with xi = 1 under displacement, 3 under force control (eq. 15).
+[[nodiscard]] double critical_radius(const Indenter& indenter, double composite_modulus, double surface_energy,
+                                     Control control);
+
+/// An edge in equilibrium at the radius a: delta_1D and force there.
+struct PeelState {
+  double contact_radius = 0.0;
+  double displacement_1d = 0.0;  ///< g(a) - Dl(a)
+  double force = 0.0;            ///< free_force(a) - 2 E* a Dl(a)
+};
+[[nodiscard]] PeelState peel_state(const Indenter& indenter, double composite_modulus, double surface_energy,
+                                   double a) noexcept;
+
+/// Outer edge in equilibrium under delta_1D; the critical one of displacement control where delta_1D lies below it.
+/// @param critical_radius  of displacement control
+[[nodiscard]] PeelState peel_at_displacement(const Indenter& indenter, double composite_modulus, double surface_energy,
+                                             double critical_radius, double displacement_1d);
+/// Outer edge in equilibrium under a force; the critical one of force control where the force lies below it.
+/// @param critical_radius  of force control
+[[nodiscard]] PeelState peel_at_force(const Indenter& indenter, double composite_modulus, double surface_energy,
+                                      double critical_radius, double force);
+
+/// How the one-dimensional space hangs on the contact: delta_1D and the indenter, with their partial derivatives.
+struct Frame {
+  struct Change {
+    double displacement = 0.0;  ///< d(delta_1D)
+    double height = 0.0;        ///< dA/A
+    double half_width = 0.0;    ///< db/b
+  };
+  Indenter indenter;
+  double displacement = 0.0;  ///< delta_1D
+  double by_overlap = 1.0;    ///< d(delta_1D)/d(delta) = 1/(1 - rho)
+  Change by_radius;           ///< at fixed overlap and largest overlap
+  Change by_overlap_max;      ///< at fixed overlap and radius
+};
+[[nodiscard]] Frame elastic_frame(ElasticProfile profile, double radius, double overlap) noexcept;
+[[nodiscard]] Frame unloading_frame(const UnloadingShape& shape, double overlap) noexcept;
+/// The overlap that belongs to a delta_1D on the unloading branch.
+[[nodiscard]] double overlap_at(const UnloadingShape& shape, double displacement_1d) noexcept;
+
+/// Contact whose edge sticks at the radius a (eqs. 45, 46).
+[[nodiscard]] Contact sticking_contact(const Frame& frame, double composite_modulus, double a) noexcept;
+/// Contact whose edge peels (eqs. 46-48).
+[[nodiscard]] Contact peeling_contact(const Frame& frame, double composite_modulus, double surface_energy,
+                                      double critical_radius);
+/// Energy of the springs and the surface, (1 - rho)(U_s - pi a^2 dg), with the edge at a.
+[[nodiscard]] double adhesive_energy(const Frame& frame, double composite_modulus, double surface_energy,
+                                     double a) noexcept;
+
+}  // namespace monograin::mdr
