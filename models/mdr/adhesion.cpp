@@ -243,17 +243,25 @@ Contact peeling_contact(const Frame& frame, double composite_modulus, double sur
   const double stretch = critical_stretch(composite_modulus, surface_energy, edge.radius);
   Contact contact = sticking_contact_at(frame, composite_modulus, edge);
   contact.force = state.force;
-  // The edge follows: da = d(delta_1D - g)/(g' - Dl'). At pull-off that is unbounded.
+  // The edge follows: da = d(delta_1D - g)/(g' - Dl'). At pull-off that is unbounded; it is kept finite here.
+  constexpr double k_least_slope = 1e-12;
   const double cosine = is_parabola(indenter) ? 1.0 : edge.cosine;
-  const double follow = 2.0 * composite_modulus * stretch / std::max(0.0, slope(indenter, stretch, 1.0, edge));
+  const double follow = 2.0 * composite_modulus * stretch /
+                        std::max(k_least_slope * stretch / edge.radius, slope(indenter, stretch, 1.0, edge));
   const auto followed = [&](const Frame::Change& change) {
-    const double drive = change.displacement * cosine - height_change(indenter, change, edge);
-    return drive == 0.0 ? 0.0 : follow * drive;
+    return follow * (change.displacement * cosine - height_change(indenter, change, edge));
   };
   contact.by_overlap -= follow * cosine * frame.by_overlap;
   contact.by_radius -= followed(frame.by_radius);
   contact.by_overlap_max -= followed(frame.by_overlap_max);
   return contact;
+}
+
+EdgePress edge_press(const Frame& frame, const Frame::Change& by_radius, double a) noexcept {
+  const Edge edge = edge_at(frame.indenter, a);
+  const double cosine = is_parabola(frame.indenter) ? 1.0 : edge.cosine;
+  return {.by_overlap = frame.by_overlap * cosine,
+          .by_radius = by_radius.displacement * cosine - height_change(frame.indenter, by_radius, edge)};
 }
 
 double adhesive_energy(const Frame& frame, double composite_modulus, double surface_energy, double a) noexcept {

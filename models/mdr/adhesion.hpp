@@ -80,6 +80,14 @@ struct Frame {
 /// Contact whose edge peels (eqs. 46-48).
 [[nodiscard]] Contact peeling_contact(const Frame& frame, double composite_modulus, double surface_energy,
                                       double critical_radius);
+/// How the springs at the edge are pressed, d(delta_1D - g(a)) at fixed a, by the overlap and by the change of indenter
+/// that comes with R; both times the cosine of the edge on the ellipse, whose slope is unbounded at its end.
+struct EdgePress {
+  double by_overlap = 0.0;
+  double by_radius = 0.0;
+};
+[[nodiscard]] EdgePress edge_press(const Frame& frame, const Frame::Change& by_radius, double a) noexcept;
+
 /// Energy of the springs and the surface, (1 - rho)(U_s - pi a^2 dg), with the edge at a.
 [[nodiscard]] double adhesive_energy(const Frame& frame, double composite_modulus, double surface_energy,
                                      double a) noexcept;

@@ -70,6 +70,28 @@ double System::overlap_rate(std::size_t i, const Motion& now) const noexcept {
   return loaded_rate(ramps_[i].end - ramps_[i].start, now_[i].contact.by_radius, now.growth);
 }
 
+/// Whether the springs at the edge of a contact are being pressed (+) or stretched (-), of order one: what the overlap
+/// does over the sum of that and what the growing indenter does.
+double System::edge_rate(std::size_t i, double r, const Motion& now) {
+  const Contact& c = now_[i].contact;
+  double overlap_speed = inward_rate(i, now) + now.growth;
+  // A contact under force that is just being made moves with the force alone.
+  if (is_loaded(i) && !(c.by_overlap > 0.0)) overlap_speed = ramps_[i].end - ramps_[i].start;
+  if (now.growth == 0.0) return overlap_speed > 0.0 ? 1.0 : overlap_speed < 0.0 ? -1.0 : 0.0;
+  const Frame at = frame(i, now_[i].overlap, r);
+  Frame::Change change = at.by_radius;
+  if (settings_.delta_max_rule == DeltaMaxRule::shifted) {
+    change.displacement += at.by_overlap_max.displacement;
+    change.height += at.by_overlap_max.height;
+    change.half_width += at.by_overlap_max.half_width;
+  }
+  const EdgePress press = edge_press(at, change, c.contact_radius);
+  const double by_overlap = press.by_overlap * overlap_speed;
+  const double by_radius = press.by_radius * now.growth;
+  const double scale = std::abs(by_overlap) + std::abs(by_radius);
+  return scale > 0.0 ? (by_overlap + by_radius) / scale : 0.0;
+}
+
 double System::loaded_rate(double loading, double by_radius, double growth) const noexcept {
   const double taken = by_radius * growth;
   const double scale = std::abs(loading) + std::abs(taken);
@@ -170,8 +192,14 @@ bool System::wants_growth(double xi, std::span<double> y) {
   const Motion now = motion(false);
   if (!gate_is_open(now)) return false;
   double drive = growth_drive(now);
-  if (std::abs(drive) <= k_touch) {
-    // Balanced to round-off: the sign just after decides.
+  // A contact under force moves without bound at the instant at which it is made.
+  bool is_singular = false;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    is_singular = is_singular || (is_loaded(i) && is_member(memory_[i]) && ramps_[i].end > ramps_[i].start &&
+                                  !(now_[i].contact.by_overlap > 0.0));
+  }
+  if (is_singular || std::abs(drive) <= k_touch) {
+    // Balanced to round-off, or undefined: the sign just after decides.
     move_walls(xi + 1e-9, y);
     look(xi + 1e-9, y);
     drive = growth_drive(motion(false));
@@ -245,7 +273,7 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
     log.push_back(event("reload"));
     return true;
   }
-  if (adheres()) return settle_edge(i, xi, y, moves_in, moves_out, log);
+  if (adheres()) return settle_edge(i, xi, y, now, is_carried, log);
   if (moves_out && is_past(k_lost, -1.0)) {
     lose_contact(i);
     log.push_back(event("contact-lost"));
@@ -255,9 +283,12 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
 }
 
 /// The same for the edge of an adhesive contact below its largest overlap.
-bool System::settle_edge(std::size_t i, double xi, std::span<double> y, bool moves_in, bool moves_out,
+bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_carried,
                          std::vector<Event>& log) {
   const double r = y[k_radius];
+  const double rate = edge_rate(i, r, now);
+  const bool moves_in = rate > k_touch || is_carried;
+  const bool moves_out = rate < -k_touch && !is_carried;
   const double overlap = now_[i].overlap;
   const auto is_past = [&](int kind, double sign) { return sign * edge_guard(kind, i, xi, overlap, r) >= -k_touch; };
   Memory& memory = memory_[i];
@@ -337,7 +368,9 @@ void System::check_support() const {
 
 /// Decides the mode: branch of every contact and growth depend on each other, so assume, look, correct, and repeat.
 /// @param growth  what a growth guard has just decided; none: the sign of the demand decides
-/// @param has_jumped  the force of a contact has jumped, and its wall has not given way yet
+/// @param has_jumped  the force of a contact has jumped, and its wall has not given way yet: the balance is frozen as
+/// it
+///                    is now, and when the wall gives way the radius follows it, if need be back by a little
 void System::settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log,
                     bool has_jumped) {
   const bool was_growing = is_growing_;
@@ -545,7 +578,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate(i, now) : overlap_rate(i, now);
         break;
       case k_turn:
-        values[g] = overlap_rate(i, now);
+        values[g] = edge_rate(i, r, now);
         break;
       case k_peel:
       case k_follow:
@@ -567,6 +600,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   bool others_fired = false;
   bool has_jumped = false;
   std::optional<DomainEnd> end;
+  for (std::size_t i = 0; i < memory_.size(); ++i) edges_before_[i] = memory_[i].edge;
   for (const std::size_t g : fired) {
     const Guard guard = guards_[g];
     const auto i = static_cast<std::size_t>(std::max(0, guard.index));
@@ -575,6 +609,9 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     const bool is_losing = guard.kind == k_lost;
     // Closed or opened already, together with the contact it balances.
     if ((is_making && touches(memory_[i].regime)) || (is_losing && !touches(memory_[i].regime))) continue;
+    // Another guard of the same edge has changed it at this instant.
+    const bool is_of_edge = guard.kind == k_peel || guard.kind == k_follow || guard.kind == k_turn;
+    if (is_of_edge && (!touches(memory_[i].regime) || edges_before_[i] != memory_[i].edge)) continue;
     switch (guard.kind) {
       case k_yield:
         yield(i, r);

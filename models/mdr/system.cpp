@@ -53,6 +53,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   now_.resize(count);
   shapes_.resize(count);
   pull_offs_.resize(count);
+  edges_before_.resize(count);
   ramps_.resize(count);
   wall_places_.resize(count);
 
@@ -72,8 +73,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   }
   for (Eigen::Index i = 0; i < means.cols(); ++i) directions_.emplace_back(free_directions_.transpose() * means.col(i));
 
-  const double reach =
-      settings_.largest_displacement > 0.0 ? settings_.largest_displacement / settings_.initial_radius : 1.0;
+  const double reach = largest_overlap_expected();
   // Displaced volume makes the radius grow with the square of the displacement.
   unknowns_ = {{"apparent radius growth (R - R0)/R0", Unknown::Kind::differential, std::min(1.0, reach * reach), true},
                {"work", Unknown::Kind::quadrature, work_scale(reach), false}};
@@ -85,6 +85,8 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
     wall_places_[i] = unknowns_.size();
     unknowns_.push_back({classes_[i].name, Unknown::Kind::algebraic, reach, true, true});
   }
+
+  trial_.resize(unknowns_.size());
 
   const bool grows = settings_.radius_rule != RadiusRule::fixed;
   for (std::size_t i = 0; grows && i < count; ++i) {
@@ -122,6 +124,18 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   if (settings_.centre_is_free) {
     for (const char* axis : {"centre_x", "centre_y", "centre_z"}) observables_.push_back({axis, "m", {}});
   }
+}
+
+/// How far the program goes, over R0; 1 where it does not say.
+double System::largest_overlap_expected() const {
+  double reach = settings_.largest_displacement / settings_.initial_radius;
+  const double force = settings_.largest_force / (stress_unit_ * settings_.initial_radius * settings_.initial_radius);
+  if (force > 0.0) {
+    const double elastic = elastic_overlap(ElasticProfile::parabola, material_.composite_modulus, 1.0, force);
+    const double plastic = std::isfinite(material_.yield_overlap_ratio) ? force / (2.0 * pi) : 0.0;
+    reach = std::max(reach, std::min(1.0, std::max(elastic, plastic)));
+  }
+  return reach > 0.0 ? reach : 1.0;
 }
 
 /// Work of one wall up to a displacement, whichever is less of an elastic and a fully plastic contact.
@@ -543,7 +557,11 @@ void System::all_rates(double xi, std::span<const double> y, std::span<double> d
 }
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
-  look(xi, y);
+  // Walls under force stand where the radius puts them, so that their singular rows do not couple to the others.
+  std::ranges::copy(y, trial_.begin());
+  move_walls(xi, trial_);
+  note_walls(xi, trial_);
+  look(xi, trial_);
   res[k_radius] = is_growing_ ? sums_.balance - frozen_balance_ : y[k_radius] - held_radius_;
   res[k_work] = dy[k_work] - sums_.power;
   // Over the total stiffness the balance of forces is a distance, and stays regular where force and stiffness vanish
@@ -555,10 +573,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
     res[centre_place(k)] = row;
   }
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
-    if (!classes_[i].takes_force) continue;
-    const double displacement = y[wall_places_[i]];
-    res[wall_places_[i]] = displacement - (is_loaded(i) ? displacement_under_force(i, xi, y[k_radius], displacement)
-                                                        : displacement_as_told(i, xi, y));
+    if (classes_[i].takes_force) res[wall_places_[i]] = y[wall_places_[i]] - trial_[wall_places_[i]];
   }
 }
 

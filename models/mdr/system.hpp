@@ -54,9 +54,10 @@ struct Settings {
   DeltaMaxRule delta_max_rule = DeltaMaxRule::running_maximum;
   bool stops_at_cap_intersection = false;
   bool centre_is_free = false;  ///< the centre moves so that the wall forces balance
-  /// Largest displacement of a wall [m]: how large the unknowns become, which absolute tolerances are relative to. 0:
-  /// R0.
+  /// Largest displacement [m] and force [N] the program asks of a wall: how large the unknowns become, which absolute
+  /// tolerances are relative to. 0: not said.
   double largest_displacement = 0.0;
+  double largest_force = 0.0;
 };
 
 class System final : public HybridSystem {
@@ -182,12 +183,13 @@ class System final : public HybridSystem {
   [[nodiscard]] double growth_drive(const Motion& now) const noexcept;
   bool settle_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log,
                       std::vector<Event>& made);
-  bool settle_edge(std::size_t i, double xi, std::span<double> y, bool moves_in, bool moves_out,
+  bool settle_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_carried,
                    std::vector<Event>& log);
   [[nodiscard]] bool gate_is_open(const Motion& now) const noexcept;
   [[nodiscard]] double speed_scale() const noexcept;
   [[nodiscard]] double wall_rate(std::size_t i, const Motion& now) const noexcept;
   [[nodiscard]] double overlap_rate(std::size_t i, const Motion& now) const noexcept;
+  [[nodiscard]] double edge_rate(std::size_t i, double r, const Motion& now);
   [[nodiscard]] double loaded_rate(double loading, double by_radius, double growth) const noexcept;
   [[nodiscard]] bool is_backed(std::size_t i) const;
   void check_support() const;
@@ -214,6 +216,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double contact_energy(std::size_t i, double r, PlasticPart plastic_part);
   [[nodiscard]] bool adheres() const noexcept { return surface_energy_ > 0.0; }
   [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return ramps_[i].control == Control::force; }
+  [[nodiscard]] double largest_overlap_expected() const;
   [[nodiscard]] double work_scale(double displacement) const noexcept;
 
   Settings settings_;
@@ -240,9 +243,11 @@ class System final : public HybridSystem {
   std::vector<Guard> guards_;
 
   // Work space, so that nothing is allocated while integrating.
+  std::vector<double> trial_;
   std::vector<Instant> now_;
   std::vector<UnloadingShape> shapes_;
   std::vector<PullOff> pull_offs_;
+  std::vector<Edge> edges_before_;
   Sums sums_;
   double largest_work_ = 0.0;
   double lowest_dissipation_ = 0.0;

@@ -21,6 +21,7 @@ struct IdaDeleter {
 using IdaMemory = std::unique_ptr<void, IdaDeleter>;
 
 constexpr double k_slave_tolerance = 1e-4;  // loose, but small enough for difference quotients
+constexpr int k_most_failures = 50;         // of one step
 constexpr long k_most_steps = 200'000;      // internal steps of one segment
 
 class Ida final : public Integrator {
@@ -46,6 +47,9 @@ class Ida final : public Integrator {
     check("IDASetUserData", IDASetUserData(memory_.get(), this));
     check("IDASVtolerances", IDASVtolerances(memory_.get(), local_rtol(tolerances), atol_.get()));
     check("IDASetMaxNumSteps", IDASetMaxNumSteps(memory_.get(), k_most_steps));
+    // From where a force is zero, the first steps are smaller than IDA's guess by many orders.
+    check("IDASetMaxErrTestFails", IDASetMaxErrTestFails(memory_.get(), k_most_failures));
+    check("IDASetMaxConvFails", IDASetMaxConvFails(memory_.get(), k_most_failures));
     check("IDASetId", IDASetId(memory_.get(), id_.get()));
     matrix_.reset(SUNDenseMatrix(size, size, context_));
     linear_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_));

@@ -20,9 +20,10 @@ Enum choice(const Scenario& scenario, const char* key, const std::pair<const cha
   throw std::logic_error(fmt::format("option {} = '{}' was checked but is not bound", key, word));
 }
 
-mdr::Settings common_settings(const Scenario& scenario, double largest_displacement) {
+mdr::Settings common_settings(const Scenario& scenario, const Reach& reach) {
   mdr::Settings settings;
-  settings.largest_displacement = largest_displacement;
+  settings.largest_displacement = reach.displacement;
+  settings.largest_force = reach.force;
   settings.initial_radius = scenario.radius;
   settings.youngs_modulus = scenario.material.at("youngs_modulus");
   settings.poisson_ratio = scenario.material.at("poisson_ratio");
@@ -30,16 +31,16 @@ mdr::Settings common_settings(const Scenario& scenario, double largest_displacem
   return settings;
 }
 
-mdr::Settings hertz_settings(const Scenario& scenario, double largest_displacement) {
-  mdr::Settings settings = common_settings(scenario, largest_displacement);
+mdr::Settings hertz_settings(const Scenario& scenario, const Reach& reach) {
+  mdr::Settings settings = common_settings(scenario, reach);
   settings.elastic_profile = mdr::ElasticProfile::parabola;
   settings.radius_rule = mdr::RadiusRule::fixed;
   return settings;
 }
 
-mdr::Settings mdr_settings(const Scenario& scenario, double largest_displacement) {
+mdr::Settings mdr_settings(const Scenario& scenario, const Reach& reach) {
   using namespace mdr;
-  Settings settings = common_settings(scenario, largest_displacement);
+  Settings settings = common_settings(scenario, reach);
   settings.yield_stress = scenario.material.at("yield_stress");
   settings.surface_energy = scenario.material.at("surface_energy");
   settings.radius_rule =
@@ -57,13 +58,13 @@ mdr::Settings mdr_settings(const Scenario& scenario, double largest_displacement
 }  // namespace
 
 std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<ContactClass> classes,
-                                         double largest_displacement) {
+                                         const Reach& reach) {
   // A Hertz particle is an MDR particle that neither yields nor grows.
   if (scenario.model == "hertz") {
-    return std::make_unique<mdr::System>(hertz_settings(scenario, largest_displacement), std::move(classes));
+    return std::make_unique<mdr::System>(hertz_settings(scenario, reach), std::move(classes));
   }
   if (scenario.model == "mdr") {
-    return std::make_unique<mdr::System>(mdr_settings(scenario, largest_displacement), std::move(classes));
+    return std::make_unique<mdr::System>(mdr_settings(scenario, reach), std::move(classes));
   }
   throw std::logic_error(fmt::format("model '{}' is in the catalogue but not bound", scenario.model));
 }

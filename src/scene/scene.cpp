@@ -62,11 +62,11 @@ std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::
   return names;
 }
 
-double largest_displacement(const std::vector<std::vector<Step>>& programs) {
+double largest_target(const std::vector<std::vector<Step>>& programs, Step::Kind kind) {
   double largest = 0.0;
   for (const auto& program : programs) {
     for (const Step& step : program) {
-      if (step.kind == Step::Kind::displacement) largest = std::max(largest, std::abs(step.target));
+      if (step.kind == kind) largest = std::max(largest, std::abs(step.target));
     }
   }
   return largest;
@@ -124,7 +124,9 @@ Scene make_scene(const Scenario& scenario, bool merges_walls) {
     scene.skipped.push_back(fmt::format("{} of {} walls, the same by symmetry: {}", walls.size() - class_count,
                                         walls.size(), fmt::join(parts, ", ")));
   }
-  scene.system = bind_model(scenario, scene.classes, largest_displacement(scene.programs));
+  scene.system = bind_model(scenario, scene.classes,
+                            {.displacement = largest_target(scene.programs, Step::Kind::displacement),
+                             .force = largest_target(scene.programs, Step::Kind::force)});
 
   const auto unknowns = scene.system->unknowns();
   const auto is_algebraic = [](const Unknown& u) { return u.kind == Unknown::Kind::algebraic; };

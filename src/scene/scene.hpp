@@ -42,9 +42,14 @@ struct Scene {
 /// @throws ScenarioError where the walls' programs do not go together
 [[nodiscard]] Scene make_scene(const Scenario& scenario, bool merges_walls = true);
 
+/// How far a program goes with any wall; 0 where it prescribes no such thing.
+struct Reach {
+  double displacement = 0.0;  ///< [m]
+  double force = 0.0;         ///< [N]
+};
+
 /// The model of a scenario over given classes.
-/// @param largest_displacement  that a wall of the program is taken to [m]
 [[nodiscard]] std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<ContactClass> classes,
-                                                       double largest_displacement);
+                                                       const Reach& reach);
 
 }  // namespace monograin

@@ -1,0 +1,75 @@
+#include "mdr/adhesion_validity.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace monograin::mdr {
+namespace {
+
+using std::numbers::pi;
+
+// Constants of the fits, all digits as printed.
+constexpr double k_peak_onset = 0.135;  // of F.1
+constexpr double k_ring_onset = 0.15;   // of F.2 and F.3
+constexpr double k_peak_factor = 1.75;
+constexpr double k_ring_factor = 1.1;
+constexpr double k_depth_factor = 0.1025;
+constexpr double k_depth_middle = 0.18;
+constexpr double k_depth_exponent = 1.175;
+
+/// Contact diameters that a plastic zone has to fit into, for small-scale yielding (F.4).
+constexpr double k_zones_per_diameter = 15.0;
+
+}  // namespace
+
+double peak_radius_over_initial_radius(double displacement_over_radius, double yield_overlap_ratio) noexcept {
+  const double x = displacement_over_radius - yield_overlap_ratio - k_peak_onset;
+  return x <= 0.0 ? 0.0 : k_peak_factor * std::pow(x, 0.75);
+}
+
+double peak_radius_over_contact_radius(double displacement_over_radius, double yield_overlap_ratio) noexcept {
+  const double x = displacement_over_radius - yield_overlap_ratio - k_ring_onset;
+  return x <= 0.0 ? 0.0 : k_ring_factor * std::cbrt(x);
+}
+
+double peak_depth_over_initial_radius(double displacement_over_radius, double yield_overlap_ratio,
+                                      double modulus_over_yield) noexcept {
+  const double x = displacement_over_radius - yield_overlap_ratio - k_ring_onset;
+  if (x <= 0.0 || x >= 2.0 * k_depth_middle) return 0.0;
+  // The parabola through both ends, which the printed difference is.
+  const double parabola = k_depth_factor * x * (2.0 * k_depth_middle - x) / (k_depth_middle * k_depth_middle);
+  return parabola * std::pow(modulus_over_yield, -k_depth_exponent);
+}
+
+double plastic_zone_size(double composite_modulus, double surface_energy, double yield_stress,
+                         double mean_pressure) noexcept {
+  const double stress = yield_stress + mean_pressure;
+  return composite_modulus * surface_energy / (pi * stress * stress);
+}
+
+AdhesionValidity adhesion_validity(double critical_radius, double peak_radius, double plastic_zone_size) noexcept {
+  if (peak_radius > 0.0 && critical_radius <= peak_radius) return AdhesionValidity::peak_failure;
+  if (2.0 * critical_radius < k_zones_per_diameter * plastic_zone_size) return AdhesionValidity::yielding_failure;
+  return AdhesionValidity::valid;
+}
+
+SurfaceEnergyWindow adhesion_window(const Indenter& indenter, double composite_modulus, double yield_stress,
+                                    double peak_radius, Control control) noexcept {
+  const double b = indenter.half_width;
+  const double xi = control == Control::force ? 3.0 : 1.0;
+  const double slope = 0.5 * indenter.height / b;
+  // k = c dg of the critical radius; without its quadratic term for the parabola.
+  const double c = 0.5 * xi * xi * pi / (composite_modulus * slope * slope);
+  const bool is_parabola = indenter.profile == ElasticProfile::parabola;
+
+  const double rest = is_parabola ? b * b : (b - peak_radius) * (b + peak_radius);
+  const double least =
+      rest > 0.0 ? peak_radius * peak_radius * peak_radius / (c * rest) : std::numeric_limits<double>::infinity();
+  // a_c = zones dg
+  const double zones = 0.5 * k_zones_per_diameter * composite_modulus / (pi * yield_stress * yield_stress);
+  const double cubic = zones * zones * (is_parabola ? zones : zones + c);
+  return {.least = least, .greatest = b * std::sqrt(c / cubic)};
+}
+
+}  // namespace monograin::mdr

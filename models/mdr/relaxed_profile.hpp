@@ -1,0 +1,84 @@
+/// Adhesive contact with a measured or computed relaxed profile, which need not be convex.
+///
+/// The profile of a strongly flattened particle is concave in the middle and convex at the edge. Once its whole disc
+/// has been closed by compression, the contact stays compact: its edge recedes in equilibrium and turns unstable
+/// outside the ring where the image has its minimum. Functions are homogeneous: lengths in any one unit, stresses in
+/// any one unit. Source: 002_000df8fc37500451.txt, sections 3.2 and Appendix F.2.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "mdr/adhesion.hpp"
+
+namespace monograin::mdr {
+
+/// One-dimensional image of a profile given by samples.
+///
+/// The samples are interpolated in r^2, of which a profile that is smooth at the axis is a smooth function: cubic
+/// pieces with slopes of a barycentric rational interpolant of order 3. Even polynomials of degree 6 are reproduced;
+/// other smooth profiles to fourth order in the distance of the samples. The transform is exact for the pieces.
+class RelaxedProfile {
+ public:
+  /// @param radii    r_i, from 0 on, ascending, at least four; the last one is the largest contact radius a_max
+  /// @param heights  g3D(r_i); only their differences from that at the axis count
+  /// @throws std::invalid_argument that says what is wrong with the samples
+  RelaxedProfile(std::span<const double> radii, std::span<const double> heights);
+
+  /// a_max
+  [[nodiscard]] double largest_radius() const noexcept { return radii_.back(); }
+  /// Radii of the samples.
+  [[nodiscard]] std::span<const double> radii() const noexcept { return radii_; }
+
+  // Each for x in [0, a_max]; std::domain_error outside.
+
+  /// g1D(x), counted from the axis (eq. 4).
+  [[nodiscard]] double image(double x) const;
+  /// g1D'(x)
+  [[nodiscard]] double image_slope(double x) const;
+  /// S(x) = int_0^x g1D
+  [[nodiscard]] double image_area(double x) const;
+
+ private:
+  /// Over r^2 from that of one sample to that of the next: a cubic of the distance from the former.
+  using Piece = std::array<double, 4>;
+
+  /// int_0^x f(G, s) dt with s = x^2 - t^2
+  template <class Integrand>
+  [[nodiscard]] double integral(double x, Integrand&& integrand) const;
+
+  std::vector<double> radii_;
+  std::vector<Piece> pieces_;
+};
+
+/// Force of a contact of the radius a without adhesion, 2 E* int_0^a (g1D(a) - g1D(x)) dx; may be negative where the
+/// profile is concave (which only adhesion can bear).
+/// @throws std::domain_error for a outside [0, a_max]
+[[nodiscard]] double free_force(const RelaxedProfile& profile, double composite_modulus, double a);
+
+/// Edge in equilibrium at the radius a (eq. 14). Errors of free_force.
+[[nodiscard]] PeelState peel_state(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
+                                   double a);
+
+/// Contact radius at pull-off: the outermost root of g1D' = xi Dl' (eq. 15), 0 where there is none.
+///
+/// Found to the resolution of the samples: of two roots between neighbouring ones neither is seen.
+/// @param surface_energy  dg >= 0; with 0 it is where the image has its outermost minimum
+/// @param control         xi = 1 under displacement, 3 under force control
+/// @throws std::domain_error where the edge is unstable from a_max on: the profile has to be known further out
+[[nodiscard]] double critical_radius(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
+                                     Control control);
+
+/// State at pull-off. Under force control its force is the least one of all states, -F_c. Errors of critical_radius.
+[[nodiscard]] PeelState pull_off_state(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
+                                       Control control);
+
+/// Stable states from a_max down to pull-off, both included, at equal distances of the contact radius.
+/// @param count  of states, >= 2
+/// @throws std::invalid_argument for a count below 2; errors of critical_radius
+[[nodiscard]] std::vector<PeelState> peel_curve(const RelaxedProfile& profile, double composite_modulus,
+                                                double surface_energy, Control control, std::size_t count);
+
+}  // namespace monograin::mdr
