@@ -93,7 +93,9 @@ void plastic_work(benchmark::State& state) {
 }
 BENCHMARK(plastic_work);
 
-void yield_overlap(benchmark::State& state) { run(state, "", 20.0, 200.0, yield_overlap_ratio); }
+void yield_overlap(benchmark::State& state) {
+  run(state, "", 20.0, 200.0, [](double stiffness) { return yield_overlap_ratio(stiffness); });
+}
 BENCHMARK(yield_overlap);
 
 }  // namespace

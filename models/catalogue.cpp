@@ -64,7 +64,10 @@ constexpr std::array k_mdr_options{
     OptionKey{"delta_max_rule", "whether the largest overlap of an unloaded contact moves with the apparent radius",
               OptionKey::Kind::choice, k_delta_max_rules},
     OptionKey{"strict", "stop where the contact caps intersect instead of warning", OptionKey::Kind::toggle, {}},
-    OptionKey{"pressure_table", "own curve of p_Y/Y over delta_max/R (CSV)", OptionKey::Kind::file, {}},
+    OptionKey{"pressure_table",
+              "own curve of p_Y/Y over delta_max/R instead of 1 + 1.75 exp(-4.4 x): CSV, from 0 on",
+              OptionKey::Kind::file,
+              {}},
 };
 
 constexpr std::array k_mdr_regimes{
@@ -100,15 +103,12 @@ constexpr std::array k_mdr_events{
     Term{"limit", "another end of the equations' domain; the message says which"},
 };
 
-constexpr std::array<string_view, 4> k_mdr_domain{
+constexpr std::array<string_view, 5> k_mdr_domain{
     "E/Y above about 10 (small elastic strains); a warning below",
     "a contact yields only where E/(1 - nu^2)/Y exceeds 2.407; a warning below",
     "contact caps do not intersect (event caps-intersect)",
+    "with pressure_table: contacts at their largest overlap within the table; the run stops where it ends",
     "warned: dissipation below -1e-6 of the work, possible with radius_rule gated or seed where growth precedes yield",
-};
-
-constexpr std::array k_mdr_refusals{
-    Refusal{"mdr.pressure_table", "an own pressure curve is not available in model 'mdr' yet; leave the key out"},
 };
 
 constexpr std::array k_models{
@@ -123,9 +123,17 @@ constexpr std::array k_models{
               k_hertz_events,
               k_hertz_domain,
               {}},
-    ModelInfo{"mdr", "elastic-perfectly plastic particle by dimensionality reduction, with growing apparent radius",
-              "002_000df8fc37500451.txt (Zunker and Kamrin, Part I)", k_mdr_material, k_mdr_options,
-              k_wall_configurations, true, k_mdr_regimes, k_mdr_events, k_mdr_domain, k_mdr_refusals},
+    ModelInfo{"mdr",
+              "elastic-perfectly plastic particle by dimensionality reduction, with growing apparent radius",
+              "002_000df8fc37500451.txt (Zunker and Kamrin, Part I)",
+              k_mdr_material,
+              k_mdr_options,
+              k_wall_configurations,
+              true,
+              k_mdr_regimes,
+              k_mdr_events,
+              k_mdr_domain,
+              {}},
 };
 
 constexpr std::array<string_view, 7> k_reserved{"similarity",   "semimech",       "hardening", "nonlocal",

@@ -75,6 +75,14 @@ struct Observable {
 /// What a program's condition can ask for.
 enum class Quantity { force, displacement, pressure, contact_radius, apparent_radius };
 
+/// The surface of the particle under and around a contact, at a distance from its middle. In SI.
+struct SurfacePoint {
+  double radius = 0.0;          ///< distance from the contact's middle [m]
+  double pressure = 0.0;        ///< compression positive [Pa]
+  double displacement = 0.0;    ///< of the surface, into the particle [m]
+  double relaxed_height = 0.0;  ///< of the surface without load, from its middle [m]; NaN where it is not known
+};
+
 class HybridSystem {
  public:
   virtual ~HybridSystem() = default;
@@ -123,6 +131,11 @@ class HybridSystem {
   [[nodiscard]] virtual double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) = 0;
   /// Where the walls of a class stand [m], as displacement towards the place where the centre started.
   [[nodiscard]] virtual double wall_position(int contact_class, double xi, std::span<const double> y) = 0;
+  /// Pressure and surface under a contact, from its middle outwards; empty where it is open, or the model has none.
+  [[nodiscard]] virtual std::vector<SurfacePoint> surface(int /*contact_class*/, double /*xi*/,
+                                                          std::span<const double> /*y*/) {
+    return {};
+  }
   /// Whether the walls of a class do not touch the particle.
   [[nodiscard]] virtual bool is_open(int contact_class) const noexcept = 0;
 

@@ -84,9 +84,9 @@ Edge descend(const Indenter& indenter, double from, double down_to, Step&& step)
   double x = by_radius ? from : edge_at(indenter, std::min(from, indenter.half_width)).theta;
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     const double next = std::clamp(x + step(edge(x)), least, most);
-    const bool is_there = !(std::abs(next - x) > 1e-15 * x);
+    // Near pull-off, a double root, round-off over a tiny slope would throw it back up.
+    if (!(x - next > 1e-15 * x)) break;
     x = next;
-    if (is_there) break;
   }
   return edge(x);
 }

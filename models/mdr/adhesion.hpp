@@ -31,7 +31,7 @@ struct Indenter {
 /// Force without adhesion at that radius: 2 E* int_0^a (g(a) - g(x)) dx.
 [[nodiscard]] double free_force(const Indenter& indenter, double composite_modulus, double a) noexcept;
 
-/// Stretch at which the springs at the edge tear, Dl(a) = sqrt(2 pi a dg/E*) (eq. 14).
+/// Stretch at which the springs at the edge tear, Dl(a) = sqrt(2 pi a dg/E*) (eq. 11).
 [[nodiscard]] double critical_stretch(double composite_modulus, double surface_energy, double a) noexcept;
 
 /// Contact radius at pull-off, which depends on what is prescribed while the contact is torn off: where g' = xi Dl'

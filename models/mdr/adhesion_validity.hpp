@@ -20,8 +20,8 @@ namespace monograin::mdr {
 
 /// r_peak/a_max = 1.1 x^(1/3), x = (delta_o,max - delta_Y)/R0 - 0.15; 0 for x <= 0.
 ///
-/// F.2 with the shift of the figure it was read from (F.19b): the 0.135 of the text contradicts F.1, which this one
-/// then meets at E/Y = 200 to 2 % for displacements from 0.3 R0 on.
+/// F.2 with the shift of the figure that it was read from (F.19b), not the 0.135 of the text: only so does it agree
+/// with F.1, to 2 % at E/Y = 200 from displacements of 0.3 R0 on.
 [[nodiscard]] double peak_radius_over_contact_radius(double displacement_over_radius,
                                                      double yield_overlap_ratio) noexcept;
 

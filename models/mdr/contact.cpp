@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "elastic/hertz.hpp"
 
@@ -14,10 +15,6 @@ namespace monograin::mdr {
 namespace {
 
 using std::numbers::pi;
-
-// The fitted pressure curve of eq. 28: p_Y/Y = 1 + k_excess exp(-k_decay delta/R); both constants as printed.
-constexpr double k_excess = 1.75;
-constexpr double k_decay = 4.4;
 
 // psi(theta) = sum_(k>=2) (-1)^k (3 - 4n + 3^(n-1)) theta^n / (4 n!), n = 2k + 1.
 constexpr int k_psi_terms = 12;
@@ -45,23 +42,29 @@ double elastic_versine(double radius, double overlap) {
   return y;
 }
 
-struct DecayingMoments {
-  double zeroth, first, second;
-};
+// First yield, in s = sqrt(d): the excess of the elastic mean pressure over the plastic one, both over Y, is smooth
+// there.
 
-/// int_0^x t^n exp(-t) dt for n = 0, 1, 2 and x > 0, to full relative accuracy.
-DecayingMoments decaying_moments(double x) noexcept {
-  const double decay = std::exp(-x);
-  double second = 2.0 - decay * (2.0 + x * (2.0 + x));
-  if (x < 2.0) {
-    // The closed form cancels; a series of positive terms instead, the last one below 1e-17 of the sum at x = 2.
-    double sum = 1.0;
-    for (int n = 24; n > 3; --n) sum = 1.0 + x / n * sum;
-    second = decay * x * x * x / 3.0 * sum;
-  }
-  // Downwards, where the recursion only adds positive terms.
-  const double first = 0.5 * (second + decay * x * x);
-  return {.zeroth = first + decay * x, .first = first, .second = second};
+double elastic_excess(double modulus_over_yield, double s, const PressureRatio& plastic) noexcept {
+  return 4.0 / (3.0 * pi) * modulus_over_yield * s - plastic.value;
+}
+
+/// The s at which the elastic mean pressure is the yield stress.
+double root_overlap_of_unit_pressure(double modulus_over_yield) noexcept { return 0.75 * pi / modulus_over_yield; }
+
+/// s^2 at the root of the excess between the bounds.
+template <class Excess>
+double square_of_root(const Excess& excess, double lower, double upper) {
+  const double at_lower = excess(lower);
+  const double at_upper = excess(upper);
+  // Where the pressure is constant, the bounds are the root but for rounding.
+  if (!(at_lower < 0.0)) return lower * lower;
+  if (!(at_upper > 0.0)) return upper * upper;
+  std::uintmax_t iterations = 100;
+  const auto [below, above] = boost::math::tools::toms748_solve(
+      excess, lower, upper, at_lower, at_upper, boost::math::tools::eps_tolerance<double>(), iterations);
+  const double s = 0.5 * (below + above);
+  return s * s;
 }
 
 /// Angle theta with cos(theta) = u, for u in [0, 1), and slightly beyond the old maximum (u < 0).
@@ -69,30 +72,46 @@ double unloading_angle(double u) noexcept { return u > 0.5 ? angle_from_versine(
 
 }  // namespace
 
-Material make_material(double youngs_modulus, double poisson_ratio, double yield_stress) {
+Material make_material(double youngs_modulus, double poisson_ratio, double yield_stress,
+                       std::shared_ptr<const PressureCurve> pressure_curve) {
   const double modulus = composite_modulus(youngs_modulus, poisson_ratio);
   return {.composite_modulus = modulus,
           .poisson_ratio = poisson_ratio,
           .yield_stress = yield_stress,
           .bulk_compliance = (1.0 - 2.0 * poisson_ratio) / youngs_modulus,
-          .yield_overlap_ratio = yield_overlap_ratio(modulus / yield_stress)};
+          .yield_overlap_ratio = pressure_curve ? yield_overlap_ratio(modulus / yield_stress, *pressure_curve)
+                                                : yield_overlap_ratio(modulus / yield_stress),
+          .pressure_curve = std::move(pressure_curve)};
 }
 
 double yield_overlap_ratio(double modulus_over_yield) {
-  // In s = sqrt(d): the excess is smooth, increasing, and has its only root in the bracket when there is one.
-  const auto excess = [slope = 4.0 / (3.0 * pi) * modulus_over_yield](double s) {
-    return slope * s - 1.0 - k_excess * std::exp(-k_decay * s * s);
-  };
+  const auto excess = [=](double s) { return elastic_excess(modulus_over_yield, s, exponential_pressure(s * s)); };
   if (!(excess(1.0) > 0.0)) return std::numeric_limits<double>::infinity();
-  // The pressure ratio lies between 1 and 2.75, which brackets the root to within a factor of 2.75 however stiff the
-  // material.
-  const double lower = 0.75 * pi / modulus_over_yield;
-  const double upper = std::min(1.0, (1.0 + k_excess) * lower);
-  std::uintmax_t iterations = 100;
-  const auto [below, above] = boost::math::tools::toms748_solve(
-      excess, lower, upper, excess(lower), excess(upper), boost::math::tools::eps_tolerance<double>(), iterations);
-  const double s = 0.5 * (below + above);
-  return s * s;
+  // The pressure ratio falls from its value at 0 to 1, which brackets the root closely however stiff the material.
+  const double unit = root_overlap_of_unit_pressure(modulus_over_yield);
+  return square_of_root(excess, unit, std::min(1.0, exponential_pressure(0.0).value * unit));
+}
+
+double yield_overlap_ratio(double modulus_over_yield, const PressureCurve& pressure_curve) {
+  const auto excess = [&](double s) {
+    // Rounding of the square must not lead beyond the curve.
+    const double overlap = std::min(s * s, pressure_curve.end());
+    return elastic_excess(modulus_over_yield, s, pressure_curve.at(overlap));
+  };
+  const double unit = root_overlap_of_unit_pressure(modulus_over_yield);
+  double lower = 0.0;
+  for (const double knot : pressure_curve.knots().subspan(1)) {
+    const double upper = std::sqrt(std::min(knot, 1.0));
+    if (excess(upper) > 0.0) {
+      // The pressure of a piece lies between those at its ends, which brackets the root closely where it is small.
+      const auto [least, greatest] =
+          std::minmax({pressure_curve.at(lower * lower).value, pressure_curve.at(std::min(upper * upper, knot)).value});
+      return square_of_root(excess, std::max(lower, least * unit), std::min(upper, greatest * unit));
+    }
+    if (knot >= 1.0) break;
+    lower = upper;
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 double phi(double theta) noexcept {
@@ -155,9 +174,10 @@ Contact elastic_contact(ElasticProfile profile, double composite_modulus, double
   return {};
 }
 
-PlasticPressure plastic_pressure(const Material& material, double overlap_over_radius) noexcept {
-  const double excess = k_excess * material.yield_stress * std::exp(-k_decay * overlap_over_radius);
-  return {.pressure = material.yield_stress + excess, .decrement = k_decay * excess};
+PlasticPressure plastic_pressure(const Material& material, double overlap_over_radius) {
+  const auto [value, slope] = material.pressure_curve ? material.pressure_curve->at(overlap_over_radius)
+                                                      : exponential_pressure(overlap_over_radius);
+  return {.pressure = material.yield_stress * value, .decrement = -material.yield_stress * slope};
 }
 
 double yield_area_constant(double yield_overlap_ratio, double radius) noexcept {
@@ -296,14 +316,13 @@ double unloading_energy(const UnloadingShape& shape, double overlap) noexcept {
   return 2.0 * shape.recovery * shape.pressure * a * a * psi(unloading_angle(u));
 }
 
-double plastic_work_primitive(const Material& material, double radius, double overlap, double area_constant) noexcept {
+double plastic_work_primitive(const Material& material, double radius, double overlap, double area_constant) {
   // Counted from zero overlap, so that it is no larger than the work itself where the yield overlap is small.
-  const double decay_length = radius / k_decay;
-  const auto [zeroth, first, second] = decaying_moments(overlap / decay_length);
-  const double ideal = overlap * (overlap * (radius - overlap / 3.0) + area_constant);
-  const double excess = k_excess * decay_length *
-                        (area_constant * zeroth + decay_length * (2.0 * radius * first - decay_length * second));
-  return pi * material.yield_stress * (ideal + excess);
+  const double x = overlap / radius;
+  const auto [zeroth, first, second] =
+      material.pressure_curve ? material.pressure_curve->moments(x) : exponential_moments(x);
+  const double square = radius * radius;
+  return pi * material.yield_stress * radius * (square * (2.0 * first - second) + area_constant * zeroth);
 }
 
 }  // namespace monograin::mdr

@@ -5,6 +5,9 @@
 #pragma once
 
 #include <limits>
+#include <memory>
+
+#include "mdr/pressure_curve.hpp"
 
 namespace monograin::mdr {
 
@@ -19,16 +22,25 @@ struct Material {
   double bulk_compliance = 0.0;    ///< 1/(3 kappa) = (1 - 2 nu)/E, >= 0
   /// Overlap over apparent radius at which an elastic contact yields; infinity: it never does.
   double yield_overlap_ratio = std::numeric_limits<double>::infinity();
+  /// p_Y/Y over delta/R; null: the source's exponential.
+  std::shared_ptr<const PressureCurve> pressure_curve{};
 };
 
 /// Derived constants from E, nu and Y.
-/// @param yield_stress  Y > 0; infinity for a material that never yields
-[[nodiscard]] Material make_material(double youngs_modulus, double poisson_ratio, double yield_stress);
+/// @param yield_stress    Y > 0; infinity for a material that never yields
+/// @param pressure_curve  p_Y/Y over delta/R; null: the source's exponential
+[[nodiscard]] Material make_material(double youngs_modulus, double poisson_ratio, double yield_stress,
+                                     std::shared_ptr<const PressureCurve> pressure_curve = nullptr);
 
-/// Overlap over apparent radius at first yield: the root d of (4 E*)/(3 pi Y) sqrt(d) = 1 + 1.75 exp(-4.4 d) (eq. 41).
+/// Overlap over apparent radius at first yield: the root d of (4 E*)/(3 pi Y) sqrt(d) = p_Y/Y (eq. 41), with p_Y/Y =
+/// 1 + 1.75 exp(-4.4 d).
 /// @param modulus_over_yield  E*/Y, > 0
 /// @return d in (0, 1), or infinity where E*/Y is so low that there is no root below 1
 [[nodiscard]] double yield_overlap_ratio(double modulus_over_yield);
+/// The same with another p_Y/Y over d. Where that rises faster than the elastic pressure there may be several roots;
+/// the first between two samples at which one pressure is above the other counts.
+/// @return d in (0, 1], or infinity where there is no root up to 1 and the end of the curve
+[[nodiscard]] double yield_overlap_ratio(double modulus_over_yield, const PressureCurve& pressure_curve);
 
 /// phi(theta) = theta - sin(theta) cos(theta), for theta in [0, pi/2], to full relative accuracy.
 [[nodiscard]] double phi(double theta) noexcept;
@@ -54,19 +66,20 @@ struct Contact {
 /// @throws std::domain_error for delta > 2R
 [[nodiscard]] Contact elastic_contact(ElasticProfile profile, double composite_modulus, double radius, double overlap);
 
-/// Mean pressure of a fully plastic contact and its fall with the overlap (eq. 28).
+/// Mean pressure of a fully plastic contact and its fall with the overlap (eq. 28, or the material's own curve).
 struct PlasticPressure {
-  double pressure = 0.0;   ///< p_Y = Y (1 + 1.75 exp(-4.4 delta/R))
-  double decrement = 0.0;  ///< -R dp_Y/d(delta) = 4.4 * 1.75 Y exp(-4.4 delta/R)
+  double pressure = 0.0;   ///< p_Y
+  double decrement = 0.0;  ///< -R dp_Y/d(delta)
 };
-[[nodiscard]] PlasticPressure plastic_pressure(const Material& material, double overlap_over_radius) noexcept;
+/// @throws std::domain_error beyond the end of the material's own curve
+[[nodiscard]] PlasticPressure plastic_pressure(const Material& material, double overlap_over_radius);
 
 /// Area constant of a contact that yields at the apparent radius R, c = delta_Y^2 - delta_Y R (eqs. 42, 43; area/pi).
 [[nodiscard]] double yield_area_constant(double yield_overlap_ratio, double radius) noexcept;
 
 /// Fully plastic contact at its largest overlap (eqs. 16, 21, 28, 36): F = pi p_Y (2 delta R - delta^2 + c).
 /// @param area_constant  c of yield_area_constant
-/// @throws std::domain_error where the contact area is not positive
+/// @throws std::domain_error where the contact area is not positive, and beyond the end of the material's own curve
 [[nodiscard]] Contact plastic_contact(const Material& material, double radius, double overlap, double area_constant);
 
 /// Elastic indenter that is left when a fully plastic contact unloads (eqs. 27-35), fixed while R and the largest
@@ -85,7 +98,8 @@ struct UnloadingShape {
   double rho_by_max = 0, rho_by_radius = 0;                        ///< rho_x
 };
 
-/// @throws std::domain_error where a_max^2 or the distance of the indenter's tip from the centre is not positive
+/// @throws std::domain_error where a_max^2 or the distance of the indenter's tip from the centre is not positive, and
+/// beyond the end of the material's own pressure curve
 [[nodiscard]] UnloadingShape unloading_shape(const Material& material, double radius, double overlap_max,
                                              double area_constant);
 
@@ -103,7 +117,8 @@ struct UnloadingShape {
 /// @throws std::domain_error for a force above that of an overlap of twice the radius (ellipse)
 [[nodiscard]] double elastic_overlap(ElasticProfile profile, double composite_modulus, double radius, double force);
 /// @param guess  an overlap nearby, to begin with
-/// @throws std::domain_error where no overlap below the radius bears the force
+/// @throws std::domain_error where no overlap below the radius, or up to the end of the material's own pressure curve,
+/// bears the force
 [[nodiscard]] double plastic_overlap(const Material& material, double radius, double force, double area_constant,
                                      double guess);
 /// Forces above that of the largest overlap continue the branch analytically, up to half a recovery above.
@@ -118,8 +133,9 @@ struct UnloadingShape {
 /// On the unloading branch, for u >= -1; 0 where the contact is open.
 [[nodiscard]] double unloading_energy(const UnloadingShape& shape, double overlap) noexcept;
 
-/// Primitive over the overlap of the force of plastic_contact at fixed R (up to a constant).
+/// Primitive over the overlap of the force of plastic_contact at fixed R (up to a constant), for overlaps > 0.
+/// @throws std::domain_error beyond the end of the material's own pressure curve
 [[nodiscard]] double plastic_work_primitive(const Material& material, double radius, double overlap,
-                                            double area_constant) noexcept;
+                                            double area_constant);
 
 }  // namespace monograin::mdr

@@ -46,8 +46,9 @@ double ellipse_outside(const Indenter& indenter, double a, double r, double angl
   // (A/2) (E(angle, r/b) - angle sqrt(1 - a^2/b^2)); by Carlson's integrals, because the modulus may be above 1.
   const double sine = a / r;
   const double amplitude = a / b;
-  const double cosine_square = (1.0 - sine) * (1.0 + sine);
-  const double delta_square = (1.0 - amplitude) * (1.0 + amplitude);
+  // Not from the rounded quotients: near the edge their complements have no digits.
+  const double cosine_square = (r - a) * (r + a) / (r * r);
+  const double delta_square = (b - a) * (b + a) / (b * b);
   const double second_kind =
       sine * boost::math::ellint_rf(cosine_square, delta_square, 1.0) -
       amplitude * amplitude * sine / 3.0 * boost::math::ellint_rd(cosine_square, delta_square, 1.0);
@@ -74,13 +75,15 @@ double ContactProfile::line_load(double x) const noexcept { return composite_mod
 
 double ContactProfile::pressure(double r) const noexcept {
   const double distance = std::abs(r);
+  return distance < contact_radius ? pressure_at_chord(chord(contact_radius, distance)) : 0.0;
+}
+
+double ContactProfile::pressure_at_chord(double half_chord) const noexcept {
   const double a = contact_radius;
-  if (distance >= a) return 0.0;
   const double b = indenter.half_width;
-  const double root = chord(a, distance);
-  const double slope = is_parabola(indenter) ? root / b : std::atan2(root, chord(b, a));
+  const double slope = is_parabola(indenter) ? half_chord / b : std::atan2(half_chord, chord(b, a));
   const double edge = displacement_1d - profile_height(indenter, a);
-  return composite_modulus / pi * (0.5 * indenter.height / b * slope + edge / root);
+  return composite_modulus / pi * (0.5 * indenter.height / b * slope + edge / half_chord);
 }
 
 double ContactProfile::surface_displacement(double r) const {

@@ -30,11 +30,13 @@ struct ContactProfile {
   /// Ellipse: E* A/(2 pi b) atan(sqrt((a^2 - r^2)/(b^2 - a^2))); parabola: E* A/(2 pi b^2) sqrt(a^2 - r^2). An edge
   /// that is pulled adds E* w1D(a)/(pi sqrt(a^2 - r^2)), which is unbounded.
   [[nodiscard]] double pressure(double r) const noexcept;
+  /// The same as a function of half the chord sqrt(a^2 - r^2) > 0, on which alone it depends: near a pulled edge the
+  /// digits of that are not in r.
+  [[nodiscard]] double pressure_at_chord(double half_chord) const noexcept;
   /// Displacement of the surface towards the particle, w3D(r), inside and outside the contact (eq. 10, second).
   [[nodiscard]] double surface_displacement(double r) const;
   /// Height of the relaxed surface, g3D(r) (eq. 5).
-  /// Ellipse: (A/2) (1 - (2/pi) E(r/b)) with the complete elliptic integral of the modulus r/b; parabola: A r^2/(8
-  /// b^2).
+  /// Ellipse: (A/2) (1 - (2/pi) E(r/b)), the complete elliptic integral of the modulus r/b. Parabola: A r^2/(8 b^2).
   /// @param r  for the ellipse |r| <= b, NaN beyond
   [[nodiscard]] double relaxed_height(double r) const;
 };

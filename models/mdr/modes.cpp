@@ -1,9 +1,11 @@
 // Modes of the MDR system: which guards are alive, what their transitions change, and how a mode is decided.
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "mdr/adhesion_validity.hpp"
 #include "mdr/system.hpp"
 
 namespace monograin::mdr {
@@ -23,6 +25,7 @@ enum GuardKind : int {
   k_peel,
   k_follow,
   k_pull_off,
+  k_unstable,
   k_growth_on,
   k_growth_off,
   k_caps,
@@ -31,10 +34,14 @@ enum GuardKind : int {
   k_centre_reached
 };
 
+// Below this a class of walls does not act along any free direction of the centre.
+constexpr double k_no_direction = 1e-10;
 // A guard this near to zero, and moving on, counts as crossed when a mode is decided.
 constexpr double k_touch = 1e-13;
 // A program that returns exactly to the old maximum does not pass it, whichever way its overlap is rounded.
 constexpr double k_same_overlap = 2e-15;
+// An edge that has just turned is at rest, and near to where it turned from; integration errors there are no motion.
+constexpr double k_at_rest = 1e-8;
 // With a free centre, contacts along its directions open and close together; their guards agree to the integration
 // error only.
 constexpr double k_together = 1e-6;
@@ -108,7 +115,31 @@ void System::start_unloading(std::size_t i, double r, std::string_view why, std:
   memory.largest = now_[i].overlap - (settings_.delta_max_rule == DeltaMaxRule::shifted ? r : 0.0);
   if (memory.regime == Regime::fully_plastic) memory.regime = Regime::unloading;
   log.push_back({why, static_cast<int>(i)});
-  if (adheres()) stick(i, log);
+  if (!adheres()) return;
+  stick(i, log);
+  check_adhesion(i, r);
+}
+
+/// Whether the model's convex indenter, which knows no yielding in tension, will do for this contact (F.7).
+void System::check_adhesion(std::size_t i, double r) {
+  if (validity_) return;
+  const Indenter indenter = frame(i, now_[i].overlap, r).indenter;
+  const PullOff& limits = pull_off(i, indenter);
+  const double critical = (is_loaded(i) ? limits.by_force : limits.by_displacement).contact_radius;
+  const double peak = peak_radius_over_initial_radius(now_[i].displacement, material_.yield_overlap_ratio);
+  const double zone = plastic_zone_size(material_.composite_modulus, surface_energy_, material_.yield_stress);
+  switch (adhesion_validity(critical, peak, zone)) {
+    case AdhesionValidity::valid:
+      break;
+    case AdhesionValidity::peak_failure:
+      validity_ = {"pull-off is not predicted well: the contact's middle is dented beyond its critical radius",
+                   "critical radius over that of the ring", critical / peak};
+      break;
+    case AdhesionValidity::yielding_failure:
+      validity_ = {"pull-off is not predicted well: yielding at the contact's edge is not small-scale (15 and more)",
+                   "critical diameter over the plastic zone", 2.0 * critical / zone};
+      break;
+  }
 }
 
 void System::stick(std::size_t i, std::vector<Event>& log) {
@@ -126,12 +157,41 @@ void System::separate(std::size_t i, double r, std::span<double> y, std::vector<
     // The wall keeps the work done on it so far. Where the contact holds negative energy, the load has at least to
     // supply that in the snap.
     const double supplied = std::max(0.0, -contact_energy(i, r, PlasticPart::recoverable));
-    y[k_work] += classes_[i].multiplicity() * (now.contact.force * now.displacement + supplied);
+    y[k_work] += classes_[i].multiplicity() * (now.contact.force * now.position + supplied);
     memory.resting = now.displacement;
   }
   memory.edge = Edge::following;
   lose_contact(i);
   log.push_back({is_touch ? "contact-lost" : "pull-off", static_cast<int>(i)});
+  if (free_count_ == 0) return;
+  // A free centre springs back from there: what peeled on the other side is relieved.
+  for (std::size_t j = 0; j < memory_.size(); ++j) {
+    if (memory_[j].edge == Edge::peeling && !is_loaded(j)) stick(j, log);
+  }
+}
+
+/// The contact that gives way where several of them cannot hold a free centre between them any more: of those that
+/// peel the one whose wall withdraws fastest.
+std::optional<std::size_t> System::weakest_contact() const noexcept {
+  std::optional<std::size_t> weakest;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    if (memory_[i].edge != Edge::peeling || is_loaded(i) || directions_[i].norm() < k_no_direction) continue;
+    const auto speed = [&](std::size_t j) { return ramps_[j].end - ramps_[j].start; };
+    if (!weakest || speed(i) < speed(*weakest)) weakest = i;
+  }
+  return weakest;
+}
+
+/// Least stiffness with which the contacts hold a free centre, in the directions in which any of them does.
+double System::least_stiffness() const {
+  double scale = 0.0;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    if (!touches(memory_[i].regime) || is_loaded(i)) continue;
+    scale += classes_[i].multiplicity() * material_.composite_modulus * now_[i].contact.contact_radius;
+  }
+  SmallMatrix stiffness = sums_.stiffness / scale + unheld_;
+  for (int k = free_count_; k < 3; ++k) stiffness(k, k) = 1.0;
+  return Eigen::SelfAdjointEigenSolver<SmallMatrix>(stiffness).eigenvalues().minCoeff();
 }
 
 void System::resume_loading(std::size_t i) {
@@ -158,9 +218,9 @@ void System::yield(std::size_t i, double r) {
 
 /// Where the centre is free, a contact along its directions is carried by others only: they close and open together.
 void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log) {
-  if (free_count_ == 0 || directions_[i].norm() < 1e-10 || adheres()) return;
+  if (free_count_ == 0 || directions_[i].norm() < k_no_direction || adheres()) return;
   for (std::size_t j = 0; j < memory_.size(); ++j) {
-    if (j == i || directions_[j].norm() < 1e-10 || touches(memory_[j].regime) == is_made) continue;
+    if (j == i || directions_[j].norm() < k_no_direction || touches(memory_[j].regime) == is_made) continue;
     const bool is_dent = memory_[j].regime == Regime::separated;
     const int kind = is_made ? (is_dent ? k_dent_touched : k_made) : k_lost;
     if (is_loaded(j) || std::abs(contact_guard(kind, j, 0.0, now_[j].overlap, r)) > k_together) continue;
@@ -287,8 +347,8 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
                          std::vector<Event>& log) {
   const double r = y[k_radius];
   const double rate = edge_rate(i, r, now);
-  const bool moves_in = rate > k_touch || is_carried;
-  const bool moves_out = rate < -k_touch && !is_carried;
+  const bool moves_in = rate > k_at_rest || is_carried;
+  const bool moves_out = rate < -k_at_rest && !is_carried;
   const double overlap = now_[i].overlap;
   const auto is_past = [&](int kind, double sign) { return sign * edge_guard(kind, i, xi, overlap, r) >= -k_touch; };
   Memory& memory = memory_[i];
@@ -312,7 +372,7 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
         separate(i, r, y, log);
         return true;
       }
-      if (!moves_in) return false;
+      if (rate < 0.0 && !is_carried) return false;
       stick(i, log);
       return true;
   }
@@ -341,7 +401,7 @@ bool System::is_backed(std::size_t i) const {
   for (int sweep = 0; sweep < k_most_sweeps; ++sweep) {
     double largest_change = 0.0;
     for (std::size_t j = 0; j < memory_.size(); ++j) {
-      if (j == i || !touches(memory_[j].regime) || directions_[j].norm() < 1e-10) continue;
+      if (j == i || !touches(memory_[j].regime) || directions_[j].norm() < k_no_direction) continue;
       const double change = std::max(-shares[j], -left_over.dot(directions_[j]) / directions_[j].squaredNorm());
       shares[j] += change;
       left_over += change * directions_[j];
@@ -360,7 +420,7 @@ void System::check_support() const {
   const double least = k_touch * speed_scale();
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     const bool pushes = touches(memory_[i].regime) && !is_loaded(i) && ramps_[i].end - ramps_[i].start > least;
-    if (pushes && directions_[i].norm() > 1e-10 && !is_backed(i)) {
+    if (pushes && directions_[i].norm() > k_no_direction && !is_backed(i)) {
       throw std::domain_error("no contact holds the free centre of the particle against a wall that pushes it");
     }
   }
@@ -415,7 +475,7 @@ double System::contact_guard(int kind, std::size_t i, double xi, double overlap,
   }
   switch (kind) {
     case k_yield:
-      return overlap / (1.0 + r) - material_.yield_overlap_ratio;
+      return overlap / ((1.0 + r) * material_.yield_overlap_ratio) - 1.0;
     case k_reload:
       return overlap - largest_overlap(memory_[i], r) - k_same_overlap;
     case k_lost:
@@ -459,6 +519,7 @@ void System::watch(double xi, std::span<const double> y) {
   const double r = y[k_radius];
   const Motion now = motion(is_growing_);
   for (std::size_t i = 0; i < memory_.size(); ++i) watch_contact(i, r, now);
+  if (free_count_ > 0 && weakest_contact()) guards_.push_back({k_unstable, -1, -1, "pull-off"});
 
   if (is_growing_) {
     guards_.push_back({k_growth_off, -1, -1, "growth-off"});
@@ -488,7 +549,7 @@ void System::watch(double xi, std::span<const double> y) {
 void System::watch_contact(std::size_t i, double r, const Motion& now) {
   const Memory& memory = memory_[i];
   const int index = static_cast<int>(i);
-  const bool is_free = !is_loaded(i) && free_count_ > 0 && directions_[i].norm() > 1e-10;
+  const bool is_free = !is_loaded(i) && free_count_ > 0 && directions_[i].norm() > k_no_direction;
   const bool may_turn = is_growing_ || is_free;            // in mid-step
   const bool is_predictable = !may_turn && !is_loaded(i);  // overlap linear in xi, radius held
   const double last_overlap = ramps_[i].end + r;
@@ -562,6 +623,9 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
       case k_growth_off:
         values[g] = growth_drive(now);
         break;
+      case k_unstable:
+        values[g] = least_stiffness();
+        break;
       case k_singular:
         values[g] = now.slope / ((1.0 + r) * (1.0 + r)) - k_least_slope;
         break;
@@ -596,6 +660,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
                                       std::vector<Event>& log) {
   look(xi, y);
   const double r = y[k_radius];
+  const Motion now = motion(is_growing_);
   std::optional<bool> growth;
   bool others_fired = false;
   bool has_jumped = false;
@@ -612,6 +677,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     // Another guard of the same edge has changed it at this instant.
     const bool is_of_edge = guard.kind == k_peel || guard.kind == k_follow || guard.kind == k_turn;
     if (is_of_edge && (!touches(memory_[i].regime) || edges_before_[i] != memory_[i].edge)) continue;
+    if (guard.kind == k_peel && edge_rate(i, r, now) >= -k_at_rest) continue;
+    if (guard.kind == k_follow && edge_rate(i, r, now) <= k_at_rest) continue;
     switch (guard.kind) {
       case k_yield:
         yield(i, r);
@@ -640,7 +707,12 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         others_fired = true;
         continue;
       case k_pull_off:
-        separate(i, r, y, log);
+        if (memory_[i].edge == Edge::peeling) separate(i, r, y, log);
+        others_fired = true;
+        continue;
+      case k_unstable:
+        // Unless another contact has pulled off at this instant.
+        if (const auto weakest = weakest_contact()) separate(*weakest, r, y, log);
         others_fired = true;
         continue;
       case k_follow:

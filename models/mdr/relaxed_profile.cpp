@@ -6,6 +6,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -15,8 +16,10 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::size_t k_order = 3;  // of the slopes: one more would not make the cubic pieces more exact
-constexpr std::size_t k_fewest_samples = k_order + 1;
+// Samples whose polynomial gives the slope at the middle one: enough for slopes of a higher order than that of cubic
+// pieces. A rational interpolant of all samples would do as well, had it no rounding errors: in r^2 the samples crowd
+// at the axis, and their weights with them.
+constexpr std::size_t k_stencil = 5;
 
 // Four nodes are exact to degree 7; a cubic of x^2 - t^2 has degree 6.
 using PieceRule = boost::math::quadrature::gauss<double, 4>;
@@ -24,8 +27,8 @@ using PieceRule = boost::math::quadrature::gauss<double, 4>;
 void check(std::span<const double> radii, std::span<const double> heights) {
   const auto is_finite = [](double value) { return std::isfinite(value); };
   if (radii.size() != heights.size()) throw std::invalid_argument("a profile needs one height for each radius");
-  if (radii.size() < k_fewest_samples) {
-    throw std::invalid_argument("a profile needs at least " + std::to_string(k_fewest_samples) + " samples, not " +
+  if (radii.size() < k_stencil) {
+    throw std::invalid_argument("a profile needs at least " + std::to_string(k_stencil) + " samples, not " +
                                 std::to_string(radii.size()));
   }
   if (!std::ranges::all_of(radii, is_finite) || !std::ranges::all_of(heights, is_finite))
@@ -35,6 +38,14 @@ void check(std::span<const double> radii, std::span<const double> heights) {
     throw std::invalid_argument("the radii of a profile have to ascend");
 }
 
+/// Slope at a point, of the polynomial through it and its neighbours.
+double slope_at(std::span<const double> x, std::span<const double> y, std::size_t i) {
+  const std::size_t first = std::min(std::max(i, k_stencil / 2) - k_stencil / 2, x.size() - k_stencil);
+  // Of the highest order for its points, it is their polynomial.
+  return boost::math::barycentric_rational<double>(x.data() + first, y.data() + first, k_stencil, k_stencil - 1)
+      .prime(x[i]);
+}
+
 double weight_of(Control control) noexcept { return control == Control::force ? 3.0 : 1.0; }
 
 }  // namespace
@@ -42,7 +53,7 @@ double weight_of(Control control) noexcept { return control == Control::force ? 
 RelaxedProfile::RelaxedProfile(std::span<const double> radii, std::span<const double> heights) {
   check(radii, heights);
   radii_.assign(radii.begin(), radii.end());
-  // Scaled, so that the weights of the interpolant neither overflow nor underflow in any unit.
+  // Scaled, so that the weights of the slopes neither overflow nor underflow in any unit.
   const double size = largest_radius() * largest_radius();
   std::vector<double> squares(radii_.size());
   std::vector<double> above_axis(radii_.size());
@@ -50,13 +61,14 @@ RelaxedProfile::RelaxedProfile(std::span<const double> radii, std::span<const do
     squares[i] = radii_[i] * radii_[i] / size;
     above_axis[i] = heights[i] - heights[0];
   }
-  const boost::math::barycentric_rational<double> smooth(squares.data(), above_axis.data(), squares.size(), k_order);
+  if (std::ranges::adjacent_find(squares, std::ranges::greater_equal()) != squares.end())
+    throw std::invalid_argument("the radii of a profile are too close to each other");
   pieces_.reserve(radii_.size() - 1);
   for (std::size_t i = 0; i + 1 < radii_.size(); ++i) {
     const double width = (radii_[i + 1] - radii_[i]) * (radii_[i + 1] + radii_[i]);
     const double secant = (above_axis[i + 1] - above_axis[i]) / width;
-    const double begin = smooth.prime(squares[i]) / size;
-    const double end = smooth.prime(squares[i + 1]) / size;
+    const double begin = slope_at(squares, above_axis, i) / size;
+    const double end = slope_at(squares, above_axis, i + 1) / size;
     pieces_.push_back({above_axis[i], begin, (3.0 * secant - 2.0 * begin - end) / width,
                        (begin + end - 2.0 * secant) / (width * width)});
   }

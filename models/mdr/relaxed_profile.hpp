@@ -18,11 +18,11 @@ namespace monograin::mdr {
 /// One-dimensional image of a profile given by samples.
 ///
 /// The samples are interpolated in r^2, of which a profile that is smooth at the axis is a smooth function: cubic
-/// pieces with slopes of a barycentric rational interpolant of order 3. Even polynomials of degree 6 are reproduced;
-/// other smooth profiles to fourth order in the distance of the samples. The transform is exact for the pieces.
+/// pieces with slopes of the polynomials through five neighbours. Even polynomials of degree 6 are reproduced; other
+/// smooth profiles to fourth order in the distance of the samples. The transform is exact for the pieces.
 class RelaxedProfile {
  public:
-  /// @param radii    r_i, from 0 on, ascending, at least four; the last one is the largest contact radius a_max
+  /// @param radii    r_i, from 0 on, ascending, at least five; the last one is the largest contact radius a_max
   /// @param heights  g3D(r_i); only their differences from that at the axis count
   /// @throws std::invalid_argument that says what is wrong with the samples
   RelaxedProfile(std::span<const double> radii, std::span<const double> heights);

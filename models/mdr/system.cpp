@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "elastic/hertz.hpp"
+#include "mdr/contact_profile.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -41,7 +42,8 @@ constexpr std::size_t centre_place(int k) noexcept { return k_centre + static_ca
 System::System(const Settings& settings, std::vector<ContactClass> classes)
     : settings_(settings), classes_(std::move(classes)) {
   const bool yields = std::isfinite(settings_.yield_stress);
-  material_ = make_material(settings_.youngs_modulus, settings_.poisson_ratio, settings_.yield_stress);
+  material_ = make_material(settings_.youngs_modulus, settings_.poisson_ratio, settings_.yield_stress,
+                            settings_.pressure_curve);
   stress_unit_ = yields ? settings_.yield_stress : material_.composite_modulus;
   material_.composite_modulus /= stress_unit_;
   material_.yield_stress /= stress_unit_;
@@ -78,7 +80,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   unknowns_ = {{"apparent radius growth (R - R0)/R0", Unknown::Kind::differential, std::min(1.0, reach * reach), true},
                {"work", Unknown::Kind::quadrature, work_scale(reach), false}};
   for (int k = 0; k < free_count_; ++k) {
-    unknowns_.push_back({k_centre_names[static_cast<std::size_t>(k)], Unknown::Kind::algebraic, reach, true});
+    unknowns_.push_back({k_centre_names[static_cast<std::size_t>(k)], Unknown::Kind::algebraic, reach, true, true});
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (!classes_[i].takes_force) continue;
@@ -152,6 +154,7 @@ void System::start(std::span<double> y) {
   held_radius_ = 0.0;
   largest_work_ = 0.0;
   lowest_dissipation_ = 0.0;
+  validity_.reset();
   caps_have_met_ = false;
   has_begun_ = false;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
@@ -229,6 +232,7 @@ const UnloadingShape& System::shape(std::size_t i, double r) {
 void System::look(double xi, std::span<const double> y) {
   for (std::size_t i = 0; i < now_.size(); ++i) {
     look_at(i, is_loaded(i) ? y[wall_places_[i]] : displacement_as_told(i, xi, y), y[k_radius]);
+    now_[i].position = now_[i].displacement - carried_by_centre(i, y);
   }
   sum_up(xi, y[k_radius]);
 }
@@ -271,7 +275,8 @@ double System::force_work(std::span<const double> y) {
   for (std::size_t i = 0; i < now_.size(); ++i) {
     if (!is_loaded(i)) continue;
     look_at(i, y[wall_places_[i]], y[k_radius]);
-    sum += classes_[i].multiplicity() * now_[i].contact.force * now_[i].displacement;
+    const double position = now_[i].displacement - carried_by_centre(i, y);
+    sum += classes_[i].multiplicity() * now_[i].contact.force * position;
   }
   return sum;
 }
@@ -343,9 +348,14 @@ double System::displacement_under_force(std::size_t i, double xi, double r, doub
 
 /// Displacement of a wall as the program and a free centre make it.
 double System::displacement_as_told(std::size_t i, double xi, std::span<const double> y) const noexcept {
-  double displacement = std::lerp(ramps_[i].start, ramps_[i].end, xi);
-  for (int k = 0; k < free_count_; ++k) displacement += directions_[i][k] * y[centre_place(k)];
-  return displacement;
+  return std::lerp(ramps_[i].start, ramps_[i].end, xi) + carried_by_centre(i, y);
+}
+
+/// How far a free centre has come towards the walls of a class.
+double System::carried_by_centre(std::size_t i, std::span<const double> y) const noexcept {
+  double distance = 0.0;
+  for (int k = 0; k < free_count_; ++k) distance += directions_[i][k] * y[centre_place(k)];
+  return distance;
 }
 
 /// The walls under force, at a given radius.
@@ -420,8 +430,8 @@ void System::sum_up(double xi, double r) {
     const double count = classes_[i].multiplicity();
     const double speed = ramps_[i].end - ramps_[i].start;
     if (is_loaded(i)) {
-      sums_.power -= count * now.displacement * speed;
-      sums_.force_work += count * prescribed_force(i, xi) * now.displacement;
+      sums_.power -= count * now.position * speed;
+      sums_.force_work += count * prescribed_force(i, xi) * now.position;
     } else {
       sums_.power += count * c.force * speed;
     }
@@ -452,7 +462,7 @@ void System::sum_up(double xi, double r) {
 
 /// At first touch all stiffnesses vanish together; equal ones give the right motion for contacts of one law.
 void System::regularise_first_touch() {
-  if (sums_.stiffness.trace() > 0.0) return;
+  if (sums_.stiffness.trace() != 0.0) return;
   for (std::size_t i = 0; i < now_.size(); ++i) {
     if (!touches(memory_[i].regime) || is_loaded(i)) continue;
     const double count = classes_[i].multiplicity();
@@ -466,12 +476,12 @@ void System::regularise_first_touch() {
 System::Small System::balance_step(const Small& force) const {
   Small step = Small::Zero();
   if (free_count_ == 1) {
-    if (sums_.stiffness(0, 0) > 0.0) step[0] = -force[0] / sums_.stiffness(0, 0);
+    if (sums_.stiffness(0, 0) != 0.0) step[0] = -force[0] / sums_.stiffness(0, 0);
   } else if (free_count_ > 1) {
     const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(sums_.stiffness);
-    const double threshold = 1e-12 * solver.eigenvalues().maxCoeff();
+    const double threshold = 1e-12 * solver.eigenvalues().cwiseAbs().maxCoeff();
     for (int k = 0; k < 3; ++k) {
-      if (solver.eigenvalues()[k] <= threshold) continue;
+      if (std::abs(solver.eigenvalues()[k]) <= threshold) continue;
       const Small direction = solver.eigenvectors().col(k);
       step -= direction * (direction.dot(force) / solver.eigenvalues()[k]);
     }
@@ -507,6 +517,11 @@ double System::inward_rate(std::size_t i, const Motion& motion) const noexcept {
 
 void System::complete(double xi, std::span<double> y) {
   if (!is_growing_) y[k_radius] = held_radius_;
+  place(xi, y);
+}
+
+/// Puts centre and walls where they belong at a given radius.
+void System::place(double xi, std::span<double> y) {
   move_walls(xi, y);
   if (free_count_ > 0) move_centre(xi, y);
   note_walls(xi, y);
@@ -557,24 +572,19 @@ void System::all_rates(double xi, std::span<const double> y, std::span<double> d
 }
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
-  // Walls under force stand where the radius puts them, so that their singular rows do not couple to the others.
+  // Centre and walls under force stand where the radius puts them, so that their singular rows do not couple to the
+  // others.
   std::ranges::copy(y, trial_.begin());
-  move_walls(xi, trial_);
-  note_walls(xi, trial_);
+  for (int k = 0; k < free_count_; ++k) {
+    for (int j = 0; j < free_count_; ++j) {
+      trial_[centre_place(k)] -= unheld_(k, j) * (y[centre_place(j)] - held_centre_[j]);
+    }
+  }
+  place(xi, trial_);
   look(xi, trial_);
   res[k_radius] = is_growing_ ? sums_.balance - frozen_balance_ : y[k_radius] - held_radius_;
   res[k_work] = dy[k_work] - sums_.power;
-  // Over the total stiffness the balance of forces is a distance, and stays regular where force and stiffness vanish
-  // together.
-  const double stiffness = sums_.stiffness.trace();
-  for (int k = 0; k < free_count_; ++k) {
-    double row = stiffness > 0.0 ? sums_.force[k] / stiffness : 0.0;
-    for (int j = 0; j < free_count_; ++j) row += unheld_(k, j) * (y[centre_place(j)] - held_centre_[j]);
-    res[centre_place(k)] = row;
-  }
-  for (std::size_t i = 0; i < ramps_.size(); ++i) {
-    if (classes_[i].takes_force) res[wall_places_[i]] = y[wall_places_[i]] - trial_[wall_places_[i]];
-  }
+  for (std::size_t k = k_centre; k < unknowns_.size(); ++k) res[k] = y[k] - trial_[k];
 }
 
 /// Directions in which no touching contact holds the centre: there it stays where it is.
@@ -587,7 +597,7 @@ void System::hold_centre(std::span<const double> y) {
   }
   SmallMatrix reach = SmallMatrix::Zero();
   for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (touches(memory_[i].regime)) reach += directions_[i] * directions_[i].transpose();
+    if (touches(memory_[i].regime) && !is_loaded(i)) reach += directions_[i] * directions_[i].transpose();
   }
   const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(reach);
   for (int k = 0; k < 3; ++k) {
@@ -739,13 +749,38 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
   return 0.0;
 }
 
+std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {
+  constexpr int k_points = 128;    // within the contact, and as many around it
+  constexpr double k_reach = 2.0;  // as far as this many contact radii
+  look(xi, y);
+  const auto i = static_cast<std::size_t>(contact_class);
+  const double a = now_[i].contact.contact_radius;
+  if (!touches(memory_[i].regime) || !(a > 0.0)) return {};
+  const Frame now = frame(i, now_[i].overlap, y[k_radius]);
+  const ContactProfile profile{.indenter = now.indenter,
+                               .composite_modulus = material_.composite_modulus,
+                               .contact_radius = std::min(a, now.indenter.half_width),
+                               .displacement_1d = now.displacement};
+  const double length = settings_.initial_radius;
+  std::vector<SurfacePoint> points;
+  const auto add = [&](double r) {
+    points.push_back({.radius = r * length,
+                      .pressure = profile.pressure(r) * stress_unit_,
+                      .displacement = profile.surface_displacement(r) * length,
+                      .relaxed_height = profile.relaxed_height(r) * length});
+  };
+  // Closer towards the edge from both sides, where the slopes are unbounded; not at the edge itself.
+  for (int k = 0; k < k_points; ++k) add(a * std::sin(0.5 * pi * k / k_points));
+  for (int k = 1; k <= k_points; ++k) {
+    const double share = static_cast<double>(k) / k_points;
+    add(a * (1.0 + (k_reach - 1.0) * share * share));
+  }
+  return points;
+}
+
 double System::wall_position(int contact_class, double xi, std::span<const double> y) {
   look(xi, y);
-  double position = now_[static_cast<std::size_t>(contact_class)].displacement;
-  for (int k = 0; k < free_count_; ++k) {
-    position -= directions_[static_cast<std::size_t>(contact_class)][k] * y[centre_place(k)];
-  }
-  return position * settings_.initial_radius;
+  return now_[static_cast<std::size_t>(contact_class)].position * settings_.initial_radius;
 }
 
 std::vector<Finding> System::warnings() const {
@@ -763,6 +798,7 @@ std::vector<Finding> System::warnings() const {
     result.push_back({"contact caps intersect (event caps-intersect); the model is not valid beyond", "first at R/R0",
                       radius_at_caps_});
   }
+  if (validity_) result.push_back(*validity_);
   if (lowest_dissipation_ < -1e-6 * largest_work_) {
     result.push_back({"the growing apparent radius creates energy; radius_rule = \"yielded\" avoids it",
                       "lowest dissipation over work", lowest_dissipation_ / largest_work_});

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "hybrid_system.hpp"
@@ -52,6 +53,7 @@ struct Settings {
   ElasticProfile elastic_profile = ElasticProfile::ellipse;
   RadiusRule radius_rule = RadiusRule::gated;
   DeltaMaxRule delta_max_rule = DeltaMaxRule::running_maximum;
+  std::shared_ptr<const PressureCurve> pressure_curve{};  ///< p_Y/Y over delta/R; null: the source's exponential
   bool stops_at_cap_intersection = false;
   bool centre_is_free = false;  ///< the centre moves so that the wall forces balance
   /// Largest displacement [m] and force [N] the program asks of a wall: how large the unknowns become, which absolute
@@ -82,6 +84,7 @@ class System final : public HybridSystem {
   void observe(double xi, std::span<const double> y, std::span<double> values) override;
   [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] double wall_position(int contact_class, double xi, std::span<const double> y) override;
+  [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
 
@@ -106,7 +109,8 @@ class System final : public HybridSystem {
 
   /// One contact class at an instant.
   struct Instant {
-    double displacement = 0.0;
+    double displacement = 0.0;  ///< of the contact: towards the centre, wherever that is
+    double position = 0.0;      ///< of the wall
     double overlap = 0.0;
     Contact contact;
     double rate_by_time = 0.0;    ///< of the displacement, at fixed R and centre, with xi
@@ -161,6 +165,8 @@ class System final : public HybridSystem {
   [[nodiscard]] double displacement_under_force(std::size_t i, double xi, double r, double guess);
   void set_rates(std::size_t i, double r);
   [[nodiscard]] double displacement_as_told(std::size_t i, double xi, std::span<const double> y) const noexcept;
+  [[nodiscard]] double carried_by_centre(std::size_t i, std::span<const double> y) const noexcept;
+  void place(double xi, std::span<double> y);
   void move_walls(double xi, std::span<double> y);
   void note_walls(double xi, std::span<double> y) const noexcept;
 
@@ -174,13 +180,13 @@ class System final : public HybridSystem {
   [[nodiscard]] Motion growing_motion() const;
   void move_centre(double xi, std::span<double> y);
   void grow(double xi, std::span<double> y);
-  void hold_centre(std::span<const double> y);
 
   // Modes (modes.cpp).
   void settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log,
               bool has_jumped = false);
   [[nodiscard]] bool wants_growth(double xi, std::span<double> y);
   [[nodiscard]] double growth_drive(const Motion& now) const noexcept;
+  void hold_centre(std::span<const double> y);
   bool settle_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log,
                       std::vector<Event>& made);
   bool settle_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_carried,
@@ -195,6 +201,9 @@ class System final : public HybridSystem {
   void check_support() const;
   void start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log);
   void stick(std::size_t i, std::vector<Event>& log);
+  [[nodiscard]] std::optional<std::size_t> weakest_contact() const noexcept;
+  [[nodiscard]] double least_stiffness() const;
+  void check_adhesion(std::size_t i, double r);
   void start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);
   void separate(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);
   void make_contact(std::size_t i);
@@ -251,6 +260,7 @@ class System final : public HybridSystem {
   Sums sums_;
   double largest_work_ = 0.0;
   double lowest_dissipation_ = 0.0;
+  std::optional<Finding> validity_;  ///< of the first adhesive contact to unload for which the model is not valid
   bool caps_have_met_ = false;
   double radius_at_caps_ = 0.0;
 };

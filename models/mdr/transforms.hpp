@@ -3,15 +3,17 @@
 /// Profiles, displacements and pressures are callables of the distance from the axis, r in space and x in the image;
 /// functions of either are even, and are only asked for at arguments >= 0. The substitutions below take the square
 /// roots out of all kernels, so that a profile which is smooth inside and behaves like a square root (or its inverse)
-/// at the edge is integrated to rounding, 1e-13 of the integral of its magnitude; a kink inside costs time, and some
-/// digits in the end. What the callables throw passes through; NaN in gives NaN out.
-/// Every function is homogeneous: lengths in any one unit, stresses in any one unit.
-/// Source: 002_000df8fc37500451.txt, section 3.1.
+/// at the edge is integrated to rounding. One that is unbounded at the edge loses digits in the argument, however: the
+/// distance to the edge is not in a rounded r. A callable of two arguments, r and half the chord sqrt(a^2 - r^2), is
+/// given both and loses none. A jump of the integrand, or a logarithm at the axis, costs time and leaves an error of
+/// 1e-6 or 1e-8 of it. What the callables throw passes through; NaN in gives NaN out. Every function is homogeneous:
+/// lengths in any one unit, stresses in any one unit. Source: 002_000df8fc37500451.txt, section 3.1.
 #pragma once
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 namespace monograin::mdr {
 
@@ -19,13 +21,23 @@ namespace detail {
 
 // Asking for less than the noise of the integrand would bisect for ever; the depth bounds the cost of a kink.
 inline constexpr double k_transform_tolerance = 1e-13;
-inline constexpr unsigned k_transform_depth = 12;
+inline constexpr unsigned k_transform_depth = 15;
 
 /// int_0^end f(t) dt
 template <class Function>
 [[nodiscard]] double angular_integral(Function&& f, double end) {
   return boost::math::quadrature::gauss_kronrod<double, 61>::integrate(f, 0.0, end, k_transform_depth,
                                                                        k_transform_tolerance);
+}
+
+/// A function of the radius, or of the radius and half the chord there.
+template <class Function>
+[[nodiscard]] double at_chord(Function&& f, double radius, double half_chord) {
+  if constexpr (std::is_invocable_v<Function, double, double>) {
+    return f(radius, half_chord);
+  } else {
+    return f(radius);
+  }
 }
 
 inline constexpr double k_right_angle = 0.5 * std::numbers::pi;
@@ -55,7 +67,7 @@ template <class Profile>
 
 /// Line load of a contact pressure, q1D(x) = 2 int_x^a r p3D(r)/sqrt(r^2 - x^2) dr (eqs. 9, 17).
 ///
-/// @param pressure        r -> p3D(r), may grow like 1/sqrt(a^2 - r^2) at the edge
+/// @param pressure        r -> p3D(r), or (r, sqrt(a^2 - r^2)) -> p3D(r); may grow like 1/sqrt(a^2 - r^2)
 /// @param contact_radius  a
 /// @param x               >= 0
 /// @return 0 for x > a; at x = a what q1D comes down (or jumps) to is not in the pressure any more: 0
@@ -68,7 +80,8 @@ template <class Pressure>
          detail::angular_integral(
              [&](double t) {
                const double cosine = std::cos(t);
-               return pressure(std::hypot(contact_radius * std::sin(t), x * cosine)) * cosine;
+               const double r = std::hypot(contact_radius * std::sin(t), x * cosine);
+               return detail::at_chord(pressure, r, chord * cosine) * cosine;
              },
              detail::k_right_angle);
 }
@@ -78,7 +91,8 @@ template <class Pressure>
 ///
 /// Eq. 9 differentiates a line load that ends continuously; the first term is the jump at the edge of an adhesive
 /// contact (or a flat punch).
-/// @param line_load_slope  x -> q1D'(x) inside the contact, may grow like 1/sqrt(a^2 - x^2) at the edge
+/// @param line_load_slope  x -> q1D'(x), or (x, sqrt(a^2 - x^2)) -> q1D'(x), inside the contact; may grow like
+///                         1/sqrt(a^2 - x^2)
 /// @param edge_line_load   q1D just inside the edge
 /// @param contact_radius   a
 /// @param r                >= 0
@@ -92,7 +106,7 @@ template <class Slope>
                                       [&](double t) {
                                         const double cosine = std::cos(t);
                                         const double x = std::hypot(contact_radius * std::sin(t), r * cosine);
-                                        return line_load_slope(x) / x * cosine;
+                                        return detail::at_chord(line_load_slope, x, chord * cosine) / x * cosine;
                                       },
                                       detail::k_right_angle);
   return (edge_line_load / chord - integral) / std::numbers::pi;

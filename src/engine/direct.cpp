@@ -7,6 +7,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -17,8 +18,15 @@ namespace {
 
 // Pieces of a step in which guards are looked at; events do not depend on it as long as guards cross once per piece.
 constexpr double k_pieces = 32.0;
+// The first piece where there are slaved unknowns, and how fast pieces grow from there.
+constexpr double k_first = 1e-9;
+constexpr double k_grading = 30.0;
 // A piece is not made smaller than this, in step coordinates.
 constexpr double k_smallest = 1e-13;
+// Shorter pieces are not searched for guards that cross twice.
+constexpr double k_smallest_hidden = 1e-6;
+// An extremum this near to zero, over the guard in the middle of the piece, is looked at.
+constexpr double k_near = 0.5;
 // How far ahead the side of a guard that begins at zero is read.
 constexpr double k_ahead = 1e-9;
 constexpr std::size_t k_nodes = 12;
@@ -101,14 +109,16 @@ class Direct final : public Integrator {
     size_ = unknowns.size();
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
     if (found != unknowns.end()) quadrature_ = static_cast<std::size_t>(found - unknowns.begin());
+    has_slaves_ = std::ranges::any_of(unknowns, &Unknown::is_slaved);
     for (auto* vector : {&begin_state_, &end_state_, &trial_, &rates_}) vector->resize(size_);
   }
 
   void begin(double xi, std::span<const double> y) override {
     ++statistics_.segments;
-    begin_ = end_ = xi;
+    segment_begin_ = begin_ = end_ = xi;
     std::ranges::copy(y, end_state_.begin());
     values_.resize(watch_.size());
+    middle_values_.resize(watch_.size());
     begin_values_.resize(watch_.size());
     end_values_.resize(watch_.size());
     look(end_, end_state_, end_values_);
@@ -126,7 +136,9 @@ class Direct final : public Integrator {
     std::swap(begin_state_, end_state_);
     std::swap(begin_values_, end_values_);
     fired_.clear();
-    const double next = std::min(1.0, (std::floor(begin_ * k_pieces + 1e-9) + 1.0) / k_pieces);
+    double next = std::min(1.0, (std::floor(begin_ * k_pieces + 1e-9) + 1.0) / k_pieces);
+    // Slaved unknowns may start with a singularity, over which guards cross and come back within no time.
+    if (has_slaves_) next = std::min(next, begin_ + std::max(k_first, k_grading * (begin_ - segment_begin_)));
     reach(next);
     while (!finish_piece()) reach(0.5 * (begin_ + end_));
     statistics_.last_step = end_ - begin_;
@@ -237,7 +249,10 @@ class Direct final : public Integrator {
           root = found;
         }
       }
-      if (first == directions.size()) return;
+      if (first == directions.size()) {
+        if (!shorten_to_hidden_crossing()) return;
+        continue;
+      }
       const bool is_shorter = root < end_ - k_smallest;
       if (root < end_) reach(root);
       // An earlier root that this piece's ends did not show is looked for again in the shorter piece.
@@ -253,11 +268,47 @@ class Direct final : public Integrator {
             has_earlier = true;
         }
       }
-      if (!has_earlier) {
+      if (!has_earlier && !shorten_to_hidden_crossing()) {
         fired_ = std::move(all);
         return;
       }
     }
+  }
+
+  /// A guard that is on the same side at both ends of the piece may have crossed and come back in between. Looks at the
+  /// middle, and from there at the extremum of the parabola through the three; where a guard is past, ends the piece.
+  bool shorten_to_hidden_crossing() {
+    if (end_ - begin_ < k_smallest_hidden) return false;
+    const double middle = std::midpoint(begin_, end_);
+    solve(middle, trial_);
+    look(middle, trial_, middle_values_);
+    const auto directions = watch_.directions();
+    double extremum = end_;
+    for (std::size_t g = 0; g < directions.size(); ++g) {
+      const double before = begin_values_[g];
+      const double sign = before < 0.0 ? 1.0 : -1.0;  // towards zero
+      if (before == 0.0 || (directions[g] != 0 && directions[g] != static_cast<int>(sign))) continue;
+      if (crosses(directions[g], before, middle_values_[g])) {
+        reach(middle);
+        return true;
+      }
+      const double slope = end_values_[g] - before;
+      const double curvature = 2.0 * (before + end_values_[g] - 2.0 * middle_values_[g]);
+      if (!(sign * curvature < 0.0)) continue;
+      const double place = 0.5 - 0.5 * slope / curvature;  // share of the piece
+      const double height = before + place * (slope - curvature * (1.0 - place));
+      if (place <= 0.0 || place >= 1.0 || sign * height < -k_near * std::abs(middle_values_[g])) continue;
+      extremum = std::min(extremum, std::lerp(begin_, end_, place));
+    }
+    if (extremum == end_) return false;
+    solve(extremum, trial_);
+    look(extremum, trial_, middle_values_);
+    for (std::size_t g = 0; g < directions.size(); ++g) {
+      if (!crosses(directions[g], begin_values_[g], middle_values_[g])) continue;
+      reach(extremum);
+      return true;
+    }
+    return false;
   }
 
   /// Root of one guard in the piece.
@@ -300,10 +351,12 @@ class Direct final : public Integrator {
   bool is_closed_ = false;
   double primitive_offset_ = 0.0;
   LegendreIntegral integral_;
+  bool has_slaves_ = false;
+  double segment_begin_ = 0.0;
   double begin_ = 0.0;
   double end_ = 0.0;
   std::vector<double> begin_state_, end_state_, trial_, rates_;
-  std::vector<double> begin_values_, end_values_, values_;
+  std::vector<double> begin_values_, end_values_, middle_values_, values_;
   std::vector<std::size_t> fired_;
   Statistics statistics_;
 };

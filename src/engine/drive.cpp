@@ -85,8 +85,7 @@ class Drive {
     } catch (const std::domain_error& error) {
       result.status = RunStatus::stopped;
       result.message = where(xi_) + error.what();
-      open_instant(xi_);
-      close_instant(time(xi_), xi_, {{"limit"}});
+      record_limit();
     } catch (const SolverError& error) {
       result.status = RunStatus::failed;
       result.message = where(error.xi()) + error.what();
@@ -344,6 +343,16 @@ class Drive {
     if (next_output_ < outputs_.size() && outputs_[next_output_].xi <= xi + k_round_off) {
       ++next_output_;
       sink_.append(RowSide::output);
+    }
+  }
+
+  /// Where the equations end, as far as the state there can still be looked at.
+  void record_limit() {
+    try {
+      open_instant(xi_);
+      close_instant(time(xi_), xi_, {{"limit"}});
+    } catch (const std::domain_error&) {
+      return;  // the last row is the one before
     }
   }
 

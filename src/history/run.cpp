@@ -58,6 +58,7 @@ std::string_view version() noexcept { return MONOGRAIN_VERSION; }
 std::string scenario_digest(const Scenario& scenario) {
   std::string text = scenario.text;
   for (const std::string& override_text : scenario.overrides) text += "\n--set " + override_text;
+  for (const auto& [option, curve] : scenario.curves) text += "\n--file " + option + '\n' + curve.text;
   const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
   return fmt::format("xxh128:{:016x}{:016x}", hash.high64, hash.low64);
 }

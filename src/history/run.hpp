@@ -45,7 +45,7 @@ struct Run {
 /// Runs a checked scenario. Histories and events carry the header lines that make their files self-describing.
 [[nodiscard]] Run run_scenario(const Scenario& scenario);
 
-/// Digest of a scenario's text and overrides, e.g. "xxh128:3f...".
+/// Digest of a scenario's text, its overrides and the files its options name, e.g. "xxh128:3f...".
 [[nodiscard]] std::string scenario_digest(const Scenario& scenario);
 
 [[nodiscard]] std::string_view version() noexcept;

@@ -27,6 +27,16 @@ void write_file(const fs::path& file, const std::function<void(std::ostream&)>& 
 
 Json versions() { return {{"monograin", version()}, {"sundials", sundials_version()}, {"compiler", __VERSION__}}; }
 
+/// What the files hold that options name, so that the run can be repeated without them.
+Json files_of(const Scenario& scenario) {
+  Json files = Json::object();
+  for (const auto& [option, curve] : scenario.curves) {
+    files[scenario.model + '.' + option] = {{"name", std::get<std::string>(scenario.options.at(option))},
+                                            {"text", curve.text}};
+  }
+  return files;
+}
+
 Json to_json(const Run& run) {
   const Scenario& scenario = run.scenario;
   const RunRecord& record = run.record;
@@ -63,7 +73,8 @@ Json to_json(const Run& run) {
            {{"name", scenario.name},
             {"digest", scenario_digest(scenario)},
             {"overrides", scenario.overrides},
-            {"text", scenario.text}}}};
+            {"text", scenario.text},
+            {"files", files_of(scenario)}}}};
 }
 
 /// Puts a staged folder where the target is. The exchange is one step for everybody who looks.
@@ -120,9 +131,36 @@ void write_run(Run& run, const fs::path& folder, const std::function<void(const 
   write_file(staged.path() / "history.csv", [&](std::ostream& out) { write_csv(run.record.history, out); });
   write_file(staged.path() / "events.csv", [&](std::ostream& out) { write_csv(run.record.events, out); });
   run.timings.output = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  write_file(staged.path() / "run.json", [&](std::ostream& out) { out << to_json(run).dump(2) << '\n'; });
+  write_file(staged.path() / "run.json", [&](std::ostream& out) {
+    // Nobody checks that the comments in a table are UTF-8.
+    out << to_json(run).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  });
   if (draw) draw(staged.path());
   staged.publish();
+}
+
+Scenario scenario_of_run(const fs::path& folder) {
+  const fs::path file = folder / "run.json";
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read; expected the folder of a run", file.string()));
+  try {
+    const Json scenario = Json::parse(in).at("scenario");
+    // The tables are laid beside the scenario as they were. The depth is for those in folders further up.
+    const StagedFolder staged(fs::temp_directory_path() / "monograin-scenario");
+    const fs::path place = staged.path() / "a" / "b" / "c" / "d";
+    const Json files = scenario.value("files", Json::object());
+    for (const Json& table : files) {
+      const fs::path name = table.at("name").get<std::string>();
+      if (name.is_absolute()) continue;
+      fs::create_directories((place / name).parent_path());
+      write_file(place / name, [&](std::ostream& out) { out << table.at("text").get<std::string>(); });
+    }
+    return parse_scenario(scenario.at("text").get<std::string>(),
+                          (place / (scenario.at("name").get<std::string>() + ".toml")).string(),
+                          scenario.at("overrides").get<std::vector<std::string>>());
+  } catch (const Json::exception& error) {
+    throw std::runtime_error(fmt::format("{}: is not what a run leaves ({})", file.string(), error.what()));
+  }
 }
 
 }  // namespace monograin

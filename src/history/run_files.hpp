@@ -29,6 +29,10 @@ class StagedFolder {
 /// Throws what StagedFolder would, without creating anything: to be asked before a run is started.
 void check_run_folder(const std::filesystem::path& target);
 
+/// The scenario of a run, from its folder: with the overrides and the tables it had then, wherever those are now.
+/// @throws std::runtime_error where there is no run.json, or none that holds a scenario
+[[nodiscard]] Scenario scenario_of_run(const std::filesystem::path& folder);
+
 /// Writes a run into a folder, whole or not at all.
 /// @param draw  called with the folder before it is published, for figures; may be empty
 /// @throws std::runtime_error naming the file that could not be written

@@ -303,6 +303,10 @@ std::string_view Table::header_value(std::string_view key) const noexcept {
   return found == header.end() ? std::string_view{} : std::string_view(found->second);
 }
 
+std::optional<double> Table::header_number(std::string_view key) const noexcept {
+  return parsed_number(header_value(key));
+}
+
 void write_csv(const Table& table, std::ostream& out) {
   constexpr std::size_t k_usual_cell = 22;
   std::string text;

@@ -52,6 +52,8 @@ class Table {
   [[nodiscard]] std::string_view word(std::size_t row, std::size_t column) const;
   /// Value of a header line, or an empty view.
   [[nodiscard]] std::string_view header_value(std::string_view key) const noexcept;
+  /// The same where it is a number.
+  [[nodiscard]] std::optional<double> header_number(std::string_view key) const noexcept;
 
  private:
   std::vector<Column> columns_;

@@ -1,4 +1,5 @@
-/// The parsed TOML tree and the places of its parts. Internal to this folder: it includes the TOML library.
+/// The parsed TOML tree and the places of its parts. For readers of TOML files: it includes the TOML
+/// library.
 #pragma once
 
 #include <toml++/toml.h>

@@ -31,7 +31,11 @@ ScenarioError::ScenarioError(std::vector<Fault> faults)
     : std::runtime_error(one_line_each(faults)), faults_(std::move(faults)) {}
 
 void FaultList::add(SourceLocation where, std::string message) {
-  faults_.push_back({std::move(where), std::move(message)});
+  const auto is_same = [&](const Fault& fault) {
+    return std::tie(fault.message, fault.where.file, fault.where.line, fault.where.column) ==
+           std::tie(message, where.file, where.line, where.column);
+  };
+  if (std::ranges::none_of(faults_, is_same)) faults_.push_back({std::move(where), std::move(message)});
 }
 
 void FaultList::throw_if_any() const {

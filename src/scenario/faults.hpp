@@ -10,6 +10,7 @@ namespace monograin {
 
 class FaultList {
  public:
+  /// What has been found at the same place before is not said again.
   void add(SourceLocation where, std::string message);
   [[nodiscard]] std::size_t size() const noexcept { return faults_.size(); }
 

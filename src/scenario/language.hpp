@@ -27,6 +27,7 @@ struct KeySpec {
     quantity,   ///< a number in SI, or a text with a unit where the dimension has units
     instants,   ///< strictly ascending list of quantities
     direction,  ///< three numbers, not all zero
+    texts,      ///< list of texts; a number in it is taken as it is written
     table,
     tables,  ///< not empty
   };

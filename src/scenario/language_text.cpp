@@ -28,6 +28,7 @@ std::string example_of(const KeySpec& spec) {
     case Kind::file:
     case Kind::instants:
     case Kind::direction:
+    case Kind::texts:
     case Kind::table:
     case Kind::tables:
       break;
@@ -48,8 +49,9 @@ std::string example_line(const KeySpec& spec) {
 std::string expectation(const KeySpec& spec) {
   switch (spec.kind) {
     case Kind::text:
-    case Kind::file:
       return fmt::format("a text in quotes, for example {}", example_of(spec));
+    case Kind::file:
+      return fmt::format("the name of a file in quotes, for example {}", example_of(spec));
     case Kind::identifier:
       return fmt::format("a name of letters, digits, '_' and '-' that begins with a letter, for example {}",
                          example_of(spec));
@@ -74,6 +76,8 @@ std::string expectation(const KeySpec& spec) {
       return fmt::format("a list of ascending times, for example {}", example_of(spec));
     case Kind::direction:
       return fmt::format("three numbers, for example {}", example_of(spec));
+    case Kind::texts:
+      return fmt::format("a list of texts or numbers, for example {}", example_of(spec));
     case Kind::table:
       return fmt::format("a table, written {}", example_line(spec));
     case Kind::tables:

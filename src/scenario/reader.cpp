@@ -1,8 +1,12 @@
 #include "scenario/reader.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
+#include "scenario/curve_file.hpp"
 #include "scenario/language.hpp"
 #include "scenario/loading_reader.hpp"
 #include "scenario/section.hpp"
@@ -42,10 +46,24 @@ OptionValue option_value(const Section& options, const KeySpec& spec) {
   return options.text(spec.name);
 }
 
-void read_options(Reading& reading, const Section& root, const Language& language, Scenario& scenario) {
+/// The curve in the file that an option names, if it names one.
+void read_curve_of(Reading& reading, const Section& options, const KeySpec& spec, const std::filesystem::path& folder,
+                   Scenario& scenario) {
+  const std::string file = options.text(spec.name);
+  if (file.empty()) return;
+  const std::string naming = fmt::format("{} = \"{}\"", spec.name, shown(file));
+  scenario.curves.emplace(spec.name, read_curve(folder / file, options.value_place(spec.name), naming, reading.faults));
+}
+
+void read_options(Reading& reading, const Section& root, const Language& language, const std::string& origin,
+                  Scenario& scenario) {
   const std::string name(language.model->name);
   const Section options(reading, root.table(name, "[" + name + "]"), language.options);
-  for (const KeySpec& spec : language.options) scenario.options.emplace(spec.name, option_value(options, spec));
+  const std::filesystem::path folder = std::filesystem::path(origin).parent_path();
+  for (const KeySpec& spec : language.options) {
+    scenario.options.emplace(spec.name, option_value(options, spec));
+    if (spec.kind == KeySpec::Kind::file) read_curve_of(reading, options, spec, folder, scenario);
+  }
 }
 
 void read_output(Reading& reading, const Section& root, const Language& language, Scenario& scenario) {
@@ -74,7 +92,7 @@ Scenario read_tree(const toml::table& tree, const std::string& origin, FaultList
   read_particle(reading, root, language, scenario);
   if (language.model != nullptr) {
     read_material(reading, root, language, scenario);
-    read_options(reading, root, language, scenario);
+    read_options(reading, root, language, origin, scenario);
   }
   if (!language.loading.empty()) {
     scenario.loading = read_loading(reading, root.table("loading", "[loading]"), language);

@@ -84,6 +84,13 @@ struct Numerics {
   double atol = 1e-12;  ///< relative to the state's own scale
 };
 
+/// A curve given by samples, in a file that an option names.
+struct SampledCurve {
+  std::string text;  ///< the file as it was read
+  std::vector<double> x;
+  std::vector<double> y;
+};
+
 using OptionValue = std::variant<bool, double, std::string>;
 
 struct Scenario {
@@ -95,6 +102,7 @@ struct Scenario {
   double radius = 0.0;                         ///< initial radius [m]
   std::map<std::string, double> material;      ///< SI, every key of the model (defaults filled in)
   std::map<std::string, OptionValue> options;  ///< table named after the model, defaults filled in
+  std::map<std::string, SampledCurve> curves;  ///< by option: what the files hold that options name
   Loading loading;
   Output output;
   Numerics numerics;
@@ -112,6 +120,10 @@ struct Scenario {
 /// The same from a text in memory; `origin` stands for the file's name in messages and names the scenario.
 [[nodiscard]] Scenario parse_scenario(std::string_view text, const std::string& origin,
                                       const std::vector<std::string>& overrides = {});
+
+/// The same from a table of a larger document, which is the scenario's text then; places are those in the document.
+[[nodiscard]] Scenario parse_scenario_table(std::string_view text, std::string_view key, const std::string& origin,
+                                            const std::vector<std::string>& overrides = {});
 
 /// Text of the scenario that `monograin run` takes when no file is named.
 [[nodiscard]] std::string_view default_scenario_text() noexcept;

@@ -87,8 +87,9 @@ json with(json schema, const char* keyword, int value) {
 json kind_schema(const KeySpec& spec, const json& content) {
   switch (spec.kind) {
     case Kind::text:
-    case Kind::file:
       return {{"type", "string"}};
+    case Kind::file:
+      return {{"type", "string"}, {"minLength", 1}};
     case Kind::identifier:
       return {{"type", "string"}, {"pattern", "^[A-Za-z][A-Za-z0-9_-]*$"}};
     case Kind::toggle:
@@ -105,6 +106,8 @@ json kind_schema(const KeySpec& spec, const json& content) {
       return {{"type", "array"}, {"items", quantity(spec)}, {"minItems", 1}, {"uniqueItems", true}};
     case Kind::direction:
       return direction();
+    case Kind::texts:
+      return {{"type", "array"}, {"items", {{"type", {"string", "number"}}}}, {"minItems", 1}};
     case Kind::table:
       return spec.may_be_empty ? content : with(content, "minProperties", 1);
     case Kind::tables:

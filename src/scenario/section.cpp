@@ -80,6 +80,11 @@ std::vector<double> Section::numbers(std::string_view key) const {
   return found == values_.end() ? std::vector<double>{} : std::get<std::vector<double>>(found->second);
 }
 
+std::vector<std::string> Section::texts(std::string_view key) const {
+  const auto found = values_.find(key);
+  return found == values_.end() ? std::vector<std::string>{} : std::get<std::vector<std::string>>(found->second);
+}
+
 Section::Origin Section::table(std::string_view key, std::string label) const {
   const toml::node* node = origin_.table->get(key);
   const toml::table* table = node == nullptr ? nullptr : node->as_table();
@@ -105,6 +110,12 @@ SourceLocation Section::key_place(std::string_view key) const {
 SourceLocation Section::value_place(std::string_view key) const {
   const toml::node* node = origin_.table->get(key);
   return node == nullptr ? origin_.place : place_of(node->source(), origin_.place);
+}
+
+SourceLocation Section::value_place(std::string_view key, std::size_t entry) const {
+  const toml::node* node = origin_.table->get(key);
+  const toml::node* value = node == nullptr || !node->is_array() ? nullptr : node->as_array()->get(entry);
+  return value == nullptr ? value_place(key) : place_of(value->source(), origin_.place);
 }
 
 void Section::check_required() {
@@ -149,6 +160,8 @@ std::optional<Section::Value> Section::read(const KeySpec& spec, const toml::nod
       return read_instants(spec, node);
     case Kind::direction:
       return read_direction(spec, node);
+    case Kind::texts:
+      return read_texts(spec, node);
     case Kind::table:
       if (!node.is_table() || (node.as_table()->empty() && !spec.may_be_empty)) unexpected(spec, node);
       return std::nullopt;
@@ -163,6 +176,7 @@ std::optional<Section::Value> Section::read_text(const KeySpec& spec, const toml
   const auto* text = node.as_string();
   if (text == nullptr) return unexpected(spec, node);
   if (spec.kind == Kind::identifier && !is_identifier(text->get())) return unexpected(spec, node);
+  if (spec.kind == Kind::file && text->get().empty()) return unexpected(spec, node);
   return text->get();
 }
 
@@ -247,6 +261,22 @@ std::optional<Section::Value> Section::read_direction(const KeySpec& spec, const
   if (std::ranges::all_of(components, is_tiny))
     return fault(spec, node, "it has no direction; expected " + expectation(spec));
   return components;
+}
+
+std::optional<Section::Value> Section::read_texts(const KeySpec& spec, const toml::node& node) {
+  const auto* array = node.as_array();
+  if (array == nullptr || array->empty()) return unexpected(spec, node);
+  std::vector<std::string> texts;
+  for (const toml::node& entry : *array) {
+    if (const auto* text = entry.as_string()) {
+      texts.push_back(text->get());
+    } else if (as_number(entry)) {
+      texts.push_back(shown(entry));
+    } else {
+      return unexpected(spec, entry);
+    }
+  }
+  return texts;
 }
 
 void Section::check_tables(const KeySpec& spec, const toml::node& node) {

@@ -1,4 +1,5 @@
-/// One table of a scenario, checked against the keys that the language gives it. Internal: includes the TOML library.
+/// One table of a TOML file, checked against the keys that the language gives it. For readers of such files: it
+/// includes the TOML library.
 #pragma once
 
 #include <toml++/toml.h>
@@ -52,6 +53,7 @@ class Section {
   [[nodiscard]] std::optional<bool> toggle(std::string_view key) const { return get<bool>(key); }
   [[nodiscard]] std::string text(std::string_view key) const;
   [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
+  [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
 
   /// The table below this key; where it is absent or faulty an empty one at this section's place.
   [[nodiscard]] Origin table(std::string_view key, std::string label) const;
@@ -61,9 +63,11 @@ class Section {
   [[nodiscard]] const SourceLocation& place() const noexcept { return origin_.place; }
   [[nodiscard]] SourceLocation key_place(std::string_view key) const;
   [[nodiscard]] SourceLocation value_place(std::string_view key) const;
+  /// The place of an entry of the array below this key.
+  [[nodiscard]] SourceLocation value_place(std::string_view key, std::size_t entry) const;
 
  private:
-  using Value = std::variant<bool, double, std::string, std::vector<double>>;
+  using Value = std::variant<bool, double, std::string, std::vector<double>, std::vector<std::string>>;
 
   void check_value(const KeySpec& spec, const toml::node& node);
   void check_required();
@@ -76,6 +80,7 @@ class Section {
   [[nodiscard]] std::optional<double> read_quantity(const KeySpec& spec, const toml::node& node);
   [[nodiscard]] std::optional<Value> read_instants(const KeySpec& spec, const toml::node& node);
   [[nodiscard]] std::optional<Value> read_direction(const KeySpec& spec, const toml::node& node);
+  [[nodiscard]] std::optional<Value> read_texts(const KeySpec& spec, const toml::node& node);
   void check_tables(const KeySpec& spec, const toml::node& node);
   std::nullopt_t fault(const KeySpec& spec, const toml::node& node, std::string_view problem);
   std::nullopt_t unexpected(const KeySpec& spec, const toml::node& node, std::string_view suggestion = {});

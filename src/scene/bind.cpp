@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "mdr/system.hpp"
+#include "scene/pressure_curve.hpp"
 #include "scene/scene.hpp"
 
 namespace monograin {
@@ -52,6 +53,7 @@ mdr::Settings mdr_settings(const Scenario& scenario, const Reach& reach) {
       choice<DeltaMaxRule>(scenario, "delta_max_rule",
                            {{"running-maximum", DeltaMaxRule::running_maximum}, {"shifted", DeltaMaxRule::shifted}});
   settings.stops_at_cap_intersection = std::get<bool>(scenario.options.at("strict"));
+  settings.pressure_curve = pressure_curve_of(scenario);
   return settings;
 }
 

@@ -282,11 +282,66 @@ TEST_F(Commands, AnUnknownCommandIsAnsweredWithThoseThereAre) {
 }
 
 TEST_F(Commands, HelpEndsWithAnExample) {
-  for (const char* command : {"", "run", "check", "models", "plot", "compare", "regress", "schema"}) {
+  for (const char* command : {"", "run", "check", "models", "plot", "atlas", "compare", "regress", "schema"}) {
     const Outcome help = monograin(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Example: monograin "), std::string::npos) << command;
   }
+}
+
+/// A definition that shows k_small, which stands beside it.
+constexpr const char* k_definition = R"toml(title = "Small"
+source = "nobody"
+x = "axial.displacement / R0"
+y = "axial.force / (E * R0^2)"
+[[panel]]
+curve = [{ scenario = "scenarios/small.toml", legend = "small" }]
+[[table]]
+title = "Against a straight line"
+[[table.row]]
+label = "small"
+curve = { scenario = "scenarios/small.toml" }
+points = { file = "p.csv", x = "x", y = "y" }
+)toml";
+
+TEST_F(Commands, AtlasMakesFiguresAndTablesAnew) {
+  fs::create_directories(folder() / "plots/scenarios");
+  write_text(folder() / "plots/scenarios/small.toml", k_small);
+  write_text(folder() / "plots/p.csv", "x,y\n0,0\n0.1,0.02\n0.2,0.04\n");
+  write_text(folder() / "plots/small.toml", k_definition);
+  const Outcome listed = monograin("atlas --list");
+  EXPECT_EQ(listed.code, 0) << listed.err;
+  EXPECT_EQ(listed.out, "small  Small\n");
+  const Outcome outcome = monograin("atlas small -o figures");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("## Against a straight line"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("-> figures/small.svg"), std::string::npos) << outcome.err;
+  for (const char* file : {"small.svg", "small.gp", "small.dat", "small.csv", "small.md"})
+    EXPECT_TRUE(fs::exists(folder() / "figures" / file)) << file;
+  ASSERT_EQ(monograin("atlas").code, 0);
+  EXPECT_EQ(read_text(folder() / "plots/small.csv"), read_text(folder() / "figures/small.csv"));
+}
+
+TEST_F(Commands, AtlasWritesNothingWhereADefinitionIsAtFault) {
+  fs::create_directories(folder() / "plots/scenarios");
+  write_text(folder() / "plots/scenarios/small.toml", k_small);
+  write_text(folder() / "plots/good.toml",
+             "title = \"t\"\nsource = \"s\"\n[[panel]]\n"
+             "curve = [{ parameter = { from = 0, to = 1 }, x = \"t\", y = \"t\" }]\n");
+  write_text(folder() / "plots/small.toml", k_definition);
+  const auto before = files();
+  const Outcome missing = monograin("atlas");
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_NE(missing.err.find("plots/small.toml:12:19: plots/p.csv"), std::string::npos) << missing.err;
+  EXPECT_EQ(monograin("atlas none").code, 2);
+  EXPECT_EQ(monograin("atlas --plots none").code, 2);
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Commands, AtlasKnowsTheReadyDefinitions) {
+  const Outcome outcome = monograin("atlas --list --plots '" MONOGRAIN_SOURCE_DIR "/plots'");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("mdr-fe "), std::string::npos) << outcome.out;
 }
 
 TEST_F(Commands, ManualAndCompletionKnowEveryCommand) {

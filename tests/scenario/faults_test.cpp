@@ -304,10 +304,17 @@ const std::vector<FaultRow> k_rows{
              13,
              "duration = 1\n[mdr]\nstrict = \"yes\"",
              {"die.toml:15:10: strict = \"yes\": expected true or false"}},
-    FaultRow{"PressureTableRefused",
-             13,
-             "duration = 1\n[mdr]\npressure_table = \"p.csv\"",
-             {"die.toml:15:18: an own pressure curve is not available in model 'mdr' yet; leave the key out"}},
+    FaultRow{
+        "PressureTableWithoutName",
+        13,
+        "duration = 1\n[mdr]\npressure_table = \"\"",
+        {"die.toml:15:18: pressure_table = \"\": expected the name of a file in quotes, for example \"file.csv\""}},
+    FaultRow{
+        "PressureTableMissing",
+        13,
+        "duration = 1\n[mdr]\npressure_table = \"none.csv\"",
+        {"die.toml:15:18: pressure_table = \"none.csv\": there is no such file (none.csv); expected a table of two "
+         "columns such as delta_max_over_R,p_over_Y, its path relative to the scenario's folder"}},
     FaultRow{"TableOfAnotherModel",
              13,
              "duration = 1\n[nonlocal]\nterms = 4",

@@ -37,6 +37,8 @@ bool ends_with_class_column(const std::string& column, std::string_view name) {
 
 Step ramp(double displacement, double duration) { return timed(Step::Kind::displacement, displacement, duration); }
 
+Step force_ramp(double force, double duration) { return timed(Step::Kind::force, force, duration); }
+
 Step ramp_at(double displacement, double rate) {
   Step step = timed(Step::Kind::displacement, displacement, {});
   step.rate = rate;

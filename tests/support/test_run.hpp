@@ -20,6 +20,7 @@ inline constexpr const char* k_integrators[] = {"direct", "cvode-adams", "cvode-
 // --- programs
 
 [[nodiscard]] Step ramp(double displacement, double duration = 1.0);
+[[nodiscard]] Step force_ramp(double force, double duration = 1.0);
 [[nodiscard]] Step ramp_at(double displacement, double rate);
 [[nodiscard]] Step hold(double duration = 1.0);
 [[nodiscard]] Step detach(double rate = 1.0);

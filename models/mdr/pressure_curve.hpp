@@ -1,0 +1,66 @@
+/// Mean pressure of a fully plastic contact over the yield stress, p_Y/Y, as a function of x = delta/R: the one
+/// ingredient of the MDR model that is fitted to computed contacts, and so the one that another material replaces.
+/// Source: 002_000df8fc37500451.txt, eq. 28.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace monograin::mdr {
+
+/// p_Y/Y [-] and its derivative with respect to x.
+struct PressureRatio {
+  double value = 0.0;
+  double slope = 0.0;
+};
+
+/// The integrals of p_Y/Y x^n over x from 0, for n = 0, 1, 2.
+struct PressureMoments {
+  double zeroth = 0.0;
+  double first = 0.0;
+  double second = 0.0;
+};
+
+/// The source's fit for perfectly plastic particles: 1 + 1.75 exp(-4.4 x) (eq. 28, constants as printed).
+[[nodiscard]] PressureRatio exponential_pressure(double overlap_over_radius) noexcept;
+
+/// Its moments, for x > 0, to full relative accuracy.
+[[nodiscard]] PressureMoments exponential_moments(double overlap_over_radius) noexcept;
+
+/// A curve through samples: piecewise cubic, once continuously differentiable, and between any two neighbouring samples
+/// monotone (Fritsch and Butland), so that it has no waves that the samples do not have.
+class PressureCurve {
+ public:
+  /// @param overlaps_over_radius  x of the samples: at least 4, ascending, the first 0
+  /// @param pressures_over_yield  p_Y/Y there: as many, > 0
+  /// @throws std::invalid_argument where they are not so, or not finite
+  PressureCurve(std::span<const double> overlaps_over_radius, std::span<const double> pressures_over_yield);
+
+  /// Does not allocate.
+  /// @param overlap_over_radius  x, in [0, end()]
+  /// @throws std::domain_error naming the end beyond it: nothing is known there, and a cubic continued is no knowledge
+  [[nodiscard]] PressureRatio at(double overlap_over_radius) const;
+  /// Likewise.
+  [[nodiscard]] PressureMoments moments(double overlap_over_radius) const;
+
+  /// x of the last sample.
+  [[nodiscard]] double end() const noexcept { return knots_.back(); }
+  /// x of all samples.
+  [[nodiscard]] std::span<const double> knots() const noexcept { return knots_; }
+
+ private:
+  /// Between a knot and the next, with t = x - knot: p_Y/Y = constant + linear t + quadratic t^2 + cubic t^3.
+  struct Piece {
+    double constant, linear, quadratic, cubic;
+    PressureMoments before;  ///< at the knot
+  };
+
+  [[nodiscard]] std::size_t piece_at(double overlap_over_radius) const;
+  [[nodiscard]] PressureMoments moments_in(std::size_t piece, double offset) const noexcept;
+
+  std::vector<double> knots_;
+  std::vector<Piece> pieces_;
+};
+
+}  // namespace monograin::mdr

@@ -1,0 +1,185 @@
+#include "scenario/curve_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "scenario/text_file.hpp"
+#include "scenario/words.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr std::size_t k_largest_table = 1024U * 1024U;
+constexpr std::size_t k_most_faults = 20;  ///< of one table: nobody reads on
+constexpr std::string_view k_example_headings = "delta_max_over_R,p_over_Y";
+
+std::string_view without_end_blanks(std::string_view text) {
+  const std::size_t last = text.find_last_not_of(" \t\r");
+  return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
+}
+
+/// A cell and where it begins.
+struct Cell {
+  std::string_view text;
+  std::size_t column = 1;
+};
+
+std::optional<double> number_in(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+class CurveParser {
+ public:
+  CurveParser(const std::string& origin, FaultList& faults) : origin_(origin), faults_(faults) {}
+
+  SampledCurve parse(std::string_view text) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    std::string_view rest = text;
+    if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+    while (!rest.empty() && found_ < k_most_faults) {
+      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      ++line_;
+      take_line(without_end_blanks(rest.substr(0, end)));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    if (found_ < k_most_faults) {
+      check_length();
+    } else if (!rest.empty()) {
+      ++line_;
+      fault(1, "too many faults above; the rest of the table is not checked");
+    }
+    curve_.text = text;
+    return std::move(curve_);
+  }
+
+ private:
+  void take_line(std::string_view line) {
+    const std::size_t begin = line.find_first_not_of(" \t");
+    if (begin == std::string_view::npos || line[begin] == '#') return;
+    const std::vector<Cell> cells = cells_of(line);
+    if (cells.size() != headings_.size()) {
+      fault(begin + 1, fmt::format("{} cell{} where 2 are expected, for example {}", cells.size(),
+                                   cells.size() == 1 ? "" : "s", has_headings_ ? "0.1,2.1" : k_example_headings));
+      has_headings_ = true;  // what follows is not to be taken for them
+      ++rows_;
+    } else if (has_headings_) {
+      take_row(cells);
+    } else {
+      take_headings(cells);
+    }
+  }
+
+  static std::vector<Cell> cells_of(std::string_view line) {
+    std::vector<Cell> cells;
+    for (std::size_t at = 0; at <= line.size();) {
+      const std::size_t end = std::min(line.find(',', at), line.size());
+      const std::size_t begin = std::min(line.find_first_not_of(" \t", at), end);
+      cells.push_back({without_end_blanks(line.substr(begin, end - begin)), begin + 1});
+      at = end + 1;
+    }
+    return cells;
+  }
+
+  void take_headings(const std::vector<Cell>& cells) {
+    has_headings_ = true;
+    if (std::ranges::any_of(cells, [](const Cell& cell) { return number_in(cell.text).has_value(); })) {
+      fault(cells.front().column,
+            fmt::format("numbers where a row of headings is expected, for example {}", k_example_headings));
+      return take_row(cells);
+    }
+    for (std::size_t k = 0; k < headings_.size(); ++k) {
+      if (!cells[k].text.empty()) headings_[k] = shown(cells[k].text);
+    }
+  }
+
+  void take_row(const std::vector<Cell>& cells) {
+    ++rows_;
+    const auto x = number(cells, 0, 0.0);
+    const auto y = number(cells, 1, k_least_sample);
+    if (x) {
+      check_order(cells[0], *x);
+      curve_.x.push_back(*x);
+    }
+    if (y) curve_.y.push_back(*y);
+  }
+
+  std::optional<double> number(const std::vector<Cell>& cells, std::size_t k, double least) {
+    const std::optional<double> value = number_in(cells[k].text);
+    if (value && *value >= least && *value <= k_greatest_sample) return value;
+    fault(cells[k].column,
+          fmt::format("{} = {}: expected a number from {:g} to {:g}", headings_[k],
+                      cells[k].text.empty() ? "(nothing)" : shown(cells[k].text), least, k_greatest_sample));
+    return std::nullopt;
+  }
+
+  void check_order(const Cell& cell, double x) {
+    if (rows_ == 1 && x != 0.0) {
+      fault(cell.column, fmt::format("{} = {}: expected 0 in the first row", headings_[0], shown(cell.text)));
+    } else if (!curve_.x.empty() && !(x - curve_.x.back() >= k_least_sample)) {
+      fault(cell.column, fmt::format("{} = {}: not above the one before, {}; expected ascending values at least {:g} "
+                                     "apart",
+                                     headings_[0], shown(cell.text), curve_.x.back(), k_least_sample));
+    }
+  }
+
+  void check_length() {
+    line_ = std::max<std::size_t>(line_, 1);
+    if (!has_headings_) {
+      fault(1, fmt::format("the table is empty; expected a row of headings, for example {}, and at least {} rows of "
+                           "numbers",
+                           k_example_headings, k_least_samples));
+    } else if (rows_ < k_least_samples) {
+      fault(1, fmt::format("the table ends after {} row{}; expected at least {}", rows_, rows_ == 1 ? "" : "s",
+                           k_least_samples));
+    }
+  }
+
+  void fault(std::size_t column, std::string message) {
+    ++found_;
+    faults_.add({origin_, line_, column}, std::move(message));
+  }
+
+  const std::string& origin_;
+  FaultList& faults_;
+  SampledCurve curve_;
+  std::array<std::string, 2> headings_{"x", "y"};
+  bool has_headings_ = false;
+  std::size_t line_ = 0;
+  std::size_t rows_ = 0;
+  std::size_t found_ = 0;
+};
+
+}  // namespace
+
+SampledCurve parse_curve(std::string_view text, const std::string& origin, FaultList& faults) {
+  return CurveParser(origin, faults).parse(text);
+}
+
+SampledCurve read_curve(const std::filesystem::path& file, const SourceLocation& named_at, std::string_view naming,
+                        FaultList& faults) {
+  const auto [text, problem] = read_text_file(file, k_largest_table);
+  const std::string name = file.string();
+  if (!problem.empty()) {
+    faults.add(named_at, fmt::format("{}: {} ({}); expected a table of two columns such as {}, its path relative to "
+                                     "the scenario's folder",
+                                     naming, problem, on_one_line(name), k_example_headings));
+    return {};
+  }
+  if (text.size() > k_largest_table) {
+    faults.add({name}, fmt::format("the table is too large; expected at most {} MiB", k_largest_table >> 20U));
+    return {};
+  }
+  return parse_curve(text, name, faults);
+}
+
+}  // namespace monograin

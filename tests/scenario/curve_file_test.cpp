@@ -1,0 +1,199 @@
+// Tables that a scenario takes a curve from: what is read, and every fault at its place in the table.
+
+#include "scenario/curve_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "scenario/support.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr const char* k_good_table = "delta_max_over_R,p_over_Y\n0,2.75\n0.1,2.1\n0.2,1.7\n0.5,1.2\n";
+
+std::vector<std::string> table_faults(const std::string& text) {
+  FaultList faults;
+  static_cast<void>(parse_curve(text, "p.csv", faults));
+  std::vector<std::string> lines;
+  try {
+    faults.throw_if_any();
+  } catch (const ScenarioError& error) {
+    std::istringstream messages(error.what());
+    for (std::string line; std::getline(messages, line);) lines.push_back(line);
+  }
+  return lines;
+}
+
+SampledCurve curve_in(const std::string& text) {
+  FaultList faults;
+  SampledCurve curve = parse_curve(text, "p.csv", faults);
+  EXPECT_EQ(faults.size(), 0U) << text;
+  return curve;
+}
+
+TEST(CurveFile, GivesItsSamplesAndItsText) {
+  const SampledCurve curve = curve_in(k_good_table);
+  EXPECT_EQ(curve.x, (std::vector{0.0, 0.1, 0.2, 0.5}));
+  EXPECT_EQ(curve.y, (std::vector{2.75, 2.1, 1.7, 1.2}));
+  EXPECT_EQ(curve.text, k_good_table);
+}
+
+TEST(CurveFile, MayHaveCommentsBlanksAndForeignLineEnds) {
+  const SampledCurve curve =
+      curve_in("\xEF\xBB\xBF# made by hand\r\n\r\nx,p\r\n 0 ,\t2.75\r\n  # here\r\n0.1,+2.1\r\n2e-1,1.7 \r\n0.5,1.2");
+  EXPECT_EQ(curve.x, (std::vector{0.0, 0.1, 0.2, 0.5}));
+  EXPECT_EQ(curve.y, (std::vector{2.75, 2.1, 1.7, 1.2}));
+}
+
+struct TableRow {
+  const char* name;
+  const char* table;
+  std::vector<std::string> messages;
+};
+
+class CurveFaults : public ::testing::TestWithParam<TableRow> {};
+
+TEST_P(CurveFaults, AreReportedAtTheirPlace) { EXPECT_EQ(table_faults(GetParam().table), GetParam().messages); }
+
+const std::vector<TableRow> k_rows{
+    TableRow{
+        "Empty",
+        "",
+        {"p.csv:1:1: the table is empty; expected a row of headings, for example delta_max_over_R,p_over_Y, and at "
+         "least 4 rows of numbers"}},
+    TableRow{
+        "OnlyComments",
+        "# one\n# two\n",
+        {"p.csv:2:1: the table is empty; expected a row of headings, for example delta_max_over_R,p_over_Y, and at "
+         "least 4 rows of numbers"}},
+    TableRow{"OnlyHeadings", "x,p\n", {"p.csv:1:1: the table ends after 0 rows; expected at least 4"}},
+    TableRow{"TooShort", "x,p\n0,3\n0.1,2\n0.2,1\n", {"p.csv:4:1: the table ends after 3 rows; expected at least 4"}},
+    TableRow{"NoHeadings",
+             "0,3\n0.1,2\n0.2,2\n0.3,1\n",
+             {"p.csv:1:1: numbers where a row of headings is expected, for example delta_max_over_R,p_over_Y"}},
+    TableRow{"ThreeColumns",
+             "x,p,q\n0,3\n0.1,2\n0.2,2\n0.3,1\n",
+             {"p.csv:1:1: 3 cells where 2 are expected, for example delta_max_over_R,p_over_Y"}},
+    TableRow{"RaggedRow",
+             "x,p\n0,3\n  0.1\n0.2,2\n0.3,1,1\n0.4,1\n",
+             {"p.csv:3:3: 1 cell where 2 are expected, for example 0.1,2.1",
+              "p.csv:5:1: 3 cells where 2 are expected, for example 0.1,2.1"}},
+    TableRow{"NotNumbers",
+             "x,p\n0, high\n0.1,\n0.2,nan\n0.3,inf\n0.4,1e999\n",
+             {"p.csv:2:4: p = high: expected a number from 1e-09 to 1e+09",
+              "p.csv:3:5: p = (nothing): expected a number from 1e-09 to 1e+09",
+              "p.csv:4:5: p = nan: expected a number from 1e-09 to 1e+09",
+              "p.csv:5:5: p = inf: expected a number from 1e-09 to 1e+09",
+              "p.csv:6:5: p = 1e999: expected a number from 1e-09 to 1e+09"}},
+    TableRow{"BeginsLate", "x,p\n0.05,3\n0.1,2\n0.2,2\n0.3,1\n", {"p.csv:2:1: x = 0.05: expected 0 in the first row"}},
+    TableRow{"NotAscending",
+             "x,p\n0,3\n0.2,2\n0.1,2\n0.1,1\n0.3,1\n",
+             {"p.csv:4:1: x = 0.1: not above the one before, 0.2; expected ascending values at least 1e-09 apart",
+              "p.csv:5:1: x = 0.1: not above the one before, 0.1; expected ascending values at least 1e-09 apart"}},
+    TableRow{"NegativeOrZero",
+             "x,p\n-1,3\n0.1,0\n0.2,-2\n0.3,1\n",
+             {"p.csv:2:1: x = -1: expected a number from 0 to 1e+09",
+              "p.csv:3:5: p = 0: expected a number from 1e-09 to 1e+09",
+              "p.csv:4:5: p = -2: expected a number from 1e-09 to 1e+09"}},
+    TableRow{"ControlCharacters",
+             "x,p\n0,3\n0.1,\x01\n0.2,2\n0.3,1\n",
+             {"p.csv:3:5: p = ?: expected a number from 1e-09 to 1e+09"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(CurveFile, CurveFaults, ::testing::ValuesIn(k_rows),
+                         [](const auto& row) { return std::string(row.param.name); });
+
+TEST(CurveFile, WithFaultsThroughoutIsNotReadToTheEnd) {
+  std::string text = "x,p\n";
+  for (int i = 0; i < 1000; ++i) text += "a,b\n";
+  const auto faults = table_faults(text);
+  EXPECT_LE(faults.size(), 25U);
+  EXPECT_NE(faults.back().find("the rest of the table is not checked"), std::string::npos) << faults.back();
+}
+
+// --- named by a scenario
+
+class PressureTable : public ::testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_.path() / name, std::ios::binary) << text;
+  }
+  /// A scenario in the folder, whose [mdr] has this line; its faults, with the folder's path cut out.
+  [[nodiscard]] Scenario read(const std::string& line, const std::vector<std::string>& overrides = {}) const {
+    write("s.toml", with_more("[mdr]\n" + line + "\n"));
+    return read_scenario(folder_.path() / "s.toml", overrides);
+  }
+  [[nodiscard]] std::vector<std::string> faults(const std::string& line,
+                                                const std::vector<std::string>& overrides = {}) const {
+    std::vector<std::string> lines;
+    try {
+      static_cast<void>(read(line, overrides));
+    } catch (const ScenarioError& error) {
+      const std::string folder = folder_.path().string() + "/";
+      std::istringstream messages(error.what());
+      for (std::string text; std::getline(messages, text);) {
+        for (std::size_t at = 0; (at = text.find(folder)) != std::string::npos;) text.erase(at, folder.size());
+        lines.push_back(text);
+      }
+    }
+    return lines;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(PressureTable, IsSoughtInTheScenariosFolder) {
+  write("p.csv", k_good_table);
+  const Scenario scenario = read("pressure_table = \"p.csv\"");
+  ASSERT_EQ(scenario.curves.count("pressure_table"), 1U);
+  EXPECT_EQ(scenario.curves.at("pressure_table").text, k_good_table);
+  EXPECT_EQ(std::get<std::string>(scenario.options.at("pressure_table")), "p.csv");
+}
+
+TEST_F(PressureTable, MayBeNamedByItsFullPath) {
+  write("p.csv", k_good_table);
+  const Scenario scenario = read("pressure_table = \"" + (folder_.path() / "p.csv").string() + "\"");
+  EXPECT_EQ(scenario.curves.at("pressure_table").x.size(), 4U);
+}
+
+TEST_F(PressureTable, MayBeNamedByAnOverride) {
+  write("p.csv", k_good_table);
+  EXPECT_EQ(read("", {"mdr.pressure_table=p.csv"}).curves.at("pressure_table").x.size(), 4U);
+  EXPECT_EQ(
+      faults("", {"mdr.pressure_table=q.csv"}),
+      std::vector<std::string>{
+          "--set 'mdr.pressure_table=q.csv':1:20: pressure_table = \"q.csv\": there is no such file (q.csv); "
+          "expected a table of two columns such as delta_max_over_R,p_over_Y, its path relative to the scenario's "
+          "folder"});
+}
+
+TEST_F(PressureTable, WithoutOneThereIsNoCurve) { EXPECT_TRUE(read("strict = true").curves.empty()); }
+
+TEST_F(PressureTable, ThatIsNoFileIsAFaultOfTheKey) {
+  std::filesystem::create_directory(folder_.path() / "d");
+  EXPECT_EQ(
+      faults("pressure_table = \"d\""),
+      std::vector<std::string>{
+          "s.toml:15:18: pressure_table = \"d\": this is a directory (d); expected a table of two columns such as "
+          "delta_max_over_R,p_over_Y, its path relative to the scenario's folder"});
+}
+
+TEST_F(PressureTable, FaultsStandBesideThoseOfTheScenario) {
+  write("p.csv", "x,p\n0,3\n0.1,low\n0.2,2\n0.3,1\n");
+  EXPECT_EQ(faults("pressure_table = \"p.csv\"\nstrict = 1"),
+            (std::vector<std::string>{"p.csv:3:5: p = low: expected a number from 1e-09 to 1e+09",
+                                      "s.toml:16:10: strict = 1: expected true or false"}));
+}
+
+TEST_F(PressureTable, ThatIsHugeIsRefused) {
+  write("p.csv", std::string(3U << 20U, '#'));
+  EXPECT_EQ(faults("pressure_table = \"p.csv\""),
+            std::vector<std::string>{"p.csv:1:1: the table is too large; expected at most 1 MiB"});
+}
+
+}  // namespace
+}  // namespace monograin

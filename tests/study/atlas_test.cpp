@@ -1,0 +1,299 @@
+#include "study/atlas.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "figure/figure.hpp"
+#include "scenario/scenario.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* k_scenario = R"toml(
+[scenario]
+model = "hertz"
+[scenario.particle]
+radius = "2 mm"
+[scenario.material]
+youngs_modulus = "10 GPa"
+poisson_ratio = 0.0
+[scenario.loading]
+configuration = "simple"
+steps = [{ displacement = "0.01 R0", duration = "1 s" }, { displacement = "0 R0", duration = "1 s" }]
+[scenario.output]
+points = 4
+)toml";
+
+constexpr const char* k_head = R"toml(title = "A small one"
+source = "nobody"
+x = "axial.displacement / R0"
+y = "axial.force / (E * R0^2)"
+)toml";
+
+class Atlas : public ::testing::Test {
+ protected:
+  void define(const std::string& name, const std::string& text) const { write(name + ".toml", text); }
+  void write(const std::string& file, const std::string& text) const {
+    std::ofstream(definitions() / file, std::ios::binary) << text;
+  }
+
+  [[nodiscard]] AtlasFigure make(const std::string& text) const {
+    define("small", text);
+    return make_atlas(definitions(), {"small"}).front();
+  }
+
+  /// The faults of a definition, each without its folder.
+  [[nodiscard]] std::vector<std::string> faults_of(const std::string& text) const {
+    std::vector<std::string> faults;
+    try {
+      static_cast<void>(make(text));
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) {
+        faults.push_back(fs::path(fault.where.file).filename().string() + ":" + std::to_string(fault.where.line) + ":" +
+                         std::to_string(fault.where.column) + ": " + fault.message);
+      }
+    }
+    return faults;
+  }
+  [[nodiscard]] std::string fault_of(const std::string& text) const {
+    const auto faults = faults_of(text);
+    return faults.size() == 1 ? faults.front() : std::to_string(faults.size()) + " faults";
+  }
+
+  [[nodiscard]] const fs::path& definitions() const { return folder_.path(); }
+  [[nodiscard]] std::string contents(const fs::path& file) const {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(Atlas, ComputesCurvesWithTheSymbolsOfTheirRun) {
+  const AtlasFigure made = make(std::string(k_head) + k_scenario + "[[panel]]\ncurve = [{ legend = \"Hertz\" }]\n");
+  ASSERT_EQ(made.chart.panels.size(), 1U);
+  const figure::ChartSeries& series = made.chart.panels[0].series.at(0);
+  EXPECT_EQ(series.legend, "Hertz");
+  const auto top = std::ranges::max_element(series.x);
+  EXPECT_DOUBLE_EQ(*top, 0.01);
+  const double force = series.y[static_cast<std::size_t>(top - series.x.begin())];
+  EXPECT_NEAR(force, 4.0 / 3.0 * std::pow(0.01, 1.5), 1e-15);
+  EXPECT_EQ(made.status, RunStatus::complete);
+}
+
+TEST_F(Atlas, DrawsOneCurveForEachValueOfAKey) {
+  const AtlasFigure made =
+      make(std::string(k_head) + k_scenario +
+           "[[panel]]\ncurve = [{ vary = { key = \"material.poisson_ratio\", values = [0.0, 0.5] } }]\n");
+  const auto& series = made.chart.panels[0].series;
+  ASSERT_EQ(series.size(), 2U);
+  EXPECT_EQ(series[0].legend, "poisson_ratio = 0");
+  EXPECT_EQ(series[1].legend, "poisson_ratio = 0.5");
+  EXPECT_NEAR(*std::ranges::max_element(series[1].y) / *std::ranges::max_element(series[0].y), 4.0 / 3.0, 1e-12);
+}
+
+TEST_F(Atlas, JoinsRunsOfWhichOneNumberIsAsked) {
+  const AtlasFigure made = make(std::string(k_head) + k_scenario + R"toml(
+[[panel]]
+x = "nu"
+y = "max(axial.force) / (E * R0^2)"
+curve = [{ vary = { key = "material.poisson_ratio", values = [0.0, 0.25, 0.5] }, legend = "largest" }]
+)toml");
+  ASSERT_EQ(made.chart.panels[0].series.size(), 1U);
+  EXPECT_EQ(made.chart.panels[0].series[0].x, (std::vector<double>{0.0, 0.25, 0.5}));
+}
+
+TEST_F(Atlas, DrawsAFormulaOfAParameterWithoutARun) {
+  const AtlasFigure made = make(R"toml(title = "t"
+source = "s"
+[[panel]]
+curve = [{ parameter = { from = 1, to = 3 }, x = "t", y = "t^2", style = "dashed" }]
+)toml");
+  const figure::ChartSeries& series = made.chart.panels[0].series.at(0);
+  EXPECT_EQ(series.x.front(), 1.0);
+  EXPECT_EQ(series.x.back(), 3.0);
+  EXPECT_DOUBLE_EQ(series.y.back(), 9.0);
+  EXPECT_EQ(series.style, figure::ChartSeries::Style::dashed);
+}
+
+TEST_F(Atlas, TakesTheRowsOfAFileThatAreAskedFor) {
+  write("points.csv", "x[-],F_over_R^2[-]\n0,0\n1,2\n2,4\n1.5,1\n2,4\n3,6\n");
+  const auto points = [&](const std::string& more) {
+    const AtlasFigure made = make(
+        "title = \"t\"\nsource = \"s\"\n[[panel]]\npoints = [{ file = \"points.csv\", x = \"x\", "
+        "y = \"`F_over_R^2` / 2\"" +
+        more + " }]\n");
+    return made.chart.panels[0].series.at(0).x;
+  };
+  EXPECT_EQ(points(""), (std::vector<double>{0, 1, 2, 1.5, 2, 3}));
+  EXPECT_EQ(points(", rows = \"load\""), (std::vector<double>{0, 1, 2, 3}));
+  EXPECT_EQ(points(", rows = \"load\", every = 2"), (std::vector<double>{0, 2}));
+  EXPECT_EQ(points(", rows = \"unload\""), (std::vector<double>{2, 1.5}));
+}
+
+TEST_F(Atlas, ReportsAllFaultsWithTheirPlaces) {
+  write("points.csv", "x,y\n0,0\n");
+  const auto faults = faults_of(std::string(R"toml(title = "t"
+sorce = "s"
+x = "axial.displacement / (R0"
+)toml") + k_scenario + R"toml(
+[[panel]]
+y = "axial.force"
+note = 3
+curve = [{ set = ["material.poisson_ratio=0.7"] }]
+points = [{ file = "none.csv", x = "x", y = "y" }]
+[[panel]]
+)toml");
+  ASSERT_EQ(faults.size(), 6U);
+  EXPECT_EQ(faults[0], "small.toml:2:1: unknown key 'sorce' in the definition; did you mean 'source'?");
+  EXPECT_EQ(faults[1], "small.toml:3:30: x = \"axial.displacement / (R0\": expected ')'");
+  EXPECT_TRUE(faults[2].starts_with("small.toml:20:8: note = 3: expected a text")) << faults[2];
+  EXPECT_TRUE(faults[3].starts_with("small.toml:21:19: material.poisson_ratio=0.7: ")) << faults[3];
+  EXPECT_TRUE(faults[4].starts_with("small.toml:22:20: ")) << faults[4];
+  EXPECT_TRUE(faults[5].starts_with("small.toml:23:1: the panel is empty")) << faults[5];
+}
+
+TEST_F(Atlas, ReportsFaultsInItsScenarioWhereTheyStand) {
+  std::string text = std::string(k_head) + k_scenario + "[[panel]]\ncurve = [{}, {}]\n";
+  text.replace(text.find("youngs_modulus"), 14, "youngs_modolus");
+  EXPECT_EQ(fault_of(text),
+            "small.toml:11:1: unknown key 'youngs_modolus' in [material]; did you mean 'youngs_modulus'?")
+      << "once, however many curves have it";
+}
+
+TEST_F(Atlas, ReportsANameThatTheRunDoesNotHave) {
+  const std::string rest = std::string(k_scenario) + "[[panel]]\ncurve = [{ y = \"2 * axial.forse\" }]\n";
+  EXPECT_EQ(fault_of(k_head + rest), "small.toml:19:21: unknown name 'axial.forse'; did you mean 'axial.force'?");
+}
+
+TEST_F(Atlas, WantsAScenarioForItsCurves) {
+  EXPECT_EQ(fault_of(std::string(k_head) + "[[panel]]\ncurve = [{}]\n"),
+            "small.toml:6:10: the curve has no scenario; expected scenario = \"FILE\" or a table [scenario]");
+  EXPECT_TRUE(fault_of(std::string(k_head) + "[[panel]]\ncurve = [{ scenario = \"none.toml\" }]\n")
+                  .ends_with("none.toml: there is no such file"));
+}
+
+TEST_F(Atlas, RefusesAnAxisThatHasNoLength) {
+  const std::string panel = "curve = [{ parameter = { from = 0, to = 1 }, x = \"t\", y = \"t\" }]\n";
+  EXPECT_EQ(fault_of(std::string(k_head) + "[[panel]]\nx_min = 1\nx_max = 1\n" + panel),
+            "small.toml:5:1: x_min is not below x_max");
+  EXPECT_EQ(fault_of(std::string(k_head) + "[[panel]]\ny_min = 0\ny_log = true\n" + panel),
+            "small.toml:5:1: a logarithmic axis has no place for y_min or y_max = 0");
+}
+
+TEST_F(Atlas, DrawsPhaseDiagramsOfAdhesion) {
+  const std::string head = "title = \"t\"\nsource = \"s\"\n[adhesion_map]\n";
+  const AtlasFigure made = make(head + "points = 7\ndecades = 6\ncontrol = \"force\"\n");
+  ASSERT_EQ(made.chart.panels.size(), 5U);
+  for (const figure::ChartPanel& panel : made.chart.panels) {
+    EXPECT_TRUE(panel.x.is_logarithmic && panel.y.is_logarithmic);
+    ASSERT_EQ(panel.areas.size(), 3U);
+    // The boxes of the three classes fill the panel: half a step and seven points in each direction.
+    double filled = 0.0;
+    for (const figure::ChartArea& area : panel.areas) {
+      for (const auto& [x_low, x_high, y_low, y_high] : area.boxes) {
+        filled += std::round(std::log10(x_high / x_low)) * std::round(std::log10(y_high / y_low));
+      }
+    }
+    EXPECT_EQ(filled, 49.0) << panel.note;
+  }
+  EXPECT_EQ(fault_of(head + "points = 1\n"), "small.toml:4:10: points = 1: expected a whole number from 2 to 1000");
+}
+
+TEST_F(Atlas, KnowsWhichDefinitionsThereAre) {
+  define("one", std::string(k_head) + k_scenario + "[[panel]]\ncurve = [{}]\n");
+  define("two", std::string(k_head) + k_scenario + "[[panel]]\ncurve = [{}]\n");
+  const auto entries = list_atlas(definitions());
+  ASSERT_EQ(entries.size(), 2U);
+  EXPECT_EQ(entries[0].name, "one");
+  EXPECT_EQ(entries[1].title, "A small one");
+  try {
+    static_cast<void>(make_atlas(definitions(), {"twoo"}));
+    FAIL() << "no fault";
+  } catch (const std::runtime_error& error) {
+    EXPECT_TRUE(std::string(error.what()).ends_with("has no definition 'twoo'; did you mean 'two'?; it has one, two"))
+        << error.what();
+  }
+}
+
+TEST_F(Atlas, LeavesFigureScriptDataAndTables) {
+  write("points.csv", "x,y\n0,0\n0.005,0.0005\n0.01,0.0014\n0.005,0.0005\n0,0\n");
+  const AtlasFigure made = make(std::string(k_head) + k_scenario + R"toml(
+[[panel]]
+curve = [{ legend = "Hertz" }]
+points = [{ file = "points.csv", x = "x", y = "y", legend = "measured" }]
+[[table]]
+title = "Force"
+row = [{ label = "elastic", curve = {}, points = { file = "points.csv", x = "x", y = "y" } }]
+)toml");
+  const fs::path out = definitions() / "out";
+  const auto written = write_atlas({made}, out);
+  EXPECT_EQ(written, (std::vector<fs::path>{out / "small.svg", out / "small.csv", out / "small.md"}));
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(out)) names.push_back(entry.path().filename().string());
+  std::ranges::sort(names);
+  EXPECT_EQ(names, (std::vector<std::string>{"small.csv", "small.dat", "small.gp", "small.md", "small.svg"}));
+  EXPECT_TRUE(contents(out / "small.svg").starts_with("<?xml"));
+  EXPECT_NE(contents(out / "small.dat").find("# A small one; nobody"), std::string::npos);
+
+  const Table table = read_csv(out / "small.csv");
+  ASSERT_EQ(table.row_count(), 1U);
+  EXPECT_EQ(table.word(0, 0), "Force");
+  EXPECT_EQ(table.word(0, 1), "elastic");
+  EXPECT_DOUBLE_EQ(table.at(0, *table.find("reversal")), 0.01);
+  EXPECT_NEAR(table.at(0, *table.find("peak_error")), std::abs(4.0 / 3.0 * 1e-3 - 1.4e-3) / 1.4e-3, 1e-12);
+  EXPECT_NEAR(table.at(0, *table.find("residual")), 0.0, 1e-12);
+  EXPECT_NE(contents(out / "small.md").find("| elastic |"), std::string::npos);
+}
+
+TEST_F(Atlas, SaysWhichRunsDidNotEnd) {
+  std::string text = std::string(k_head) + k_scenario + "[[panel]]\ncurve = [{}]\n";
+  text.replace(text.find("\"hertz\""), 7, "\"mdr\"");
+  text.replace(text.find("poisson_ratio"), 0, "yield_stress = \"50 MPa\"\n");
+  text.replace(text.find("0.01 R0"), 7, "1.2 R0");
+  const AtlasFigure made = make(text);
+  EXPECT_EQ(made.status, RunStatus::stopped);
+  ASSERT_EQ(made.stops.size(), 1U);
+  EXPECT_FALSE(made.chart.panels[0].series[0].x.empty()) << "the curve goes as far as the run";
+}
+
+TEST(ReadyAtlas, ReadsAndComputesEveryDefinition) {
+  const auto figures = make_atlas(MONOGRAIN_SOURCE_DIR "/plots", {});
+  EXPECT_GE(figures.size(), 9U);
+  for (const AtlasFigure& made : figures) {
+    EXPECT_FALSE(made.chart.panels.empty() && made.tables.empty()) << made.name;
+    EXPECT_EQ(made.status, RunStatus::complete) << made.name;
+    for (const figure::ChartPanel& panel : made.chart.panels) {
+      EXPECT_FALSE(panel.x.label.empty() || panel.y.label.empty()) << made.name;
+      for (const figure::ChartSeries& series : panel.series) EXPECT_GT(series.x.size(), 1U) << made.name;
+    }
+  }
+}
+
+/// The laws of the source are within some tens of per cent of the continuum; far more would be a wrong scale.
+TEST(ReadyAtlas, HoldsModelMdrAgainstFiniteElements) {
+  const AtlasFigure made = make_atlas(MONOGRAIN_SOURCE_DIR "/plots", {"mdr-fe"}).front();
+  const auto& rows = made.tables.at(0).rows;
+  ASSERT_EQ(rows.size(), 4U);
+  for (const ComparisonRow& row : rows) {
+    EXPECT_GE(row.lines.size(), 4U) << row.label;
+    for (const BranchComparison& line : row.lines) EXPECT_LT(line.peak_error, 0.2) << row.label << ' ' << line.reversal;
+  }
+  // From 0.4 R0, E/Y = 25: separation of the finite elements between 0.3695 and 0.3775.
+  const BranchComparison& line = rows.at(1).lines.at(2);
+  EXPECT_NEAR(line.reversal, 0.4, 1e-6);
+  EXPECT_GE(line.reference_residual, 0.3694);
+  EXPECT_LE(line.reference_residual, 0.3776);
+  EXPECT_NEAR(line.residual, 0.3767, 5e-4);
+}
+
+}  // namespace
+}  // namespace monograin
