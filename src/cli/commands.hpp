@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
+#include "engine/drive.hpp"
+
 namespace monograin {
 
 /// Exit codes that scripts rely on.
@@ -16,6 +18,9 @@ enum ExitCode : int {
   k_solver_failure = 4,  ///< a solver gave up; the history up to there is kept
   k_differs = 5          ///< a comparison was above its tolerance
 };
+
+/// What the end of a run makes of the process's.
+[[nodiscard]] int exit_code_of(RunStatus status);
 
 /// A fault in how the program was called; what() is shown as it is.
 class UsageError : public std::runtime_error {
@@ -30,6 +35,7 @@ void add_run_command(CLI::App& app, Action& action);
 void add_check_command(CLI::App& app, Action& action);
 void add_models_command(CLI::App& app, Action& action);
 void add_plot_command(CLI::App& app, Action& action);
+void add_atlas_command(CLI::App& app, Action& action);
 void add_compare_command(CLI::App& app, Action& action);
 void add_regress_command(CLI::App& app, Action& action);
 void add_schema_command(CLI::App& app, Action& action);

@@ -55,6 +55,7 @@ int main(int argc, char** argv) {
   add_check_command(app, action);
   add_models_command(app, action);
   add_plot_command(app, action);
+  add_atlas_command(app, action);
   add_compare_command(app, action);
   add_regress_command(app, action);
   add_schema_command(app, action);

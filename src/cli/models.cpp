@@ -13,6 +13,7 @@
 #include "mdr/contact.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/schema.hpp"
+#include "scene/pressure_curve.hpp"
 
 namespace monograin {
 namespace {
@@ -89,7 +90,7 @@ void print_model(const ModelInfo& model) {
   print_terms("events", model.events);
   fmt::print("\nvalidity\n");
   for (const std::string_view line : model.domain) fmt::print("  {}\n", line);
-  fmt::print("\nnot available yet\n");
+  if (!model.refusals.empty()) fmt::print("\nnot available yet\n");
   for (const Refusal& refusal : model.refusals) fmt::print("  {:<24}{}\n", refusal.key, refusal.message);
 }
 
@@ -102,7 +103,8 @@ void print_parameters(const Scenario& scenario) {
   const double youngs_modulus = constant("youngs_modulus");
   const double poisson_ratio = constant("poisson_ratio");
   const double yield_stress = constant("yield_stress");
-  const mdr::Material material = mdr::make_material(youngs_modulus, poisson_ratio, yield_stress);
+  const mdr::Material material =
+      mdr::make_material(youngs_modulus, poisson_ratio, yield_stress, pressure_curve_of(scenario));
   const auto print = [](std::string_view name, double value, std::string_view unit) {
     fmt::print("{:<28}{:.17g} {}\n", name, value, unit);
   };
@@ -115,6 +117,7 @@ void print_parameters(const Scenario& scenario) {
   if (!std::isfinite(yield_stress)) return;
   print("yield_stress", yield_stress, "Pa");
   print("modulus_over_yield", youngs_modulus / yield_stress, "-");
+  if (material.pressure_curve) print("pressure_table_end", material.pressure_curve->end(), "-");
   const double d_yield = material.yield_overlap_ratio;
   print("yield_overlap_over_radius", d_yield, "-");
   if (!std::isfinite(d_yield)) return;

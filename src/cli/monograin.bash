@@ -3,7 +3,7 @@
 _monograin() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} options
   if ((COMP_CWORD == 1)); then
-    mapfile -t COMPREPLY < <(compgen -W "run check models plot compare regress schema --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "run check models plot atlas compare regress schema --help --version" -- "$current")
     return
   fi
   if [[ $previous == models ]]; then
@@ -15,10 +15,15 @@ _monograin() {
     check) options="--set --help" ;;
     models) options="--parameters --help" ;;
     plot) options="--output --help" ;;
+    atlas) options="--plots --output --list --help" ;;
     compare) options="--x --y --tol --help" ;;
     regress) options="--accept --scenarios --curves --help" ;;
     *) options="--help" ;;
   esac
+  if [[ ${COMP_WORDS[1]} == atlas && $current != -* && $previous != -* ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$(monograin atlas --list 2>/dev/null | awk '{ print $1 }')" -- "$current")
+    return
+  fi
   if [[ $current == -* ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$current")
   else

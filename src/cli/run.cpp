@@ -92,18 +92,6 @@ void report(const Run& run, const fs::path& folder) {
              run.record.history.row_count(), run.record.events.row_count(), folder.string());
 }
 
-int exit_code_of(RunStatus status) {
-  switch (status) {
-    case RunStatus::complete:
-      return k_success;
-    case RunStatus::stopped:
-      return k_left_domain;
-    case RunStatus::failed:
-      return k_solver_failure;
-  }
-  return k_unexpected;
-}
-
 int run(const RunOptions& options) {
   std::vector<Job> jobs = read_jobs(options);
   choose_folders(jobs, options.output);
@@ -125,6 +113,18 @@ int run(const RunOptions& options) {
 }
 
 }  // namespace
+
+int exit_code_of(RunStatus status) {
+  switch (status) {
+    case RunStatus::complete:
+      return k_success;
+    case RunStatus::stopped:
+      return k_left_domain;
+    case RunStatus::failed:
+      return k_solver_failure;
+  }
+  return k_unexpected;
+}
 
 void add_run_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<RunOptions>();

@@ -1,7 +1,8 @@
-// `monograin plot`, `monograin compare` and `monograin regress`: what is done with recorded runs.
+// `monograin plot`, `monograin atlas`, `monograin compare` and `monograin regress`: figures and comparisons.
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -9,6 +10,9 @@
 #include "cli/commands.hpp"
 #include "figure/figure.hpp"
 #include "history/compare.hpp"
+#include "history/run_files.hpp"
+#include "study/atlas.hpp"
+#include "study/profile.hpp"
 #include "study/regress.hpp"
 
 namespace monograin {
@@ -21,18 +25,68 @@ namespace fs = std::filesystem;
 struct PlotOptions {
   std::vector<std::string> runs;
   std::string output;
+  std::optional<double> profile;  ///< [s]
 };
+
+int plot_profile(const PlotOptions& options) {
+  if (options.runs.size() != 1) throw UsageError("--profile takes one run");
+  const fs::path run = options.runs.front();
+  const fs::path folder = fs::is_directory(run) ? run : run.parent_path();
+  const fs::path output = options.output.empty() ? folder / "profile.svg" : fs::path(options.output);
+  const Table profiles = [&] {
+    try {
+      return contact_profiles(scenario_of_run(folder), *options.profile);
+    } catch (const std::runtime_error& error) {
+      throw UsageError(error.what());
+    }
+  }();
+  const fs::path csv = draw_profiles(profiles, output);
+  fmt::print(stderr, "figure -> {}\nprofiles -> {}\n", output.string(), csv.string());
+  return k_success;
+}
 
 int plot(const PlotOptions& options) {
   std::vector<fs::path> runs(options.runs.begin(), options.runs.end());
   for (const fs::path& run : runs) {
     if (!fs::exists(run)) throw UsageError(fmt::format("{}: no such run", run.string()));
   }
+  if (options.profile) return plot_profile(options);
   const fs::path first = fs::is_directory(runs.front()) ? runs.front() : runs.front().parent_path();
   const fs::path output = options.output.empty() ? first / "figure.svg" : fs::path(options.output);
   draw_runs(runs, output);
   fmt::print(stderr, "figure -> {}\n", output.string());
   return k_success;
+}
+
+// --- atlas
+
+struct AtlasOptions {
+  std::vector<std::string> names;
+  std::string definitions = "plots";
+  std::string output;
+  bool only_lists = false;
+};
+
+int list(const AtlasOptions& options) {
+  const std::vector<AtlasEntry> entries = list_atlas(options.definitions);
+  std::size_t width = 0;
+  for (const AtlasEntry& entry : entries) width = std::max(width, entry.name.size());
+  for (const AtlasEntry& entry : entries) fmt::print("{:<{}}  {}\n", entry.name, width, entry.title);
+  return k_success;
+}
+
+int draw_atlas(const AtlasOptions& options) {
+  if (options.only_lists) return list(options);
+  const std::vector<AtlasFigure> figures = make_atlas(options.definitions, options.names);
+  const fs::path folder = options.output.empty() ? options.definitions : options.output;
+  for (const fs::path& file : write_atlas(figures, folder)) fmt::print(stderr, "-> {}\n", file.string());
+  auto status = RunStatus::complete;
+  for (const AtlasFigure& figure : figures) {
+    if (!figure.tables.empty()) fmt::print("{}\n", comparison_text(figure));
+    for (const std::string& stop : figure.stops) fmt::print(stderr, "{}: {}\n", figure.name, stop);
+    status = std::max(status, figure.status);
+  }
+  return exit_code_of(status);
 }
 
 // --- compare
@@ -101,8 +155,23 @@ void add_plot_command(CLI::App& app, Action& action) {
   command->add_option("RUN", options->runs, "Folders of runs, or their history.csv")->required();
   command->add_option("-o,--output", options->output,
                       "Figure to write: .svg, .pdf or .png [figure.svg in the first run's folder]");
+  command
+      ->add_option("--profile", options->profile,
+                   "Instant [s]: draw pressure and surface under the contacts instead, and write them as CSV")
+      ->check(CLI::NonNegativeNumber);
   command->footer("Example: monograin plot runs/die -o die.pdf");
   command->callback([options, &action] { action = [options] { return plot(*options); }; });
+}
+
+void add_atlas_command(CLI::App& app, Action& action) {
+  auto options = std::make_shared<AtlasOptions>();
+  CLI::App* command = app.add_subcommand("atlas", "Make figures and tables anew from their definitions");
+  command->add_option("NAME", options->names, "Figures to make [all]");
+  command->add_option("--plots", options->definitions, "Folder of the definitions [plots]");
+  command->add_option("-o,--output", options->output, "Folder to write to [that of the definitions]");
+  command->add_flag("-l,--list", options->only_lists, "List the figures there are");
+  command->footer("Example: monograin atlas mdr-12-die -o figures");
+  command->callback([options, &action] { action = [options] { return draw_atlas(*options); }; });
 }
 
 void add_compare_command(CLI::App& app, Action& action) {

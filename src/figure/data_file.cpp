@@ -9,14 +9,6 @@
 namespace monograin::figure {
 namespace {
 
-void append_number(std::string& text, double value) {
-  if (std::isfinite(value)) {
-    fmt::format_to(std::back_inserter(text), "{:.10g}", value);
-  } else {
-    text += "NaN";  // a gap: the line breaks here
-  }
-}
-
 /// One point. Quantities for which `is_shown` is false are left undefined.
 template <class IsShown>
 void append_state(std::string& text, const RunCurves& run, const ContactState& state, const Scales& scales,
@@ -27,20 +19,6 @@ void append_state(std::string& text, const RunCurves& run, const ContactState& s
     append_number(text, is_shown(quantity) ? scales.value(run, quantity, state[quantity]) : std::nan(""));
   }
   text += '\n';
-}
-
-void append_phase(std::string& text, const RunCurves& run, const ContactCurve& contact, Phase phase,
-                  const Scales& scales) {
-  const auto always = [](Quantity) { return true; };
-  for (std::size_t row = 1; row < contact.states.size(); ++row) {
-    if (run.phases[row] != phase) continue;
-    const bool goes_on = row > 1 && run.phases[row - 1] == phase;
-    if (!goes_on) {
-      text += '\n';
-      append_state(text, run, contact.states[row - 1], scales, always);
-    }
-    append_state(text, run, contact.states[row], scales, always);
-  }
 }
 
 void append_events(std::string& text, const std::vector<RunCurves>& runs, const std::string& name,
@@ -54,6 +32,14 @@ void append_events(std::string& text, const std::vector<RunCurves>& runs, const 
 }
 
 }  // namespace
+
+void append_number(std::string& text, double value) {
+  if (std::isfinite(value)) {
+    fmt::format_to(std::back_inserter(text), "{:.10g}", value);
+  } else {
+    text += "NaN";  // a gap: the line breaks here
+  }
+}
 
 std::string_view phase_name(Phase phase) noexcept {
   switch (phase) {
@@ -90,8 +76,8 @@ std::vector<std::string> event_names(const std::vector<RunCurves>& runs) {
   return names;
 }
 
-bool has_phase(const RunCurves& run, Phase phase) {
-  return std::find(std::next(run.phases.begin()), run.phases.end(), phase) != run.phases.end();
+bool has_phase(const std::vector<Phase>& phases, Phase phase) {
+  return !phases.empty() && std::find(std::next(phases.begin()), phases.end(), phase) != phases.end();
 }
 
 std::string data_text(const std::vector<RunCurves>& runs, const Scales& scales) {
@@ -102,9 +88,11 @@ std::string data_text(const std::vector<RunCurves>& runs, const Scales& scales) 
     text += fmt::format("# run {}: {}\n", k + 1, runs[k].name);
     for (const ContactCurve& contact : runs[k].contacts) {
       for (const Phase phase : k_phases) {
-        if (!has_phase(runs[k], phase)) continue;
+        if (!has_phase(runs[k].phases, phase)) continue;
         text += fmt::format("\n\n# {}", block_name(k, contact.name, phase));
-        append_phase(text, runs[k], contact, phase, scales);
+        append_phase(text, runs[k].phases, phase, [&](std::size_t row) {
+          append_state(text, runs[k], contact.states[row], scales, [](Quantity) { return true; });
+        });
       }
     }
   }

@@ -28,7 +28,25 @@ namespace monograin::figure {
 [[nodiscard]] std::vector<std::string> event_names(const std::vector<RunCurves>& runs);
 
 /// Whether a phase has any way to draw.
-[[nodiscard]] bool has_phase(const RunCurves& run, Phase phase);
+[[nodiscard]] bool has_phase(const std::vector<Phase>& phases, Phase phase);
+
+/// A number as a cell of the file; where it is undefined the line breaks.
+void append_number(std::string& text, double value);
+
+/// The lines of a block with the rows in one phase: each piece begins where the phase before it ended, after a blank
+/// line.
+template <class AppendRow>
+void append_phase(std::string& text, const std::vector<Phase>& phases, Phase phase, AppendRow append_row) {
+  for (std::size_t row = 1; row < phases.size(); ++row) {
+    if (phases[row] != phase) continue;
+    const bool goes_on = row > 1 && phases[row - 1] == phase;
+    if (!goes_on) {
+      text += '\n';
+      append_row(row - 1);
+    }
+    append_row(row);
+  }
+}
 
 /// All blocks: each is headed by its name, ends with two blank lines, and is cut by single ones where the line breaks.
 [[nodiscard]] std::string data_text(const std::vector<RunCurves>& runs, const Scales& scales);

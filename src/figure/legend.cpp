@@ -14,7 +14,6 @@ namespace {
 
 /// Okabe and Ito's colours, which survive colour-blindness and grey print.
 constexpr std::array k_colours{0x0072B2u, 0xD55E00u, 0x009E73u, 0xCC79A7u, 0xE69F00u, 0x56B4E9u};
-constexpr unsigned k_neutral = 0x303030u;
 
 constexpr double k_first_width = 2.0;
 constexpr double k_last_width = 1.5;
@@ -25,7 +24,7 @@ constexpr std::array k_points{6, 4, 8, 10, 12, 14, 2, 1, 3, 7, 5, 9, 11, 13, 15}
 
 // What text takes in the legend, on the generous side: the font is the reader's.
 constexpr double k_character_cm = 0.19;
-constexpr double k_sample_cm = 1.3;
+constexpr double k_sample_cm = 1.6;
 constexpr double k_heading_cm = 1.7;
 
 [[nodiscard]] unsigned mixed_with_white(unsigned colour, double share) noexcept {
@@ -37,11 +36,14 @@ constexpr double k_heading_cm = 1.7;
   return mixed;
 }
 
-[[nodiscard]] std::size_t columns_of(const LegendRow& row, double width_cm) {
+[[nodiscard]] double entry_width(const LegendRow& row) {
   std::size_t longest = 0;
   for (const auto& entry : row.entries) longest = std::max(longest, entry.title.size());
-  const double entry_cm = k_sample_cm + k_character_cm * static_cast<double>(longest);
-  const auto fitting = static_cast<std::size_t>(std::max(1.0, (width_cm - k_heading_cm) / entry_cm));
+  return k_sample_cm + k_character_cm * static_cast<double>(longest);
+}
+
+[[nodiscard]] std::size_t columns_of(const LegendRow& row, double width_cm) {
+  const auto fitting = static_cast<std::size_t>(std::max(1.0, (width_cm - k_heading_cm) / entry_width(row)));
   return std::min(fitting, row.entries.size());
 }
 
@@ -69,9 +71,9 @@ constexpr double k_heading_cm = 1.7;
 [[nodiscard]] LegendRow phase_row(const std::vector<RunCurves>& runs, const Palette& palette) {
   LegendRow row{"Path", {}};
   for (const Phase phase : k_phases) {
-    if (std::ranges::none_of(runs, [=](const RunCurves& run) { return has_phase(run, phase); })) continue;
-    const auto line =
-        runs.size() > 1 ? fmt::format("lc rgb '#{:06X}' lw {}", k_neutral, k_first_width) : palette.particle_line(0);
+    if (std::ranges::none_of(runs, [=](const RunCurves& run) { return has_phase(run.phases, phase); })) continue;
+    const auto line = runs.size() > 1 ? fmt::format("lc rgb '#{:06X}' lw {}", k_neutral_colour, k_first_width)
+                                      : palette.particle_line(0);
     row.entries.push_back({std::string(phase_name(phase)), fmt::format("with lines {} {}", line, dash(phase))});
   }
   return row;
@@ -103,12 +105,16 @@ std::string Palette::line(std::size_t run, unsigned colour) const {
 
 std::string Palette::contact_line(std::size_t run, std::string_view contact) const {
   const auto place = static_cast<std::size_t>(std::ranges::find(contacts_, contact) - contacts_.begin());
-  return line(run, k_colours[(colours_tell_runs() ? run : place) % k_colours.size()]);
+  return line(run, colour_of(colours_tell_runs() ? run : place));
 }
 
 std::string Palette::particle_line(std::size_t run) const {
-  return line(run, colours_tell_runs() ? k_colours[run % k_colours.size()] : k_neutral);
+  return line(run, colours_tell_runs() ? colour_of(run) : k_neutral_colour);
 }
+
+unsigned colour_of(std::size_t place) noexcept { return k_colours[place % k_colours.size()]; }
+
+int point_of(std::size_t place) noexcept { return k_points[place % k_points.size()]; }
 
 std::string_view dash(Phase phase) noexcept {
   switch (phase) {
@@ -123,7 +129,7 @@ std::string_view dash(Phase phase) noexcept {
 }
 
 std::string event_points(std::size_t place) {
-  return fmt::format("pt {} ps 0.9 lw 1.1 lc rgb '#000000'", k_points[place % k_points.size()]);
+  return fmt::format("pt {} ps 0.9 lw 1.1 lc rgb '#000000'", point_of(place));
 }
 
 std::vector<LegendRow> legend_rows(const std::vector<RunCurves>& runs, const Palette& palette) {
@@ -144,7 +150,9 @@ std::size_t line_count(const std::vector<LegendRow>& rows, double width_cm) {
 
 std::string legend_text(const std::vector<LegendRow>& rows, const Layout& layout) {
   std::string text =
-      "\n# The legend: empty plots that show nothing but their keys.\n"
+      "\n# The legend: empty plots that show nothing but a key, each in its place; a terminal's own spacing of "
+      "several\n"
+      "# lines in one key would not be that of the headings.\n"
       "unset border; unset tics; unset xlabel; unset label\n"
       "set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0\n";
   const Box& place = layout.legend;
@@ -152,14 +160,18 @@ std::string legend_text(const std::vector<LegendRow>& rows, const Layout& layout
   for (const LegendRow& row : rows) {
     text += fmt::format("set label 1 {} at screen {:.4f}, {:.4f} left\n", gnuplot_string(row.heading),
                         place.left / layout.width, (top - 0.5 * k_legend_line_cm) / layout.height);
-    text += fmt::format("set key at screen {:.4f}, {:.4f} left top horizontal Left reverse noenhanced maxcols {} ",
-                        (place.left + k_heading_cm) / layout.width, top / layout.height, columns_of(row, place.width));
-    text += "spacing 1.2 samplen 2.5 noautotitle\nplot [0:1] [0:1] NaN";
-    for (const auto& entry : row.entries) {
-      text += fmt::format(", \\\n  keyentry {} title {}", entry.style, gnuplot_string(entry.title));
+    const std::size_t columns = columns_of(row, place.width);
+    for (std::size_t k = 0; k < row.entries.size(); ++k) {
+      const double left = place.left + k_heading_cm + static_cast<double>(k % columns) * entry_width(row);
+      text += fmt::format(
+          "set key at screen {:.4f}, {:.4f} left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 "
+          "noautotitle\n"
+          "plot [0:1] [0:1] NaN, keyentry {} title {}\n",
+          left / layout.width, top / layout.height, row.entries[k].style, gnuplot_string(row.entries[k].title));
+      if (k == 0) text += "unset label 1\n";
+      if ((k + 1) % columns == 0 && k + 1 < row.entries.size()) top -= k_legend_line_cm;
     }
-    text += '\n';
-    top -= static_cast<double>(lines_of(row, place.width)) * k_legend_line_cm;
+    top -= k_legend_line_cm;
   }
   return text;
 }

@@ -31,6 +31,13 @@ class Palette {
   std::vector<std::string> contacts_;
 };
 
+/// Colours (0xRRGGBB) and gnuplot's point types, told apart in colour-blindness and in grey print; they come round
+/// again.
+[[nodiscard]] unsigned colour_of(std::size_t place) noexcept;
+[[nodiscard]] int point_of(std::size_t place) noexcept;
+/// For what has no colour of its own.
+inline constexpr unsigned k_neutral_colour = 0x303030u;
+
 /// gnuplot's dash type of a phase.
 [[nodiscard]] std::string_view dash(Phase phase) noexcept;
 /// gnuplot's style of the marks of the event with that place in the legend.

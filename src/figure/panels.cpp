@@ -102,7 +102,7 @@ Layout arrange(std::size_t panel_count, std::size_t lines_in_strip, std::size_t 
   const std::size_t columns = panel_count > 1 ? 2 : 1;
   const std::size_t rows = (panel_count + columns - 1) / columns;
   const bool is_in_cell = panel_count % columns != 0 && height_of(lines_in_cell) <= k_cell_height_cm - k_top_cm;
-  const double strip = is_in_cell ? 0.0 : height_of(lines_in_strip) + 2 * k_legend_margin_cm;
+  const double strip = is_in_cell ? k_legend_margin_cm : height_of(lines_in_strip) + 2 * k_legend_margin_cm;
   const double cell_width = k_figure_width_cm / static_cast<double>(columns);
 
   Layout layout{.width = k_figure_width_cm,
@@ -110,7 +110,7 @@ Layout arrange(std::size_t panel_count, std::size_t lines_in_strip, std::size_t 
                 .panels = {},
                 .legend = {k_legend_margin_cm, 0.0, k_legend_strip_cm, strip - k_legend_margin_cm}};
   if (is_in_cell) {
-    layout.legend = {cell_width + k_legend_margin_cm, 0.0, k_legend_cell_cm, k_cell_height_cm - k_top_cm};
+    layout.legend = {cell_width + k_legend_margin_cm, strip, k_legend_cell_cm, k_cell_height_cm - k_top_cm};
   }
   for (std::size_t k = 0; k < panel_count; ++k) {
     const std::size_t rows_below = rows - 1 - k / columns;

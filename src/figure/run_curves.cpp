@@ -1,7 +1,6 @@
 #include "figure/run_curves.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -19,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double k_round_off = 1e-12;  ///< share of a displacement by which none is passed
 constexpr std::string_view k_displacement = ".displacement";
 
 [[nodiscard]] Table read_table(const fs::path& file) {
@@ -29,12 +29,10 @@ constexpr std::string_view k_displacement = ".displacement";
   }
 }
 
-[[nodiscard]] std::optional<double> header_number(const Table& table, std::string_view key) {
-  const std::string_view text = table.header_value(key);
-  double value = 0.0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (result.ec != std::errc{} || !(value > 0.0)) return std::nullopt;
-  return value;
+/// A scale to divide by.
+[[nodiscard]] std::optional<double> header_scale(const Table& table, std::string_view key) {
+  const auto value = table.header_number(key);
+  return value && *value > 0.0 ? value : std::nullopt;
 }
 
 /// The names in front of ".displacement", in the order of the columns.
@@ -94,23 +92,6 @@ class StateReader {
   return curve;
 }
 
-/// A hold goes on with the phase it interrupts.
-[[nodiscard]] std::vector<Phase> phases_along(const std::vector<ContactState>& states) {
-  std::vector<Phase> phases(states.size(), Phase::loading);
-  double largest = states.front().displacement;
-  for (std::size_t row = 1; row < states.size(); ++row) {
-    const double from = states[row - 1].displacement;
-    const double to = states[row].displacement;
-    if (to > from) {
-      phases[row] = to > largest ? Phase::loading : Phase::reloading;
-    } else {
-      phases[row] = to < from ? Phase::unloading : phases[row - 1];
-    }
-    largest = std::max(largest, to);
-  }
-  return phases;
-}
-
 /// The program's own corners are where the curves turn; marking them too would say nothing new.
 [[nodiscard]] bool is_of_program(std::string_view event) { return event == "step-end" || event == "until-met"; }
 
@@ -157,6 +138,23 @@ class StateReader {
 
 }  // namespace
 
+std::vector<Phase> phases_along(std::span<const double> displacements) {
+  std::vector<Phase> phases(displacements.size(), Phase::loading);
+  if (displacements.empty()) return phases;
+  double largest = displacements.front();
+  for (std::size_t row = 1; row < displacements.size(); ++row) {
+    const double from = displacements[row - 1];
+    const double to = displacements[row];
+    if (to > from) {
+      phases[row] = to > largest + k_round_off * std::abs(largest) ? Phase::loading : Phase::reloading;
+    } else {
+      phases[row] = to < from ? Phase::unloading : phases[row - 1];
+    }
+    largest = std::max(largest, to);
+  }
+  return phases;
+}
+
 bool ContactCurve::has(Quantity quantity) const {
   return std::ranges::any_of(states, [=](const ContactState& state) {
     return std::isfinite(state.displacement) && std::isfinite(state[quantity]);
@@ -183,9 +181,9 @@ RunCurves read_run(const fs::path& run) {
 
   const std::string driven = driven_class(history, classes);
   RunCurves curves{.name = folder.filename().string(),
-                   .radius = header_number(history, "R0"),
-                   .youngs_modulus = header_number(history, "E"),
-                   .yield_stress = header_number(history, "Y"),
+                   .radius = header_scale(history, "R0"),
+                   .youngs_modulus = header_scale(history, "E"),
+                   .yield_stress = header_scale(history, "Y"),
                    .contacts = {},
                    .phases = {},
                    .events = read_events(folder / "events.csv", driven)};
@@ -193,7 +191,9 @@ RunCurves read_run(const fs::path& run) {
   if (std::ranges::none_of(k_quantities, [&](Quantity quantity) { return curves.has(quantity); })) {
     throw FigureError(fmt::format("{}: all values are undefined", file.string()));
   }
-  curves.phases = phases_along(curves.contacts.front().states);
+  std::vector<double> displacements;
+  for (const ContactState& state : curves.contacts.front().states) displacements.push_back(state.displacement);
+  curves.phases = phases_along(displacements);
   return curves;
 }
 

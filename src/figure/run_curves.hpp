@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ inline constexpr std::array k_quantities{Quantity::force, Quantity::pressure, Qu
 /// Where the driven class moves: beyond its largest displacement so far, back, or forth again below it.
 enum class Phase { loading, unloading, reloading };
 inline constexpr std::array k_phases{Phase::loading, Phase::unloading, Phase::reloading};
+
+/// The phase of the way that ends at each displacement; a hold goes on with the phase it interrupts.
+[[nodiscard]] std::vector<Phase> phases_along(std::span<const double> displacements);
 
 /// One contact at one instant, in SI; nan where the run does not have the quantity.
 struct ContactState {

@@ -4,12 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "figure/page.hpp"
 #include "figure/panels.hpp"
 #include "figure/run_curves.hpp"
 
 namespace monograin::figure {
-
-enum class Format { svg, pdf, png };
 
 /// @param figure_name, data_name  files in the script's own folder
 /// A figure name set before as the gnuplot variable `output` wins over figure_name.

@@ -1,0 +1,259 @@
+#include "figure/chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ranges>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "figure/data_file.hpp"
+#include "figure/gnuplot.hpp"
+#include "figure/legend.hpp"
+
+namespace monograin::figure {
+namespace {
+
+using Style = ChartSeries::Style;
+
+constexpr double k_line_width = 1.8;
+
+// The full stop keeps gnuplot, which compares beginnings, from taking one name for another.
+[[nodiscard]] std::string block_of(std::size_t panel, std::size_t series) {
+  return fmt::format("panel {} series {}.", panel + 1, series + 1);
+}
+[[nodiscard]] std::string block_of(std::size_t panel, std::size_t series, Phase phase) {
+  return fmt::format("panel {} series {} {}.", panel + 1, series + 1, phase_name(phase));
+}
+[[nodiscard]] std::string block_of_area(std::size_t panel, std::size_t area) {
+  return fmt::format("panel {} area {}.", panel + 1, area + 1);
+}
+
+void append_point(std::string& text, const ChartSeries& series, std::size_t row) {
+  append_number(text, series.x[row]);
+  text += ' ';
+  append_number(text, series.y[row]);
+  text += '\n';
+}
+
+void append_series(std::string& text, const ChartSeries& series, std::size_t panel, std::size_t place) {
+  if (series.style != Style::phases) {
+    text += fmt::format("\n\n# {} {}\n", block_of(panel, place), series.legend);
+    for (std::size_t row = 0; row < series.x.size(); ++row) append_point(text, series, row);
+    return;
+  }
+  const auto phases = phases_along(series.x);
+  for (const Phase phase : k_phases) {
+    if (!has_phase(phases, phase)) continue;
+    text += fmt::format("\n\n# {} {}", block_of(panel, place, phase), series.legend);
+    append_phase(text, phases, phase, [&](std::size_t row) { append_point(text, series, row); });
+  }
+}
+
+/// Gives each legend its colour and its points: series with the same legend look the same in every panel.
+class Looks {
+ public:
+  explicit Looks(const Chart& chart) {
+    for (const ChartPanel& panel : chart.panels) {
+      for (const ChartSeries& series : panel.series) add(series);
+    }
+  }
+
+  [[nodiscard]] std::string line(const ChartSeries& series) const {
+    return fmt::format("with lines lc rgb '#{:06X}' lw {}", colour(series, lines_), k_line_width);
+  }
+
+  [[nodiscard]] std::string points(const ChartSeries& series) const {
+    const unsigned shade = series.colour ? colour_of(*series.colour) : k_neutral_colour;
+    return fmt::format("with points pt {} ps 0.5 lw 1 lc rgb '#{:06X}'", point_of(place_in(points_, series)), shade);
+  }
+
+  [[nodiscard]] std::vector<LegendRow> legend_rows(const Chart& chart) const {
+    LegendRow curves{"Curve", {}};
+    LegendRow points{"Points", {}};
+    LegendRow areas{"Area", {}};
+    for (const ChartPanel& panel : chart.panels) {
+      for (const ChartArea& area : panel.areas) put(areas, {area.legend, area_style(area)});
+      for (const ChartSeries& series : panel.series) {
+        const bool is_points = series.style == Style::points;
+        put(is_points ? points : curves, {series.legend, is_points ? this->points(series) : sample(series)});
+      }
+    }
+    std::vector<LegendRow> rows{areas, curves, path_row(chart), points};
+    std::erase_if(rows, [](const LegendRow& row) { return row.entries.empty(); });
+    return rows;
+  }
+
+  [[nodiscard]] static std::string area_style(const ChartArea& area) {
+    return fmt::format("with boxxyerror fs solid 1.0 noborder lc rgb '#{:06X}'", area.colour);
+  }
+
+  [[nodiscard]] static std::string_view dash_of(Style style) {
+    if (style == Style::dashed) return dash(Phase::unloading);
+    return dash(style == Style::dotted ? Phase::reloading : Phase::loading);
+  }
+
+ private:
+  void add(const ChartSeries& series) {
+    auto& names = series.style == Style::points ? points_ : lines_;
+    if (std::ranges::find(names, series.legend) == names.end()) names.push_back(series.legend);
+  }
+
+  [[nodiscard]] static std::size_t place_in(const std::vector<std::string>& names, const ChartSeries& series) {
+    return static_cast<std::size_t>(std::ranges::find(names, series.legend) - names.begin());
+  }
+
+  [[nodiscard]] static unsigned colour(const ChartSeries& series, const std::vector<std::string>& names) {
+    return colour_of(series.colour.value_or(place_in(names, series)));
+  }
+
+  [[nodiscard]] std::string sample(const ChartSeries& series) const {
+    return fmt::format("{} {}", line(series), dash_of(series.style));
+  }
+
+  static void put(LegendRow& row, LegendRow::Entry entry) {
+    const auto is_same = [&](const LegendRow::Entry& other) {
+      return other.title == entry.title && other.style == entry.style;
+    };
+    if (!entry.title.empty() && std::ranges::none_of(row.entries, is_same)) row.entries.push_back(std::move(entry));
+  }
+
+  /// Only where a line turns back, so that its dashes ask for an explanation.
+  [[nodiscard]] static LegendRow path_row(const Chart& chart) {
+    LegendRow row{"Path", {}};
+    for (const Phase phase : k_phases) {
+      const bool is_there = std::ranges::any_of(chart.panels, [&](const ChartPanel& panel) {
+        return std::ranges::any_of(panel.series, [&](const ChartSeries& series) {
+          return series.style == Style::phases && has_phase(phases_along(series.x), phase);
+        });
+      });
+      if (!is_there) continue;
+      const auto style =
+          fmt::format("with lines lc rgb '#{:06X}' lw {} {}", k_neutral_colour, k_line_width, dash(phase));
+      row.entries.push_back({std::string(phase_name(phase)), style});
+    }
+    if (row.entries.size() == 1) row.entries.clear();
+    return row;
+  }
+
+  std::vector<std::string> lines_;
+  std::vector<std::string> points_;
+};
+
+/// The axis over all values on it.
+[[nodiscard]] Axis axis_over(const ChartAxis& wanted, std::vector<double> values) {
+  std::erase_if(values, [&](double value) { return !std::isfinite(value) || (wanted.is_logarithmic && value <= 0.0); });
+  if (values.empty()) values = wanted.is_logarithmic ? std::vector{1.0, 10.0} : std::vector{0.0, 1.0};
+  if (wanted.lowest) std::erase_if(values, [&](double value) { return value < *wanted.lowest; });
+  if (wanted.highest) std::erase_if(values, [&](double value) { return value > *wanted.highest; });
+  if (wanted.lowest) values.push_back(*wanted.lowest);
+  if (wanted.highest) values.push_back(*wanted.highest);
+
+  Axis axis{.label = wanted.label, .is_logarithmic = wanted.is_logarithmic};
+  if (wanted.is_logarithmic) {
+    const auto [lowest, highest] = std::ranges::minmax(values);
+    axis.range.lowest = std::pow(10.0, std::floor(std::log10(lowest)));
+    axis.range.highest = std::pow(10.0, std::ceil(std::log10(highest)));
+    if (axis.range.lowest == axis.range.highest) axis.range.highest *= 10.0;
+  } else {
+    axis.range = axis_range(values);
+  }
+  if (wanted.lowest) axis.range.lowest = *wanted.lowest;
+  if (wanted.highest) axis.range.highest = *wanted.highest;
+  return axis;
+}
+
+struct PanelAxes {
+  Axis x;
+  Axis y;
+};
+
+[[nodiscard]] PanelAxes axes_of(const ChartPanel& panel) {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const ChartSeries& series : panel.series) {
+    for (std::size_t row = 0; row < series.x.size(); ++row) {
+      // What is beyond one axis does not stretch the other.
+      const bool is_beyond =
+          (panel.x.lowest && series.x[row] < *panel.x.lowest) || (panel.x.highest && series.x[row] > *panel.x.highest);
+      if (is_beyond || !std::isfinite(series.x[row]) || !std::isfinite(series.y[row])) continue;
+      x.push_back(series.x[row]);
+      y.push_back(series.y[row]);
+    }
+  }
+  for (const ChartArea& area : panel.areas) {
+    for (const ChartArea::Box& box : area.boxes) {
+      x.insert(x.end(), {box[0], box[1]});
+      y.insert(y.end(), {box[2], box[3]});
+    }
+  }
+  return {axis_over(panel.x, std::move(x)), axis_over(panel.y, std::move(y))};
+}
+
+[[nodiscard]] std::string plots_of(const ChartPanel& panel, std::size_t place, const Looks& looks) {
+  std::vector<std::string> plots;
+  for (std::size_t k = 0; k < panel.areas.size(); ++k) {
+    if (panel.areas[k].boxes.empty()) continue;
+    plots.push_back(fmt::format("data index {} using (0.5*($1+$2)):(0.5*($3+$4)):1:2:3:4 {}",
+                                gnuplot_string(block_of_area(place, k)), Looks::area_style(panel.areas[k])));
+  }
+  for (std::size_t k = 0; k < panel.series.size(); ++k) {
+    const ChartSeries& series = panel.series[k];
+    if (series.style == Style::points) {
+      plots.push_back(fmt::format("data index {} {}", gnuplot_string(block_of(place, k)), looks.points(series)));
+    } else if (series.style != Style::phases) {
+      plots.push_back(fmt::format("data index {} {} {}", gnuplot_string(block_of(place, k)), looks.line(series),
+                                  Looks::dash_of(series.style)));
+    } else {
+      const auto phases = phases_along(series.x);
+      for (const Phase phase : k_phases) {
+        if (!has_phase(phases, phase)) continue;
+        plots.push_back(fmt::format("data index {} {} {}", gnuplot_string(block_of(place, k, phase)),
+                                    looks.line(series), dash(phase)));
+      }
+    }
+  }
+  return plots.empty() ? std::string("plot NaN\n") : fmt::format("plot {}\n", fmt::join(plots, ", \\\n  "));
+}
+
+}  // namespace
+
+std::string chart_data(const Chart& chart, const std::string& source) {
+  std::string text = fmt::format("# {}\n# columns: x, y as on the axes\n", source);
+  for (std::size_t k = 0; k < chart.panels.size(); ++k) {
+    const ChartPanel& panel = chart.panels[k];
+    for (std::size_t a = 0; a < panel.areas.size(); ++a) {
+      text += fmt::format("\n\n# {} {}; columns: lowest and highest x, lowest and highest y\n", block_of_area(k, a),
+                          panel.areas[a].legend);
+      for (const auto& [x_low, x_high, y_low, y_high] : panel.areas[a].boxes) {
+        text += fmt::format("{:.10g} {:.10g} {:.10g} {:.10g}\n", x_low, x_high, y_low, y_high);
+      }
+    }
+    for (std::size_t s = 0; s < panel.series.size(); ++s) append_series(text, panel.series[s], k, s);
+  }
+  return text;
+}
+
+std::string chart_script(const Chart& chart, Format format, const std::string& figure_name,
+                         const std::string& data_name) {
+  const Looks looks(chart);
+  const auto rows = looks.legend_rows(chart);
+  const Layout layout =
+      arrange(chart.panels.size(), line_count(rows, k_legend_strip_cm), line_count(rows, k_legend_cell_cm));
+
+  std::string text = page_head(format, layout, figure_name, data_name);
+  for (std::size_t k = 0; k < chart.panels.size(); ++k) {
+    const ChartPanel& panel = chart.panels[k];
+    const PanelAxes axes = axes_of(panel);
+    const char letter = static_cast<char>('a' + k % 26);
+    text += "\nunset logscale; set format '%g'";
+    text += frame_text(layout.panels[k], layout, axes.x, axes.y, letter);
+    text += fmt::format("set label 3 {} at graph 0.98, 1.06 right\n", gnuplot_string(panel.note));
+    text += plots_of(panel, k, looks);
+  }
+  text += "unset logscale\n" + legend_text(rows, layout);
+  return text + k_page_foot;
+}
+
+}  // namespace monograin::figure

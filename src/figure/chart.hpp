@@ -1,0 +1,67 @@
+/// Charts of any curves: panels with lines, points and filled areas, put together by whoever has the numbers.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "figure/page.hpp"
+
+namespace monograin::figure {
+
+/// One curve. Rows in which x or y is undefined are gaps.
+struct ChartSeries {
+  enum class Style {
+    phases,  ///< a line: loading solid, unloading dashed, reloading dotted, as x goes forth and back
+    solid,
+    dashed,
+    dotted,
+    points,
+  };
+
+  std::string legend;  ///< series with the same legend share its line there; empty: it has none
+  Style style = Style::phases;
+  std::optional<std::size_t> colour;  ///< place among the colours, from 0; absent: that of the legend's place
+  std::vector<double> x;
+  std::vector<double> y;
+};
+
+/// Filled boxes of one colour, drawn below the series.
+struct ChartArea {
+  using Box = std::array<double, 4>;  ///< lowest and highest x, lowest and highest y
+
+  std::string legend;
+  unsigned colour = 0;  ///< 0xRRGGBB
+  std::vector<Box> boxes;
+};
+
+struct ChartAxis {
+  std::string label;               ///< gnuplot's enhanced text
+  std::optional<double> lowest{};  ///< absent: what the values take
+  std::optional<double> highest{};
+  bool is_logarithmic = false;  ///< only positive values are shown then
+};
+
+struct ChartPanel {
+  ChartAxis x;
+  ChartAxis y;
+  std::string note{};  ///< what tells this panel from the others, above it
+  std::vector<ChartArea> areas{};
+  std::vector<ChartSeries> series{};
+};
+
+struct Chart {
+  std::vector<ChartPanel> panels;  ///< at least one; arranged two by two
+};
+
+/// What the figure's data file holds. @param source  where the figure comes from, for the file's first line
+[[nodiscard]] std::string chart_data(const Chart& chart, const std::string& source);
+
+/// The gnuplot script of the chart. A panel without any value on an axis is drawn from 0 to 1.
+/// @param figure_name, data_name  files in the script's own folder
+[[nodiscard]] std::string chart_script(const Chart& chart, Format format, const std::string& figure_name,
+                                       const std::string& data_name);
+
+}  // namespace monograin::figure

@@ -1,0 +1,126 @@
+#include "figure/page.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "figure/figure.hpp"
+#include "figure/gnuplot.hpp"
+
+namespace monograin::figure {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[nodiscard]] Format format_of(const fs::path& output) {
+  const std::string extension = output.extension().string();
+  if (extension == ".svg") return Format::svg;
+  if (extension == ".pdf") return Format::pdf;
+  if (extension == ".png") return Format::png;
+  throw FigureError(
+      fmt::format("{}: unknown figure format '{}'; expected .svg, .pdf or .png", output.string(), extension));
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code failure;
+  if (!folder.empty()) fs::create_directories(folder, failure);
+  if (failure) throw FigureError(fmt::format("{} cannot be made: {}", folder.string(), failure.message()));
+}
+
+[[nodiscard]] std::string terminal(Format format, const Layout& layout) {
+  constexpr double k_svg_per_cm = 37.8;  // CSS: 96 px to the inch
+  constexpr double k_png_per_cm = 80.0;
+  const auto pixels = [](double cm, double per_cm) { return std::lround(cm * per_cm); };
+  switch (format) {
+    case Format::svg:
+      return fmt::format("svg enhanced size {},{} font 'Helvetica,13' background 'white'",
+                         pixels(layout.width, k_svg_per_cm), pixels(layout.height, k_svg_per_cm));
+    case Format::pdf:
+      return fmt::format("pdfcairo enhanced size {}cm,{:.4g}cm font 'Helvetica,10'", layout.width, layout.height);
+    case Format::png:
+      return fmt::format("pngcairo enhanced size {},{} font 'Helvetica,10' fontscale 2.1 linewidth 2 pointscale 2",
+                         pixels(layout.width, k_png_per_cm), pixels(layout.height, k_png_per_cm));
+  }
+  return {};
+}
+
+[[nodiscard]] std::string axis_text(char name, const Axis& axis) {
+  const auto& [lowest, highest, tic_step] = axis.range;
+  if (axis.is_logarithmic) {
+    return fmt::format(
+        "set logscale {0}; set {0}range [{1:.6g}:{2:.6g}]; set {0}tics autofreq; "
+        "set format {0} '10^{{%T}}'\n",
+        name, lowest, highest);
+  }
+  return fmt::format("set {0}range [{1:.6g}:{2:.6g}]; set {0}tics {3:.6g}\n", name, lowest, highest, tic_step);
+}
+
+}  // namespace
+
+std::string page_head(Format format, const Layout& layout, const std::string& figure_name,
+                      const std::string& data_name) {
+  return fmt::format(
+      "# Draws {0}; run it in its own folder.\n"
+      "if (!exists(\"output\")) output = {0}\n"
+      "data = {1}\n\n"
+      "set encoding utf8\n"
+      "set terminal {2}\n"
+      "set output output\n"
+      "set border 3 lw 0.8\n"
+      "set tics nomirror out scale 0.6\n"
+      "set xtics offset 0, 0.3\n"
+      "set format '%g'\n"
+      "set xlabel offset 0, 0.5\n"
+      "unset key\n"
+      "set multiplot\n",
+      gnuplot_string(figure_name), gnuplot_string(data_name), terminal(format, layout));
+}
+
+std::string frame_text(const Panel& panel, const Layout& layout, const Axis& x, const Axis& y, char letter) {
+  const Box& axes = panel.axes;
+  return fmt::format(
+      "\nset lmargin at screen {:.4f}; set rmargin at screen {:.4f}\n"
+      "set bmargin at screen {:.4f}; set tmargin at screen {:.4f}\n"
+      "{}{}"
+      "set xlabel {}\n"
+      "set label 1 '({})' at graph 0.02, 1.06 left\n"
+      "set label 2 {} at screen {:.4f}, {:.4f} center rotate by 90\n",
+      axes.left / layout.width, axes.right() / layout.width, axes.bottom / layout.height, axes.top() / layout.height,
+      axis_text('x', x), axis_text('y', y), gnuplot_string(x.label), letter, gnuplot_string(y.label),
+      panel.y_label_left / layout.width, (axes.bottom + 0.5 * axes.height) / layout.height);
+}
+
+void write_whole(const fs::path& file, const std::string& text) {
+  const fs::path part = fs::path(file).concat(fmt::format(".{}.part", getpid()));
+  std::ofstream out(part, std::ios::binary);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  std::error_code failure;
+  if (out) fs::rename(part, file, failure);
+  if (!out || failure) {
+    std::error_code ignored;
+    fs::remove(part, ignored);
+    throw FigureError(fmt::format("{} cannot be written", file.string()));
+  }
+}
+
+FigureFiles::FigureFiles(fs::path output)
+    : figure_(std::move(output)),
+      script_(fs::path(figure_).replace_extension(".gp")),
+      data_(fs::path(figure_).replace_extension(".dat")),
+      format_(format_of(figure_)) {
+  gnuplot_ = find_gnuplot();
+}
+
+void FigureFiles::write(const std::string& data, const std::string& script) const {
+  make_folder(figure_.parent_path());
+  write_whole(data_, data);
+  write_whole(script_, script);
+  run_gnuplot(gnuplot_, script_, figure_);
+}
+
+}  // namespace monograin::figure

@@ -1,0 +1,58 @@
+/// What every figure has, whatever it shows: a page, frames of panels, and the files it leaves.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "figure/panels.hpp"
+
+namespace monograin::figure {
+
+enum class Format { svg, pdf, png };
+
+struct Axis {
+  std::string label;
+  AxisRange range{};
+  bool is_logarithmic = false;  ///< tics at powers of ten, whatever the range's tic step
+};
+
+/// First part of a script: terminal and settings of the page. Sets the gnuplot variable `data` to the data file.
+/// @param figure_name, data_name  files in the script's own folder
+/// A figure name set before as the gnuplot variable `output` wins over figure_name.
+[[nodiscard]] std::string page_head(Format format, const Layout& layout, const std::string& figure_name,
+                                    const std::string& data_name);
+
+/// Axes, labels and letter of a panel; the `plot` command is to follow.
+[[nodiscard]] std::string frame_text(const Panel& panel, const Layout& layout, const Axis& x, const Axis& y,
+                                     char letter);
+
+/// Last part of a script.
+inline constexpr const char* k_page_foot = "unset multiplot\nunset output\n";
+
+/// Writes the whole file or leaves what was there. @throws FigureError naming the file
+void write_whole(const std::filesystem::path& file, const std::string& text);
+
+/// A figure with its script and its data beside it, which bear its name and the endings .gp and .dat.
+class FigureFiles {
+ public:
+  /// @param output  the figure; its extension picks the format
+  /// @throws FigureError when the format is unknown or gnuplot is missing; nothing has been written then
+  explicit FigureFiles(std::filesystem::path output);
+
+  [[nodiscard]] Format format() const noexcept { return format_; }
+  [[nodiscard]] const std::filesystem::path& figure() const noexcept { return figure_; }
+  [[nodiscard]] std::string figure_name() const { return figure_.filename().string(); }
+  [[nodiscard]] std::string data_name() const { return data_.filename().string(); }
+
+  /// Writes all three. @throws FigureError; the older figure then stays
+  void write(const std::string& data, const std::string& script) const;
+
+ private:
+  std::filesystem::path figure_;
+  std::filesystem::path script_;
+  std::filesystem::path data_;
+  std::filesystem::path gnuplot_;
+  Format format_;
+};
+
+}  // namespace monograin::figure

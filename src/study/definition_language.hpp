@@ -1,0 +1,40 @@
+/// The language of definitions of figures: every key with its kind, range, default and meaning.
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "scenario/language.hpp"
+
+namespace monograin::definition {
+
+using Keys = std::vector<KeySpec>;
+
+/// Words in the order of the enumerators they stand for.
+inline constexpr std::array<std::string_view, 5> k_styles{"phases", "solid", "dashed", "dotted", "points"};
+inline constexpr std::array<std::string_view, 3> k_rows{"all", "load", "unload"};
+
+inline constexpr const char* k_example_x = "\"axial.displacement / R0\"";
+inline constexpr const char* k_example_y = "\"axial.force / (E * R0^2)\"";
+
+/// The definition as a whole.
+[[nodiscard]] Keys root_keys();
+/// A panel.
+[[nodiscard]] Keys panel_keys();
+/// Curves of a panel, and the curve of a comparison.
+[[nodiscard]] Keys curve_keys();
+/// What a key of the scenario is varied over.
+[[nodiscard]] Keys vary_keys();
+/// The range of t in a formula.
+[[nodiscard]] Keys parameter_keys();
+/// Points of a panel, and those of a comparison.
+[[nodiscard]] Keys points_keys();
+/// The phase diagrams of adhesion.
+[[nodiscard]] Keys adhesion_map_keys();
+/// A table of comparisons.
+[[nodiscard]] Keys comparison_table_keys();
+/// One row of such a table.
+[[nodiscard]] Keys comparison_keys();
+
+}  // namespace monograin::definition
