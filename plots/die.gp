@@ -86,30 +86,41 @@ plot data index 'run 1 axial loading' using 1:5 with lines lc rgb '#303030' lw 2
   data index 'event growth-on.' using 1:5 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event growth-off.' using 1:5 with points pt 12 ps 0.9 lw 1.1 lc rgb '#000000'
 
-# The legend: empty plots that show nothing but their keys.
+# The legend: empty plots that show nothing but a key, each in its place; a terminal's own spacing of several
+# lines in one key would not be that of the headings.
 unset border; unset tics; unset xlabel; unset label
 set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0
 set label 1 'Contact' at screen 0.0176, 0.1689 left
-set key at screen 0.1176, 0.1854 left top horizontal Left reverse noenhanced maxcols 2 spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, \
-  keyentry with lines lc rgb '#0072B2' lw 2 title 'axial', \
-  keyentry with lines lc rgb '#D55E00' lw 2 title 'lateral'
+set key at screen 0.1176, 0.1854 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#0072B2' lw 2 title 'axial'
+unset label 1
+set key at screen 0.2900, 0.1854 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#D55E00' lw 2 title 'lateral'
 set label 1 'Path' at screen 0.0176, 0.1358 left
-set key at screen 0.1176, 0.1523 left top horizontal Left reverse noenhanced maxcols 3 spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, \
-  keyentry with lines lc rgb '#303030' lw 2 dt 1 title 'loading', \
-  keyentry with lines lc rgb '#303030' lw 2 dt (7,4) title 'unloading', \
-  keyentry with lines lc rgb '#303030' lw 2 dt (2,4) title 'reloading'
+set key at screen 0.1176, 0.1523 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#303030' lw 2 dt 1 title 'loading'
+unset label 1
+set key at screen 0.3124, 0.1523 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#303030' lw 2 dt (7,4) title 'unloading'
+set key at screen 0.5071, 0.1523 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#303030' lw 2 dt (2,4) title 'reloading'
 set label 1 'Events' at screen 0.0176, 0.1026 left
-set key at screen 0.1176, 0.1192 left top horizontal Left reverse noenhanced maxcols 3 spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, \
-  keyentry with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000' title 'growth-on', \
-  keyentry with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-made', \
-  keyentry with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000' title 'yield', \
-  keyentry with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000' title 'load-reversal', \
-  keyentry with points pt 12 ps 0.9 lw 1.1 lc rgb '#000000' title 'growth-off', \
-  keyentry with points pt 14 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-lost', \
-  keyentry with points pt 2 ps 0.9 lw 1.1 lc rgb '#000000' title 'dent-touched', \
-  keyentry with points pt 1 ps 0.9 lw 1.1 lc rgb '#000000' title 'reload'
+set key at screen 0.1176, 0.1192 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000' title 'growth-on'
+unset label 1
+set key at screen 0.3571, 0.1192 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-made'
+set key at screen 0.5965, 0.1192 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000' title 'yield'
+set key at screen 0.1176, 0.0861 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000' title 'load-reversal'
+set key at screen 0.3571, 0.0861 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 12 ps 0.9 lw 1.1 lc rgb '#000000' title 'growth-off'
+set key at screen 0.5965, 0.0861 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 14 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-lost'
+set key at screen 0.1176, 0.0530 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 2 ps 0.9 lw 1.1 lc rgb '#000000' title 'dent-touched'
+set key at screen 0.3571, 0.0530 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 1 ps 0.9 lw 1.1 lc rgb '#000000' title 'reload'
 unset multiplot
 unset output

@@ -18,6 +18,7 @@
 #include "scenario/words.hpp"
 #include "study/adhesion_panels.hpp"
 #include "study/definition.hpp"
+#include "study/profile.hpp"
 
 namespace monograin {
 namespace {
@@ -219,7 +220,7 @@ class FigureMaker {
     const Values parameter = spec.parameter ? parameter_values(*spec.parameter) : Values{};
     std::vector<XyCurve> curves;
     for (const Scenario& scenario : spec.scenarios) {
-      const Scope scope(&history_of(scenario), parameter);
+      const Scope scope(spec.profile_at ? &profiles_of(scenario, *spec.profile_at) : &history_of(scenario), parameter);
       curves.push_back(curve_of(spec.x, spec.y, scope, faults_));
     }
     if (spec.scenarios.empty()) curves.push_back(curve_of(spec.x, spec.y, Scope(nullptr, parameter), faults_));
@@ -235,6 +236,19 @@ class FigureMaker {
     if (record.status != RunStatus::complete) {
       made_.stops.push_back(fmt::format("{}: {}: {}", scenario.name, to_string(record.status), record.message));
       made_.status = std::max(made_.status, record.status);
+    }
+    return entry->second;
+  }
+
+  /// Pressure and surface under the contacts of the first class.
+  [[nodiscard]] const Table& profiles_of(const Scenario& scenario, double time) {
+    const auto [entry, is_new] = histories_.try_emplace(fmt::format("{} at {}", scenario_digest(scenario), time));
+    if (!is_new) return entry->second;
+    const Table all = contact_profiles(scenario, time);
+    entry->second = Table(all.columns());
+    entry->second.header = all.header;
+    for (std::size_t row = 0; row < all.row_count(); ++row) {
+      if (all.at(row, 0) == 0.0) entry->second.append(all.row(row));
     }
     return entry->second;
   }

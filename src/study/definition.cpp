@@ -166,6 +166,7 @@ class DefinitionReader {
                    .rows = static_cast<RowChoice>(place_of_word(k_rows, section.text("rows"))),
                    .style = static_cast<Style>(place_of_word(k_styles, section.text("style"))),
                    .colour = colour(section),
+                   .profile_at = section.number("profile_at"),
                    .parameter = {}};
     if (section.has("parameter")) spec.parameter = parameter(section);
     if (section.has("vary")) {

@@ -39,6 +39,7 @@ struct CurveSpec {
   RowChoice rows = RowChoice::all;
   figure::ChartSeries::Style style = figure::ChartSeries::Style::phases;
   std::optional<std::size_t> colour;
+  std::optional<double> profile_at;  ///< [s]; then columns are those of contact profiles at that instant
   std::optional<Parameter> parameter;
 };
 

@@ -95,6 +95,7 @@ Keys curve_keys() {
            .kind = Kind::texts,
            .example = "[\"material.yield_stress=20 MPa\"]"},
           table_key("vary", "one curve for each value of a key", "{ key = \"...\", values = [...] }"),
+          number_key("profile_at", "instead of a history: contact profiles of the first class at this instant [s]"),
           table_key("parameter", "instead of a history: range of t in the formulas", "{ from = 0, to = 1 }"),
           text_key("x", "formula of the abscissa", k_example_x),
           text_key("y", "formula of the ordinate", k_example_y),
