@@ -1,18 +1,13 @@
 // Modes of the MDR system: which guards are alive, what their transitions change, and how a mode is decided.
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "mdr/adhesion_validity.hpp"
 #include "mdr/system.hpp"
 
 namespace monograin::mdr {
 namespace {
-
-constexpr std::size_t k_radius = 0;
-constexpr std::size_t k_work = 1;
 
 enum GuardKind : int {
   k_yield,
@@ -34,8 +29,6 @@ enum GuardKind : int {
   k_centre_reached
 };
 
-// Below this a class of walls does not act along any free direction of the centre.
-constexpr double k_no_direction = 1e-10;
 // A guard this near to zero, and moving on, counts as crossed when a mode is decided.
 constexpr double k_touch = 1e-13;
 // A program that returns exactly to the old maximum does not pass it, whichever way its overlap is rounded.
@@ -54,167 +47,6 @@ constexpr double k_least_volume = 1e-6;
 constexpr double k_least_distance = 1e-3;
 
 }  // namespace
-
-double System::speed_scale() const noexcept {
-  double scale = 0.0;
-  for (const Ramp& ramp : ramps_) {
-    if (ramp.control == Control::displacement) scale = std::max(scale, std::abs(ramp.end - ramp.start));
-  }
-  return scale > 0.0 ? scale : 1.0;
-}
-
-/// How fast a wall goes in, of order one. Under force only the sign means something: what the force asks for over the
-/// sum of that and what the growth takes away.
-double System::wall_rate(std::size_t i, const Motion& now) const noexcept {
-  if (!is_loaded(i)) return inward_rate(i, now) / speed_scale();
-  const Contact& c = now_[i].contact;
-  return loaded_rate(ramps_[i].end - ramps_[i].start, c.by_overlap + c.by_radius, now.growth);
-}
-
-/// How fast the overlap goes up, likewise.
-double System::overlap_rate(std::size_t i, const Motion& now) const noexcept {
-  if (!is_loaded(i)) return (inward_rate(i, now) + now.growth) / speed_scale();
-  return loaded_rate(ramps_[i].end - ramps_[i].start, now_[i].contact.by_radius, now.growth);
-}
-
-/// Whether the springs at the edge of a contact are being pressed (+) or stretched (-), of order one: what the overlap
-/// does over the sum of that and what the growing indenter does.
-double System::edge_rate(std::size_t i, double r, const Motion& now) {
-  const Contact& c = now_[i].contact;
-  double overlap_speed = inward_rate(i, now) + now.growth;
-  // A contact under force that is just being made moves with the force alone.
-  if (is_loaded(i) && !(c.by_overlap > 0.0)) overlap_speed = ramps_[i].end - ramps_[i].start;
-  if (now.growth == 0.0) return overlap_speed > 0.0 ? 1.0 : overlap_speed < 0.0 ? -1.0 : 0.0;
-  const Frame at = frame(i, now_[i].overlap, r);
-  Frame::Change change = at.by_radius;
-  if (settings_.delta_max_rule == DeltaMaxRule::shifted) {
-    change.displacement += at.by_overlap_max.displacement;
-    change.height += at.by_overlap_max.height;
-    change.half_width += at.by_overlap_max.half_width;
-  }
-  const EdgePress press = edge_press(at, change, c.contact_radius);
-  const double by_overlap = press.by_overlap * overlap_speed;
-  const double by_radius = press.by_radius * now.growth;
-  const double scale = std::abs(by_overlap) + std::abs(by_radius);
-  return scale > 0.0 ? (by_overlap + by_radius) / scale : 0.0;
-}
-
-double System::loaded_rate(double loading, double by_radius, double growth) const noexcept {
-  const double taken = by_radius * growth;
-  const double scale = std::abs(loading) + std::abs(taken);
-  if (scale > 0.0) return (loading - taken) / scale;
-  // At the very start of growth its rate is zero, and about to be positive.
-  return is_growing_ && by_radius > 0.0 ? -1.0 : 0.0;
-}
-
-// --- transitions of one contact
-
-void System::start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log) {
-  Memory& memory = memory_[i];
-  memory.is_virgin = false;
-  memory.largest = now_[i].overlap - (settings_.delta_max_rule == DeltaMaxRule::shifted ? r : 0.0);
-  if (memory.regime == Regime::fully_plastic) memory.regime = Regime::unloading;
-  log.push_back({why, static_cast<int>(i)});
-  if (!adheres()) return;
-  stick(i, log);
-  check_adhesion(i, r);
-}
-
-/// Whether the model's convex indenter, which knows no yielding in tension, will do for this contact (F.7).
-void System::check_adhesion(std::size_t i, double r) {
-  if (validity_) return;
-  const Indenter indenter = frame(i, now_[i].overlap, r).indenter;
-  const PullOff& limits = pull_off(i, indenter);
-  const double critical = (is_loaded(i) ? limits.by_force : limits.by_displacement).contact_radius;
-  const double peak = peak_radius_over_initial_radius(now_[i].displacement, material_.yield_overlap_ratio);
-  const double zone = plastic_zone_size(material_.composite_modulus, surface_energy_, material_.yield_stress);
-  switch (adhesion_validity(critical, peak, zone)) {
-    case AdhesionValidity::valid:
-      break;
-    case AdhesionValidity::peak_failure:
-      validity_ = {"pull-off is not predicted well: the contact's middle is dented beyond its critical radius",
-                   "critical radius over that of the ring", critical / peak};
-      break;
-    case AdhesionValidity::yielding_failure:
-      validity_ = {"pull-off is not predicted well: yielding at the contact's edge is not small-scale (15 and more)",
-                   "critical diameter over the plastic zone", 2.0 * critical / zone};
-      break;
-  }
-}
-
-void System::stick(std::size_t i, std::vector<Event>& log) {
-  memory_[i].edge = Edge::sticking;
-  memory_[i].edge_radius = now_[i].contact.contact_radius;
-  log.push_back({"stick", static_cast<int>(i)});
-}
-
-/// Pull-off: the edge is no longer stable, and the contact opens at once.
-void System::separate(std::size_t i, double r, std::span<double> y, std::vector<Event>& log) {
-  Memory& memory = memory_[i];
-  const bool is_touch = memory.edge == Edge::sticking && memory.edge_radius == 0.0;
-  if (is_loaded(i)) {
-    const Instant& now = now_[i];
-    // The wall keeps the work done on it so far. Where the contact holds negative energy, the load has at least to
-    // supply that in the snap.
-    const double supplied = std::max(0.0, -contact_energy(i, r, PlasticPart::recoverable));
-    y[k_work] += classes_[i].multiplicity() * (now.contact.force * now.position + supplied);
-    memory.resting = now.displacement;
-  }
-  memory.edge = Edge::following;
-  lose_contact(i);
-  log.push_back({is_touch ? "contact-lost" : "pull-off", static_cast<int>(i)});
-  if (free_count_ == 0) return;
-  // A free centre springs back from there: what peeled on the other side is relieved.
-  for (std::size_t j = 0; j < memory_.size(); ++j) {
-    if (memory_[j].edge == Edge::peeling && !is_loaded(j)) stick(j, log);
-  }
-}
-
-/// The contact that gives way where several of them cannot hold a free centre between them any more: of those that
-/// peel the one whose wall withdraws fastest.
-std::optional<std::size_t> System::weakest_contact() const noexcept {
-  std::optional<std::size_t> weakest;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (memory_[i].edge != Edge::peeling || is_loaded(i) || directions_[i].norm() < k_no_direction) continue;
-    const auto speed = [&](std::size_t j) { return ramps_[j].end - ramps_[j].start; };
-    if (!weakest || speed(i) < speed(*weakest)) weakest = i;
-  }
-  return weakest;
-}
-
-/// Least stiffness with which the contacts hold a free centre, in the directions in which any of them does.
-double System::least_stiffness() const {
-  double scale = 0.0;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (!touches(memory_[i].regime) || is_loaded(i)) continue;
-    scale += classes_[i].multiplicity() * material_.composite_modulus * now_[i].contact.contact_radius;
-  }
-  SmallMatrix stiffness = sums_.stiffness / scale + unheld_;
-  for (int k = free_count_; k < 3; ++k) stiffness(k, k) = 1.0;
-  return Eigen::SelfAdjointEigenSolver<SmallMatrix>(stiffness).eigenvalues().minCoeff();
-}
-
-void System::resume_loading(std::size_t i) {
-  memory_[i].is_virgin = true;
-  memory_[i].edge = Edge::following;
-  if (memory_[i].regime == Regime::unloading) memory_[i].regime = Regime::fully_plastic;
-}
-
-void System::make_contact(std::size_t i) {
-  Memory& memory = memory_[i];
-  // An elastic contact that was pressed before keeps its running maximum; a new one starts at its own.
-  memory.regime = memory.regime == Regime::separated ? Regime::unloading : Regime::elastic;
-}
-
-void System::lose_contact(std::size_t i) {
-  memory_[i].resting = now_[i].displacement;
-  memory_[i].regime = memory_[i].regime == Regime::unloading ? Regime::separated : Regime::open;
-}
-
-void System::yield(std::size_t i, double r) {
-  memory_[i].regime = Regime::fully_plastic;
-  memory_[i].area_constant = yield_area_constant(material_.yield_overlap_ratio, 1.0 + r);
-}
 
 /// Where the centre is free, a contact along its directions is carried by others only: they close and open together.
 void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log) {
@@ -377,18 +209,6 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
       return true;
   }
   return false;
-}
-
-/// The springs at a sticking edge tear: it recedes in equilibrium, or, within the critical radius, at once.
-void System::start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log) {
-  const PullOff& limits = pull_off(i, frame(i, now_[i].overlap, r).indenter);
-  const PeelState& critical = is_loaded(i) ? limits.by_force : limits.by_displacement;
-  if (memory_[i].edge_radius <= critical.contact_radius) {
-    separate(i, r, y, log);
-    return;
-  }
-  memory_[i].edge = Edge::peeling;
-  log.push_back({"peel", static_cast<int>(i)});
 }
 
 /// Whether the other touching contacts can balance a push of one of them on the free centre: non-negative least squares

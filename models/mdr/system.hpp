@@ -92,6 +92,16 @@ class System final : public HybridSystem {
   [[nodiscard]] double balance_residual(double xi, std::span<const double> y);
 
  private:
+  // Places of the unknowns in y.
+  static constexpr std::size_t k_radius = 0;
+  static constexpr std::size_t k_work = 1;
+  static constexpr std::size_t k_centre = 2;
+  [[nodiscard]] static constexpr std::size_t centre_place(int k) noexcept {
+    return k_centre + static_cast<std::size_t>(k);
+  }
+  /// Below this a class of walls does not act along any free direction of the centre.
+  static constexpr double k_no_direction = 1e-10;
+
   /// Vectors and matrices along the free directions of the centre; entries beyond their number are zero.
   using Small = Eigen::Vector3d;
   using SmallMatrix = Eigen::Matrix3d;
@@ -181,7 +191,7 @@ class System final : public HybridSystem {
   void move_centre(double xi, std::span<double> y);
   void grow(double xi, std::span<double> y);
 
-  // Modes (modes.cpp).
+  // Modes (modes.cpp) and transitions (transitions.cpp).
   void settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log,
               bool has_jumped = false);
   [[nodiscard]] bool wants_growth(double xi, std::span<double> y);

@@ -1,0 +1,221 @@
+// What the contacts of the MDR system sum up to: volume balance, power, balance of forces; and Newton's method on them.
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "mdr/system.hpp"
+
+namespace monograin::mdr {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double k_round_off = std::numeric_limits<double>::epsilon();
+constexpr int k_newton_limit = 60;
+
+}  // namespace
+
+/// Volume balance, power and force balance of what look() found. Equations (37) and (38) in the form that can be
+/// integrated.
+void System::sum_up(double xi, double r) {
+  const double radius = 1.0 + r;
+  sums_.by_centre.setZero();
+  sums_.force.setZero();
+  sums_.force_by_time.setZero();
+  sums_.force_by_radius.setZero();
+  sums_.stiffness.setZero();
+  sums_.power = 0.0;
+  sums_.force_work = 0.0;
+
+  double virial_of_all = 0.0;
+  double virial = 0.0;  // of the members of the growth set
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    const double one = classes_[i].multiplicity() * now_[i].contact.force * (1.0 - now_[i].displacement);
+    virial_of_all += one;
+    if (is_member(memory_[i])) virial += one;
+  }
+  const double scale = 3.0 * material_.bulk_compliance / (4.0 * pi);
+  sums_.relative_compression = scale * virial_of_all;
+  const double w = scale * virial;
+  const double under_root = 1.0 - 4.0 * w;
+  if (!(under_root > 0.0)) throw std::domain_error("elastic compression to less than half the volume");
+  const double root = std::sqrt(under_root);
+  const double weight = material_.bulk_compliance / root / (4.0 * pi);
+
+  double caps = 0.0;
+  double overlaps = 0.0;
+  sums_.by_time = 0.0;
+  sums_.time_scale = 0.0;
+  sums_.by_radius = 0.0;
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    set_rates(i, r);
+    if (!touches(memory_[i].regime)) continue;
+    const Instant& now = now_[i];
+    const Contact& c = now.contact;
+    const double count = classes_[i].multiplicity();
+    const double speed = ramps_[i].end - ramps_[i].start;
+    if (is_loaded(i)) {
+      sums_.power -= count * now.position * speed;
+      sums_.force_work += count * prescribed_force(i, xi) * now.position;
+    } else {
+      sums_.power += count * c.force * speed;
+    }
+    if (free_count_ > 0) {
+      sums_.force += count * c.force * directions_[i];
+      sums_.force_by_time += count * (is_loaded(i) ? speed : c.by_overlap * speed) * directions_[i];
+      if (!is_loaded(i)) {
+        sums_.force_by_radius += count * (c.by_overlap + c.by_radius) * directions_[i];
+        sums_.stiffness += count * c.by_overlap * directions_[i] * directions_[i].transpose();
+      }
+    }
+    if (!is_member(memory_[i])) continue;
+    const double distance = 1.0 - now.displacement;
+    caps += count * now.overlap * now.overlap * (3.0 * radius - now.overlap) / 12.0;
+    overlaps += count * now.overlap;
+    const double cap_rate = 0.25 * now.overlap * (2.0 * radius - now.overlap);
+    const double volume_rate = weight * (c.by_overlap * distance - c.force);
+    const double by_displacement = count * (volume_rate - cap_rate);
+    sums_.by_time += by_displacement * now.rate_by_time;
+    sums_.time_scale += count * (std::abs(volume_rate) + std::abs(cap_rate)) * std::abs(now.rate_by_time);
+    sums_.by_radius += count * weight * (c.by_overlap + c.by_radius) * distance + by_displacement * now.rate_by_growth;
+    if (free_count_ > 0 && !is_loaded(i)) sums_.by_centre += by_displacement * directions_[i];
+  }
+  sums_.balance = r * (1.0 + r * (1.0 + r / 3.0)) - caps + 2.0 * w / (3.0 * (1.0 + root));
+  sums_.by_radius += radius * radius - 0.5 * radius * overlaps;
+  if (free_count_ > 0) regularise_first_touch();
+}
+
+/// At first touch all stiffnesses vanish together; equal ones give the right motion for contacts of one law.
+void System::regularise_first_touch() {
+  if (sums_.stiffness.trace() != 0.0) return;
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    if (!touches(memory_[i].regime) || is_loaded(i)) continue;
+    const double count = classes_[i].multiplicity();
+    sums_.stiffness += count * directions_[i] * directions_[i].transpose();
+    sums_.force_by_time += count * (ramps_[i].end - ramps_[i].start) * directions_[i];
+    sums_.force_by_radius += count * directions_[i];
+  }
+}
+
+/// Displacement of the centre that changes the net force by `-force`; none along directions that no contact holds.
+System::Small System::balance_step(const Small& force) const {
+  Small step = Small::Zero();
+  if (free_count_ == 1) {
+    if (sums_.stiffness(0, 0) != 0.0) step[0] = -force[0] / sums_.stiffness(0, 0);
+  } else if (free_count_ > 1) {
+    const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(sums_.stiffness);
+    const double threshold = 1e-12 * solver.eigenvalues().cwiseAbs().maxCoeff();
+    for (int k = 0; k < 3; ++k) {
+      if (std::abs(solver.eigenvalues()[k]) <= threshold) continue;
+      const Small direction = solver.eigenvectors().col(k);
+      step -= direction * (direction.dot(force) / solver.eigenvalues()[k]);
+    }
+  }
+  return step;
+}
+
+System::Motion System::motion(bool growing) const {
+  const Small by_time = balance_step(sums_.force_by_time);
+  const Small by_radius = balance_step(sums_.force_by_radius);
+  Motion result{.demand = -sums_.by_time - sums_.by_centre.dot(by_time),
+                .slope = sums_.by_radius + sums_.by_centre.dot(by_radius),
+                .growth = 0.0,
+                .centre = by_time};
+  if (growing) {
+    result.growth = result.demand / result.slope;
+    result.centre += result.growth * by_radius;
+  }
+  return result;
+}
+
+System::Motion System::growing_motion() const {
+  Motion result = motion(true);
+  if (!(result.slope > 0.0)) throw std::domain_error("singular growth of the apparent radius");
+  return result;
+}
+
+/// d(delta_o)/dxi of a wall, towards the centre positive.
+double System::inward_rate(std::size_t i, const Motion& motion) const noexcept {
+  const double carried = is_loaded(i) ? 0.0 : directions_[i].dot(motion.centre);
+  return now_[i].rate_by_time + now_[i].rate_by_growth * motion.growth + carried;
+}
+
+/// Newton on the balance of forces at a given radius; the force grows with the overlap, so damping is all it needs.
+void System::move_centre(double xi, std::span<double> y) {
+  look(xi, y);
+  double step_size = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
+    const double error = sums_.force.norm();
+    if (error == 0.0) return;
+    Small step = balance_step(sums_.force);
+    if (step.norm() == 0.0) throw std::domain_error("no contact holds the free centre of the particle");
+    if (step.norm() >= 0.5 * step_size && step.norm() < 1e-12) return;
+    step_size = step.norm();
+    Small before = Small::Zero();
+    for (int k = 0; k < free_count_; ++k) before[k] = y[centre_place(k)];
+    for (int halving = 0; halving < 40; ++halving) {
+      for (int k = 0; k < free_count_; ++k) y[centre_place(k)] = before[k] + step[k];
+      look(xi, y);
+      if (sums_.force.norm() < error || step.norm() < k_round_off) break;
+      step *= 0.5;
+    }
+    if (step.norm() < 2.0 * k_round_off) return;
+  }
+  throw std::domain_error("the balance of forces on the free centre was not found");
+}
+
+/// Directions in which no touching contact holds the centre: there it stays where it is.
+void System::hold_centre(std::span<const double> y) {
+  if (free_count_ == 0) return;
+  unheld_.setZero();
+  for (int k = 0; k < free_count_; ++k) {
+    held_centre_[k] = y[centre_place(k)];
+    unheld_(k, k) = 1.0;
+  }
+  SmallMatrix reach = SmallMatrix::Zero();
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    if (touches(memory_[i].regime) && !is_loaded(i)) reach += directions_[i] * directions_[i].transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(reach);
+  for (int k = 0; k < 3; ++k) {
+    if (solver.eigenvalues()[k] <= 1e-12) continue;
+    const Small direction = solver.eigenvectors().col(k);
+    unheld_ -= direction * direction.transpose();
+  }
+}
+
+double System::balance_residual(double xi, std::span<const double> y) {
+  look(xi, y);
+  return is_growing_ ? sums_.balance - frozen_balance_ : 0.0;
+}
+
+/// Newton on the volume balance together with the balance of forces.
+void System::grow(double xi, std::span<double> y) {
+  double step_size = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
+    move_walls(xi, y);
+    look(xi, y);
+    const Small to_balance = balance_step(sums_.force);
+    const Small by_radius = balance_step(sums_.force_by_radius);
+    const double slope = sums_.by_radius + sums_.by_centre.dot(by_radius);
+    if (!(slope > 0.0)) throw std::domain_error("singular growth of the apparent radius");
+    const double defect = sums_.balance - frozen_balance_ + sums_.by_centre.dot(to_balance);
+    const double step = std::clamp(-defect / slope, -0.1, 0.1);
+    const Small centre_step = to_balance + step * by_radius;
+    y[k_radius] += step;
+    for (int k = 0; k < free_count_; ++k) y[centre_place(k)] += centre_step[k];
+    // Quadratic convergence: below 1e-9 the next step is round-off, unless the centre's square-root forces are still
+    // settling.
+    const double size = std::max(std::abs(step), centre_step.norm());
+    if (size < 2.0 * k_round_off || (size < 1e-9 && free_count_ == 0)) return;
+    if (size >= 0.5 * step_size && size < 1e-12) return;
+    step_size = size;
+  }
+  throw std::domain_error("the volume balance of the growing radius has no solution nearby");
+}
+
+}  // namespace monograin::mdr

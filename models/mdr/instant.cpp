@@ -1,0 +1,189 @@
+// Contacts and walls of the MDR system at an instant.
+
+#include <algorithm>
+#include <cmath>
+
+#include "mdr/system.hpp"
+
+namespace monograin::mdr {
+
+const UnloadingShape& System::shape(std::size_t i, double r) {
+  const double radius = 1.0 + r;
+  const double largest = memory_[i].regime == Regime::fully_plastic ? now_[i].overlap : largest_overlap(memory_[i], r);
+  // While R and the largest overlap stay, so does the shape: the greater part of the cost of an unloading force.
+  if (shapes_[i].radius != radius || shapes_[i].overlap_max != largest) {
+    shapes_[i] = unloading_shape(material_, radius, largest, memory_[i].area_constant);
+  }
+  return shapes_[i];
+}
+
+/// Contacts of all classes at an instant.
+void System::look(double xi, std::span<const double> y) {
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    look_at(i, is_loaded(i) ? y[wall_places_[i]] : displacement_as_told(i, xi, y), y[k_radius]);
+    now_[i].position = now_[i].displacement - carried_by_centre(i, y);
+  }
+  sum_up(xi, y[k_radius]);
+}
+
+void System::look_at(std::size_t i, double displacement, double r) {
+  const double radius = 1.0 + r;
+  Instant& now = now_[i];
+  const Memory& memory = memory_[i];
+  now.displacement = displacement;
+  now.overlap = displacement + r;
+  if (memory.edge != Edge::following) {
+    const Frame adhesive = frame(i, now.overlap, r);
+    now.contact = memory.edge == Edge::sticking
+                      ? sticking_contact(adhesive, material_.composite_modulus, memory.edge_radius)
+                      : peeling_contact(adhesive, material_.composite_modulus, surface_energy_,
+                                        pull_off(i, adhesive.indenter).by_displacement.contact_radius);
+  } else {
+    switch (memory.regime) {
+      case Regime::open:
+      case Regime::separated:
+        now.contact = {};
+        break;
+      case Regime::elastic:
+        now.contact = elastic_contact(settings_.elastic_profile, material_.composite_modulus, radius, now.overlap);
+        break;
+      case Regime::fully_plastic:
+        now.contact = plastic_contact(material_, radius, now.overlap, memory.area_constant);
+        break;
+      case Regime::unloading:
+        now.contact = unloading_contact(shape(i, r), material_.composite_modulus, now.overlap);
+        break;
+    }
+  }
+  if (settings_.delta_max_rule == DeltaMaxRule::shifted) now.contact.by_radius += now.contact.by_overlap_max;
+}
+
+/// Force times displacement of the contacts under force.
+double System::force_work(std::span<const double> y) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    if (!is_loaded(i)) continue;
+    look_at(i, y[wall_places_[i]], y[k_radius]);
+    const double position = now_[i].displacement - carried_by_centre(i, y);
+    sum += classes_[i].multiplicity() * now_[i].contact.force * position;
+  }
+  return sum;
+}
+
+/// The one-dimensional space of an elastic contact, or of one below its largest overlap.
+Frame System::frame(std::size_t i, double overlap, double r) {
+  return memory_[i].regime == Regime::elastic ? elastic_frame(settings_.elastic_profile, 1.0 + r, overlap)
+                                              : unloading_frame(shape(i, r), overlap);
+}
+
+const System::PullOff& System::pull_off(std::size_t i, const Indenter& indenter) {
+  PullOff& known = pull_offs_[i];
+  if (known.indenter.height != indenter.height || known.indenter.half_width != indenter.half_width) {
+    const double modulus = material_.composite_modulus;
+    const auto state = [&](Control control) {
+      return peel_state(indenter, modulus, surface_energy_,
+                        critical_radius(indenter, modulus, surface_energy_, control));
+    };
+    known = {indenter, state(Control::displacement), state(Control::force)};
+  }
+  return known;
+}
+
+double System::prescribed_force(std::size_t i, double xi) const noexcept {
+  return std::lerp(ramps_[i].start, ramps_[i].end, xi);
+}
+
+/// Overlap at which an open wall begins to touch.
+double System::touching_overlap(std::size_t i, double r) {
+  if (memory_[i].regime != Regime::separated) return 0.0;
+  const UnloadingShape& dent = shape(i, r);
+  return dent.overlap_max - dent.recovery;
+}
+
+/// Displacement of a wall under its prescribed force. Where no contact bears that force, the nearest that one bears: an
+/// event lies between.
+double System::displacement_under_force(std::size_t i, double xi, double r, double guess) {
+  const Memory& memory = memory_[i];
+  const double radius = 1.0 + r;
+  const double modulus = material_.composite_modulus;
+  const double force = prescribed_force(i, xi);
+  if (memory.edge != Edge::following) {
+    const Indenter indenter = frame(i, 0.0, r).indenter;
+    double displacement_1d = 0.0;
+    if (memory.edge == Edge::sticking) {
+      const double a = memory.edge_radius;
+      displacement_1d = profile_height(indenter, a) + (force - free_force(indenter, modulus, a)) / (2.0 * modulus * a);
+    } else {
+      displacement_1d =
+          peel_at_force(indenter, modulus, surface_energy_, pull_off(i, indenter).by_force.contact_radius, force)
+              .displacement_1d;
+    }
+    return (memory.regime == Regime::elastic ? displacement_1d : overlap_at(shape(i, r), displacement_1d)) - r;
+  }
+  switch (memory.regime) {
+    case Regime::open:
+    case Regime::separated:
+      // A growing particle pushes an idle wall along.
+      return std::min(memory.resting, touching_overlap(i, r) - r);
+    case Regime::elastic:
+      return elastic_overlap(settings_.elastic_profile, modulus, radius, force) - r;
+    case Regime::fully_plastic:
+      return plastic_overlap(material_, radius, force, memory.area_constant, guess + r) - r;
+    case Regime::unloading:
+      return unloading_overlap(shape(i, r), force) - r;
+  }
+  return guess;
+}
+
+/// Displacement of a wall as the program and a free centre make it.
+double System::displacement_as_told(std::size_t i, double xi, std::span<const double> y) const noexcept {
+  return std::lerp(ramps_[i].start, ramps_[i].end, xi) + carried_by_centre(i, y);
+}
+
+/// How far a free centre has come towards the walls of a class.
+double System::carried_by_centre(std::size_t i, std::span<const double> y) const noexcept {
+  double distance = 0.0;
+  for (int k = 0; k < free_count_; ++k) distance += directions_[i][k] * y[centre_place(k)];
+  return distance;
+}
+
+/// The walls under force, at a given radius.
+void System::move_walls(double xi, std::span<double> y) {
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    if (!is_loaded(i)) continue;
+    double& place = y[wall_places_[i]];
+    place = displacement_under_force(i, xi, y[k_radius], place);
+  }
+}
+
+/// The unknowns of walls that are under force at other times only.
+void System::note_walls(double xi, std::span<double> y) const noexcept {
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    if (classes_[i].takes_force && !is_loaded(i)) y[wall_places_[i]] = displacement_as_told(i, xi, y);
+  }
+}
+
+/// How the displacement of a wall goes with xi and R.
+void System::set_rates(std::size_t i, double r) {
+  Instant& now = now_[i];
+  const double speed = ramps_[i].end - ramps_[i].start;
+  now.rate_by_time = is_loaded(i) ? 0.0 : speed;
+  now.rate_by_growth = 0.0;
+  if (!is_loaded(i)) return;
+  const Contact& c = now.contact;
+  if (touches(memory_[i].regime) && c.by_overlap > 0.0) {
+    now.rate_by_time = speed / c.by_overlap;
+    now.rate_by_growth = -1.0 - c.by_radius / c.by_overlap;
+  } else if (touches(memory_[i].regime) || memory_[i].resting >= touching_overlap(i, r) - r) {
+    now.rate_by_growth = -1.0;  // without load the wall stays at the surface
+  }
+}
+
+/// Puts centre and walls where they belong at a given radius.
+void System::place(double xi, std::span<double> y) {
+  move_walls(xi, y);
+  if (free_count_ > 0) move_centre(xi, y);
+  note_walls(xi, y);
+}
+
+}  // namespace monograin::mdr

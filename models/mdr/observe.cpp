@@ -1,0 +1,174 @@
+// What can be seen of the MDR system: columns of the history, energies, surfaces, warnings.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mdr/contact_profile.hpp"
+#include "mdr/system.hpp"
+
+namespace monograin::mdr {
+namespace {
+
+using std::numbers::pi;
+
+// Regime words of a contact whose edge does not follow, after those of Regime.
+constexpr double k_adhering_word = 5.0;
+constexpr double k_peeling_word = 6.0;
+
+}  // namespace
+
+/// Energy of the contacts that look() found.
+double System::energy(double r, PlasticPart plastic_part) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    if (touches(memory_[i].regime)) sum += classes_[i].multiplicity() * contact_energy(i, r, plastic_part);
+  }
+  return sum;
+}
+
+double System::contact_energy(std::size_t i, double r, PlasticPart plastic_part) {
+  const Memory& memory = memory_[i];
+  const double overlap = now_[i].overlap;
+  const double a = now_[i].contact.contact_radius;
+  if (memory.edge != Edge::following) {
+    return adhesive_energy(frame(i, overlap, r), material_.composite_modulus, surface_energy_, a);
+  }
+  // A contact closes without attraction: the surface energy is lost, but can be got back.
+  const double surface = plastic_part == PlasticPart::recoverable ? pi * a * a * surface_energy_ : 0.0;
+  switch (memory.regime) {
+    case Regime::open:
+    case Regime::separated:
+      break;
+    case Regime::elastic:
+      return elastic_energy(settings_.elastic_profile, material_.composite_modulus, 1.0 + r, overlap) - surface;
+    case Regime::fully_plastic:
+      if (plastic_part == PlasticPart::work_done) {
+        return plastic_work_primitive(material_, 1.0 + r, overlap, memory.area_constant);
+      }
+      return plastic_energy(shape(i, r)) - (1.0 - shape(i, r).rho) * surface;
+    case Regime::unloading:
+      return unloading_energy(shape(i, r), overlap) - (1.0 - shape(i, r).rho) * surface;
+  }
+  return 0.0;
+}
+
+void System::observe(double xi, std::span<const double> y, std::span<double> values) {
+  look(xi, y);
+  const double r = y[k_radius];
+  const double length = settings_.initial_radius;
+  const double force_unit = stress_unit_ * length * length;
+  const double energy_unit = force_unit * length;
+  const double work = y[k_work] + sums_.force_work;
+  const double stored = energy(r, PlasticPart::recoverable);
+  const double dissipation = work - stored;
+  largest_work_ = std::max(largest_work_, work);
+  lowest_dissipation_ = std::min(lowest_dissipation_, dissipation);
+
+  auto out = values.begin();
+  if (settings_.radius_rule != RadiusRule::fixed) {
+    const double w = sums_.relative_compression;
+    const double volume = w < 0.25 ? 1.0 - 2.0 * w / (1.0 + std::sqrt(1.0 - 4.0 * w)) : std::nan("");
+    *out++ = (1.0 + r) * length;
+    *out++ = 4.0 * pi / 3.0 * length * length * length * volume;
+  }
+  *out++ = work * energy_unit;
+  *out++ = stored * energy_unit;
+  *out++ = dissipation * energy_unit;
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    const Contact& c = now_[i].contact;
+    *out++ = now_[i].displacement * length;
+    *out++ = now_[i].overlap * length;
+    *out++ = c.force * force_unit;
+    *out++ = c.contact_radius * length;
+    *out++ = c.contact_radius > 0.0 ? c.force / (pi * c.contact_radius * c.contact_radius) * stress_unit_ : 0.0;
+    *out++ = memory_[i].edge == Edge::sticking  ? k_adhering_word
+             : memory_[i].edge == Edge::peeling ? k_peeling_word
+                                                : static_cast<double>(memory_[i].regime);
+  }
+  if (settings_.centre_is_free) {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (int k = 0; k < free_count_; ++k) centre += free_directions_.col(k) * y[centre_place(k)];
+    for (const double x : centre) *out++ = x * length;
+  }
+}
+
+double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
+  look(xi, y);
+  const Instant& now = now_[static_cast<std::size_t>(contact_class)];
+  const double length = settings_.initial_radius;
+  switch (quantity) {
+    case Quantity::force:
+      return now.contact.force * stress_unit_ * length * length;
+    case Quantity::displacement:
+      return now.displacement * length;
+    case Quantity::pressure: {
+      const double a = now.contact.contact_radius;
+      return a > 0.0 ? now.contact.force / (pi * a * a) * stress_unit_ : 0.0;
+    }
+    case Quantity::contact_radius:
+      return now.contact.contact_radius * length;
+    case Quantity::apparent_radius:
+      return (1.0 + y[k_radius]) * length;
+  }
+  return 0.0;
+}
+
+std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {
+  constexpr int k_points = 128;    // within the contact, and as many around it
+  constexpr double k_reach = 2.0;  // as far as this many contact radii
+  look(xi, y);
+  const auto i = static_cast<std::size_t>(contact_class);
+  const double a = now_[i].contact.contact_radius;
+  if (!touches(memory_[i].regime) || !(a > 0.0)) return {};
+  const Frame now = frame(i, now_[i].overlap, y[k_radius]);
+  const ContactProfile profile{.indenter = now.indenter,
+                               .composite_modulus = material_.composite_modulus,
+                               .contact_radius = std::min(a, now.indenter.half_width),
+                               .displacement_1d = now.displacement};
+  const double length = settings_.initial_radius;
+  std::vector<SurfacePoint> points;
+  const auto add = [&](double r) {
+    points.push_back({.radius = r * length,
+                      .pressure = profile.pressure(r) * stress_unit_,
+                      .displacement = profile.surface_displacement(r) * length,
+                      .relaxed_height = profile.relaxed_height(r) * length});
+  };
+  // Closer towards the edge from both sides, where the slopes are unbounded; not at the edge itself.
+  for (int k = 0; k < k_points; ++k) add(a * std::sin(0.5 * pi * k / k_points));
+  for (int k = 1; k <= k_points; ++k) {
+    const double share = static_cast<double>(k) / k_points;
+    add(a * (1.0 + (k_reach - 1.0) * share * share));
+  }
+  return points;
+}
+
+double System::wall_position(int contact_class, double xi, std::span<const double> y) {
+  look(xi, y);
+  return now_[static_cast<std::size_t>(contact_class)].position * settings_.initial_radius;
+}
+
+std::vector<Finding> System::warnings() const {
+  std::vector<Finding> result;
+  if (settings_.radius_rule != RadiusRule::fixed) {
+    const double ratio = settings_.youngs_modulus / settings_.yield_stress;
+    if (!std::isfinite(material_.yield_overlap_ratio)) {
+      result.push_back(
+          {"the material is too compliant to yield inside the model; the particle stays elastic", "E/Y", ratio});
+    } else if (ratio < 10.0) {
+      result.push_back({"elastic strains are not small: the model is meant for E/Y of 10 and more", "E/Y", ratio});
+    }
+  }
+  if (caps_have_met_) {
+    result.push_back({"contact caps intersect (event caps-intersect); the model is not valid beyond", "first at R/R0",
+                      radius_at_caps_});
+  }
+  if (validity_) result.push_back(*validity_);
+  if (lowest_dissipation_ < -1e-6 * largest_work_) {
+    result.push_back({"the growing apparent radius creates energy; radius_rule = \"yielded\" avoids it",
+                      "lowest dissipation over work", lowest_dissipation_ / largest_work_});
+  }
+  return result;
+}
+
+}  // namespace monograin::mdr
