@@ -51,13 +51,6 @@ struct Term {
   std::string_view meaning;
 };
 
-/// Something the scenario language offers but this version of the model does not compute; asking for it is refused by
-/// name.
-struct Refusal {
-  std::string_view key;      ///< e.g. "material.surface_energy", "mdr.pressure_table", "loading.steps.force"
-  std::string_view message;  ///< what is missing and what to write instead
-};
-
 struct ModelInfo {
   std::string_view name;
   std::string_view summary;
@@ -69,7 +62,6 @@ struct ModelInfo {
   std::span<const Term> regimes;
   std::span<const Term> events;
   std::span<const std::string_view> domain;  ///< limits of validity, a sentence each
-  std::span<const Refusal> refusals;
 };
 
 /// All models this version can run, in the order in which they are listed to users.

@@ -90,8 +90,6 @@ void print_model(const ModelInfo& model) {
   print_terms("events", model.events);
   fmt::print("\nvalidity\n");
   for (const std::string_view line : model.domain) fmt::print("  {}\n", line);
-  if (!model.refusals.empty()) fmt::print("\nnot available yet\n");
-  for (const Refusal& refusal : model.refusals) fmt::print("  {:<24}{}\n", refusal.key, refusal.message);
 }
 
 /// Derived constants of a scenario's material and particle.

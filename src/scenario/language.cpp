@@ -39,8 +39,7 @@ constexpr ModelInfo k_any_model{.name = {},
                                 .has_free_centre = true,
                                 .regimes = {},
                                 .events = {},
-                                .domain = {},
-                                .refusals = {}};
+                                .domain = {}};
 
 // Keys of models that the language reserves; those of available models come from the catalogue.
 constexpr std::array<string_view, 23> k_reserved_material{"strength",
@@ -88,11 +87,6 @@ std::vector<string_view> model_names() {
   std::vector<string_view> names;
   for (const ModelInfo& model : model_catalogue()) names.push_back(model.name);
   return names;
-}
-
-string_view refusal_of(const ModelInfo& model, string_view key) {
-  const auto found = std::ranges::find(model.refusals, key, &Refusal::key);
-  return found == model.refusals.end() ? string_view{} : found->message;
 }
 
 // --- tables that do not depend on the model
@@ -202,18 +196,15 @@ std::vector<KeySpec> material_keys(const ModelInfo& model) {
                  .kind = Kind::quantity,
                  .is_required = !key.default_value.has_value(),
                  .dimension = key.dimension,
-                 .range = key.range,
-                 .refusal = refusal_of(model, fmt::format("material.{}", key.name))};
+                 .range = key.range};
     if (key.default_value) spec.default_value = *key.default_value;
     keys.push_back(std::move(spec));
   }
   return keys;
 }
 
-KeySpec option_key(const ModelInfo& model, const OptionKey& option) {
-  KeySpec spec{.name = option.name,
-               .meaning = option.meaning,
-               .refusal = refusal_of(model, fmt::format("{}.{}", model.name, option.name))};
+KeySpec option_key(const OptionKey& option) {
+  KeySpec spec{.name = option.name, .meaning = option.meaning};
   switch (option.kind) {
     case OptionKey::Kind::choice:
       spec.kind = Kind::choice;
@@ -346,20 +337,18 @@ KeySpec mark_key(string_view name, string_view meaning) {
   return {.name = name, .meaning = meaning, .kind = Kind::mark, .is_required = true, .example = "true"};
 }
 
-std::vector<StepForm> step_forms(const ModelInfo& model) {
+std::vector<StepForm> step_forms() {
   KeySpec displacement{.name = "displacement",
                        .meaning = "ramp to this displacement of the wall",
                        .kind = Kind::quantity,
                        .is_required = true,
                        .dimension = Dimension::length,
-                       .example = "\"0.4 R0\"",
-                       .refusal = refusal_of(model, "loading.steps.displacement")};
+                       .example = "\"0.4 R0\""};
   KeySpec force{.name = "force",
                 .meaning = "ramp to this force",
                 .kind = Kind::quantity,
                 .is_required = true,
-                .dimension = Dimension::force,
-                .refusal = refusal_of(model, "loading.steps.force")};
+                .dimension = Dimension::force};
   KeySpec count{.name = "cycle",
                 .meaning = "repeat the nested steps so many times",
                 .kind = Kind::integer,
@@ -424,7 +413,7 @@ void add_loading(Language& language, const ModelInfo& model) {
   language.loading = loading_keys(model);
   language.wall = wall_keys();
   language.until = until_keys(model);
-  language.steps = step_forms(model);
+  language.steps = step_forms();
 
   const std::string unused = fmt::format("is not used by model '{}'", model.name);
   language.foreign_step_keys = foreign_keys(k_reserved_step_keys, {}, unused);
@@ -434,7 +423,7 @@ void add_loading(Language& language, const ModelInfo& model) {
 void add_material_and_options(Language& language, const ModelInfo& model) {
   language.model = &model;
   language.material = material_keys(model);
-  for (const OptionKey& option : model.options) language.options.push_back(option_key(model, option));
+  for (const OptionKey& option : model.options) language.options.push_back(option_key(option));
   const std::string unused = fmt::format("is not used by model '{}'", model.name);
   language.foreign_material = foreign_keys(material_names_of_all_models(), language.material, unused);
 }

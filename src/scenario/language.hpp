@@ -48,8 +48,6 @@ struct KeySpec {
   Default default_value{};
   std::string example{};         ///< as written in a file; empty: that of the dimension, or the first choice
   std::string_view only_with{};  ///< `[loading]`: the configuration that the key belongs to; empty: any
-  std::string_view
-      refusal{};  ///< message for a use (or a value other than the default) that the model does not compute
 };
 
 /// A key that is known to the language but does not belong where it was found, and why.

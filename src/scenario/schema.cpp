@@ -19,15 +19,9 @@ using nlohmann::json;
 /// Schemas of what is below the keys of kind table and tables, by key.
 using Contents = std::map<std::string_view, json>;
 
-/// A key that is refused whatever its value; one with a numeric default is refused only for other values.
-bool is_refused(const KeySpec& spec) {
-  return !spec.refusal.empty() && !std::holds_alternative<double>(spec.default_value);
-}
-
 json properties_of(std::span<const KeySpec> keys, const Contents& contents = {}) {
   json properties = json::object();
   for (const KeySpec& spec : keys) {
-    if (is_refused(spec)) continue;
     const auto content = contents.find(spec.name);
     properties[std::string(spec.name)] =
         content == contents.end() ? value_schema(spec) : value_schema(spec, content->second);
@@ -74,7 +68,6 @@ class ModelSchema {
     const Contents contents{{"until", table_schema(language_.until)}, {"steps", reference("step")}};
     json forms = json::array();
     for (const StepForm& form : language_.steps) {
-      if (is_refused(*find_key(form.keys, form.key))) continue;
       json schema = table_schema(form.keys, contents);
       if (form.takes_duration_or_rate) schema["oneOf"] = exactly_one_of("duration", "rate");
       forms.push_back(std::move(schema));

@@ -43,7 +43,6 @@ std::string units_pattern(const DimensionInfo& info, bool with_relative) {
 // A mantissa with a digit other than zero; exponents of three digits are beyond every plausible range.
 constexpr std::string_view k_magnitude = R"(([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?0*[0-9]{1,2})?)";
 constexpr std::string_view k_not_zero = R"((?=[0-9.]*[1-9]))";
-constexpr std::string_view k_zero = R"([+-]?(0+\.?0*|\.0+)([eE][+-]?[0-9]+)?)";
 
 /// Texts with a unit; sign and zero as the range has them. The upper bound is left to the reader.
 json unit_text(const KeySpec& spec) {
@@ -53,7 +52,6 @@ json unit_text(const KeySpec& spec) {
   const bool may_be_zero = spec.range.contains(0.0);
   const std::string_view sign = may_be_negative ? "[+-]?" : "\\+?";
   std::string number = fmt::format("{}{}{}", sign, may_be_zero ? "" : k_not_zero, k_magnitude);
-  if (!spec.refusal.empty()) number = k_zero;
   std::string pattern = fmt::format("{}[ \\t]*({})", number, units_pattern(info, with_relative));
   if (with_relative) pattern = fmt::format("({}|{})", pattern, info.relative);
   return {{"type", "string"}, {"pattern", fmt::format("^[ \\t]*{}[ \\t]*$", pattern)}};
@@ -61,7 +59,6 @@ json unit_text(const KeySpec& spec) {
 
 json quantity(const KeySpec& spec) {
   json number = bounds(finite_range(spec));
-  if (!spec.refusal.empty()) number = {{"type", "number"}, {"const", std::get<double>(spec.default_value)}};
   if (spec.dimension == Dimension::none) return number;
   return {{"anyOf", {number, unit_text(spec)}}};
 }

@@ -129,16 +129,6 @@ void Section::check_required() {
 
 void Section::check_value(const KeySpec& spec, const toml::node& node) {
   if (std::optional<Value> value = read(spec, node)) values_.emplace(spec.name, std::move(*value));
-  check_refusal(spec, place_of(node.source(), origin_.place));
-}
-
-void Section::check_refusal(const KeySpec& spec, const SourceLocation& where) {
-  if (spec.refusal.empty()) return;
-  const auto* default_number = std::get_if<double>(&spec.default_value);
-  const auto found = values_.find(spec.name);
-  const bool is_harmless =
-      default_number != nullptr && (found == values_.end() || std::get<double>(found->second) == *default_number);
-  if (!is_harmless) reading_.faults.add(where, std::string(spec.refusal));
 }
 
 std::optional<Section::Value> Section::read(const KeySpec& spec, const toml::node& node) {

@@ -71,7 +71,6 @@ class Section {
 
   void check_value(const KeySpec& spec, const toml::node& node);
   void check_required();
-  void check_refusal(const KeySpec& spec, const SourceLocation& where);
   [[nodiscard]] std::optional<Value> read(const KeySpec& spec, const toml::node& node);
   [[nodiscard]] std::optional<Value> read_text(const KeySpec& spec, const toml::node& node);
   [[nodiscard]] std::optional<Value> read_choice(const KeySpec& spec, const toml::node& node);

@@ -29,10 +29,6 @@ constexpr auto k_contract_events = std::to_array<string_view>(
 
 constexpr auto k_configurations = std::to_array<string_view>({"simple", "die", "hydrostatic", "oblique-die", "walls"});
 
-// What a step of `[[loading.steps]]` may hold.
-constexpr auto k_step_keys =
-    std::to_array<string_view>({"displacement", "force", "hold", "detach", "cycle", "rate", "until", "duration"});
-
 template <class Range>
 bool contains(const Range& range, string_view name) {
   return std::ranges::find(range, name) != std::ranges::end(range);
@@ -47,21 +43,6 @@ std::set<string_view> faulty_names(const Items& items) {
     if (item.name.empty() || !seen.insert(item.name).second) faulty.insert(item.name);
   }
   return faulty;
-}
-
-template <class Items>
-bool has_name(const Items& items, string_view name) {
-  return std::ranges::any_of(items, [&](const auto& item) { return item.name == name; });
-}
-
-bool is_key_of_the_language(const ModelInfo& model, string_view key) {
-  const auto dot = key.rfind('.');
-  if (dot == string_view::npos) return false;
-  const string_view table = key.substr(0, dot);
-  const string_view name = key.substr(dot + 1);
-  if (table == "material") return has_name(model.material, name);
-  if (table == "loading.steps") return contains(k_step_keys, name);
-  return table == model.name && has_name(model.options, name);
 }
 
 using Names = std::set<string_view>;
@@ -94,8 +75,6 @@ TEST(Catalogue, DescribesEverythingItNames) {
     for (const auto& key : model.options) EXPECT_FALSE(key.meaning.empty()) << model.name << ": " << key.name;
     for (const auto& term : model.regimes) EXPECT_FALSE(term.meaning.empty()) << model.name << ": " << term.name;
     for (const auto& term : model.events) EXPECT_FALSE(term.meaning.empty()) << model.name << ": " << term.name;
-    for (const auto& refusal : model.refusals)
-      EXPECT_FALSE(refusal.message.empty()) << model.name << ": " << refusal.key;
   }
 }
 
@@ -113,14 +92,6 @@ TEST(Catalogue, HasDefaultsInsideTheirRanges) {
   for (const ModelInfo& model : model_catalogue()) {
     for (const QuantityKey& key : model.material) {
       EXPECT_TRUE(!key.default_value || key.range.contains(*key.default_value)) << model.name << ": " << key.name;
-    }
-  }
-}
-
-TEST(Catalogue, RefusesOnlyKeysOfTheLanguage) {
-  for (const ModelInfo& model : model_catalogue()) {
-    for (const Refusal& refusal : model.refusals) {
-      EXPECT_TRUE(is_key_of_the_language(model, refusal.key)) << model.name << ": " << refusal.key;
     }
   }
 }
