@@ -14,7 +14,7 @@ _monograin() {
     run) options="--output --set --plot --quiet --help" ;;
     check) options="--set --help" ;;
     models) options="--parameters --help" ;;
-    plot) options="--output --help" ;;
+    plot) options="--output --profile --help" ;;
     atlas) options="--plots --output --list --help" ;;
     compare) options="--x --y --tol --help" ;;
     regress) options="--accept --scenarios --curves --help" ;;

@@ -242,6 +242,18 @@ TEST_F(Commands, PlotDrawsRecordedRunsInEveryFormat) {
   EXPECT_EQ(monograin("plot runs/nowhere").code, 2);
 }
 
+TEST_F(Commands, PlotDrawsProfilesAtAnInstant) {
+  write_text(folder() / "small.toml", k_small);
+  ASSERT_EQ(monograin("run small.toml").code, 0);
+  const double time = read_csv(folder() / "runs/small/history.csv").column("time").back();
+  const Outcome outcome = monograin("plot runs/small --profile " + std::to_string(0.5 * time));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(folder() / "runs/small/profile.svg"));
+  EXPECT_GT(read_csv(folder() / "runs/small/profile.csv").row_count(), 100U);
+  EXPECT_EQ(monograin("plot runs/small --profile " + std::to_string(2.0 * time)).code, 2);
+  EXPECT_EQ(monograin("plot runs/small runs/small --profile 0").code, 2);
+}
+
 TEST_F(Commands, SchemaPrintsJson) {
   const auto schema = nlohmann::json::parse(monograin("schema").out);
   EXPECT_TRUE(schema.contains("$schema"));
