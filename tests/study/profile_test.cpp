@@ -62,7 +62,7 @@ TEST(ContactProfiles, AreFlatInContactAndPulledAtAnAdhesiveEdge) {
 
 TEST(ContactProfiles, SayWhyThereAreNone) {
   const auto message_at = [](const std::vector<double>& displacements, double time,
-                              Configuration configuration = Configuration::simple) -> std::string {
+                             Configuration configuration = Configuration::simple) -> std::string {
     try {
       static_cast<void>(contact_profiles(mdr_scenario(configuration, 50.0, 0.3, path(displacements)), time));
     } catch (const std::runtime_error& error) {
