@@ -124,7 +124,14 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
   const bool moves_out = of_overlap < -k_touch && !is_carried;
   const bool retreats = settings_.delta_max_rule == DeltaMaxRule::shifted ? of_wall < -k_touch : moves_out;
   const bool advances = settings_.delta_max_rule == DeltaMaxRule::shifted ? of_wall > k_touch : moves_in;
-  const bool is_pressed = is_loaded(i) && prescribed_force(i, xi) > 0.0;
+  // A force that is about to vanish, and was found to do so together with another event, presses no more.
+  const bool is_vanishing = ramps_[i].end < ramps_[i].start && contact_guard(k_made, i, xi, overlap, r) < k_together;
+  const bool is_pressed = is_loaded(i) && prescribed_force(i, xi) > 0.0 && !is_vanishing;
+  // A dent opens and closes where its own depth says so, which moves with the radius too.
+  const bool is_dent = memory_[i].regime == Regime::unloading || memory_[i].regime == Regime::separated;
+  const double of_dent = is_dent && !is_loaded(i) ? edge_rate(i, r, now) : of_overlap;
+  const bool closes = of_dent > k_touch || is_carried;
+  const bool opens = of_dent < -k_touch && !is_carried;
   const auto event = [&](std::string_view name) { return Event{name, static_cast<int>(i)}; };
   const auto is_past = [&](int kind, double sign) { return sign * contact_guard(kind, i, xi, overlap, r) >= -k_touch; };
   const std::string_view why = xi == 0.0 ? "load-reversal" : "retreat";
@@ -137,7 +144,7 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
       made.push_back(event("contact-made"));
       return true;
     case Regime::separated:
-      if (!(moves_in || is_pressed) || !is_past(k_dent_touched, 1.0)) return false;
+      if (!(closes || is_pressed) || !is_past(k_dent_touched, 1.0)) return false;
       make_contact(i);
       log.push_back(event("dent-touched"));
       return true;
@@ -166,7 +173,7 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
     return true;
   }
   if (adheres()) return settle_edge(i, xi, y, now, is_carried, log);
-  if (moves_out && is_past(k_lost, -1.0)) {
+  if (opens && is_past(k_lost, -1.0)) {
     lose_contact(i);
     log.push_back(event("contact-lost"));
     return true;
