@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "plastic/info.hpp"
+
 namespace monograin {
 namespace {
 
@@ -118,34 +120,38 @@ constexpr std::array<string_view, 8> k_mdr_domain{
     "warned: dissipation below -1e-6 of the work, possible with radius_rule gated or seed where growth precedes yield",
 };
 
-constexpr std::array k_models{
-    ModelInfo{"hertz",
-              "elastic sphere between rigid walls, Hertz contacts at fixed radius",
-              "Hertz (1882); 002_000df8fc37500451.txt, eq. 25",
-              k_hertz_material,
-              {},
-              k_wall_configurations,
-              true,
-              k_hertz_regimes,
-              k_hertz_events,
-              k_hertz_domain},
-    ModelInfo{"mdr", "elastic-perfectly plastic particle by dimensionality reduction, with growing apparent radius",
-              "002_000df8fc37500451.txt (Zunker and Kamrin, Part I)", k_mdr_material, k_mdr_options,
-              k_wall_configurations, true, k_mdr_regimes, k_mdr_events, k_mdr_domain},
-};
-
-constexpr std::array<string_view, 7> k_reserved{"similarity",   "semimech",       "hardening", "nonlocal",
-                                                "compressible", "material-point", "packing"};
+constexpr std::array<string_view, 4> k_reserved{"nonlocal", "compressible", "material-point", "packing"};
 
 }  // namespace
 
-std::span<const ModelInfo> model_catalogue() noexcept { return k_models; }
+std::span<const ModelInfo> model_catalogue() noexcept {
+  static const std::array k_models{
+      ModelInfo{"hertz",
+                "elastic sphere between rigid walls, Hertz contacts at fixed radius",
+                "Hertz (1882); 002_000df8fc37500451.txt, eq. 25",
+                k_hertz_material,
+                {},
+                k_wall_configurations,
+                true,
+                k_hertz_regimes,
+                k_hertz_events,
+                k_hertz_domain},
+      ModelInfo{"mdr", "elastic-perfectly plastic particle by dimensionality reduction, with growing apparent radius",
+                "002_000df8fc37500451.txt (Zunker and Kamrin, Part I)", k_mdr_material, k_mdr_options,
+                k_wall_configurations, true, k_mdr_regimes, k_mdr_events, k_mdr_domain},
+      plastic::similarity_info(),
+      plastic::semimech_info(),
+      plastic::hardening_info(),
+  };
+  return k_models;
+}
 
 std::span<const std::string_view> reserved_models() noexcept { return k_reserved; }
 
 const ModelInfo* find_model(std::string_view name) noexcept {
-  const auto* found = std::ranges::find(k_models, name, &ModelInfo::name);
-  return found == k_models.end() ? nullptr : found;
+  const auto models = model_catalogue();
+  const auto found = std::ranges::find(models, name, &ModelInfo::name);
+  return found == models.end() ? nullptr : &*found;
 }
 
 }  // namespace monograin

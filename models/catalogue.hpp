@@ -1,13 +1,16 @@
 /// What each contact law is called, which keys it reads, which regimes and events it knows, and where it comes from.
 ///
-/// The catalogue is plain data. Reading and checking scenario files, the JSON Schema and `monograin models` are all
-/// made from it, so that a key is described in one place only.
+/// The catalogue is data, and for each model what it objects to. Reading and checking scenario files, the JSON Schema
+/// and `monograin models` are all made from it, so that a key is described in one place only.
 #pragma once
 
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace monograin {
 
@@ -32,7 +35,8 @@ struct QuantityKey {
   std::string_view meaning;
   Dimension dimension = Dimension::none;
   Range range;
-  std::optional<double> default_value;  ///< none: the key must be given
+  std::optional<double> default_value;  ///< none: the key must be given, or is optional
+  bool is_optional = false;
 };
 
 /// A choice, a switch or a file name in the table that bears the model's name.
@@ -51,6 +55,19 @@ struct Term {
   std::string_view meaning;
 };
 
+/// What a scenario says, each value right by itself.
+struct Given {
+  const std::map<std::string, double>& material;      ///< [SI]
+  const std::map<std::string, std::string>& choices;  ///< options of kind choice
+  std::string_view configuration;
+};
+
+/// Why values do not go together.
+struct Objection {
+  std::string_view key;  ///< in `[material]`, in the model's own table, or `configuration`
+  std::string message;
+};
+
 struct ModelInfo {
   std::string_view name;
   std::string_view summary;
@@ -62,6 +79,9 @@ struct ModelInfo {
   std::span<const Term> regimes;
   std::span<const Term> events;
   std::span<const std::string_view> domain;  ///< limits of validity, a sentence each
+  /// `strength` and `hardening_exponent` may be given by Ludwik's law instead.
+  bool takes_ludwik = false;
+  std::vector<Objection> (*objections)(const Given& given) = nullptr;  ///< null: none
 };
 
 /// All models this version can run, in the order in which they are listed to users.

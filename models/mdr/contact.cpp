@@ -194,30 +194,39 @@ Contact plastic_contact(const Material& material, double radius, double overlap,
           .by_radius = pi * (2.0 * pressure * overlap + decrement * overlap / (radius * radius) * area)};
 }
 
+UnloadingShape unloading_shape_of(double composite_modulus, double poisson_ratio, double radius, double overlap_max,
+                                  double contact_radius, double pressure) {
+  const double a = contact_radius;
+  UnloadingShape shape{.radius = radius, .overlap_max = overlap_max, .contact_radius_max = a, .pressure = pressure};
+  shape.height = 4.0 * pressure * a / composite_modulus;
+  // eq. 34 in the form rho(zeta, nu); zeta is the depth of the centre below the indenter's tip over a_max.
+  const double depth = radius - overlap_max + 0.5 * shape.height;
+  if (!(depth > 0.0)) throw std::domain_error("the wall has reached the centre of the particle");
+  const double zeta = depth / a;
+  const double s = std::sqrt(1.0 + zeta * zeta);
+  const double k = 1.0 / (2.0 * (1.0 - poisson_ratio));
+  shape.rho = (1.0 + k * zeta / s) / (s + zeta);
+  shape.recovery = 0.5 * shape.height * (1.0 - shape.rho);
+  return shape;
+}
+
 UnloadingShape unloading_shape(const Material& material, double radius, double overlap_max, double area_constant) {
   const double m = overlap_max;
   const double area = 2.0 * m * radius - m * m + area_constant;
   if (!(area > 0.0)) throw std::domain_error("contact area of a plastic contact is not positive");
   const auto [pressure, decrement] = plastic_pressure(material, m / radius);
   const double a = std::sqrt(area);
+  UnloadingShape shape = unloading_shape_of(material.composite_modulus, material.poisson_ratio, radius, m, a, pressure);
 
-  UnloadingShape shape{.radius = radius, .overlap_max = m, .contact_radius_max = a, .pressure = pressure};
-  shape.height = 4.0 * pressure * a / material.composite_modulus;
   shape.pressure_by_max = -decrement / (radius * pressure);
   shape.pressure_by_radius = decrement * m / (radius * radius * pressure);
   shape.contact_radius_by_max = (radius - m) / area;
   shape.contact_radius_by_radius = m / area;
 
-  // eq. 34 in the form rho(zeta, nu); zeta is the depth of the centre below the indenter's tip over a_max.
-  const double depth = radius - m + 0.5 * shape.height;
-  if (!(depth > 0.0)) throw std::domain_error("the wall has reached the centre of the particle");
-  const double zeta = depth / a;
+  // zeta/s - 1 = -1/(s (s + zeta)), which keeps its digits for small contacts (zeta >> 1).
+  const double zeta = (radius - m + 0.5 * shape.height) / a;
   const double s = std::sqrt(1.0 + zeta * zeta);
   const double k = 1.0 / (2.0 * (1.0 - material.poisson_ratio));
-  shape.rho = (1.0 + k * zeta / s) / (s + zeta);
-  shape.recovery = 0.5 * shape.height * (1.0 - shape.rho);
-
-  // zeta/s - 1 = -1/(s (s + zeta)), which keeps its digits for small contacts (zeta >> 1).
   const double rho_by_zeta = (k / (s * s) - (1.0 + k * zeta / s)) / (s * (s + zeta));
   const double height_by_max = shape.height * (shape.pressure_by_max + shape.contact_radius_by_max);
   const double height_by_radius = shape.height * (shape.pressure_by_radius + shape.contact_radius_by_radius);

@@ -103,6 +103,12 @@ struct UnloadingShape {
 [[nodiscard]] UnloadingShape unloading_shape(const Material& material, double radius, double overlap_max,
                                              double area_constant);
 
+/// The same from the contact radius and mean pressure at the largest overlap, by whatever law they came about; without
+/// the derivatives with respect to m and R.
+/// @throws std::domain_error where the distance of the indenter's tip from the centre is not positive
+[[nodiscard]] UnloadingShape unloading_shape_of(double composite_modulus, double poisson_ratio, double radius,
+                                                double overlap_max, double contact_radius, double pressure);
+
 /// Distance from the largest overlap over the recovery, u = (m - delta)/recovery: 0 at the maximum, 1 where the contact
 /// opens.
 [[nodiscard]] double unloading_fraction(const UnloadingShape& shape, double overlap) noexcept;

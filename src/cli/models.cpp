@@ -10,10 +10,9 @@
 
 #include "catalogue.hpp"
 #include "cli/commands.hpp"
-#include "mdr/contact.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/schema.hpp"
-#include "scene/pressure_curve.hpp"
+#include "scene/parameters.hpp"
 
 namespace monograin {
 namespace {
@@ -65,9 +64,16 @@ void print_terms(std::string_view title, std::span<const Term> terms) {
 void print_model(const ModelInfo& model) {
   fmt::print("{}: {}\nsource: {}\n\n[material]\n", model.name, model.summary, model.source);
   for (const QuantityKey& key : model.material) {
-    const std::string default_text = key.default_value ? fmt::format("default {}", *key.default_value) : "required";
+    const std::string default_text = key.default_value ? fmt::format("default {}", *key.default_value)
+                                     : key.is_optional ? "optional"
+                                                       : "required";
     fmt::print("  {:<18}{} [{}], in {}; {}\n", key.name, key.meaning, si_unit(key.dimension), to_text(key.range),
                default_text);
+  }
+  if (model.takes_ludwik) {
+    fmt::print("  {:<18}{}\n", "ludwik",
+               "instead of strength and hardening_exponent: { yield_stress, strength, exponent = 1/n, eps_max = 1, "
+               "fit = \"both\" or \"exponent\" }");
   }
   if (!model.options.empty()) fmt::print("\n[{}]\n", model.name);
   for (const OptionKey& key : model.options) {
@@ -94,39 +100,9 @@ void print_model(const ModelInfo& model) {
 
 /// Derived constants of a scenario's material and particle.
 void print_parameters(const Scenario& scenario) {
-  const auto constant = [&](const char* key) {
-    const auto found = scenario.material.find(key);
-    return found == scenario.material.end() ? std::numeric_limits<double>::infinity() : found->second;
-  };
-  const double youngs_modulus = constant("youngs_modulus");
-  const double poisson_ratio = constant("poisson_ratio");
-  const double yield_stress = constant("yield_stress");
-  const mdr::Material material =
-      mdr::make_material(youngs_modulus, poisson_ratio, yield_stress, pressure_curve_of(scenario));
-  const auto print = [](std::string_view name, double value, std::string_view unit) {
-    fmt::print("{:<28}{:.17g} {}\n", name, value, unit);
-  };
-  print("radius", scenario.radius, "m");
-  print("youngs_modulus", youngs_modulus, "Pa");
-  print("poisson_ratio", poisson_ratio, "-");
-  print("composite_modulus", material.composite_modulus, "Pa");
-  print("shear_modulus", youngs_modulus / (2.0 * (1.0 + poisson_ratio)), "Pa");
-  print("bulk_compliance", material.bulk_compliance, "1/Pa");
-  if (!std::isfinite(yield_stress)) return;
-  print("yield_stress", yield_stress, "Pa");
-  print("modulus_over_yield", youngs_modulus / yield_stress, "-");
-  if (material.pressure_curve) print("pressure_table_end", material.pressure_curve->end(), "-");
-  const double d_yield = material.yield_overlap_ratio;
-  print("yield_overlap_over_radius", d_yield, "-");
-  if (!std::isfinite(d_yield)) return;
-  const mdr::PlasticPressure pressure = mdr::plastic_pressure(material, d_yield);
-  const double area_constant = mdr::yield_area_constant(d_yield, scenario.radius);
-  const double overlap = d_yield * scenario.radius;
-  print("yield_overlap", overlap, "m");
-  print("yield_pressure", pressure.pressure, "Pa");
-  print("yield_contact_radius", mdr::plastic_contact(material, scenario.radius, overlap, area_constant).contact_radius,
-        "m");
-  print("yield_force", mdr::plastic_contact(material, scenario.radius, overlap, area_constant).force, "N");
+  for (const auto& [name, value, unit, symbol] : derived_parameters(scenario)) {
+    fmt::print("{:<28}{:.17g} {}{}\n", name, value, unit, symbol.empty() ? "" : fmt::format("  {}", symbol));
+  }
 }
 
 int run_models(const ModelsOptions& options) {

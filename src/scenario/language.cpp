@@ -28,6 +28,7 @@ constexpr std::array<string_view, 10> k_reserved_integrators{
 constexpr std::array<string_view, 7> k_configurations{"simple", "die",      "hydrostatic", "oblique-die",
                                                       "walls",  "triaxial", "strain-path"};
 constexpr std::array<string_view, 2> k_centres{"fixed", "equilibrium"};
+constexpr std::array<string_view, 2> k_ludwik_fits{"both", "exponent"};
 
 // Stands in for a model that is missing or misspelt, so that the loading is checked as far as no model is needed.
 constexpr ModelInfo k_any_model{.name = {},
@@ -42,9 +43,7 @@ constexpr ModelInfo k_any_model{.name = {},
                                 .domain = {}};
 
 // Keys of models that the language reserves; those of available models come from the catalogue.
-constexpr std::array<string_view, 23> k_reserved_material{"strength",
-                                                          "hardening_exponent",
-                                                          "ludwik",
+constexpr std::array<string_view, 21> k_reserved_material{"ludwik",
                                                           "stiffness_ratio",
                                                           "shear_ratio",
                                                           "tensile_ratio",
@@ -194,13 +193,53 @@ std::vector<KeySpec> material_keys(const ModelInfo& model) {
     KeySpec spec{.name = key.name,
                  .meaning = key.meaning,
                  .kind = Kind::quantity,
-                 .is_required = !key.default_value.has_value(),
+                 .is_required = !key.default_value.has_value() && !key.is_optional,
                  .dimension = key.dimension,
                  .range = key.range};
     if (key.default_value) spec.default_value = *key.default_value;
     keys.push_back(std::move(spec));
   }
+  if (model.takes_ludwik) {
+    keys.push_back(
+        {.name = "ludwik",
+         .meaning = "instead of strength and hardening_exponent: Ludwik's law, and the power law nearest to it",
+         .kind = Kind::table,
+         .example = "{ yield_stress = \"5 MPa\", strength = \"15.5 MPa\", exponent = 0.35 }"});
+  }
   return keys;
+}
+
+std::vector<KeySpec> ludwik_keys() {
+  return {
+      {.name = "yield_stress",
+       .meaning = "stress at first yield",
+       .kind = Kind::quantity,
+       .is_required = true,
+       .dimension = Dimension::stress,
+       .range = k_not_negative},
+      {.name = "strength",
+       .meaning = "K of sigma = Y + K eps_pl^(1/n)",
+       .kind = Kind::quantity,
+       .is_required = true,
+       .dimension = Dimension::stress,
+       .range = k_not_negative},
+      {.name = "exponent",
+       .meaning = "1/n of sigma = Y + K eps_pl^(1/n)",
+       .kind = Kind::quantity,
+       .is_required = true,
+       .range = {.lower = 0.0, .upper = 1.0, .lower_is_open = true},
+       .example = "0.35"},
+      {.name = "eps_max",
+       .meaning = "largest strain of the fit",
+       .kind = Kind::quantity,
+       .range = k_positive,
+       .default_value = 1.0},
+      {.name = "fit",
+       .meaning = "what is fitted: both parameters, or the exponent with the strength Y + K",
+       .kind = Kind::choice,
+       .choices = words_of(k_ludwik_fits),
+       .default_value = k_ludwik_fits.front()},
+  };
 }
 
 KeySpec option_key(const OptionKey& option) {
@@ -423,6 +462,7 @@ void add_loading(Language& language, const ModelInfo& model) {
 void add_material_and_options(Language& language, const ModelInfo& model) {
   language.model = &model;
   language.material = material_keys(model);
+  if (model.takes_ludwik) language.ludwik = ludwik_keys();
   for (const OptionKey& option : model.options) language.options.push_back(option_key(option));
   const std::string unused = fmt::format("is not used by model '{}'", model.name);
   language.foreign_material = foreign_keys(material_names_of_all_models(), language.material, unused);

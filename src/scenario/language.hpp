@@ -78,6 +78,7 @@ struct Language {
   std::vector<KeySpec> particle;
   std::vector<KeySpec> material;  ///< empty without a model
   std::vector<KeySpec> options;   ///< empty without a model
+  std::vector<KeySpec> ludwik;    ///< the table in `[material]`; empty where the model does not take it
   std::vector<KeySpec> loading;   ///< empty with a reserved model: its steps are other ones
   std::vector<KeySpec> wall;
   std::vector<KeySpec> until;

@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
+#include "plastic/ludwik.hpp"
 #include "scenario/curve_file.hpp"
 #include "scenario/language.hpp"
 #include "scenario/loading_reader.hpp"
+#include "scenario/rules.hpp"
 #include "scenario/section.hpp"
 #include "scenario/words.hpp"
 
@@ -34,10 +38,50 @@ void read_particle(Reading& reading, const Section& root, const Language& langua
   }
 }
 
+/// The power law that a table `ludwik` stands for, as strength and hardening_exponent.
+void read_ludwik(Reading& reading, const Section& material, const Language& language, Scenario& scenario) {
+  const std::size_t faults_before = reading.faults.size();
+  const Section section(reading, material.table("ludwik", "ludwik"), language.ludwik);
+  for (const char* key : {"strength", "hardening_exponent"}) {
+    if (material.has(key)) {
+      reading.faults.add(
+          material.key_place(key),
+          fmt::format("key '{}' does not go with 'ludwik', which stands for it; expected one of them", key));
+    }
+  }
+  const auto modulus = material.number("youngs_modulus");
+  const auto yield_stress = section.number("yield_stress");
+  const auto strength = section.number("strength");
+  const auto exponent = section.number("exponent");
+  const auto eps_max = section.number("eps_max");
+  if (reading.faults.size() > faults_before || !yield_stress || !strength || !exponent || !eps_max) return;
+  try {
+    const plastic::LudwikMaterial ludwik{.youngs_modulus = modulus.value_or(std::numeric_limits<double>::infinity()),
+                                         .yield_stress = *yield_stress,
+                                         .hardening = *strength,
+                                         .exponent_inverse = 1.0 / *exponent};
+    const plastic::HollomonMaterial power_law = plastic::fit_hollomon(
+        ludwik, *eps_max, section.text("fit") == "both" ? plastic::HollomonFit::both : plastic::HollomonFit::exponent);
+    scenario.material.emplace("strength", power_law.strength);
+    scenario.material.emplace("hardening_exponent", power_law.exponent);
+  } catch (const std::logic_error& error) {  // what the fit objects to
+    reading.faults.add(material.value_place("ludwik"), fmt::format("ludwik: {}", error.what()));
+  }
+}
+
 void read_material(Reading& reading, const Section& root, const Language& language, Scenario& scenario) {
   const Section material(reading, root.table("material", "[material]"), language.material, language.foreign_material);
   for (const KeySpec& spec : language.material) {
+    if (spec.kind == KeySpec::Kind::table) continue;
     if (const auto value = material.number(spec.name)) scenario.material.emplace(spec.name, *value);
+  }
+  if (language.ludwik.empty()) return;
+  if (material.has_or_misspells("ludwik")) return read_ludwik(reading, material, language, scenario);
+  for (const char* key : {"strength", "hardening_exponent"}) {
+    if (material.has_or_misspells(key)) continue;
+    reading.faults.add(material.place(),
+                       fmt::format("key '{}' is missing in [material]; expected for example {}, or ludwik = {{ ... }}",
+                                   key, example_line(*find_key(language.material, key))));
   }
 }
 
@@ -97,6 +141,7 @@ Scenario read_tree(const toml::table& tree, const std::string& origin, FaultList
   if (!language.loading.empty()) {
     scenario.loading = read_loading(reading, root.table("loading", "[loading]"), language);
   }
+  if (language.model != nullptr && reading.faults.size() == 0) check_rules(reading, tree, origin, language, scenario);
   read_output(reading, root, language, scenario);
   read_numerics(reading, root, language, scenario);
   return scenario;

@@ -127,9 +127,19 @@ class ModelSchema {
     schema["oneOf"] = {some_follow, none_follows};
   }
 
+  [[nodiscard]] json material() const {
+    json schema = table_schema(language_.material, {{"ludwik", table_schema(language_.ludwik)}});
+    if (!language_.ludwik.empty()) {
+      const json either{{"anyOf", {{{"required", {"strength"}}}, {{"required", {"hardening_exponent"}}}}}};
+      schema["oneOf"] = {{{"required", {"strength", "hardening_exponent"}}},
+                         {{"required", {"ludwik"}}, {"not", either}}};
+    }
+    return schema;
+  }
+
   [[nodiscard]] json root() const {
     const Contents contents{{"particle", table_schema(language_.particle)},
-                            {"material", table_schema(language_.material)},
+                            {"material", material()},
                             {"loading", reference("loading")},
                             {"output", table_schema(language_.output)},
                             {"numerics", table_schema(language_.numerics)},

@@ -4,7 +4,10 @@
 
 #include <stdexcept>
 
+#include "elastic/hertz.hpp"
 #include "mdr/system.hpp"
+#include "plastic/system.hpp"
+#include "scene/plastic_law.hpp"
 #include "scene/pressure_curve.hpp"
 #include "scene/scene.hpp"
 
@@ -57,6 +60,27 @@ mdr::Settings mdr_settings(const Scenario& scenario, const Reach& reach) {
   return settings;
 }
 
+plastic::Settings plastic_settings(const Scenario& scenario, const Reach& reach) {
+  using namespace plastic;
+  const bool is_semimech = scenario.model == "semimech";
+  Settings settings{.law = plastic_law_of(scenario),
+                    .initial_radius = scenario.radius,
+                    .strength = scenario.material.at(is_semimech ? "yield_stress" : "strength"),
+                    .largest_displacement = reach.displacement,
+                    .largest_force = reach.force};
+  settings.unloading = choice<Unloading>(scenario, "unloading", {{"none", Unloading::none}, {"mdr", Unloading::mdr}});
+  if (settings.unloading == Unloading::mdr) {
+    settings.poisson_ratio = scenario.material.at("poisson_ratio");
+    settings.composite_modulus = composite_modulus(scenario.material.at("youngs_modulus"), settings.poisson_ratio);
+  }
+  if (is_semimech) {
+    settings.out_of_range =
+        outside_calibration(scenario.material.at("youngs_modulus"), scenario.material.at("poisson_ratio"),
+                            settings.strength, std::get<SemimechLaw>(settings.law).configuration);
+  }
+  return settings;
+}
+
 }  // namespace
 
 std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<ContactClass> classes,
@@ -67,6 +91,9 @@ std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<C
   }
   if (scenario.model == "mdr") {
     return std::make_unique<mdr::System>(mdr_settings(scenario, reach), std::move(classes));
+  }
+  if (scenario.model == "similarity" || scenario.model == "semimech" || scenario.model == "hardening") {
+    return std::make_unique<plastic::System>(plastic_settings(scenario, reach), std::move(classes));
   }
   throw std::logic_error(fmt::format("model '{}' is in the catalogue but not bound", scenario.model));
 }

@@ -1,0 +1,150 @@
+#include "plastic/hardening.hpp"
+
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace monograin::plastic {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double k_rate = 14.1819;  // q of eq. 2.39 for lambda -> infinity; r of eq. 2.40 is 1 there
+
+bool is_enclosed(const HardeningLaw& law) noexcept { return law.configuration != Configuration::simple; }
+
+std::string_view reason_of_limit(const HardeningLaw& law) noexcept {
+  return is_enclosed(law) ? "where the particle fills its cell" : "where the walls meet";
+}
+
+/// d_i (eq. 3.47, whose indices are 1, 3, 5).
+RadiusSeries radius_series(Configuration configuration, double mu) noexcept {
+  const auto& [d1, d3, d5] = rigid_radius_series(configuration);
+  return {.first = d1 * std::exp(-0.485 * mu),
+          .third = d3 * std::exp(-1.455 * mu),
+          .fifth = d5 * std::exp(-0.5279 * std::pow(mu, 0.4616))};
+}
+
+/// H without its factor x^(mu/2).
+ValueAndSlope reduced_low_compressibility_pressure(const HardeningLaw& law, double x) {
+  const double span = law.cell_at_least - 1.0;
+  const double rest = cell_excess(law.configuration, x) / span;  // 1 - y
+  const double y = cell_shrinkage(law.configuration, law.fall.end, x) / span;
+  const double argument = rest * (1.0 + y);
+  if (!(argument > 0.0)) {
+    throw std::domain_error("gamma/2R = " + text(x) + " is not between the least pressure and zero porosity at " +
+                            text(law.zero_porosity) + " as the law of low compressibility demands");
+  }
+  return {.value = law.fall.least - law.pressure_scale * std::log(argument),
+          .slope = -2.0 * law.pressure_scale * y / argument * cell_slope(law.configuration, x) / span};
+}
+
+ValueAndSlope reduced_pressure(const HardeningLaw& law, Regime regime, double x) {
+  if (regime == Regime::fully_plastic) return falling_pressure(law.fall, x);
+  if (regime == Regime::low_compressibility && is_enclosed(law)) return reduced_low_compressibility_pressure(law, x);
+  throw std::domain_error("a hardening contact under " + std::string(name(law.configuration)) +
+                          " compression has no law for the regime '" + std::string(name(regime)) + "'");
+}
+
+/// P for small x is this times x^(1 + mu/2).
+double small_force_coefficient(const HardeningLaw& law) noexcept {
+  return pi * law.fall.greatest * law.radius.first * law.radius.first;
+}
+
+}  // namespace
+
+HardeningLaw make_hardening(double exponent, Configuration configuration, MinimumCondition condition) {
+  if (!(exponent >= 0.0 && exponent <= 1.0))
+    throw std::invalid_argument("the hardening exponent 1/m must be in [0, 1], but is " + text(exponent));
+  HardeningLaw law{
+      .configuration = configuration, .exponent = exponent, .radius = radius_series(configuration, exponent)};
+  const RadiusSeries minimum = condition == MinimumCondition::current ? law.radius : rigid_radius_series(configuration);
+  // eq. 3.48. The same value has to stand in the amplitudes of the fall, where the source prints 3.101: only so is the
+  // pressure continuous at its minimum, and positive in simple compression.
+  const double greatest = 3.101 * std::exp(-1.748 * exponent);
+  law.fall = make_pressure_fall(configuration, minimum, greatest, 0.0, 0.0, k_rate);
+  if (!is_enclosed(law)) {
+    law.calibrated_end = 0.5;
+    law.limit = 1.0;
+    return law;
+  }
+  const double excess = cell_excess(configuration, law.fall.end);
+  law.cell_at_least = 1.0 + excess;
+  law.pressure_scale = excess / (0.467 * std::exp(-0.5883 * exponent));
+  law.zero_porosity = filled_cell_approach(configuration);
+  law.calibrated_end = law.limit = law.zero_porosity;
+  return law;
+}
+
+std::vector<Boundary> boundaries(const HardeningLaw& law) {
+  if (!is_enclosed(law)) return {};
+  return {{"low-compressibility", law.fall.end, Regime::low_compressibility},
+          {"zero-porosity", law.zero_porosity * (1.0 - k_zero_porosity_margin), Regime::undefined}};
+}
+
+Regime regime_at(const HardeningLaw& law, double x) noexcept {
+  if (!(x > 0.0)) return Regime::open;
+  return x <= law.fall.end || !is_enclosed(law) ? Regime::fully_plastic : Regime::low_compressibility;
+}
+
+ContactState state_at(const HardeningLaw& law, double x) {
+  require_approach_below(x, law.limit, reason_of_limit(law));
+  return state_in(law, regime_at(law, x), x);
+}
+
+ContactState state_in(const HardeningLaw& law, Regime regime, double x) {
+  if (regime == Regime::open) return {};
+  if (!(x > 0.0)) throw std::domain_error("gamma/2R = " + text(x) + " is no contact");
+  const auto [reduced, slope] = reduced_pressure(law, regime, x);
+  const double half = 0.5 * law.exponent;
+  const double factor = std::pow(x, half);
+  return loaded_contact(regime, contact_radius(law.radius, x),
+                        {.value = reduced * factor, .slope = (slope + reduced * half / x) * factor});
+}
+
+double approach_under(const HardeningLaw& law, double force) {
+  if (!(force > 0.0)) {
+    if (force <= 0.0) return 0.0;
+    throw std::domain_error("the force is not a number");
+  }
+  const auto fully_plastic = [&](double x) { return state_in(law, Regime::fully_plastic, x); };
+  const double last = std::nextafter(law.limit, 0.0);
+  const double end = std::min(law.fall.end, last);
+  double greatest = fully_plastic(end).force;
+  if (force <= greatest) {
+    const double guess = std::pow(force / small_force_coefficient(law), 1.0 / (1.0 + 0.5 * law.exponent));
+    return approach_from_touch(fully_plastic, end, force, guess);
+  }
+  if (is_enclosed(law)) {
+    const auto stiffening = [&](double x) { return state_in(law, Regime::low_compressibility, x); };
+    greatest = stiffening(last).force;
+    if (force <= greatest) return approach_between(stiffening, end, last, force, end);
+  }
+  throw std::domain_error("a force of " + text(force) + " kappa R^2 is above the greatest, " + text(greatest) +
+                          " kappa R^2 just below gamma/2R = " + text(law.limit) + ", " +
+                          std::string(reason_of_limit(law)));
+}
+
+double impingement_approach(const HardeningLaw& law) { return impingement_approach(law.configuration, law.radius); }
+
+double work_in(const HardeningLaw& law, Regime regime, double x) {
+  // In each regime a variable in which the force is smooth.
+  const auto force = [&](double at) { return state_in(law, regime, at).force; };
+  if (regime == Regime::low_compressibility) return work_below_singularity(force, law.fall.end, x, law.zero_porosity);
+  return boost::math::quadrature::gauss<double, 30>::integrate(
+      [&](double t) { return force(x * t * t * t) * 3.0 * x * t * t; }, 0.0, 1.0);
+}
+
+double work(const HardeningLaw& law, double x) {
+  require_approach_below(x, law.limit, reason_of_limit(law));
+  if (x <= 0.0) return 0.0;
+  double sum = work_in(law, Regime::fully_plastic, std::min(x, law.fall.end));
+  if (x > law.fall.end) sum += work_in(law, Regime::low_compressibility, x);
+  return moving_walls(law.configuration) * sum;
+}
+
+}  // namespace monograin::plastic

@@ -1,0 +1,54 @@
+/// One of the laws of this folder, as a hybrid system needs it: a contact that is loaded for the first time.
+/// Conventions: plastic/compression.hpp; x is the displacement of a wall over R.
+#pragma once
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "plastic/hardening.hpp"
+#include "plastic/semimech.hpp"
+#include "plastic/similarity.hpp"
+
+namespace monograin::plastic {
+
+using Law = std::variant<SimilarityLaw, SemimechLaw, HardeningLaw>;
+
+/// Regime from first touch on.
+[[nodiscard]] Regime first_regime(const Law& law) noexcept;
+
+/// Where its regimes end, in ascending order. The boundary after which the regime is `undefined` ends the law.
+[[nodiscard]] std::vector<Boundary> boundaries(const Law& law);
+
+/// The formulas of one regime, also a little outside of it, for x > 0.
+/// @throws std::domain_error where they end
+[[nodiscard]] ContactState state_in(const Law& law, Regime regime, double x);
+
+/// x under a force over S R^2, whatever the regime; 0 for no force.
+/// @throws std::domain_error for forces that the law does not reach
+[[nodiscard]] double approach_under(const Law& law, double force);
+
+/// int P dx of one wall over S R^3, from first touch.
+/// @throws std::domain_error beyond the law's limit
+[[nodiscard]] double work_per_wall(const Law& law, double x);
+
+/// The same from the beginning of a regime, and a little outside of it.
+/// @throws std::domain_error as state_in
+[[nodiscard]] double work_in(const Law& law, Regime regime, double x);
+
+/// x at which the law ends: where the walls meet, or the pressure becomes infinite.
+[[nodiscard]] double limit(const Law& law) noexcept;
+
+/// x up to which the source compares the law with finite elements.
+[[nodiscard]] double calibrated_end(const Law& law) noexcept;
+
+/// n of the power P ~ x^n with which the force begins.
+[[nodiscard]] double first_power(const Law& law) noexcept;
+
+/// Whether the contact gives back its work before it yields.
+[[nodiscard]] bool begins_elastic(const Law& law) noexcept;
+
+/// x at which neighbouring contacts touch; none where the law has no neighbours.
+[[nodiscard]] std::optional<double> impingement(const Law& law);
+
+}  // namespace monograin::plastic

@@ -1,0 +1,364 @@
+#include "plastic/semimech.hpp"
+
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace monograin::plastic {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double k_yield_pressure = 1.1;  // H at x_y (text before eq. 2.17)
+
+bool is_enclosed(Configuration configuration) noexcept { return configuration != Configuration::simple; }
+
+/// D_i = b_i^(i/2) alpha_i tanh(beta_i lambda^delta_i) (eq. 2.14, Table 2.2).
+RadiusSeries radius_series(Configuration configuration, double lambda) noexcept {
+  const auto& [d1, d3, d5] = rigid_radius_series(configuration);
+  return {.first = d1 * std::tanh(0.3540 * std::pow(lambda, 0.2633)),
+          .third = d3 * std::tanh(0.0411 * std::pow(lambda, 0.5366)),
+          .fifth = d5 * std::tanh(0.0634 * std::pow(lambda, 0.4766))};
+}
+
+Stiffening make_stiffening(Configuration configuration, double zeta, const PressureFall& fall) {
+  const double s = 0.2335 * zeta;
+  const double excess = cell_excess(configuration, fall.end);  // chi_m - 1, > 0
+  Stiffening stiffening{
+      .cell_at_least = 1.0 + excess, .softness = s / (1.0 + s), .softness_complement = 1.0 / (1.0 + s)};
+  // v of eq. 2.46 put into eq. 2.45, with l/(1 - l) = s and ln(1 - l) = -log1p(s).
+  stiffening.pressure_scale = (zeta * excess + fall.least) / (2.0 * s - std::log1p(s));
+  stiffening.elastic_volume = (fall.least + stiffening.pressure_scale * std::log1p(s)) / zeta;
+  const double v = stiffening.elastic_volume;
+  if (!(v < 1.0)) {
+    throw std::invalid_argument("bulk modulus over yield stress of " + text(zeta) +
+                                " is so small that the particle does not fill its cell: its elastic loss of volume " +
+                                "would be " + text(v) + " of it");
+  }
+  stiffening.cell_at_zero_porosity = 1.0 - v;
+  // 1 - (pi/6 chi_zp)^(1/n) (eq. 2.42) as the filled cell's x and a positive term.
+  const double filled = filled_cell_approach(configuration);
+  const double n = configuration == Configuration::hydrostatic ? 3.0 : 1.0;
+  stiffening.zero_porosity = filled - (1.0 - filled) * std::expm1(std::log1p(-v) / n);
+  return stiffening;
+}
+
+/// ln(x_Hmax/x), exact near x_Hmax.
+double logarithm_to_greatest(const SemimechLaw& law, double x) noexcept { return std::log1p((law.fall.start - x) / x); }
+
+ValueAndSlope elastic_pressure(const SemimechLaw& law, double x) noexcept {  // eqs. 2.15, 2.16
+  const double factor = 4.0 * law.material.modulus_over_yield / (3.0 * pi);
+  const double root = std::sqrt(x);
+  return {.value = factor * root, .slope = 0.5 * factor / root};
+}
+
+ValueAndSlope elastic_plastic_pressure(const SemimechLaw& law, double x) noexcept {  // eqs. 2.18, 2.21
+  const double ratio = logarithm_to_greatest(law, x) / law.yield_logarithm;
+  const double rise = law.fall.greatest - k_yield_pressure;
+  const double power = std::pow(std::abs(ratio), law.logarithm_exponent - 1.0);
+  const double slope = rise * law.logarithm_exponent * power / (law.yield_logarithm * x);
+  return {.value = law.fall.greatest - rise * std::abs(ratio) * power, .slope = ratio < 0.0 ? -slope : slope};
+}
+
+ValueAndSlope low_compressibility_pressure(const SemimechLaw& law, double x) {  // eq. 2.41
+  const Stiffening& c = law.stiffening;
+  const double span = cell_shrinkage(law.configuration, law.fall.end, c.zero_porosity);
+  const double y = cell_shrinkage(law.configuration, law.fall.end, x) / span;
+  // 1 - l y^2 without cancellation at y = 1, where l is close to 1 for nearly incompressible materials.
+  const double rest = cell_shrinkage(law.configuration, x, c.zero_porosity) / span;
+  const double argument = rest * (1.0 + y) + c.softness_complement * y * y;
+  if (!(argument > 0.0)) {
+    throw std::domain_error("gamma/2R = " + text(x) + " is too far above zero porosity at " + text(c.zero_porosity) +
+                            " for the law of low compressibility");
+  }
+  return {.value = law.fall.least - c.pressure_scale * std::log(argument),
+          .slope = -2.0 * c.pressure_scale * c.softness * y / argument * cell_slope(law.configuration, x) / span};
+}
+
+ValueAndSlope elastic_volumetric_pressure(const SemimechLaw& law, double x) noexcept {  // eq. 2.44
+  // 1 - chi counted from zero porosity, so that the branches join there to the last digit.
+  const Stiffening& c = law.stiffening;
+  const double loss = c.elastic_volume + cell_shrinkage(law.configuration, c.zero_porosity, x);
+  const double zeta = law.material.bulk_over_yield;
+  return {.value = zeta * loss, .slope = -zeta * cell_slope(law.configuration, x)};
+}
+
+ValueAndSlope pressure_in(const SemimechLaw& law, Regime regime, double x) {
+  switch (regime) {
+    case Regime::elastic:
+      return elastic_pressure(law, x);
+    case Regime::elastic_plastic:
+      return elastic_plastic_pressure(law, x);
+    case Regime::fully_plastic:
+      return falling_pressure(law.fall, x);
+    case Regime::low_compressibility:
+      if (is_enclosed(law.configuration)) return low_compressibility_pressure(law, x);
+      break;
+    case Regime::elastic_volumetric:
+      if (is_enclosed(law.configuration)) return elastic_volumetric_pressure(law, x);
+      break;
+    case Regime::open:
+    case Regime::undefined:
+    case Regime::unloading:
+    case Regime::separated:
+      break;
+  }
+  throw std::domain_error("a contact under " + std::string(name(law.configuration)) +
+                          " compression has no law for the regime '" + std::string(name(regime)) + "'");
+}
+
+/// int of f from a to b.
+template <unsigned Points, class Integrand>
+double integral(const Integrand& f, double a, double b) {
+  return boost::math::quadrature::gauss<double, Points>::integrate(f, a, b);
+}
+
+}  // namespace
+
+SemimechMaterial make_semimech_material(double youngs_modulus, double poisson_ratio, double yield_stress) {
+  if (!(youngs_modulus > 0.0) || !std::isfinite(youngs_modulus))
+    throw std::invalid_argument("Young's modulus must be positive and finite, but is " + text(youngs_modulus));
+  if (!(yield_stress > 0.0) || !std::isfinite(yield_stress))
+    throw std::invalid_argument("yield stress must be positive and finite, but is " + text(yield_stress));
+  if (!(poisson_ratio > -1.0 && poisson_ratio <= 0.5))
+    throw std::invalid_argument("Poisson's ratio must be in (-1, 0.5], but is " + text(poisson_ratio));
+  const double ratio = youngs_modulus / yield_stress;
+  return {.modulus_over_yield = ratio / ((1.0 - poisson_ratio) * (1.0 + poisson_ratio)),
+          .bulk_over_yield = ratio / (3.0 * (1.0 - 2.0 * poisson_ratio))};
+}
+
+std::vector<OutOfRange> outside_calibration(double youngs_modulus, double poisson_ratio, double yield_stress,
+                                            Configuration configuration) {
+  const SemimechMaterial material = make_semimech_material(youngs_modulus, poisson_ratio, yield_stress);
+  std::vector<OutOfRange> found;
+  const auto check = [&](OutOfRange entry) {
+    if (!(entry.value >= entry.lower && entry.value <= entry.upper)) found.push_back(entry);
+  };
+  check({"E/((1-nu^2) Y)", material.modulus_over_yield, 117.24, 5933.40});
+  if (is_enclosed(configuration)) {
+    check({"E/Y", youngs_modulus / yield_stress, 100.0, 5000.0});
+    check({"nu", poisson_ratio, 0.2, 0.48});
+    check({"E/(3 (1-2nu) Y)", material.bulk_over_yield, 64.0, 28000.0});
+  }
+  return found;
+}
+
+SemimechLaw make_semimech(const SemimechMaterial& material, Configuration configuration) {
+  const double lambda = material.modulus_over_yield;
+  const double zeta = material.bulk_over_yield;
+  if (!(lambda >= k_least_modulus_over_yield) || !std::isfinite(lambda)) {
+    throw std::invalid_argument("E/((1-nu^2) Y) = " + text(lambda) + " is not a finite number from " +
+                                text(k_least_modulus_over_yield) +
+                                " on: the pressure would have a kink at its maximum");
+  }
+  if (is_enclosed(configuration) && !(zeta > 0.0 && std::isfinite(zeta))) {
+    throw std::invalid_argument(
+        "an enclosed particle needs a positive and finite bulk modulus over yield stress, not " + text(zeta) +
+        " (nu = 0.5 has none)");
+  }
+
+  SemimechLaw law{.configuration = configuration, .material = material, .radius = radius_series(configuration, lambda)};
+  const double root = 3.0 * pi * k_yield_pressure / (4.0 * lambda);
+  law.yield_approach = root * root;
+  const double greatest = 3.101 * std::tanh(0.6746 * std::pow(lambda, 0.0829));   // eq. 2.19
+  const double at_greatest = std::expm1(0.7073 * std::pow(lambda, -0.6547));      // eq. 2.20
+  const double rate = 14.1819 * std::tanh(0.3729 * std::pow(lambda, 0.1013));     // eq. 2.39
+  const double exponent_excess = std::expm1(1.6199 * std::pow(lambda, -0.3232));  // eq. 2.40
+  law.yield_logarithm = std::log(at_greatest / law.yield_approach);
+  // eq. 2.22: the slope of the elastic branch at x_y is H/(2 x_y).
+  law.logarithm_exponent = 0.5 * k_yield_pressure * law.yield_logarithm / (greatest - k_yield_pressure);
+  law.logarithm_amplitude = (greatest - k_yield_pressure) * std::pow(law.yield_logarithm, -law.logarithm_exponent);
+  law.fall = make_pressure_fall(configuration, law.radius, greatest, at_greatest, exponent_excess, rate);
+  law.calibrated_end = 0.5;
+  if (is_enclosed(configuration)) {
+    law.stiffening = make_stiffening(configuration, zeta, law.fall);
+    law.calibrated_end = law.stiffening.zero_porosity + 0.01;
+  }
+  return law;
+}
+
+std::vector<Boundary> boundaries(const SemimechLaw& law) {
+  std::vector<Boundary> list{{"yield", law.yield_approach, Regime::elastic_plastic},
+                             {"fully-plastic", law.fall.start, Regime::fully_plastic}};
+  if (is_enclosed(law.configuration)) {
+    list.push_back({"low-compressibility", law.fall.end, Regime::low_compressibility});
+    list.push_back({"zero-porosity", law.stiffening.zero_porosity, Regime::elastic_volumetric});
+  }
+  return list;
+}
+
+Regime regime_at(const SemimechLaw& law, double x) noexcept {
+  if (!(x > 0.0)) return Regime::open;
+  if (x <= law.yield_approach) return Regime::elastic;
+  if (x <= law.fall.start) return Regime::elastic_plastic;
+  if (x <= law.fall.end || !is_enclosed(law.configuration)) return Regime::fully_plastic;
+  return x <= law.stiffening.zero_porosity ? Regime::low_compressibility : Regime::elastic_volumetric;
+}
+
+ContactState state_at(const SemimechLaw& law, double x) {
+  require_approach_below(x, SemimechLaw::limit, "where the walls meet");
+  return state_in(law, regime_at(law, x), x);
+}
+
+ContactState state_in(const SemimechLaw& law, Regime regime, double x) {
+  if (regime == Regime::open) return {};
+  if (!(x > 0.0)) throw std::domain_error("gamma/2R = " + text(x) + " is no contact");
+  return loaded_contact(regime, contact_radius(law.radius, x), pressure_in(law, regime, x));
+}
+
+double approach_under(const SemimechLaw& law, double force) {
+  if (!(force > 0.0)) {
+    if (force <= 0.0) return 0.0;
+    throw std::domain_error("the force is not a number");
+  }
+  // The force for small x, where a/R = D1 x^(1/2), off by a relative error of order x.
+  const double first = law.radius.first;
+  const double root = std::cbrt(3.0 * force / (4.0 * law.material.modulus_over_yield * first * first));
+  double guess = root * root;
+
+  double lower = 0.0;
+  Regime regime = Regime::elastic;
+  const auto state = [&](double x) { return state_in(law, regime, x); };
+  for (const Boundary& end : boundaries(law)) {
+    if (force <= state(end.approach).force) {
+      return regime == Regime::elastic ? approach_from_touch(state, end.approach, force, guess)
+                                       : approach_between(state, lower, end.approach, force, lower);
+    }
+    lower = end.approach;
+    regime = end.beyond;
+  }
+  const double last = std::nextafter(SemimechLaw::limit, 0.0);
+  const double greatest = state(last).force;
+  if (force <= greatest) return approach_between(state, lower, last, force, lower);
+  throw std::domain_error("a force of " + text(force) + " Y R^2 is above the greatest, " + text(greatest) +
+                          " Y R^2 just below gamma/2R = 1, where the walls meet");
+}
+
+double impingement_approach(const SemimechLaw& law) { return impingement_approach(law.configuration, law.radius); }
+
+double work_in(const SemimechLaw& law, Regime regime, double x) {
+  // In each regime a variable in which the force is smooth.
+  const auto force = [&](double at) { return state_in(law, regime, at).force; };
+  switch (regime) {
+    case Regime::elastic:
+      // A polynomial of degree 12 in t: exact with 7 points.
+      return integral<7>([&](double t) { return force(x * t * t) * 2.0 * x * t; }, 0.0, 1.0);
+    case Regime::elastic_plastic: {
+      const double last = logarithm_to_greatest(law, x);
+      const double span = law.yield_logarithm - last;
+      return integral<30>(
+          [&](double t) {
+            const double at = law.fall.start * std::exp(-(last + span * t * t));
+            return force(at) * at * 2.0 * span * t;
+          },
+          0.0, 1.0);
+    }
+    case Regime::fully_plastic: {
+      const double span = x - law.fall.start;
+      return integral<30>([&](double t) { return force(law.fall.start + span * t * t * t) * 3.0 * span * t * t; }, 0.0,
+                          1.0);
+    }
+    case Regime::low_compressibility: {
+      // The logarithm's singularity at l y^2 = 1, to first order in 1 - l.
+      const double span = cell_shrinkage(law.configuration, law.fall.end, law.stiffening.zero_porosity);
+      const double beyond = -0.5 * law.stiffening.softness_complement * span /
+                            cell_slope(law.configuration, law.stiffening.zero_porosity);
+      return work_below_singularity(force, law.fall.end, x, law.stiffening.zero_porosity + beyond);
+    }
+    default:
+      return integral<7>(force, law.stiffening.zero_porosity, x);
+  }
+}
+
+double work(const SemimechLaw& law, double x) {
+  require_approach_below(x, SemimechLaw::limit, "where the walls meet");
+  if (x <= 0.0) return 0.0;
+  double sum = 0.0;
+  Regime regime = Regime::elastic;
+  for (const Boundary& end : boundaries(law)) {
+    if (x <= end.approach) break;
+    sum += work_in(law, regime, end.approach);
+    regime = end.beyond;
+  }
+  return moving_walls(law.configuration) * (sum + work_in(law, regime, x));
+}
+
+double lateral_onset(double modulus_over_yield) noexcept {
+  const double lambda =
+      std::clamp(modulus_over_yield, k_least_lateral_modulus_over_yield, k_greatest_lateral_modulus_over_yield);
+  return 0.409833 + 4.03e-4 * std::pow(1e-3 * lambda, -1.4956);
+}
+
+LateralLaw make_lateral(const SemimechLaw& law) {
+  if (law.configuration != Configuration::die)
+    throw std::invalid_argument("lateral contacts exist in the die only, not under " +
+                                std::string(name(law.configuration)) + " compression");
+  const double lambda = law.material.modulus_over_yield;
+  const double exponent = 5.7775 * std::tanh(0.0159 * std::pow(lambda, 0.6146));                  // eq. 2.51
+  const double log_tau = -std::log(1480.8863 * std::tanh(5.0261e-5 * std::pow(lambda, 1.2889)));  // eq. 2.50, mm
+  LateralLaw lateral{.log_coefficient = log_tau + (exponent - 1.0) * std::log(20.0), .exponent = exponent};
+  lateral.yield_approach = std::exp((std::log(law.yield_approach) - lateral.log_coefficient) / exponent);
+  lateral.onset = lateral_onset(lambda);
+  return lateral;
+}
+
+ValueAndSlope lateral_approach(const LateralLaw& lateral, double x) noexcept {
+  const double value = std::exp(lateral.log_coefficient + lateral.exponent * std::log(x));
+  return {.value = value, .slope = lateral.exponent * value / x};
+}
+
+std::vector<Boundary> boundaries(const SemimechLaw& law, const LateralLaw& lateral) {
+  std::vector<Boundary> list;
+  if (lateral.yield_approach < LateralLaw::small_range_end)
+    list.push_back({"yield", lateral.yield_approach, Regime::elastic_plastic});
+  list.push_back({"", LateralLaw::small_range_end, Regime::undefined});
+  list.push_back({"secondary-onset", lateral.onset, regime_at(law, lateral.onset)});
+  if (lateral.onset < law.stiffening.zero_porosity)
+    list.push_back({"", law.stiffening.zero_porosity, Regime::elastic_volumetric});
+  return list;
+}
+
+Regime lateral_regime_at(const SemimechLaw& law, const LateralLaw& lateral, double x) noexcept {
+  if (!(x > 0.0)) return Regime::open;
+  if (x <= LateralLaw::small_range_end) {
+    return x <= lateral.yield_approach ? Regime::elastic : Regime::elastic_plastic;
+  }
+  return x < lateral.onset ? Regime::undefined : regime_at(law, x);
+}
+
+ContactState lateral_state_in(const SemimechLaw& law, const LateralLaw& lateral, Regime regime, double x) {
+  if (regime == Regime::open) return {};
+  if (regime == Regime::elastic || regime == Regime::elastic_plastic) {
+    const auto [own, slope] = lateral_approach(lateral, x);
+    ContactState state = state_in(law, regime, own);
+    state.contact_radius_by_approach *= slope;
+    state.pressure_by_approach *= slope;
+    state.force_by_approach *= slope;
+    return state;
+  }
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  ContactState state{.regime = regime,
+                     .contact_radius = nan,
+                     .pressure = nan,
+                     .force = nan,
+                     .contact_radius_by_approach = nan,
+                     .pressure_by_approach = nan,
+                     .force_by_approach = nan};
+  if (regime != Regime::undefined) {
+    const ContactState primary = state_in(law, regime, x);
+    state.pressure = primary.pressure;
+    state.pressure_by_approach = primary.pressure_by_approach;
+  }
+  return state;
+}
+
+ContactState lateral_state_at(const SemimechLaw& law, const LateralLaw& lateral, double x) {
+  require_approach_below(x, SemimechLaw::limit, "where the walls meet");
+  return lateral_state_in(law, lateral, lateral_regime_at(law, lateral, x), x);
+}
+
+}  // namespace monograin::plastic

@@ -1,0 +1,141 @@
+/// Semi-mechanistic law of an elastic-ideally plastic sphere between rigid flat walls, from first touch to a particle
+/// that fills its cell. Conventions: plastic/compression.hpp; the strength S is the yield stress.
+///
+/// Between x_y < x_Hmax < x_Hmin < x_zp the mean pressure follows five laws that join with their slopes; simple
+/// compression has the first three only. The contact radius is one series throughout. In the elastic regime the
+/// pressure is Hertz's but the contact radius is not, so the force is D1^2 times Hertz's (1.35 to 3.07 times for
+/// E/((1-nu^2) Y) from 22 to 6000).
+/// Source, unless said otherwise: 000_34f0f4b3689a4570.txt, chapter 2.
+#pragma once
+
+#include <vector>
+
+#include "plastic/compression.hpp"
+
+namespace monograin::plastic {
+
+/// The two ratios of a material on which the law depends.
+struct SemimechMaterial {
+  double modulus_over_yield = 0.0;  ///< lambda = E/((1-nu^2) Y)
+  double bulk_over_yield = 0.0;     ///< zeta = E/(3 (1-2nu) Y); infinity for nu = 0.5
+};
+
+/// @throws std::invalid_argument unless E > 0 and Y > 0, both finite, and nu in (-1, 0.5]
+[[nodiscard]] SemimechMaterial make_semimech_material(double youngs_modulus, double poisson_ratio, double yield_stress);
+
+/// Least lambda at which the elastic-plastic branch can end with the slope zero (c2 = 1); printed as 22.08.
+constexpr double k_least_modulus_over_yield = 22.093089842902306;
+
+/// What of a material is outside the source's calculations: lambda in 117.24..5933.40 and, where the particle is
+/// enclosed, E/Y in 100..5000, nu in 0.2..0.48 and zeta in 64..28000 (ranges of Tables 2.1 and A.1).
+[[nodiscard]] std::vector<OutOfRange> outside_calibration(double youngs_modulus, double poisson_ratio,
+                                                          double yield_stress, Configuration configuration);
+
+/// Constants of the low-compressibility and elastic-volumetric regimes (eqs. 2.41-2.47).
+struct Stiffening {
+  double cell_at_least = 0.0;        ///< chi_m, cell over particle volume at x_Hmin
+  double softness = 0.0;             ///< l = 0.2335 zeta/(1 + 0.2335 zeta)
+  double softness_complement = 0.0;  ///< 1 - l
+  double pressure_scale = 0.0;       ///< u
+  double elastic_volume = 0.0;       ///< v, elastic loss of volume at zero porosity
+  double cell_at_zero_porosity = 0;  ///< chi_zp = 1 - v
+  double zero_porosity = 0.0;        ///< x_zp, above the filled cell's x by the elastic loss of volume
+};
+
+/// A material's derived parameters in one configuration.
+struct SemimechLaw {
+  Configuration configuration = Configuration::simple;
+  SemimechMaterial material{};
+  RadiusSeries radius{};                ///< D_i (eq. 2.14)
+  double yield_approach = 0.0;          ///< x_y (eq. 2.17), where H = 1.1
+  double yield_logarithm = 0.0;         ///< ln(x_Hmax/x_y)
+  double logarithm_amplitude = 0.0;     ///< c1 (eq. 2.23)
+  double logarithm_exponent = 0.0;      ///< c2 (eq. 2.22), >= 1
+  PressureFall fall{};                  ///< x_Hmax = fall.start, x_Hmin = fall.end
+  Stiffening stiffening{};              ///< zeros in simple compression
+  double calibrated_end = 0.0;          ///< x up to which the source compares the law: 0.5 (simple), x_zp + 0.01
+  static constexpr double limit = 1.0;  ///< x at which the walls meet; the law ends before
+};
+
+/// @throws std::invalid_argument naming the numbers for lambda below its least value, and for zeta that is not finite
+/// or so small that the particle would not fill its cell before x = 1 (die, hydrostatic)
+[[nodiscard]] SemimechLaw make_semimech(const SemimechMaterial& material, Configuration configuration);
+
+/// Regime boundaries in ascending order: `yield`, `fully-plastic`, and for enclosed particles `low-compressibility`,
+/// `zero-porosity`. The last regime goes on to the limit.
+[[nodiscard]] std::vector<Boundary> boundaries(const SemimechLaw& law);
+
+/// A boundary belongs to the regime before it; x <= 0 is open.
+[[nodiscard]] Regime regime_at(const SemimechLaw& law, double x) noexcept;
+
+/// @throws std::domain_error for x >= 1 and NaN
+[[nodiscard]] ContactState state_at(const SemimechLaw& law, double x);
+
+/// The formulas of one regime, also somewhat outside of it, for trial steps: its laws are continued analytically, those
+/// with an infinite second derivative at x_Hmax as their mirror image beyond.
+/// @throws std::domain_error for x <= 0 (but open), a regime that the configuration has not, and low compressibility so
+/// far beyond zero porosity that its pressure is infinite
+[[nodiscard]] ContactState state_in(const SemimechLaw& law, Regime regime, double x);
+
+/// x under a force over Y R^2; 0 for no force.
+/// @throws std::domain_error for forces that the law does not reach below its limit
+[[nodiscard]] double approach_under(const SemimechLaw& law, double force);
+
+/// x at which the contacts reach each other. Die and hydrostatic compression only.
+/// @throws std::invalid_argument for simple compression
+[[nodiscard]] double impingement_approach(const SemimechLaw& law);
+
+/// Work of one wall over Y R^3 from the beginning of a regime to x: int P dx. Relative error of the sum below 1e-12.
+/// @throws std::domain_error as state_in
+[[nodiscard]] double work_in(const SemimechLaw& law, Regime regime, double x);
+
+/// Work of all moving walls over Y R^3 from first touch to x: n int_0^x P dx over their number n.
+/// Relative error below 1e-12.
+/// @throws std::domain_error as state_at
+[[nodiscard]] double work(const SemimechLaw& law, double x);
+
+// --- Lateral contacts of the die (section 2.6). They bear a load of their own but do not act back on the moving walls,
+// and do no work.
+
+/// Constants of the lateral contacts. Their displacement x_s = tau x^omega was fitted with both displacements in
+/// millimetres for R = 10 mm (eqs. 2.49-2.51); tau is made dimensionless here.
+struct LateralLaw {
+  double log_coefficient = 0.0;                   ///< ln tau
+  double exponent = 0.0;                          ///< omega
+  double yield_approach = 0.0;                    ///< x at which a lateral contact yields
+  double onset = 0.0;                             ///< x from which all contacts bear the same pressure
+  static constexpr double small_range_end = 0.1;  ///< x up to which x_s is fitted
+};
+
+/// lambda over which the lateral contacts were fitted.
+constexpr double k_least_lateral_modulus_over_yield = 163.08;
+constexpr double k_greatest_lateral_modulus_over_yield = 4954.40;
+
+/// @throws std::invalid_argument unless the law is that of the die
+[[nodiscard]] LateralLaw make_lateral(const SemimechLaw& law);
+
+/// x at which all contacts begin to bear the same pressure: 0.409833 + 4.03e-4 (lambda/1000)^(-1.4956), within 8.3e-5
+/// of Table 2.4 (which comes from computed contact areas); lambda is limited to the table's range.
+[[nodiscard]] double lateral_onset(double modulus_over_yield) noexcept;
+
+/// x_s and dx_s/dx, for x > 0.
+[[nodiscard]] ValueAndSlope lateral_approach(const LateralLaw& lateral, double x) noexcept;
+
+/// Where the regimes of a lateral contact end, in terms of the primary x: `yield`, the end of the small range and zero
+/// porosity (no events of the lateral contact: empty names), and `secondary-onset`.
+[[nodiscard]] std::vector<Boundary> boundaries(const SemimechLaw& law, const LateralLaw& lateral);
+
+/// A boundary belongs to the regime before it, but for the onset; x <= 0 is open. `undefined` between the two ranges.
+[[nodiscard]] Regime lateral_regime_at(const SemimechLaw& law, const LateralLaw& lateral, double x) noexcept;
+
+/// State of a lateral contact by the formulas of one regime, with derivatives with respect to the primary x > 0.
+/// `elastic` and `elastic_plastic`: that of a primary contact at x_s. `low_compressibility` and `elastic_volumetric`:
+/// the pressure of the primary contacts, everything else NaN. `undefined`: NaN.
+/// @throws std::domain_error as state_in
+[[nodiscard]] ContactState lateral_state_in(const SemimechLaw& law, const LateralLaw& lateral, Regime regime, double x);
+
+/// The same with the regime that belongs to x.
+/// @throws std::domain_error as state_at
+[[nodiscard]] ContactState lateral_state_at(const SemimechLaw& law, const LateralLaw& lateral, double x);
+
+}  // namespace monograin::plastic

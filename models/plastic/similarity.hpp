@@ -1,0 +1,88 @@
+/// Similarity law of a rigid-plastic power-law contact (Biwa and Storakers), and its contact radius with the next term
+/// of the spheres' curvature. Every contact is independent of the others and of the configuration.
+///
+/// Small strains only (no check here).
+/// mu = 1/m in [0, 1] throughout; mu = 0 is ideal plasticity.
+/// Source, unless said otherwise: 000_34f0f4b3689a4570.txt, section 2.2 and appendix B.
+#pragma once
+
+#include "plastic/compression.hpp"
+
+namespace monograin::plastic {
+
+/// How the contact radius follows from the approach: eq. 2.5, or eq. B.24, which keeps the fourth power of the profile
+/// and takes the same constant c^2 for it. The source gives the force with the first only; here the second bears the
+/// same force at the same radius.
+enum class SimilarityRadius { parabolic, corrected };
+
+/// Two spheres in contact, or a sphere and a wall (radius infinity), in any unit of length.
+struct SimilarityPair {
+  double curvature = 0.0;        ///< 1/R1 + 1/R2 (eq. 2.7)
+  double cubed_curvature = 0.0;  ///< 1/R1^3 + 1/R2^3
+};
+
+/// @throws std::invalid_argument unless both radii are positive, and one of them finite
+[[nodiscard]] SimilarityPair make_similarity_pair(double first_radius, double second_radius);
+
+/// Strength of two materials kappa_1, kappa_2 > 0 in contact (eq. 2.6): (kappa_1^(-m) + kappa_2^(-m))^(-1/m); the
+/// weaker one's for mu = 0, and against a rigid body (kappa infinity).
+/// @throws std::invalid_argument for strengths that are not positive or both infinite, mu outside [0, 1]
+[[nodiscard]] double similarity_strength(double first, double second, double exponent);
+
+/// Constants of one exponent.
+struct SimilarityLaw {
+  double exponent = 0.0;         ///< mu
+  double area_constant = 0.0;    ///< c^2 = 1.43 exp(-0.97 mu)
+  double pressure_constant = 0;  ///< k = 3 6^(-mu)
+  SimilarityRadius radius = SimilarityRadius::parabolic;
+};
+
+/// @throws std::invalid_argument for mu outside [0, 1]
+[[nodiscard]] SimilarityLaw make_similarity(double exponent, SimilarityRadius radius = SimilarityRadius::parabolic);
+
+/// Contact of a pair. Units: the pair's length, the strength's stress.
+struct SimilarityContact {
+  double contact_radius = 0.0;  ///< a
+  double force = 0.0;           ///< P = pi k A^mu kappa a^(2+mu), A the curvature (eqs. 2.4, 2.8)
+  double contact_radius_by_approach = 0.0;
+  double force_by_approach = 0.0;
+};
+
+/// @param strength  of the pair, similarity_strength
+/// @param approach  gamma of the two centres; <= 0: no contact, gives zeros
+[[nodiscard]] SimilarityContact similarity_contact(const SimilarityLaw& law, const SimilarityPair& pair,
+                                                   double strength, double approach) noexcept;
+
+/// Approach of a pair under a force, in closed form; 0 for no force.
+[[nodiscard]] double similarity_approach(const SimilarityLaw& law, const SimilarityPair& pair, double strength,
+                                         double force) noexcept;
+
+/// Work int P d(gamma) of a pair, in closed form.
+[[nodiscard]] double similarity_work(const SimilarityLaw& law, const SimilarityPair& pair, double strength,
+                                     double approach) noexcept;
+
+// --- A sphere at a rigid flat wall as one half of a pair of equal spheres (plastic/compression.hpp), S = kappa of its
+// material.
+
+/// x at which the walls of a symmetric pair meet: the law ends before.
+constexpr double k_similarity_limit = 1.0;
+
+/// x up to which the source sees the law follow its computed curves.
+constexpr double k_similarity_calibrated_end = 0.03;
+
+/// Regime fully_plastic; zeros for x <= 0.
+[[nodiscard]] ContactState contact_of(const SimilarityLaw& law, double x) noexcept;
+
+/// The same up to the limit.
+/// @throws std::domain_error for x >= 1 and NaN
+[[nodiscard]] ContactState state_at(const SimilarityLaw& law, double x);
+
+/// x under a force over kappa R^2.
+/// @throws std::domain_error for forces that are not below that at x = 1
+[[nodiscard]] double approach_under(const SimilarityLaw& law, double force);
+
+/// Work of one wall over kappa R^3, int P dx.
+/// @throws std::domain_error as state_at
+[[nodiscard]] double work_per_wall(const SimilarityLaw& law, double x);
+
+}  // namespace monograin::plastic

@@ -1,0 +1,92 @@
+#include "scenario/rules.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "scenario/document.hpp"
+
+namespace monograin {
+namespace {
+
+std::string_view configuration_word(Loading::Configuration configuration) {
+  switch (configuration) {
+    case Loading::Configuration::simple:
+      return "simple";
+    case Loading::Configuration::die:
+      return "die";
+    case Loading::Configuration::hydrostatic:
+      return "hydrostatic";
+    case Loading::Configuration::oblique_die:
+      return "oblique-die";
+    case Loading::Configuration::walls:
+      return "walls";
+  }
+  return {};
+}
+
+/// Where a key stands, in whichever of the tables it may.
+SourceLocation place_of_key(const toml::table& tree, const std::string& origin, std::string_view model,
+                            std::string_view key) {
+  for (const std::string_view name : {std::string_view("material"), model, std::string_view("loading")}) {
+    const toml::table* table = tree[name].as_table();
+    if (table == nullptr) continue;
+    if (const auto found = table->find(key); found != table->end()) return place_of(found->second.source(), {origin});
+  }
+  return {origin};
+}
+
+void check_objections(Reading& reading, const toml::table& tree, const std::string& origin, const ModelInfo& model,
+                      const Scenario& scenario) {
+  std::map<std::string, std::string> choices;
+  for (const auto& [key, value] : scenario.options) {
+    if (const auto* word = std::get_if<std::string>(&value)) choices.emplace(key, *word);
+  }
+  const Given given{.material = scenario.material,
+                    .choices = choices,
+                    .configuration = configuration_word(scenario.loading.configuration)};
+  for (const Objection& objection : model.objections(given)) {
+    reading.faults.add(place_of_key(tree, origin, model.name, objection.key), objection.message);
+  }
+}
+
+/// A program of a law without unloading. What a step leaves open (its condition, or another control) is the run's to
+/// find out.
+void check_only_loading(Reading& reading, std::span<const Step> program, double gap, const std::string& model) {
+  double least_displacement = -gap;
+  double least_force = 0.0;
+  for (const Step& step : program) {
+    std::string fault;
+    if (step.kind == Step::Kind::detach) fault = "detach withdraws the wall";
+    if (step.kind == Step::Kind::displacement && step.target < least_displacement) {
+      fault = fmt::format("the wall goes back from {:.6g} m to {:.6g} m", least_displacement, step.target);
+    }
+    if (step.kind == Step::Kind::force && step.target < least_force) {
+      fault = fmt::format("the force goes back from {:.6g} N to {:.6g} N", least_force, step.target);
+    }
+    if (!fault.empty()) {
+      reading.faults.add(step.where, fmt::format("{}, and model '{}' has no unloading of its own; expected growing "
+                                                 "targets, or unloading = \"mdr\" in [{}]",
+                                                 fault, model, model));
+      return;
+    }
+    if (!step.until.empty()) continue;
+    if (step.kind == Step::Kind::displacement) least_displacement = step.target;
+    if (step.kind == Step::Kind::force) least_force = step.target;
+  }
+}
+
+}  // namespace
+
+void check_rules(Reading& reading, const toml::table& tree, const std::string& origin, const Language& language,
+                 const Scenario& scenario) {
+  if (language.model->objections != nullptr) check_objections(reading, tree, origin, *language.model, scenario);
+  const auto unloading = scenario.options.find("unloading");
+  if (unloading == scenario.options.end() || std::get<std::string>(unloading->second) != "none") return;
+  check_only_loading(reading, scenario.loading.steps, 0.0, scenario.model);
+  for (const WallSpec& wall : scenario.loading.walls) check_only_loading(reading, wall.steps, wall.gap, scenario.model);
+}
+
+}  // namespace monograin

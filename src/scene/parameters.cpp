@@ -1,0 +1,139 @@
+#include "scene/parameters.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "mdr/contact.hpp"
+#include "scene/plastic_law.hpp"
+#include "scene/pressure_curve.hpp"
+
+namespace monograin {
+namespace {
+
+using List = std::vector<DerivedParameter>;
+
+void add_mdr(const Scenario& scenario, List& list) {
+  const double youngs_modulus = scenario.material.at("youngs_modulus");
+  const double poisson_ratio = scenario.material.at("poisson_ratio");
+  const auto found = scenario.material.find("yield_stress");
+  const double yield_stress =
+      found == scenario.material.end() ? std::numeric_limits<double>::infinity() : found->second;
+  const mdr::Material material =
+      mdr::make_material(youngs_modulus, poisson_ratio, yield_stress, pressure_curve_of(scenario));
+  list.push_back({"youngs_modulus", youngs_modulus, "Pa"});
+  list.push_back({"poisson_ratio", poisson_ratio, "-"});
+  list.push_back({"composite_modulus", material.composite_modulus, "Pa"});
+  list.push_back({"shear_modulus", youngs_modulus / (2.0 * (1.0 + poisson_ratio)), "Pa"});
+  list.push_back({"bulk_compliance", material.bulk_compliance, "1/Pa"});
+  if (!std::isfinite(yield_stress)) return;
+  list.push_back({"yield_stress", yield_stress, "Pa"});
+  list.push_back({"modulus_over_yield", youngs_modulus / yield_stress, "-"});
+  if (material.pressure_curve) list.push_back({"pressure_table_end", material.pressure_curve->end(), "-"});
+  const double d_yield = material.yield_overlap_ratio;
+  list.push_back({"yield_overlap_over_radius", d_yield, "-"});
+  if (!std::isfinite(d_yield)) return;
+  const double overlap = d_yield * scenario.radius;
+  const mdr::Contact contact =
+      mdr::plastic_contact(material, scenario.radius, overlap, mdr::yield_area_constant(d_yield, scenario.radius));
+  list.push_back({"yield_overlap", overlap, "m"});
+  list.push_back({"yield_pressure", mdr::plastic_pressure(material, d_yield).pressure, "Pa"});
+  list.push_back({"yield_contact_radius", contact.contact_radius, "m"});
+  list.push_back({"yield_force", contact.force, "N"});
+}
+
+void add_material(const Scenario& scenario, std::initializer_list<std::pair<const char*, const char*>> keys,
+                  List& list) {
+  for (const auto& [key, unit] : keys) {
+    if (const auto found = scenario.material.find(key); found != scenario.material.end()) {
+      list.push_back({key, found->second, unit});
+    }
+  }
+}
+
+void add_radius_series(const plastic::RadiusSeries& series, List& list) {
+  list.push_back({"radius_first", series.first, "-", "D1"});
+  list.push_back({"radius_third", series.third, "-", "D3"});
+  list.push_back({"radius_fifth", series.fifth, "-", "D5"});
+}
+
+void add_fall(const plastic::PressureFall& fall, bool is_enclosed, List& list) {
+  list.push_back({"greatest_pressure", fall.greatest, "-", "H_max"});
+  list.push_back({"greatest_pressure_approach", fall.start, "-", "x_Hmax"});
+  list.push_back({"fall_rate", fall.rate, "-", "q"});
+  list.push_back({"fall_exponent", 1.0 + fall.exponent_excess, "-", "r"});
+  list.push_back({"simple_shift", fall.simple_shift, "-", "s_SC"});
+  list.push_back({"simple_amplitude", fall.simple_amplitude, "-", "p_SC"});
+  list.push_back({"simple_inflexion", fall.simple_inflexion, "-", "z_SC"});
+  if (!is_enclosed) return;
+  list.push_back({"least_pressure_approach", fall.end, "-", "x_Hmin"});
+  list.push_back({"shift", fall.shift, "-", "s"});
+  list.push_back({"inflexion", fall.inflexion, "-", "z_LC"});
+  list.push_back({"least_pressure_of_simple", fall.simple_least, "-", "H_min1"});
+  list.push_back({"steep_amplitude", fall.steep_amplitude, "-", "p_o"});
+  list.push_back({"least_pressure_of_slope", fall.steep_least, "-", "H_min2"});
+  list.push_back({"least_pressure", fall.least, "-", "H_min"});
+  list.push_back({"amplitude", fall.amplitude, "-", "p"});
+}
+
+void add_law(const plastic::SemimechLaw& law, List& list) {
+  const bool is_enclosed = law.configuration != plastic::Configuration::simple;
+  list.push_back({"modulus_over_yield", law.material.modulus_over_yield, "-", "lambda"});
+  list.push_back({"bulk_over_yield", law.material.bulk_over_yield, "-", "zeta"});
+  add_radius_series(law.radius, list);
+  list.push_back({"yield_approach", law.yield_approach, "-", "x_y"});
+  list.push_back({"logarithm_amplitude", law.logarithm_amplitude, "-", "c1"});
+  list.push_back({"logarithm_exponent", law.logarithm_exponent, "-", "c2"});
+  add_fall(law.fall, is_enclosed, list);
+  if (!is_enclosed) return;
+  const plastic::Stiffening& stiffening = law.stiffening;
+  list.push_back({"cell_at_least_pressure", stiffening.cell_at_least, "-", "chi_m"});
+  list.push_back({"softness", stiffening.softness, "-", "l"});
+  list.push_back({"pressure_scale", stiffening.pressure_scale, "-", "u"});
+  list.push_back({"elastic_volume", stiffening.elastic_volume, "-", "V_el/V"});
+  list.push_back({"cell_at_zero_porosity", stiffening.cell_at_zero_porosity, "-", "chi_zp"});
+  list.push_back({"zero_porosity_approach", stiffening.zero_porosity, "-", "x_zp"});
+  list.push_back({"impingement_approach", *plastic::impingement(law), "-"});
+  if (law.configuration != plastic::Configuration::die) return;
+  const plastic::LateralLaw lateral = plastic::make_lateral(law);
+  list.push_back({"lateral_coefficient", std::exp(lateral.log_coefficient), "-", "tau 20^(omega-1)"});
+  list.push_back({"lateral_exponent", lateral.exponent, "-", "omega"});
+  list.push_back({"lateral_yield_approach", lateral.yield_approach, "-"});
+  list.push_back({"lateral_onset_approach", lateral.onset, "-", "x_on"});
+}
+
+void add_law(const plastic::HardeningLaw& law, List& list) {
+  const bool is_enclosed = law.configuration != plastic::Configuration::simple;
+  add_radius_series(law.radius, list);
+  add_fall(law.fall, is_enclosed, list);
+  if (!is_enclosed) return;
+  list.push_back({"cell_at_least_pressure", law.cell_at_least, "-", "chi_m"});
+  list.push_back({"pressure_scale", law.pressure_scale, "-", "u"});
+  list.push_back({"zero_porosity_approach", law.zero_porosity, "-", "x_zp"});
+  list.push_back({"impingement_approach", *plastic::impingement(law), "-"});
+}
+
+void add_law(const plastic::SimilarityLaw& law, List& list) {
+  list.push_back({"area_constant", law.area_constant, "-", "c^2"});
+  list.push_back({"pressure_constant", law.pressure_constant, "-", "k"});
+}
+
+}  // namespace
+
+std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
+  List list{{"radius", scenario.radius, "m"}};
+  if (scenario.model == "hertz" || scenario.model == "mdr") {
+    add_mdr(scenario, list);
+    return list;
+  }
+  add_material(scenario,
+               {{"youngs_modulus", "Pa"},
+                {"poisson_ratio", "-"},
+                {"yield_stress", "Pa"},
+                {"strength", "Pa"},
+                {"hardening_exponent", "-"}},
+               list);
+  std::visit([&](const auto& law) { add_law(law, list); }, plastic_law_of(scenario));
+  return list;
+}
+
+}  // namespace monograin
