@@ -21,6 +21,7 @@ monograin_find(SUNDIALS libsundials-dev COMPONENTS cvode ida)
 monograin_find(Eigen3 libeigen3-dev)
 monograin_find(Boost "libboost-dev libboost-iostreams-dev libboost-system-dev libboost-filesystem-dev"
                COMPONENTS iostreams system filesystem)
+monograin_find(GSL libgsl-dev)
 monograin_find(tomlplusplus libtomlplusplus-dev)
 monograin_find(CLI11 libcli11-dev)
 monograin_find(fmt libfmt-dev)

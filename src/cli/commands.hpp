@@ -38,6 +38,7 @@ void add_plot_command(CLI::App& app, Action& action);
 void add_atlas_command(CLI::App& app, Action& action);
 void add_compare_command(CLI::App& app, Action& action);
 void add_regress_command(CLI::App& app, Action& action);
+void add_calibrate_command(CLI::App& app, Action& action);
 void add_schema_command(CLI::App& app, Action& action);
 
 }  // namespace monograin

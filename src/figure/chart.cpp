@@ -30,6 +30,29 @@ constexpr double k_line_width = 1.8;
   return fmt::format("panel {} area {}.", panel + 1, area + 1);
 }
 
+[[nodiscard]] std::string block_of_band(std::size_t panel, std::size_t band) {
+  return fmt::format("panel {} band {}.", panel + 1, band + 1);
+}
+
+void append_band(std::string& text, const ChartBand& band, std::size_t panel, std::size_t place) {
+  text += fmt::format("\n\n# {} {}; columns: x, lowest and highest y\n", block_of_band(panel, place), band.legend);
+  const auto append_row = [&](std::size_t row) {
+    const double values[] = {band.x[row], band.lower[row], band.upper[row]};
+    if (std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+      text += fmt::format("{:.10g}", fmt::join(values, " "));
+    }
+    text += '\n';
+  };
+  for (std::size_t row = 0; row < band.x.size(); ++row) {
+    // Where x turns back a new piece begins: gnuplot leaves out what one piece covers twice.
+    if (row > 1 && (band.x[row] - band.x[row - 1]) * (band.x[row - 1] - band.x[row - 2]) < 0.0) {
+      text += '\n';
+      append_row(row - 1);
+    }
+    append_row(row);
+  }
+}
+
 void append_point(std::string& text, const ChartSeries& series, std::size_t row) {
   append_number(text, series.x[row]);
   text += ' ';
@@ -74,7 +97,8 @@ class Looks {
     LegendRow points{"Points", {}};
     LegendRow areas{"Area", {}};
     for (const ChartPanel& panel : chart.panels) {
-      for (const ChartArea& area : panel.areas) put(areas, {area.legend, area_style(area)});
+      for (const ChartArea& area : panel.areas) put(areas, {area.legend, area_style(area.colour)});
+      for (const ChartBand& band : panel.bands) put(areas, {band.legend, area_style(band.colour)});
       for (const ChartSeries& series : panel.series) {
         const bool is_points = series.style == Style::points;
         put(is_points ? points : curves, {series.legend, is_points ? this->points(series) : sample(series)});
@@ -85,8 +109,12 @@ class Looks {
     return rows;
   }
 
-  [[nodiscard]] static std::string area_style(const ChartArea& area) {
-    return fmt::format("with boxxyerror fs solid 1.0 noborder lc rgb '#{:06X}'", area.colour);
+  [[nodiscard]] static std::string area_style(unsigned colour) {
+    return fmt::format("with boxxyerror fs solid 1.0 noborder lc rgb '#{:06X}'", colour);
+  }
+
+  [[nodiscard]] static std::string band_style(unsigned colour) {
+    return fmt::format("with filledcurves fs solid 1.0 noborder fc rgb '#{:06X}'", colour);
   }
 
   [[nodiscard]] static std::string_view dash_of(Style style) {
@@ -188,6 +216,11 @@ struct PanelAxes {
       y.insert(y.end(), {box[2], box[3]});
     }
   }
+  for (const ChartBand& band : panel.bands) {
+    x.insert(x.end(), band.x.begin(), band.x.end());
+    y.insert(y.end(), band.lower.begin(), band.lower.end());
+    y.insert(y.end(), band.upper.begin(), band.upper.end());
+  }
   return {axis_over(panel.x, std::move(x)), axis_over(panel.y, std::move(y))};
 }
 
@@ -196,7 +229,11 @@ struct PanelAxes {
   for (std::size_t k = 0; k < panel.areas.size(); ++k) {
     if (panel.areas[k].boxes.empty()) continue;
     plots.push_back(fmt::format("data index {} using (0.5*($1+$2)):(0.5*($3+$4)):1:2:3:4 {}",
-                                gnuplot_string(block_of_area(place, k)), Looks::area_style(panel.areas[k])));
+                                gnuplot_string(block_of_area(place, k)), Looks::area_style(panel.areas[k].colour)));
+  }
+  for (std::size_t k = 0; k < panel.bands.size(); ++k) {
+    plots.push_back(fmt::format("data index {} using 1:2:3 {}", gnuplot_string(block_of_band(place, k)),
+                                Looks::band_style(panel.bands[k].colour)));
   }
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     const ChartSeries& series = panel.series[k];
@@ -230,6 +267,7 @@ std::string chart_data(const Chart& chart, const std::string& source) {
         text += fmt::format("{:.10g} {:.10g} {:.10g} {:.10g}\n", x_low, x_high, y_low, y_high);
       }
     }
+    for (std::size_t b = 0; b < panel.bands.size(); ++b) append_band(text, panel.bands[b], k, b);
     for (std::size_t s = 0; s < panel.series.size(); ++s) append_series(text, panel.series[s], k, s);
   }
   return text;

@@ -37,6 +37,15 @@ struct ChartArea {
   std::vector<Box> boxes;
 };
 
+/// The area between two curves over the same x, drawn below the series. Rows in which anything is undefined are gaps.
+struct ChartBand {
+  std::string legend;
+  unsigned colour = 0;  ///< 0xRRGGBB
+  std::vector<double> x;
+  std::vector<double> lower;
+  std::vector<double> upper;
+};
+
 struct ChartAxis {
   std::string label;               ///< gnuplot's enhanced text
   std::optional<double> lowest{};  ///< absent: what the values take
@@ -49,6 +58,7 @@ struct ChartPanel {
   ChartAxis y;
   std::string note{};  ///< what tells this panel from the others, above it
   std::vector<ChartArea> areas{};
+  std::vector<ChartBand> bands{};
   std::vector<ChartSeries> series{};
 };
 

@@ -92,22 +92,23 @@ void exchange(const fs::path& staged, const fs::path& target) {
 
 }  // namespace
 
-void check_run_folder(const fs::path& target) {
+void check_run_folder(const fs::path& target, std::string_view marker) {
   if (!fs::exists(target)) return;
   if (!fs::is_directory(target)) {
-    throw std::runtime_error(fmt::format("{}: is a file; expected a folder for the run", target.string()));
+    throw std::runtime_error(fmt::format("{}: is a file; expected a folder for the result", target.string()));
   }
-  if (!fs::is_empty(target) && !fs::exists(target / "run.json")) {
+  if (!fs::is_empty(target) && !fs::exists(target / marker)) {
     throw std::runtime_error(
-        fmt::format("{}: holds files but no earlier run (no run.json), and a run replaces its folder; "
+        fmt::format("{}: holds files but no earlier result of this kind (no {}), and a result replaces its folder; "
                     "choose another folder with -o",
-                    target.string()));
+                    target.string(), marker));
   }
 }
 
-StagedFolder::StagedFolder(fs::path target) : target_(fs::absolute(std::move(target)).lexically_normal()) {
+StagedFolder::StagedFolder(fs::path target, std::string_view marker)
+    : target_(fs::absolute(std::move(target)).lexically_normal()) {
   if (!target_.has_filename()) target_ = target_.parent_path();
-  check_run_folder(target_);
+  check_run_folder(target_, marker);
   fs::create_directories(target_.parent_path());
   std::string pattern = (target_.parent_path() / ("." + target_.filename().string() + ".XXXXXX")).string();
   if (mkdtemp(pattern.data()) == nullptr) {

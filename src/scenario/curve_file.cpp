@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <utility>
 
+#include "scenario/cells.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 
@@ -19,38 +18,15 @@ constexpr std::size_t k_largest_table = 1024U * 1024U;
 constexpr std::size_t k_most_faults = 20;  ///< of one table: nobody reads on
 constexpr std::string_view k_example_headings = "delta_max_over_R,p_over_Y";
 
-std::string_view without_end_blanks(std::string_view text) {
-  const std::size_t last = text.find_last_not_of(" \t\r");
-  return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
-}
-
-/// A cell and where it begins.
-struct Cell {
-  std::string_view text;
-  std::size_t column = 1;
-};
-
-std::optional<double> number_in(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 class CurveParser {
  public:
   CurveParser(const std::string& origin, FaultList& faults) : origin_(origin), faults_(faults) {}
 
   SampledCurve parse(std::string_view text) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    std::string_view rest = text;
-    if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+    std::string_view rest = without_byte_order_mark(text);
     while (!rest.empty() && found_ < k_most_faults) {
-      const std::size_t end = std::min(rest.find('\n'), rest.size());
       ++line_;
-      take_line(without_end_blanks(rest.substr(0, end)));
-      rest.remove_prefix(std::min(end + 1, rest.size()));
+      add_line(take_line(rest));
     }
     if (found_ < k_most_faults) {
       check_length();
@@ -63,13 +39,13 @@ class CurveParser {
   }
 
  private:
-  void take_line(std::string_view line) {
-    const std::size_t begin = line.find_first_not_of(" \t");
-    if (begin == std::string_view::npos || line[begin] == '#') return;
+  void add_line(std::string_view line) {
+    if (is_comment(line)) return;
     const std::vector<Cell> cells = cells_of(line);
     if (cells.size() != headings_.size()) {
-      fault(begin + 1, fmt::format("{} cell{} where 2 are expected, for example {}", cells.size(),
-                                   cells.size() == 1 ? "" : "s", has_headings_ ? "0.1,2.1" : k_example_headings));
+      fault(line.find_first_not_of(" \t") + 1,
+            fmt::format("{} cell{} where 2 are expected, for example {}", cells.size(), cells.size() == 1 ? "" : "s",
+                        has_headings_ ? "0.1,2.1" : k_example_headings));
       has_headings_ = true;  // what follows is not to be taken for them
       ++rows_;
     } else if (has_headings_) {
@@ -77,17 +53,6 @@ class CurveParser {
     } else {
       take_headings(cells);
     }
-  }
-
-  static std::vector<Cell> cells_of(std::string_view line) {
-    std::vector<Cell> cells;
-    for (std::size_t at = 0; at <= line.size();) {
-      const std::size_t end = std::min(line.find(',', at), line.size());
-      const std::size_t begin = std::min(line.find_first_not_of(" \t", at), end);
-      cells.push_back({without_end_blanks(line.substr(begin, end - begin)), begin + 1});
-      at = end + 1;
-    }
-    return cells;
   }
 
   void take_headings(const std::vector<Cell>& cells) {

@@ -144,7 +144,7 @@ Quantity parse_quantity(std::string_view text, Dimension dimension, std::optiona
   }
   const std::optional<double> factor = unit_factor(number.rest, info, initial_radius);
   if (!factor) return {{}, unknown_unit(number.rest, info)};
-  return {number.value * *factor, {}};
+  return {number.value * *factor, {}, std::string(number.rest)};
 }
 
 }  // namespace monograin

@@ -40,6 +40,7 @@ struct DimensionInfo {
 struct Quantity {
   std::optional<double> value;  ///< SI; none where the text is not a quantity of that dimension
   std::string problem;          ///< then: what is wrong and what is expected
+  std::string unit{};           ///< as it was given
 };
 
 /// Reads a number followed by a unit, independently of the locale.

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -294,7 +295,8 @@ TEST_F(Commands, AnUnknownCommandIsAnsweredWithThoseThereAre) {
 }
 
 TEST_F(Commands, HelpEndsWithAnExample) {
-  for (const char* command : {"", "run", "check", "models", "plot", "atlas", "compare", "regress", "schema"}) {
+  for (const char* command :
+       {"", "run", "check", "models", "plot", "atlas", "compare", "regress", "calibrate", "schema"}) {
     const Outcome help = monograin(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Example: monograin "), std::string::npos) << command;
@@ -354,6 +356,81 @@ TEST_F(Commands, AtlasKnowsTheReadyDefinitions) {
   const Outcome outcome = monograin("atlas --list --plots '" MONOGRAIN_SOURCE_DIR "/plots'");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("mdr-fe "), std::string::npos) << outcome.out;
+}
+
+/// Fits the yield stress of k_small, which stands beside it, to a run of it.
+constexpr const char* k_calibration = R"toml(scenario = "small.toml"
+[data]
+file = "measured.csv"
+x = "axial.displacement"
+y = "axial.force"
+[free]
+"material.yield_stress" = { from = "5 MPa", to = "80 MPa" }
+)toml";
+
+TEST_F(Commands, CalibrateFindsTheParameterOfARunAndLeavesAScenarioThatRuns) {
+  write_text(folder() / "small.toml", k_small);
+  write_text(folder() / "fit.toml", k_calibration);
+  ASSERT_EQ(monograin("run small.toml -o measured --set material.yield_stress='31 MPa'").code, 0);
+  const Table history = read_csv(folder() / "measured/history.csv");
+  std::ostringstream data;
+  data << "axial.displacement[m],axial.force[N]\n" << std::setprecision(17);
+  for (std::size_t i = 0; i < history.row_count(); ++i) {
+    // Rows at events may stand on either side of a jump.
+    if (history.at(i, *history.find("row")) != 0.0) continue;
+    data << history.at(i, *history.find("axial.displacement")) << ',' << history.at(i, *history.find("axial.force"))
+         << '\n';
+  }
+  write_text(folder() / "measured.csv", data.str());
+  const Outcome outcome = monograin("calibrate fit.toml --confidence 0.9");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("material.yield_stress"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("31 MPa"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("90 % interval"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("-> runs/fit"), std::string::npos) << outcome.err;
+  for (const char* file : {"fit.csv", "fitted.toml", "calibration.json", "figure.svg"})
+    EXPECT_TRUE(fs::exists(folder() / "runs/fit" / file)) << file;
+  const auto json = nlohmann::json::parse(read_text(folder() / "runs/fit/calibration.json"));
+  EXPECT_NEAR(json["parameters"][0]["value_in_unit"].get<double>(), 31.0, 1e-9);
+  ASSERT_EQ(monograin("run runs/fit/fitted.toml -o again").code, 0);
+  const Outcome same = monograin("compare measured/history.csv again/history.csv --tol 1e-9");
+  EXPECT_EQ(same.code, 0) << same.out;
+}
+
+TEST_F(Commands, CalibrateWritesNothingWhereSomethingIsAtFault) {
+  write_text(folder() / "small.toml", k_small);
+  write_text(folder() / "fit.toml", k_calibration);
+  const auto before = files();
+  const Outcome outcome = monograin("calibrate fit.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err.find("fit.toml:3:8: file = \"measured.csv\": there is no such file"), 0U) << outcome.err;
+  EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  EXPECT_EQ(monograin("calibrate").code, 2);
+  EXPECT_EQ(monograin("calibrate nowhere.toml").code, 2);
+  EXPECT_EQ(monograin("calibrate fit.toml --confidence 1.5").code, 2);
+  EXPECT_EQ(files(), before);
+  write_text(folder() / "measured.csv", "axial.displacement[m],axial.force[N]\n5e-5,5\n1e-4,12\n");
+  ASSERT_EQ(monograin("run small.toml -o measured").code, 0);
+  fs::create_directory(folder() / "mine");
+  write_text(folder() / "mine/notes.txt", "keep me");
+  const auto with_run = files();
+  EXPECT_EQ(monograin("calibrate fit.toml -o mine").code, 2);
+  EXPECT_EQ(monograin("calibrate fit.toml -o measured").code, 2) << "a run is no calibration";
+  EXPECT_EQ(files(), with_run);
+}
+
+TEST_F(Commands, CalibrateFitsTheReadyExample) {
+  const Outcome outcome =
+      monograin("calibrate '" MONOGRAIN_SOURCE_DIR "/scenarios/calibrate/uniaxial.toml' --quiet -o fit");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+  const auto json = nlohmann::json::parse(read_text(folder() / "fit/calibration.json"));
+  // What the data were made with, 1.2 GPa and 45 MPa, lies in the intervals.
+  for (const auto& [k, truth] : {std::pair(0, 1.2e9), std::pair(1, 45e6)}) {
+    const auto& interval = json["parameters"][static_cast<std::size_t>(k)]["interval"];
+    EXPECT_LT(interval[0].get<double>(), truth) << k;
+    EXPECT_GT(interval[1].get<double>(), truth) << k;
+  }
 }
 
 TEST_F(Commands, ManualAndCompletionKnowEveryCommand) {

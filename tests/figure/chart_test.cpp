@@ -49,6 +49,21 @@ TEST(Chart, LeavesAGapWhereAValueIsUndefined) {
   EXPECT_NE(chart_data(chart_of({gapped}), "").find("0 0\n1 NaN\n0.5 1\n"), std::string::npos);
 }
 
+TEST(Chart, DrawsABandPieceByPieceWhereXTurnsBack) {
+  Chart chart = chart_of({series("a")});
+  chart.panels[0].bands = {{.legend = "band",
+                            .colour = 0x9FC5E8,
+                            .x = {0.0, 1.0, 2.0, 1.0},
+                            .lower = {0.0, 1.0, 2.0, 0.5},
+                            .upper = {0.0, 2.0, 4.0, std::nan("")}}};
+  const std::string data = chart_data(chart, "");
+  EXPECT_NE(data.find("lowest and highest y\n0 0 0\n1 1 2\n2 2 4\n\n2 2 4\n\n"), std::string::npos) << data;
+  const std::string script = script_of(chart);
+  EXPECT_LT(script.find("'panel 1 band 1.' using 1:2:3 with filledcurves"), script.find("'panel 1 series 1.'"));
+  EXPECT_EQ(count(script, "title 'band'"), 1U) << script;
+  EXPECT_NE(script.find("set yrange [0:4"), std::string::npos) << "the band belongs to what the axis shows: " << script;
+}
+
 TEST(Chart, SameLegendsLookTheSameAndStandOnceInTheLegend) {
   Chart chart = chart_of({series("a"), series("b")});
   chart.panels.push_back(chart.panels.front());

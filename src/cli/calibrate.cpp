@@ -1,0 +1,95 @@
+// `monograin calibrate`.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "cli/commands.hpp"
+#include "history/run_files.hpp"
+#include "study/calibration.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CalibrateOptions {
+  std::string file;
+  std::string output;
+  std::optional<double> confidence;
+  bool is_quiet = false;
+};
+
+/// A line that tells how far a search has come, on a terminal.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool is_wanted) : is_shown_(is_wanted && isatty(STDERR_FILENO) == 1) {}
+  ~ProgressLine() {
+    if (percent_ >= 0) fmt::print(stderr, "\r{:20}\r", "");
+  }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(double done) {
+    const int percent = static_cast<int>(std::floor(100.0 * done));
+    if (!is_shown_ || percent == percent_) return;
+    percent_ = percent;
+    fmt::print(stderr, "\rsearching {:3} %", percent);
+    std::fflush(stderr);
+  }
+
+ private:
+  bool is_shown_;
+  int percent_ = -1;
+};
+
+int run_calibration(const CalibrateOptions& options) {
+  Calibration calibration = read_calibration(options.file);
+  if (options.confidence) calibration.confidence = *options.confidence;
+  const fs::path folder = options.output.empty() ? fs::path("runs") / calibration.name : fs::path(options.output);
+  try {
+    check_run_folder(folder, k_calibration_marker);
+  } catch (const std::runtime_error& error) {
+    throw UsageError(error.what());
+  }
+  const CalibrationResult result = [&] {
+    ProgressLine line(!options.is_quiet);
+    return calibrate(calibration, [&line](double done) { line.show(done); });
+  }();
+  const std::string no_figure = write_calibration(calibration, result, folder);
+  fmt::print("{}", calibration_text(calibration, result));
+  if (!no_figure.empty()) fmt::print(stderr, "warning: no figure: {}\n", no_figure);
+  if (options.is_quiet) return k_success;
+  for (const std::string& note : result.notes) fmt::print(stderr, "note: {}\n", note);
+  fmt::print(stderr,
+             "{}: the data drive the particle, in {} step{}; the scenario's own steps only stand in fitted.toml\n"
+             "{}: {} trial runs -> {}\n",
+             calibration.name, result.program_steps, result.program_steps == 1 ? "" : "s", calibration.name,
+             result.solution.evaluations, folder.string());
+  return k_success;
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App& app, Action& action) {
+  auto options = std::make_shared<CalibrateOptions>();
+  CLI::App* command =
+      app.add_subcommand("calibrate", "Fit numbers of a scenario to measured data, with confidence intervals");
+  command->add_option("FILE", options->file, "Calibration file (TOML): scenario, data, free parameters and bounds")
+      ->required();
+  command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME]");
+  command
+      ->add_option("--confidence", options->confidence,
+                   "Level of the two-sided intervals, e.g. 0.99 [the file's, or 0.95]")
+      ->check(CLI::Range(1e-6, 1.0 - 1e-6));
+  command->add_flag("--quiet", options->is_quiet, "Say nothing but the result and errors");
+  command->footer("Example: monograin calibrate scenarios/calibrate/uniaxial.toml");
+  command->callback([options, &action] { action = [options] { return run_calibration(*options); }; });
+}
+
+}  // namespace monograin

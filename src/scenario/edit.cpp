@@ -1,0 +1,67 @@
+#include "scenario/edit.hpp"
+
+#include <fmt/format.h>
+
+#include <sstream>
+#include <stdexcept>
+
+#include "scenario/cells.hpp"
+#include "scenario/document.hpp"
+#include "scenario/faults.hpp"
+
+namespace monograin {
+namespace {
+
+/// Where a position of the parser, whose columns count characters, is in the text.
+std::size_t offset_of(std::string_view text, const toml::source_position& position) {
+  std::size_t at = text.size() - without_byte_order_mark(text).size();
+  for (toml::source_index line = 1; line < position.line; ++line) at = text.find('\n', at) + 1;
+  const auto continues_character = [&] {
+    return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U;
+  };
+  for (toml::source_index column = 1; column < position.column; ++column) {
+    ++at;
+    while (continues_character()) ++at;
+  }
+  return at;
+}
+
+void apply(std::string& text, const TextEdit& edit) {
+  const std::size_t dot = edit.path.find('.');
+  const std::string_view key = std::string_view(edit.path).substr(dot + 1);
+  const toml::table root = parse_document(text, "text");
+  const toml::table* table = root[std::string_view(edit.path).substr(0, dot)].as_table();
+  if (const toml::node* value = table == nullptr ? nullptr : table->get(key)) {
+    const std::size_t begin = offset_of(text, value->source().begin);
+    text.replace(begin, offset_of(text, value->source().end) - begin, edit.value);
+    return;
+  }
+  const std::size_t begin = table == nullptr ? text.size() : offset_of(text, table->source().begin);
+  const bool has_header = begin < text.size() && text[begin] == '[' && !table->is_inline();
+  if (!has_header) throw std::runtime_error(fmt::format("there is no place for '{}'", edit.path));
+  const std::string line = fmt::format("{} = {}\n", key, edit.value);
+  const std::size_t end = text.find('\n', begin);
+  if (end == std::string::npos) {
+    text += '\n' + line;
+  } else {
+    text.insert(end + 1, line);
+  }
+}
+
+}  // namespace
+
+std::string with_values(std::string text, const std::vector<TextEdit>& edits) {
+  for (const TextEdit& edit : edits) apply(text, edit);
+  return text;
+}
+
+std::string text_of_table(std::string_view document, std::string_view key, const std::string& origin) {
+  const toml::table root = parse_document(document, origin);
+  const toml::table* table = root[key].as_table();
+  if (table == nullptr) throw_fault({origin}, fmt::format("there is no table [{}]", key));
+  std::ostringstream text;
+  text << toml::toml_formatter{*table} << '\n';
+  return text.str();
+}
+
+}  // namespace monograin

@@ -1,0 +1,48 @@
+#include "scenario/numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <span>
+
+#include "scenario/language.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr std::string_view k_material = "material.";
+constexpr std::string_view k_angle = "loading.angle";
+
+void append_quantities(std::vector<NumberKey>& numbers, std::string_view table, std::span<const KeySpec> keys) {
+  for (const KeySpec& key : keys) {
+    if (key.kind != KeySpec::Kind::quantity) continue;
+    numbers.push_back({fmt::format("{}.{}", table, key.name), key.meaning, key.dimension, finite_range(key)});
+  }
+}
+
+}  // namespace
+
+std::vector<NumberKey> number_keys(const Scenario& scenario) {
+  const Language language = language_of(scenario.model);
+  std::vector<NumberKey> numbers;
+  append_quantities(numbers, "material", language.material);
+  append_quantities(numbers, scenario.model, language.options);
+  if (scenario.loading.configuration == Loading::Configuration::oblique_die) {
+    const KeySpec* angle = find_key(language.loading, "angle");
+    if (angle != nullptr) append_quantities(numbers, "loading", std::span(angle, 1));
+  }
+  return numbers;
+}
+
+void set_number(Scenario& scenario, std::string_view path, double value) {
+  if (path == k_angle) {
+    scenario.loading.oblique_angle = value;
+  } else if (path.starts_with(k_material)) {
+    scenario.material.insert_or_assign(std::string(path.substr(k_material.size())), value);
+  } else if (path.starts_with(scenario.model + '.')) {
+    scenario.options.insert_or_assign(std::string(path.substr(scenario.model.size() + 1)), value);
+  } else {
+    throw std::logic_error(fmt::format("'{}' is no number that can be set on its own", path));
+  }
+}
+
+}  // namespace monograin

@@ -1,0 +1,438 @@
+// Reading of calibration files.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "scenario/document.hpp"
+#include "scenario/edit.hpp"
+#include "scenario/section.hpp"
+#include "scenario/text_file.hpp"
+#include "scenario/units.hpp"
+#include "scenario/words.hpp"
+#include "study/calibration.hpp"
+#include "study/calibration_language.hpp"
+#include "study/measured_data.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace calibration;
+
+constexpr std::size_t k_largest_data = 16U * 1024U * 1024U;
+constexpr double k_ratio_for_log = 100.0;  // of bounds: from here on their parameter is sought in its logarithm
+constexpr std::size_t k_most_zeros = 20;   // that are reported one by one
+
+/// The dimension whose SI unit this is.
+std::optional<Dimension> dimension_of(std::string_view si) {
+  for (const Dimension dimension : {Dimension::length, Dimension::stress, Dimension::force}) {
+    if (dimension_info(dimension).si == si) return dimension;
+  }
+  return std::nullopt;
+}
+
+/// What a file says of one column.
+struct ColumnSpec {
+  ColumnRequest request;
+  std::string quantity;  ///< empty: that of the heading
+  std::string unit;      ///< empty: that of the heading
+  SourceLocation quantity_at;
+  SourceLocation unit_at;
+};
+
+class CalibrationReader {
+ public:
+  explicit CalibrationReader(const fs::path& file) : file_(file), reading_{faults_} {}
+
+  Calibration read() {
+    auto [text, problem] = read_text_file(file_, k_largest_text);
+    if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a calibration file");
+    made_.text = std::move(text);
+    made_.file = file_.string();
+    made_.name = file_.stem().string();
+    const toml::table tree = parse_document(made_.text, made_.file);
+    const bool scenario_is_table = tree["scenario"].is_table();
+    const Keys keys = root_keys(scenario_is_table);
+    const Section root(reading_, {&tree, {made_.file}, "the calibration"}, keys);
+    made_.title = root.text("title");
+    has_scenario_ = read_own_scenario(root, scenario_is_table);
+    read_fit(root);
+    if (root.has("data")) read_data(root);
+    if (root.has("free") && has_scenario_) read_free(root);
+    faults_.throw_if_any();
+    check_count(root);
+    faults_.throw_if_any();
+    return std::move(made_);
+  }
+
+ private:
+  bool read_own_scenario(const Section& root, bool is_table) {
+    if (!root.has("scenario")) return false;
+    try {
+      if (is_table) {
+        scenario_file_ = made_.file;
+        made_.scenario = parse_scenario_table(made_.text, "scenario", made_.file);
+        made_.scenario_text = text_of_table(made_.text, "scenario", made_.file);
+      } else {
+        const std::string name = root.text("scenario");
+        if (name.empty()) return false;
+        const fs::path path = file_.parent_path() / name;
+        if (!fs::is_regular_file(path)) {
+          faults_.add(
+              root.value_place("scenario"),
+              fmt::format("scenario = \"{}\": there is no such file ({}); expected a path relative to this file",
+                          shown(name), on_one_line(path.string())));
+          return false;
+        }
+        scenario_file_ = path.string();
+        made_.scenario = read_scenario(path);
+        made_.scenario_text = made_.scenario.text;
+      }
+      measurable_ = measurable_in(made_.scenario);
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) faults_.add(fault.where, fault.message);
+      return false;
+    }
+    reading_.initial_radius = made_.scenario.radius;
+    check_walls(root);
+    return true;
+  }
+
+  /// The data tell one program, which all walls that move are to follow.
+  void check_walls(const Section& root) {
+    for (const WallSpec& wall : made_.scenario.loading.walls) {
+      if (wall.is_fixed || wall.steps.empty()) continue;
+      faults_.add(root.value_place("scenario"),
+                  fmt::format("wall '{}' of the scenario has steps of its own, and the data drive all walls alike; "
+                              "expected walls that are fixed or follow [[loading.steps]]",
+                              wall.name));
+    }
+    if (measurable_.driven.empty()) faults_.add(root.value_place("scenario"), "the scenario has no wall that moves");
+  }
+
+  void read_fit(const Section& root) {
+    const Keys keys = fit_keys();
+    const std::size_t before = faults_.size();
+    const Section fit(reading_, root.table("fit", "[fit]"), keys);
+    if (faults_.size() > before) return;
+    const std::string loss = fit.text("loss");
+    made_.loss.kind = static_cast<Loss>(std::ranges::find(k_losses, loss) - k_losses.begin());
+    made_.loss.scale = fit.number("loss_scale").value_or(1.0);
+    made_.confidence = fit.number("confidence").value_or(made_.confidence);
+    const bool is_linear = made_.loss.kind == Loss::linear;
+    if (is_linear && fit.has("loss_scale")) {
+      faults_.add(fit.key_place("loss_scale"), "key 'loss_scale' is not used by the linear loss");
+    } else if (!is_linear && !fit.has("loss_scale")) {
+      faults_.add(fit.value_place("loss"), fmt::format("loss = \"{}\" needs a scale; expected for example "
+                                                       "loss_scale = 0.01, a share of the largest |y|",
+                                                       loss));
+    }
+  }
+
+  // --- data
+
+  void read_data(const Section& root) {
+    const Section::Origin origin = root.table("data", "[data]");
+    const auto is_table = [&origin](std::string_view key) {
+      const toml::node* node = origin.table->get(key);
+      return node != nullptr && node->is_table();
+    };
+    const Keys keys = data_keys(is_table("x"), is_table("y"));
+    const std::size_t before = faults_.size();
+    const Section data(reading_, origin, keys);
+    const bool is_clean = faults_.size() == before;
+    made_.weighting = data.text("weights");
+    std::vector<ColumnSpec> specs{column_spec(data, "x", is_table("x")), column_spec(data, "y", is_table("y"))};
+    if (made_.weighting == "column") {
+      if (!data.has_or_misspells("weight_column")) {
+        faults_.add(data.value_place("weights"),
+                    "weights = \"column\" needs the column; expected for example weight_column = \"weight[-]\"");
+      }
+      specs.push_back(column_spec(data, "weight_column", false));
+    } else if (is_clean && data.has("weight_column")) {
+      faults_.add(data.key_place("weight_column"),
+                  fmt::format("key 'weight_column' belongs to weights = \"column\"; this is \"{}\"", made_.weighting));
+    }
+
+    const std::string name = data.text("file");
+    if (name.empty()) return;
+    const fs::path path = file_.parent_path() / name;
+    auto [text, problem] = read_text_file(path, k_largest_data);
+    if (problem.empty() && text.size() > k_largest_data) {
+      problem = fmt::format("the file is too large; expected at most {} MiB", k_largest_data >> 20U);
+    }
+    if (!problem.empty()) {
+      return faults_.add(data.value_place("file"),
+                         fmt::format("file = \"{}\": {} ({}); expected a path relative to this file", shown(name),
+                                     problem, on_one_line(path.string())));
+    }
+    made_.data_file = path.string();
+    std::vector<ColumnRequest> wanted;
+    for (const ColumnSpec& spec : specs) wanted.push_back(spec.request);
+    MeasuredData measured = parse_measured(text, made_.data_file, wanted, faults_);
+    made_.data_text = std::move(measured.text);
+    made_.lines = std::move(measured.lines);
+    made_.x = quantity(specs[0], measured.columns[0]);
+    made_.y = quantity(specs[1], measured.columns[1]);
+    if (!made_.x.observable.empty()) check_drive(specs[0]);
+    if (faults_.size() == before && !made_.y.values.empty()) read_weights(measured);
+  }
+
+  [[nodiscard]] ColumnSpec column_spec(const Section& data, std::string_view key, bool is_table) {
+    if (!is_table) {
+      const std::string name = data.text(key);
+      return {.request = {name, data.value_place(key), fmt::format("{} = \"{}\"", key, shown(name))},
+              .quantity = {},
+              .unit = {},
+              .quantity_at = data.value_place(key),
+              .unit_at = data.value_place(key)};
+    }
+    const Keys keys = column_keys();
+    const Section column(reading_, data.table(key, std::string(key)), keys);
+    const std::string name = column.text("column");
+    return {.request = {name, column.value_place("column"), fmt::format("column = \"{}\"", shown(name))},
+            .quantity = column.text("quantity"),
+            .unit = column.text("unit"),
+            .quantity_at = column.value_place("quantity"),
+            .unit_at = column.value_place("unit")};
+  }
+
+  /// The column in SI; without an observable where something is wrong with it, or with the scenario.
+  [[nodiscard]] MeasuredQuantity quantity(const ColumnSpec& spec, const MeasuredColumn& column) {
+    MeasuredQuantity result;
+    if (column.heading.empty() || !has_scenario_ || measurable_.driven.empty()) return result;
+    const std::string name = spec.quantity.empty() ? std::string(name_in(column.heading)) : spec.quantity;
+    const Measurable::Column* found = measurable_.find(measurable_.driven.front().name + '.' + name);
+    if (found == nullptr) found = measurable_.find(name);
+    if (found == nullptr) {
+      unknown_quantity(name, spec);
+      return result;
+    }
+    result.unit = spec.unit.empty() ? std::string(unit_in(column.heading)) : spec.unit;
+    result.si = found->unit;
+    const auto factor = unit_factor(result, spec);
+    if (!factor) return result;
+    result.unit_factor = *factor;
+    result.observable = found->name;
+    result.values = column.values;
+    for (double& value : result.values) value *= *factor;
+    return result;
+  }
+
+  void unknown_quantity(const std::string& name, const ColumnSpec& spec) {
+    const std::string own = measurable_.driven.front().name + '.';
+    std::vector<std::string_view> names;
+    for (const Measurable::Column& column : measurable_.columns) {
+      std::string_view known = column.name;
+      if (known.starts_with(own)) known.remove_prefix(own.size());
+      names.push_back(known);
+    }
+    const std::string hint = did_you_mean(name, names);
+    faults_.add(spec.quantity_at, fmt::format("'{}' is no quantity of this scenario; expected one of {}{}{}",
+                                              shown(name), listed(names), hint,
+                                              spec.quantity.empty() && hint.empty()
+                                                  ? ", or { column = \"...\", quantity = \"...\", unit = \"...\" }"
+                                                  : ""));
+  }
+
+  [[nodiscard]] std::optional<double> unit_factor(const MeasuredQuantity& column, const ColumnSpec& spec) {
+    if (column.unit == column.si) return 1.0;
+    const auto dimension = dimension_of(column.si);
+    if (!dimension) {
+      faults_.add(spec.unit_at, fmt::format("unknown unit '{}'; expected '{}'", shown(column.unit), column.si));
+      return std::nullopt;
+    }
+    const Quantity one = parse_quantity("1 " + column.unit, *dimension, made_.scenario.radius);
+    if (!one.value) {
+      const std::string_view noun = dimension_info(*dimension).noun;
+      faults_.add(
+          spec.unit_at,
+          column.unit.empty()
+              ? fmt::format("{}: the heading has no unit; expected {} such as '{}[{}]', or {{ column = \"...\", "
+                            "quantity = \"...\", unit = \"...\" }}",
+                            spec.request.naming, noun, shown(spec.request.name), column.si)
+              : fmt::format("{}: {}", spec.request.naming, one.problem));
+    }
+    return one.value;
+  }
+
+  void check_drive(const ColumnSpec& spec) {
+    const std::string& name = made_.x.observable;
+    const std::size_t dot = name.rfind('.');
+    const std::string contact_class = name.substr(0, dot == std::string::npos ? 0 : dot);
+    const std::string quantity = name.substr(dot + 1);
+    const auto driven = std::ranges::find(measurable_.driven, contact_class, &Measurable::Driven::name);
+    if (driven == measurable_.driven.end()) {
+      faults_.add(spec.quantity_at, fmt::format("'{}' cannot drive the particle; expected a displacement or a force of "
+                                                "{}, whose walls move",
+                                                name, measurable_.driven.front().name));
+    } else if (quantity == "displacement") {
+      made_.control = Step::Kind::displacement;
+      made_.start = -driven->gap;
+    } else if (quantity == "force") {
+      made_.control = Step::Kind::force;
+    } else {
+      faults_.add(spec.quantity_at,
+                  fmt::format("'{}' cannot drive the particle; expected a displacement or a force as x", name));
+    }
+    const DataProgram program = program_through(made_.x.values, made_.control, made_.start);
+    if (!made_.x.values.empty() && program.steps.empty()) {
+      faults_.add(spec.request.where,
+                  fmt::format("{}: it never changes; expected data along a loading path", spec.request.naming));
+    }
+  }
+
+  void read_weights(const MeasuredData& measured) {
+    const std::vector<double>& y = made_.y.values;
+    double largest = 0.0;
+    for (const double value : y) largest = std::max(largest, std::abs(value));
+    const auto at = [&](std::size_t row, std::size_t column) {
+      return SourceLocation{made_.data_file, made_.lines[row], measured.columns[column].at[row]};
+    };
+    if (largest == 0.0) return faults_.add(at(0, 1), "y is zero in every row; there is nothing to fit");
+    made_.weights.assign(y.size(), 1.0 / largest);
+    std::size_t found = 0;
+    for (std::size_t row = 0; row < y.size() && found < k_most_zeros; ++row) {
+      if (made_.weighting == "relative") {
+        made_.weights[row] = 1.0 / std::abs(y[row]);
+        if (y[row] != 0.0) continue;
+        ++found;
+        faults_.add(at(row, 1), "y = 0 has no relative weight; expected other weights, or a file without this row");
+      } else if (made_.weighting == "column") {
+        const double factor = measured.columns[2].values[row];
+        made_.weights[row] *= factor;
+        if (factor >= 0.0) continue;
+        ++found;
+        faults_.add(at(row, 2),
+                    fmt::format("weight = {}: expected 0 (the row only drives the particle) or more", factor));
+      }
+    }
+  }
+
+  // --- free parameters
+
+  void read_free(const Section& root) {
+    const std::vector<NumberKey> numbers = number_keys(made_.scenario);
+    const Keys keys = free_keys(numbers);
+    const std::vector<ForeignKey> foreign = foreign_keys(root.table("free", "").table);
+    const Section free(reading_, root.table("free", "[free]"), keys, foreign);
+    std::vector<std::pair<SourceLocation, const NumberKey*>> found;
+    for (const NumberKey& number : numbers) {
+      if (free.has(number.path)) found.emplace_back(free.key_place(number.path), &number);
+    }
+    // In the order of the file, not of the model.
+    std::ranges::sort(found, {}, [](const auto& entry) { return std::pair(entry.first.line, entry.first.column); });
+    if (found.size() > k_most_parameters) {
+      faults_.add(found[k_most_parameters].first,
+                  fmt::format("{} parameters are free; expected at most {}", found.size(), k_most_parameters));
+    }
+    for (const auto& [where, number] : found) read_bounds(free, *number);
+  }
+
+  /// Keys that stand in the scenario, or are written so that TOML takes them apart.
+  [[nodiscard]] static std::vector<ForeignKey> foreign_keys(const toml::table* table) {
+    std::vector<ForeignKey> foreign;
+    for (const auto& [key, node] : *table) {
+      const std::string_view name = key.str();
+      const toml::table* inner = node.as_table();
+      if (name == "particle.radius") {
+        foreign.push_back({name, "cannot be free: lengths of the scenario may be given in R0"});
+      } else if (inner != nullptr && !inner->contains("from") && name.find('.') == std::string_view::npos) {
+        foreign.push_back({name,
+                           "is a table; expected the whole path in quotes, for example "
+                           "\"material.youngs_modulus\" = { from = ..., to = ... }"});
+      }
+    }
+    return foreign;
+  }
+
+  void read_bounds(const Section& free, const NumberKey& number) {
+    const Keys keys = bounds_keys(number);
+    const Section::Origin origin = free.table(number.path, fmt::format("\"{}\"", number.path));
+    const Section bounds(reading_, origin, keys);
+    const auto from = bounds.number("from");
+    const auto to = bounds.number("to");
+    FreeParameter parameter;
+    parameter.key = number;
+    if (!from || !to) return;
+    if (!(*from < *to)) {
+      return faults_.add(bounds.value_place("to"),
+                         fmt::format("to = {} is not above from = {}; expected bounds the other way round",
+                                     shown(*origin.table->get("to")), shown(*origin.table->get("from"))));
+    }
+    parameter.lower = *from;
+    parameter.upper = *to;
+    parameter.start = bounds.number("start");
+    if (parameter.start && (*parameter.start < *from || *parameter.start > *to)) {
+      faults_.add(bounds.value_place("start"),
+                  fmt::format("start = {} is not between the bounds", shown(*origin.table->get("start"))));
+    }
+    const std::string scale = bounds.text("scale");
+    parameter.is_logarithmic = scale.empty() ? *from > 0.0 && *to >= k_ratio_for_log * *from : scale == "log";
+    if (parameter.is_logarithmic && *from <= 0.0) {
+      faults_.add(bounds.value_place("scale"), "scale = \"log\" needs bounds above zero");
+    }
+    set_unit(parameter, *origin.table->get("from"));
+    check_place(free, parameter);
+    made_.free.push_back(std::move(parameter));
+  }
+
+  /// The unit of a bound, which is a bare number where it is in SI.
+  static void set_unit(FreeParameter& parameter, const toml::node& bound) {
+    const Dimension dimension = parameter.key.dimension;
+    parameter.unit = dimension_info(dimension).si;
+    if (const auto* text = bound.as_string()) {
+      parameter.unit = parse_quantity(text->get(), dimension, std::nullopt).unit;
+      parameter.unit_factor = parse_quantity("1 " + parameter.unit, dimension, std::nullopt).value.value_or(1.0);
+    }
+  }
+
+  /// Whether a number can be put into the scenario's text, so that what has been fitted can be run.
+  void check_place(const Section& free, const FreeParameter& parameter) {
+    const std::string& path = parameter.key.path;
+    try {
+      const std::string text = with_values(made_.scenario_text, {{path, fmt::format("{:e}", parameter.lower)}});
+      static_cast<void>(parse_scenario(text, scenario_file_));
+    } catch (const ScenarioError& error) {
+      faults_.add(free.key_place(path), fmt::format("the scenario does not take '{}': {}", path,
+                                                    on_one_line(error.faults().front().message)));
+    } catch (const std::runtime_error&) {
+      faults_.add(free.key_place(path),
+                  fmt::format("the scenario does not give '{}', and has no table with a header to put it in; expected "
+                              "it there, with any value",
+                              path));
+    }
+  }
+
+  void check_count(const Section& root) {
+    const std::size_t points = made_.counted();
+    if (points >= made_.free.size()) return;
+    faults_.add(root.value_place("free"),
+                fmt::format("{} parameters cannot be fitted to {} point{}; expected at least as many points",
+                            made_.free.size(), points, points == 1 ? "" : "s"));
+  }
+
+  fs::path file_;
+  FaultList faults_;
+  Reading reading_;
+  Calibration made_;
+  std::string scenario_file_;
+  Measurable measurable_;
+  bool has_scenario_ = false;
+};
+
+}  // namespace
+
+std::size_t Calibration::counted() const noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }));
+}
+
+Calibration read_calibration(const fs::path& file) { return CalibrationReader(file).read(); }
+
+}  // namespace monograin

@@ -1,0 +1,94 @@
+/// Nonlinear least squares with few, bounded parameters: the global minimum, by a scan and then a trust region.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace monograin {
+
+/// How a residual r counts: rho(r), with rho = r^2 where r is small beside the loss' scale c.
+enum class Loss {
+  linear,   ///< r^2
+  huber,    ///< r^2 up to c, then 2 c |r| - c^2
+  soft_l1,  ///< 2 c^2 (sqrt(1 + (r/c)^2) - 1)
+  cauchy    ///< c^2 log(1 + (r/c)^2)
+};
+
+struct LossFunction {
+  Loss kind = Loss::linear;
+  double scale = 1.0;  ///< c > 0, in units of the residuals
+
+  [[nodiscard]] double rho(double residual) const noexcept;
+  /// Half of rho's derivative: r where the loss is linear.
+  [[nodiscard]] double influence(double residual) const noexcept;
+  /// Half of its second derivative: 1 where the loss is linear.
+  [[nodiscard]] double curvature(double residual) const noexcept;
+};
+
+/// A parameter with finite bounds, lower < upper.
+struct BoundedParameter {
+  double lower = 0.0;
+  double upper = 1.0;
+  bool is_logarithmic = false;  ///< sought in its logarithm; lower > 0 then
+  std::optional<double> start;  ///< a further place to begin at
+};
+
+struct LeastSquaresProblem {
+  /// Residuals at some parameters, all finite; false where there are none.
+  using Residuals = std::function<bool(std::span<const double> parameters, std::span<double> residuals)>;
+  /// Told how much is done, from 0 to 1.
+  using Progress = std::function<void(double done)>;
+
+  std::vector<BoundedParameter> parameters;  ///< 1 to k_most_parameters
+  std::size_t residual_count = 0;
+  Residuals residuals;
+  LossFunction loss;
+  double noise = 1e-13;  ///< relative error of the residuals' model; sets the steps of differences
+  Progress progress;     ///< may be empty
+};
+
+inline constexpr std::size_t k_most_parameters = 8;
+
+/// A minimum that a search has come to.
+struct LocalMinimum {
+  std::vector<double> parameters;
+  double cost = 0.0;  ///< sum of rho
+};
+
+struct LeastSquaresSolution : LocalMinimum {
+  enum class Bound { none, lower, upper };
+  std::vector<Bound> bounds;         ///< at which each parameter sits
+  std::vector<double> residuals;     ///< raw, without loss
+  std::vector<LocalMinimum> minima;  ///< all that were polished and differ, the best first
+  bool has_converged = false;
+  long evaluations = 0;
+  long failures = 0;  ///< evaluations without residuals
+};
+
+/// Scans the box of the bounds, densely near its faces, polishes from the best places of every slice of it, and
+/// polishes the best of what that gives to the end with GSL's multifit_nlinear (Levenberg-Marquardt in a trust region,
+/// central differences). Bounds are kept by the transform u = sin(z)^2; a parameter that is driven into a bound is set
+/// to it.
+///
+/// Slices matter where parameters are correlated: the valley of low cost is then narrower than the scan's meshes and a
+/// minimum of the scan alone may lie in the wrong part of it.
+/// @return nothing where no place that was looked at has residuals
+[[nodiscard]] std::optional<LeastSquaresSolution> minimise(const LeastSquaresProblem& problem);
+
+/// The step of central differences in a parameter: truncation, the square of it, and rounding, noise over it, are alike
+/// where the residuals change on the scale of the parameter, or of its range where that is less.
+[[nodiscard]] double difference_step(const LeastSquaresProblem& problem, std::span<const double> parameters,
+                                     std::size_t k);
+
+/// Derivatives of the residuals with respect to the parameters [residual / parameter], by central differences,
+/// one-sided at a bound and where one side has no residuals.
+/// @return one row for each residual
+[[nodiscard]] Eigen::MatrixXd residual_jacobian(const LeastSquaresProblem& problem, std::span<const double> parameters);
+
+}  // namespace monograin

@@ -1,0 +1,86 @@
+/// A scenario whose walls follow measured data: its response at every datum, as often as wanted.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenario/scenario.hpp"
+
+namespace monograin {
+
+/// A program that goes through given values: one step of one second for each stretch in which they rise or fall.
+struct DataProgram {
+  std::vector<Step> steps;
+  std::vector<double> times;      ///< [s], ascending: where the program passes the values, after its start
+  std::vector<std::size_t> rows;  ///< for each value: the place of its instant, 0 for the start, k for times[k - 1]
+};
+
+/// Values that follow each other without any change (relative to the largest: 1e-12) share an instant.
+/// @param kind   displacement or force
+/// @param start  where the program begins: the same quantity before the first step
+[[nodiscard]] DataProgram program_through(std::span<const double> values, Step::Kind kind, double start);
+
+/// What can be measured on a scenario.
+struct Measurable {
+  struct Column {
+    std::string name;  ///< of an observable that is a number: "axial.force"
+    std::string unit;  ///< SI
+  };
+  struct Driven {
+    std::string name;
+    double gap = 0.0;  ///< [m]
+  };
+  std::vector<Driven> driven;  ///< contact classes whose walls move
+  std::vector<Column> columns;
+
+  /// The column of that name, or nullptr.
+  [[nodiscard]] const Column* find(std::string_view name) const noexcept;
+};
+
+/// @throws ScenarioError where the walls' programs do not go together
+[[nodiscard]] Measurable measurable_in(const Scenario& scenario);
+
+/// What drives a scenario, and what is looked at. Columns are observables: "axial.force".
+struct ReplayColumns {
+  std::string driven;
+  std::string watched;
+  Step::Kind control = Step::Kind::displacement;  ///< that of the driven column: displacement or force
+  double start = 0.0;                             ///< its value before the first step
+};
+
+/// Runs a scenario again and again, with other numbers and one program: through given values instead of its own steps.
+class Replay {
+ public:
+  /// @param values  of the driven column
+  Replay(Scenario scenario, ReplayColumns columns, std::vector<double> values);
+
+  /// Sets one of the scenario's numbers, see number_keys. @param value  [SI]
+  void set(std::string_view path, double value);
+
+  /// The watched column at each of the values.
+  /// @return false where the run ends before the last of them, a force cannot be put on, or the column is undefined;
+  /// problem() and failed_at() tell why and where
+  [[nodiscard]] bool run(std::span<double> response);
+
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
+  /// The first of the values, counted from 0, that was not reached.
+  [[nodiscard]] std::size_t failed_at() const noexcept { return failed_at_; }
+  [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
+
+ private:
+  Scenario scenario_;
+  std::string integrator_;
+  ReplayColumns columns_;
+  std::vector<double> values_;
+  double resolution_ = 0.0;                  ///< of the driven column
+  std::vector<std::size_t> rows_;            ///< for each value: its instant
+  std::vector<std::array<double, 2>> seen_;  ///< driven and watched column, instant by instant
+  std::string problem_;
+  std::size_t failed_at_ = 0;
+};
+
+}  // namespace monograin
