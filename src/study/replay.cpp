@@ -119,6 +119,8 @@ bool Replay::run(std::span<double> response) {
     problem_ = drive(scene, integrator_, tolerances, scenario_.output, sink).message;
   } catch (const std::domain_error& error) {
     problem_ = error.what();
+  } catch (const std::invalid_argument& error) {  // constants for which the model has no law
+    problem_ = error.what();
   }
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     failed_at_ = i;
