@@ -59,6 +59,7 @@ int main(int argc, char** argv) {
   add_compare_command(app, action);
   add_regress_command(app, action);
   add_calibrate_command(app, action);
+  add_sweep_command(app, action);
   add_schema_command(app, action);
 
   if (names_no_command(app, argc, argv)) return k_usage;

@@ -55,12 +55,16 @@ std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
 
 std::string_view version() noexcept { return MONOGRAIN_VERSION; }
 
+std::string text_digest(std::string_view text) {
+  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
+  return fmt::format("xxh128:{:016x}{:016x}", hash.high64, hash.low64);
+}
+
 std::string scenario_digest(const Scenario& scenario) {
   std::string text = scenario.text;
   for (const std::string& override_text : scenario.overrides) text += "\n--set " + override_text;
   for (const auto& [option, curve] : scenario.curves) text += "\n--file " + option + '\n' + curve.text;
-  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
-  return fmt::format("xxh128:{:016x}{:016x}", hash.high64, hash.low64);
+  return text_digest(text);
 }
 
 RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output) {

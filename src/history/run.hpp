@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/drive.hpp"
@@ -45,7 +46,10 @@ struct Run {
 /// Runs a checked scenario. Histories and events carry the header lines that make their files self-describing.
 [[nodiscard]] Run run_scenario(const Scenario& scenario);
 
-/// Digest of a scenario's text, its overrides and the files its options name, e.g. "xxh128:3f...".
+/// Digest of a text, e.g. "xxh128:3f...".
+[[nodiscard]] std::string text_digest(std::string_view text);
+
+/// Digest of a scenario's text, its overrides and the files its options name.
 [[nodiscard]] std::string scenario_digest(const Scenario& scenario);
 
 [[nodiscard]] std::string_view version() noexcept;

@@ -307,6 +307,12 @@ std::optional<double> Table::header_number(std::string_view key) const noexcept 
   return parsed_number(header_value(key));
 }
 
+std::string csv_number(double value) {
+  std::string text;
+  append_number(text, value);
+  return text;
+}
+
 void write_csv(const Table& table, std::ostream& out) {
   constexpr std::size_t k_usual_cell = 22;
   std::string text;

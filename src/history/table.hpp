@@ -60,6 +60,9 @@ class Table {
   std::vector<double> values_;
 };
 
+/// A number as write_csv writes it.
+[[nodiscard]] std::string csv_number(double value);
+
 /// Writes `# key: value` lines, one row of headings, and the rows with 17 significant digits (`nan` for undefined
 /// values), whatever the locale. Reading the text back gives the same doubles, bit by bit.
 /// Nothing is quoted: a line break in a header line becomes a space.

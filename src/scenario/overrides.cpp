@@ -4,11 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <optional>
-#include <string_view>
 #include <utility>
-#include <variant>
-#include <vector>
 
 #include "scenario/document.hpp"
 #include "scenario/words.hpp"
@@ -19,15 +15,12 @@ namespace {
 constexpr std::string_view k_prefix = "--set '";
 constexpr std::size_t k_most_path_parts = 32;
 
-using PathPart = std::variant<std::string, std::size_t>;  // a key or an index
-
 std::string origin_of(const std::string& text) { return fmt::format("{}{}'", k_prefix, on_one_line(text)); }
 
 bool is_key_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
 }
 
-/// Splits `loading.steps[0].rate`; none where the text is not such a path.
 class PathParser {
  public:
   explicit PathParser(std::string_view text) : text_(text) {}
@@ -74,23 +67,6 @@ class PathParser {
   std::string_view text_;
 };
 
-/// The text as a TOML string.
-std::string in_quotes(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else if (byte < 0x20U || byte == 0x7FU) {
-      quoted += fmt::format("\\u{:04X}", byte);
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + '"';
-}
-
 bool begins_like_a_bare_text(std::string_view value) {
   const auto first = value.find_first_not_of(" \t");
   return first == std::string_view::npos || std::string_view("[{\"'").find(value[first]) == std::string_view::npos;
@@ -104,7 +80,7 @@ class Override {
   void apply(toml::table& root) {
     const std::size_t equals = text_.find('=');
     if (equals == std::string::npos) return fault("expected key=value");
-    const auto path = PathParser(trimmed_key(equals)).parse();
+    const auto path = parse_key_path(trimmed_key(equals));
     if (!path) {
       return fault(fmt::format("'{}' is not the path of a key; expected for example loading.steps[0].rate",
                                shown(std::string_view(text_).substr(0, equals))));
@@ -218,6 +194,24 @@ class Override {
 };
 
 }  // namespace
+
+std::optional<std::vector<PathPart>> parse_key_path(std::string_view text) { return PathParser(text).parse(); }
+
+std::string in_quotes(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else if (byte < 0x20U || byte == 0x7FU) {
+      quoted += fmt::format("\\u{:04X}", byte);
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + '"';
+}
 
 void apply_override(toml::table& root, const std::string& text, FaultList& faults) {
   Override(text, faults).apply(root);

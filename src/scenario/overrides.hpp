@@ -3,12 +3,25 @@
 
 #include <toml++/toml.h>
 
+#include <optional>
 #include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
 
 #include "scenario/faults.hpp"
 #include "scenario/scenario.hpp"
 
 namespace monograin {
+
+/// A part of a key's path: a key, or an index into an array.
+using PathPart = std::variant<std::string, std::size_t>;
+
+/// The parts of `loading.steps[0].rate`, the first one a key; nothing where the text is no such path.
+[[nodiscard]] std::optional<std::vector<PathPart>> parse_key_path(std::string_view text);
+
+/// The text as a TOML string, in quotes.
+[[nodiscard]] std::string in_quotes(std::string_view text);
 
 /// Puts the value of one `key=value` text into the tree; nodes made this way give the override as their file.
 ///

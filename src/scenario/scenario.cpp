@@ -25,6 +25,14 @@ std::string name_of(const std::string& origin) {
   return stem.empty() ? "scenario" : stem;
 }
 
+/// The table of that name, its places kept.
+toml::table parse_table(std::string_view text, std::string_view key, const std::string& origin) {
+  toml::table document = parse_document(text, origin);
+  toml::table* const table = document[key].as_table();
+  if (table == nullptr) throw_fault({origin}, fmt::format("there is no table [{}]; expected a scenario there", key));
+  return std::move(*table);
+}
+
 Scenario parse_tree(toml::table& root, std::string_view text, const std::string& origin,
                     const std::vector<std::string>& overrides) {
   FaultList faults;
@@ -39,6 +47,34 @@ Scenario parse_tree(toml::table& root, std::string_view text, const std::string&
 
 }  // namespace
 
+struct ScenarioTemplate::Document {
+  std::string text;
+  std::string key;  ///< of the scenario's table; empty: the whole text
+  std::string origin;
+  toml::table root;
+};
+
+ScenarioTemplate::ScenarioTemplate(std::string_view text, const std::string& origin)
+    : document_(new Document{std::string(text), {}, origin, parse_document(text, origin)}) {}
+
+ScenarioTemplate::ScenarioTemplate(std::string_view text, std::string_view key, const std::string& origin)
+    : document_(new Document{std::string(text), std::string(key), origin, parse_table(text, key, origin)}) {}
+
+ScenarioTemplate::~ScenarioTemplate() = default;
+ScenarioTemplate::ScenarioTemplate(ScenarioTemplate&&) noexcept = default;
+ScenarioTemplate& ScenarioTemplate::operator=(ScenarioTemplate&&) noexcept = default;
+
+Scenario ScenarioTemplate::with(const std::vector<std::string>& overrides) const {
+  const auto& [text, key, origin, root] = *document_;
+  try {
+    toml::table copy = root;
+    return parse_tree(copy, text, origin, overrides);
+  } catch (const ScenarioError&) {
+    // A copy does not know its places, so that faults are told from the text itself.
+    return key.empty() ? parse_scenario(text, origin, overrides) : parse_scenario_table(text, key, origin, overrides);
+  }
+}
+
 Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   return parse_scenario(read_file(file), file.string(), overrides);
 }
@@ -50,10 +86,8 @@ Scenario parse_scenario(std::string_view text, const std::string& origin, const 
 
 Scenario parse_scenario_table(std::string_view text, std::string_view key, const std::string& origin,
                               const std::vector<std::string>& overrides) {
-  toml::table document = parse_document(text, origin);
-  toml::table* const table = document[key].as_table();
-  if (table == nullptr) throw_fault({origin}, fmt::format("there is no table [{}]; expected a scenario there", key));
-  return parse_tree(*table, text, origin, overrides);
+  toml::table root = parse_table(text, key, origin);
+  return parse_tree(root, text, origin, overrides);
 }
 
 }  // namespace monograin

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -106,6 +107,27 @@ struct Scenario {
   Loading loading;
   Output output;
   Numerics numerics;
+};
+
+/// A scenario's text, parsed once to be checked many times, each time with other values of some keys.
+class ScenarioTemplate {
+ public:
+  /// @throws ScenarioError where the text is not TOML; what it says is not checked here
+  ScenarioTemplate(std::string_view text, const std::string& origin);
+  /// The table of that name in a larger document; see parse_scenario_table.
+  ScenarioTemplate(std::string_view text, std::string_view key, const std::string& origin);
+  ~ScenarioTemplate();
+  ScenarioTemplate(ScenarioTemplate&&) noexcept;
+  ScenarioTemplate& operator=(ScenarioTemplate&&) noexcept;
+
+  /// The checked scenario, with `key=value` overrides as read_scenario takes them. Its steps and walls do not know
+  /// their places in the text. May be called from many threads.
+  /// @throws ScenarioError with every fault of the text and the overrides
+  [[nodiscard]] Scenario with(const std::vector<std::string>& overrides) const;
+
+ private:
+  struct Document;
+  std::unique_ptr<const Document> document_;
 };
 
 /// Reads and checks a scenario file.

@@ -1,7 +1,9 @@
 #include "scenario/text_file.hpp"
 
 #include <array>
+#include <cerrno>
 #include <fstream>
+#include <stdexcept>
 #include <system_error>
 
 namespace monograin {
@@ -20,6 +22,17 @@ FileText read_text_file(const std::filesystem::path& file, std::size_t largest) 
   }
   if (!stream.is_open() || stream.bad()) return {{}, "the file cannot be read, perhaps for want of permission"};
   return {std::move(text), {}};
+}
+
+void write_text_file(const std::filesystem::path& file, std::string_view text) {
+  const std::filesystem::path partial = file.string() + ".partial";
+  std::ofstream stream(partial, std::ios::binary);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  if (!stream) {
+    throw std::runtime_error(partial.string() + ": cannot be written: " + std::generic_category().message(errno));
+  }
+  std::filesystem::rename(partial, file);
 }
 
 }  // namespace monograin

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace monograin {
 
@@ -15,5 +16,9 @@ struct FileText {
 /// Reads no more than a little beyond `largest` bytes, which is for the caller to refuse: pipes and devices need not
 /// end.
 [[nodiscard]] FileText read_text_file(const std::filesystem::path& file, std::size_t largest);
+
+/// Writes a file whole or not at all: beside its place first, under the name FILE.partial.
+/// @throws std::runtime_error naming the file and why it cannot be written
+void write_text_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace monograin

@@ -1,0 +1,108 @@
+// `monograin sweep`.
+
+#include "study/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "cli/commands.hpp"
+#include "cli/progress.hpp"
+#include "scenario/text_file.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CommandOptions {
+  std::string file;
+  std::string output;
+  std::string shard = "1/1";
+  int threads = 0;
+  bool makes_design_only = false;
+};
+
+/// `i/n`, 1 <= i <= n.
+SweepShard parse_shard(const std::string& text) {
+  SweepShard shard{0, 0};
+  const char* const end = text.data() + text.size();
+  const auto [slash, error] = std::from_chars(text.data(), end, shard.index);
+  if (error == std::errc{} && slash != end && *slash == '/') {
+    const auto [last, second_error] = std::from_chars(slash + 1, end, shard.count);
+    if (second_error == std::errc{} && last == end && shard.index >= 1 && shard.index <= shard.count) return shard;
+  }
+  throw UsageError(fmt::format("--shard {}: expected i/n with i from 1 to n, for example 2/8", text));
+}
+
+/// @throws UsageError where a file cannot be written
+int make_design(const Sweep& sweep, const fs::path& folder) {
+  const fs::path file = folder / "design.csv";
+  fs::create_directories(folder);
+  write_text_file(file, design_text(sweep));
+  if (sweep.points.size() > 0) {
+    Design continuous = sweep.points;
+    continuous.level_count = 0;
+    fmt::print("psi: {:.10g}\n", maxpro_criterion(sweep.points));
+    if (sweep.points.level_count > 0) fmt::print("psi_continuous: {:.10g}\n", maxpro_criterion(continuous));
+  }
+  fmt::print(stderr, "{}: {} runs -> {}\n", sweep.name, sweep.runs.size(), file.string());
+  return k_success;
+}
+
+void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds, const fs::path& folder) {
+  std::string text = fmt::format("{}: {} runs", sweep.name, outcome.runs_now);
+  if (outcome.runs_now > 0) {
+    text += fmt::format(" in {:.3g} s ({:.4g} runs/s)", seconds, static_cast<double>(outcome.runs_now) / seconds);
+  }
+  if (outcome.runs_before > 0) text += fmt::format(", {} were there already", outcome.runs_before);
+  text += outcome.runs_missing > 0
+              ? fmt::format("; {} of {} are left to other shards", outcome.runs_missing, sweep.runs.size())
+              : fmt::format(" -> {}", (folder / "results.csv").string());
+  fmt::print(stderr, "{}\n", text);
+}
+
+int sweep(const CommandOptions& options) {
+  const SweepShard shard = parse_shard(options.shard);
+  const Sweep plan = read_sweep(options.file);
+  const fs::path folder = options.output.empty() ? fs::path("runs") / plan.name : fs::path(options.output);
+  if (plan.left_out > 0) {
+    fmt::print(stderr, "{}: {} points of the grid do not meet the constraints\n", plan.name, plan.left_out);
+  }
+  if (options.makes_design_only) return make_design(plan, folder);
+  const auto start = std::chrono::steady_clock::now();
+  const SweepOutcome outcome = [&] {
+    ProgressBar bar("runs");
+    return run_sweep(
+        plan, {.folder = folder, .threads = options.threads, .shard = shard, .progress = [&](auto done, auto of) {
+                 bar.show(done, of);
+               }});
+  }();
+  report(plan, outcome, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), folder);
+  return k_success;
+}
+
+}  // namespace
+
+void add_sweep_command(CLI::App& app, Action& action) {
+  auto options = std::make_shared<CommandOptions>();
+  CLI::App* command = app.add_subcommand(
+      "sweep",
+      "Run one scenario many times over a grid, a table or a space-filling design; goes on where it was stopped");
+  command->add_option("FILE", options->file, "Sweep file (TOML)")->required();
+  command->add_option("-j,--jobs", options->threads, "Number of threads [one for each core]")
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--shard", options->shard, "Do every n-th run only, from the i-th; the last shard to end merges")
+      ->type_name("i/n");
+  command->add_flag("--design-only", options->makes_design_only,
+                    "Write the runs to design.csv and print the criterion psi; run nothing");
+  command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME]");
+  command->footer("Example: monograin sweep scenarios/sweeps/poisson.toml -j 4");
+  command->callback([options, &action] { action = [options] { return sweep(*options); }; });
+}
+
+}  // namespace monograin

@@ -1,0 +1,125 @@
+#include "scenario/key_path.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "scenario/overrides.hpp"
+#include "scenario/words.hpp"
+
+namespace monograin {
+namespace {
+
+/// Walks down a path, with the language on one hand and the tree on the other.
+class KeyFinder {
+ public:
+  KeyFinder(std::string_view path, const std::vector<PathPart>& parts, const Language& language)
+      : path_(path), parts_(parts), language_(language) {}
+
+  KeyAnswer find(const toml::table& root) {
+    const std::string name = take_name();
+    if (name.empty()) return no_such_path();
+    if (at_ == parts_.size() || find_key(language_.root, name) == nullptr) {
+      return last_key(name, language_.root, language_.foreign_tables);
+    }
+    if (name == "loading") return find_in_loading(root["loading"]);
+    if (name == "particle") return last_key(take_name(), language_.particle);
+    if (name == "material") return find_in_material();
+    if (name == "output") return last_key(take_name(), language_.output);
+    if (name == "numerics") return last_key(take_name(), language_.numerics);
+    if (language_.model != nullptr && name == language_.model->name) return last_key(take_name(), language_.options);
+    return no_such_path();
+  }
+
+ private:
+  using Node = toml::node_view<const toml::node>;
+
+  /// The next part if it is a key, else nothing.
+  std::string take_name() {
+    const auto* name = at_ < parts_.size() ? std::get_if<std::string>(&parts_[at_]) : nullptr;
+    return name == nullptr ? std::string() : (++at_, *name);
+  }
+
+  [[nodiscard]] bool is_index_next() const {
+    return at_ < parts_.size() && std::holds_alternative<std::size_t>(parts_[at_]);
+  }
+
+  /// The entry that the next part, an index, picks from an array.
+  Node take_entry(Node array) {
+    const std::size_t index = std::get<std::size_t>(parts_[at_++]);
+    return array[index];
+  }
+
+  KeyAnswer find_in_material() {
+    const std::string name = take_name();
+    const bool goes_on = name == "ludwik" && at_ < parts_.size() && !language_.ludwik.empty();
+    return goes_on ? last_key(take_name(), language_.ludwik)
+                   : last_key(name, language_.material, language_.foreign_material);
+  }
+
+  KeyAnswer find_in_loading(Node loading) {
+    const std::string name = take_name();
+    if (name == "steps" && is_index_next()) return find_in_step(take_entry(loading["steps"]));
+    if (name == "wall" && is_index_next()) {
+      const Node wall = take_entry(loading["wall"]);
+      const std::string key = take_name();
+      if (key == "steps" && is_index_next()) return find_in_step(take_entry(wall["steps"]));
+      return wall.is_table() ? last_key(key, language_.wall) : no_such_path();
+    }
+    return last_key(name, language_.loading);
+  }
+
+  KeyAnswer find_in_step(Node step) {
+    const toml::table* table = step.as_table();
+    if (table == nullptr) return no_such_path();
+    const std::string name = take_name();
+    if (name == "steps" && is_index_next()) return find_in_step(take_entry(step["steps"]));
+    if (name == "until" && at_ < parts_.size()) {
+      return last_key(take_name(), language_.until, language_.foreign_until_keys);
+    }
+    const auto stands = [&](const StepForm& form) { return table->contains(form.key); };
+    const auto form = std::ranges::find_if(language_.steps, stands);
+    return form == language_.steps.end() ? no_such_path() : last_key(name, form->keys, language_.foreign_step_keys);
+  }
+
+  [[nodiscard]] KeyAnswer last_key(const std::string& name, std::span<const KeySpec> keys,
+                                   std::span<const ForeignKey> foreign = {}) const {
+    if (const auto known = std::ranges::find(foreign, name, &ForeignKey::name); known != foreign.end()) {
+      return {{}, fmt::format("key '{}' {}", name, known->reason)};
+    }
+    const KeySpec* spec = find_key(keys, name);
+    if (spec == nullptr) {
+      const std::vector<std::string_view> names = names_of(keys);
+      const std::string suggestion = did_you_mean(name, names);
+      return {{},
+              fmt::format("unknown key '{}'{}", shown(name.empty() ? path_ : std::string_view(name)),
+                          suggestion.empty() ? "; expected one of " + listed(names) : suggestion)};
+    }
+    if (at_ < parts_.size()) return no_such_path();
+    return {*spec, {}};
+  }
+
+  [[nodiscard]] KeyAnswer no_such_path() const {
+    return {{}, fmt::format("the scenario has nothing at '{}'", shown(path_))};
+  }
+
+  std::string_view path_;
+  const std::vector<PathPart>& parts_;
+  const Language& language_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+KeyAnswer key_at(std::string_view path, const toml::table& root, std::string_view model) {
+  const auto parts = parse_key_path(path);
+  if (!parts) {
+    return {{}, fmt::format("'{}' is not the path of a key; expected for example material.yield_stress", shown(path))};
+  }
+  const Language language = language_of(model);
+  return KeyFinder(path, *parts, language).find(root);
+}
+
+}  // namespace monograin

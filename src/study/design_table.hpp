@@ -1,0 +1,33 @@
+/// Designs given as CSV files: one column per key, one row per run.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenario/faults.hpp"
+
+namespace monograin {
+
+/// The cells of a CSV file as they are written, with their places.
+struct DesignTable {
+  struct Cell {
+    std::string text;
+    SourceLocation where;
+  };
+  std::vector<Cell> headings;
+  std::vector<std::vector<Cell>> rows;  ///< each as long as the headings
+};
+
+/// Lines that begin with '#' and blank lines do not count; quotes have no meaning. Rows of another length than the
+/// headings, and a table without rows, are added to `faults`.
+[[nodiscard]] DesignTable parse_design_table(std::string_view text, const std::string& origin, FaultList& faults);
+
+/// A heading's key and unit: `material.yield_stress[MPa]`. An index at the end, as in `a.normal[2]`, is no unit.
+struct DesignHeading {
+  std::string key;
+  std::string unit;  ///< empty: none given
+};
+[[nodiscard]] DesignHeading parse_design_heading(std::string_view heading);
+
+}  // namespace monograin
