@@ -82,7 +82,7 @@ int draw_atlas(const AtlasOptions& options) {
   for (const fs::path& file : write_atlas(figures, folder)) fmt::print(stderr, "-> {}\n", file.string());
   auto status = RunStatus::complete;
   for (const AtlasFigure& figure : figures) {
-    if (!figure.tables.empty()) fmt::print("{}\n", comparison_text(figure));
+    if (const std::string tables = tables_text(figure); !tables.empty()) fmt::print("{}\n", tables);
     for (const std::string& stop : figure.stops) fmt::print(stderr, "{}: {}\n", figure.name, stop);
     status = std::max(status, figure.status);
   }

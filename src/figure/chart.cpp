@@ -119,6 +119,7 @@ class Looks {
 
   [[nodiscard]] static std::string_view dash_of(Style style) {
     if (style == Style::dashed) return dash(Phase::unloading);
+    if (style == Style::dash_dotted) return "dt (7,3,1.5,3)";
     return dash(style == Style::dotted ? Phase::reloading : Phase::loading);
   }
 

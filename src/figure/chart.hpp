@@ -18,6 +18,7 @@ struct ChartSeries {
     solid,
     dashed,
     dotted,
+    dash_dotted,
     points,
   };
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -16,6 +17,7 @@
 
 #include "history/run.hpp"
 #include "scenario/words.hpp"
+#include "scene/parameters.hpp"
 #include "study/adhesion_panels.hpp"
 #include "study/definition.hpp"
 #include "study/profile.hpp"
@@ -62,17 +64,17 @@ constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 // --- values of formulas
 
-/// What names stand for: columns of a table, t, numbers of the table's header (R0, E, nu, Y, surface_energy), and what
-/// follows from them (Es, V0, pi).
+/// What names stand for: columns of a table, t, numbers of the table's header (R0, E, nu, Y, surface_energy), what
+/// follows from them (Es, V0, pi), and what a model derives from its scenario.
 class Scope {
  public:
-  explicit Scope(const Table* table, Values parameter = {}) : table_(table), parameter_(std::move(parameter)) {}
+  explicit Scope(const Table* table, std::vector<DerivedParameter> derived = {}, Values parameter = {})
+      : table_(table), derived_(std::move(derived)), parameter_(std::move(parameter)) {}
 
   [[nodiscard]] std::optional<Values> operator()(std::string_view name) const {
     if (name == "t" && !parameter_.empty()) return parameter_;
     if (name == "pi") return Values{std::numbers::pi};
-    if (table_ == nullptr) return std::nullopt;
-    if (const auto column = table_->find(name); column && parameter_.empty()) {
+    if (const auto column = find_column(name); column && parameter_.empty()) {
       if (table_->columns()[*column].holds_words()) return std::nullopt;
       return table_->column(name);
     }
@@ -85,8 +87,9 @@ class Scope {
     std::vector<std::string_view> names{"pi"};
     if (!parameter_.empty()) names.emplace_back("t");
     for (const std::string_view name : {"R0", "E", "nu", "Y", "surface_energy", "Es", "V0"}) {
-      if (table_ != nullptr && symbol(name)) names.push_back(name);
+      if (symbol(name)) names.push_back(name);
     }
+    for (const DerivedParameter& parameter : derived_) names.push_back(parameter.name);
     if (table_ != nullptr && parameter_.empty()) {
       for (const Column& column : table_->columns()) {
         if (!column.holds_words()) names.push_back(column.name);
@@ -98,18 +101,29 @@ class Scope {
   }
 
  private:
+  [[nodiscard]] std::optional<std::size_t> find_column(std::string_view name) const {
+    return table_ == nullptr ? std::nullopt : table_->find(name);
+  }
+
+  [[nodiscard]] std::optional<double> header_number(std::string_view name) const {
+    return table_ == nullptr ? std::nullopt : table_->header_number(name);
+  }
+
   [[nodiscard]] std::optional<double> symbol(std::string_view name) const {
     if (name == "Es") {
-      const auto modulus = table_->header_number("E");
-      const auto ratio = table_->header_number("nu");
+      const auto modulus = header_number("E");
+      const auto ratio = header_number("nu");
       if (modulus && ratio) return *modulus / (1.0 - *ratio * *ratio);
     } else if (name == "V0") {
-      if (const auto radius = table_->header_number("R0")) return 4.0 / 3.0 * std::numbers::pi * std::pow(*radius, 3);
+      if (const auto radius = header_number("R0")) return 4.0 / 3.0 * std::numbers::pi * std::pow(*radius, 3);
     }
-    return table_->header_number(name);
+    if (const auto number = header_number(name)) return number;
+    const auto found = std::ranges::find(derived_, name, &DerivedParameter::name);
+    return found == derived_.end() ? std::nullopt : std::optional(found->value);
   }
 
   const Table* table_;
+  std::vector<DerivedParameter> derived_;
   Values parameter_;
 };
 
@@ -165,6 +179,25 @@ class Scope {
   return values;
 }
 
+/// Derived parameters as columns, a row for each scenario; nan where one of them lacks what the first has.
+[[nodiscard]] Table derived_table(std::span<const Scenario> scenarios) {
+  std::vector<Column> columns;
+  for (const DerivedParameter& parameter : derived_parameters(scenarios.front())) {
+    columns.push_back({.name = std::string(parameter.name), .unit = std::string(parameter.unit), .labels = {}});
+  }
+  Table table(std::move(columns));
+  for (const Scenario& scenario : scenarios) {
+    const auto derived = derived_parameters(scenario);
+    Values row;
+    for (const Column& column : table.columns()) {
+      const auto found = std::ranges::find(derived, column.name, &DerivedParameter::name);
+      row.push_back(found == derived.end() ? k_nan : found->value);
+    }
+    table.append(row);
+  }
+  return table;
+}
+
 // --- definitions
 
 class FigureMaker {
@@ -178,10 +211,12 @@ class FigureMaker {
              .format = definition_.format,
              .chart = {},
              .tables = {},
+             .value_tables = {},
              .stops = {}};
     if (definition_.adhesion_map) made_.chart.panels = adhesion_panels(adhesion_maps(*definition_.adhesion_map));
     for (const PanelSpec& panel : definition_.panels) made_.chart.panels.push_back(chart_panel(panel));
     for (const TableSpec& table : definition_.tables) made_.tables.push_back(comparison_table(table));
+    for (const ValueTableSpec& table : definition_.value_tables) made_.value_tables.push_back(value_table(table));
     return std::move(made_);
   }
 
@@ -208,22 +243,29 @@ class FigureMaker {
     for (std::size_t k = 0; k < curves.size(); ++k) {
       XyCurve curve = chosen_rows(curves[k], spec.rows);
       panel.series.push_back({.legend = spec.legends[std::min(k, spec.legends.size() - 1)],
-                              .style = spec.style,
+                              .style = spec.styles[std::min(k, spec.styles.size() - 1)],
                               .colour = spec.colour,
                               .x = std::move(curve.x),
                               .y = std::move(curve.y)});
     }
   }
 
-  /// One curve for each run; one for a formula without a run.
+  /// One curve for each run, or for each sweep; one for a formula without a run.
   [[nodiscard]] std::vector<XyCurve> curves_of(const CurveSpec& spec) {
     const Values parameter = spec.parameter ? parameter_values(*spec.parameter) : Values{};
     std::vector<XyCurve> curves;
-    for (const Scenario& scenario : spec.scenarios) {
-      const Scope scope(spec.profile_at ? &profiles_of(scenario, *spec.profile_at) : &history_of(scenario), parameter);
-      curves.push_back(curve_of(spec.x, spec.y, scope, faults_));
+    if (spec.sweep > 0) {
+      for (std::size_t first = 0; first < spec.scenarios.size(); first += spec.sweep) {
+        const Table table = derived_table(std::span(spec.scenarios).subspan(first, spec.sweep));
+        curves.push_back(curve_of(spec.x, spec.y, Scope(&table), faults_));
+      }
+      return curves;
     }
-    if (spec.scenarios.empty()) curves.push_back(curve_of(spec.x, spec.y, Scope(nullptr, parameter), faults_));
+    for (const Scenario& scenario : spec.scenarios) {
+      const Table& table = spec.profile_at ? profiles_of(scenario, *spec.profile_at) : history_of(scenario);
+      curves.push_back(curve_of(spec.x, spec.y, Scope(&table, derived_parameters(scenario), parameter), faults_));
+    }
+    if (spec.scenarios.empty()) curves.push_back(curve_of(spec.x, spec.y, Scope(nullptr, {}, parameter), faults_));
     return curves;
   }
 
@@ -275,6 +317,16 @@ class FigureMaker {
       } catch (const std::runtime_error& error) {
         faults_.add(row.curve.y.where, fmt::format("{}: {}", row.label, error.what()));
       }
+    }
+    return table;
+  }
+
+  [[nodiscard]] ValueTable value_table(const ValueTableSpec& spec) {
+    ValueTable table{.title = spec.title, .rows = {}};
+    for (const ValueSpec& row : spec.rows) {
+      const Values value = evaluated(row.value, Scope(nullptr, derived_parameters(*row.scenario)), faults_);
+      if (value.empty()) continue;
+      table.rows.push_back({row.label, value.front(), row.printed, row.remark});
     }
     return table;
   }

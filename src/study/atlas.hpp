@@ -23,6 +23,19 @@ struct ComparisonTable {
   std::vector<ComparisonRow> rows;
 };
 
+/// A value that a table of the atlas shows, and what the source prints for it.
+struct ValueRow {
+  std::string label;
+  double value = 0.0;
+  std::string printed;  ///< a number; empty: none
+  std::string remark;
+};
+
+struct ValueTable {
+  std::string title;
+  std::vector<ValueRow> rows;
+};
+
 /// A definition with everything in it computed; nothing is written yet.
 struct AtlasFigure {
   std::string name;
@@ -31,6 +44,7 @@ struct AtlasFigure {
   std::string format;
   figure::Chart chart;  ///< without panels where there are only tables
   std::vector<ComparisonTable> tables;
+  std::vector<ValueTable> value_tables;    ///< there are only tables of one kind
   std::vector<std::string> stops;          ///< runs that did not come to their end, and why
   RunStatus status = RunStatus::complete;  ///< the worst of all runs
 };
@@ -56,10 +70,10 @@ struct AtlasEntry {
 std::vector<std::filesystem::path> write_atlas(const std::vector<AtlasFigure>& figures,
                                                const std::filesystem::path& folder);
 
-/// The tables of a figure as Markdown.
-[[nodiscard]] std::string comparison_text(const AtlasFigure& figure);
+/// The tables of a figure as Markdown; nothing where it has none.
+[[nodiscard]] std::string tables_text(const AtlasFigure& figure);
 
 /// All of a figure's tables as one table for CSV.
-[[nodiscard]] Table comparison_csv(const AtlasFigure& figure);
+[[nodiscard]] Table tables_csv(const AtlasFigure& figure);
 
 }  // namespace monograin

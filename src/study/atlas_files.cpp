@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "figure/page.hpp"
@@ -58,58 +61,122 @@ void append_markdown(std::string& text, const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
   }
+  const auto is_word = [](const std::string& cell) {
+    return !cell.empty() && std::isalpha(static_cast<unsigned char>(cell.front())) != 0;
+  };
+  const auto holds_words = [&](std::size_t k) {
+    return k == 0 || std::any_of(rows.begin() + 1, rows.end(), [&](const Row& row) { return is_word(row[k]); });
+  };
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (std::size_t k = 0; k < widths.size(); ++k) {
-      text +=
-          k == 0 ? fmt::format("| {:<{}} ", rows[r][k], widths[k]) : fmt::format("| {:>{}} ", rows[r][k], widths[k]);
+      text += holds_words(k) ? fmt::format("| {:<{}} ", rows[r][k], widths[k])
+                             : fmt::format("| {:>{}} ", rows[r][k], widths[k]);
     }
     text += "|\n";
     if (r > 0) continue;
     for (std::size_t k = 0; k < widths.size(); ++k) {
-      text += fmt::format("| {}{} ", std::string(widths[k] - 1, '-'), k == 0 ? '-' : ':');
+      text += fmt::format("| {}{} ", std::string(widths[k] - 1, '-'), holds_words(k) ? '-' : ':');
     }
     text += "|\n";
   }
 }
 
+/// Half a unit in the last place of a printed number: how far it may be from the value it stands for.
+[[nodiscard]] double rounding_of(const std::string& printed) {
+  const std::size_t point = printed.find('.');
+  const std::size_t decimals = point == std::string::npos ? 0 : printed.size() - point - 1;
+  return 0.5 * std::pow(10.0, -static_cast<double>(decimals));
+}
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+
+[[nodiscard]] double printed_number(const ValueRow& row) {
+  double number = k_nan;
+  if (!row.printed.empty()) std::from_chars(row.printed.data(), row.printed.data() + row.printed.size(), number);
+  return number;
+}
+
+[[nodiscard]] std::vector<Row> rows_of(const ValueTable& table) {
+  constexpr double k_on_the_edge = 1.0 + 1e-9;  // a value of exactly half a unit may be rounded either way
+  std::vector<Row> rows{{"quantity", "computed", "printed", "difference", "rounded to it", "remark"}};
+  for (const ValueRow& row : table.rows) {
+    const double difference = row.value - printed_number(row);
+    const bool is_rounded_to = std::abs(difference) <= k_on_the_edge * rounding_of(row.printed);
+    rows.push_back({row.label, fmt::format("{:.8g}", row.value), row.printed.empty() ? "-" : row.printed,
+                    shown_number(difference, 3), row.printed.empty() ? "-" : (is_rounded_to ? "yes" : "no"),
+                    row.remark});
+  }
+  return rows;
+}
+
 [[nodiscard]] std::string csv_text(const AtlasFigure& figure) {
   std::ostringstream out;
-  write_csv(comparison_csv(figure), out);
+  write_csv(tables_csv(figure), out);
   return out.str();
 }
 
+constexpr const char* k_about_comparisons =
+    "Loading up to each reversal: area error sqrt(int (model - reference)^2 dx)/int |reference| dx, peak error\n"
+    "max |model - reference|/reference at the reversal, and the share of the loading that the model covers.\n"
+    "Unloading from there: mean slope while the first 5 % of y go, residual x where y vanishes, and both over those\n"
+    "of the reference. A hyphen: y does not vanish, or the curve does not turn back there.\n";
+constexpr const char* k_about_values =
+    "Values as the laws give them, beside those that the source prints, and whether a printed one is the other,\n"
+    "rounded to as many digits.\n";
+
+/// Titles and labels of a table for CSV; rows refer to them by number.
+struct Words {
+  Column titles{.name = "table", .unit = {}, .labels = {}};
+  Column labels{.name = "case", .unit = {}, .labels = {}};
+
+  [[nodiscard]] std::vector<double> last() const {
+    return {static_cast<double>(titles.labels.size() - 1), static_cast<double>(labels.labels.size() - 1)};
+  }
+};
+
 }  // namespace
 
-std::string comparison_text(const AtlasFigure& figure) {
-  std::string text = fmt::format("# {}\n\n", figure.title);
-  text +=
-      "Loading up to each reversal: area error sqrt(int (model - reference)^2 dx)/int |reference| dx, peak error\n"
-      "max |model - reference|/reference at the reversal, and the share of the loading that the model covers.\n"
-      "Unloading from there: mean slope while the first 5 % of y go, residual x where y vanishes, and both over those\n"
-      "of the reference. A hyphen: y does not vanish, or the curve does not turn back there.\n";
-  for (const ComparisonTable& table : figure.tables) {
+std::string tables_text(const AtlasFigure& figure) {
+  if (figure.tables.empty() && figure.value_tables.empty()) return {};
+  std::string text =
+      fmt::format("# {}\n\n{}", figure.title, figure.tables.empty() ? k_about_values : k_about_comparisons);
+  const auto append = [&text](const auto& table) {
     text += fmt::format("\n## {}\n\n", table.title);
     append_markdown(text, rows_of(table));
-  }
+  };
+  std::ranges::for_each(figure.tables, append);
+  std::ranges::for_each(figure.value_tables, append);
   return text;
 }
 
-Table comparison_csv(const AtlasFigure& figure) {
-  Column titles{.name = "table", .unit = {}, .labels = {}};
-  Column labels{.name = "case", .unit = {}, .labels = {}};
+Table tables_csv(const AtlasFigure& figure) {
+  Words words;
   std::vector<std::vector<double>> rows;
   for (const ComparisonTable& table : figure.tables) {
-    titles.labels.push_back(table.title);
+    words.titles.labels.push_back(table.title);
     for (const ComparisonRow& row : table.rows) {
-      labels.labels.push_back(row.label);
+      words.labels.labels.push_back(row.label);
       for (const BranchComparison& line : row.lines) {
-        rows.push_back({static_cast<double>(titles.labels.size() - 1), static_cast<double>(labels.labels.size() - 1)});
+        rows.push_back(words.last());
         for (const Cell& cell : k_cells) rows.back().push_back(cell.value(line));
       }
     }
   }
-  std::vector<Column> columns{std::move(titles), std::move(labels)};
-  for (const Cell& cell : k_cells) columns.push_back({.name = cell.heading, .unit = {}, .labels = {}});
+  for (const ValueTable& table : figure.value_tables) {
+    words.titles.labels.push_back(table.title);
+    for (const ValueRow& row : table.rows) {
+      words.labels.labels.push_back(row.label);
+      rows.push_back(words.last());
+      rows.back().insert(rows.back().end(), {row.value, printed_number(row)});
+    }
+  }
+  std::vector<Column> columns{std::move(words.titles), std::move(words.labels)};
+  const auto add = [&columns](const char* heading) { columns.push_back({.name = heading, .unit = {}, .labels = {}}); };
+  if (figure.tables.empty()) {
+    for (const char* heading : {"computed", "printed"}) add(heading);
+  } else {
+    for (const Cell& cell : k_cells) add(cell.heading);
+  }
   Table csv(std::move(columns));
   csv.header = {{"title", figure.title}, {"source", figure.source}};
   for (const auto& row : rows) csv.append(row);
@@ -130,10 +197,10 @@ std::vector<fs::path> write_atlas(const std::vector<AtlasFigure>& figures, const
                    figure::chart_script(made.chart, figure.format(), figure.figure_name(), figure.data_name()));
       written.push_back(figure.figure());
     }
-    if (!made.tables.empty()) {
+    if (const std::string tables = tables_text(made); !tables.empty()) {
       fs::create_directories(folder);
       figure::write_whole(folder / (made.name + ".csv"), csv_text(made));
-      figure::write_whole(folder / (made.name + ".md"), comparison_text(made));
+      figure::write_whole(folder / (made.name + ".md"), tables);
       written.insert(written.end(), {folder / (made.name + ".csv"), folder / (made.name + ".md")});
     }
   }

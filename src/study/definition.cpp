@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "scenario/document.hpp"
@@ -52,7 +55,8 @@ class DefinitionReader {
                           .format = root.text("format"),
                           .adhesion_map = {},
                           .panels = {},
-                          .tables = {}};
+                          .tables = {},
+                          .value_tables = {}};
     if (root.has("adhesion_map")) definition.adhesion_map = adhesion_map(root);
     const Inherited inherited{formula(root, "x"), formula(root, "y")};
     for (const auto& table : root.tables("panel", "[[panel]]")) {
@@ -61,9 +65,15 @@ class DefinitionReader {
     for (const auto& table : root.tables("table", "[[table]]")) {
       definition.tables.push_back(comparison_table(table, inherited));
     }
+    for (const auto& table : root.tables("values", "[[values]]")) definition.value_tables.push_back(value_table(table));
+    if (root.has("table") && root.has("values")) {
+      faults_.add(root.key_place("values"),
+                  "[[values]] does not go with [[table]]: both are written to the same files");
+    }
     const auto shows = [&root](std::string_view key) { return root.has_or_misspells(key); };
-    if (!shows("panel") && !shows("table") && !shows("adhesion_map")) {
-      faults_.add(root.place(), "the definition shows nothing; expected [[panel]], [[table]] or [adhesion_map]");
+    if (!shows("panel") && !shows("table") && !shows("values") && !shows("adhesion_map")) {
+      faults_.add(root.place(),
+                  "the definition shows nothing; expected [[panel]], [[table]], [[values]] or [adhesion_map]");
     }
     return definition;
   }
@@ -160,19 +170,21 @@ class DefinitionReader {
     static const Keys keys = curve_keys();
     const Section section(reading_, table, keys);
     CurveSpec spec{.scenarios = {},
+                   .sweep = 0,
                    .legends = {section.text("legend")},
                    .x = formula(section, "x", inherited.x),
                    .y = formula(section, "y", inherited.y),
                    .rows = static_cast<RowChoice>(place_of_word(k_rows, section.text("rows"))),
-                   .style = static_cast<Style>(place_of_word(k_styles, section.text("style"))),
+                   .styles = {static_cast<Style>(place_of_word(k_styles, section.text("style")))},
                    .colour = colour(section),
                    .profile_at = section.number("profile_at"),
                    .parameter = {}};
     if (section.has("parameter")) spec.parameter = parameter(section);
+    const std::vector<Override> swept = section.has("sweep") ? sweep(section, spec) : std::vector<Override>{};
     if (section.has("vary")) {
-      vary(section, spec);
+      vary(section, swept, spec);
     } else if (!spec.parameter || has_scenario_ || section.has("scenario")) {
-      add_scenario(section, {}, section.place(), spec);
+      add_curve(section, {}, swept, spec);
     }
     return spec;
   }
@@ -188,50 +200,124 @@ class DefinitionReader {
     return {section.number("from").value_or(0.0), section.number("to").value_or(1.0)};
   }
 
-  void vary(const Section& curve, CurveSpec& spec) {
+  /// An override of a scenario, and where the definition asks for it.
+  struct Override {
+    std::string text;
+    SourceLocation where;
+  };
+
+  /// The values of the swept key.
+  [[nodiscard]] std::vector<Override> sweep(const Section& curve, CurveSpec& spec) {
+    static const Keys keys = sweep_keys();
+    const Section section(reading_, curve.table("sweep", "sweep"), keys);
+    for (const std::string_view other : {"parameter", "profile_at"}) {
+      if (curve.has(other)) {
+        faults_.add(curve.key_place(other), fmt::format("'{}' does not go with 'sweep', which has no history", other));
+      }
+    }
+    const auto from = section.number("from");
+    const auto to = section.number("to");
+    if (section.text("key").empty() || !from || !to) return {};
+    const bool is_logarithmic = section.toggle("log").value_or(false);
+    if (is_logarithmic && (*from <= 0.0 || *to <= 0.0)) {
+      faults_.add(section.value_place("log"), "equal ratios need 'from' and 'to' above 0");
+      return {};
+    }
+    spec.sweep = static_cast<std::size_t>(section.number("points").value_or(2.0));
+    std::vector<Override> overrides;
+    for (std::size_t k = 0; k < spec.sweep; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(spec.sweep - 1);
+      // The ends are met exactly; a rounding beyond could be outside of a model's domain.
+      const double between = is_logarithmic ? *from * std::pow(*to / *from, share) : std::lerp(*from, *to, share);
+      const double value = k + 1 == spec.sweep ? *to : between;
+      overrides.push_back({fmt::format("{}={}", section.text("key"), value), section.value_place("key")});
+    }
+    return overrides;
+  }
+
+  void vary(const Section& curve, const std::vector<Override>& swept, CurveSpec& spec) {
     static const Keys keys = vary_keys();
     const Section section(reading_, curve.table("vary", "vary"), keys);
     const std::string key = section.text("key");
     const std::vector<std::string> values = section.texts("values");
     std::vector<std::string> legends = section.texts("legends");
-    if (section.has("legends") && legends.size() != values.size()) {
-      faults_.add(section.value_place("legends"),
-                  fmt::format("{} legends for {} values", legends.size(), values.size()));
+    const std::vector<std::string> styles = section.texts("styles");
+    for (const std::string_view list : {"legends", "styles"}) {
+      const std::size_t count = section.texts(list).size();
+      if (section.has(list) && count != values.size()) {
+        faults_.add(section.value_place(list), fmt::format("{} {} for {} values", count, list, values.size()));
+      }
+    }
+    if (!styles.empty()) spec.styles.clear();
+    for (std::size_t k = 0; k < styles.size(); ++k) {
+      if (std::ranges::find(k_styles, styles[k]) == k_styles.end()) {
+        const std::string suggestion = did_you_mean(styles[k], k_styles);
+        faults_.add(section.value_place("styles", k),
+                    fmt::format("unknown style '{}'{}", shown(styles[k]),
+                                suggestion.empty() ? "; expected " + listed(k_styles) : suggestion));
+      }
+      spec.styles.push_back(static_cast<Style>(place_of_word(k_styles, styles[k])));
     }
     const bool is_named = !legends.empty() || !spec.legends.front().empty();
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (!is_named) legends.push_back(fmt::format("{} = {}", key.substr(key.rfind('.') + 1), values[k]));
-      add_scenario(curve, fmt::format("{}={}", key, values[k]), section.value_place("values", k), spec);
+      add_curve(curve, {{fmt::format("{}={}", key, values[k]), section.value_place("values", k)}}, swept, spec);
     }
     if (!legends.empty()) spec.legends = std::move(legends);
   }
 
-  /// The curve's scenario, with its overrides and one more; that one stands at `where`.
-  void add_scenario(const Section& curve, const std::string& varied, const SourceLocation& where, CurveSpec& spec) {
-    std::vector<std::string> overrides = curve.texts("set");
-    const std::size_t own = overrides.size();
-    if (!varied.empty()) overrides.push_back(varied);
+  /// The scenarios of one curve: one, or one for each value that is swept.
+  void add_curve(const Section& curve, const std::vector<Override>& varied, const std::vector<Override>& swept,
+                 CurveSpec& spec) {
+    std::vector<Override> overrides = own_overrides(curve);
+    overrides.insert(overrides.end(), varied.begin(), varied.end());
+    if (!curve.has("sweep")) {
+      if (auto made = checked_scenario(curve, overrides)) spec.scenarios.push_back(std::move(*made));
+      return;
+    }
+    for (const Override& value : swept) {
+      overrides.push_back(value);
+      auto made = checked_scenario(curve, overrides);
+      if (!made) return;  // the other values would most likely tell the same
+      spec.scenarios.push_back(std::move(*made));
+      overrides.pop_back();
+    }
+  }
+
+  [[nodiscard]] static std::vector<Override> own_overrides(const Section& section) {
+    std::vector<Override> overrides;
+    for (const std::string& text : section.texts("set")) {
+      overrides.push_back({text, section.value_place("set", overrides.size())});
+    }
+    return overrides;
+  }
+
+  /// The section's scenario; nothing where it has faults, each of which is reported where it stands.
+  [[nodiscard]] std::optional<Scenario> checked_scenario(const Section& section,
+                                                         const std::vector<Override>& overrides) {
+    std::vector<std::string> texts;
+    for (const Override& entry : overrides) texts.push_back(entry.text);
     try {
-      spec.scenarios.push_back(scenario(curve, overrides));
+      return scenario(section, texts);
     } catch (const ScenarioError& error) {
       for (const Fault& fault : error.faults()) {
         if (!is_override(fault.where)) {
           faults_.add(fault.where, fault.message);
           continue;
         }
-        // The override is known by its text; that of the varied key is none of those in the list.
-        std::size_t entry = 0;
-        while (entry < own && fault.where.file.find(overrides[entry]) == std::string::npos) ++entry;
-        faults_.add(entry < own ? curve.value_place("set", entry) : where,
-                    fmt::format("{}: {}", entry < own ? overrides[entry] : varied, fault.message));
+        // An override is known by its text. From the end: "x=0.3" is found in the later "x=0.35" too.
+        auto entry = overrides.rbegin();
+        while (entry + 1 != overrides.rend() && fault.where.file.find(entry->text) == std::string::npos) ++entry;
+        faults_.add(entry->where, fmt::format("{}: {}", entry->text, fault.message));
       }
     }
+    return std::nullopt;
   }
 
   [[nodiscard]] Scenario scenario(const Section& curve, const std::vector<std::string>& overrides) {
     if (!curve.has("scenario")) {
       if (!has_scenario_) {
-        throw_fault(curve.place(), "the curve has no scenario; expected scenario = \"FILE\" or a table [scenario]");
+        throw_fault(curve.place(), "there is no scenario for this; expected scenario = \"FILE\" or a table [scenario]");
       }
       return parse_scenario_table(text_, "scenario", file_.string(), overrides);
     }
@@ -274,11 +360,42 @@ class DefinitionReader {
       spec.rows.push_back({plain(entry, "label"),
                            entry.has("curve") ? curve(entry.table("curve", "curve"), formulas) : CurveSpec{},
                            entry.has("points") ? points(entry.table("points", "points")) : PointsSpec{}});
-      if (spec.rows.back().curve.scenarios.size() > 1) {
+      const CurveSpec& made = spec.rows.back().curve;
+      if (made.scenarios.size() > std::max<std::size_t>(made.sweep, 1)) {
         faults_.add(entry.value_place("curve"), "'vary' gives several curves; expected one curve in each row");
       }
     }
     return spec;
+  }
+
+  [[nodiscard]] ValueTableSpec value_table(const Section::Origin& table) {
+    static const Keys keys = value_table_keys();
+    const Section section(reading_, table, keys);
+    ValueTableSpec spec{.title = plain(section, "title"), .rows = {}};
+    for (const auto& row : section.tables("row", "[[values.row]]")) {
+      static const Keys row_keys = value_keys();
+      const Section entry(reading_, row, row_keys);
+      spec.rows.push_back({.label = plain(entry, "label"),
+                           .scenario = checked_scenario(entry, own_overrides(entry)),
+                           .value = formula(entry, "value").value_or(PlacedExpression{}),
+                           .printed = printed_number(entry),
+                           .remark = plain(entry, "remark")});
+    }
+    return spec;
+  }
+
+  /// A number as text, because its digits say how far it is rounded.
+  [[nodiscard]] std::string printed_number(const Section& section) {
+    const std::string text = section.text("printed");
+    double value = 0.0;
+    const char* const end = text.data() + text.size();
+    const auto [last, error] = std::from_chars(text.data(), end, value, std::chars_format::fixed);
+    if (!text.empty() && (error != std::errc{} || last != end || !std::isfinite(value))) {
+      faults_.add(section.value_place("printed"),
+                  fmt::format("printed = \"{}\": expected digits, for example \"-31.76\"", shown(text)));
+      return {};
+    }
+    return text;
   }
 
   /// A text that will be a cell of a CSV file.

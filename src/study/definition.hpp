@@ -25,7 +25,8 @@ struct PlacedExpression {
 /// Which way of x: all, only beyond the largest so far, only back.
 enum class RowChoice { all, load, unload };
 
-/// Curves from runs: one, or one for each value that is varied; or a formula of the parameter t.
+/// Curves from runs: one, or one for each value that is varied; or of parameters that a model derives from a swept key;
+/// or a formula of the parameter t.
 struct CurveSpec {
   struct Parameter {
     double from = 0.0;
@@ -33,11 +34,12 @@ struct CurveSpec {
   };
 
   std::vector<Scenario> scenarios;   ///< at least one, but for a formula that needs none
-  std::vector<std::string> legends;  ///< one for each scenario, or one
+  std::size_t sweep = 0;             ///< so many scenarios in a row are one curve of derived parameters; 0: runs
+  std::vector<std::string> legends;  ///< one for each curve, or one
   PlacedExpression x;
   PlacedExpression y;
   RowChoice rows = RowChoice::all;
-  figure::ChartSeries::Style style = figure::ChartSeries::Style::phases;
+  std::vector<figure::ChartSeries::Style> styles{figure::ChartSeries::Style::phases};  ///< likewise
   std::optional<std::size_t> colour;
   std::optional<double> profile_at;  ///< [s]; then columns are those of contact profiles at that instant
   std::optional<Parameter> parameter;
@@ -74,6 +76,20 @@ struct TableSpec {
   std::vector<ComparisonSpec> rows;
 };
 
+/// A value made of what a model derives from a scenario, and what the source prints for it.
+struct ValueSpec {
+  std::string label;
+  std::optional<Scenario> scenario;  ///< absent only with a fault
+  PlacedExpression value;
+  std::string printed;  ///< a number; empty: none
+  std::string remark;
+};
+
+struct ValueTableSpec {
+  std::string title;
+  std::vector<ValueSpec> rows;
+};
+
 struct Definition {
   std::string name;  ///< of the file, without folder and extension
   std::string title;
@@ -82,6 +98,7 @@ struct Definition {
   std::optional<AdhesionMapSettings> adhesion_map;  ///< its panels come before the others
   std::vector<PanelSpec> panels;
   std::vector<TableSpec> tables;
+  std::vector<ValueTableSpec> value_tables;  ///< instead of `tables`: both would be written to the same files
 };
 
 /// Reads and checks a definition with its scenarios and files, which are sought from the definition's folder. What

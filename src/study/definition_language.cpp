@@ -75,7 +75,8 @@ Keys root_keys() {
             table_key("scenario", "the scenario of curves that name no file", "[scenario]"),
             table_key("adhesion_map", "phase diagrams of adhesion as panels", "[adhesion_map]"),
             tables_key("panel", "panels of the figure", "[[panel]]"),
-            tables_key("table", "tables of how far curves are from points", "[[table]]")};
+            tables_key("table", "tables of how far curves are from points", "[[table]]"),
+            tables_key("values", "tables of single values", "[[values]]")};
   append_axis_keys(keys);
   return keys;
 }
@@ -95,6 +96,8 @@ Keys curve_keys() {
            .kind = Kind::texts,
            .example = "[\"material.yield_stress=20 MPa\"]"},
           table_key("vary", "one curve for each value of a key", "{ key = \"...\", values = [...] }"),
+          table_key("sweep", "instead of a history: the parameters that the model derives, over a key's values",
+                    "{ key = \"...\", from = 1, to = 2 }"),
           number_key("profile_at", "instead of a history: contact profiles of the first class at this instant [s]"),
           table_key("parameter", "instead of a history: range of t in the formulas", "{ from = 0, to = 1 }"),
           text_key("x", "formula of the abscissa", k_example_x),
@@ -108,7 +111,22 @@ Keys curve_keys() {
 Keys vary_keys() {
   return {text_key("key", "key of the scenario", "\"material.poisson_ratio\"", true),
           {.name = "values", .meaning = "its values", .kind = Kind::texts, .is_required = true, .example = "[0, 0.3]"},
-          {.name = "legends", .meaning = "a text for each value", .kind = Kind::texts, .example = "[\"low\"]"}};
+          {.name = "legends", .meaning = "a text for each value", .kind = Kind::texts, .example = "[\"low\"]"},
+          {.name = "styles",
+           .meaning = "how the line of each value is drawn",
+           .kind = Kind::texts,
+           .example = "[\"solid\"]"}};
+}
+
+Keys sweep_keys() {
+  Keys keys{text_key("key", "key of the scenario", "\"material.youngs_modulus\"", true),
+            number_key("from", "its first value, in SI", true),
+            number_key("to", "its last value, in SI", true),
+            count_key("points", "how many values", 10000.0),
+            {.name = "log", .meaning = "values in equal ratios", .kind = Kind::toggle}};
+  keys[3].range.lower = 2.0;
+  keys[3].default_value = 101.0;
+  return keys;
 }
 
 Keys parameter_keys() {
@@ -157,6 +175,23 @@ Keys comparison_keys() {
   return {text_key("label", "name of the row", "\"E/Y = 200\"", true),
           table_key("curve", "the curve", "curve = { ... }", true),
           table_key("points", "what it is held against", "points = { ... }", true)};
+}
+
+Keys value_table_keys() {
+  return {text_key("title", "what the values are", "\"Coefficients\"", true),
+          tables_key("row", "values", "[[values.row]]", true)};
+}
+
+Keys value_keys() {
+  return {text_key("label", "name of the row", "\"D1\"", true),
+          text_key("scenario", "scenario file, sought from the definition's folder", "\"../scenarios/die.toml\""),
+          {.name = "set",
+           .meaning = "overrides of the scenario",
+           .kind = Kind::texts,
+           .example = "[\"material.yield_stress=20 MPa\"]"},
+          text_key("value", "formula of the parameters that the model derives", "\"radius_first\"", true),
+          text_key("printed", "the value as the source prints it", "\"1.7527\""),
+          text_key("remark", "what is to be said of it", "\"...\"")};
 }
 
 }  // namespace monograin::definition

@@ -12,7 +12,8 @@ namespace monograin::definition {
 using Keys = std::vector<KeySpec>;
 
 /// Words in the order of the enumerators they stand for.
-inline constexpr std::array<std::string_view, 5> k_styles{"phases", "solid", "dashed", "dotted", "points"};
+inline constexpr std::array<std::string_view, 6> k_styles{"phases", "solid",       "dashed",
+                                                          "dotted", "dash-dotted", "points"};
 inline constexpr std::array<std::string_view, 3> k_rows{"all", "load", "unload"};
 
 inline constexpr const char* k_example_x = "\"axial.displacement / R0\"";
@@ -26,6 +27,8 @@ inline constexpr const char* k_example_y = "\"axial.force / (E * R0^2)\"";
 [[nodiscard]] Keys curve_keys();
 /// What a key of the scenario is varied over.
 [[nodiscard]] Keys vary_keys();
+/// What a key of the scenario runs through within one curve.
+[[nodiscard]] Keys sweep_keys();
 /// The range of t in a formula.
 [[nodiscard]] Keys parameter_keys();
 /// Points of a panel, and those of a comparison.
@@ -36,5 +39,9 @@ inline constexpr const char* k_example_y = "\"axial.force / (E * R0^2)\"";
 [[nodiscard]] Keys comparison_table_keys();
 /// One row of such a table.
 [[nodiscard]] Keys comparison_keys();
+/// A table of values.
+[[nodiscard]] Keys value_table_keys();
+/// One row of such a table.
+[[nodiscard]] Keys value_keys();
 
 }  // namespace monograin::definition

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <system_error>
 #include <utility>
@@ -17,7 +18,18 @@ namespace {
 
 using Values = std::vector<double>;
 
-constexpr std::array<std::string_view, 4> k_value_functions{"sqrt", "exp", "log", "abs"};
+struct ValueFunction {
+  std::string_view name;
+  double (*value)(double);
+};
+
+constexpr ValueFunction k_value_functions[] = {
+    {"sqrt", [](double x) { return std::sqrt(x); }}, {"exp", [](double x) { return std::exp(x); }},
+    {"log", [](double x) { return std::log(x); }},   {"abs", [](double x) { return std::abs(x); }},
+    {"sin", [](double x) { return std::sin(x); }},   {"cos", [](double x) { return std::cos(x); }},
+    {"tan", [](double x) { return std::tan(x); }},   {"atan", [](double x) { return std::atan(x); }},
+    {"sinh", [](double x) { return std::sinh(x); }}, {"cosh", [](double x) { return std::cosh(x); }},
+    {"tanh", [](double x) { return std::tanh(x); }}};
 constexpr std::array<std::string_view, 3> k_row_functions{"min", "max", "last"};
 constexpr std::size_t k_longest = 400;  ///< which also bounds how deep brackets nest
 
@@ -25,14 +37,8 @@ constexpr std::size_t k_longest = 400;  ///< which also bounds how deep brackets
 [[nodiscard]] bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 [[nodiscard]] bool is_function(std::string_view name) {
-  return std::ranges::find(k_value_functions, name) != k_value_functions.end() ||
+  return std::ranges::find(k_value_functions, name, &ValueFunction::name) != std::end(k_value_functions) ||
          std::ranges::find(k_row_functions, name) != k_row_functions.end();
-}
-
-[[nodiscard]] double value_of(std::string_view function, double argument) {
-  if (function == "sqrt") return std::sqrt(argument);
-  if (function == "exp") return std::exp(argument);
-  return function == "log" ? std::log(argument) : std::abs(argument);
 }
 
 /// Rows without a value do not count: before a contact is made its pressure is undefined.
@@ -49,7 +55,8 @@ constexpr std::size_t k_longest = 400;  ///< which also bounds how deep brackets
 
 [[nodiscard]] Values applied(std::string_view function, Values values) {
   if (std::ranges::find(k_row_functions, function) != k_row_functions.end()) return {reduced(function, values)};
-  for (double& value : values) value = value_of(function, value);
+  const auto found = std::ranges::find(k_value_functions, function, &ValueFunction::name);
+  for (double& value : values) value = found->value(value);
   return values;
 }
 

@@ -27,8 +27,9 @@ class ExpressionError : public std::runtime_error {
   std::string unknown_name_;
 };
 
-/// A formula of numbers, names, `+ - * / ^`, brackets and the functions sqrt, exp, log, abs (value by value) and min,
-/// max, last (one value of all). A name is letters, digits, `_` and `.` (axial.force), or any text between backquotes.
+/// A formula of numbers, names, `+ - * / ^`, brackets and the functions sqrt, exp, log, abs, sin, cos, tan, atan, sinh,
+/// cosh, tanh (value by value) and min, max, last (one value of all). A name is letters, digits, `_` and `.`
+/// (axial.force), or any text between backquotes.
 ///
 /// `a / b * c` is (a / b) * c; `^` binds first and from the right.
 class Expression {

@@ -74,6 +74,15 @@ TEST(Chart, SameLegendsLookTheSameAndStandOnceInTheLegend) {
   EXPECT_NE(script.find("'panel 2 series 2.' with lines lc rgb '#0072B2'"), std::string::npos) << script;
 }
 
+TEST(Chart, StylesDifferByTheirDashes) {
+  const std::string script =
+      script_of(chart_of({series("a"), series("b", ChartSeries::Style::dashed), series("c", ChartSeries::Style::dotted),
+                          series("d", ChartSeries::Style::dash_dotted)}));
+  for (const char* dash : {"dt 1", "dt (7,4)", "dt (2,4)", "dt (7,3,1.5,3)"}) {
+    EXPECT_EQ(count(script, dash), 2U) << dash << ": once in the panel, once in the legend";
+  }
+}
+
 TEST(Chart, TakesItsAxesFromTheValuesUnlessToldOtherwise) {
   Chart chart = chart_of({series("a")});
   EXPECT_NE(script_of(chart).find("set yrange [0:2.06]"), std::string::npos);

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <string>
 
 #include "figure/figure.hpp"
+#include "plastic/compression.hpp"
 #include "scenario/scenario.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -124,6 +126,152 @@ curve = [{ parameter = { from = 1, to = 3 }, x = "t", y = "t^2", style = "dashed
   EXPECT_EQ(series.style, figure::ChartSeries::Style::dashed);
 }
 
+TEST_F(Atlas, DrawsDerivedParametersOverASweptKey) {
+  const auto sweep = [&](const std::string& more) {
+    const AtlasFigure made =
+        make(std::string(k_head) + k_scenario +
+             "[[panel]]\nx = \"youngs_modulus / 1e9\"\ny = \"composite_modulus / 1e9\"\ncurve = [{ " +
+             "sweep = { key = \"material.youngs_modulus\", from = 1e9, to = 4e9" + more + " }]\n");
+    return made.chart.panels[0].series;
+  };
+  const auto logarithmic = sweep(", points = 3, log = true }");
+  ASSERT_EQ(logarithmic.size(), 1U);
+  EXPECT_EQ(logarithmic[0].x, (std::vector<double>{1, 2, 4}));
+  EXPECT_EQ(logarithmic[0].y, logarithmic[0].x) << "with nu = 0";
+  EXPECT_EQ(sweep(", points = 4 }")[0].x, (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(sweep("}")[0].x.size(), 101U);
+
+  const auto varied = sweep(
+      ", points = 2 }, vary = { key = \"material.poisson_ratio\", values = [0.0, 0.5], styles = [\"solid\", "
+      "\"dash-dotted\"] }");
+  ASSERT_EQ(varied.size(), 2U);
+  EXPECT_EQ(varied[1].legend, "poisson_ratio = 0.5");
+  EXPECT_EQ(varied[0].style, figure::ChartSeries::Style::solid);
+  EXPECT_EQ(varied[1].style, figure::ChartSeries::Style::dash_dotted);
+  EXPECT_DOUBLE_EQ(varied[1].y[1] / varied[0].y[1], 4.0 / 3.0);
+}
+
+TEST_F(Atlas, KnowsDerivedParametersInEveryFormula) {
+  const AtlasFigure made = make(std::string(k_head) + k_scenario + R"toml(
+[[panel]]
+y = "axial.force / (composite_modulus * radius^2)"
+curve = [{}, { parameter = { from = 0, to = 1 }, x = "t", y = "t * youngs_modulus / E" }]
+)toml");
+  const auto& series = made.chart.panels[0].series;
+  EXPECT_NEAR(*std::ranges::max_element(series[0].y), 4.0 / 3.0 * std::pow(0.01, 1.5), 1e-15);
+  EXPECT_DOUBLE_EQ(series[1].y.back(), 1.0);
+}
+
+TEST_F(Atlas, ReportsFaultsOfASweep) {
+  const auto fault = [&](const std::string& sweep, const std::string& more = {}) {
+    return fault_of(std::string(k_head) + k_scenario + "[[panel]]\n[[panel.curve]]\n" +
+                    "x = \"youngs_modulus\"\ny = \"composite_modulus\"\nsweep = { " + sweep + " }\n" + more);
+  };
+  const std::string range = "from = 1e9, to = 4e9";
+  const std::string key = "key = \"material.youngs_modulus\", ";
+  EXPECT_EQ(fault(key + "from = 1e9, too = 4e9"), "small.toml:22:56: unknown key 'too' in sweep; did you mean 'to'?");
+  EXPECT_TRUE(fault(key + range + ", points = 1").ends_with("points = 1: expected a whole number from 2 to 10000"));
+  EXPECT_EQ(fault(key + "from = 0, to = 4e9, log = true"),
+            "small.toml:22:70: equal ratios need 'from' and 'to' above 0");
+  EXPECT_EQ(fault(key + range, "profile_at = 1\n"),
+            "small.toml:23:1: 'profile_at' does not go with 'sweep', which has no history");
+  EXPECT_EQ(fault("key = \"material.youngs_modolus\", " + range),
+            "small.toml:22:17: material.youngs_modolus=1000000000: unknown key 'youngs_modolus' in [material]; did you "
+            "mean 'youngs_modulus'?");
+  EXPECT_EQ(fault("key = \"material.poisson_ratio\", from = 0.5, to = 0.7").substr(0, 57),
+            "small.toml:22:17: material.poisson_ratio=0.502: poisson_r")
+      << "the first value that is out of range";
+}
+
+TEST_F(Atlas, ReportsANameThatIsNoDerivedParameter) {
+  EXPECT_EQ(fault_of(std::string(k_head) + k_scenario + R"toml([[panel]]
+x = "youngs_modulus"
+curve = [{ sweep = { key = "material.youngs_modulus", from = 1e9, to = 2e9 }, y = "2 * composit_modulus" }]
+)toml"),
+            "small.toml:20:88: unknown name 'composit_modulus'; did you mean 'composite_modulus'?");
+}
+
+TEST_F(Atlas, WantsAStyleForEachVariedValue) {
+  const auto fault = [&](const std::string& styles) {
+    return fault_of(std::string(k_head) + k_scenario +
+                    "[[panel]]\n[[panel.curve]]\n[panel.curve.vary]\nkey = \"material.poisson_ratio\"\nvalues = [0.1, "
+                    "0.2]\nstyles = [" +
+                    styles + "]\n");
+  };
+  EXPECT_EQ(fault("\"solid\""), "small.toml:23:10: 1 styles for 2 values");
+  EXPECT_EQ(fault("\"solid\", \"dahsed\""), "small.toml:23:20: unknown style 'dahsed'; did you mean 'dashed'?");
+}
+
+constexpr const char* k_values = R"toml(title = "Numbers"
+source = "nobody"
+)toml";
+
+TEST_F(Atlas, TabulatesValuesBesidePrintedOnes) {
+  const AtlasFigure made = make(std::string(k_values) + k_scenario + R"toml(
+[[values]]
+title = "Moduli"
+[[values.row]]
+label = "rounded"
+set = ["material.poisson_ratio=0.5"]
+value = "composite_modulus / 1e10"
+printed = "1.333"
+[[values.row]]
+label = "wrong"
+value = "composite_modulus / 1e10"
+printed = "-1.01"
+remark = "a misprint"
+[[values.row]]
+label = "alone"
+value = "1 / 3"
+)toml");
+  EXPECT_TRUE(made.chart.panels.empty());
+  EXPECT_EQ(tables_text(made).substr(tables_text(made).find("## ")), R"(## Moduli
+
+| quantity |   computed | printed | difference | rounded to it | remark     |
+| -------- | ---------: | ------: | ---------: | ------------- | ---------- |
+| rounded  |  1.3333333 |   1.333 |   0.000333 | yes           |            |
+| wrong    |          1 |   -1.01 |       2.01 | no            | a misprint |
+| alone    | 0.33333333 |       - |          - | -             |            |
+)");
+  const fs::path out = definitions() / "out";
+  EXPECT_EQ(write_atlas({made}, out), (std::vector<fs::path>{out / "small.csv", out / "small.md"}));
+  const Table table = read_csv(out / "small.csv");
+  ASSERT_EQ(table.row_count(), 3U);
+  EXPECT_EQ(table.word(1, 1), "wrong");
+  EXPECT_DOUBLE_EQ(table.at(0, *table.find("computed")), 4.0 / 3.0);
+  EXPECT_EQ(table.at(0, *table.find("printed")), 1.333);
+  EXPECT_TRUE(std::isnan(table.at(2, *table.find("printed"))));
+}
+
+TEST_F(Atlas, ReportsFaultsInTablesOfValues) {
+  const auto faults = faults_of(std::string(k_values) + k_scenario + R"toml(
+[[table]]
+title = "t"
+row = []
+[[values]]
+title = "t"
+[[values.row]]
+label = "a"
+value = "composite_modulus +"
+printed = "1.3e5"
+[[values.row]]
+label = "b"
+valu = "1"
+set = ["material.poisson_ratio=0.7"]
+)toml");
+  ASSERT_EQ(faults.size(), 6U);
+  EXPECT_TRUE(faults[0].starts_with("small.toml:19:")) << faults[0];
+  EXPECT_EQ(faults[1], "small.toml:20:3: [[values]] does not go with [[table]]: both are written to the same files");
+  EXPECT_EQ(faults[2], "small.toml:24:29: value = \"composite_modulus +\": expected a number or a name");
+  EXPECT_EQ(faults[3], "small.toml:25:11: printed = \"1.3e5\": expected digits, for example \"-31.76\"");
+  EXPECT_EQ(faults[4], "small.toml:28:1: unknown key 'valu' in [[values.row]]; did you mean 'value'?");
+  EXPECT_TRUE(faults[5].starts_with("small.toml:29:8: material.poisson_ratio=0.7: ")) << faults[5];
+  EXPECT_EQ(fault_of(std::string(k_values) + k_scenario +
+                     "[[values]]\ntitle = \"t\"\nrow = [{ label = \"a\", value = \"axial.force\" }]\n")
+                .substr(0, 49),
+            "small.toml:18:32: unknown name 'axial.force'; the");
+}
+
 TEST_F(Atlas, TakesTheRowsOfAFileThatAreAskedFor) {
   write("points.csv", "x[-],F_over_R^2[-]\n0,0\n1,2\n2,4\n1.5,1\n2,4\n3,6\n");
   const auto points = [&](const std::string& more) {
@@ -176,7 +324,7 @@ TEST_F(Atlas, ReportsANameThatTheRunDoesNotHave) {
 
 TEST_F(Atlas, WantsAScenarioForItsCurves) {
   EXPECT_EQ(fault_of(std::string(k_head) + "[[panel]]\ncurve = [{}]\n"),
-            "small.toml:6:10: the curve has no scenario; expected scenario = \"FILE\" or a table [scenario]");
+            "small.toml:6:10: there is no scenario for this; expected scenario = \"FILE\" or a table [scenario]");
   EXPECT_TRUE(fault_of(std::string(k_head) + "[[panel]]\ncurve = [{ scenario = \"none.toml\" }]\n")
                   .ends_with("none.toml: there is no such file"));
 }
@@ -269,11 +417,14 @@ TEST(ReadyAtlas, ReadsAndComputesEveryDefinition) {
   const auto figures = make_atlas(MONOGRAIN_SOURCE_DIR "/plots", {});
   EXPECT_GE(figures.size(), 9U);
   for (const AtlasFigure& made : figures) {
-    EXPECT_FALSE(made.chart.panels.empty() && made.tables.empty()) << made.name;
+    EXPECT_FALSE(made.chart.panels.empty() && made.tables.empty() && made.value_tables.empty()) << made.name;
     EXPECT_EQ(made.status, RunStatus::complete) << made.name;
     for (const figure::ChartPanel& panel : made.chart.panels) {
       EXPECT_FALSE(panel.x.label.empty() || panel.y.label.empty()) << made.name;
-      for (const figure::ChartSeries& series : panel.series) EXPECT_GT(series.x.size(), 1U) << made.name;
+      for (const figure::ChartSeries& series : panel.series) {
+        const bool is_line = series.style != figure::ChartSeries::Style::points;
+        EXPECT_GT(series.x.size(), is_line ? 1U : 0U) << made.name;
+      }
     }
   }
 }
@@ -293,6 +444,51 @@ TEST(ReadyAtlas, HoldsModelMdrAgainstFiniteElements) {
   EXPECT_GE(line.reference_residual, 0.3694);
   EXPECT_LE(line.reference_residual, 0.3776);
   EXPECT_NEAR(line.residual, 0.3767, 5e-4);
+}
+
+/// Tables 3.1 and C.1 of 000_34f0f4b3689a4570.txt: what is printed is what the laws give, rounded, but for the values
+/// below.
+TEST(ReadyAtlas, HoldsTheRigidLimitAgainstPrintedValues) {
+  const AtlasFigure made = make_atlas(MONOGRAIN_SOURCE_DIR "/plots", {"semimech-tables"}).front();
+  const auto& coefficients = made.value_tables.at(0).rows;
+  ASSERT_EQ(coefficients.size(), 9U);
+  constexpr plastic::Configuration configurations[] = {plastic::Configuration::simple, plastic::Configuration::die,
+                                                       plastic::Configuration::hydrostatic};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const plastic::RadiusSeries series = plastic::rigid_radius_series(configurations[k]);
+    EXPECT_DOUBLE_EQ(coefficients[k].value, series.first);
+    EXPECT_DOUBLE_EQ(coefficients[3 + k].value, series.third);
+    EXPECT_DOUBLE_EQ(coefficients[6 + k].value, series.fifth);
+  }
+  // b_3 and b_5 have five printed digits, so D3 and D5 are known to 1e-4 of themselves.
+  for (const ValueRow& row : coefficients) {
+    const double difference = std::abs(row.value - std::stod(row.printed));
+    if (row.label == "D5 hydrostatic") {
+      EXPECT_NEAR(difference, 10.0006, 1e-3);
+    } else {
+      EXPECT_LT(difference, 1e-4 * row.value) << row.label;
+    }
+  }
+  const auto& discriminants = made.value_tables.at(1).rows;
+  ASSERT_EQ(discriminants.size(), 6U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_LT(std::abs(discriminants[k].value - std::stod(discriminants[k].printed)), 0.005) << discriminants[k].label;
+  }
+  EXPECT_GT(discriminants[4].value, -225.0) << "with the misprint";
+}
+
+/// The law was fitted to finite elements of others, from lambda = 117.24 on.
+TEST(ReadyAtlas, HoldsModelSemimechAgainstFiniteElements) {
+  const AtlasFigure made = make_atlas(MONOGRAIN_SOURCE_DIR "/plots", {"semimech-fe"}).front();
+  for (const ComparisonRow& row : made.tables.at(0).rows) {
+    const bool is_in_range = row.label == "lambda = 123.41 semimech" || row.label == "E/Y = 200 semimech";
+    for (const BranchComparison& line : row.lines) {
+      EXPECT_LT(line.peak_error, is_in_range ? 0.06 : 0.25) << row.label << ' ' << line.reversal;
+      if (std::isfinite(line.reference_residual) && std::isfinite(line.residual)) {
+        EXPECT_NEAR(line.residual, line.reference_residual, 0.01) << row.label << ' ' << line.reversal;
+      }
+    }
+  }
 }
 
 }  // namespace

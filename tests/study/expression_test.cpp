@@ -40,7 +40,9 @@ TEST(Expression, BindsAsInAFormula) {
   for (const auto& [text, value] :
        {NumberCase{"2 + 3 * 4", 14}, NumberCase{"12 / 2 * 3", 18}, NumberCase{"12 / (2 * 3)", 2},
         NumberCase{"-2^2", -4}, NumberCase{"2^3^2", 512}, NumberCase{"2^-1", 0.5}, NumberCase{"8 - 2 - 1", 5},
-        NumberCase{"1e3 * .5", 500}, NumberCase{"sqrt(16) + abs(-1) + log(exp(2))", 7}, NumberCase{"c * c", 4}}) {
+        NumberCase{"sin(1)^2 + cos(1)^2", 1}, NumberCase{"tan(atan(3))", 3}, NumberCase{"log(sinh(2) + cosh(2))", 2},
+        NumberCase{"tanh(1) * cosh(1) / sinh(1)", 1}, NumberCase{"1e3 * .5", 500},
+        NumberCase{"sqrt(16) + abs(-1) + log(exp(2))", 7}, NumberCase{"c * c", 4}}) {
     const Values values = value_of(text);
     ASSERT_EQ(values.size(), 1U) << text;
     EXPECT_DOUBLE_EQ(values[0], value) << text;
@@ -64,7 +66,7 @@ TEST(Expression, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(fault_of("2 *"), "3: expected a number or a name");
   EXPECT_EQ(fault_of(""), "0: expected a number or a name");
   EXPECT_EQ(fault_of("2 c"), "2: expected an operator or the end");
-  EXPECT_EQ(fault_of("c + sin(c)"), "4: there is no function 'sin'");
+  EXPECT_EQ(fault_of("c + sine(c)"), "4: there is no function 'sine'");
   EXPECT_EQ(fault_of("`c"), "1: the backquote is not closed");
   EXPECT_EQ(fault_of("c * d"), "4: unknown name 'd'");
   EXPECT_EQ(fault_of("axial.x + two"), "13: 3 values do not go with 2");
