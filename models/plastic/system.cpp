@@ -141,7 +141,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     if (classes_[i].takes_force) y[places_[i]] = coordinate(i, is_loaded(i) ? now : x);
   }
   has_begun_ = true;
-  settle_lateral(0.0, y);
+  settle_lateral();
   watch(0.0, y);
 }
 
@@ -369,7 +369,7 @@ mdr::UnloadingShape System::indenter_at(std::size_t i, double x) const {
 }
 
 /// Lateral contacts follow the axial ones while those are loaded, and while nothing has yielded.
-void System::settle_lateral(double /*xi*/, std::span<const double> /*y*/) {
+void System::settle_lateral() {
   const Regime primary = memory_[first_primary_].regime;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (!is_lateral(i)) continue;
@@ -503,7 +503,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     if (classes_[i].takes_force) y[places_[i]] = coordinate(i, x);
   }
   if (end) return end;
-  settle_lateral(xi, y);
+  settle_lateral();
   watch(xi, y);
   return std::nullopt;
 }

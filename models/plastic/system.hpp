@@ -119,7 +119,7 @@ class System final : public HybridSystem {
   void turn_back(std::size_t i, double x, std::vector<Event>& log);
   void lose_contact(std::size_t i);
   void resume_loading(std::size_t i);
-  void settle_lateral(double xi, std::span<const double> y);
+  void settle_lateral();
   void watch(double xi, std::span<const double> y);
   void watch_primary(std::size_t i, double x, double target);
   void add_guard(int kind, std::size_t i, int direction, std::string_view name, double place);
