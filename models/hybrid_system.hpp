@@ -72,6 +72,18 @@ struct Observable {
   std::span<const std::string_view> words;  ///< not empty: the value is an index into these
 };
 
+/// Appends what the history shows of a contact class with a contact area: displacement, overlap, force, contact radius,
+/// pressure and regime.
+inline void add_contact_columns(const std::string& contact_class, std::span<const std::string_view> regimes,
+                                std::vector<Observable>& columns) {
+  columns.push_back({contact_class + ".displacement", "m", {}});
+  columns.push_back({contact_class + ".overlap", "m", {}});
+  columns.push_back({contact_class + ".force", "N", {}});
+  columns.push_back({contact_class + ".contact_radius", "m", {}});
+  columns.push_back({contact_class + ".pressure", "Pa", {}});
+  columns.push_back({contact_class + ".regime", "", regimes});
+}
+
 /// What a program's condition can ask for.
 enum class Quantity { force, displacement, pressure, contact_radius, apparent_radius };
 

@@ -70,6 +70,35 @@ double square_of_root(const Excess& excess, double lower, double upper) {
 /// Angle theta with cos(theta) = u, for u in [0, 1), and slightly beyond the old maximum (u < 0).
 double unloading_angle(double u) noexcept { return u > 0.5 ? angle_from_versine(1.0 - u) : std::acos(u); }
 
+/// The indenter that is left by a contact, and the depth of the centre below its tip over a_max, zeta, with
+/// s = sqrt(1 + zeta^2) and k = 1/(2 (1 - nu)).
+struct IndenterLeft {
+  UnloadingShape shape;
+  double zeta, s, k;
+};
+
+IndenterLeft indenter_left(double composite_modulus, double poisson_ratio, double radius, double overlap_max,
+                           double contact_radius, double pressure) {
+  const double a = contact_radius;
+  const double height = 4.0 * pressure * a / composite_modulus;
+  const double depth = radius - overlap_max + 0.5 * height;
+  if (!(depth > 0.0)) throw std::domain_error("the wall has reached the centre of the particle");
+  const double zeta = depth / a;
+  const double s = std::sqrt(1.0 + zeta * zeta);
+  const double k = 1.0 / (2.0 * (1.0 - poisson_ratio));
+  const double rho = (1.0 + k * zeta / s) / (s + zeta);  // eq. 34
+  return {{.radius = radius,
+           .overlap_max = overlap_max,
+           .contact_radius_max = a,
+           .pressure = pressure,
+           .height = height,
+           .rho = rho,
+           .recovery = 0.5 * height * (1.0 - rho)},
+          zeta,
+          s,
+          k};
+}
+
 }  // namespace
 
 Material make_material(double youngs_modulus, double poisson_ratio, double yield_stress,
@@ -196,18 +225,7 @@ Contact plastic_contact(const Material& material, double radius, double overlap,
 
 UnloadingShape unloading_shape_of(double composite_modulus, double poisson_ratio, double radius, double overlap_max,
                                   double contact_radius, double pressure) {
-  const double a = contact_radius;
-  UnloadingShape shape{.radius = radius, .overlap_max = overlap_max, .contact_radius_max = a, .pressure = pressure};
-  shape.height = 4.0 * pressure * a / composite_modulus;
-  // eq. 34 in the form rho(zeta, nu); zeta is the depth of the centre below the indenter's tip over a_max.
-  const double depth = radius - overlap_max + 0.5 * shape.height;
-  if (!(depth > 0.0)) throw std::domain_error("the wall has reached the centre of the particle");
-  const double zeta = depth / a;
-  const double s = std::sqrt(1.0 + zeta * zeta);
-  const double k = 1.0 / (2.0 * (1.0 - poisson_ratio));
-  shape.rho = (1.0 + k * zeta / s) / (s + zeta);
-  shape.recovery = 0.5 * shape.height * (1.0 - shape.rho);
-  return shape;
+  return indenter_left(composite_modulus, poisson_ratio, radius, overlap_max, contact_radius, pressure).shape;
 }
 
 UnloadingShape unloading_shape(const Material& material, double radius, double overlap_max, double area_constant) {
@@ -216,7 +234,7 @@ UnloadingShape unloading_shape(const Material& material, double radius, double o
   if (!(area > 0.0)) throw std::domain_error("contact area of a plastic contact is not positive");
   const auto [pressure, decrement] = plastic_pressure(material, m / radius);
   const double a = std::sqrt(area);
-  UnloadingShape shape = unloading_shape_of(material.composite_modulus, material.poisson_ratio, radius, m, a, pressure);
+  auto [shape, zeta, s, k] = indenter_left(material.composite_modulus, material.poisson_ratio, radius, m, a, pressure);
 
   shape.pressure_by_max = -decrement / (radius * pressure);
   shape.pressure_by_radius = decrement * m / (radius * radius * pressure);
@@ -224,9 +242,6 @@ UnloadingShape unloading_shape(const Material& material, double radius, double o
   shape.contact_radius_by_radius = m / area;
 
   // zeta/s - 1 = -1/(s (s + zeta)), which keeps its digits for small contacts (zeta >> 1).
-  const double zeta = (radius - m + 0.5 * shape.height) / a;
-  const double s = std::sqrt(1.0 + zeta * zeta);
-  const double k = 1.0 / (2.0 * (1.0 - material.poisson_ratio));
   const double rho_by_zeta = (k / (s * s) - (1.0 + k * zeta / s)) / (s * (s + zeta));
   const double height_by_max = shape.height * (shape.pressure_by_max + shape.contact_radius_by_max);
   const double height_by_radius = shape.height * (shape.pressure_by_radius + shape.contact_radius_by_radius);

@@ -99,14 +99,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   observables_.push_back({"dissipation", "J", {}});
   const std::span<const std::string_view> words =
       yields ? std::span<const std::string_view>(k_regime_words) : std::span<const std::string_view>(k_hertz_words);
-  for (const ContactClass& c : classes_) {
-    observables_.push_back({c.name + ".displacement", "m", {}});
-    observables_.push_back({c.name + ".overlap", "m", {}});
-    observables_.push_back({c.name + ".force", "N", {}});
-    observables_.push_back({c.name + ".contact_radius", "m", {}});
-    observables_.push_back({c.name + ".pressure", "Pa", {}});
-    observables_.push_back({c.name + ".regime", "", words});
-  }
+  for (const ContactClass& c : classes_) add_contact_columns(c.name, words, observables_);
   if (settings_.centre_is_free) {
     for (const char* axis : {"centre_x", "centre_y", "centre_z"}) observables_.push_back({axis, "m", {}});
   }

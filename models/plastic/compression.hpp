@@ -12,6 +12,7 @@
 #pragma once
 
 #include <algorithm>
+#include <boost/container/static_vector.hpp>
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
@@ -63,6 +64,10 @@ struct Boundary {
   double approach = 0.0;  ///< x; still belongs to the regime before
   Regime beyond = Regime::undefined;
 };
+
+/// In ascending order; no law has more than four. Nothing is allocated, because forces are inverted with them at every
+/// instant of a run.
+using Boundaries = boost::container::static_vector<Boundary, 4>;
 
 /// A quantity outside the range over which the source fitted its constants.
 struct OutOfRange {

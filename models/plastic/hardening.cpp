@@ -80,7 +80,7 @@ HardeningLaw make_hardening(double exponent, Configuration configuration, Minimu
   return law;
 }
 
-std::vector<Boundary> boundaries(const HardeningLaw& law) {
+Boundaries boundaries(const HardeningLaw& law) {
   if (!is_enclosed(law)) return {};
   return {{"low-compressibility", law.fall.end, Regime::low_compressibility},
           {"zero-porosity", law.zero_porosity * (1.0 - k_zero_porosity_margin), Regime::undefined}};

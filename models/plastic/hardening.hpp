@@ -6,8 +6,6 @@
 /// 000_34f0f4b3689a4570.txt, chapter 3.
 #pragma once
 
-#include <vector>
-
 #include "plastic/compression.hpp"
 
 namespace monograin::plastic {
@@ -39,7 +37,7 @@ constexpr double k_zero_porosity_margin = 1e-9;
 
 /// Regime boundaries in ascending order. Enclosed particles: `low-compressibility`, and `zero-porosity` at the margin
 /// before it, where the law is left. Simple compression has none.
-[[nodiscard]] std::vector<Boundary> boundaries(const HardeningLaw& law);
+[[nodiscard]] Boundaries boundaries(const HardeningLaw& law);
 
 /// A boundary belongs to the regime before it; x <= 0 is open.
 [[nodiscard]] Regime regime_at(const HardeningLaw& law, double x) noexcept;

@@ -14,8 +14,8 @@ Overloaded(Calls...) -> Overloaded<Calls...>;
 
 Regime first_regime(const Law& law) noexcept { return begins_elastic(law) ? Regime::elastic : Regime::fully_plastic; }
 
-std::vector<Boundary> boundaries(const Law& law) {
-  return std::visit(Overloaded{[](const SimilarityLaw&) { return std::vector<Boundary>(); },
+Boundaries boundaries(const Law& law) {
+  return std::visit(Overloaded{[](const SimilarityLaw&) { return Boundaries(); },
                                [](const auto& other) { return boundaries(other); }},
                     law);
 }

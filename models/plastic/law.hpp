@@ -4,8 +4,6 @@
 
 #include <optional>
 #include <variant>
-#include <vector>
-
 #include "plastic/hardening.hpp"
 #include "plastic/semimech.hpp"
 #include "plastic/similarity.hpp"
@@ -18,7 +16,7 @@ using Law = std::variant<SimilarityLaw, SemimechLaw, HardeningLaw>;
 [[nodiscard]] Regime first_regime(const Law& law) noexcept;
 
 /// Where its regimes end, in ascending order. The boundary after which the regime is `undefined` ends the law.
-[[nodiscard]] std::vector<Boundary> boundaries(const Law& law);
+[[nodiscard]] Boundaries boundaries(const Law& law);
 
 /// The formulas of one regime, also a little outside of it, for x > 0.
 /// @throws std::domain_error where they end

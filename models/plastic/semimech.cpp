@@ -180,12 +180,17 @@ SemimechLaw make_semimech(const SemimechMaterial& material, Configuration config
     law.stiffening = make_stiffening(configuration, zeta, law.fall);
     law.calibrated_end = law.stiffening.zero_porosity + 0.01;
   }
+  Regime regime = Regime::elastic;
+  for (const Boundary& end : boundaries(law)) {
+    law.boundary_forces.push_back(state_in(law, regime, end.approach).force);
+    regime = end.beyond;
+  }
   return law;
 }
 
-std::vector<Boundary> boundaries(const SemimechLaw& law) {
-  std::vector<Boundary> list{{"yield", law.yield_approach, Regime::elastic_plastic},
-                             {"fully-plastic", law.fall.start, Regime::fully_plastic}};
+Boundaries boundaries(const SemimechLaw& law) {
+  Boundaries list{{"yield", law.yield_approach, Regime::elastic_plastic},
+                  {"fully-plastic", law.fall.start, Regime::fully_plastic}};
   if (is_enclosed(law.configuration)) {
     list.push_back({"low-compressibility", law.fall.end, Regime::low_compressibility});
     list.push_back({"zero-porosity", law.stiffening.zero_porosity, Regime::elastic_volumetric});
@@ -220,13 +225,15 @@ double approach_under(const SemimechLaw& law, double force) {
   // The force for small x, where a/R = D1 x^(1/2), off by a relative error of order x.
   const double first = law.radius.first;
   const double root = std::cbrt(3.0 * force / (4.0 * law.material.modulus_over_yield * first * first));
-  double guess = root * root;
+  const double guess = root * root;
 
   double lower = 0.0;
   Regime regime = Regime::elastic;
   const auto state = [&](double x) { return state_in(law, regime, x); };
-  for (const Boundary& end : boundaries(law)) {
-    if (force <= state(end.approach).force) {
+  const Boundaries ends = boundaries(law);
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    const Boundary& end = ends[k];
+    if (force <= law.boundary_forces[k]) {
       return regime == Regime::elastic ? approach_from_touch(state, end.approach, force, guess)
                                        : approach_between(state, lower, end.approach, force, lower);
     }
@@ -322,8 +329,8 @@ ValueAndSlope lateral_approach(const LateralLaw& lateral, double x) noexcept {
   return {.value = value, .slope = lateral.exponent * value / x};
 }
 
-std::vector<Boundary> boundaries(const SemimechLaw& law, const LateralLaw& lateral) {
-  std::vector<Boundary> list;
+Boundaries boundaries(const SemimechLaw& law, const LateralLaw& lateral) {
+  Boundaries list;
   if (lateral.yield_approach < LateralLaw::small_range_end)
     list.push_back({"yield", lateral.yield_approach, Regime::elastic_plastic});
   list.push_back({"", LateralLaw::small_range_end, Regime::undefined});

@@ -46,15 +46,16 @@ struct Stiffening {
 struct SemimechLaw {
   Configuration configuration = Configuration::simple;
   SemimechMaterial material{};
-  RadiusSeries radius{};                ///< D_i (eq. 2.14)
-  double yield_approach = 0.0;          ///< x_y (eq. 2.17), where H = 1.1
-  double yield_logarithm = 0.0;         ///< ln(x_Hmax/x_y)
-  double logarithm_amplitude = 0.0;     ///< c1 (eq. 2.23)
-  double logarithm_exponent = 0.0;      ///< c2 (eq. 2.22), >= 1
-  PressureFall fall{};                  ///< x_Hmax = fall.start, x_Hmin = fall.end
-  Stiffening stiffening{};              ///< zeros in simple compression
-  double calibrated_end = 0.0;          ///< x up to which the source compares the law: 0.5 (simple), x_zp + 0.01
-  static constexpr double limit = 1.0;  ///< x at which the walls meet; the law ends before
+  RadiusSeries radius{};             ///< D_i (eq. 2.14)
+  double yield_approach = 0.0;       ///< x_y (eq. 2.17), where H = 1.1
+  double yield_logarithm = 0.0;      ///< ln(x_Hmax/x_y)
+  double logarithm_amplitude = 0.0;  ///< c1 (eq. 2.23)
+  double logarithm_exponent = 0.0;   ///< c2 (eq. 2.22), >= 1
+  PressureFall fall{};               ///< x_Hmax = fall.start, x_Hmin = fall.end
+  Stiffening stiffening{};           ///< zeros in simple compression
+  double calibrated_end = 0.0;       ///< x up to which the source compares the law: 0.5 (simple), x_zp + 0.01
+  boost::container::static_vector<double, 4> boundary_forces{};  ///< P/(Y R^2) at each of boundaries()
+  static constexpr double limit = 1.0;                           ///< x at which the walls meet; the law ends before
 };
 
 /// @throws std::invalid_argument naming the numbers for lambda below its least value, and for zeta that is not finite
@@ -63,7 +64,7 @@ struct SemimechLaw {
 
 /// Regime boundaries in ascending order: `yield`, `fully-plastic`, and for enclosed particles `low-compressibility`,
 /// `zero-porosity`. The last regime goes on to the limit.
-[[nodiscard]] std::vector<Boundary> boundaries(const SemimechLaw& law);
+[[nodiscard]] Boundaries boundaries(const SemimechLaw& law);
 
 /// A boundary belongs to the regime before it; x <= 0 is open.
 [[nodiscard]] Regime regime_at(const SemimechLaw& law, double x) noexcept;
@@ -124,7 +125,7 @@ constexpr double k_greatest_lateral_modulus_over_yield = 4954.40;
 
 /// Where the regimes of a lateral contact end, in terms of the primary x: `yield`, the end of the small range and zero
 /// porosity (no events of the lateral contact: empty names), and `secondary-onset`.
-[[nodiscard]] std::vector<Boundary> boundaries(const SemimechLaw& law, const LateralLaw& lateral);
+[[nodiscard]] Boundaries boundaries(const SemimechLaw& law, const LateralLaw& lateral);
 
 /// A boundary belongs to the regime before it, but for the onset; x <= 0 is open. `undefined` between the two ranges.
 [[nodiscard]] Regime lateral_regime_at(const SemimechLaw& law, const LateralLaw& lateral, double x) noexcept;

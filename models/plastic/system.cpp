@@ -87,14 +87,7 @@ System::System(Settings settings, std::vector<ContactClass> classes)
     observables_.push_back({"stored_energy", "J", {}});
     observables_.push_back({"dissipation", "J", {}});
   }
-  for (const ContactClass& c : classes_) {
-    observables_.push_back({c.name + ".displacement", "m", {}});
-    observables_.push_back({c.name + ".overlap", "m", {}});
-    observables_.push_back({c.name + ".force", "N", {}});
-    observables_.push_back({c.name + ".contact_radius", "m", {}});
-    observables_.push_back({c.name + ".pressure", "Pa", {}});
-    observables_.push_back({c.name + ".regime", "", k_regime_words});
-  }
+  for (const ContactClass& c : classes_) add_contact_columns(c.name, k_regime_words, observables_);
   for (const OutOfRange& out : settings_.out_of_range) {
     range_messages_.push_back(std::string(out.quantity) + " is outside " + text(out.lower) + " to " + text(out.upper) +
                               ", over which the source fitted the law");
@@ -167,6 +160,12 @@ System::Chart System::chart(std::size_t i) const noexcept {
   return {memory_[i].indenter.recovery, unknowns_[places_[i]].scale, k_opening_power};
 }
 
+/// du/dx at a distance from the origin.
+double System::stretch(std::size_t i, double distance) const noexcept {
+  const auto [length, unit, power] = chart(i);
+  return unit * power * std::pow(distance / length, power - 1.0) / length;
+}
+
 double System::coordinate(std::size_t i, double x) const noexcept {
   const auto [length, unit, power] = chart(i);
   return unit * signed_power((x - origin(i)) / length, power);
@@ -224,18 +223,19 @@ System::Contact System::lateral_contact(std::size_t i, double x) const {
   return {c.force, c.force_by_approach, c.contact_radius, c.pressure};
 }
 
-/// Force and its derivative at a coordinate of a touching contact; odd in u, so that a trial step below zero stays
+/// Force and its derivatives at a coordinate of a touching contact; odd in u, so that a trial step below zero stays
 /// smooth.
 System::Slope System::slope(std::size_t i, double u) const {
   const auto [length, unit, power] = chart(i);
   const double nearest = is_on_indenter(i) ? k_nearest_opening : k_nearest_touch;
   const double distance = std::pow(std::abs(u) / unit, 1.0 / power);  // over the length
+  const double by_displacement = stretch(i, length * distance);       // du/dx
   if (distance <= nearest) {
     const double by_coordinate = contact(i, origin(i) + length * nearest).force / (unit * std::pow(nearest, power));
-    return {by_coordinate * u, by_coordinate};
+    return {by_coordinate * u, by_coordinate, by_coordinate * by_displacement};
   }
   const Contact c = contact(i, origin(i) + length * distance);
-  return {std::copysign(c.force, u), c.stiffness * length / (unit * power * std::pow(distance, power - 1.0))};
+  return {std::copysign(c.force, u), c.stiffness / by_displacement, c.stiffness};
 }
 
 /// Coordinate of a wall whose place needs no integration: it is prescribed, rests, or follows from the force in closed
@@ -261,47 +261,45 @@ void System::solve(double xi, std::span<double> y) {
 }
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
+  double power = 0.0;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (!classes_[i].takes_force) continue;
+    if (is_lateral(i)) continue;
     const double speed = ramps_[i].end - ramps_[i].start;
-    double& rate = dy[places_[i]];
-    if (!is_loaded(i)) {
-      const auto [length, unit, power] = chart(i);
-      const double distance = std::abs(told(i, xi) - origin(i)) / length;
-      rate = unit * power * std::pow(distance, power - 1.0) * speed / length;
+    if (is_loaded(i)) {
+      const Slope now = touches(memory_[i].regime) ? slope(i, y[places_[i]]) : Slope{};
+      dy[places_[i]] = now.by_coordinate > 0.0 ? speed / now.by_coordinate : 0.0;
+      power += power_under_force(i, xi, now);
     } else {
-      rate = touches(memory_[i].regime) ? speed / slope(i, y[places_[i]]).by_coordinate : 0.0;
+      if (classes_[i].takes_force) dy[places_[i]] = stretch(i, std::abs(told(i, xi) - origin(i))) * speed;
+      power += classes_[i].multiplicity() * contact(i, told(i, xi)).force * speed;
     }
   }
-  dy[work_place_] = power_of_walls(xi, y);
+  dy[work_place_] = power;
 }
 
-/// Rate of the work of all moving walls.
-double System::power_of_walls(double xi, std::span<const double> y) const {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (is_lateral(i) || !touches(memory_[i].regime)) continue;
-    const Contact c = seen(i, xi, y);
-    const double speed = ramps_[i].end - ramps_[i].start;
-    const double rate = !is_loaded(i) ? speed : c.stiffness > 0.0 ? speed / c.stiffness : 0.0;
-    sum += classes_[i].multiplicity() * c.force * rate;
-  }
-  return sum;
+/// Rate of the work of walls under a force.
+double System::power_under_force(std::size_t i, double xi, const Slope& now) const {
+  if (!(now.by_displacement > 0.0)) return 0.0;
+  const double speed = (ramps_[i].end - ramps_[i].start) / now.by_displacement;
+  return classes_[i].multiplicity() * told(i, xi) * speed;
 }
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
+  double power = 0.0;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (is_lateral(i)) continue;
+    const bool presses = is_loaded(i) && touches(memory_[i].regime);
+    const Slope now = presses ? slope(i, y[places_[i]]) : Slope{};
+    power += is_loaded(i)
+                 ? power_under_force(i, xi, now)
+                 : classes_[i].multiplicity() * contact(i, told(i, xi)).force * (ramps_[i].end - ramps_[i].start);
     if (!classes_[i].takes_force) continue;
     const double u = y[places_[i]];
-    if (const auto known = known_coordinate(i, xi)) {
-      res[places_[i]] = u - *known;
-    } else {
-      // In units of u, as the integrator weighs it.
-      const auto [force, by_coordinate] = slope(i, u);
-      res[places_[i]] = (force - told(i, xi)) / by_coordinate;
-    }
+    // In units of u, as the integrator weighs it.
+    const auto known = known_coordinate(i, xi);
+    res[places_[i]] = known ? u - *known : (now.force - told(i, xi)) / now.by_coordinate;
   }
-  res[work_place_] = dy[work_place_] - power_of_walls(xi, y);
+  res[work_place_] = dy[work_place_] - power;
 }
 
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {

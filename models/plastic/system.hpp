@@ -89,10 +89,11 @@ class System final : public HybridSystem {
     double power = 1.0;
   };
 
-  /// Force over the coordinate u.
+  /// Force over the coordinate u and over the displacement.
   struct Slope {
     double force = 0.0;
     double by_coordinate = 0.0;
+    double by_displacement = 0.0;
   };
 
   /// Whether a class is that of the fixed walls of a die, whose contacts follow from the axial ones.
@@ -103,6 +104,7 @@ class System final : public HybridSystem {
   [[nodiscard]] bool is_on_indenter(std::size_t i) const noexcept;
   [[nodiscard]] double origin(std::size_t i) const noexcept;
   [[nodiscard]] Chart chart(std::size_t i) const noexcept;
+  [[nodiscard]] double stretch(std::size_t i, double distance) const noexcept;
   [[nodiscard]] double coordinate(std::size_t i, double x) const noexcept;
   [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const noexcept;
   [[nodiscard]] std::optional<double> known_coordinate(std::size_t i, double xi) const;
@@ -111,7 +113,7 @@ class System final : public HybridSystem {
   [[nodiscard]] Contact contact(std::size_t i, double x) const;
   [[nodiscard]] Contact lateral_contact(std::size_t i, double x) const;
   [[nodiscard]] Slope slope(std::size_t i, double u) const;
-  [[nodiscard]] double power_of_walls(double xi, std::span<const double> y) const;
+  [[nodiscard]] double power_under_force(std::size_t i, double xi, const Slope& now) const;
   [[nodiscard]] double stored_energy(std::size_t i, double x) const;
   [[nodiscard]] mdr::UnloadingShape indenter_at(std::size_t i, double x) const;
 
@@ -130,8 +132,8 @@ class System final : public HybridSystem {
   std::vector<bool> is_lateral_;
   std::size_t first_primary_ = 0;
   std::optional<LateralLaw> lateral_law_;
-  std::vector<Boundary> boundaries_;
-  std::vector<Boundary> lateral_boundaries_;
+  Boundaries boundaries_;
+  Boundaries lateral_boundaries_;
   std::optional<double> impingement_;
   std::vector<Unknown> unknowns_;
   std::vector<Observable> observables_;

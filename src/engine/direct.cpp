@@ -278,7 +278,7 @@ class Direct final : public Integrator {
   /// A guard that is on the same side at both ends of the piece may have crossed and come back in between. Looks at the
   /// middle, and from there at the extremum of the parabola through the three; where a guard is past, ends the piece.
   bool shorten_to_hidden_crossing() {
-    if (end_ - begin_ < k_smallest_hidden) return false;
+    if (end_ - begin_ < k_smallest_hidden || watch_.size() == 0) return false;
     const double middle = std::midpoint(begin_, end_);
     solve(middle, trial_);
     look(middle, trial_, middle_values_);

@@ -130,7 +130,8 @@ Scene make_scene(const Scenario& scenario, bool merges_walls) {
 
   const auto unknowns = scene.system->unknowns();
   const auto is_algebraic = [](const Unknown& u) { return u.kind == Unknown::Kind::algebraic; };
-  if (std::ranges::none_of(unknowns, is_algebraic)) {
+  const bool takes_force = std::ranges::any_of(scene.classes, &ContactClass::takes_force);
+  if (!takes_force && std::ranges::none_of(unknowns, is_algebraic)) {
     scene.skipped.emplace_back(scenario.loading.centre_is_free
                                    ? "algebraic unknowns: by symmetry the wall forces balance on the centre at rest"
                                    : "algebraic unknowns: displacements are prescribed and the centre is fixed");
