@@ -79,6 +79,7 @@ struct ModelInfo {
   std::span<const Term> regimes;
   std::span<const Term> events;
   std::span<const std::string_view> domain;  ///< limits of validity, a sentence each
+  double least_wall_angle = 0.0;             ///< [rad], between any two walls
   /// `strength` and `hardening_exponent` may be given by Ludwik's law instead.
   bool takes_ludwik = false;
   std::vector<Objection> (*objections)(const Given& given) = nullptr;  ///< null: none

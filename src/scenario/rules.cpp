@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <span>
 
@@ -52,6 +55,35 @@ void check_objections(Reading& reading, const toml::table& tree, const std::stri
   }
 }
 
+double angle_between(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  const double cross = std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+  return std::atan2(cross, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+}
+
+/// Walls that are closer than the model allows.
+void check_wall_angles(Reading& reading, const toml::table& tree, const std::string& origin, const ModelInfo& model,
+                       const Loading& loading) {
+  const auto expectation = [&](double angle) {
+    return fmt::format("are {:.4g} rad apart; model '{}' expects at least {:.4g} rad", angle, model.name,
+                       model.least_wall_angle);
+  };
+  for (std::size_t i = 0; i < loading.walls.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double angle = angle_between(loading.walls[i].normal, loading.walls[j].normal);
+      if (angle >= model.least_wall_angle) continue;
+      reading.faults.add(loading.walls[i].where, fmt::format("walls '{}' and '{}' {}", loading.walls[j].name,
+                                                             loading.walls[i].name, expectation(angle)));
+    }
+  }
+  if (loading.configuration != Loading::Configuration::oblique_die) return;
+  // From the lateral walls, from the axial ones, and with four of them from each other.
+  double angle = std::min(loading.oblique_angle, std::numbers::pi / 2.0 - loading.oblique_angle);
+  if (angle < model.least_wall_angle) {
+    reading.faults.add(place_of_key(tree, origin, model.name, "angle"),
+                       fmt::format("oblique walls and their neighbours {}", expectation(angle)));
+  }
+}
+
 /// A program of a law without unloading. What a step leaves open (its condition, or another control) is the run's to
 /// find out.
 void check_only_loading(Reading& reading, std::span<const Step> program, double gap, const std::string& model) {
@@ -83,6 +115,9 @@ void check_only_loading(Reading& reading, std::span<const Step> program, double 
 void check_rules(Reading& reading, const toml::table& tree, const std::string& origin, const Language& language,
                  const Scenario& scenario) {
   if (language.model->objections != nullptr) check_objections(reading, tree, origin, *language.model, scenario);
+  if (language.model->least_wall_angle > 0.0) {
+    check_wall_angles(reading, tree, origin, *language.model, scenario.loading);
+  }
   const auto unloading = scenario.options.find("unloading");
   if (unloading == scenario.options.end() || std::get<std::string>(unloading->second) != "none") return;
   check_only_loading(reading, scenario.loading.steps, 0.0, scenario.model);

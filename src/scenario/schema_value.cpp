@@ -70,6 +70,19 @@ json integer(const KeySpec& spec) {
   return schema;
 }
 
+bool is_whole_number(std::string_view word) {
+  return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Choices that are numbers may be written with and without quotes.
+json choice(const KeySpec& spec) {
+  json words = spec.choices;
+  for (const std::string_view word : spec.choices) {
+    if (is_whole_number(word)) words.push_back(std::stoll(std::string(word)));
+  }
+  return {{"enum", std::move(words)}};
+}
+
 json direction() {
   json component = bounds({.lower = -k_greatest_normal, .upper = k_greatest_normal});
   const json points_somewhere{{"anyOf", {{{"minimum", k_least_normal}}, {{"maximum", -k_least_normal}}}}};
@@ -94,7 +107,7 @@ json kind_schema(const KeySpec& spec, const json& content) {
     case Kind::mark:
       return {{"type", "boolean"}, {"const", true}};
     case Kind::choice:
-      return {{"type", "string"}, {"enum", spec.choices}};
+      return choice(spec);
     case Kind::integer:
       return integer(spec);
     case Kind::quantity:

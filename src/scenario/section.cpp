@@ -31,6 +31,13 @@ std::optional<double> as_number(const toml::node& node) {
   return std::nullopt;
 }
 
+/// A word, which may be written as a number where the choices are numbers: 4, inf.
+std::optional<std::string> as_word(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  const auto number = as_number(node);
+  return number ? std::optional(fmt::format("{}", *number)) : std::nullopt;
+}
+
 }  // namespace
 
 std::vector<std::string_view> check_names(FaultList& faults, const toml::table& table, const SourceLocation& place,
@@ -171,9 +178,10 @@ std::optional<Section::Value> Section::read_text(const KeySpec& spec, const toml
 }
 
 std::optional<Section::Value> Section::read_choice(const KeySpec& spec, const toml::node& node) {
-  const auto* text = node.as_string();
-  if (text == nullptr) return unexpected(spec, node);
-  const std::string& word = text->get();
+  const std::optional<std::string> written = as_word(node);
+  if (!written) return unexpected(spec, node);
+  const std::string& word = *written;
+  if (!node.is_string() && std::ranges::find(spec.choices, word) == spec.choices.end()) return unexpected(spec, node);
   // Without a model there are no events to choose from.
   if (spec.choices.empty() || std::ranges::find(spec.choices, word) != spec.choices.end()) return word;
   if (std::ranges::find(spec.reserved, word) != spec.reserved.end()) {

@@ -5,24 +5,17 @@
 #include <stdexcept>
 
 #include "elastic/hertz.hpp"
+#include "elastic/nonlocal_system.hpp"
 #include "mdr/system.hpp"
 #include "plastic/system.hpp"
+#include "scene/choice.hpp"
+#include "scene/nonlocal_model.hpp"
 #include "scene/plastic_law.hpp"
 #include "scene/pressure_curve.hpp"
 #include "scene/scene.hpp"
 
 namespace monograin {
 namespace {
-
-/// One of an option's words as the enumerator at the same place.
-template <class Enum, std::size_t N>
-Enum choice(const Scenario& scenario, const char* key, const std::pair<const char*, Enum> (&table)[N]) {
-  const std::string& word = std::get<std::string>(scenario.options.at(key));
-  for (const auto& [name, value] : table) {
-    if (word == name) return value;
-  }
-  throw std::logic_error(fmt::format("option {} = '{}' was checked but is not bound", key, word));
-}
 
 mdr::Settings common_settings(const Scenario& scenario, const Reach& reach) {
   mdr::Settings settings;
@@ -81,6 +74,22 @@ plastic::Settings plastic_settings(const Scenario& scenario, const Reach& reach)
   return settings;
 }
 
+nonlocal::Settings nonlocal_settings(const Scenario& scenario, const Reach& reach) {
+  using namespace nonlocal;
+  Settings settings{.model = nonlocal_model_of(scenario),
+                    .initial_radius = scenario.radius,
+                    .youngs_modulus = scenario.material.at("youngs_modulus"),
+                    .centre = scenario.loading.centre_is_free ? Centre::free : Centre::fixed,
+                    .largest_displacement = reach.displacement,
+                    .largest_force = reach.force};
+  settings.radius_rule = choice<RadiusRule>(scenario, "contact_radius_rule",
+                                            {{"closed", RadiusRule::closed},
+                                             {"integral", RadiusRule::integral},
+                                             {"projected", RadiusRule::projected},
+                                             {"none", RadiusRule::none}});
+  return settings;
+}
+
 }  // namespace
 
 std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<ContactClass> classes,
@@ -94,6 +103,9 @@ std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<C
   }
   if (scenario.model == "similarity" || scenario.model == "semimech" || scenario.model == "hardening") {
     return std::make_unique<plastic::System>(plastic_settings(scenario, reach), std::move(classes));
+  }
+  if (scenario.model == "nonlocal") {
+    return std::make_unique<nonlocal::System>(nonlocal_settings(scenario, reach), std::move(classes));
   }
   throw std::logic_error(fmt::format("model '{}' is in the catalogue but not bound", scenario.model));
 }

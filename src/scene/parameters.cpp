@@ -2,8 +2,12 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
+#include "elastic/hertz.hpp"
+#include "elastic/nonlocal_coupling.hpp"
 #include "mdr/contact.hpp"
+#include "scene/nonlocal_model.hpp"
 #include "scene/plastic_law.hpp"
 #include "scene/pressure_curve.hpp"
 
@@ -39,6 +43,21 @@ void add_mdr(const Scenario& scenario, List& list) {
   list.push_back({"yield_pressure", mdr::plastic_pressure(material, d_yield).pressure, "Pa"});
   list.push_back({"yield_contact_radius", contact.contact_radius, "m"});
   list.push_back({"yield_force", contact.force, "N"});
+}
+
+void add_nonlocal(const Scenario& scenario, List& list) {
+  const double youngs_modulus = scenario.material.at("youngs_modulus");
+  const double poisson_ratio = scenario.material.at("poisson_ratio");
+  list.push_back({"youngs_modulus", youngs_modulus, "Pa"});
+  list.push_back({"poisson_ratio", poisson_ratio, "-"});
+  list.push_back({"composite_modulus", composite_modulus(youngs_modulus, poisson_ratio), "Pa", "E*"});
+  const double unit = 1.0 / (youngs_modulus * scenario.radius);
+  list.push_back({"compliance_opposite", nonlocal::half_space_influence(poisson_ratio, std::numbers::pi) * unit, "m/N",
+                  "1/n_NL(180)"});
+  list.push_back({"compliance_right_angle", nonlocal::half_space_influence(poisson_ratio, std::numbers::pi / 2) * unit,
+                  "m/N", "1/n_NL(90)"});
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  list.push_back({"limit_displacement", nonlocal_limit_of(scenario).value_or(none) * scenario.radius, "m"});
 }
 
 void add_material(const Scenario& scenario, std::initializer_list<std::pair<const char*, const char*>> keys,
@@ -123,6 +142,10 @@ std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
   List list{{"radius", scenario.radius, "m"}};
   if (scenario.model == "hertz" || scenario.model == "mdr") {
     add_mdr(scenario, list);
+    return list;
+  }
+  if (scenario.model == "nonlocal") {
+    add_nonlocal(scenario, list);
     return list;
   }
   add_material(scenario,

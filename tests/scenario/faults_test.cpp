@@ -19,7 +19,7 @@ struct FaultRow {
 };
 
 /// All that can be run.
-const std::string k_models = "hertz, mdr, similarity, semimech, hardening";
+const std::string k_models = "hertz, mdr, similarity, semimech, hardening, nonlocal";
 
 class FaultTable : public ::testing::TestWithParam<FaultRow> {};
 
@@ -57,8 +57,8 @@ const std::vector<FaultRow> k_rows{
         "UnknownModel", 2, "model = \"granite\"", {"die.toml:2:9: model = \"granite\": expected one of " + k_models}},
     FaultRow{"ReservedModel",
              2,
-             "model = \"nonlocal\"",
-             {"die.toml:2:9: model 'nonlocal' is not available in this version; available: " + k_models}},
+             "model = \"packing\"",
+             {"die.toml:2:9: model 'packing' is not available in this version; available: " + k_models}},
     FaultRow{"ModelIsNoText", 2, "model = 1", {"die.toml:2:9: model = 1: expected one of " + k_models}},
     FaultRow{"MissingRadius",
              4,
@@ -389,7 +389,7 @@ TEST(ReservedModel, IsRefusedOnceAndItsKeysAreKnown) {
 
 TEST(ReservedModel, DoesNotHideFaultsThatNeedNoModel) {
   const std::vector<std::string> faults =
-      faults_of("model = \"nonlocal\"\n[nonlocal]\nterms = 4\n[particle]\nradius = \"1 MPa\"\n[mdr]\n");
+      faults_of("model = \"packing\"\n[packing]\nf_E = 1.2\n[particle]\nradius = \"1 MPa\"\n[mdr]\n");
   ASSERT_EQ(faults.size(), 3U);
   EXPECT_TRUE(faults[1].starts_with("die.toml:5:10: radius")) << faults[1];
   EXPECT_TRUE(faults[2].starts_with("die.toml:6:2: key 'mdr' is the table of another model")) << faults[2];

@@ -1,0 +1,496 @@
+#include "elastic/nonlocal_contacts.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "elastic/hertz.hpp"
+
+namespace monograin::nonlocal {
+namespace {
+
+constexpr double k_round_off = std::numeric_limits<double>::epsilon();
+constexpr int k_newton_limit = 100;    // contraction by half reaches rounding in 52
+constexpr double k_contraction = 0.5;  // of Newton's corrections; less is a guess too far away
+constexpr int k_first_touch_steps = 20;
+constexpr double k_stagnation = 1e-9;   // rounding grows with 1/margin near the limit
+constexpr double k_balance = 1e-9;      // net force over the sum of forces
+constexpr double k_least_step = 1e-13;  // of the way to a state that is not found at once
+constexpr double k_same_surroundings = 1e-9;
+
+std::size_t in(Eigen::Index index) noexcept { return static_cast<std::size_t>(index); }
+Eigen::Index at(std::size_t index) noexcept { return static_cast<Eigen::Index>(index); }
+
+double require_poisson_ratio(double nu) {
+  if (nu >= 0.0 && nu <= 0.5) return nu;
+  throw std::invalid_argument("Poisson's ratio must be in [0, 0.5], but is " + std::to_string(nu));
+}
+
+/// Orthonormal basis of what the mean normals span; the axes where that is everything.
+Eigen::Matrix3Xd basis_of(const Eigen::Matrix3Xd& normals) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(normals, Eigen::ComputeThinU);
+  const auto rank = (svd.singularValues().array() > k_same_surroundings).count();
+  if (rank == 3) return Eigen::Matrix3d::Identity();
+  return svd.matrixU().leftCols(rank);
+}
+
+}  // namespace
+
+Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Centre centre)
+    : poisson_ratio_(require_poisson_ratio(model.poisson_ratio)),
+      law_(model.terms),
+      modulus_(monograin::composite_modulus(1.0, poisson_ratio_)) {
+  const std::size_t n = classes.size();
+  std::vector<Eigen::Vector3d> walls;
+  std::vector<std::size_t> class_of;
+  Eigen::Matrix3Xd mean_normals = Eigen::Matrix3Xd::Zero(3, at(n));
+  for (std::size_t j = 0; j < n; ++j) {
+    weights_.push_back(classes[j].multiplicity());
+    for (const Eigen::Vector3d& normal : classes[j].normals) {
+      walls.push_back(normal);
+      class_of.push_back(j);
+      mean_normals.col(at(j)) += normal / weights_[j];
+    }
+  }
+
+  const std::size_t wall_count = walls.size();
+  Eigen::MatrixXd influence = Eigen::MatrixXd::Zero(at(wall_count), at(wall_count));
+  neighbours_.resize(n);
+  for (std::size_t i = 0; i < wall_count; ++i) {
+    const bool is_first = i == 0 || class_of[i] != class_of[i - 1];
+    for (std::size_t k = 0; k < wall_count; ++k) {
+      if (i == k) {
+        if (model.influence == Influence::sphere) influence(at(i), at(i)) = sphere_self_influence(poisson_ratio_);
+        continue;
+      }
+      const double angle = angle_between(walls[i], walls[k]);
+      if (angle < k_least_wall_angle) {
+        throw std::invalid_argument("walls of '" + classes[class_of[i]].name + "' and '" + classes[class_of[k]].name +
+                                    "' are " + std::to_string(angle) + " rad apart, less than " +
+                                    std::to_string(k_least_wall_angle));
+      }
+      influence(at(i), at(k)) = model.influence == Influence::sphere ? sphere_influence(poisson_ratio_, angle)
+                                                                     : half_space_influence(poisson_ratio_, angle);
+      if (influence(at(i), at(k)) < 0.0) has_modes_of_walls_ = true;
+      if (is_first) neighbours_[class_of[i]].push_back({class_of[k], angle});
+    }
+  }
+
+  Eigen::MatrixXd belongs = Eigen::MatrixXd::Zero(at(wall_count), at(n));
+  for (std::size_t i = 0; i < wall_count; ++i) belongs(at(i), at(class_of[i])) = 1.0;
+  const Eigen::MatrixXd by_wall = influence * belongs;
+  const Eigen::Map<const Eigen::VectorXd> weights(weights_.data(), at(n));
+  coupling_ = weights.cwiseInverse().asDiagonal() * (belongs.transpose() * by_wall);
+  for (std::size_t i = 0; i < wall_count; ++i) {
+    const double difference = (by_wall.row(at(i)) - coupling_.row(at(class_of[i]))).cwiseAbs().maxCoeff();
+    if (difference > k_same_surroundings * (1.0 + coupling_.cwiseAbs().maxCoeff())) {
+      throw std::invalid_argument("the walls of '" + classes[class_of[i]].name +
+                                  "' do not share a history: forces around them differ by " +
+                                  std::to_string(difference) + " in their effect");
+    }
+  }
+
+  directions_ = centre == Centre::free ? basis_of(mean_normals) : Eigen::Matrix3Xd(3, 0);
+  arms_ = mean_normals.transpose() * directions_;
+
+  if (has_modes_of_walls_) {
+    mode_coupling_ = influence;
+    mode_class_ = class_of;
+  } else {
+    // With positive couplings the critical mode is positive (Perron), hence one of the classes.
+    const Eigen::VectorXd root = weights.cwiseSqrt();
+    const Eigen::MatrixXd scaled = root.asDiagonal() * coupling_ * root.cwiseInverse().asDiagonal();
+    mode_coupling_ = 0.5 * (scaled + scaled.transpose());
+    for (std::size_t j = 0; j < n; ++j) mode_class_.push_back(j);
+  }
+
+  stride_ = n + 1 + free_count();
+  now_.resize(n);
+  forces_.resize(n);
+  stiffness_.resize(n);
+  matrix_.resize(n * stride_);
+  for (auto* targets : {&targets_, &first_targets_, &last_targets_}) targets->resize(n);
+  for (auto* state : {&trial_, &state_, &unit_rates_}) state->resize(unknown_count());
+  unit_ramps_.resize(n);
+  modes_ = mode_coupling_;
+  eigenvalues_.compute(modes_, Eigen::EigenvaluesOnly);
+}
+
+Contacts::Target Contacts::target(bool is_force, double value) const {
+  if (!std::isfinite(value)) throw std::domain_error("a wall is prescribed a value that is not finite");
+  return {is_force, value, is_force ? law_.signed_square_under(value / modulus_) : 0.0};
+}
+
+/// Contacts, forces and stiffnesses of a state.
+void Contacts::look(std::span<const double> y) {
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    now_[j] = law_.at(y[j]);
+    forces_[j] = modulus_ * now_[j].force;
+    stiffness_[j] = 2.0 * modulus_ * now_[j].contact_radius;
+  }
+}
+
+/// What the displacement of the centre and the forces on other walls add to the approach of a wall.
+double Contacts::lift(std::size_t index, std::span<const double> y) const noexcept {
+  const std::size_t n = class_count();
+  double sum = 0.0;
+  for (std::size_t h = 0; h < n; ++h) sum += coupling_(at(index), at(h)) * forces_[h];
+  for (std::size_t k = 0; k < free_count(); ++k) sum += arms_(at(index), at(k)) * y[n + k];
+  return sum;
+}
+
+double Contacts::net_force(std::size_t direction) const noexcept {
+  double sum = 0.0;
+  for (std::size_t j = 0; j < class_count(); ++j) sum += weights_[j] * forces_[j] * arms_(at(j), at(direction));
+  return sum;
+}
+
+/// Solves (1 - G dF/dg) x = right-hand sides. The pivots are those of M: scaled by the roots of dF/dg the two are one
+/// matrix. So none has to be searched for, and one that is not positive is beyond the limit.
+bool Contacts::eliminate() noexcept {
+  const std::size_t n = class_count();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t h = 0; h < n; ++h) entry(i, h) = -coupling_(at(i), at(h)) * stiffness_[h];
+    entry(i, i) += 1.0;
+    for (std::size_t k = 0; k < free_count(); ++k) entry(i, n + 1 + k) = arms_(at(i), at(k));
+  }
+  for (std::size_t p = 0; p < n; ++p) {
+    double* const pivot_row = &entry(p, 0);
+    if (!(pivot_row[p] > 0.0)) return false;
+    const double inverse = 1.0 / pivot_row[p];
+    for (std::size_t c = p + 1; c < stride_; ++c) pivot_row[c] *= inverse;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i == p) continue;
+      double* const row = &entry(i, 0);
+      const double factor = row[p];
+      for (std::size_t c = p + 1; c < stride_; ++c) row[c] -= factor * pivot_row[c];
+    }
+  }
+  return true;
+}
+
+/// At first touch all stiffnesses vanish together; equal ones give the motion of equal contacts. For move_centre()
+/// only.
+void Contacts::regularise_first_touch(const auto& is_touching) {
+  if (std::any_of(stiffness_.begin(), stiffness_.end(), [](double value) { return value != 0.0; })) return;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    if (is_touching(j)) stiffness_[j] = 1.0;
+  }
+}
+
+/// Displaces the centre so that a net force vanishes to first order, and lets the approaches follow. Directions that no
+/// contact holds stay.
+void Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> centre) {
+  const std::size_t n = class_count();
+  Eigen::Matrix3d hold = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < free_count(); ++k) {
+    for (std::size_t l = 0; l < free_count(); ++l) {
+      for (std::size_t j = 0; j < n; ++j) {
+        hold(at(k), at(l)) += weights_[j] * arms_(at(j), at(k)) * stiffness_[j] * entry(j, n + 1 + l);
+      }
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hold);
+  const double least = 1e-12 * solver.eigenvalues().cwiseAbs().maxCoeff();
+  Eigen::Vector3d step = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 3; ++k) {
+    if (std::abs(solver.eigenvalues()[k]) <= least) continue;
+    const Eigen::Vector3d direction = solver.eigenvectors().col(k);
+    step -= direction * (direction.dot(net_force) / solver.eigenvalues()[k]);
+  }
+  for (std::size_t k = 0; k < free_count(); ++k) {
+    centre[k] += step[at(k)];
+    for (std::size_t j = 0; j < n; ++j) entry(j, n) += entry(j, n + 1 + k) * step[at(k)];
+  }
+}
+
+/// Newton's method towards the targets, with a part of the imbalance left. Gives up where its corrections do not
+/// contract, or M is not positive definite: the other branches are beyond such a state.
+bool Contacts::newton(std::span<double> y, double imbalance) {
+  const std::size_t n = class_count();
+  // From first touch a free centre has to find out which contacts bear it, in as many steps as that takes.
+  const bool is_first_touch = free_count() > 0 && std::none_of(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n),
+                                                               [](double s) { return s > 0.0; });
+  const int free_steps = is_first_touch ? k_first_touch_steps : 1;
+  double last = 0.0;
+  for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const Target& goal = targets_[j];
+      if (goal.is_force) {
+        y[j] = goal.signed_square;
+        forces_[j] = goal.value;
+        stiffness_[j] = 0.0;
+        now_[j].approach_slope = 1.0;
+        continue;
+      }
+      if (!(y[j] < law_.end())) return false;
+      now_[j] = law_.at(y[j]);
+      forces_[j] = modulus_ * now_[j].force;
+      stiffness_[j] = 2.0 * modulus_ * now_[j].contact_radius;
+    }
+    for (std::size_t j = 0; j < n; ++j) {
+      entry(j, n) = targets_[j].is_force ? 0.0 : targets_[j].value + lift(j, y) - now_[j].approach;
+    }
+    if (!eliminate()) return false;
+    double correction = 0.0;
+    if (free_count() > 0) {
+      regularise_first_touch([&](std::size_t j) { return !targets_[j].is_force && y[j] + entry(j, n) >= 0.0; });
+      Eigen::Vector3d net = -imbalance * imbalance_;
+      for (std::size_t k = 0; k < free_count(); ++k) {
+        net[at(k)] += net_force(k);
+        for (std::size_t j = 0; j < n; ++j)
+          net[at(k)] += weights_[j] * arms_(at(j), at(k)) * stiffness_[j] * entry(j, n);
+      }
+      move_centre(net, y.subspan(n));
+    }
+    double scale = 0.0;
+    for (std::size_t j = 0; j < n; ++j) {
+      if (targets_[j].is_force) continue;
+      const double step = entry(j, n) / now_[j].approach_slope;
+      y[j] += step;
+      correction = std::max(correction, std::abs(step));
+      scale = std::max(scale, std::abs(y[j]));
+    }
+    // What is left is at most a further contraction of this correction.
+    const double contraction = iteration > 0 ? std::min(correction / last, 1.0) : 1.0;
+    if (correction * contraction <= 4.0 * k_round_off * scale) return true;
+    if (iteration >= free_steps && contraction > k_contraction) return correction <= k_stagnation * scale;
+    last = correction;
+  }
+  return false;
+}
+
+/// Whether a state found by Newton's method is off the branch in modes that the method does not see: those of single
+/// walls, and of contacts under force control.
+bool Contacts::has_left_branch(std::span<const double> y) {
+  const bool has_unseen_modes = has_modes_of_walls_ || std::any_of(targets_.begin(), targets_.end(),
+                                                                   [](const Target& goal) { return goal.is_force; });
+  return has_unseen_modes && !(least_pivot(y) > 0.0);
+}
+
+bool Contacts::is_balanced(std::span<const double> y) {
+  if (free_count() == 0) return true;
+  look(y);
+  double sum = 0.0;
+  for (std::size_t j = 0; j < class_count(); ++j) sum += weights_[j] * forces_[j];
+  for (std::size_t k = 0; k < free_count(); ++k) {
+    if (std::abs(net_force(k)) > k_balance * sum) return false;
+  }
+  return true;
+}
+
+void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y) {
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    targets_[j] = target(ramps[j].control == Control::force, std::lerp(ramps[j].start, ramps[j].end, xi));
+  }
+  std::copy(y.begin(), y.end(), trial_.begin());
+  if (newton(trial_, 0.0) && !has_left_branch(trial_) && is_balanced(trial_)) {
+    std::copy(trial_.begin(), trial_.end(), y.begin());
+  } else {
+    approach_in_steps(y);
+  }
+}
+
+/// From a state, which is the solution for some displacements, forces and imbalance, along a straight line to the
+/// targets. Newton's method contracts from one point to the next, if they are near, only on the branch of the first.
+void Contacts::approach_in_steps(std::span<double> y) {
+  const std::size_t n = class_count();
+  const double pivot = least_pivot(y);
+  if (!(pivot > 0.0)) {
+    throw std::domain_error("start beyond the limit of applicability of the nonlocal formulation: pivot of " +
+                            std::to_string(pivot));
+  }
+  std::copy(y.begin(), y.end(), state_.begin());
+  std::copy(targets_.begin(), targets_.end(), last_targets_.begin());
+  look(y);
+  for (std::size_t j = 0; j < n; ++j) {
+    const bool is_force = last_targets_[j].is_force;
+    first_targets_[j] = {is_force, is_force ? forces_[j] : now_[j].approach - lift(j, y), y[j]};
+  }
+  for (std::size_t k = 0; k < free_count(); ++k) imbalance_[at(k)] = net_force(k);
+
+  double done = 0.0;
+  double step = 0.5;
+  while (done < 1.0) {
+    const double next = std::min(1.0, done + step);
+    for (std::size_t j = 0; j < n; ++j) {
+      targets_[j] = next == 1.0 ? last_targets_[j]
+                                : target(last_targets_[j].is_force,
+                                         std::lerp(first_targets_[j].value, last_targets_[j].value, next));
+    }
+    std::copy(state_.begin(), state_.end(), trial_.begin());
+    // Only the end has to be in balance.
+    const bool is_on_branch = newton(trial_, 1.0 - next) && !has_left_branch(trial_);
+    if (is_on_branch && (next < 1.0 || is_balanced(trial_))) {
+      std::copy(trial_.begin(), trial_.end(), state_.begin());
+      done = next;
+      step *= 2.0;
+      continue;
+    }
+    step *= 0.5;
+    if (step > k_least_step) continue;
+    if (is_on_branch) {
+      throw std::domain_error("no contact holds the centre of the particle where the forces of the others drive it");
+    }
+    look(state_);
+    const auto widest = std::max_element(
+        now_.begin(), now_.end(), [](const auto& a, const auto& b) { return a.contact_radius < b.contact_radius; });
+    throw std::domain_error("no equilibrium on the branch of the unloaded state beyond " +
+                            std::to_string(100.0 * done) +
+                            " % of the way to the prescribed displacements and forces, where the margin is " +
+                            std::to_string(margin(state_)) + " and the largest contact radius over R " +
+                            std::to_string(widest->contact_radius));
+  }
+  std::copy(state_.begin(), state_.end(), y.begin());
+}
+
+void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy) {
+  const std::size_t n = class_count();
+  look(y);
+  const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
+  const auto slope = [&](std::size_t j) { return ramps[j].end - ramps[j].start; };
+  for (std::size_t j = 0; j < n; ++j) {
+    if (is_force(j)) stiffness_[j] = 0.0;
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    entry(j, n) = is_force(j) ? 0.0 : slope(j);
+    for (std::size_t h = 0; h < n; ++h) {
+      if (is_force(h)) entry(j, n) += coupling_(at(j), at(h)) * slope(h);
+    }
+  }
+  if (!eliminate()) {
+    throw std::domain_error("no rates beyond the limit of applicability of the nonlocal formulation: margin of " +
+                            std::to_string(margin(y)));
+  }
+  if (free_count() > 0) {
+    regularise_first_touch([&](std::size_t j) { return !is_force(j) && y[j] == 0.0 && entry(j, n) >= 0.0; });
+    Eigen::Vector3d net = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < free_count(); ++k) {
+      dy[n + k] = 0.0;
+      for (std::size_t j = 0; j < n; ++j) {
+        net[at(k)] += weights_[j] * arms_(at(j), at(k)) * (is_force(j) ? slope(j) : stiffness_[j] * entry(j, n));
+      }
+    }
+    move_centre(net, dy.subspan(n));
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    dy[j] = entry(j, n) / now_[j].approach_slope;
+    if (is_force(j)) {
+      const double by_square = 2.0 * modulus_ * now_[j].contact_radius * now_[j].approach_slope;
+      dy[j] = slope(j) == 0.0 ? 0.0 : slope(j) / by_square;
+    }
+  }
+}
+
+void Contacts::residual(std::span<const Ramp> ramps, double xi, std::span<const double> y, std::span<double> residual) {
+  const std::size_t n = class_count();
+  look(y);
+  for (std::size_t j = 0; j < n; ++j) {
+    const Target goal = target(ramps[j].control == Control::force, std::lerp(ramps[j].start, ramps[j].end, xi));
+    residual[j] = goal.is_force ? y[j] - goal.signed_square : now_[j].approach - goal.value - lift(j, y);
+  }
+  for (std::size_t k = 0; k < free_count(); ++k) residual[n + k] = net_force(k);
+}
+
+void Contacts::jacobian(std::span<const Ramp> ramps, std::span<const double> y, Eigen::MatrixXd& jacobian) {
+  const std::size_t n = class_count();
+  look(y);
+  jacobian.setZero(at(unknown_count()), at(unknown_count()));
+  for (std::size_t j = 0; j < n; ++j) {
+    const double force_slope = stiffness_[j] * now_[j].approach_slope;
+    for (std::size_t k = 0; k < free_count(); ++k)
+      jacobian(at(n + k), at(j)) = weights_[j] * arms_(at(j), at(k)) * force_slope;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (ramps[i].control == Control::displacement) jacobian(at(i), at(j)) = -coupling_(at(i), at(j)) * force_slope;
+    }
+    if (ramps[j].control == Control::force) {
+      jacobian(at(j), at(j)) = 1.0;
+    } else {
+      jacobian(at(j), at(j)) += now_[j].approach_slope;
+      for (std::size_t k = 0; k < free_count(); ++k) jacobian(at(j), at(n + k)) = -arms_(at(j), at(k));
+    }
+  }
+}
+
+double Contacts::margin(std::span<const double> y) {
+  look(y);
+  for (Eigen::Index i = 0; i < modes_.rows(); ++i) {
+    for (Eigen::Index k = 0; k <= i; ++k) {
+      modes_(i, k) = -mode_coupling_(i, k) * std::sqrt(stiffness_[mode_class_[in(i)]] * stiffness_[mode_class_[in(k)]]);
+    }
+    modes_(i, i) += 1.0;
+  }
+  return eigenvalues_.compute(modes_, Eigen::EigenvaluesOnly).eigenvalues()[0];
+}
+
+double Contacts::least_pivot(std::span<const double> y) {
+  look(y);
+  const Eigen::Index count = modes_.rows();
+  for (Eigen::Index k = 0; k < count; ++k) {
+    modes_.col(k) = -stiffness_[mode_class_[in(k)]] * mode_coupling_.col(k);
+    modes_(k, k) += 1.0;
+  }
+  double least = modes_(0, 0);
+  for (Eigen::Index p = 0; p < count; ++p) {
+    least = std::min(least, modes_(p, p));
+    if (!(least > 0.0)) break;
+    for (Eigen::Index c = p + 1; c < count; ++c) {
+      const double factor = modes_(p, c) / modes_(p, p);
+      for (Eigen::Index i = p + 1; i < count; ++i) modes_(i, c) -= factor * modes_(i, p);
+    }
+  }
+  return least;
+}
+
+void Contacts::contacts(std::span<const double> y, std::span<ContactState> states) {
+  look(y);
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    states[j] = {.displacement = now_[j].approach - lift(j, y),
+                 .approach = now_[j].approach,
+                 .signed_square = y[j],
+                 .contact_radius = now_[j].contact_radius,
+                 .force = forces_[j],
+                 .stiffness = stiffness_[j]};
+  }
+}
+
+double Contacts::deformed_radius(RadiusRule rule, std::size_t index, std::span<const double> y) {
+  look(y);
+  const double a = now_[index].contact_radius;
+  if (a == 0.0 || rule == RadiusRule::none) return a;
+  double sum = a + forces_[index] * local_radius_influence(poisson_ratio_, a);
+  for (const Neighbour& neighbour : neighbours_[index]) {
+    const double force = forces_[neighbour.contact_class];
+    if (force > 0.0) sum += force * radius_influence(rule, poisson_ratio_, neighbour.angle, a);
+  }
+  return sum;
+}
+
+double Contacts::energy(std::span<const double> y) {
+  look(y);
+  double sum = 0.0;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    double approach = 0.0;
+    for (std::size_t h = 0; h < class_count(); ++h) approach += coupling_(at(j), at(h)) * forces_[h];
+    sum += weights_[j] * (modulus_ * law_.energy(y[j]) - 0.5 * forces_[j] * approach);
+  }
+  return sum;
+}
+
+void Contacts::stiffness(std::span<const double> y, Eigen::MatrixXd& stiffness) {
+  const std::size_t n = class_count();
+  stiffness.resize(at(n), at(n));
+  for (std::size_t h = 0; h < n; ++h) {
+    for (std::size_t j = 0; j < n; ++j) unit_ramps_[j] = {.start = 0.0, .end = j == h ? 1.0 : 0.0};
+    rates(unit_ramps_, y, unit_rates_);
+    for (std::size_t j = 0; j < n; ++j) {
+      const double by_approach = 2.0 * modulus_ * now_[j].contact_radius;
+      stiffness(at(j), at(h)) = by_approach * now_[j].approach_slope * unit_rates_[j];
+    }
+  }
+}
+
+}  // namespace monograin::nonlocal

@@ -1,0 +1,173 @@
+/// An elastic sphere among rigid frictionless flat walls, of which every contact moves the surface under all others.
+///
+/// Unknowns y: the signed square s of the contact radius of each class (elastic/nonlocal_law.hpp; below zero it is
+/// minus the gap), then the displacement u of the centre in each direction in which it is free. For every class
+///
+///   g(s_j) = d_j + n_j.u + sum_h G_jh F_h                                (eqs. 17, 18)
+///
+/// and in every free direction sum_j w_j F_j n_j = 0, with the wall displacement d, the mean normal n, the number of
+/// walls w. The sign of s_j says whether the contact is open, so that nothing has to be decided.
+///
+/// Lengths are over R, forces over E R^2, energies over E R^3; a force is that on one wall of its class.
+///
+/// The branch. Because G mostly couples positively there may be several solutions. The physical one is connected with
+/// the unloaded state, and on it the matrix
+///
+///   M = 1 - 2 E* sqrt(a) G sqrt(a)
+///
+/// over all walls is positive definite. Its smallest eigenvalue is the margin: 1 unloaded, 0 at the limit of
+/// applicability, where the stiffness becomes infinite and the path turns back.
+/// Source: 003_97bacd62ecebe201.txt, sections 2 to 4. Elastic: no memory, unloading retraces loading.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "elastic/nonlocal_coupling.hpp"
+#include "elastic/nonlocal_law.hpp"
+#include "walls.hpp"
+
+namespace monograin::nonlocal {
+
+struct Model {
+  double poisson_ratio = 0.0;  ///< in [0, 0.5]
+  Terms terms = Terms::four;
+  Influence influence = Influence::half_space;
+};
+
+/// Whether the centre stays where it is, or moves until the forces balance. In directions in which every class balances
+/// itself it stays in any case.
+enum class Centre { fixed, free };
+
+/// Least angle between two walls: eq. 18 is that of a point force, and grows without bound towards it.
+constexpr double k_least_wall_angle = 0.05;
+
+/// One contact of a class. Everything but displacement, approach and square is 0 without contact.
+struct ContactState {
+  double displacement = 0.0;    ///< d of the wall
+  double approach = 0.0;        ///< g, total local approach
+  double signed_square = 0.0;   ///< s
+  double contact_radius = 0.0;  ///< a, in the reference configuration
+  double force = 0.0;           ///< F
+  double stiffness = 0.0;       ///< dF/dg at fixed surroundings, 2 E* a
+};
+
+/// Owns its working memory: solve(), rates(), margin() and the like do not allocate, and one object is not to be used
+/// by two threads at once.
+class Contacts {
+ public:
+  /// @param classes  walls that share a history by symmetry; only their normals are used
+  /// @throws std::invalid_argument for a Poisson's ratio outside [0, 0.5], walls that are the same or closer than
+  /// k_least_wall_angle, and classes of which not every wall sees the same forces around it
+  Contacts(const Model& model, std::span<const ContactClass> classes, Centre centre);
+
+  [[nodiscard]] std::size_t class_count() const noexcept { return weights_.size(); }
+  /// Number of directions in which the centre moves.
+  [[nodiscard]] std::size_t free_count() const noexcept { return static_cast<std::size_t>(directions_.cols()); }
+  [[nodiscard]] std::size_t unknown_count() const noexcept { return class_count() + free_count(); }
+  [[nodiscard]] const LocalLaw& law() const noexcept { return law_; }
+  [[nodiscard]] double composite_modulus() const noexcept { return modulus_; }
+  /// G: approach of a wall of the row's class per unit force on every wall of the column's class.
+  [[nodiscard]] const Eigen::MatrixXd& coupling() const noexcept { return coupling_; }
+  /// Unit vectors, one per column, along which the centre moves.
+  [[nodiscard]] const Eigen::Matrix3Xd& free_directions() const noexcept { return directions_; }
+
+  /// Finds the state at the coordinate xi of a step of the program (ramps over R and E R^2).
+  /// @param y  in: a state on the physical branch, the nearer the better; the unloaded one (s = -gap, u = 0) always is
+  /// one. Out: the solution that is connected with it. Unchanged where this throws.
+  /// Newton's method; where it does not contract, or would leave the branch, it goes there in smaller steps of the
+  /// program.
+  /// @throws std::domain_error naming the numbers for a state beyond the limit of applicability, a negative force, or a
+  /// centre that nothing holds
+  void solve(std::span<const Ramp> ramps, double xi, std::span<double> y);
+
+  /// dy/dxi along a solution. Regular from the unloaded state on, but for a class under force control at s = 0, where
+  /// its own s has an infinite rate; the other rates do not depend on that. A free centre leaves the unloaded state as
+  /// if the contacts were equally stiff, which is exact where they will be.
+  /// @throws std::domain_error at and beyond the limit of applicability
+  void rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy);
+
+  /// What is left of the equations, one per unknown: that of the approach under displacement control, s_j - s(F_j)
+  /// under force control, balance of forces.
+  void residual(std::span<const Ramp> ramps, double xi, std::span<const double> y, std::span<double> residual);
+  /// d(residual)/dy.
+  void jacobian(std::span<const Ramp> ramps, std::span<const double> y, Eigen::MatrixXd& jacobian);
+
+  /// The margin, over all walls and whatever their control: modes that break the symmetry of the classes count where
+  /// negative couplings let them come first.
+  [[nodiscard]] double margin(std::span<const double> y);
+  /// The least pivot of an elimination, or the first that is not positive: has the sign of the margin, goes smoothly
+  /// through zero with it, and costs a tenth.
+  [[nodiscard]] double least_pivot(std::span<const double> y);
+
+  /// All contacts, one per class.
+  void contacts(std::span<const double> y, std::span<ContactState> states);
+  /// Contact radius in the deformed configuration a' (eq. 6 for a wall, which is a mirror: with the full instead of
+  /// half the sum); 0 without contact.
+  /// @throws std::domain_error for a contact radius of R or more
+  [[nodiscard]] double deformed_radius(RadiusRule rule, std::size_t index, std::span<const double> y);
+  /// Stored energy; its differential is the sum of w_j F_j dd_j.
+  [[nodiscard]] double energy(std::span<const double> y);
+  /// dF/dd over all classes, with the centre free where it is.
+  /// @throws std::domain_error at and beyond the limit of applicability
+  void stiffness(std::span<const double> y, Eigen::MatrixXd& stiffness);
+
+ private:
+  struct Target {
+    bool is_force = false;
+    double value = 0.0;          ///< displacement or force
+    double signed_square = 0.0;  ///< under that force
+  };
+
+  [[nodiscard]] Target target(bool is_force, double value) const;
+  void look(std::span<const double> y);
+  [[nodiscard]] double lift(std::size_t index, std::span<const double> y) const noexcept;
+  [[nodiscard]] double net_force(std::size_t direction) const noexcept;
+  [[nodiscard]] bool eliminate() noexcept;
+  void regularise_first_touch(const auto& is_touching);
+  void move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
+  [[nodiscard]] bool newton(std::span<double> y, double imbalance);
+  [[nodiscard]] bool has_left_branch(std::span<const double> y);
+  [[nodiscard]] bool is_balanced(std::span<const double> y);
+  void approach_in_steps(std::span<double> y);
+
+  [[nodiscard]] double& entry(std::size_t row, std::size_t column) noexcept { return matrix_[row * stride_ + column]; }
+
+  double poisson_ratio_;
+  LocalLaw law_;
+  double modulus_;  ///< E* over E
+  std::vector<double> weights_;
+  Eigen::MatrixXd coupling_;
+  Eigen::Matrix3Xd directions_;
+  Eigen::MatrixXd arms_;  ///< mean normals along the free directions
+
+  /// What a wall has to do with the first wall of another class.
+  struct Neighbour {
+    std::size_t contact_class;
+    double angle;
+  };
+  std::vector<std::vector<Neighbour>> neighbours_;  ///< of the first wall of each class
+
+  // Modes in which the path may turn back: those of the classes, or of all walls where a coupling is negative.
+  Eigen::MatrixXd mode_coupling_;  ///< symmetric
+  std::vector<std::size_t> mode_class_;
+  bool has_modes_of_walls_ = false;
+
+  // Working memory.
+  std::size_t stride_;
+  std::vector<LocalContact> now_;
+  std::vector<double> forces_;
+  std::vector<double> stiffness_;  ///< dF/dg; 0 under force control
+  std::vector<double> matrix_;     ///< a row per class: 1 - G dF/dg, right-hand side, arms
+  std::vector<Target> targets_, first_targets_, last_targets_;
+  std::vector<double> trial_, state_, unit_rates_;
+  std::vector<Ramp> unit_ramps_;
+  Eigen::Vector3d imbalance_ = Eigen::Vector3d::Zero();
+  Eigen::MatrixXd modes_;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigenvalues_;
+};
+
+}  // namespace monograin::nonlocal

@@ -1,0 +1,186 @@
+#include "elastic/nonlocal_coupling.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace monograin::nonlocal {
+namespace {
+
+using std::numbers::pi;
+
+/// C, of which all compliances are multiples.
+double unit_compliance(double nu) noexcept { return (1.0 + nu) / (4.0 * pi); }
+
+double integral(const auto& f, double begin, double end) {
+  // The estimated error is that of the Gauss rule inside; the value is exact to rounding long before.
+  return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(f, begin, end, 8, 1e-12);
+}
+
+/// Displacement of a half-space's surface under a point force (eqs. A.4, A.5), over C: along the force, and away from
+/// its axis over the sine of the angle.
+struct SurfaceDisplacement {
+  double axial, radial_over_sine;
+
+  SurfaceDisplacement(double nu, double half_sine) noexcept
+      : axial(half_sine + 2.0 * (1.0 - nu) / half_sine),
+        radial_over_sine((1.0 - (1.0 - 2.0 * nu) / (half_sine * (1.0 + half_sine))) / (2.0 * half_sine)) {}
+};
+
+/// A sphere under a point force: Legendre coefficients of 4 pi times the inward normal displacement,
+///   (2n+1) u_n = alpha + (1 + nu)/(n - 1) + (p n + q)/((n + b)^2 + omega^2),   n = 0, 2, 3, ...
+/// and 1/(n - 1), p n + q over the quadratic are int_0^inf exp(-n y) of exp(y), h(y).
+struct SphereModes {
+  double nu, alpha, p, q, b, omega;
+
+  explicit SphereModes(double poisson_ratio) noexcept
+      : nu(poisson_ratio),
+        alpha(4.0 * (1.0 - nu) * (1.0 + nu)),
+        p((1.0 + nu) * (1.0 - 8.0 * nu * (1.0 - nu))),
+        q((1.0 + nu) * (nu * (4.0 * nu - 1.0) - 2.0)),
+        b(nu + 0.5),
+        omega(std::sqrt(0.75 - nu * nu)) {}
+
+  [[nodiscard]] double kernel(double y) const noexcept {
+    return std::exp(-b * y) * (p * std::cos(omega * y) + (q - p * b) / omega * std::sin(omega * y));
+  }
+  [[nodiscard]] double mode_zero() const noexcept { return 1.0 - 2.0 * nu; }
+  /// Of ln(1 + 1/sin(theta/2)), as 1/n for large n.
+  [[nodiscard]] double logarithm() const noexcept { return 2.0 * (1.0 + nu) * (1.0 - 2.0 * nu) * (1.0 - 2.0 * nu); }
+};
+
+constexpr double k_last_decay = 40.0;  // exp(-2 y) is far below rounding there
+
+void require_inside(double x) {
+  if (x < 1.0) return;
+  throw std::domain_error("contact radius of R or more: a/R = " + std::to_string(x) +
+                          " is beyond the formulas of the deformed contact radius");
+}
+
+/// Quotient in eq. 11.
+double first_order(double nu, double theta) noexcept {
+  const double half_cosine = std::cos(0.5 * theta);
+  return half_cosine * half_cosine * (4.0 * nu - 3.0 - std::cos(theta)) / std::sin(0.5 * theta);
+}
+
+double closed_influence(double nu, double theta, double x) {  // eqs. 14, 15
+  const double pole = pole_radius_influence(nu, x);
+  const double slope = 0.25 * unit_compliance(nu) * (1.0 + 2.0 * nu);
+  const double critical = pi - pole / slope;
+  if (theta > critical) return pole - slope * (pi - theta);
+  return 0.25 * unit_compliance(nu) * x * (first_order(nu, theta) - first_order(nu, critical));
+}
+
+/// Mean over the contact's edge of the displacement away from its middle (eq. 8).
+double edge_influence(bool is_projected, double nu, double theta, double x) {
+  const double cap = std::asin(x);
+  const double sine = std::sin(theta);
+  const double cosine = std::cos(theta);
+  const double nearest_half_sine = std::sin(0.5 * (theta - cap));
+  const double nearest_half_cosine = std::cos(0.5 * (theta - cap));
+  const SurfaceDisplacement middle(nu, std::sin(0.5 * theta));
+  const auto outward = [&](double phi) {
+    const double turn = std::sin(0.5 * phi);
+    const double across = std::cos(phi);
+    // sin^2 and cos^2 of beta/2 (eq. 10), both without cancellation where they are small.
+    const double turned = x * turn * turn * sine;
+    const double half_sine = std::sqrt(nearest_half_sine * nearest_half_sine + turned);
+    const SurfaceDisplacement edge(nu, half_sine);
+    const double axial = -(edge.axial - middle.axial) * sine * across;
+    if (is_projected) {
+      const double along = std::sin(phi);
+      const double edge_arm =
+          -cosine * across * (sine * std::sqrt(1.0 - x * x) - x * cosine * across) + x * along * along;
+      return axial + edge.radial_over_sine * edge_arm + middle.radial_over_sine * sine * cosine * across;
+    }
+    // The edge may pass the point opposite to the force.
+    const double half_cosine = std::sqrt(std::max(0.0, nearest_half_cosine * nearest_half_cosine - turned));
+    const double edge_sine = 2.0 * half_sine * half_cosine;
+    const double length = std::sqrt(1.0 - sine * sine * across * across);  // eq. A.10
+    return axial + (edge.radial_over_sine * edge_sine - middle.radial_over_sine * sine) * length;
+  };
+  // The length of eq. A.10 is |sin(phi)| at theta = pi/2: the halves are smooth, the whole is not.
+  return unit_compliance(nu) / pi * (integral(outward, 0.0, 0.5 * pi) + integral(outward, 0.5 * pi, pi));
+}
+
+}  // namespace
+
+double angle_between(const Eigen::Vector3d& first, const Eigen::Vector3d& second) noexcept {
+  return std::atan2(first.cross(second).norm(), first.dot(second));
+}
+
+double half_space_influence(double poisson_ratio, double theta) noexcept {
+  const double nu = poisson_ratio;
+  const double s = std::sin(0.5 * theta);
+  return unit_compliance(nu) * ((7.0 - 8.0 * nu) * s - 2.0 * (1.0 - 2.0 * nu) - 2.0 * (1.0 - nu) / s);
+}
+
+double sphere_influence(double poisson_ratio, double theta) {
+  const SphereModes modes(poisson_ratio);
+  const double s = std::sin(0.5 * theta);
+  const double cosine = std::cos(theta);
+  // sum_n exp(-n y) P_n = 1/D, without its first two terms.
+  const auto rest = [&](double y) {
+    const double t = std::exp(-y);
+    const double decay = -std::expm1(-y);
+    return modes.kernel(y) * (1.0 / std::sqrt(decay * decay + 4.0 * t * s * s) - 1.0 - t * cosine);
+  };
+  const double constant = modes.alpha * (0.5 / s - cosine - 1.0) + modes.mode_zero();
+  const double translation = (1.0 + modes.nu) * (1.0 - 2.0 * s - cosine - cosine * std::log(s * (1.0 + s)));
+  // The integrand bends within y ~ theta.
+  const double bend = std::min(theta, 1.0);
+  const double sum = constant + translation + integral(rest, 0.0, bend) + integral(rest, bend, k_last_decay);
+  return -sum / (4.0 * pi);
+}
+
+double sphere_self_influence(double poisson_ratio) {
+  const SphereModes modes(poisson_ratio);
+  // The modes without alpha and without the 1/n of the logarithm, n >= 2; sum_n (1/(n-1) - 1/n) = 1.
+  const auto rest = [&](double y) { return (modes.kernel(y) - modes.p) * std::exp(-2.0 * y) / -std::expm1(-y); };
+  const double sum = modes.mode_zero() - 2.0 * modes.alpha - modes.logarithm() + 1.0 + modes.nu +
+                     integral(rest, 0.0, 1.0) + integral(rest, 1.0, k_last_decay);
+  return -sum / (4.0 * pi);
+}
+
+double local_radius_influence(double poisson_ratio, double x) {
+  require_inside(x);
+  const double q = std::sqrt((1.0 - x) * (1.0 + x));
+  const double k = std::sqrt(0.5 * (1.0 + q));
+  return unit_compliance(poisson_ratio) *
+         (k - 2.0 * (1.0 - 2.0 * poisson_ratio) * (1.0 - x / std::sqrt(2.0 * (1.0 + q))) / x);
+}
+
+double pole_radius_influence(double poisson_ratio, double x) {
+  require_inside(x);
+  const double q = std::sqrt((1.0 - x) * (1.0 + x));
+  const double k = std::sqrt(0.5 * (1.0 + q));
+  return unit_compliance(poisson_ratio) *
+         (x / std::sqrt(2.0 * (1.0 + q)) - (1.0 - 2.0 * poisson_ratio) * x / ((1.0 + q) * (1.0 + k)));
+}
+
+double radius_influence(RadiusRule rule, double poisson_ratio, double theta, double x) {
+  require_inside(x);
+  switch (rule) {
+    case RadiusRule::closed:
+      return closed_influence(poisson_ratio, theta, x);
+    case RadiusRule::integral:
+      return edge_influence(false, poisson_ratio, theta, x);
+    case RadiusRule::projected:
+      return edge_influence(true, poisson_ratio, theta, x);
+    case RadiusRule::none:
+      return 0.0;
+  }
+  return 0.0;
+}
+
+double angle_between_edges(double theta, double radius, double displacement, double other_radius,
+                           double other_displacement) noexcept {
+  return theta - std::atan2(radius, 1.0 - displacement) - std::atan2(other_radius, 1.0 - other_displacement);
+}
+
+}  // namespace monograin::nonlocal

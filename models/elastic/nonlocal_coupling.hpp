@@ -1,0 +1,60 @@
+/// What the force of one contact does elsewhere on an elastic sphere: the displacement of its surface, and with it the
+/// approach and the radius of other contacts.
+///
+/// theta in (0, pi] is the angle between the normals of two walls, x = a/R the radius of the contact that is acted
+/// upon. Compliances are over 1/(E R); nu in [0, 0.5]. Source, unless said otherwise: 003_97bacd62ecebe201.txt.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace monograin::nonlocal {
+
+/// Angle between two directions, to full accuracy also where they are nearly parallel.
+[[nodiscard]] double angle_between(const Eigen::Vector3d& first, const Eigen::Vector3d& second) noexcept;
+
+/// Which displacement a point force causes on the surface: that of a half-space, seen on the sphere (the source's), or
+/// the sphere's own (this workbench's). The latter moves the loaded contact itself too, by a part of the solution that
+/// is regular there. It leaves out a logarithm, of which the coefficient (1+nu)(1-2nu)^2/(2 pi) vanishes for
+/// incompressible material: 4e-4 at nu = 0.48, but 0.03 at nu = 0.3, where it is no small correction.
+enum class Influence { half_space, sphere };
+
+/// Outward normal displacement per unit force at an angle from it (eq. 18). Negative below 70 to 85 degrees, depending
+/// on nu: a close neighbour pushes the surface away from the wall; -infinity as theta -> 0.
+[[nodiscard]] double half_space_influence(double poisson_ratio, double theta) noexcept;
+
+/// The same of the sphere, without rigid translation: exact sum over all Legendre polynomials. Errors below 1e-14 of
+/// the value at theta, or of 1. Not from the source.
+[[nodiscard]] double sphere_influence(double poisson_ratio, double theta);
+
+/// What is left of sphere_influence as theta -> 0 without the half-space's displacement (1-nu^2)/(2 pi sin(theta/2)),
+/// which is the local law's, and the logarithm of sin(theta/2).
+[[nodiscard]] double sphere_self_influence(double poisson_ratio);
+
+/// How the contact radius follows the deformation of the surface: by the source's closed form (eq. 14), by its integral
+/// (eq. 8), by the same integral with the displacement projected on the true radial direction (eq. A.10 takes the
+/// length of that direction's projection for its component), or not at all.
+enum class RadiusRule { closed, integral, projected, none };
+
+/// Growth of the contact's radius per unit of its own force (eq. 7), for x in (0, 1). Unbounded as x -> 0, where its
+/// product with the force goes to zero like x^2.
+/// @throws std::domain_error for x >= 1
+[[nodiscard]] double local_radius_influence(double poisson_ratio, double x);
+
+/// Growth of the contact's radius per unit force of the opposite contact (eq. 13, without cancellation), x in [0, 1).
+/// @throws std::domain_error for x >= 1
+[[nodiscard]] double pole_radius_influence(double poisson_ratio, double x);
+
+/// Growth of the contact's radius per unit force of a contact at an angle theta (eqs. 8, 14), x in [0, 1). The
+/// integrals are singular at theta = asin(x), where the other contact's middle is on this contact's edge: exact to
+/// rounding ten degrees from there, to 1e-12 a tenth of a degree from there. The closed form has 3/4 of the integral's
+/// value at theta = pi/2, x = 1/2, and half of it at x = 3/4.
+/// @throws std::domain_error for x >= 1
+[[nodiscard]] double radius_influence(RadiusRule rule, double poisson_ratio, double theta, double x);
+
+/// Angle left between the edges of two contacts (eq. 37); they impinge where it is zero.
+/// @param radius        contact radius in the deformed configuration, over R
+/// @param displacement  of the wall towards the centre, over R, < 1
+[[nodiscard]] double angle_between_edges(double theta, double radius, double displacement, double other_radius,
+                                         double other_displacement) noexcept;
+
+}  // namespace monograin::nonlocal

@@ -1,0 +1,475 @@
+#include "elastic/nonlocal_system.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace monograin::nonlocal {
+namespace {
+
+using std::numbers::pi;
+
+constexpr std::array<std::string_view, 2> k_regime_words{"open", "elastic"};
+
+// Guards. The index is that of a class, of a pair, or -1.
+enum Kind : int { k_made, k_lost, k_impingement, k_stiffening, k_radius, k_centre, k_limit };
+
+// The last pivot goes like the root of the distance from the limit: this is 1e-10 of R0 before it.
+constexpr double k_least_pivot = 1e-5;
+// The margin from which on the source's formulation is seen to stiffen.
+constexpr double k_stiff_margin = 0.25;
+// Walls this near to opposite never meet on the surface.
+constexpr double k_opposite = 1e-9;
+// Angles that are the same but for rounding.
+constexpr double k_same_angle = 1e-9;
+// How far ahead the side of a wall is read that just touches; ten times further where it still does.
+constexpr double k_ahead = 1e-6;
+// Distance over the program's reach that a surface moves by rounding alone: less is neither touch nor gap.
+constexpr double k_touch = 1e-13;
+constexpr double k_force_power = 1.5;
+// How fast an integrated state is drawn back to the equations, over a step of the program: an error that it has
+// gathered would grow with 1/margin towards the limit of applicability.
+constexpr double k_pull = 20.0;
+
+}  // namespace
+
+System::System(const Settings& settings, std::vector<ContactClass> classes)
+    : settings_(settings),
+      classes_(std::move(classes)),
+      contacts_(settings.model, classes_, settings.centre),
+      work_place_(contacts_.unknown_count()) {
+  const std::size_t count = classes_.size();
+  const double length = settings_.initial_radius;
+  double reach = settings_.largest_displacement / length;
+  if (settings_.largest_force > 0.0) {
+    const double force = settings_.largest_force / (settings_.youngs_modulus * length * length);
+    reach = std::max(reach, contacts_.law().signed_square_under(force / contacts_.composite_modulus()));
+  }
+  if (!(reach > 0.0)) reach = 1.0;
+  touch_ = k_touch * reach;
+  for (const ContactClass& c : classes_) {
+    unknowns_.push_back(
+        {c.name, Unknown::Kind::differential, c.takes_force ? std::pow(reach, k_force_power) : reach, true});
+  }
+  constexpr std::array<std::string_view, 3> centre_names{"centre displacement 1", "centre displacement 2",
+                                                         "centre displacement 3"};
+  for (std::size_t k = 0; k < contacts_.free_count(); ++k) {
+    unknowns_.push_back({centre_names[k], Unknown::Kind::differential, reach, true});
+  }
+  unknowns_.push_back({"work", Unknown::Kind::quadrature, reach * reach * std::sqrt(reach), false});
+
+  ramps_.resize(count);
+  drawn_ramps_.resize(count);
+  regimes_.resize(count);
+  state_.resize(contacts_.unknown_count());
+  rates_.resize(contacts_.unknown_count());
+  all_rates_.resize(unknowns_.size());
+  now_.resize(count);
+  for (const ContactClass& c : classes_) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& normal : c.normals) mean += normal / c.multiplicity();
+    arms_.emplace_back(contacts_.free_directions().transpose() * mean);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = i; j < count; ++j) {
+      for (std::size_t m = 0; m < classes_[i].normals.size(); ++m) {
+        for (std::size_t n = i == j ? m + 1 : 0; n < classes_[j].normals.size(); ++n) {
+          const double angle = angle_between(classes_[i].normals[m], classes_[j].normals[n]);
+          const bool is_known = std::ranges::any_of(pairs_, [&](const Pair& pair) {
+            return pair.first == i && pair.second == j && std::abs(pair.angle - angle) < k_same_angle;
+          });
+          if (!is_known && angle < pi - k_opposite) pairs_.push_back({i, j, angle});
+        }
+      }
+    }
+  }
+
+  observables_ = {{"work", "J", {}}, {"stored_energy", "J", {}}, {"margin", "-", {}}};
+  for (const ContactClass& c : classes_) {
+    add_contact_columns(c.name, k_regime_words, observables_);
+    observables_.push_back({c.name + ".contact_radius_deformed", "m", {}});
+  }
+  if (settings_.centre == Centre::free) {
+    for (const char* axis : {"centre_x", "centre_y", "centre_z"}) observables_.push_back({axis, "m", {}});
+  }
+}
+
+void System::start(std::span<double> y) {
+  std::ranges::fill(y, 0.0);
+  std::ranges::fill(regimes_, Regime::open);
+  for (Pair& pair : pairs_) pair.has_impinged = false;
+  has_begun_ = false;
+  has_stiffened_ = false;
+  least_margin_ = 1.0;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const double gap = classes_[i].gap / settings_.initial_radius;
+    ramps_[i] = {-gap, -gap, Control::displacement};
+    y[i] = -gap;
+  }
+}
+
+void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
+  const double length = settings_.initial_radius;
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    const bool was_loaded = is_loaded(i);
+    const double unit = ramps[i].control == Control::force ? settings_.youngs_modulus * length * length : length;
+    ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
+    if (was_loaded && !is_loaded(i)) y[i] = std::pow(std::max(y[i], 0.0), 1.0 / k_force_power);
+  }
+  // A force closes a gap at once; everything else is where it was.
+  solve(0.0, y);
+  look(0.0, y);
+  settle(0.0, log);
+  has_begun_ = true;
+  watch();
+}
+
+double System::told(std::size_t i, double xi) const noexcept { return std::lerp(ramps_[i].start, ramps_[i].end, xi); }
+
+double System::square_under_force(std::size_t i, double xi) const {
+  const double force = told(i, xi);
+  if (force < 0.0) throw std::domain_error("a wall of class '" + classes_[i].name + "' would have to pull");
+  return contacts_.law().signed_square_under(force / contacts_.composite_modulus());
+}
+
+/// The unknowns as contacts_ wants them, in state_.
+std::span<double> System::look(double xi, std::span<const double> y) {
+  std::ranges::copy(y.first(state_.size()), state_.begin());
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (is_loaded(i)) state_[i] = square_under_force(i, xi);
+  }
+  return state_;
+}
+
+/// The same, and all contacts in that state in now_.
+void System::look_closely(double xi, std::span<const double> y) { contacts_.contacts(look(xi, y), now_); }
+
+/// The other way.
+void System::note(std::span<double> y) const {
+  std::ranges::copy(state_, y.begin());
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (is_loaded(i)) y[i] = std::pow(state_[i], k_force_power);
+  }
+}
+
+void System::complete(double xi, std::span<double> y) {
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (is_loaded(i)) y[i] = std::pow(square_under_force(i, xi), k_force_power);
+  }
+}
+
+void System::solve(double xi, std::span<double> y) {
+  look(xi, y);
+  contacts_.solve(ramps_, xi, state_);
+  note(y);
+}
+
+void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
+  look_closely(xi, y);
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    drawn_ramps_[i] = ramps_[i];
+    if (!is_loaded(i)) drawn_ramps_[i].end += k_pull * (told(i, xi) - now_[i].displacement);
+  }
+  contacts_.rates(drawn_ramps_, state_, rates_);
+  std::ranges::copy(rates_, dy.begin());
+  // dF/dxi of every contact, and with it that of the walls that follow a force.
+  const auto force_rate = [&](std::size_t i) {
+    if (is_loaded(i)) return ramps_[i].end - ramps_[i].start;
+    const ContactState c = now_[i];
+    return c.stiffness > 0.0 ? c.stiffness * contacts_.law().at(state_[i]).approach_slope * rates_[i] : 0.0;
+  };
+  double power = 0.0;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const ContactState c = now_[i];
+    double speed = ramps_[i].end - ramps_[i].start;
+    if (is_loaded(i)) {
+      const double force_speed = speed;
+      // s^(3/2), on which nothing else depends.
+      const LocalContact local = contacts_.law().at(std::max(state_[i], 1e-200));
+      dy[i] = force_speed * k_force_power / (2.0 * contacts_.composite_modulus() * local.approach_slope);
+      speed = c.stiffness > 0.0 ? force_speed / c.stiffness : 0.0;
+      for (std::size_t h = 0; h < classes_.size(); ++h) {
+        speed -= contacts_.coupling()(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(h)) * force_rate(h);
+      }
+      for (std::size_t k = 0; k < contacts_.free_count(); ++k) {
+        speed -= arms_[i][static_cast<Eigen::Index>(k)] * rates_[classes_.size() + k];
+      }
+    }
+    power += classes_[i].multiplicity() * c.force * speed;
+  }
+  dy[work_place_] = power;
+}
+
+void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
+  look(xi, y);
+  contacts_.residual(ramps_, xi, state_, res.first(state_.size()));
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (is_loaded(i)) res[i] = y[i] - std::pow(state_[i], k_force_power);
+  }
+  rates(xi, y, all_rates_);
+  res[work_place_] = dy[work_place_] - all_rates_[work_place_];
+}
+
+std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
+  return contacts_.energy(look(xi, y));
+}
+
+// --- transitions
+
+/// Signed square of a class a little later, as soon as it is on a side; 0 if it never is.
+double System::square_ahead(std::size_t i, double xi) {
+  std::vector<double> ahead = state_;
+  for (double distance = k_ahead; xi < 1.0; distance *= 10.0) {
+    const double later = std::min(1.0, xi + distance);
+    try {
+      contacts_.solve(ramps_, later, ahead);
+    } catch (const std::domain_error&) {
+      return 0.0;  // the run will stop on its way there
+    }
+    if (std::abs(ahead[i]) > touch_) return ahead[i];
+    if (later == 1.0) return 0.0;
+  }
+  return 0.0;
+}
+
+/// Regimes from the state that look() found. Walls that just touch belong to the side to which they go.
+void System::settle(double xi, std::vector<Event>& log) {
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const bool was_open = regimes_[i] == Regime::open;
+    double square = state_[i];
+    if (is_loaded(i)) {
+      square = std::max(ramps_[i].start, ramps_[i].end);
+    } else if (std::abs(square) <= touch_) {
+      square = square_ahead(i, xi);
+    }
+    const bool now_open = square == 0.0 ? was_open : square < 0.0;
+    regimes_[i] = now_open ? Regime::open : Regime::elastic;
+    // Walls that touch the fresh particle are in contact from the start, without an event.
+    const bool is_first_touch = !has_begun_ && classes_[i].gap == 0.0;
+    if (now_open != was_open && !is_first_touch) {
+      log.push_back({now_open ? "contact-lost" : "contact-made", static_cast<int>(i)});
+    }
+  }
+}
+
+void System::add_guard(int kind, std::size_t index, int direction, std::string_view name) {
+  guards_.push_back({kind, static_cast<int>(index), direction, name});
+}
+
+void System::watch() {
+  guards_.clear();
+  const bool is_at_rest = std::ranges::all_of(ramps_, [](const Ramp& ramp) { return ramp.start == ramp.end; });
+  if (is_at_rest) return;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (is_loaded(i)) continue;
+    if (regimes_[i] == Regime::open)
+      add_guard(k_made, i, 1, "contact-made");
+    else
+      add_guard(k_lost, i, -1, "contact-lost");
+  }
+  for (std::size_t p = 0; p < pairs_.size(); ++p) {
+    const bool both = regimes_[pairs_[p].first] == Regime::elastic && regimes_[pairs_[p].second] == Regime::elastic;
+    if (both && !pairs_[p].has_impinged) add_guard(k_impingement, p, -1, "impingement");
+  }
+  if (!has_stiffened_) guards_.push_back({k_stiffening, -1, -1, "stiffening"});
+  const bool needs_radius = settings_.radius_rule != RadiusRule::none || settings_.model.terms == Terms::all;
+  for (std::size_t i = 0; needs_radius && i < classes_.size(); ++i) {
+    if (regimes_[i] == Regime::elastic) add_guard(k_radius, i, -1, "radius-limit");
+  }
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (regimes_[i] == Regime::elastic) add_guard(k_centre, i, -1, "limit");
+  }
+  guards_.push_back({k_limit, -1, -1, "limit"});
+}
+
+/// How far a wall has come towards the centre, wherever that is.
+double System::depth(std::size_t i, double xi) {
+  double sum = is_loaded(i) ? now_[i].displacement : told(i, xi);
+  for (std::size_t k = 0; k < contacts_.free_count(); ++k) {
+    sum += arms_[i][static_cast<Eigen::Index>(k)] * state_[classes_.size() + k];
+  }
+  return sum;
+}
+
+double System::edge_angle(const Pair& pair, double xi) {
+  const auto radius = [&](std::size_t i) { return contacts_.deformed_radius(settings_.radius_rule, i, state_); };
+  return angle_between_edges(pair.angle, radius(pair.first), depth(pair.first, xi), radius(pair.second),
+                             depth(pair.second, xi));
+}
+
+void System::guard_values(double xi, std::span<const double> y, std::span<double> values) {
+  look_closely(xi, y);
+  for (std::size_t g = 0; g < guards_.size(); ++g) {
+    const auto index = static_cast<std::size_t>(std::max(0, guards_[g].index));
+    switch (guards_[g].kind) {
+      case k_made:
+        values[g] = state_[index] - touch_;
+        break;
+      case k_lost:
+        values[g] = state_[index] + touch_;
+        break;
+      case k_impingement:
+        values[g] = edge_angle(pairs_[index], xi);
+        break;
+      case k_stiffening:
+        values[g] = contacts_.margin(state_) - k_stiff_margin;
+        break;
+      case k_radius:
+        values[g] = 1.0 - now_[index].contact_radius;
+        break;
+      case k_centre:
+        values[g] = 1.0 - depth(index, xi);
+        break;
+      default:
+        values[g] = contacts_.least_pivot(state_) - k_least_pivot;
+        break;
+    }
+  }
+}
+
+std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
+                                      std::vector<Event>& log) {
+  look_closely(xi, y);
+  std::optional<DomainEnd> end;
+  for (const std::size_t g : fired) {
+    const Guard guard = guards_[g];
+    const auto index = static_cast<std::size_t>(std::max(0, guard.index));
+    Event event{guard.name, guard.index};
+    switch (guard.kind) {
+      case k_made:
+        regimes_[index] = Regime::elastic;
+        break;
+      case k_lost:
+        regimes_[index] = Regime::open;
+        break;
+      case k_impingement: {
+        Pair& pair = pairs_[index];
+        pair.has_impinged = true;
+        event = {guard.name, static_cast<int>(pair.first),
+                 pair.first == pair.second ? -1 : static_cast<int>(pair.second)};
+        break;
+      }
+      case k_stiffening:
+        has_stiffened_ = true;
+        break;
+      case k_radius:
+        end = DomainEnd{event, {"a contact is as wide as the particle", "contact radius/R0", 1.0}};
+        break;
+      case k_centre:
+        end = DomainEnd{event, {"a wall has reached the centre of the particle", "displacement/R0", 1.0}};
+        break;
+      default:
+        end = DomainEnd{event,
+                        {"limit of applicability: the stiffness becomes infinite and the path would turn back",
+                         "largest displacement/R0", [&] {
+                           double largest = 0.0;
+                           for (std::size_t i = 0; i < classes_.size(); ++i) largest = std::max(largest, depth(i, xi));
+                           return largest;
+                         }()}};
+        break;
+    }
+    log.push_back(event);
+  }
+  if (end) return end;
+  watch();
+  return std::nullopt;
+}
+
+// --- what is seen
+
+void System::observe(double xi, std::span<const double> y, std::span<double> values) {
+  look_closely(xi, y);
+  const double length = settings_.initial_radius;
+  const double force_unit = settings_.youngs_modulus * length * length;
+  const double energy_unit = force_unit * length;
+  const double energy = contacts_.energy(state_);
+  const double margin = contacts_.margin(state_);
+  least_margin_ = std::min(least_margin_, margin);
+  auto out = values.begin();
+  *out++ = y[work_place_] * energy_unit;
+  *out++ = energy * energy_unit;
+  *out++ = margin;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const ContactState c = now_[i];
+    const double a = c.contact_radius;
+    *out++ = (is_loaded(i) ? c.displacement : told(i, xi)) * length;
+    *out++ = depth(i, xi) * length;
+    *out++ = c.force * force_unit;
+    *out++ = a * length;
+    *out++ = a > 0.0 ? c.force / (pi * a * a) * settings_.youngs_modulus : 0.0;
+    *out++ = static_cast<double>(regimes_[i]);
+    *out++ = a < 1.0 || settings_.radius_rule == RadiusRule::none
+                 ? contacts_.deformed_radius(settings_.radius_rule, i, state_) * length
+                 : std::nan("");
+  }
+  if (settings_.centre == Centre::free) {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < contacts_.free_count(); ++k) {
+      centre += contacts_.free_directions().col(static_cast<Eigen::Index>(k)) * state_[classes_.size() + k];
+    }
+    for (const double x : centre) *out++ = x * length;
+  }
+}
+
+double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
+  look_closely(xi, y);
+  const auto i = static_cast<std::size_t>(contact_class);
+  const ContactState c = now_[i];
+  const double length = settings_.initial_radius;
+  switch (quantity) {
+    case Quantity::force:
+      return c.force * settings_.youngs_modulus * length * length;
+    case Quantity::displacement:
+      return (is_loaded(i) ? c.displacement : told(i, xi)) * length;
+    case Quantity::pressure:
+      return c.contact_radius > 0.0 ? c.force / (pi * c.contact_radius * c.contact_radius) * settings_.youngs_modulus
+                                    : 0.0;
+    case Quantity::contact_radius:
+      return c.contact_radius * length;
+    case Quantity::apparent_radius:
+      return length;
+  }
+  return 0.0;
+}
+
+double System::wall_position(int contact_class, double xi, std::span<const double> y) {
+  return quantity(Quantity::displacement, contact_class, xi, y);
+}
+
+/// Pressure under the contact, and its surface, which is the wall's plane.
+std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {
+  constexpr int k_points = 128;
+  look_closely(xi, y);
+  const auto i = static_cast<std::size_t>(contact_class);
+  const ContactState c = now_[i];
+  if (!(c.contact_radius > 0.0)) return {};
+  const double length = settings_.initial_radius;
+  std::vector<SurfacePoint> points;
+  for (int k = 0; k <= k_points; ++k) {
+    const double r = c.contact_radius * std::sin(0.5 * pi * k / k_points);
+    const double pressure = contacts_.law().pressure(state_[i], std::min(r * r, state_[i]));
+    const double height = r < 1.0 ? r * r / (1.0 + std::sqrt(1.0 - r * r)) : std::nan("");
+    points.push_back({.radius = r * length,
+                      .pressure = pressure * contacts_.composite_modulus() * settings_.youngs_modulus,
+                      .displacement = (c.approach - height) * length,
+                      .relaxed_height = height * length});
+  }
+  return points;
+}
+
+bool System::is_open(int contact_class) const noexcept {
+  return regimes_[static_cast<std::size_t>(contact_class)] == Regime::open;
+}
+
+std::vector<Finding> System::warnings() const {
+  std::vector<Finding> result;
+  if (has_stiffened_ || least_margin_ < k_stiff_margin) {
+    result.push_back(
+        {"the formulation stiffens as it nears its limit of applicability", "least margin", least_margin_});
+  }
+  return result;
+}
+
+}  // namespace monograin::nonlocal

@@ -1,0 +1,105 @@
+/// The nonlocal elastic sphere between rigid walls as a hybrid system.
+///
+/// Unknowns: the signed square s of the contact radius of every class, the displacement of a free centre, and the work
+/// of the walls. In s the equations are regular from the unloaded state on, and its sign says whether a contact is
+/// open; in force or radius they would not start. Where a force is prescribed, s follows from it outright and s^(3/2)
+/// stands in its place, which begins linearly. Three forms: direct, Newton's method for all at an instant; explicit,
+/// ds/dxi from the same matrix; implicit, the equations themselves.
+///
+/// Elastic: a contact has no memory, and the work of the walls is the stored energy. Lengths over R0, forces over E
+/// R0^2. Source: 003_97bacd62ecebe201.txt.
+#pragma once
+
+#include <vector>
+
+#include "elastic/nonlocal_contacts.hpp"
+#include "hybrid_system.hpp"
+
+namespace monograin::nonlocal {
+
+struct Settings {
+  Model model;
+  RadiusRule radius_rule = RadiusRule::closed;
+  double initial_radius = 0.0;  ///< R0 [m], > 0
+  double youngs_modulus = 0.0;  ///< E [Pa], > 0
+  Centre centre = Centre::fixed;
+  /// Largest displacement [m] and force [N] the program asks of a wall: how large the unknowns become, which absolute
+  /// tolerances are relative to. 0: not said.
+  double largest_displacement = 0.0;
+  double largest_force = 0.0;
+};
+
+class System final : public HybridSystem {
+ public:
+  /// @throws std::invalid_argument as Contacts
+  System(const Settings& settings, std::vector<ContactClass> classes);
+
+  [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return unknowns_; }
+  [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return classes_; }
+  void start(std::span<double> y) override;
+  void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override;
+  void complete(double xi, std::span<double> y) override;
+  void rates(double xi, std::span<const double> y, std::span<double> dy) override;
+  void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
+  void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
+  void solve(double xi, std::span<double> y) override;
+  [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override;
+  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
+  void guard_values(double xi, std::span<const double> y, std::span<double> values) override;
+  std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
+                                std::vector<Event>& log) override;
+  [[nodiscard]] std::span<const Observable> observables() const noexcept override { return observables_; }
+  void observe(double xi, std::span<const double> y, std::span<double> values) override;
+  [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
+  [[nodiscard]] double wall_position(int contact_class, double xi, std::span<const double> y) override;
+  [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override;
+  [[nodiscard]] bool is_open(int contact_class) const noexcept override;
+  [[nodiscard]] std::vector<Finding> warnings() const override;
+
+ private:
+  enum class Regime { open, elastic };
+
+  /// Two walls, by their classes, that may come to touch on the surface of the particle; one for each angle.
+  struct Pair {
+    std::size_t first = 0, second = 0;
+    double angle = 0.0;
+    bool has_impinged = false;
+  };
+
+  [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return ramps_[i].control == Control::force; }
+  [[nodiscard]] double told(std::size_t i, double xi) const noexcept;
+  [[nodiscard]] double square_under_force(std::size_t i, double xi) const;
+  std::span<double> look(double xi, std::span<const double> y);
+  void look_closely(double xi, std::span<const double> y);
+  void note(std::span<double> y) const;
+  [[nodiscard]] double depth(std::size_t i, double xi);
+  [[nodiscard]] double edge_angle(const Pair& pair, double xi);
+  [[nodiscard]] double square_ahead(std::size_t i, double xi);
+  void settle(double xi, std::vector<Event>& log);
+  void watch();
+  void add_guard(int kind, std::size_t index, int direction, std::string_view name);
+
+  Settings settings_;
+  std::vector<ContactClass> classes_;
+  Contacts contacts_;
+  std::vector<Unknown> unknowns_;
+  std::vector<Observable> observables_;
+  std::size_t work_place_;
+  std::vector<Pair> pairs_;
+  std::vector<Eigen::VectorXd> arms_;  ///< mean normal of each class along the free directions
+
+  std::vector<Ramp> ramps_;  ///< displacements over R0, forces over E R0^2
+  std::vector<Regime> regimes_;
+  double touch_ = 0.0;  ///< least |s| that puts a contact on a side
+  bool has_begun_ = false;
+  bool has_stiffened_ = false;
+  double least_margin_ = 1.0;
+  std::vector<Guard> guards_;
+  // Work space, so that nothing is allocated while integrating.
+  std::vector<double> state_, rates_;  ///< unknowns of contacts_
+  std::vector<double> all_rates_;
+  std::vector<ContactState> now_;
+  std::vector<Ramp> drawn_ramps_;
+};
+
+}  // namespace monograin::nonlocal

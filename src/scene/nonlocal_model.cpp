@@ -1,0 +1,54 @@
+#include "scene/nonlocal_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "elastic/nonlocal_limit.hpp"
+#include "scene/choice.hpp"
+#include "scene/scene.hpp"
+
+namespace monograin {
+
+nonlocal::Model nonlocal_model_of(const Scenario& scenario) {
+  using nonlocal::Influence;
+  using nonlocal::Terms;
+  return {.poisson_ratio = scenario.material.at("poisson_ratio"),
+          .terms = choice<Terms>(
+              scenario, "terms",
+              {{"4", Terms::four}, {"1", Terms::one}, {"2", Terms::two}, {"3", Terms::three}, {"inf", Terms::all}}),
+          .influence = choice<Influence>(scenario, "influence",
+                                         {{"half-space", Influence::half_space}, {"sphere", Influence::sphere}})};
+}
+
+std::optional<double> nonlocal_limit_of(const Scenario& scenario) {
+  const Scene scene = make_scene(scenario);
+  std::vector<Ramp> ramps;
+  std::optional<Ramp> driven;
+  double end = std::numeric_limits<double>::infinity();  // where a wall reaches the centre
+  for (std::size_t c = 0; c < scene.classes.size(); ++c) {
+    const double start = -scene.classes[c].gap / scenario.radius;
+    ramps.push_back({start, start, Control::displacement});
+    if (scene.programs[c].empty()) continue;
+    const Step& step = scene.programs[c].front();
+    if (step.kind == Step::Kind::force) return std::nullopt;
+    if (step.kind != Step::Kind::displacement) continue;
+    ramps.back().end = step.target / scenario.radius;
+    const double speed = ramps.back().end - start;
+    if (speed > 0.0) end = std::min(end, (1.0 - start) / speed);
+    if (!driven) driven = ramps.back();
+  }
+  if (!driven || !std::isfinite(end)) return std::nullopt;
+  nonlocal::Contacts contacts(nonlocal_model_of(scenario), scene.classes,
+                              scenario.loading.centre_is_free ? nonlocal::Centre::free : nonlocal::Centre::fixed);
+  std::vector<double> y(contacts.unknown_count(), 0.0);
+  for (std::size_t c = 0; c < ramps.size(); ++c) y[c] = ramps[c].start;
+  try {
+    const auto xi = nonlocal::limit_of_step(contacts, ramps, end, y);
+    return xi ? std::optional(std::lerp(driven->start, driven->end, *xi)) : std::nullopt;
+  } catch (const std::domain_error&) {
+    return std::nullopt;  // a contact becomes as wide as the particle, or nothing holds the centre
+  }
+}
+
+}  // namespace monograin

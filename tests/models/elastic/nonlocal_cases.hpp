@@ -1,0 +1,131 @@
+/// Wall sets and reference data for the tests of the nonlocal formulation.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "elastic/nonlocal_contacts.hpp"
+#include "history/table.hpp"
+#include "models/accuracy.hpp"
+#include "walls.hpp"
+
+namespace monograin::nonlocal {
+
+inline constexpr double k_degree = std::numbers::pi / 180.0;
+inline constexpr double k_rubber = 0.48;  // Poisson's ratio of most reference data
+inline constexpr std::array k_all_terms{Terms::one, Terms::two, Terms::three, Terms::four, Terms::all};
+
+inline Table reference(const std::string& file) {
+  return read_csv(MONOGRAIN_SOURCE_DIR "/tests/models/elastic/reference/nonlocal/" + file + ".csv");
+}
+
+inline ContactClass both_sides(std::string name, const Eigen::Vector3d& normal) {
+  return {.name = std::move(name), .normals = {normal, -normal}};
+}
+
+inline std::vector<ContactClass> simple() { return {both_sides("axial", Eigen::Vector3d::UnitZ())}; }
+
+inline std::vector<ContactClass> die() {
+  return {both_sides("axial", Eigen::Vector3d::UnitZ()),
+          {.name = "lateral",
+           .normals = {Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(),
+                       -Eigen::Vector3d::UnitY()}}};
+}
+
+inline std::vector<ContactClass> hydrostatic() {
+  std::vector<ContactClass> classes = die();
+  auto& all = classes[0].normals;
+  all.insert(all.end(), classes[1].normals.begin(), classes[1].normals.end());
+  classes.pop_back();
+  return classes;
+}
+
+/// A die with two or four further walls, at an angle from the lateral ones on the y axis.
+inline std::vector<ContactClass> oblique_die(double degrees = 37.5, int oblique_walls = 2) {
+  const double c = std::cos(degrees * k_degree);
+  const double s = std::sin(degrees * k_degree);
+  std::vector<ContactClass> classes{
+      both_sides("axial", Eigen::Vector3d::UnitZ()), both_sides("lateral-x", Eigen::Vector3d::UnitX()),
+      both_sides("lateral-y", Eigen::Vector3d::UnitY()), both_sides("oblique", {0.0, c, s})};
+  if (oblique_walls == 4) {
+    classes[3].normals.emplace_back(0.0, c, -s);
+    classes[3].normals.emplace_back(0.0, -c, s);
+  }
+  return classes;
+}
+
+inline std::vector<ContactClass> wall_set(std::string_view name) {
+  if (name == "simple") return simple();
+  if (name == "die") return die();
+  if (name == "hydrostatic") return hydrostatic();
+  return oblique_die();
+}
+
+/// Every wall a class of its own, in the order of the classes.
+inline std::vector<ContactClass> single_walls(std::span<const ContactClass> classes) {
+  std::vector<ContactClass> walls;
+  for (const ContactClass& group : classes) {
+    for (const Eigen::Vector3d& normal : group.normals) walls.push_back({.name = group.name, .normals = {normal}});
+  }
+  return walls;
+}
+
+inline std::vector<ContactClass> turned(std::vector<ContactClass> classes, const Eigen::Quaterniond& rotation) {
+  for (ContactClass& group : classes) {
+    for (Eigen::Vector3d& normal : group.normals) normal = rotation * normal;
+  }
+  return classes;
+}
+
+/// Displacements, or forces, that stay.
+inline std::vector<Ramp> held(std::span<const double> values, Control control = Control::displacement) {
+  std::vector<Ramp> ramps;
+  for (const double value : values) ramps.push_back({.start = value, .end = value, .control = control});
+  return ramps;
+}
+
+/// The first class goes from 0 to a displacement, all others stay at first touch.
+inline std::vector<Ramp> compression(std::size_t class_count, double displacement) {
+  std::vector<Ramp> ramps(class_count);
+  ramps[0].end = displacement;
+  return ramps;
+}
+
+/// The contacts of a state, by value.
+inline std::vector<ContactState> states_of(Contacts& contacts, std::span<const double> y) {
+  std::vector<ContactState> states(contacts.class_count());
+  contacts.contacts(y, states);
+  return states;
+}
+
+/// State under displacements, found from the unloaded one.
+inline std::vector<double> state_under(Contacts& contacts, std::span<const double> displacements) {
+  std::vector<double> y(contacts.unknown_count(), 0.0);
+  for (std::size_t j = 0; j < displacements.size(); ++j) y[j] = std::min(displacements[j], 0.0);
+  contacts.solve(held(displacements), 1.0, y);
+  return y;
+}
+
+/// The message of the exception that a call throws; empty if it throws none, or another.
+template <class Exception, class Call>
+std::string refusal(const Call& call) {
+  try {
+    static_cast<void>(call());
+  } catch (const Exception& exception) {
+    return exception.what();
+  }
+  return {};
+}
+
+inline bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
+
+}  // namespace monograin::nonlocal
