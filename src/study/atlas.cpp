@@ -262,7 +262,9 @@ class FigureMaker {
       return curves;
     }
     for (const Scenario& scenario : spec.scenarios) {
-      const Table& table = spec.profile_at ? profiles_of(scenario, *spec.profile_at) : history_of(scenario);
+      const Table& table = spec.profile_at          ? profiles_of(scenario, *spec.profile_at)
+                           : !spec.at_event.empty() ? states_at(scenario, spec.at_event)
+                                                    : run_of(scenario).history;
       curves.push_back(curve_of(spec.x, spec.y, Scope(&table, derived_parameters(scenario), parameter), faults_));
     }
     if (spec.scenarios.empty()) curves.push_back(curve_of(spec.x, spec.y, Scope(nullptr, {}, parameter), faults_));
@@ -270,21 +272,35 @@ class FigureMaker {
   }
 
   /// Runs a scenario; panels that show other columns of the same run share it.
-  [[nodiscard]] const Table& history_of(const Scenario& scenario) {
-    const auto [entry, is_new] = histories_.try_emplace(scenario_digest(scenario));
-    if (!is_new) return entry->second;
-    RunRecord record = run_scenario(scenario).record;
-    entry->second = std::move(record.history);
+  [[nodiscard]] const RunRecord& run_of(const Scenario& scenario) {
+    const auto [entry, is_new] = runs_.try_emplace(scenario_digest(scenario));
+    RunRecord& record = entry->second;
+    if (!is_new) return record;
+    record = run_scenario(scenario).record;
     if (record.status != RunStatus::complete) {
       made_.stops.push_back(fmt::format("{}: {}: {}", scenario.name, to_string(record.status), record.message));
       made_.status = std::max(made_.status, record.status);
+    }
+    return record;
+  }
+
+  /// The states just after the events of a name.
+  [[nodiscard]] const Table& states_at(const Scenario& scenario, const std::string& event) {
+    const auto [entry, is_new] = tables_.try_emplace(fmt::format("{} at {}", scenario_digest(scenario), event));
+    if (!is_new) return entry->second;
+    const RunRecord& record = run_of(scenario);
+    const std::size_t name = *record.events.find("event");
+    entry->second = Table(record.events.columns());
+    entry->second.header = record.history.header;
+    for (std::size_t row = 0; row < record.events.row_count(); ++row) {
+      if (record.events.word(row, name) == event) entry->second.append(record.events.row(row));
     }
     return entry->second;
   }
 
   /// Pressure and surface under the contacts of the first class.
   [[nodiscard]] const Table& profiles_of(const Scenario& scenario, double time) {
-    const auto [entry, is_new] = histories_.try_emplace(fmt::format("{} at {}", scenario_digest(scenario), time));
+    const auto [entry, is_new] = tables_.try_emplace(fmt::format("{} at {}", scenario_digest(scenario), time));
     if (!is_new) return entry->second;
     const Table all = contact_profiles(scenario, time);
     entry->second = Table(all.columns());
@@ -334,7 +350,8 @@ class FigureMaker {
   const Definition& definition_;
   FaultList& faults_;
   AtlasFigure made_;
-  std::map<std::string, Table> histories_;
+  std::map<std::string, RunRecord> runs_;
+  std::map<std::string, Table> tables_;  ///< of profiles, and of states at events
 };
 
 /// Adds what an error holds to the faults of others.

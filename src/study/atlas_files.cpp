@@ -98,7 +98,20 @@ constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 [[nodiscard]] std::vector<Row> rows_of(const ValueTable& table) {
   constexpr double k_on_the_edge = 1.0 + 1e-9;  // a value of exactly half a unit may be rounded either way
-  std::vector<Row> rows{{"quantity", "computed", "printed", "difference", "rounded to it", "remark"}};
+  const bool has_printed = std::ranges::any_of(table.rows, [](const ValueRow& row) { return !row.printed.empty(); });
+  std::vector<Row> rows;
+  if (!has_printed) {
+    const bool has_remarks = std::ranges::any_of(table.rows, [](const ValueRow& row) { return !row.remark.empty(); });
+    rows.push_back({"quantity", "computed"});
+    for (const ValueRow& row : table.rows) {
+      rows.push_back({row.label, std::isfinite(row.value) ? fmt::format("{:#.10g}", row.value) : "-"});
+    }
+    for (std::size_t k = 0; has_remarks && k <= table.rows.size(); ++k) {
+      rows[k].push_back(k == 0 ? "remark" : table.rows[k - 1].remark);
+    }
+    return rows;
+  }
+  rows.push_back({"quantity", "computed", "printed", "difference", "rounded to it", "remark"});
   for (const ValueRow& row : table.rows) {
     const double difference = row.value - printed_number(row);
     const bool is_rounded_to = std::abs(difference) <= k_on_the_edge * rounding_of(row.printed);
@@ -121,8 +134,8 @@ constexpr const char* k_about_comparisons =
     "Unloading from there: mean slope while the first 5 % of y go, residual x where y vanishes, and both over those\n"
     "of the reference. A hyphen: y does not vanish, or the curve does not turn back there.\n";
 constexpr const char* k_about_values =
-    "Values as the laws give them, beside those that the source prints, and whether a printed one is the other,\n"
-    "rounded to as many digits.\n";
+    "Values as the laws give them; where the source prints one, whether it is the same rounded to as many digits.\n"
+    "A hyphen: there is none.\n";
 
 /// Titles and labels of a table for CSV; rows refer to them by number.
 struct Words {

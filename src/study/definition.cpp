@@ -178,6 +178,7 @@ class DefinitionReader {
                    .styles = {static_cast<Style>(place_of_word(k_styles, section.text("style")))},
                    .colour = colour(section),
                    .profile_at = section.number("profile_at"),
+                   .at_event = section.text("at_event"),
                    .parameter = {}};
     if (section.has("parameter")) spec.parameter = parameter(section);
     const std::vector<Override> swept = section.has("sweep") ? sweep(section, spec) : std::vector<Override>{};
@@ -186,7 +187,22 @@ class DefinitionReader {
     } else if (!spec.parameter || has_scenario_ || section.has("scenario")) {
       add_curve(section, {}, swept, spec);
     }
+    if (!spec.at_event.empty()) check_event(section, spec);
     return spec;
+  }
+
+  /// Every model of the curve has to know the event.
+  void check_event(const Section& section, const CurveSpec& spec) {
+    for (const Scenario& scenario : spec.scenarios) {
+      std::vector<std::string_view> names;
+      for (const Term& event : find_model(scenario.model)->events) names.push_back(event.name);
+      if (std::ranges::find(names, spec.at_event) != names.end()) continue;
+      const std::string suggestion = did_you_mean(spec.at_event, names);
+      faults_.add(section.value_place("at_event"),
+                  fmt::format("model '{}' has no event '{}'{}", scenario.model, shown(spec.at_event),
+                              suggestion.empty() ? "; it has " + listed(names) : suggestion));
+      return;
+    }
   }
 
   [[nodiscard]] static std::optional<std::size_t> colour(const Section& section) {
@@ -210,7 +226,7 @@ class DefinitionReader {
   [[nodiscard]] std::vector<Override> sweep(const Section& curve, CurveSpec& spec) {
     static const Keys keys = sweep_keys();
     const Section section(reading_, curve.table("sweep", "sweep"), keys);
-    for (const std::string_view other : {"parameter", "profile_at"}) {
+    for (const std::string_view other : {"parameter", "profile_at", "at_event"}) {
       if (curve.has(other)) {
         faults_.add(curve.key_place(other), fmt::format("'{}' does not go with 'sweep', which has no history", other));
       }

@@ -42,6 +42,7 @@ struct CurveSpec {
   std::vector<figure::ChartSeries::Style> styles{figure::ChartSeries::Style::phases};  ///< likewise
   std::optional<std::size_t> colour;
   std::optional<double> profile_at;  ///< [s]; then columns are those of contact profiles at that instant
+  std::string at_event;  ///< then rows are the states just after events of this name; empty: those of the history
   std::optional<Parameter> parameter;
 };
 

@@ -99,6 +99,7 @@ Keys curve_keys() {
           table_key("sweep", "instead of a history: the parameters that the model derives, over a key's values",
                     "{ key = \"...\", from = 1, to = 2 }"),
           number_key("profile_at", "instead of a history: contact profiles of the first class at this instant [s]"),
+          text_key("at_event", "instead of a history: the states just after events of this name", "\"impingement\""),
           table_key("parameter", "instead of a history: range of t in the formulas", "{ from = 0, to = 1 }"),
           text_key("x", "formula of the abscissa", k_example_x),
           text_key("y", "formula of the ordinate", k_example_y),

@@ -8,9 +8,12 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <span>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
+#include "elastic/nonlocal_coupling.hpp"
 #include "scenario/words.hpp"
 
 namespace monograin {
@@ -30,15 +33,39 @@ constexpr ValueFunction k_value_functions[] = {
     {"tan", [](double x) { return std::tan(x); }},   {"atan", [](double x) { return std::atan(x); }},
     {"sinh", [](double x) { return std::sinh(x); }}, {"cosh", [](double x) { return std::cosh(x); }},
     {"tanh", [](double x) { return std::tanh(x); }}};
+
+/// Laws that are no formula. Without a value where the law has none.
+struct LawFunction {
+  std::string_view name;
+  double (*value)(double poisson_ratio, double angle, double contact_radius);
+};
+
+template <nonlocal::RadiusRule rule>
+double radius_influence(double poisson_ratio, double angle, double contact_radius) {
+  try {
+    return nonlocal::radius_influence(rule, poisson_ratio, angle, contact_radius);
+  } catch (const std::domain_error&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+constexpr LawFunction k_law_functions[] = {
+    {"radius_influence_closed", radius_influence<nonlocal::RadiusRule::closed>},
+    {"radius_influence_integral", radius_influence<nonlocal::RadiusRule::integral>},
+    {"radius_influence_projected", radius_influence<nonlocal::RadiusRule::projected>}};
 constexpr std::array<std::string_view, 3> k_row_functions{"min", "max", "last"};
 constexpr std::size_t k_longest = 400;  ///< which also bounds how deep brackets nest
 
 [[nodiscard]] bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 [[nodiscard]] bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-[[nodiscard]] bool is_function(std::string_view name) {
-  return std::ranges::find(k_value_functions, name, &ValueFunction::name) != std::end(k_value_functions) ||
-         std::ranges::find(k_row_functions, name) != k_row_functions.end();
+/// How many arguments a function takes; 0: there is no such function.
+[[nodiscard]] std::size_t argument_count(std::string_view name) {
+  if (std::ranges::find(k_law_functions, name, &LawFunction::name) != std::end(k_law_functions)) return 3;
+  const bool is_known =
+      std::ranges::find(k_value_functions, name, &ValueFunction::name) != std::end(k_value_functions) ||
+      std::ranges::find(k_row_functions, name) != k_row_functions.end();
+  return is_known ? 1 : 0;
 }
 
 /// Rows without a value do not count: before a contact is made its pressure is undefined.
@@ -165,8 +192,13 @@ class ExpressionParser {
       program_.push_back({.operation = Operation::name, .name = std::string(word), .offset = begin});
       return;
     }
-    if (!is_function(word)) throw ExpressionError(begin, fmt::format("there is no function '{}'", word));
+    const std::size_t count = argument_count(word);
+    if (count == 0) throw ExpressionError(begin, fmt::format("there is no function '{}'", word));
     sum();
+    for (std::size_t k = 1; k < count; ++k) {
+      require(',');
+      sum();
+    }
     require(')');
     program_.push_back({.operation = Operation::function, .name = std::string(word), .offset = begin});
   }
@@ -205,6 +237,23 @@ template <class Combine>
   }
   for (std::size_t k = 0; k < left.size(); ++k) left[k] = combine(left[k], right[right.size() == 1 ? 0 : k]);
   return left;
+}
+
+[[nodiscard]] Values evaluated(const LawFunction& law, std::span<const Values, 3> arguments, std::size_t offset) {
+  const std::size_t count = std::ranges::max(arguments, {}, &Values::size).size();
+  for (const Values& values : arguments) {
+    if (values.size() != 1 && values.size() != count) {
+      throw ExpressionError(offset, fmt::format("{} values do not go with {}", values.size(), count));
+    }
+  }
+  const auto argument = [&](std::size_t i, std::size_t row) {
+    return arguments[i][arguments[i].size() == 1 ? 0 : row];
+  };
+  Values result(count);
+  for (std::size_t row = 0; row < count; ++row) {
+    result[row] = law.value(argument(0, row), argument(1, row), argument(2, row));
+  }
+  return result;
 }
 
 }  // namespace
@@ -247,9 +296,17 @@ std::vector<double> Expression::evaluate(const Lookup& lookup) const {
       case Operation::negate:
         for (double& value : stack.back()) value = -value;
         break;
-      case Operation::function:
-        stack.back() = applied(step.name, std::move(stack.back()));
+      case Operation::function: {
+        const auto law = std::ranges::find(k_law_functions, step.name, &LawFunction::name);
+        if (law == std::end(k_law_functions)) {
+          stack.back() = applied(step.name, std::move(stack.back()));
+        } else {
+          Values result = evaluated(*law, std::span<const Values, 3>(stack.end() - 3, 3), step.offset);
+          stack.resize(stack.size() - 2);
+          stack.back() = std::move(result);
+        }
         break;
+      }
     }
   }
   return std::move(stack.back());

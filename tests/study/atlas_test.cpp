@@ -126,6 +126,18 @@ curve = [{ parameter = { from = 1, to = 3 }, x = "t", y = "t^2", style = "dashed
   EXPECT_EQ(series.style, figure::ChartSeries::Style::dashed);
 }
 
+TEST_F(Atlas, DrawsTheStatesAtEvents) {
+  const std::string curve = std::string(k_head) + k_scenario + "[[panel]]\ncurve = [{ style = \"points\", at_event = ";
+  const AtlasFigure made = make(curve + "\"load-reversal\" }]\n");
+  const figure::ChartSeries& series = made.chart.panels[0].series.at(0);
+  ASSERT_EQ(series.x.size(), 1U);
+  EXPECT_DOUBLE_EQ(series.x[0], 0.01);
+  EXPECT_DOUBLE_EQ(series.y[0], 4.0 / 3.0 * std::pow(0.01, 1.5));
+  EXPECT_TRUE(make(curve + "\"limit\" }]\n").chart.panels[0].series.at(0).x.empty());
+  EXPECT_EQ(fault_of(curve + "\"load-reversel\" }]\n"),
+            "small.toml:19:41: model 'hertz' has no event 'load-reversel'; did you mean 'load-reversal'?");
+}
+
 TEST_F(Atlas, DrawsDerivedParametersOverASweptKey) {
   const auto sweep = [&](const std::string& more) {
     const AtlasFigure made =
@@ -241,6 +253,27 @@ value = "1 / 3"
   EXPECT_DOUBLE_EQ(table.at(0, *table.find("computed")), 4.0 / 3.0);
   EXPECT_EQ(table.at(0, *table.find("printed")), 1.333);
   EXPECT_TRUE(std::isnan(table.at(2, *table.find("printed"))));
+}
+
+TEST_F(Atlas, TabulatesValuesAloneWhereNothingIsPrinted) {
+  const AtlasFigure made = make(std::string(k_values) + k_scenario + R"toml(
+[[values]]
+title = "Moduli"
+[[values.row]]
+label = "half"
+value = "1 / 2"
+[[values.row]]
+label = "none"
+value = "log(-1)"
+remark = "no such value"
+)toml");
+  EXPECT_EQ(tables_text(made).substr(tables_text(made).find("## ")), R"(## Moduli
+
+| quantity |     computed | remark        |
+| -------- | -----------: | ------------- |
+| half     | 0.5000000000 |               |
+| none     |            - | no such value |
+)");
 }
 
 TEST_F(Atlas, ReportsFaultsInTablesOfValues) {

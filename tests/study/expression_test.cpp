@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "elastic/nonlocal_coupling.hpp"
+
 namespace monograin {
 namespace {
 
@@ -61,7 +63,23 @@ TEST(Expression, MakesOneNumberOfAColumn) {
   EXPECT_EQ(value_of("max(gap) + min(gap) + last(gap)"), (Values{15.0})) << "undefined rows do not count";
 }
 
+TEST(Expression, KnowsLawsThatAreNoFormula) {
+  using nonlocal::radius_influence;
+  using nonlocal::RadiusRule;
+  EXPECT_EQ(value_of("radius_influence_closed(0.3, 2, 0.5)"),
+            (Values{radius_influence(RadiusRule::closed, 0.3, 2, 0.5)}));
+  EXPECT_EQ(value_of("2 * radius_influence_integral(0.3, axial.x / c + 0.8, 0.25)"),
+            (Values{2 * radius_influence(RadiusRule::integral, 0.3, 1.3, 0.25),
+                    2 * radius_influence(RadiusRule::integral, 0.3, 2.8, 0.25),
+                    2 * radius_influence(RadiusRule::integral, 0.3, 1.8, 0.25)}));
+  const Values values = value_of("radius_influence_projected(0.3, 2, two - 0.5)");
+  EXPECT_EQ(values[0], radius_influence(RadiusRule::projected, 0.3, 2, 0.5));
+  EXPECT_TRUE(std::isnan(values[1])) << "wider than the particle";
+}
+
 TEST(Expression, SaysWhatIsWrongAndWhere) {
+  EXPECT_EQ(fault_of("radius_influence_closed(c, c)"), "28: expected ','");
+  EXPECT_EQ(fault_of("radius_influence_closed(c, axial.x, two)"), "0: 2 values do not go with 3");
   EXPECT_EQ(fault_of("2 * (c"), "6: expected ')'");
   EXPECT_EQ(fault_of("2 *"), "3: expected a number or a name");
   EXPECT_EQ(fault_of(""), "0: expected a number or a name");
