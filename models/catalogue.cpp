@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "compressible/contact_info.hpp"
 #include "elastic/nonlocal_info.hpp"
 #include "mdr/info.hpp"
 #include "plastic/info.hpp"
@@ -12,14 +13,14 @@ namespace {
 
 using std::string_view;
 
-constexpr std::array<string_view, 3> k_reserved{"compressible", "material-point", "packing"};
+constexpr std::array<string_view, 2> k_reserved{"material-point", "packing"};
 
 }  // namespace
 
 std::span<const ModelInfo> model_catalogue() noexcept {
   static const std::array k_models{
-      mdr::hertz_info(),        mdr::mdr_info(),           plastic::similarity_info(),
-      plastic::semimech_info(), plastic::hardening_info(), nonlocal::nonlocal_info(),
+      mdr::hertz_info(),         mdr::mdr_info(),           plastic::similarity_info(),   plastic::semimech_info(),
+      plastic::hardening_info(), nonlocal::nonlocal_info(), compressible::contact_info(),
   };
   return k_models;
 }

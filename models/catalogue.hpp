@@ -39,14 +39,19 @@ struct QuantityKey {
   bool is_optional = false;
 };
 
-/// A choice, a switch or a file name in the table that bears the model's name.
+/// A choice, a switch, a file name or a number in the table that bears the model's name.
 struct OptionKey {
-  enum class Kind { choice, toggle, file };
+  enum class Kind { choice, toggle, file, quantity };
   std::string_view name;
   std::string_view meaning;
   Kind kind = Kind::choice;
   std::span<const std::string_view> choices;  ///< of a choice; the first one is the default
   bool default_toggle = false;
+  Dimension dimension = Dimension::none;  ///< of a quantity, as its range and default
+  Range range{};
+  std::optional<double> default_value{};  ///< none: the quantity may be absent
+  /// Of a file that is not a curve of two columns: the columns that are read. No two rows have the same first two.
+  std::span<const QuantityKey> columns{};
 };
 
 /// A regime or an event with one sentence about it.
@@ -58,7 +63,8 @@ struct Term {
 /// What a scenario says, each value right by itself.
 struct Given {
   const std::map<std::string, double>& material;      ///< [SI]
-  const std::map<std::string, std::string>& choices;  ///< options of kind choice
+  const std::map<std::string, std::string>& choices;  ///< options of kinds choice and file
+  const std::map<std::string, double>& numbers;       ///< options of kind quantity [SI]
   std::string_view configuration;
 };
 
@@ -76,6 +82,7 @@ struct ModelInfo {
   std::span<const OptionKey> options;
   std::span<const std::string_view> configurations;
   bool has_free_centre = false;  ///< `[loading] centre = "equilibrium"` is defined
+  bool has_contact_area = true;  ///< there are contact radii, pressures, and a surface that may move
   std::span<const Term> regimes;
   std::span<const Term> events;
   std::span<const std::string_view> domain;  ///< limits of validity, a sentence each

@@ -61,14 +61,18 @@ void print_terms(std::string_view title, std::span<const Term> terms) {
   for (const Term& term : terms) fmt::print("  {:<22}{}\n", term.name, term.meaning);
 }
 
+template <class Key>
+void print_quantity(const Key& key, const std::string& note) {
+  fmt::print("  {:<22}{} [{}], in {}; {}\n", key.name, key.meaning, si_unit(key.dimension), to_text(key.range), note);
+}
+
 void print_model(const ModelInfo& model) {
   fmt::print("{}: {}\nsource: {}\n\n[material]\n", model.name, model.summary, model.source);
   for (const QuantityKey& key : model.material) {
     const std::string default_text = key.default_value ? fmt::format("default {}", *key.default_value)
                                      : key.is_optional ? "optional"
                                                        : "required";
-    fmt::print("  {:<22}{} [{}], in {}; {}\n", key.name, key.meaning, si_unit(key.dimension), to_text(key.range),
-               default_text);
+    print_quantity(key, default_text);
   }
   if (model.takes_ludwik) {
     fmt::print("  {:<22}{}\n", "ludwik",
@@ -87,6 +91,9 @@ void print_model(const ModelInfo& model) {
         break;
       case OptionKey::Kind::file:
         fmt::print("  {:<22}{}: a file (default none)\n", key.name, key.meaning);
+        break;
+      case OptionKey::Kind::quantity:
+        print_quantity(key, key.default_value ? fmt::format("default {}", *key.default_value) : "optional");
         break;
     }
   }

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "scenario/cells.hpp"
+#include "scenario/language.hpp"
+#include "scenario/measured_data.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 
@@ -130,20 +133,59 @@ SampledCurve parse_curve(std::string_view text, const std::string& origin, Fault
   return CurveParser(origin, faults).parse(text);
 }
 
-SampledCurve read_curve(const std::filesystem::path& file, const SourceLocation& named_at, std::string_view naming,
-                        FaultList& faults) {
+SampledCurve parse_columns(std::string_view text, const std::string& origin, std::span<const QuantityKey> columns,
+                           const SourceLocation& named_at, std::string_view naming, FaultList& faults) {
+  std::vector<ColumnRequest> wanted;
+  for (const QuantityKey& column : columns) {
+    wanted.push_back({std::string(column.name), named_at, fmt::format("{}: column '{}'", naming, column.name)});
+  }
+  const std::size_t before = faults.size();
+  MeasuredData data = parse_measured(text, origin, wanted, faults);
+  SampledCurve table{.text = std::move(data.text), .x = {}, .y = {}};
+  if (faults.size() > before) return table;
+  std::map<std::pair<double, double>, std::size_t> lines;  // of what has been read, by its first two columns
+  for (std::size_t row = 0; row < data.lines.size() && faults.size() < before + k_most_faults; ++row) {
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const double value = data.columns[k].values[row];
+      const KeySpec spec = quantity_key(columns[k]);
+      if (finite_range(spec).contains(value)) continue;
+      faults.add({origin, data.lines[row], data.columns[k].at[row]},
+                 fmt::format("{} = {}: expected {}", columns[k].name, value, expectation(spec)));
+    }
+    const std::pair place(data.columns[0].values[row], data.columns[1].values[row]);
+    const auto [entry, is_new] = lines.try_emplace(place, data.lines[row]);
+    if (is_new) continue;
+    faults.add({origin, data.lines[row], data.columns[0].at[row]},
+               fmt::format("{} = {} with {} = {} stands in line {} already; expected one row for each pair",
+                           columns[0].name, place.first, columns[1].name, place.second, entry->second));
+  }
+  table.x = std::move(data.columns[0].values);
+  table.y = std::move(data.columns[1].values);
+  for (std::size_t k = 2; k < columns.size(); ++k) table.values.push_back(std::move(data.columns[k].values));
+  return table;
+}
+
+SampledCurve read_curve(const std::filesystem::path& file, std::span<const QuantityKey> columns,
+                        const SourceLocation& named_at, std::string_view naming, FaultList& faults) {
   const auto [text, problem] = read_text_file(file, k_largest_table);
   const std::string name = file.string();
   if (!problem.empty()) {
-    faults.add(named_at, fmt::format("{}: {} ({}); expected a table of two columns such as {}, its path relative to "
-                                     "the scenario's folder",
-                                     naming, problem, on_one_line(name), k_example_headings));
+    std::string headings(k_example_headings);
+    for (const QuantityKey& column : columns) {
+      if (&column == columns.data()) headings.clear();
+      headings += (headings.empty() ? "" : ",") + std::string(column.name);
+    }
+    faults.add(named_at,
+               fmt::format("{}: {} ({}); expected a table of {} such as {}, its path relative to the "
+                           "scenario's folder",
+                           naming, problem, on_one_line(name), columns.empty() ? "two columns" : "columns", headings));
     return {};
   }
   if (text.size() > k_largest_table) {
     faults.add({name}, fmt::format("the table is too large; expected at most {} MiB", k_largest_table >> 20U));
     return {};
   }
+  if (!columns.empty()) return parse_columns(text, name, columns, named_at, naming, faults);
   return parse_curve(text, name, faults);
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string_view>
 
+#include "catalogue.hpp"
 #include "scenario/faults.hpp"
 #include "scenario/scenario.hpp"
 
@@ -20,10 +22,18 @@ inline constexpr double k_least_sample = 1e-9;  ///< of y, and of the distance b
 /// @param origin  the file's name in faults, which bear the places in the table
 [[nodiscard]] SampledCurve parse_curve(std::string_view text, const std::string& origin, FaultList& faults);
 
-/// The same from a file. Where it cannot be read, the fault is at the place that names it.
+/// Checks the text of a table from which columns are taken by their headings, each number in its column's range and no
+/// two rows with the same x and y, which are the first two columns.
+/// @param named_at, naming  as of read_curve
+[[nodiscard]] SampledCurve parse_columns(std::string_view text, const std::string& origin,
+                                         std::span<const QuantityKey> columns, const SourceLocation& named_at,
+                                         std::string_view naming, FaultList& faults);
+
+/// One or the other from a file. Where it cannot be read, the fault is at the place that names it.
+/// @param columns   empty: a curve
 /// @param named_at  place of the file's name in the scenario
 /// @param naming    that place as it is written: `pressure_table = "file.csv"`
-[[nodiscard]] SampledCurve read_curve(const std::filesystem::path& file, const SourceLocation& named_at,
-                                      std::string_view naming, FaultList& faults);
+[[nodiscard]] SampledCurve read_curve(const std::filesystem::path& file, std::span<const QuantityKey> columns,
+                                      const SourceLocation& named_at, std::string_view naming, FaultList& faults);
 
 }  // namespace monograin

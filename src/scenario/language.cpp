@@ -66,7 +66,8 @@ constexpr std::array<string_view, 21> k_reserved_material{"ludwik",
                                                           "yield_stress"};
 constexpr std::array<string_view, 5> k_reserved_step_keys{"strain", "stress", "lateral_strain", "lateral_stress",
                                                           "packing_fraction"};
-constexpr std::array<string_view, 3> k_reserved_until_keys{"stress_axial", "stress_lateral", "relative_density"};
+constexpr std::array<string_view, 6> k_reserved_until_keys{"stress_axial", "stress_lateral", "relative_density",
+                                                           "pressure",     "contact_radius", "apparent_radius"};
 
 bool is_in(std::span<const string_view> words, string_view word) {
   return std::ranges::find(words, word) != words.end();
@@ -189,16 +190,7 @@ std::vector<KeySpec> wall_keys() {
 
 std::vector<KeySpec> material_keys(const ModelInfo& model) {
   std::vector<KeySpec> keys;
-  for (const QuantityKey& key : model.material) {
-    KeySpec spec{.name = key.name,
-                 .meaning = key.meaning,
-                 .kind = Kind::quantity,
-                 .is_required = !key.default_value.has_value() && !key.is_optional,
-                 .dimension = key.dimension,
-                 .range = key.range};
-    if (key.default_value) spec.default_value = *key.default_value;
-    keys.push_back(std::move(spec));
-  }
+  for (const QuantityKey& key : model.material) keys.push_back(quantity_key(key));
   if (model.takes_ludwik) {
     keys.push_back(
         {.name = "ludwik",
@@ -257,6 +249,13 @@ KeySpec option_key(const OptionKey& option) {
     case OptionKey::Kind::file:
       spec.kind = Kind::file;
       spec.example = "\"file.csv\"";
+      spec.columns = option.columns;
+      break;
+    case OptionKey::Kind::quantity:
+      spec.kind = Kind::quantity;
+      spec.dimension = option.dimension;
+      spec.range = option.range;
+      if (option.default_value) spec.default_value = *option.default_value;
       break;
   }
   return spec;
@@ -310,7 +309,7 @@ std::vector<KeySpec> loading_keys(const ModelInfo& model) {
 std::vector<KeySpec> until_keys(const ModelInfo& model) {
   std::vector<string_view> events;
   for (const Term& event : model.events) events.push_back(event.name);
-  return {
+  std::vector<KeySpec> keys{
       {.name = "force",
        .meaning = "force on the wall, compression positive",
        .kind = Kind::quantity,
@@ -320,6 +319,14 @@ std::vector<KeySpec> until_keys(const ModelInfo& model) {
        .kind = Kind::quantity,
        .dimension = Dimension::length,
        .example = "\"0.4 R0\""},
+      {.name = "event",
+       .meaning = "name of an event",
+       .kind = Kind::choice,
+       .choices = events,
+       .example = "\"contact-lost\""},
+  };
+  if (!model.has_contact_area) return keys;
+  const std::vector<KeySpec> of_area{
       {.name = "pressure", .meaning = "mean contact pressure", .kind = Kind::quantity, .dimension = Dimension::stress},
       {.name = "contact_radius",
        .meaning = "contact radius",
@@ -331,12 +338,9 @@ std::vector<KeySpec> until_keys(const ModelInfo& model) {
        .kind = Kind::quantity,
        .dimension = Dimension::length,
        .range = k_positive},
-      {.name = "event",
-       .meaning = "name of an event",
-       .kind = Kind::choice,
-       .choices = events,
-       .example = "\"contact-lost\""},
   };
+  keys.insert(keys.end() - 1, of_area.begin(), of_area.end());
+  return keys;
 }
 
 // --- steps
@@ -484,6 +488,17 @@ Language language_of(string_view model) {
   if (info != nullptr) add_material_and_options(language, *info);
   add_loading(language, info != nullptr ? *info : k_any_model);
   return language;
+}
+
+KeySpec quantity_key(const QuantityKey& key) {
+  KeySpec spec{.name = key.name,
+               .meaning = key.meaning,
+               .kind = Kind::quantity,
+               .is_required = !key.default_value.has_value() && !key.is_optional,
+               .dimension = key.dimension,
+               .range = key.range};
+  if (key.default_value) spec.default_value = *key.default_value;
+  return spec;
 }
 
 const KeySpec* find_key(std::span<const KeySpec> keys, string_view name) noexcept {

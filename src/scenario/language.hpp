@@ -46,8 +46,9 @@ struct KeySpec {
   std::vector<std::string_view> reserved{};  ///< choices that the language knows but that are not available here
   std::string reserved_where{};              ///< where not: "in this version"
   Default default_value{};
-  std::string example{};         ///< as written in a file; empty: that of the dimension, or the first choice
-  std::string_view only_with{};  ///< `[loading]`: the configuration that the key belongs to; empty: any
+  std::string example{};                   ///< as written in a file; empty: that of the dimension, or the first choice
+  std::string_view only_with{};            ///< `[loading]`: the configuration that the key belongs to; empty: any
+  std::span<const QuantityKey> columns{};  ///< of a file that is not a curve of two columns
 };
 
 /// A key that is known to the language but does not belong where it was found, and why.
@@ -99,6 +100,9 @@ struct Language {
 [[nodiscard]] const KeySpec* find_key(std::span<const KeySpec> keys, std::string_view name) noexcept;
 
 [[nodiscard]] std::vector<std::string_view> names_of(std::span<const KeySpec> keys);
+
+/// The spec of a number that a model knows.
+[[nodiscard]] KeySpec quantity_key(const QuantityKey& key);
 
 /// What the key accepts, to follow "expected ": `a stress, for example "50 MPa"`.
 [[nodiscard]] std::string expectation(const KeySpec& spec);

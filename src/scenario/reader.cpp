@@ -85,8 +85,9 @@ void read_material(Reading& reading, const Section& root, const Language& langua
   }
 }
 
-OptionValue option_value(const Section& options, const KeySpec& spec) {
+std::optional<OptionValue> option_value(const Section& options, const KeySpec& spec) {
   if (spec.kind == KeySpec::Kind::toggle) return options.toggle(spec.name).value_or(false);
+  if (spec.kind == KeySpec::Kind::quantity) return options.number(spec.name);
   return options.text(spec.name);
 }
 
@@ -96,7 +97,8 @@ void read_curve_of(Reading& reading, const Section& options, const KeySpec& spec
   const std::string file = options.text(spec.name);
   if (file.empty()) return;
   const std::string naming = fmt::format("{} = \"{}\"", spec.name, shown(file));
-  scenario.curves.emplace(spec.name, read_curve(folder / file, options.value_place(spec.name), naming, reading.faults));
+  scenario.curves.emplace(
+      spec.name, read_curve(folder / file, spec.columns, options.value_place(spec.name), naming, reading.faults));
 }
 
 void read_options(Reading& reading, const Section& root, const Language& language, const std::string& origin,
@@ -105,7 +107,7 @@ void read_options(Reading& reading, const Section& root, const Language& languag
   const Section options(reading, root.table(name, "[" + name + "]"), language.options);
   const std::filesystem::path folder = std::filesystem::path(origin).parent_path();
   for (const KeySpec& spec : language.options) {
-    scenario.options.emplace(spec.name, option_value(options, spec));
+    if (auto value = option_value(options, spec)) scenario.options.emplace(spec.name, std::move(*value));
     if (spec.kind == KeySpec::Kind::file) read_curve_of(reading, options, spec, folder, scenario);
   }
 }

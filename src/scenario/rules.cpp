@@ -44,11 +44,14 @@ SourceLocation place_of_key(const toml::table& tree, const std::string& origin, 
 void check_objections(Reading& reading, const toml::table& tree, const std::string& origin, const ModelInfo& model,
                       const Scenario& scenario) {
   std::map<std::string, std::string> choices;
+  std::map<std::string, double> numbers;
   for (const auto& [key, value] : scenario.options) {
     if (const auto* word = std::get_if<std::string>(&value)) choices.emplace(key, *word);
+    if (const auto* number = std::get_if<double>(&value)) numbers.emplace(key, *number);
   }
   const Given given{.material = scenario.material,
                     .choices = choices,
+                    .numbers = numbers,
                     .configuration = configuration_word(scenario.loading.configuration)};
   for (const Objection& objection : model.objections(given)) {
     reading.faults.add(place_of_key(tree, origin, model.name, objection.key), objection.message);

@@ -85,11 +85,12 @@ struct Numerics {
   double atol = 1e-12;  ///< relative to the state's own scale
 };
 
-/// A curve given by samples, in a file that an option names.
+/// A curve given by samples, in a file that an option names; or, of a table with more columns, values over x and y.
 struct SampledCurve {
   std::string text;  ///< the file as it was read
   std::vector<double> x;
   std::vector<double> y;
+  std::vector<std::vector<double>> values{};  ///< further columns, in the order of the option's; of a curve: none
 };
 
 using OptionValue = std::variant<bool, double, std::string>;

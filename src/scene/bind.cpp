@@ -4,11 +4,13 @@
 
 #include <stdexcept>
 
+#include "compressible/contact_system.hpp"
 #include "elastic/hertz.hpp"
 #include "elastic/nonlocal_system.hpp"
 #include "mdr/system.hpp"
 #include "plastic/system.hpp"
 #include "scene/choice.hpp"
+#include "scene/compressible_law.hpp"
 #include "scene/nonlocal_model.hpp"
 #include "scene/plastic_law.hpp"
 #include "scene/pressure_curve.hpp"
@@ -90,6 +92,18 @@ nonlocal::Settings nonlocal_settings(const Scenario& scenario, const Reach& reac
   return settings;
 }
 
+compressible::ContactSettings compressible_settings(const Scenario& scenario, const Reach& reach) {
+  const CompressibleLaw law = compressible_law_of(scenario);
+  return {.law = law.loading,
+          .hertz_stiffness = law.hertz_stiffness,
+          .unloading = law.unloading,
+          .initial_radius = scenario.radius,
+          .yield_pressure = scenario.material.at("yield_pressure"),
+          .reservations = law.reservations,
+          .largest_displacement = reach.displacement,
+          .largest_force = reach.force};
+}
+
 }  // namespace
 
 std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<ContactClass> classes,
@@ -106,6 +120,9 @@ std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<C
   }
   if (scenario.model == "nonlocal") {
     return std::make_unique<nonlocal::System>(nonlocal_settings(scenario, reach), std::move(classes));
+  }
+  if (scenario.model == "compressible") {
+    return std::make_unique<compressible::ContactSystem>(compressible_settings(scenario, reach), std::move(classes));
   }
   throw std::logic_error(fmt::format("model '{}' is in the catalogue but not bound", scenario.model));
 }

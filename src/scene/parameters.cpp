@@ -7,6 +7,7 @@
 #include "elastic/hertz.hpp"
 #include "elastic/nonlocal_coupling.hpp"
 #include "mdr/contact.hpp"
+#include "scene/compressible_law.hpp"
 #include "scene/nonlocal_model.hpp"
 #include "scene/plastic_law.hpp"
 #include "scene/pressure_curve.hpp"
@@ -136,6 +137,32 @@ void add_law(const plastic::SimilarityLaw& law, List& list) {
   list.push_back({"pressure_constant", law.pressure_constant, "-", "k"});
 }
 
+void add_compressible(const Scenario& scenario, List& list) {
+  using namespace compressible;
+  add_material(
+      scenario,
+      {{"stiffness_ratio", "-"}, {"shear_ratio", "-"}, {"tensile_ratio", "-"}, {"nu0", "-"}, {"yield_pressure", "Pa"}},
+      list);
+  const auto [law, hertz_stiffness, unloading, reservations] = compressible_law_of(scenario);
+  const double transition_force = law.stiffness * law.transition;
+  list.push_back({"k", law.stiffness, "-", "k"});
+  list.push_back({"delta_t", law.transition, "-", "delta_t"});
+  list.push_back({"a", law.exponent, "-", "a"});
+  list.push_back({"transition_force", transition_force, "-", "k delta_t"});
+  list.push_back({"slope_after_transition", law.exponent * transition_force, "-", "a k delta_t"});
+  list.push_back({"largest_force", loading_force(law, k_largest_displacement), "-", "f(0.5)"});
+  list.push_back({"hertz_stiffness", hertz_stiffness, "-", "k_H"});
+  list.push_back({"force_unit",
+                  std::numbers::pi * scenario.radius * scenario.radius * scenario.material.at("yield_pressure"), "N",
+                  "pi R0^2 sigma_y0"});
+  // Where the largest displacement is the end of the law; between, alpha and beta may follow from a table.
+  const UnloadingCurve curve = unloading_from(law, hertz_stiffness, unloading, k_largest_displacement);
+  const UnloadingShape shape = unloading.at(k_largest_displacement);
+  list.push_back({"unloading_exponent", shape.exponent, "-", "alpha at 0.5"});
+  list.push_back({"unloading_stiffness_ratio", shape.stiffness_ratio, "-", "beta at 0.5"});
+  list.push_back({"separation", curve.separation(), "-", "d0 from 0.5"});
+}
+
 }  // namespace
 
 std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
@@ -146,6 +173,10 @@ std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
   }
   if (scenario.model == "nonlocal") {
     add_nonlocal(scenario, list);
+    return list;
+  }
+  if (scenario.model == "compressible") {
+    add_compressible(scenario, list);
     return list;
   }
   add_material(scenario,

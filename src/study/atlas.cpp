@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -311,8 +312,24 @@ class FigureMaker {
     return entry->second;
   }
 
+  /// The rows of a file that a definition asks for.
+  [[nodiscard]] XyCurve points_of(const PointsSpec& spec) {
+    const Scope scope(&spec.table);
+    XyCurve all = curve_of(spec.x, spec.y, scope, faults_);
+    if (!spec.where) return all;
+    const Values kept = evaluated(*spec.where, scope, faults_);
+    XyCurve chosen;
+    for (std::size_t row = 0; row < std::min(all.x.size(), kept.size()); ++row) {
+      if (kept[row] != 0.0) continue;
+      chosen.x.push_back(all.x[row]);
+      chosen.y.push_back(all.y[row]);
+    }
+    if (chosen.x.empty() && !kept.empty()) faults_.add(spec.where->where, "'where' is zero in no row of the file");
+    return chosen;
+  }
+
   [[nodiscard]] figure::ChartSeries chart_points(const PointsSpec& spec) {
-    const XyCurve curve = chosen_rows(curve_of(spec.x, spec.y, Scope(&spec.table), faults_), spec.rows);
+    const XyCurve curve = chosen_rows(points_of(spec), spec.rows);
     figure::ChartSeries series{
         .legend = spec.legend, .style = figure::ChartSeries::Style::points, .colour = spec.colour, .x = {}, .y = {}};
     for (std::size_t row = 0; row < curve.x.size(); row += spec.every) {
@@ -325,7 +342,7 @@ class FigureMaker {
   [[nodiscard]] ComparisonTable comparison_table(const TableSpec& spec) {
     ComparisonTable table{.title = spec.title, .rows = {}};
     for (const ComparisonSpec& row : spec.rows) {
-      const XyCurve reference = curve_of(row.points.x, row.points.y, Scope(&row.points.table), faults_);
+      const XyCurve reference = points_of(row.points);
       const std::vector<XyCurve> curves = curves_of(row.curve);
       if (reference.x.empty() || curves.front().x.empty()) continue;
       try {
@@ -342,7 +359,12 @@ class FigureMaker {
     for (const ValueSpec& row : spec.rows) {
       const Values value = evaluated(row.value, Scope(nullptr, derived_parameters(*row.scenario)), faults_);
       if (value.empty()) continue;
-      table.rows.push_back({row.label, value.front(), row.printed, row.remark});
+      table.rows.push_back({row.label, value.front(), row.printed, {}, row.remark});
+      if (!row.reference) continue;
+      const Values rows = points_of(*row.reference).y;
+      if (rows.empty()) continue;
+      const double count = static_cast<double>(rows.size());
+      table.rows.back().reference = std::accumulate(rows.begin(), rows.end(), 0.0) / count;
     }
     return table;
   }

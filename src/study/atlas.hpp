@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,11 +24,12 @@ struct ComparisonTable {
   std::vector<ComparisonRow> rows;
 };
 
-/// A value that a table of the atlas shows, and what the source prints for it.
+/// A value that a table of the atlas shows, and what it is held against.
 struct ValueRow {
   std::string label;
   double value = 0.0;
-  std::string printed;  ///< a number; empty: none
+  std::string printed;              ///< by the source, a number; empty: none
+  std::optional<double> reference;  ///< the mean of a file's rows
   std::string remark;
 };
 

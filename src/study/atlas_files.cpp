@@ -41,6 +41,8 @@ constexpr Cell k_cells[] = {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : std::string("-");
 }
 
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+
 using Row = std::vector<std::string>;
 
 [[nodiscard]] std::vector<Row> rows_of(const ComparisonTable& table) {
@@ -88,15 +90,30 @@ void append_markdown(std::string& text, const std::vector<Row>& rows) {
   return 0.5 * std::pow(10.0, -static_cast<double>(decimals));
 }
 
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-
 [[nodiscard]] double printed_number(const ValueRow& row) {
   double number = k_nan;
   if (!row.printed.empty()) std::from_chars(row.printed.data(), row.printed.data() + row.printed.size(), number);
   return number;
 }
 
+[[nodiscard]] bool has_references(const ValueTable& table) {
+  return std::ranges::any_of(table.rows, [](const ValueRow& row) { return row.reference.has_value(); });
+}
+
+/// Values beside those of a file.
+[[nodiscard]] std::vector<Row> referenced_rows(const ValueTable& table) {
+  std::vector<Row> rows{{"quantity", "computed", "reference", "difference", "relative", "remark"}};
+  for (const ValueRow& row : table.rows) {
+    const double reference = row.reference.value_or(k_nan);
+    rows.push_back({row.label, fmt::format("{:.5g}", row.value), shown_number(reference, 5),
+                    shown_number(row.value - reference, 3), shown_number((row.value - reference) / reference, 3),
+                    row.remark});
+  }
+  return rows;
+}
+
 [[nodiscard]] std::vector<Row> rows_of(const ValueTable& table) {
+  if (has_references(table)) return referenced_rows(table);
   constexpr double k_on_the_edge = 1.0 + 1e-9;  // a value of exactly half a unit may be rounded either way
   const bool has_printed = std::ranges::any_of(table.rows, [](const ValueRow& row) { return !row.printed.empty(); });
   std::vector<Row> rows;
@@ -136,6 +153,7 @@ constexpr const char* k_about_comparisons =
 constexpr const char* k_about_values =
     "Values as the laws give them; where the source prints one, whether it is the same rounded to as many digits.\n"
     "A hyphen: there is none.\n";
+constexpr const char* k_about_references = "Values as the laws give them, beside the means of reference values.\n";
 
 /// Titles and labels of a table for CSV; rows refer to them by number.
 struct Words {
@@ -151,8 +169,11 @@ struct Words {
 
 std::string tables_text(const AtlasFigure& figure) {
   if (figure.tables.empty() && figure.value_tables.empty()) return {};
-  std::string text =
-      fmt::format("# {}\n\n{}", figure.title, figure.tables.empty() ? k_about_values : k_about_comparisons);
+  const bool is_referenced = std::ranges::any_of(figure.value_tables, has_references);
+  const char* about = !figure.tables.empty() ? k_about_comparisons
+                      : is_referenced        ? k_about_references
+                                             : k_about_values;
+  std::string text = fmt::format("# {}\n\n{}", figure.title, about);
   const auto append = [&text](const auto& table) {
     text += fmt::format("\n## {}\n\n", table.title);
     append_markdown(text, rows_of(table));
@@ -164,6 +185,7 @@ std::string tables_text(const AtlasFigure& figure) {
 
 Table tables_csv(const AtlasFigure& figure) {
   Words words;
+  const bool is_referenced = std::ranges::any_of(figure.value_tables, has_references);
   std::vector<std::vector<double>> rows;
   for (const ComparisonTable& table : figure.tables) {
     words.titles.labels.push_back(table.title);
@@ -181,12 +203,14 @@ Table tables_csv(const AtlasFigure& figure) {
       words.labels.labels.push_back(row.label);
       rows.push_back(words.last());
       rows.back().insert(rows.back().end(), {row.value, printed_number(row)});
+      if (is_referenced) rows.back().push_back(row.reference.value_or(k_nan));
     }
   }
   std::vector<Column> columns{std::move(words.titles), std::move(words.labels)};
   const auto add = [&columns](const char* heading) { columns.push_back({.name = heading, .unit = {}, .labels = {}}); };
   if (figure.tables.empty()) {
     for (const char* heading : {"computed", "printed"}) add(heading);
+    if (is_referenced) add("reference");
   } else {
     for (const Cell& cell : k_cells) add(cell.heading);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "engine/drive.hpp"
@@ -59,12 +60,14 @@ class Fit {
  public:
   Fit(const Calibration& calibration, const LeastSquaresProblem::Progress& progress)
       : calibration_(calibration),
+        procedures_(model_fits(calibration)),
         responses_(calibration, calibration.x.values),
         response_(calibration.x.values.size()) {
     for (std::size_t row = 0; row < calibration.weights.size(); ++row) {
       if (calibration.weights[row] > 0.0) rows_.push_back(row);
     }
     problem_.parameters.assign(calibration.free.begin(), calibration.free.end());
+    begin_at(procedures_.starts);
     problem_.residual_count = rows_.size();
     problem_.loss = calibration.loss;
     problem_.noise = noise_of(calibration.scenario);
@@ -87,6 +90,10 @@ class Fit {
     CalibrationResult result;
     result.solution = std::move(*solution);
     const std::vector<double>& parameters = result.solution.parameters;
+    result.procedures = procedures_;
+    if (!procedures_.fits.empty()) {
+      result.procedures.fits.push_back(measured_fit(calibration_, procedures_, parameters));
+    }
     result.uncertainty = uncertainty_of(problem_, result.solution, residual_jacobian(problem_, parameters),
                                         rows_.size(), calibration_.confidence);
     result.fit = curve_through(calibration_.x.values, result);
@@ -99,6 +106,16 @@ class Fit {
   }
 
  private:
+  /// Further places to begin at, where the user has not given one.
+  void begin_at(const std::map<std::string, double>& starts) {
+    for (std::size_t k = 0; k < problem_.parameters.size(); ++k) {
+      BoundedParameter& parameter = problem_.parameters[k];
+      const auto found = starts.find(calibration_.free[k].key.path);
+      if (found == starts.end() || parameter.start) continue;
+      if (found->second >= parameter.lower && found->second <= parameter.upper) parameter.start = found->second;
+    }
+  }
+
   /// No place of the scan has a response: says what happens in the middle of the bounds.
   [[noreturn]] void no_response() {
     std::vector<double> middle;
@@ -186,6 +203,7 @@ class Fit {
   }
 
   const Calibration& calibration_;
+  ModelFits procedures_;
   Responses responses_;
   std::vector<double> response_;   ///< in every row
   std::vector<std::size_t> rows_;  ///< that take part

@@ -11,6 +11,7 @@
 #include "scenario/numbers.hpp"
 #include "scenario/scenario.hpp"
 #include "study/least_squares.hpp"
+#include "study/model_fit.hpp"
 #include "study/replay.hpp"
 #include "study/uncertainty.hpp"
 
@@ -44,7 +45,7 @@ struct Calibration {
   std::string data_text;
   MeasuredQuantity x;
   MeasuredQuantity y;
-  std::string weighting;           ///< absolute, relative, column
+  std::string weighting;           ///< absolute, relative, column, area
   std::vector<double> weights;     ///< factors of y's residuals [1/SI], >= 0; 0: a row that only drives
   std::vector<std::size_t> lines;  ///< of the rows in the data file
   std::vector<FreeParameter> free;
@@ -71,6 +72,7 @@ struct FittedCurve {
 struct CalibrationResult {
   LeastSquaresSolution solution;
   Uncertainty uncertainty;
+  ModelFits procedures;            ///< of the model's own, and this fit by their measures; empty: it has none
   FittedCurve fit;                 ///< at the data
   FittedCurve curve;               ///< in between, too
   std::size_t points = 0;          ///< rows that take part

@@ -11,13 +11,13 @@
 
 #include "scenario/document.hpp"
 #include "scenario/edit.hpp"
+#include "scenario/measured_data.hpp"
 #include "scenario/section.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/units.hpp"
 #include "scenario/words.hpp"
 #include "study/calibration.hpp"
 #include "study/calibration_language.hpp"
-#include "study/measured_data.hpp"
 
 namespace monograin {
 namespace {
@@ -297,6 +297,7 @@ class CalibrationReader {
     };
     if (largest == 0.0) return faults_.add(at(0, 1), "y is zero in every row; there is nothing to fit");
     made_.weights.assign(y.size(), 1.0 / largest);
+    if (made_.weighting == "area") weigh_by_path();
     std::size_t found = 0;
     for (std::size_t row = 0; row < y.size() && found < k_most_zeros; ++row) {
       if (made_.weighting == "relative") {
@@ -312,6 +313,18 @@ class CalibrationReader {
         faults_.add(at(row, 2),
                     fmt::format("weight = {}: expected 0 (the row only drives the particle) or more", factor));
       }
+    }
+  }
+
+  /// The roots of the trapezoidal rule's weights, along the path of x; 1 on the mean.
+  void weigh_by_path() {
+    const std::vector<double>& x = made_.x.values;
+    double path = 0.0;
+    for (std::size_t row = 1; row < x.size(); ++row) path += std::abs(x[row] - x[row - 1]);
+    for (std::size_t row = 0; row < x.size(); ++row) {
+      const double before = row > 0 ? std::abs(x[row] - x[row - 1]) : 0.0;
+      const double after = row + 1 < x.size() ? std::abs(x[row + 1] - x[row]) : 0.0;
+      made_.weights[row] *= std::sqrt(0.5 * (before + after) / path * static_cast<double>(x.size()));
     }
   }
 

@@ -108,6 +108,20 @@ std::string correlation_table(const Calibration& calibration, const CalibrationR
   return aligned(rows);
 }
 
+/// The model's own procedures, and this fit by their measures.
+std::string procedure_table(const ModelFits& procedures) {
+  std::vector<Row> rows{{"procedure"}};
+  rows.front().insert(rows.front().end(), procedures.keys.begin(), procedures.keys.end());
+  rows.front().insert(rows.front().end(), {"area error", "peak error"});
+  for (const ProcedureFit& fit : procedures.fits) {
+    rows.push_back({fit.procedure});
+    for (const double value : fit.parameters) rows.back().push_back(fmt::format("{:.10g}", value));
+    rows.back().push_back(fmt::format("{:.8f}", fit.area_error));
+    rows.back().push_back(fmt::format("{:.8f}", fit.peak_error));
+  }
+  return aligned(rows);
+}
+
 bool has_errors(const CalibrationResult& result) {
   for (std::size_t k = 0; k < result.solution.parameters.size(); ++k) {
     if (std::isfinite(result.uncertainty.standard_error(k))) return true;
@@ -260,6 +274,19 @@ Json minima_json(const CalibrationResult& result) {
   return minima;
 }
 
+Json procedures_json(const ModelFits& procedures) {
+  Json fits = Json::array();
+  for (const ProcedureFit& fit : procedures.fits) {
+    Json parameters = Json::object();
+    for (std::size_t k = 0; k < procedures.keys.size(); ++k) parameters[procedures.keys[k]] = fit.parameters[k];
+    fits.push_back({{"procedure", fit.procedure},
+                    {"parameters", std::move(parameters)},
+                    {"area_error", fit.area_error},
+                    {"peak_error", fit.peak_error}});
+  }
+  return fits;
+}
+
 /// Numbers that are undefined become null.
 Json to_json(const Calibration& calibration, const CalibrationResult& result) {
   const LeastSquaresSolution& solution = result.solution;
@@ -300,7 +327,8 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
             {"evaluations", solution.evaluations},
             {"failed_evaluations", solution.failures},
             {"program_steps", result.program_steps},
-            {"minima", minima_json(result)}}},
+            {"minima", minima_json(result)},
+            {"procedures", procedures_json(result.procedures)}}},
           {"notes", result.notes},
           {"versions", {{"monograin", version()}, {"compiler", __VERSION__}}},
           {"scenario",
@@ -342,6 +370,7 @@ std::string calibration_text(const Calibration& calibration, const CalibrationRe
   const auto in_y = [&y](double value) { return with_unit(value / y.unit_factor, y.unit == "-" ? "" : y.unit); };
   std::string text = parameter_table(calibration, result) + '\n';
   if (calibration.free.size() > 1 && has_errors(result)) text += correlation_table(calibration, result) + '\n';
+  if (!result.procedures.fits.empty()) text += procedure_table(result.procedures) + '\n';
   std::vector<Row> rows{
       {"points", fmt::format("{}", result.points)},
       {"degrees of freedom", fmt::format("{}", result.uncertainty.degrees_of_freedom)},

@@ -58,7 +58,10 @@ Keys root_keys(bool scenario_is_table) {
 
 Keys data_keys(bool x_is_table, bool y_is_table) {
   KeySpec weights = choice_key(
-      "weights", "of the residuals: one over the largest |y|, one over each |y|, or factors in a column", k_weights);
+      "weights",
+      "of the residuals: one over the largest |y|, one over each |y|, factors in a column, or such that the sum of "
+      "their squares is an integral over the path of x",
+      k_weights);
   weights.default_value = "absolute";
   return {
       {.name = "file",

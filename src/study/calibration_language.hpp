@@ -13,7 +13,7 @@ namespace monograin::calibration {
 using Keys = std::vector<KeySpec>;
 
 /// Words in the order of the enumerators they stand for.
-inline constexpr std::array<std::string_view, 3> k_weights{"absolute", "relative", "column"};
+inline constexpr std::array<std::string_view, 4> k_weights{"absolute", "relative", "column", "area"};
 inline constexpr std::array<std::string_view, 4> k_losses{"linear", "huber", "soft-l1", "cauchy"};
 inline constexpr std::array<std::string_view, 2> k_scales{"linear", "log"};
 

@@ -351,15 +351,37 @@ class DefinitionReader {
                     .x = formula(section, "x").value_or(PlacedExpression{}),
                     .y = formula(section, "y").value_or(PlacedExpression{}),
                     .rows = static_cast<RowChoice>(place_of_word(k_rows, section.text("rows"))),
+                    .where = formula(section, "where"),
                     .every = static_cast<std::size_t>(section.number("every").value_or(1.0)),
                     .legend = section.text("legend"),
                     .colour = colour(section)};
-    if (section.text("file").empty()) return spec;
+    spec.table = table_in(section);
+    return spec;
+  }
+
+  /// The table of the file that a section names; an empty one where it cannot be read.
+  [[nodiscard]] Table table_in(const Section& section) {
+    if (section.text("file").empty()) return {};
     try {
-      spec.table = read_csv(file_.parent_path() / section.text("file"));
+      return read_csv(file_.parent_path() / section.text("file"));
     } catch (const std::runtime_error& error) {
       faults_.add(section.value_place("file"), error.what());
     }
+    return {};
+  }
+
+  /// What a value is held against instead of a printed one.
+  [[nodiscard]] PointsSpec reference(const Section& value) {
+    static const Keys keys = reference_keys();
+    const Section section(reading_, value.table("reference", "reference"), keys);
+    if (value.has("printed")) {
+      faults_.add(value.key_place("printed"), "key 'printed' does not go with 'reference'; expected one of them");
+    }
+    PointsSpec spec;
+    spec.y = formula(section, "y").value_or(PlacedExpression{});
+    spec.x = spec.y;
+    spec.where = formula(section, "where");
+    spec.table = table_in(section);
     return spec;
   }
 
@@ -395,6 +417,7 @@ class DefinitionReader {
                            .scenario = checked_scenario(entry, own_overrides(entry)),
                            .value = formula(entry, "value").value_or(PlacedExpression{}),
                            .printed = printed_number(entry),
+                           .reference = entry.has("reference") ? std::optional(reference(entry)) : std::nullopt,
                            .remark = plain(entry, "remark")});
     }
     return spec;

@@ -52,7 +52,8 @@ struct PointsSpec {
   PlacedExpression x;
   PlacedExpression y;
   RowChoice rows = RowChoice::all;
-  std::size_t every = 1;  ///< only each so manieth row
+  std::optional<PlacedExpression> where;  ///< only rows in which this is zero
+  std::size_t every = 1;                  ///< only each so manieth row
   std::string legend;
   std::optional<std::size_t> colour;
 };
@@ -77,12 +78,14 @@ struct TableSpec {
   std::vector<ComparisonSpec> rows;
 };
 
-/// A value made of what a model derives from a scenario, and what the source prints for it.
+/// A value made of what a model derives from a scenario, and what it is held against: what the source prints for it, or
+/// the mean of rows of a file.
 struct ValueSpec {
   std::string label;
   std::optional<Scenario> scenario;  ///< absent only with a fault
   PlacedExpression value;
-  std::string printed;  ///< a number; empty: none
+  std::string printed;                  ///< a number; empty: none
+  std::optional<PointsSpec> reference;  ///< its y are the rows
   std::string remark;
 };
 

@@ -140,6 +140,7 @@ Keys points_keys() {
           text_key("y", "formula of its columns", "\"force\"", true),
           text_key("legend", "text in the legend", "\"finite elements\""),
           choice_key("rows", "which way of x is shown", k_rows),
+          text_key("where", "only rows in which this formula of the columns is zero", "\"shear_ratio - 1\""),
           count_key("every", "only each so manieth row", 1000.0),
           count_key("colour", "place among the colours", 6.0)};
 }
@@ -192,7 +193,15 @@ Keys value_keys() {
            .example = "[\"material.yield_stress=20 MPa\"]"},
           text_key("value", "formula of the parameters that the model derives", "\"radius_first\"", true),
           text_key("printed", "the value as the source prints it", "\"1.7527\""),
+          table_key("reference", "instead: rows of a file, whose mean it is held against",
+                    "{ file = \"...\", y = \"...\" }"),
           text_key("remark", "what is to be said of it", "\"...\"")};
+}
+
+Keys reference_keys() {
+  return {text_key("file", "CSV file, sought from the definition's folder", "\"fe/points.csv\"", true),
+          text_key("y", "formula of its columns", "\"force\"", true),
+          text_key("where", "only rows in which this formula of the columns is zero", "\"shear_ratio - 1\"")};
 }
 
 }  // namespace monograin::definition

@@ -43,5 +43,7 @@ inline constexpr const char* k_example_y = "\"axial.force / (E * R0^2)\"";
 [[nodiscard]] Keys value_table_keys();
 /// One row of such a table.
 [[nodiscard]] Keys value_keys();
+/// What such a value is held against.
+[[nodiscard]] Keys reference_keys();
 
 }  // namespace monograin::definition

@@ -161,6 +161,29 @@ TEST_F(Commands, ARunThatLeavesTheDomainKeepsItsHistory) {
   EXPECT_EQ(events.word(events.row_count() - 1, *events.find("event")), "singular-growth");
 }
 
+TEST_F(Commands, TheReadyGranuleRunsAndStopsAtTheEndOfItsLaw) {
+  const std::string file = MONOGRAIN_SOURCE_DIR "/scenarios/compressible.toml";
+  ASSERT_EQ(monograin("run " + file).code, 0);
+  const Table history = read_csv(folder() / "runs/compressible/history.csv");
+  EXPECT_TRUE(history.find("axial.force"));
+  EXPECT_FALSE(history.find("axial.contact_radius") || history.find("axial.pressure"));
+  const auto run = nlohmann::json::parse(read_text(folder() / "runs/compressible/run.json"));
+  EXPECT_TRUE(run.at("scenario").at("files").contains("compressible.unloading_table")) << run.dump(2);
+  const Outcome beyond = monograin("run " + file + " --set loading.steps[2].displacement='0.6 R0'");
+  EXPECT_EQ(beyond.code, 3) << beyond.err;
+  EXPECT_NE(beyond.err.find("half the radius"), std::string::npos) << beyond.err;
+  const Table events = read_csv(folder() / "runs/compressible/events.csv");
+  EXPECT_EQ(events.word(events.row_count() - 1, *events.find("event")), "limit");
+  const Outcome refused = monograin("run " + file + " --set material.stiffness_ratio=2");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("stiffness_ratio = 2 is outside 3 to 500"), std::string::npos) << refused.err;
+  const Outcome parameters = monograin("models compressible --parameters " + file);
+  EXPECT_EQ(parameters.code, 0);
+  for (const char* line : {"3.89935775057427", "0.1131952", "46.63881116246"}) {
+    EXPECT_NE(parameters.out.find(line), std::string::npos) << line << "\n" << parameters.out;
+  }
+}
+
 TEST_F(Commands, ANewRunReplacesTheOldOneAsAWhole) {
   write_text(folder() / "small.toml", k_small);
   ASSERT_EQ(monograin("run small.toml --plot").code, 0);

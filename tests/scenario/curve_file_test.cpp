@@ -195,5 +195,82 @@ TEST_F(PressureTable, ThatIsHugeIsRefused) {
             std::vector<std::string>{"p.csv:1:1: the table is too large; expected at most 1 MiB"});
 }
 
+// --- tables with more columns, read by their headings
+
+class UnloadingTable : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::vector<std::string> faults(const std::string& table, const std::string& options = {}) const {
+    std::ofstream(folder_.path() / "u.csv", std::ios::binary) << table;
+    return messages([&] { static_cast<void>(read(options)); });
+  }
+
+  [[nodiscard]] Scenario read(const std::string& options = {}) const {
+    const auto file = folder_.path() / "s.toml";
+    std::ofstream(file, std::ios::binary)
+        << "model = \"compressible\"\n[particle]\nradius = 1\n[material]\nstiffness_ratio = 100\nshear_ratio = 1\n"
+           "nu0 = 0.3\nyield_pressure = 1\n[loading]\nconfiguration = \"simple\"\n[[loading.steps]]\n"
+           "displacement = 0.1\nduration = 1\n[compressible]\nunloading_table = \"u.csv\"\n"
+        << options;
+    return read_scenario(file);
+  }
+
+  template <class Call>
+  [[nodiscard]] std::vector<std::string> messages(const Call& call) const {
+    std::vector<std::string> lines;
+    try {
+      call();
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) {
+        lines.push_back(std::filesystem::path(fault.where.file).filename().string() + ":" +
+                        std::to_string(fault.where.line) + ":" + std::to_string(fault.where.column) + ": " +
+                        fault.message);
+      }
+    }
+    return lines;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(UnloadingTable, GivesTheColumnsThatItsOptionNames) {
+  EXPECT_EQ(faults("# own\nbeta,stiffness_over_shear[-],other,alpha[-],delta_max_over_R0\n2,10,x,1.5,0.1\n3,10,y,1.4,"
+                   "0.3\n"),
+            std::vector<std::string>());
+  const SampledCurve table = read().curves.at("unloading_table");
+  EXPECT_EQ(table.x, (std::vector{10.0, 10.0}));
+  EXPECT_EQ(table.y, (std::vector{0.1, 0.3}));
+  EXPECT_EQ(table.values, (std::vector<std::vector<double>>{{1.5, 1.4}, {2.0, 3.0}}));
+}
+
+TEST_F(UnloadingTable, IsRefusedWithThePlaceOfEachFault) {
+  const std::string head = "stiffness_over_shear,delta_max_over_R0,alpha,beta\n";
+  EXPECT_EQ(
+      faults(head + "10,0.1,0.5,2\n-1,0.6,1.5,0\n10,0.1,1.5,2\n"),
+      (std::vector<std::string>{
+          "u.csv:2:8: alpha = 0.5: expected a number from 1 to 1e+100",
+          "u.csv:3:1: stiffness_over_shear = -1: expected a number above 0 and up to 1e+100",
+          "u.csv:3:4: delta_max_over_R0 = 0.6: expected a number above 0 and up to 0.5",
+          "u.csv:3:12: beta = 0: expected a number above 0 and up to 1e+100",
+          "u.csv:4:1: stiffness_over_shear = 10 with delta_max_over_R0 = 0.1 stands in line 2 already; expected one "
+          "row for each pair"}));
+  const auto missing = faults("stiffness_over_shear,delta_max_over_R0,alfa,beta\n10,0.1,1.5,2\n");
+  ASSERT_EQ(missing.size(), 1U);
+  EXPECT_TRUE(missing[0].starts_with("s.toml:15:19: unloading_table = \"u.csv\": column 'alpha': ")) << missing[0];
+  EXPECT_NE(missing[0].find("did you mean 'alfa'"), std::string::npos) << missing[0];
+}
+
+TEST_F(UnloadingTable, DoesNotGoWithTheNumbersItStandsFor) {
+  EXPECT_EQ(
+      faults("stiffness_over_shear,delta_max_over_R0,alpha,beta\n10,0.1,1.5,2\n", "alpha = 1.5\n"),
+      (std::vector<std::string>{"s.toml:16:9: key 'alpha' does not go with 'unloading_table', which stands for it; "
+                                "expected one of them"}));
+  std::filesystem::remove(folder_.path() / "u.csv");
+  const auto none = messages([&] { static_cast<void>(read()); });
+  ASSERT_EQ(none.size(), 1U);
+  EXPECT_NE(none[0].find("expected a table of columns such as stiffness_over_shear,delta_max_over_R0,alpha,beta"),
+            std::string::npos)
+      << none[0];
+}
+
 }  // namespace
 }  // namespace monograin

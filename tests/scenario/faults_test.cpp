@@ -19,7 +19,7 @@ struct FaultRow {
 };
 
 /// All that can be run.
-const std::string k_models = "hertz, mdr, similarity, semimech, hardening, nonlocal";
+const std::string k_models = "hertz, mdr, similarity, semimech, hardening, nonlocal, compressible";
 
 class FaultTable : public ::testing::TestWithParam<FaultRow> {};
 
@@ -39,7 +39,7 @@ const std::vector<FaultRow> k_rows{
              {"die.toml:1:1: key 'model' is missing in the scenario; expected for example model = \"mdr\"",
               "die.toml:1:2: unknown key 'outptu' in the scenario; did you mean 'output'?",
               "die.toml:3:2: unknown key '_' in the scenario; expected one of title, model, particle, material, "
-              "loading, output, numerics, hertz, mdr, similarity, semimech, hardening, nonlocal, compressible, "
+              "loading, output, numerics, hertz, mdr, similarity, semimech, hardening, compressible, nonlocal, "
               "material-point, packing"}},
     FaultRow{"UnknownRootKey",
              1,

@@ -61,6 +61,46 @@ TEST(Ludwik, OrThePowerLawHasToBeGiven) {
                    "hardening_exponent = 0.3, or ludwik = { ... }"}));
 }
 
+const std::string k_granule = "stiffness_ratio = 100\nshear_ratio = 1\nnu0 = 0.3\nyield_pressure = 1";
+
+std::string granule_with(const std::string& material, const std::string& options) {
+  return scenario_with("compressible", material, k_ramp + "[compressible]\n" + options);
+}
+
+TEST(CompressibleRules, AcceptMaterialsOfTheSourceAndNumbersOfTheUser) {
+  EXPECT_EQ(faults_of(granule_with(k_granule, "")), Lines());
+  const std::string other = "stiffness_ratio = 1000\nnu0 = 0.3\nyield_pressure = 1";
+  EXPECT_EQ(faults_of(granule_with(other, "k = 2\ndelta_t = 0.1\na = 3\nalpha = 1\nbeta = 0.5")), Lines());
+  const Scenario scenario = parse_scenario(granule_with(k_granule, "k = 2"), "a.toml");
+  EXPECT_EQ(std::get<double>(scenario.options.at("k")), 2.0);
+  EXPECT_FALSE(scenario.options.contains("alpha")) << "what is not given is not there";
+}
+
+TEST(CompressibleRules, RefuseMaterialsWithoutARegressionAllAtOnce) {
+  const std::string range =
+      ", where k, delta_t and a follow from the material; expected a value in there, or k, "
+      "delta_t and a in [compressible]";
+  EXPECT_EQ(faults_of(granule_with("stiffness_ratio = 2.9\nshear_ratio = 1.1\nnu0 = 0.3\nyield_pressure = 1", "k = 2")),
+            (Lines{"die.toml:5:19: stiffness_ratio = 2.9 is outside 3 to 500" + range,
+                   "die.toml:6:15: shear_ratio = 1.1 is outside 0.25 to 1" + range}));
+  EXPECT_EQ(
+      faults_of(granule_with("stiffness_ratio = 10\nnu0 = 0.3\nyield_pressure = 1", "")),
+      (Lines{"die.toml:1:1: k, delta_t and a follow from stiffness_ratio and shear_ratio; expected shear_ratio in "
+             "[material], or all three in [compressible]"}));
+}
+
+TEST(CompressibleRules, RefuseNumbersOutOfRangeAndQuantitiesTheLawDoesNotHave) {
+  EXPECT_EQ(faults_of(granule_with(k_granule, "k = 0\nalpha = 0.9\nbeta = -1")),
+            (Lines{"die.toml:15:5: k = 0: out of range; expected a number above 0 and up to 1e+100",
+                   "die.toml:16:9: alpha = 0.9: out of range; expected a number from 1 to 1e+100",
+                   "die.toml:17:8: beta = -1: out of range; expected a number above 0 and up to 1e+100"}));
+  EXPECT_EQ(faults_of(granule_with(k_granule + "\neta = 10", "")),
+            (Lines{"die.toml:9:1: key 'eta' is not used by model 'compressible'"}));
+  EXPECT_EQ(faults_of(scenario_with("compressible", k_granule,
+                                    "[[loading.steps]]\ndisplacement = 0.1\nduration = 1\nuntil = { pressure = 1 }\n")),
+            (Lines{"die.toml:14:11: key 'pressure' is not used by model 'compressible'"}));
+}
+
 TEST(Objections, NameTheNumberThatIsOutside) {
   const Lines soft =
       faults_of(scenario_with("semimech", "youngs_modulus = 20\npoisson_ratio = 0.3\nyield_stress = 1", k_ramp));

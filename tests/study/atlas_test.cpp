@@ -276,6 +276,46 @@ remark = "no such value"
 )");
 }
 
+TEST_F(Atlas, HoldsValuesAgainstRowsOfAFile) {
+  write("p.csv", "group[-],y[-]\n1,2\n2,7\n1,4\n");
+  const AtlasFigure made = make(std::string(k_values) + k_scenario + R"toml(
+[[values]]
+title = "Moduli"
+[[values.row]]
+label = "mean"
+value = "composite_modulus / 2.5e9"
+reference = { file = "p.csv", y = "y", where = "group - 1" }
+remark = "of two"
+[[values.row]]
+label = "alone"
+value = "1"
+)toml");
+  EXPECT_EQ(tables_text(made).substr(tables_text(made).find("## ")), R"(## Moduli
+
+| quantity | computed | reference | difference | relative | remark |
+| -------- | -------: | --------: | ---------: | -------: | ------ |
+| mean     |        4 |         3 |          1 |    0.333 | of two |
+| alone    |        1 |         - |          - |        - |        |
+)");
+  const Table csv = tables_csv(made);
+  EXPECT_EQ(csv.at(0, *csv.find("reference")), 3.0);
+  EXPECT_TRUE(std::isnan(csv.at(1, *csv.find("reference"))));
+  const auto faults = faults_of(std::string(k_values) + k_scenario + R"toml(
+[[values]]
+title = "t"
+row = [
+{ label = "a", value = "1", printed = "1", reference = { file = "p.csv", y = "y" } },
+{ label = "b", value = "1", reference = { file = "p.csv", y = "y", where = "group - 3" } },
+]
+)toml");
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0], "small.toml:20:29: key 'printed' does not go with 'reference'; expected one of them");
+  EXPECT_EQ(fault_of(std::string(k_values) + k_scenario +
+                     "[[values]]\ntitle = \"t\"\nrow = [{ label = \"b\", value = \"1\", reference = { file = "
+                     "\"p.csv\", y = \"y\", where = \"group - 3\" } }]\n"),
+            "small.toml:18:84: 'where' is zero in no row of the file");
+}
+
 TEST_F(Atlas, ReportsFaultsInTablesOfValues) {
   const auto faults = faults_of(std::string(k_values) + k_scenario + R"toml(
 [[table]]

@@ -481,7 +481,7 @@ constexpr FaultCase k_faults[] = {
      "x = { column = \"displacement[m]\", quantity = \"displacement\", unit = \"mmm\" }",
      "c.toml:4:69: column = \"displacement[m]\": unknown unit 'mmm'; expected a length"},
     {"WeightsUnknown", "c.toml", "[free]", "weights = \"relativ\"\n[free]",
-     "c.toml:6:11: weights = \"relativ\": expected one of absolute, relative, column; did you mean 'relative'?"},
+     "c.toml:6:11: weights = \"relativ\": expected one of absolute, relative, column, area; did you mean 'relative'?"},
     {"WeightColumnMissing", "c.toml", "[free]", "weights = \"column\"\n[free]",
      "c.toml:6:11: weights = \"column\" needs the column"},
     {"WeightColumnUnused", "c.toml", "[free]", "weight_column = \"w\"\n[free]",

@@ -1,4 +1,4 @@
-#include "study/measured_data.hpp"
+#include "scenario/measured_data.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,475 @@
+#include "compressible/contact_system.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+namespace monograin::compressible {
+namespace {
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+
+// In the order of Regime.
+constexpr std::array<std::string_view, 4> k_regime_words{"open", "linear", "exponential", "unloading"};
+
+// Guards, in the order in which they are applied.
+enum Kind : int { k_made, k_transition, k_reload, k_lost, k_limit };
+
+// Guards this share beyond the end of a ramp are watched too, and a wall this near to a place stands there.
+constexpr double k_same_place = 1e-12;
+
+constexpr const char* k_beyond = "the law ends where the source's data do, at a displacement of half the radius";
+
+bool reaches(double d, double place) noexcept { return d >= place * (1.0 - k_same_place); }
+
+}  // namespace
+
+ContactSystem::ContactSystem(ContactSettings settings, std::vector<ContactClass> classes)
+    : settings_(std::move(settings)), classes_(std::move(classes)) {
+  const double radius = settings_.initial_radius;
+  const double force_unit = std::numbers::pi * radius * radius * settings_.yield_pressure;
+  double reach = settings_.largest_displacement / radius;
+  if (settings_.largest_force > 0.0) {
+    reach = std::max(reach, displacement_under(settings_.law, settings_.largest_force / force_unit));
+  }
+  reach = reach > 0.0 ? std::min(reach, k_largest_displacement) : k_largest_displacement;
+  memory_.resize(classes_.size());
+  ramps_.resize(classes_.size());
+  places_.resize(classes_.size());
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (!classes_[i].takes_force) continue;
+    places_[i] = unknowns_.size();
+    unknowns_.push_back({classes_[i].name, Unknown::Kind::differential, reach, true});
+  }
+  work_place_ = unknowns_.size();
+  unknowns_.push_back({"work", Unknown::Kind::quadrature, loading_work(settings_.law, reach), false});
+
+  for (const char* name : {"work", "stored_energy", "dissipation"}) observables_.push_back({name, "J", {}});
+  for (const ContactClass& c : classes_) add_contact_columns(c.name, k_regime_words, observables_, false);
+}
+
+void ContactSystem::start(std::span<double> y) {
+  std::ranges::fill(y, 0.0);
+  memory_.assign(classes_.size(), Memory{});
+  has_begun_ = false;
+  clipped_ = 0;
+  least_ratio_ = 1.0;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const double gap = classes_[i].gap / settings_.initial_radius;
+    ramps_[i] = {-gap, -gap, Control::displacement};
+    memory_[i].resting = -gap;
+    if (classes_[i].takes_force) y[places_[i]] = -gap;
+  }
+}
+
+void ContactSystem::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
+  const double radius = settings_.initial_radius;
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    const bool takes_force = ramps[i].control == Control::force;
+    const double unit = takes_force ? std::numbers::pi * radius * radius * settings_.yield_pressure : radius;
+    ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
+    double d = displacement(i, 0.0, y);
+    settle(i, d, log);
+    if (!touches(i)) memory_[i].resting = d;
+    if (takes_force && touches(i)) d = std::max(d, opening(i));
+    if (classes_[i].takes_force) y[places_[i]] = coordinate(i, d);
+  }
+  has_begun_ = true;
+  watch();
+}
+
+/// Decides the regime of a contact at the start of a step.
+void ContactSystem::settle(std::size_t i, double d, std::vector<Event>& log) {
+  Memory& memory = memory_[i];
+  const auto tell = [&](std::string_view event) { log.push_back({event, static_cast<int>(i)}); };
+  if (!touches(i)) {
+    const bool is_pressed = is_loaded(i) && ramps_[i].start > 0.0;
+    if (direction(i) <= 0 && !is_pressed) return;
+    if (!is_loaded(i) && d < opening(i)) return;
+    make_contact(i);
+    // A driven wall that touches the fresh particle is in contact from the start, without an event.
+    if (has_begun_ || classes_[i].gap > 0.0) tell("contact-made");
+    return;
+  }
+  if (direction(i) < 0) {
+    if (memory.regime != Regime::unloading) turn_back(i, d, log);
+    // From where a force has ended at nothing.
+    if (touches(i) && (is_loaded(i) ? ramps_[i].start <= 0.0 : d <= opening(i))) {
+      memory.regime = Regime::open;
+      memory.resting = opening(i);
+      tell("contact-lost");
+    }
+  } else if (direction(i) > 0) {
+    // A boundary at which the last step ended is passed now.
+    if (memory.regime == Regime::unloading && reaches(d, memory.curve.largest)) {
+      go_on_loading(i, memory.curve.largest);
+      tell("reload");
+    }
+    if (memory.regime == Regime::linear && reaches(d, settings_.law.transition)) {
+      memory.regime = Regime::exponential;
+      tell("transition");
+    }
+    if (memory.regime != Regime::unloading && reaches(d, k_largest_displacement) &&
+        goes_beyond(i, k_largest_displacement))
+      throw std::domain_error(k_beyond);
+  }
+}
+
+int ContactSystem::direction(std::size_t i) const noexcept {
+  return ramps_[i].end > ramps_[i].start ? 1 : ramps_[i].end < ramps_[i].start ? -1 : 0;
+}
+
+/// Displacement or force as the program says.
+double ContactSystem::told(std::size_t i, double xi) const noexcept {
+  return std::lerp(ramps_[i].start, ramps_[i].end, xi);
+}
+
+/// Displacement at which a wall and the particle part, and meet.
+double ContactSystem::opening(std::size_t i) const noexcept {
+  return memory_[i].has_unloaded ? memory_[i].curve.separation() : 0.0;
+}
+
+double ContactSystem::coordinate(std::size_t i, double d) const noexcept {
+  const Memory& memory = memory_[i];
+  if (memory.regime != Regime::unloading) return d;
+  return unknowns_[places_[i]].scale * unloading_force(memory.curve, d) / memory.curve.force;
+}
+
+double ContactSystem::displacement(std::size_t i, double xi, std::span<const double> y) const noexcept {
+  if (!is_loaded(i)) return told(i, xi);
+  const Memory& memory = memory_[i];
+  const double u = y[places_[i]];
+  if (memory.regime != Regime::unloading) return u;
+  return unloading_displacement(memory.curve, memory.curve.force * u / unknowns_[places_[i]].scale);
+}
+
+double ContactSystem::displacement_under_force(std::size_t i, double force) const noexcept {
+  const Memory& memory = memory_[i];
+  switch (memory.regime) {
+    case Regime::open:
+      return memory.resting;
+    case Regime::unloading:
+      return unloading_displacement(memory.curve, force);
+    case Regime::linear:
+    case Regime::exponential:
+      return displacement_under(settings_.law, force);
+  }
+  return k_nan;
+}
+
+/// Force on the present branch.
+double ContactSystem::force_at(std::size_t i, double d) const noexcept {
+  const Memory& memory = memory_[i];
+  switch (memory.regime) {
+    case Regime::open:
+      return 0.0;
+    case Regime::linear:
+      return force_in(settings_.law, Part::linear, d);
+    case Regime::exponential:
+      return force_in(settings_.law, Part::exponential, d);
+    case Regime::unloading:
+      return unloading_force(memory.curve, d);
+  }
+  return k_nan;
+}
+
+double ContactSystem::force_of(std::size_t i, double xi, std::span<const double> y) const noexcept {
+  return is_loaded(i) && touches(i) ? state(i, y[places_[i]]).force : force_at(i, displacement(i, xi, y));
+}
+
+ContactSystem::State ContactSystem::state(std::size_t i, double u) const noexcept {
+  const Memory& memory = memory_[i];
+  switch (memory.regime) {
+    case Regime::open:
+      return {};
+    case Regime::linear:
+      return {force_at(i, u), settings_.law.stiffness, u};
+    case Regime::exponential: {
+      const double force = force_at(i, u);
+      return {force, settings_.law.exponent * force, 1.0 / settings_.law.exponent};
+    }
+    case Regime::unloading: {
+      const double by_coordinate = memory.curve.force / unknowns_[places_[i]].scale;
+      const double distance = unloading_displacement(memory.curve, by_coordinate * u) - memory.curve.separation();
+      return {by_coordinate * u, by_coordinate, distance / memory.curve.exponent};
+    }
+  }
+  return {};
+}
+
+/// Rate of the work of one wall.
+double ContactSystem::power(std::size_t i, double xi, std::span<const double> y) const noexcept {
+  if (!touches(i)) return 0.0;
+  const double speed = ramps_[i].end - ramps_[i].start;
+  // F d' = F F'/(df/dd)
+  return is_loaded(i) ? speed * state(i, y[places_[i]]).compliance : speed * force_at(i, told(i, xi));
+}
+
+void ContactSystem::complete(double xi, std::span<double> y) {
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (!classes_[i].takes_force) continue;
+    if (!is_loaded(i))
+      y[places_[i]] = coordinate(i, told(i, xi));
+    else if (!touches(i))
+      y[places_[i]] = memory_[i].resting;
+  }
+}
+
+void ContactSystem::solve(double xi, std::span<double> y) {
+  complete(xi, y);
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (is_loaded(i)) y[places_[i]] = coordinate(i, displacement_under_force(i, told(i, xi)));
+  }
+}
+
+void ContactSystem::rates(double xi, std::span<const double> y, std::span<double> dy) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    sum += classes_[i].multiplicity() * power(i, xi, y);
+    if (!classes_[i].takes_force) continue;
+    const double speed = ramps_[i].end - ramps_[i].start;
+    double& rate = dy[places_[i]];
+    if (is_loaded(i)) {
+      rate = touches(i) ? speed / state(i, y[places_[i]]).by_coordinate : 0.0;
+    } else if (memory_[i].regime == Regime::unloading) {
+      const UnloadingCurve& curve = memory_[i].curve;
+      rate = unknowns_[places_[i]].scale * unloading_slope(curve, told(i, xi)) / curve.force * speed;
+    } else {
+      rate = speed;
+    }
+  }
+  dy[work_place_] = sum;
+}
+
+void ContactSystem::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    sum += classes_[i].multiplicity() * power(i, xi, y);
+    if (!classes_[i].takes_force) continue;
+    const double u = y[places_[i]];
+    if (is_loaded(i) && touches(i)) {
+      // In units of u, as the integrator weighs it.
+      const State now = state(i, u);
+      res[places_[i]] = (now.force - told(i, xi)) / now.by_coordinate;
+    } else {
+      res[places_[i]] = u - (is_loaded(i) ? memory_[i].resting : coordinate(i, told(i, xi)));
+    }
+  }
+  res[work_place_] = dy[work_place_] - sum;
+}
+
+std::optional<double> ContactSystem::closed_quadrature(double xi, std::span<const double> y) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const Memory& memory = memory_[i];
+    if (!touches(i)) continue;
+    const double d = displacement(i, xi, y);
+    const Part part = memory.regime == Regime::linear ? Part::linear : Part::exponential;
+    sum += classes_[i].multiplicity() *
+           (memory.regime == Regime::unloading ? recoverable_work(memory.curve, d) : work_in(settings_.law, part, d));
+  }
+  return sum;
+}
+
+// --- transitions
+
+void ContactSystem::make_contact(std::size_t i) {
+  memory_[i].regime = memory_[i].has_unloaded ? Regime::unloading : Regime::linear;
+  memory_[i].has_been_loaded = true;
+}
+
+/// Back on the loading law at the largest displacement so far.
+void ContactSystem::go_on_loading(std::size_t i, double d) {
+  memory_[i].has_unloaded = false;
+  memory_[i].regime = reaches(d, settings_.law.transition) ? Regime::exponential : Regime::linear;
+}
+
+void ContactSystem::turn_back(std::size_t i, double d, std::vector<Event>& log) {
+  Memory& memory = memory_[i];
+  if (!(d > 0.0)) {  // pressed by nothing so far
+    memory.regime = Regime::open;
+    memory.resting = 0.0;
+    return;
+  }
+  memory.curve = unloading_from(settings_.law, settings_.hertz_stiffness, settings_.unloading, d);
+  memory.regime = Regime::unloading;
+  memory.has_unloaded = true;
+  log.push_back({"load-reversal", static_cast<int>(i)});
+  if (memory.curve.is_clipped) ++clipped_;
+}
+
+void ContactSystem::add_guard(int kind, std::size_t i, int direction, std::string_view name, double place) {
+  guards_.push_back({kind, static_cast<int>(i), direction, name});
+  guard_places_.push_back(place);
+}
+
+/// Whether a rising wall ends beyond a place on its way.
+bool ContactSystem::goes_beyond(std::size_t i, double place) const noexcept {
+  const double end = is_loaded(i) ? displacement_under(settings_.law, ramps_[i].end) : ramps_[i].end;
+  return end > place * (1.0 + k_same_place);
+}
+
+/// The guards that may fire before the end of the step.
+void ContactSystem::watch() {
+  guards_.clear();
+  guard_places_.clear();
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const Memory& memory = memory_[i];
+    // What a rising step ends at is passed by the next one, if it goes on.
+    const auto watch_rise = [&](int kind, std::string_view name, double place) {
+      if (goes_beyond(i, place)) add_guard(kind, i, 1, name, place);
+    };
+    if (direction(i) < 0) {
+      // A force that ends at nothing leaves the wall at the surface.
+      const bool opens = is_loaded(i) ? ramps_[i].end < 0.0 : ramps_[i].end < opening(i);
+      if (touches(i) && opens) add_guard(k_lost, i, -1, "contact-lost", opening(i));
+      continue;
+    }
+    if (direction(i) == 0) continue;
+    switch (memory.regime) {
+      case Regime::open:
+        if (!is_loaded(i) && ramps_[i].end > opening(i)) add_guard(k_made, i, 1, "contact-made", opening(i));
+        break;
+      case Regime::unloading:
+        watch_rise(k_reload, "reload", memory.curve.largest);
+        break;
+      case Regime::linear:
+        watch_rise(k_transition, "transition", settings_.law.transition);
+        watch_rise(k_limit, "limit", k_largest_displacement);
+        break;
+      case Regime::exponential:
+        watch_rise(k_limit, "limit", k_largest_displacement);
+        break;
+    }
+  }
+}
+
+void ContactSystem::guard_values(double xi, std::span<const double> /*y*/, std::span<double> values) {
+  for (std::size_t g = 0; g < guards_.size(); ++g) {
+    const auto i = static_cast<std::size_t>(guards_[g].index);
+    const double place = guard_places_[g];
+    // The law is in closed form: where it is under a force follows from that force, free of an integrator's error.
+    values[g] = is_loaded(i) ? (told(i, xi) - force_at(i, place)) / std::max(std::abs(ramps_[i].start), ramps_[i].end)
+                             : told(i, xi) - place;
+  }
+}
+
+std::optional<DomainEnd> ContactSystem::fire(std::span<const std::size_t> fired, double /*xi*/, std::span<double> y,
+                                             std::vector<Event>& log) {
+  std::optional<DomainEnd> end;
+  for (const std::size_t g : fired) {
+    const Guard guard = guards_[g];
+    const double place = guard_places_[g];
+    const auto i = static_cast<std::size_t>(guard.index);
+    Memory& memory = memory_[i];
+    log.push_back({guard.name, guard.index});
+    switch (guard.kind) {
+      case k_made:
+        make_contact(i);
+        break;
+      case k_transition:
+        memory.regime = Regime::exponential;
+        break;
+      case k_reload:
+        go_on_loading(i, place);
+        break;
+      case k_lost:
+        memory.regime = Regime::open;
+        memory.resting = place;
+        break;
+      default:
+        end = DomainEnd{log.back(), {k_beyond, "displacement over R0", place}};
+        break;
+    }
+    if (classes_[i].takes_force) y[places_[i]] = coordinate(i, place);
+  }
+  if (!end) watch();
+  return end;
+}
+
+// --- what is seen
+
+/// Unloading from here: along the present curve, or that which would begin here.
+UnloadingCurve ContactSystem::way_back(std::size_t i, double d) const noexcept {
+  if (memory_[i].regime == Regime::unloading) return memory_[i].curve;
+  return unloading_from(settings_.law, settings_.hertz_stiffness, settings_.unloading, d);
+}
+
+void ContactSystem::observe(double xi, std::span<const double> y, std::span<double> values) {
+  const double length = settings_.initial_radius;
+  const double force_unit = std::numbers::pi * length * length * settings_.yield_pressure;
+  const double energy_unit = force_unit * length;
+  double stored = 0.0;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const double d = displacement(i, xi, y);
+    if (!touches(i) || d <= opening(i)) continue;
+    const UnloadingCurve curve = way_back(i, d);
+    stored += classes_[i].multiplicity() * recoverable_work(curve, d);
+    least_ratio_ = std::min(least_ratio_, slope_ratio(settings_.law, curve));
+  }
+  auto out = values.begin();
+  *out++ = y[work_place_] * energy_unit;
+  *out++ = stored * energy_unit;
+  *out++ = (y[work_place_] - stored) * energy_unit;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const double d = displacement(i, xi, y);
+    *out++ = d * length;
+    *out++ = d * length;  // the apparent radius does not change
+    *out++ = force_of(i, xi, y) * force_unit;
+    *out++ = static_cast<double>(memory_[i].regime);
+  }
+}
+
+double ContactSystem::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
+  const auto i = static_cast<std::size_t>(contact_class);
+  const double length = settings_.initial_radius;
+  switch (quantity) {
+    case Quantity::force:
+      return force_of(i, xi, y) * std::numbers::pi * length * length * settings_.yield_pressure;
+    case Quantity::displacement:
+      return displacement(i, xi, y) * length;
+    case Quantity::apparent_radius:
+      return length;
+    case Quantity::pressure:
+    case Quantity::contact_radius:
+      break;
+  }
+  return k_nan;
+}
+
+double ContactSystem::wall_position(int contact_class, double xi, std::span<const double> y) {
+  return displacement(static_cast<std::size_t>(contact_class), xi, y) * settings_.initial_radius;
+}
+
+bool ContactSystem::is_open(int contact_class) const noexcept {
+  return !touches(static_cast<std::size_t>(contact_class));
+}
+
+std::vector<Finding> ContactSystem::warnings() const {
+  std::vector<Finding> found = settings_.reservations;
+  double loaded = 0.0;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (memory_[i].has_been_loaded) loaded += classes_[i].multiplicity();
+  }
+  if (loaded > 2.0) {
+    found.push_back({"the law was derived between two walls; contacts of one particle do not know of each other",
+                     "loaded walls", loaded});
+  }
+  if (clipped_ > 0) {
+    found.push_back(
+        {"unloading would have ended before first touch, and ends there instead: so small a contact is "
+         "stiffer than Hertz's",
+         "such unloadings", static_cast<double>(clipped_)});
+  }
+  if (least_ratio_ < 1.0 - k_same_place) {
+    found.push_back({"unloading is, or would be, less steep than loading: the cycle may give back more than it took",
+                     "least slope over that of loading", least_ratio_});
+  }
+  return found;
+}
+
+}  // namespace monograin::compressible

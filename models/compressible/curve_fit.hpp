@@ -1,0 +1,55 @@
+/// Fits of the contact law to a force-displacement curve: the source's nested procedure, made exact, and the joint fit
+/// of all three parameters; and of the unloading curve.
+/// Source: 001_3cd85d3b0dc520cf.txt, section 6.1 and eqs. 7, 8, 11 and 13.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "compressible/contact_law.hpp"
+
+namespace monograin::compressible {
+
+/// How far a law is from a curve; integrals are trapezoidal sums over the curve's own points.
+struct FitErrors {
+  double area = 0.0;  ///< sqrt( int (f_model - f)^2 dd ) / int f dd (eq. 7)
+  double peak = 0.0;  ///< max |f_model - f| / f(d_max) (eq. 8, the absolute value added)
+};
+
+/// @param displacements  over R0, ascending; as many as forces
+[[nodiscard]] FitErrors fit_errors(const LoadingLaw& law, std::span<const double> displacements,
+                                   std::span<const double> forces);
+
+struct LoadingFit {
+  LoadingLaw law;
+  FitErrors errors;
+};
+
+/// The nested procedure of the source: delta_t is sought by the area error; k comes from the points of the linear part
+/// alone, and a is the best for these two. The source's Newton iteration fails where the area error has kinks, at every
+/// point of the data; here every interval of the data is looked into.
+///
+/// Nothing for fewer than three points beyond d = 0, or where none has a force above 0.
+/// @param displacements  over R0, ascending, from 0 on;  @param forces  any unit
+[[nodiscard]] std::optional<LoadingFit> fit_nested(std::span<const double> displacements,
+                                                   std::span<const double> forces);
+
+/// All three parameters at once by the area error: for given delta_t and a the law is linear in k, which leaves two to
+/// be sought. It begins at another fit, and is not worse.
+[[nodiscard]] LoadingFit fit_jointly(std::span<const double> displacements, std::span<const double> forces,
+                                     const LoadingFit& start);
+
+/// alpha and d0 of eq. 13 by least squares over the points above 2 % of fm, which stays what it is.
+struct UnloadingFit {
+  double separation = 0.0;  ///< d0
+  UnloadingShape shape;     ///< beta by eq. 11
+};
+
+/// @param displacements  on the way back, over R0; the first is the largest, with force fm > 0
+/// @param hertz_stiffness  k_H in the units of the forces
+/// Nothing for fewer than three points above 2 % of fm.
+[[nodiscard]] std::optional<UnloadingFit> fit_unloading(std::span<const double> displacements,
+                                                        std::span<const double> forces, double hertz_stiffness);
+
+}  // namespace monograin::compressible
