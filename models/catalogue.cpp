@@ -6,6 +6,7 @@
 #include "compressible/contact_info.hpp"
 #include "elastic/nonlocal_info.hpp"
 #include "mdr/info.hpp"
+#include "packing/info.hpp"
 #include "plastic/info.hpp"
 
 namespace monograin {
@@ -13,14 +14,14 @@ namespace {
 
 using std::string_view;
 
-constexpr std::array<string_view, 2> k_reserved{"material-point", "packing"};
+constexpr std::array<string_view, 1> k_reserved{"material-point"};
 
 }  // namespace
 
 std::span<const ModelInfo> model_catalogue() noexcept {
   static const std::array k_models{
       mdr::hertz_info(),         mdr::mdr_info(),           plastic::similarity_info(),   plastic::semimech_info(),
-      plastic::hardening_info(), nonlocal::nonlocal_info(), compressible::contact_info(),
+      plastic::hardening_info(), nonlocal::nonlocal_info(), compressible::contact_info(), packing::packing_info(),
   };
   return k_models;
 }

@@ -12,10 +12,24 @@
 #include <string_view>
 #include <vector>
 
+#include "walls.hpp"
+
 namespace monograin {
 
 /// Physical dimension of a quantity; fixes which unit strings are accepted (a bare number is always SI).
-enum class Dimension { none, length, stress, surface_energy, force, time, velocity, force_rate, angle };
+enum class Dimension {
+  none,
+  length,
+  stress,
+  surface_energy,
+  force,
+  time,
+  velocity,
+  force_rate,
+  angle,
+  strain_rate,  ///< of strains and other pure numbers
+  stress_rate
+};
 
 /// Interval of admissible values; the bounds belong to it unless they are marked open.
 struct Range {
@@ -54,10 +68,35 @@ struct OptionKey {
   std::span<const QuantityKey> columns{};
 };
 
+/// A ramp that a step can be told as, of a model without walls; its name is the step's key.
+struct DriveKey {
+  std::string_view name;
+  std::string_view meaning;
+  Control control = Control::strain;
+  Dimension dimension = Dimension::none;
+  Range range;
+  std::string_view example;  ///< as written in a file
+  /// `[axial, lateral]` stands for a value of this key and one that controls the same in the second channel.
+  bool may_take_lateral = false;
+};
+
 /// A regime or an event with one sentence about it.
 struct Term {
   std::string_view name;
   std::string_view meaning;
+};
+
+/// What a step prescribes one channel: the end of its ramp.
+struct Prescription {
+  Control control = Control::displacement;
+  double target = 0.0;  ///< [SI]
+};
+
+/// A step of the program of a model without walls, cycles written out.
+struct PlannedStep {
+  std::optional<Prescription> first{};    ///< none: what is controlled is kept
+  std::optional<Prescription> lateral{};  ///< of the second channel; none: it keeps its value
+  bool may_end_early = false;             ///< has a condition
 };
 
 /// What a scenario says, each value right by itself.
@@ -65,13 +104,16 @@ struct Given {
   const std::map<std::string, double>& material;      ///< [SI]
   const std::map<std::string, std::string>& choices;  ///< options of kinds choice and file
   const std::map<std::string, double>& numbers;       ///< options of kind quantity [SI]
-  std::string_view configuration;
+  const std::map<std::string, bool>& toggles;         ///< options of kind toggle
+  std::string_view configuration;                     ///< empty where the model has none
+  std::span<const PlannedStep> program;               ///< empty where there are walls
 };
 
 /// Why values do not go together.
 struct Objection {
   std::string_view key;  ///< in `[material]`, in the model's own table, or `configuration`
   std::string message;
+  std::optional<std::size_t> step{};  ///< of the program: the place is this step's, not that of the key
 };
 
 struct ModelInfo {
@@ -80,8 +122,8 @@ struct ModelInfo {
   std::string_view source;
   std::span<const QuantityKey> material;
   std::span<const OptionKey> options;
-  std::span<const std::string_view> configurations;
-  bool has_free_centre = false;  ///< `[loading] centre = "equilibrium"` is defined
+  std::span<const std::string_view> configurations;  ///< empty: there is nothing to choose from
+  bool has_free_centre = false;                      ///< `[loading] centre = "equilibrium"` is defined
   bool has_contact_area = true;  ///< there are contact radii, pressures, and a surface that may move
   std::span<const Term> regimes;
   std::span<const Term> events;
@@ -90,6 +132,14 @@ struct ModelInfo {
   /// `strength` and `hardening_exponent` may be given by Ludwik's law instead.
   bool takes_ludwik = false;
   std::vector<Objection> (*objections)(const Given& given) = nullptr;  ///< null: none
+  /// How steps are told of a model that has neither particle nor walls; empty: it has both.
+  std::span<const DriveKey> drives{};
+  /// What such a step can prescribe besides, in a second channel, under keys of their own.
+  std::span<const DriveKey> lateral_drives{};
+  /// What such a step can wait for, besides events.
+  std::span<const QuantityKey> conditions{};
+
+  [[nodiscard]] bool has_walls() const noexcept { return drives.empty(); }
 };
 
 /// All models this version can run, in the order in which they are listed to users.

@@ -43,6 +43,8 @@ struct Guard {
   int index = 0;          ///< contact class, or pair of classes, it belongs to
   int direction = 1;      ///< fires when it crosses zero upwards (+1) or downwards (-1)
   std::string_view name;  ///< of the event it stands for
+  /// Changes the form of the equations and nothing that is seen: leaves no rows in the history.
+  bool is_silent = false;
 };
 
 /// A regime transition or other located instant.
@@ -86,8 +88,17 @@ inline void add_contact_columns(const std::string& contact_class, std::span<cons
   columns.push_back({contact_class + ".regime", "", regimes});
 }
 
-/// What a program's condition can ask for.
-enum class Quantity { force, displacement, pressure, contact_radius, apparent_radius };
+/// What a program's condition can ask for; the last three at a material point.
+enum class Quantity {
+  force,
+  displacement,
+  pressure,
+  contact_radius,
+  apparent_radius,
+  stress_axial,
+  stress_lateral,
+  relative_density
+};
 
 /// The surface of the particle under and around a contact, at a distance from its middle. In SI.
 struct SurfacePoint {
@@ -102,12 +113,14 @@ class HybridSystem {
   virtual ~HybridSystem() = default;
 
   [[nodiscard]] virtual std::span<const Unknown> unknowns() const noexcept = 0;
-  [[nodiscard]] virtual std::span<const ContactClass> classes() const noexcept = 0;
+  /// Empty where the model knows no walls.
+  [[nodiscard]] virtual std::span<const ContactClass> classes() const noexcept { return {}; }
 
   /// State before the first step.
   virtual void start(std::span<double> y) = 0;
 
   /// Takes up the next step and decides the mode at its start; what changes there is logged.
+  /// @param ramps  one per channel of the scene: per contact class where there are walls
   virtual void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) = 0;
 
   /// Fills the algebraic unknowns for given differential ones; their present values are the first guess.
@@ -141,17 +154,20 @@ class HybridSystem {
   [[nodiscard]] virtual std::span<const Observable> observables() const noexcept = 0;
   virtual void observe(double xi, std::span<const double> y, std::span<double> values) = 0;
 
-  /// One quantity of one class, in SI.
-  [[nodiscard]] virtual double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) = 0;
-  /// Where the walls of a class stand [m], as displacement towards the place where the centre started.
-  [[nodiscard]] virtual double wall_position(int contact_class, double xi, std::span<const double> y) = 0;
+  /// One quantity of one channel, in SI.
+  /// @throws std::logic_error for a quantity that the language does not offer with this model
+  [[nodiscard]] virtual double quantity(Quantity quantity, int channel, double xi, std::span<const double> y) = 0;
+  /// Present value, in SI, of what a control prescribes a channel: a ramp starts there when it takes control. That of
+  /// walls under displacement is where they stand, counted towards the place where the centre started.
+  /// @throws std::logic_error for a control that the language does not offer with this model
+  [[nodiscard]] virtual double controlled(Control control, int channel, double xi, std::span<const double> y) = 0;
   /// Pressure and surface under a contact, from its middle outwards; empty where it is open, or the model has none.
   [[nodiscard]] virtual std::vector<SurfacePoint> surface(int /*contact_class*/, double /*xi*/,
                                                           std::span<const double> /*y*/) {
     return {};
   }
   /// Whether the walls of a class do not touch the particle.
-  [[nodiscard]] virtual bool is_open(int contact_class) const noexcept = 0;
+  [[nodiscard]] virtual bool is_open(int /*contact_class*/) const noexcept { return false; }
 
   /// What the user should know about this run, collected so far.
   [[nodiscard]] virtual std::vector<Finding> warnings() const = 0;

@@ -1,4 +1,5 @@
-/// Walls as the models see them: contact classes, and what a step of the program makes them do.
+/// What the models see of a program: contact classes of walls, and what a step prescribes them, a packing or a material
+/// point.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,11 +18,12 @@ struct ContactClass {
   [[nodiscard]] double multiplicity() const noexcept { return static_cast<double>(normals.size()); }
 };
 
-/// What is prescribed at a wall.
-enum class Control { displacement, force };
+/// What is prescribed: at a wall its displacement, towards the centre positive [m], or the force of one wall,
+/// compression positive [N]; elsewhere a strain, a stress [Pa] or a packing fraction, with the signs of their model.
+enum class Control { displacement, force, strain, stress, packing_fraction };
 
-/// What one class does during one step: its wall displacement, towards the centre positive [m], or the force of one
-/// wall, compression positive [N], goes linearly from start to end.
+/// What a step of the program does to one channel, the class of walls or the direction whose one value it prescribes:
+/// that goes linearly from start to end.
 struct Ramp {
   double start = 0.0;
   double end = 0.0;

@@ -434,14 +434,13 @@ double ContactSystem::quantity(Quantity quantity, int contact_class, double xi, 
       return displacement(i, xi, y) * length;
     case Quantity::apparent_radius:
       return length;
-    case Quantity::pressure:
-    case Quantity::contact_radius:
-      break;
+    default:
+      throw std::logic_error("no such quantity at a wall of this model");
   }
-  return k_nan;
 }
 
-double ContactSystem::wall_position(int contact_class, double xi, std::span<const double> y) {
+double ContactSystem::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
+  if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
   return displacement(static_cast<std::size_t>(contact_class), xi, y) * settings_.initial_radius;
 }
 

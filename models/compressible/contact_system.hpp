@@ -50,7 +50,7 @@ class ContactSystem final : public HybridSystem {
   void observe(double xi, std::span<const double> y, std::span<double> values) override;
   /// NaN for what the law does not have: pressure, contact radius, apparent radius other than R0.
   [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
-  [[nodiscard]] double wall_position(int contact_class, double xi, std::span<const double> y) override;
+  [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
 

@@ -430,12 +430,13 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
       return c.contact_radius * length;
     case Quantity::apparent_radius:
       return length;
+    default:
+      throw std::logic_error("no such quantity at a wall");
   }
-  return 0.0;
 }
 
-double System::wall_position(int contact_class, double xi, std::span<const double> y) {
-  return quantity(Quantity::displacement, contact_class, xi, y);
+double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
+  return quantity(control == Control::force ? Quantity::force : Quantity::displacement, contact_class, xi, y);
 }
 
 /// Pressure under the contact, and its surface, which is the wall's plane.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "mdr/contact_profile.hpp"
 #include "mdr/system.hpp"
@@ -110,8 +111,9 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
       return now.contact.contact_radius * length;
     case Quantity::apparent_radius:
       return (1.0 + y[k_radius]) * length;
+    default:
+      throw std::logic_error("no such quantity at a wall");
   }
-  return 0.0;
 }
 
 std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {
@@ -143,7 +145,8 @@ std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::spa
   return points;
 }
 
-double System::wall_position(int contact_class, double xi, std::span<const double> y) {
+double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
+  if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
   look(xi, y);
   return now_[static_cast<std::size_t>(contact_class)].position * settings_.initial_radius;
 }

@@ -567,11 +567,13 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
       return c.contact_radius * length;
     case Quantity::apparent_radius:
       return length;
+    default:
+      throw std::logic_error("no such quantity at a wall");
   }
-  return 0.0;
 }
 
-double System::wall_position(int contact_class, double xi, std::span<const double> y) {
+double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
+  if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
   return displacement(static_cast<std::size_t>(contact_class), xi, y) * settings_.initial_radius;
 }
 

@@ -58,7 +58,7 @@ class System final : public HybridSystem {
   [[nodiscard]] std::span<const Observable> observables() const noexcept override { return observables_; }
   void observe(double xi, std::span<const double> y, std::span<double> values) override;
   [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
-  [[nodiscard]] double wall_position(int contact_class, double xi, std::span<const double> y) override;
+  [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
 

@@ -42,6 +42,10 @@ std::string_view si_unit(Dimension dimension) {
       return "N/s";
     case Dimension::angle:
       return "rad";
+    case Dimension::strain_rate:
+      return "1/s";
+    case Dimension::stress_rate:
+      return "Pa/s";
   }
   return "";
 }
@@ -58,12 +62,23 @@ void print_list() {
 
 void print_terms(std::string_view title, std::span<const Term> terms) {
   fmt::print("\n{}\n", title);
-  for (const Term& term : terms) fmt::print("  {:<22}{}\n", term.name, term.meaning);
+  for (const Term& term : terms) fmt::print("  {:<25}{}\n", term.name, term.meaning);
 }
 
 template <class Key>
 void print_quantity(const Key& key, const std::string& note) {
-  fmt::print("  {:<22}{} [{}], in {}; {}\n", key.name, key.meaning, si_unit(key.dimension), to_text(key.range), note);
+  fmt::print("  {:<25}{} [{}], in {}; {}\n", key.name, key.meaning, si_unit(key.dimension), to_text(key.range), note);
+}
+
+void print_steps(const ModelInfo& model) {
+  const auto print_keys = [](std::span<const DriveKey> keys) {
+    for (const DriveKey& key : keys) {
+      fmt::print("  {:<25}{} [{}], for example {}\n", key.name, key.meaning, si_unit(key.dimension), key.example);
+    }
+  };
+  fmt::print("\nsteps\n");
+  print_keys(model.drives);
+  print_keys(model.lateral_drives);
 }
 
 void print_model(const ModelInfo& model) {
@@ -75,7 +90,7 @@ void print_model(const ModelInfo& model) {
     print_quantity(key, default_text);
   }
   if (model.takes_ludwik) {
-    fmt::print("  {:<22}{}\n", "ludwik",
+    fmt::print("  {:<25}{}\n", "ludwik",
                "instead of strength and hardening_exponent: { yield_stress, strength, exponent = 1/n, eps_max = 1, "
                "fit = \"both\" or \"exponent\" }");
   }
@@ -83,22 +98,23 @@ void print_model(const ModelInfo& model) {
   for (const OptionKey& key : model.options) {
     switch (key.kind) {
       case OptionKey::Kind::choice:
-        fmt::print("  {:<22}{}: {} (default {})\n", key.name, key.meaning, fmt::join(key.choices, ", "),
+        fmt::print("  {:<25}{}: {} (default {})\n", key.name, key.meaning, fmt::join(key.choices, ", "),
                    key.choices.front());
         break;
       case OptionKey::Kind::toggle:
-        fmt::print("  {:<22}{}: true, false (default {})\n", key.name, key.meaning, key.default_toggle);
+        fmt::print("  {:<25}{}: true, false (default {})\n", key.name, key.meaning, key.default_toggle);
         break;
       case OptionKey::Kind::file:
-        fmt::print("  {:<22}{}: a file (default none)\n", key.name, key.meaning);
+        fmt::print("  {:<25}{}: a file (default none)\n", key.name, key.meaning);
         break;
       case OptionKey::Kind::quantity:
         print_quantity(key, key.default_value ? fmt::format("default {}", *key.default_value) : "optional");
         break;
     }
   }
-  fmt::print("\nconfigurations: {}\n", fmt::join(model.configurations, ", "));
-  fmt::print("centre: fixed{}\n", model.has_free_centre ? ", equilibrium" : "");
+  if (!model.has_walls()) print_steps(model);
+  if (!model.configurations.empty()) fmt::print("\nconfigurations: {}\n", fmt::join(model.configurations, ", "));
+  if (model.has_walls()) fmt::print("centre: fixed{}\n", model.has_free_centre ? ", equilibrium" : "");
   print_terms("regimes", model.regimes);
   print_terms("events", model.events);
   fmt::print("\nvalidity\n");

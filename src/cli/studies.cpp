@@ -151,7 +151,8 @@ int run_regress(const RegressOptions& options) {
 
 void add_plot_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<PlotOptions>();
-  CLI::App* command = app.add_subcommand("plot", "Draw recorded runs: force, pressure, contact area, apparent radius");
+  CLI::App* command = app.add_subcommand(
+      "plot", "Draw recorded runs: force, pressure, contact area, apparent radius; or stress of a packing");
   command->add_option("RUN", options->runs, "Folders of runs, or their history.csv")->required();
   command->add_option("-o,--output", options->output,
                       "Figure to write: .svg, .pdf or .png [figure.svg in the first run's folder]");

@@ -39,16 +39,22 @@ Quantity to_quantity(Until::Quantity quantity) {
       return Quantity::contact_radius;
     case Until::Quantity::apparent_radius:
       return Quantity::apparent_radius;
+    case Until::Quantity::stress_axial:
+      return Quantity::stress_axial;
+    case Until::Quantity::stress_lateral:
+      return Quantity::stress_lateral;
+    case Until::Quantity::relative_density:
+      return Quantity::relative_density;
     case Until::Quantity::event:
       break;
   }
   throw std::logic_error("an event is not a quantity");
 }
 
-/// One step of the program, worked out from where the walls stand when it begins.
+/// One step of the program, worked out from where its channels stand when it begins.
 struct Plan {
   std::vector<Ramp> ramps;
-  double duration = -1.0;  ///< [s]; negative while no wall has said
+  double duration = -1.0;  ///< [s]; negative while no channel has said
   std::vector<Condition> conditions;
   std::vector<std::string> ending_events;
   std::vector<int> detaching;  ///< classes that are withdrawn until they are open
@@ -72,7 +78,7 @@ class Drive {
         output_(output),
         y_(system_.unknowns().size()),
         output_state_(y_.size()) {
-    for (const ContactClass& c : scene.classes) held_.push_back({-c.gap, -c.gap, Control::displacement});
+    for (const Channel& channel : scene.channels) held_.push_back(channel.at_rest);
   }
 
   DriveResult run() {
@@ -135,62 +141,54 @@ class Drive {
 
   [[nodiscard]] Plan make_plan() {
     Plan plan;
-    for (std::size_t c = 0; c < scene_.programs.size(); ++c) {
+    for (std::size_t c = 0; c < scene_.channels.size(); ++c) {
       plan.ramps.push_back(held_[c]);
-      if (step_ < scene_.programs[c].size()) add_to_plan(scene_.programs[c][step_], static_cast<int>(c), plan);
+      const std::vector<Step>& program = scene_.channels[c].program;
+      if (step_ < program.size()) add_to_plan(program[step_], static_cast<int>(c), plan);
     }
     return plan;
   }
 
-  void add_to_plan(const Step& step, int contact_class, Plan& plan) {
+  void add_to_plan(const Step& step, int channel, Plan& plan) {
     Ramp& ramp = plan.ramps.back();
     // A ramp starts from the present value of what it controls from here on.
     const auto take_control = [&](Control control) {
       if (ramp.control == control) return;
-      const double present = control == Control::force ? system_.quantity(Quantity::force, contact_class, xi_, y_)
-                                                       : system_.wall_position(contact_class, xi_, y_);
+      const double present = system_.controlled(control, channel, xi_, y_);
       ramp = {present, present, control};
     };
-    switch (step.kind) {
-      case Step::Kind::displacement:
-        take_control(Control::displacement);
-        ramp.end = step.target;
-        break;
-      case Step::Kind::force:
-        take_control(Control::force);
-        ramp.end = step.target;
-        break;
-      case Step::Kind::detach:
-        take_control(Control::displacement);
-        // One apparent radius back: farther than any contact stays closed.
-        ramp.end = ramp.start - system_.quantity(Quantity::apparent_radius, contact_class, xi_, y_);
-        plan.detaching.push_back(contact_class);
-        break;
-      case Step::Kind::hold:
-        break;
+    if (const auto control = control_of(step.kind)) {
+      take_control(*control);
+      ramp.end = step.target;
+    } else if (step.kind == Step::Kind::detach) {
+      take_control(Control::displacement);
+      // One apparent radius back: farther than any contact stays closed.
+      ramp.end = ramp.start - system_.quantity(Quantity::apparent_radius, channel, xi_, y_);
+      plan.detaching.push_back(channel);
     }
-    const double duration = step.duration ? *step.duration : std::abs(ramp.end - ramp.start) / *step.rate;
-    if (plan.duration >= 0.0 &&
-        std::abs(duration - plan.duration) > k_same_duration * std::max(duration, plan.duration)) {
-      throw Stop{fmt::format(
-          "step {}: the walls of class '{}' need {:.6g} s where others need {:.6g} s, and steps end "
-          "together; give equal durations",
-          step_ + 1, scene_.classes[static_cast<std::size_t>(contact_class)].name, duration, plan.duration)};
-    }
-    plan.duration = std::max(plan.duration, duration);
     for (const Until& until : step.until) {
       if (until.quantity == Until::Quantity::event)
         plan.ending_events.push_back(until.event);
       else
-        plan.conditions.push_back({to_quantity(until.quantity), contact_class, until.value});
+        plan.conditions.push_back({to_quantity(until.quantity), channel, until.value});
     }
+    if (!step.duration && !step.rate) return;  // takes as long as the others
+    const double duration = step.duration ? *step.duration : std::abs(ramp.end - ramp.start) / *step.rate;
+    if (plan.duration >= 0.0 &&
+        std::abs(duration - plan.duration) > k_same_duration * std::max(duration, plan.duration)) {
+      throw Stop{
+          fmt::format("step {}: the walls of class '{}' need {:.6g} s where others need {:.6g} s, and steps end "
+                      "together; give equal durations",
+                      step_ + 1, scene_.channels[static_cast<std::size_t>(channel)].name, duration, plan.duration)};
+    }
+    plan.duration = std::max(plan.duration, duration);
   }
 
-  /// What a class keeps when nothing else is said: the end of its ramp, or where that was interrupted. A wall whose
+  /// What a channel keeps when nothing else is said: the end of its ramp, or where that was interrupted. A wall whose
   /// contact has snapped off bears no force any more.
-  [[nodiscard]] Ramp where_it_stands(int contact_class) {
-    const Ramp& ramp = plan_.ramps[static_cast<std::size_t>(contact_class)];
-    const bool is_lost = ramp.control == Control::force && system_.is_open(contact_class);
+  [[nodiscard]] Ramp where_it_stands(int channel) {
+    const Ramp& ramp = plan_.ramps[static_cast<std::size_t>(channel)];
+    const bool is_lost = ramp.control == Control::force && system_.is_open(channel);
     const double value = is_lost ? 0.0 : std::lerp(ramp.start, ramp.end, xi_);
     return {value, value, ramp.control};
   }
@@ -247,10 +245,12 @@ class Drive {
     }
     bool is_met = of_system.size() < fired.size();
     if (!of_system.empty()) {
-      open_instant(xi_);
+      const bool is_seen =
+          std::ranges::any_of(of_system, [this](std::size_t guard) { return !system_.guards()[guard].is_silent; });
+      if (is_seen) open_instant(xi_);
       std::vector<Event> log;
       const auto end = system_.fire(of_system, xi_, y_, log);
-      close_instant(time(xi_), xi_, log);
+      if (is_seen) close_instant(time(xi_), xi_, log);
       if (end) {
         const Finding& finding = end->finding;
         throw Stop{fmt::format("{}{} ({} = {:.9g})", where(xi_), finding.message, finding.quantity, finding.value)};
@@ -371,7 +371,7 @@ class Drive {
   const Output& output_;
   std::vector<double> y_;
   std::vector<double> output_state_;
-  std::vector<Ramp> held_;  ///< where the program has taken the walls
+  std::vector<Ramp> held_;  ///< where the program has taken the channels
 
   std::size_t step_ = 0;
   Plan plan_;

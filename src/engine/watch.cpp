@@ -54,7 +54,7 @@ std::string Watch::name(std::size_t guard) const {
 
 double Watch::excess(const Watched& watched, double xi, std::span<const double> y) {
   const Condition& c = watched.condition;
-  return (system_.quantity(c.quantity, c.contact_class, xi, y) - c.target) / watched.scale;
+  return (system_.quantity(c.quantity, c.channel, xi, y) - c.target) / watched.scale;
 }
 
 void Watch::values(double xi, std::span<const double> y, std::span<double> out) {

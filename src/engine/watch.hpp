@@ -10,10 +10,10 @@
 
 namespace monograin {
 
-/// Ends a step when a quantity of a class reaches a value.
+/// Ends a step when a quantity of a channel reaches a value.
 struct Condition {
   Quantity quantity = Quantity::force;
-  int contact_class = 0;
+  int channel = 0;
   double target = 0.0;  ///< SI
 };
 

@@ -13,7 +13,8 @@ class FigureError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Draws force, pressure, contact area and apparent radius of one or more runs against displacement.
+/// Draws force, pressure, contact area and apparent radius of one or more runs against displacement; of a model without
+/// walls, its own quantities against the one that it is driven through.
 ///
 /// Loading is drawn solid, unloading dashed, reloading dotted; events are open circles named in a legend. Beside the
 /// figure its gnuplot script and data file are kept, from which it can be drawn again.

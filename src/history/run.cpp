@@ -40,8 +40,8 @@ std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
                                                           {"model", scenario.model},
                                                           {"integrator", run.integrator.used},
                                                           {"rtol", fmt::format("{}", scenario.numerics.rtol)},
-                                                          {"atol", fmt::format("{}", scenario.numerics.atol)},
-                                                          {"R0", fmt::format("{}", scenario.radius)}};
+                                                          {"atol", fmt::format("{}", scenario.numerics.atol)}};
+  if (scenario.radius > 0.0) header.emplace_back("R0", fmt::format("{}", scenario.radius));
   for (const auto& [key, symbol] : k_symbols) {
     const auto found = scenario.material.find(std::string(key));
     if (found != scenario.material.end()) header.emplace_back(symbol, fmt::format("{}", found->second));

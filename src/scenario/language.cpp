@@ -64,10 +64,14 @@ constexpr std::array<string_view, 21> k_reserved_material{"ludwik",
                                                           "hardening_modulus",
                                                           "surface_energy",
                                                           "yield_stress"};
-constexpr std::array<string_view, 5> k_reserved_step_keys{"strain", "stress", "lateral_strain", "lateral_stress",
-                                                          "packing_fraction"};
-constexpr std::array<string_view, 6> k_reserved_until_keys{"stress_axial", "stress_lateral", "relative_density",
-                                                           "pressure",     "contact_radius", "apparent_radius"};
+// Keys of steps and conditions of all models, also of those that the language reserves.
+constexpr std::array<string_view, 8> k_step_keys{
+    "displacement", "force", "detach", "strain", "stress", "lateral_strain", "lateral_stress", "packing_fraction"};
+constexpr std::array<string_view, 8> k_until_keys{"force",          "displacement",    "pressure",
+                                                  "contact_radius", "apparent_radius", "stress_axial",
+                                                  "stress_lateral", "relative_density"};
+constexpr std::array<string_view, 6> k_loading_keys{"configuration", "centre", "angle",
+                                                    "oblique_walls", "wall",   "steps"};
 
 bool is_in(std::span<const string_view> words, string_view word) {
   return std::ranges::find(words, word) != words.end();
@@ -261,18 +265,31 @@ KeySpec option_key(const OptionKey& option) {
   return spec;
 }
 
+KeySpec steps_key(string_view meaning) {
+  return {.name = "steps", .meaning = meaning, .kind = Kind::tables, .example = "[[loading.steps]]"};
+}
+
+KeySpec configuration_key(const ModelInfo& model, string_view meaning) {
+  return {.name = "configuration",
+          .meaning = meaning,
+          .kind = Kind::choice,
+          .is_required = true,
+          .choices = words_of(model.configurations),
+          .reserved = words_without(k_configurations, model.configurations),
+          .reserved_where = fmt::format("for model '{}'", model.name)};
+}
+
 std::vector<KeySpec> loading_keys(const ModelInfo& model) {
+  if (!model.has_walls()) {
+    std::vector<KeySpec> keys{steps_key("what is prescribed, one step after another")};
+    if (!model.configurations.empty()) keys.push_back(configuration_key(model, "which way the body is loaded"));
+    return keys;
+  }
   std::vector<string_view> centres{"fixed"};
   if (model.has_free_centre) centres.push_back("equilibrium");
   const std::string for_model = fmt::format("for model '{}'", model.name);
   return {
-      {.name = "configuration",
-       .meaning = "walls around the particle",
-       .kind = Kind::choice,
-       .is_required = true,
-       .choices = words_of(model.configurations),
-       .reserved = words_without(k_configurations, model.configurations),
-       .reserved_where = for_model},
+      configuration_key(model, "walls around the particle"),
       {.name = "centre",
        .meaning = "equilibrium: the centre moves so that the forces balance",
        .kind = Kind::choice,
@@ -299,16 +316,27 @@ std::vector<KeySpec> loading_keys(const ModelInfo& model) {
        .kind = Kind::tables,
        .example = "[[loading.wall]]",
        .only_with = "walls"},
-      {.name = "steps",
-       .meaning = "what the driven walls do, one step after another",
-       .kind = Kind::tables,
-       .example = "[[loading.steps]]"},
+      steps_key("what the driven walls do, one step after another"),
   };
 }
 
-std::vector<KeySpec> until_keys(const ModelInfo& model) {
+KeySpec event_key(const ModelInfo& model) {
   std::vector<string_view> events;
   for (const Term& event : model.events) events.push_back(event.name);
+  return {.name = "event",
+          .meaning = "name of an event",
+          .kind = Kind::choice,
+          .choices = events,
+          .example = model.has_walls() ? "\"contact-lost\"" : fmt::format("\"{}\"", events.front())};
+}
+
+std::vector<KeySpec> until_keys(const ModelInfo& model) {
+  if (!model.has_walls()) {
+    std::vector<KeySpec> keys;
+    for (const QuantityKey& key : model.conditions) keys.push_back(quantity_key(key));
+    keys.push_back(event_key(model));
+    return keys;
+  }
   std::vector<KeySpec> keys{
       {.name = "force",
        .meaning = "force on the wall, compression positive",
@@ -319,11 +347,7 @@ std::vector<KeySpec> until_keys(const ModelInfo& model) {
        .kind = Kind::quantity,
        .dimension = Dimension::length,
        .example = "\"0.4 R0\""},
-      {.name = "event",
-       .meaning = "name of an event",
-       .kind = Kind::choice,
-       .choices = events,
-       .example = "\"contact-lost\""},
+      event_key(model),
   };
   if (!model.has_contact_area) return keys;
   const std::vector<KeySpec> of_area{
@@ -363,24 +387,43 @@ KeySpec rate_key(Dimension dimension, bool is_required) {
           .range = k_positive};
 }
 
-KeySpec until_key() {
+KeySpec until_key(const ModelInfo& model) {
+  const std::vector<KeySpec> conditions = until_keys(model);
   return {.name = "until",
           .meaning = "the step ends when the first of these is met",
           .kind = Kind::table,
           .may_be_empty = false,
-          .example = "{ force = \"0 N\" }"};
+          .example = fmt::format("{{ {} }}", model.has_walls() ? "force = \"0 N\"" : example_line(conditions.front()))};
 }
 
-StepForm ramp_form(StepForm::Kind kind, KeySpec target, Dimension rate) {
+StepForm ramp_form(Step::Kind kind, KeySpec target, Dimension rate, const ModelInfo& model) {
   const string_view key = target.name;
-  return {kind, key, {std::move(target), duration_key(false), rate_key(rate, false), until_key()}, true};
+  return {kind, key, {std::move(target), duration_key(false), rate_key(rate, false), until_key(model)}, true, {}};
+}
+
+KeySpec target_key(const DriveKey& drive, bool is_required) {
+  return {.name = drive.name,
+          .meaning = drive.meaning,
+          .kind = drive.may_take_lateral ? Kind::pair : Kind::quantity,
+          .is_required = is_required,
+          .dimension = drive.dimension,
+          .range = drive.range,
+          .example = std::string(drive.example)};
+}
+
+StepForm drive_form(const DriveKey& drive, const ModelInfo& model) {
+  const Dimension rate = drive.dimension == Dimension::stress ? Dimension::stress_rate : Dimension::strain_rate;
+  StepForm form = ramp_form(ramp_of(drive.control), target_key(drive, true), rate, model);
+  for (const DriveKey& lateral : model.lateral_drives) form.keys.push_back(target_key(lateral, false));
+  form.lateral = model.lateral_drives;
+  return form;
 }
 
 KeySpec mark_key(string_view name, string_view meaning) {
   return {.name = name, .meaning = meaning, .kind = Kind::mark, .is_required = true, .example = "true"};
 }
 
-std::vector<StepForm> step_forms() {
+std::vector<StepForm> step_forms(const ModelInfo& model) {
   KeySpec displacement{.name = "displacement",
                        .meaning = "ramp to this displacement of the wall",
                        .kind = Kind::quantity,
@@ -403,15 +446,22 @@ std::vector<StepForm> step_forms() {
                  .kind = Kind::tables,
                  .is_required = true,
                  .example = "[[loading.steps.steps]]"};
-  return {
-      ramp_form(StepForm::Kind::displacement, std::move(displacement), Dimension::velocity),
-      ramp_form(StepForm::Kind::force, std::move(force), Dimension::force_rate),
-      {StepForm::Kind::hold, "hold", {mark_key("hold", "keep the wall where it is"), duration_key(true), until_key()}},
-      {StepForm::Kind::detach,
-       "detach",
-       {mark_key("detach", "withdraw the wall until contact is lost"), rate_key(Dimension::velocity, true)}},
-      {StepForm::Kind::cycle, "cycle", {std::move(count), std::move(nested)}},
-  };
+  std::vector<StepForm> forms;
+  for (const DriveKey& drive : model.drives) forms.push_back(drive_form(drive, model));
+  if (model.has_walls()) {
+    forms.push_back(ramp_form(Step::Kind::displacement, std::move(displacement), Dimension::velocity, model));
+    forms.push_back(ramp_form(Step::Kind::force, std::move(force), Dimension::force_rate, model));
+  }
+  const string_view hold = model.has_walls() ? "keep the wall where it is" : "keep what is prescribed";
+  forms.push_back({Step::Kind::hold, "hold", {mark_key("hold", hold), duration_key(true), until_key(model)}});
+  if (model.has_walls()) {
+    forms.push_back(
+        {Step::Kind::detach,
+         "detach",
+         {mark_key("detach", "withdraw the wall until contact is lost"), rate_key(Dimension::velocity, true)}});
+  }
+  forms.push_back({std::nullopt, "cycle", {std::move(count), std::move(nested)}});
+  return forms;
 }
 
 // --- keys of other models
@@ -456,11 +506,14 @@ void add_loading(Language& language, const ModelInfo& model) {
   language.loading = loading_keys(model);
   language.wall = wall_keys();
   language.until = until_keys(model);
-  language.steps = step_forms();
+  language.steps = step_forms(model);
+  std::vector<KeySpec> own_step_keys;
+  for (const StepForm& form : language.steps) std::ranges::copy(form.keys, std::back_inserter(own_step_keys));
 
   const std::string unused = fmt::format("is not used by model '{}'", model.name);
-  language.foreign_step_keys = foreign_keys(k_reserved_step_keys, {}, unused);
-  language.foreign_until_keys = foreign_keys(k_reserved_until_keys, language.until, unused);
+  language.foreign_step_keys = foreign_keys(k_step_keys, own_step_keys, unused);
+  language.foreign_until_keys = foreign_keys(k_until_keys, language.until, unused);
+  language.foreign_loading = foreign_keys(k_loading_keys, language.loading, unused);
 }
 
 void add_material_and_options(Language& language, const ModelInfo& model) {
@@ -486,6 +539,11 @@ Language language_of(string_view model) {
   if (is_reserved) return language;
   const ModelInfo* info = find_model(model);
   if (info != nullptr) add_material_and_options(language, *info);
+  if (info != nullptr && !info->has_walls()) {
+    language.particle.clear();
+    std::erase_if(language.root, [](const KeySpec& key) { return key.name == "particle"; });
+    language.foreign_tables.push_back({"particle", fmt::format("is not used by model '{}'", info->name)});
+  }
   add_loading(language, info != nullptr ? *info : k_any_model);
   return language;
 }

@@ -3,6 +3,7 @@
 /// The reader checks files against these tables and the JSON Schema is written from them, so that the two agree.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,6 +26,7 @@ struct KeySpec {
     file,
     integer,
     quantity,   ///< a number in SI, or a text with a unit where the dimension has units
+    pair,       ///< one quantity, or a list of two
     instants,   ///< strictly ascending list of quantities
     direction,  ///< three numbers, not all zero
     texts,      ///< list of texts; a number in it is taken as it is written
@@ -59,11 +61,11 @@ struct ForeignKey {
 
 /// One form of a step: the key it is told by and the keys it may have.
 struct StepForm {
-  enum class Kind { displacement, force, hold, detach, cycle };
-  Kind kind = Kind::hold;
+  std::optional<Step::Kind> kind;  ///< none: a cycle
   std::string_view key;
   std::vector<KeySpec> keys;
   bool takes_duration_or_rate = false;  ///< exactly one of the two
+  std::span<const DriveKey> lateral{};  ///< of which one at most goes with it
 };
 
 inline constexpr int k_most_points = 1'000'000;
@@ -76,7 +78,7 @@ inline constexpr double k_greatest_normal = 1e6;
 struct Language {
   const ModelInfo* model = nullptr;  ///< null: unknown or reserved
   std::vector<KeySpec> root;
-  std::vector<KeySpec> particle;
+  std::vector<KeySpec> particle;  ///< empty where the model has none
   std::vector<KeySpec> material;  ///< empty without a model
   std::vector<KeySpec> options;   ///< empty without a model
   std::vector<KeySpec> ludwik;    ///< the table in `[material]`; empty where the model does not take it
@@ -89,6 +91,7 @@ struct Language {
 
   std::vector<ForeignKey> foreign_tables;  ///< tables of other models
   std::vector<ForeignKey> foreign_material;
+  std::vector<ForeignKey> foreign_loading;
   std::vector<ForeignKey> foreign_step_keys;
   std::vector<ForeignKey> foreign_until_keys;
 };

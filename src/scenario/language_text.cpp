@@ -26,6 +26,7 @@ std::string example_of(const KeySpec& spec) {
     case Kind::identifier:
     case Kind::mark:
     case Kind::file:
+    case Kind::pair:
     case Kind::instants:
     case Kind::direction:
     case Kind::texts:
@@ -72,6 +73,8 @@ std::string expectation(const KeySpec& spec) {
     case Kind::quantity:
       if (spec.dimension == Dimension::none) return describe(spec.dimension, finite_range(spec));
       return fmt::format("{}, for example {}", dimension_info(spec.dimension).noun, example_of(spec));
+    case Kind::pair:
+      return fmt::format("{} or a list of two, for example {}", dimension_info(spec.dimension).noun, example_of(spec));
     case Kind::instants:
       return fmt::format("a list of ascending times, for example {}", example_of(spec));
     case Kind::direction:

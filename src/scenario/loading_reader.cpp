@@ -23,6 +23,8 @@ Configuration to_configuration(const std::string& word) {
   if (word == "hydrostatic") return Configuration::hydrostatic;
   if (word == "oblique-die") return Configuration::oblique_die;
   if (word == "walls") return Configuration::walls;
+  if (word == "triaxial") return Configuration::triaxial;
+  if (word == "strain-path") return Configuration::strain_path;
   return Configuration::simple;
 }
 
@@ -40,7 +42,7 @@ class LoadingReader {
   LoadingReader(Reading& reading, Section::Origin table, const Language& language)
       : reading_(reading),
         language_(language),
-        section_(reading, std::move(table), language.loading),
+        section_(reading, std::move(table), language.loading, language.foreign_loading),
         programs_(reading, language) {}
 
   Loading read() {

@@ -11,21 +11,6 @@ namespace {
 
 constexpr int k_deepest_cycle = 16;
 
-Step::Kind to_step_kind(StepForm::Kind kind) {
-  switch (kind) {
-    case StepForm::Kind::displacement:
-      return Step::Kind::displacement;
-    case StepForm::Kind::force:
-      return Step::Kind::force;
-    case StepForm::Kind::hold:
-    case StepForm::Kind::cycle:
-      break;
-    case StepForm::Kind::detach:
-      return Step::Kind::detach;
-  }
-  return Step::Kind::hold;
-}
-
 Until::Quantity to_until_quantity(std::string_view key) {
   using Quantity = Until::Quantity;
   if (key == "force") return Quantity::force;
@@ -33,6 +18,9 @@ Until::Quantity to_until_quantity(std::string_view key) {
   if (key == "pressure") return Quantity::pressure;
   if (key == "contact_radius") return Quantity::contact_radius;
   if (key == "apparent_radius") return Quantity::apparent_radius;
+  if (key == "stress_axial") return Quantity::stress_axial;
+  if (key == "stress_lateral") return Quantity::stress_lateral;
+  if (key == "relative_density") return Quantity::relative_density;
   return Quantity::event;
 }
 
@@ -71,7 +59,7 @@ std::vector<Step> ProgramReader::read_step(const Section::Origin& table, int dep
     return {};
   }
   const Section section(reading_, table, form->keys, foreign_keys_of(*form));
-  if (form->kind == StepForm::Kind::cycle) return read_cycle(section, depth);
+  if (!form->kind) return read_cycle(section, depth);
   if (form->takes_duration_or_rate) check_duration_or_rate(section);
   return {read_plain_step(section, *form)};
 }
@@ -143,12 +131,35 @@ std::vector<Step> ProgramReader::read_cycle(const Section& section, int depth) {
 Step ProgramReader::read_plain_step(const Section& section, const StepForm& form) {
   Step step;
   step.where = section.place();
-  step.kind = to_step_kind(form.kind);
-  if (form.takes_duration_or_rate) step.target = section.number(form.key).value_or(0.0);
+  step.kind = *form.kind;
+  if (form.takes_duration_or_rate) read_targets(section, form, step);
   step.duration = section.number("duration");
   step.rate = section.number("rate");
   if (section.has("until")) step.until = read_until(section);
   return step;
+}
+
+void ProgramReader::read_targets(const Section& section, const StepForm& form, Step& step) {
+  const bool is_pair = form.keys.front().kind == KeySpec::Kind::pair;
+  const std::vector<double> targets = is_pair ? section.numbers(form.key) : std::vector<double>{};
+  step.target = is_pair ? (targets.empty() ? 0.0 : targets.front()) : section.number(form.key).value_or(0.0);
+  std::string_view first;  // what says what happens in the lateral direction
+  if (targets.size() == 2) {
+    step.lateral = {.kind = step.kind, .target = targets[1]};
+    first = form.key;
+  }
+  for (const DriveKey& key : form.lateral) {
+    if (!section.has(key.name)) continue;
+    if (!first.empty()) {
+      reading_.faults.add(section.key_place(key.name),
+                          fmt::format("key '{}' does not go with '{}', which prescribes the lateral direction already; "
+                                      "expected one of them",
+                                      key.name, first));
+      continue;
+    }
+    step.lateral = {.kind = ramp_of(key.control), .target = section.number(key.name).value_or(0.0)};
+    first = key.name;
+  }
 }
 
 std::vector<Until> ProgramReader::read_until(const Section& step) {

@@ -25,6 +25,7 @@ class ProgramReader {
   [[nodiscard]] std::vector<Step> read_step(const Section::Origin& table, int depth);
   [[nodiscard]] std::vector<Step> read_cycle(const Section& section, int depth);
   [[nodiscard]] Step read_plain_step(const Section& section, const StepForm& form);
+  void read_targets(const Section& section, const StepForm& form, Step& step);
   [[nodiscard]] std::vector<Until> read_until(const Section& step);
   void check_duration_or_rate(const Section& section);
   [[nodiscard]] bool is_within_limit(std::size_t steps, const SourceLocation& where);

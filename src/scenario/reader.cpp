@@ -31,6 +31,7 @@ std::string model_to_check_against(const toml::table& root) {
 }
 
 void read_particle(Reading& reading, const Section& root, const Language& language, Scenario& scenario) {
+  if (language.particle.empty()) return;
   const Section particle(reading, root.table("particle", "[particle]"), language.particle);
   if (const auto radius = particle.number("radius")) {
     scenario.radius = *radius;

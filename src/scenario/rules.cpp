@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -26,6 +27,10 @@ std::string_view configuration_word(Loading::Configuration configuration) {
       return "oblique-die";
     case Loading::Configuration::walls:
       return "walls";
+    case Loading::Configuration::triaxial:
+      return "triaxial";
+    case Loading::Configuration::strain_path:
+      return "strain-path";
   }
   return {};
 }
@@ -41,20 +46,37 @@ SourceLocation place_of_key(const toml::table& tree, const std::string& origin, 
   return {origin};
 }
 
+PlannedStep planned(const Step& step) {
+  PlannedStep result{.may_end_early = !step.until.empty()};
+  if (const auto control = control_of(step.kind)) result.first = {*control, step.target};
+  if (step.lateral) result.lateral = {*control_of(step.lateral->kind), step.lateral->target};
+  return result;
+}
+
 void check_objections(Reading& reading, const toml::table& tree, const std::string& origin, const ModelInfo& model,
                       const Scenario& scenario) {
   std::map<std::string, std::string> choices;
   std::map<std::string, double> numbers;
+  std::map<std::string, bool> toggles;
   for (const auto& [key, value] : scenario.options) {
     if (const auto* word = std::get_if<std::string>(&value)) choices.emplace(key, *word);
     if (const auto* number = std::get_if<double>(&value)) numbers.emplace(key, *number);
+    if (const auto* toggle = std::get_if<bool>(&value)) toggles.emplace(key, *toggle);
   }
+  const std::vector<Step>& steps = scenario.loading.steps;
+  std::vector<PlannedStep> program;
+  if (!model.has_walls()) std::ranges::transform(steps, std::back_inserter(program), planned);
+  const bool has_configuration = !model.configurations.empty();
   const Given given{.material = scenario.material,
                     .choices = choices,
                     .numbers = numbers,
-                    .configuration = configuration_word(scenario.loading.configuration)};
+                    .toggles = toggles,
+                    .configuration = has_configuration ? configuration_word(scenario.loading.configuration) : "",
+                    .program = program};
   for (const Objection& objection : model.objections(given)) {
-    reading.faults.add(place_of_key(tree, origin, model.name, objection.key), objection.message);
+    reading.faults.add(
+        objection.step ? steps[*objection.step].where : place_of_key(tree, origin, model.name, objection.key),
+        objection.message);
   }
 }
 

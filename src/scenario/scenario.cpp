@@ -75,6 +75,41 @@ Scenario ScenarioTemplate::with(const std::vector<std::string>& overrides) const
   }
 }
 
+std::optional<Control> control_of(Step::Kind kind) noexcept {
+  switch (kind) {
+    case Step::Kind::displacement:
+      return Control::displacement;
+    case Step::Kind::force:
+      return Control::force;
+    case Step::Kind::strain:
+      return Control::strain;
+    case Step::Kind::stress:
+      return Control::stress;
+    case Step::Kind::packing_fraction:
+      return Control::packing_fraction;
+    case Step::Kind::hold:
+    case Step::Kind::detach:
+      break;
+  }
+  return std::nullopt;
+}
+
+Step::Kind ramp_of(Control control) noexcept {
+  switch (control) {
+    case Control::displacement:
+      return Step::Kind::displacement;
+    case Control::force:
+      return Step::Kind::force;
+    case Control::strain:
+      return Step::Kind::strain;
+    case Control::stress:
+      return Step::Kind::stress;
+    case Control::packing_fraction:
+      return Step::Kind::packing_fraction;
+  }
+  return Step::Kind::hold;
+}
+
 Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   return parse_scenario(read_file(file), file.string(), overrides);
 }

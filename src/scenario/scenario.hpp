@@ -12,6 +12,8 @@
 #include <variant>
 #include <vector>
 
+#include "walls.hpp"
+
 namespace monograin {
 
 /// A place in a text that a user wrote: a file, or an override given on the command line.
@@ -38,22 +40,44 @@ class ScenarioError : public std::runtime_error {
 
 /// A condition that ends a step before its time. Values in SI.
 struct Until {
-  enum class Quantity { force, displacement, pressure, contact_radius, apparent_radius, event };
+  enum class Quantity {
+    force,
+    displacement,
+    pressure,
+    contact_radius,
+    apparent_radius,
+    stress_axial,
+    stress_lateral,
+    relative_density,
+    event
+  };
   Quantity quantity = Quantity::force;
   double value = 0.0;
   std::string event;  ///< name of the event, where quantity is `event`
 };
 
-/// One step of a wall's program. Cycles are already written out. Exactly one of duration and rate is given.
+/// One step of the program of a wall, a packing or a material point. Cycles are already written out. Of duration and
+/// rate exactly one is given; in a channel that follows another one, none: it takes as long.
 struct Step {
-  enum class Kind { displacement, force, hold, detach };
+  enum class Kind { displacement, force, strain, stress, packing_fraction, hold, detach };
+  /// What is prescribed in the lateral direction.
+  struct Lateral {
+    Kind kind = Kind::strain;
+    double target = 0.0;  ///< [SI]
+  };
   Kind kind = Kind::hold;
-  double target = 0.0;             ///< of a ramp: displacement [m] or force [N] at its end
+  double target = 0.0;             ///< of a ramp: what its end prescribes [SI]
   std::optional<double> duration;  ///< [s], > 0
-  std::optional<double> rate;      ///< [m/s] or [N/s], > 0
+  std::optional<double> rate;      ///< of the ramp [SI], > 0
   std::vector<Until> until;
   SourceLocation where;
+  std::optional<Lateral> lateral{};  ///< of a material point; none: what is prescribed there is kept
 };
+
+/// What a ramp controls; none for a hold or a withdrawal.
+[[nodiscard]] std::optional<Control> control_of(Step::Kind kind) noexcept;
+/// The ramp that controls it.
+[[nodiscard]] Step::Kind ramp_of(Control control) noexcept;
 
 struct WallSpec {
   std::string name;
@@ -65,7 +89,7 @@ struct WallSpec {
 };
 
 struct Loading {
-  enum class Configuration { simple, die, hydrostatic, oblique_die, walls };
+  enum class Configuration { simple, die, hydrostatic, oblique_die, walls, triaxial, strain_path };
   Configuration configuration = Configuration::simple;
   bool centre_is_free = false;  ///< centre = "equilibrium"
   double oblique_angle = 0.0;   ///< [rad]
@@ -101,7 +125,7 @@ struct Scenario {
   std::vector<std::string> overrides;
   std::string title;
   std::string model;
-  double radius = 0.0;                         ///< initial radius [m]
+  double radius = 0.0;                         ///< initial radius [m]; 0 where the model has no particle
   std::map<std::string, double> material;      ///< SI, every key of the model (defaults filled in)
   std::map<std::string, OptionValue> options;  ///< table named after the model, defaults filled in
   std::map<std::string, SampledCurve> curves;  ///< by option: what the files hold that options name

@@ -70,9 +70,21 @@ class ModelSchema {
     for (const StepForm& form : language_.steps) {
       json schema = table_schema(form.keys, contents);
       if (form.takes_duration_or_rate) schema["oneOf"] = exactly_one_of("duration", "rate");
+      for (const DriveKey& key : form.lateral) add_exclusions(schema, form, key);
       forms.push_back(std::move(schema));
     }
     return {{"oneOf", std::move(forms)}};
+  }
+
+  /// A lateral key stands alone, and not beside a pair.
+  static void add_exclusions(json& schema, const StepForm& form, const DriveKey& key) {
+    json others = json::array();
+    for (const DriveKey& other : form.lateral) {
+      if (other.name != key.name) others.push_back({{"required", {other.name}}});
+    }
+    const json is_pair{{"properties", {{form.key, {{"type", "array"}}}}}, {"required", {form.key}}};
+    others.push_back(is_pair);
+    schema["allOf"].push_back({{"not", {{"required", {key.name}}, {"anyOf", std::move(others)}}}});
   }
 
   [[nodiscard]] json wall() const {
@@ -83,10 +95,11 @@ class ModelSchema {
 
   /// One alternative for each configuration that has keys of its own, and one for all others.
   [[nodiscard]] json loading() const {
-    const KeySpec& configuration = *find_key(language_.loading, "configuration");
+    const KeySpec* configuration = find_key(language_.loading, "configuration");
+    if (configuration == nullptr) return loading_of({});
     std::vector<std::string_view> common;
     json alternatives = json::array();
-    for (const std::string_view word : configuration.choices) {
+    for (const std::string_view word : configuration->choices) {
       const auto is_its_own = [&](const KeySpec& spec) { return spec.only_with == word; };
       if (std::ranges::any_of(language_.loading, is_its_own)) {
         alternatives.push_back(loading_of({word}));
@@ -106,7 +119,7 @@ class ModelSchema {
       if (spec.name == "configuration") keys.back().choices = configurations;
     }
     json schema = table_schema(keys, {{"wall", wall()}, {"steps", reference("step")}});
-    if (configurations.front() == "walls") {
+    if (!configurations.empty() && configurations.front() == "walls") {
       add_rules_of_walls(schema);
     } else {
       schema["required"].push_back("steps");
@@ -146,7 +159,12 @@ class ModelSchema {
                             {name_, table_schema(language_.options)}};
     json schema = table_schema(language_.root, contents);
     schema["properties"]["model"]["enum"] = {name_};
-    schema["required"] = {"model", "particle", "material", "loading"};
+    schema["required"] = {"model", "loading"};
+    if (!language_.particle.empty()) schema["required"].push_back("particle");
+    const auto is_required = [](const KeySpec& key) { return key.is_required; };
+    if (!language_.ludwik.empty() || std::ranges::any_of(language_.material, is_required)) {
+      schema["required"].push_back("material");
+    }
     return schema;
   }
 

@@ -112,6 +112,9 @@ json kind_schema(const KeySpec& spec, const json& content) {
       return integer(spec);
     case Kind::quantity:
       return quantity(spec);
+    case Kind::pair:
+      return {{"anyOf",
+               {quantity(spec), {{"type", "array"}, {"items", quantity(spec)}, {"minItems", 2}, {"maxItems", 2}}}}};
     case Kind::instants:
       return {{"type", "array"}, {"items", quantity(spec)}, {"minItems", 1}, {"uniqueItems", true}};
     case Kind::direction:

@@ -153,6 +153,8 @@ std::optional<Section::Value> Section::read(const KeySpec& spec, const toml::nod
       return read_integer(spec, node);
     case Kind::quantity:
       return read_quantity(spec, node);
+    case Kind::pair:
+      return read_pair(spec, node);
     case Kind::instants:
       return read_instants(spec, node);
     case Kind::direction:
@@ -220,6 +222,20 @@ std::optional<double> Section::read_quantity(const KeySpec& spec, const toml::no
     return fault(spec, node, "out of range; expected " + describe(spec.dimension, range));
   }
   return value;
+}
+
+std::optional<Section::Value> Section::read_pair(const KeySpec& spec, const toml::node& node) {
+  const auto* array = node.as_array();
+  if (array == nullptr) {
+    const std::optional<double> single = read_quantity(spec, node);
+    return single ? std::optional<Value>(std::vector<double>{*single}) : std::nullopt;
+  }
+  if (array->size() != 2) return unexpected(spec, node);
+  std::vector<double> values;
+  for (const toml::node& entry : *array) {
+    if (const auto value = read_quantity(spec, entry)) values.push_back(*value);
+  }
+  return values.size() == 2 ? std::optional<Value>(std::move(values)) : std::nullopt;
 }
 
 std::optional<Section::Value> Section::read_instants(const KeySpec& spec, const toml::node& node) {

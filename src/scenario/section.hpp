@@ -77,6 +77,7 @@ class Section {
   [[nodiscard]] std::optional<Value> read_toggle(const KeySpec& spec, const toml::node& node);
   [[nodiscard]] std::optional<double> read_integer(const KeySpec& spec, const toml::node& node);
   [[nodiscard]] std::optional<double> read_quantity(const KeySpec& spec, const toml::node& node);
+  [[nodiscard]] std::optional<Value> read_pair(const KeySpec& spec, const toml::node& node);
   [[nodiscard]] std::optional<Value> read_instants(const KeySpec& spec, const toml::node& node);
   [[nodiscard]] std::optional<Value> read_direction(const KeySpec& spec, const toml::node& node);
   [[nodiscard]] std::optional<Value> read_texts(const KeySpec& spec, const toml::node& node);

@@ -42,10 +42,12 @@ constexpr std::array k_force_rates{
     Unit{"N/s", 1.0},   Unit{"kN/s", 1e3},  Unit{"MN/s", 1e6},  Unit{"mN/s", 1e-3},
     Unit{"uN/s", 1e-6}, Unit{"µN/s", 1e-6}, Unit{"μN/s", 1e-6}, Unit{"nN/s", 1e-9},
 };
+constexpr std::array k_strain_rates{Unit{"1/s", 1.0}, Unit{"%/s", 1e-2}, Unit{"1/min", 1.0 / 60.0}};
+constexpr std::array k_stress_rates{Unit{"Pa/s", 1.0}, Unit{"kPa/s", 1e3}, Unit{"MPa/s", 1e6}, Unit{"GPa/s", 1e9}};
 constexpr std::array k_angles{Unit{"deg", std::numbers::pi / 180.0}, Unit{"rad", 1.0}};
 
 // Wide enough for a nanometre grain and a kilometre one, from gels to diamond, and for durations over 24 decades.
-const std::array<DimensionInfo, 9> k_dimensions{{
+const std::array<DimensionInfo, 11> k_dimensions{{
     {Dimension::none, "a number", "", "0.3", "", 0.0, 1e100, {}},
     {Dimension::length, "a length", "m", "\"10 mm\"", "R0", 1e-12, 1e6, k_lengths},
     {Dimension::stress, "a stress", "Pa", "\"50 MPa\"", "", 1e-6, 1e18, k_stresses},
@@ -55,6 +57,8 @@ const std::array<DimensionInfo, 9> k_dimensions{{
     {Dimension::velocity, "a velocity", "m/s", "\"1 mm/s\"", "R0/s", 1e-30, 1e24, k_velocities},
     {Dimension::force_rate, "a force rate", "N/s", "\"1 N/s\"", "", 1e-48, 1e45, k_force_rates},
     {Dimension::angle, "an angle", "rad", "\"37.5 deg\"", "", 1e-9, 1e3, k_angles},
+    {Dimension::strain_rate, "a strain rate", "1/s", "\"0.1 1/s\"", "", 1e-30, 1e30, k_strain_rates},
+    {Dimension::stress_rate, "a stress rate", "Pa/s", "\"1 MPa/s\"", "", 1e-24, 1e33, k_stress_rates},
 }};
 
 std::string_view trimmed(std::string_view text) {

@@ -8,10 +8,12 @@
 #include "elastic/hertz.hpp"
 #include "elastic/nonlocal_system.hpp"
 #include "mdr/system.hpp"
+#include "packing/system.hpp"
 #include "plastic/system.hpp"
 #include "scene/choice.hpp"
 #include "scene/compressible_law.hpp"
 #include "scene/nonlocal_model.hpp"
+#include "scene/packing_law.hpp"
 #include "scene/plastic_law.hpp"
 #include "scene/pressure_curve.hpp"
 #include "scene/scene.hpp"
@@ -124,7 +126,19 @@ std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<C
   if (scenario.model == "compressible") {
     return std::make_unique<compressible::ContactSystem>(compressible_settings(scenario, reach), std::move(classes));
   }
+  if (scenario.model == "packing") {
+    const packing::Law law = packing_law_of(scenario);
+    return std::make_unique<packing::System>(law, initial_packing_fraction_of(scenario, law));
+  }
   throw std::logic_error(fmt::format("model '{}' is in the catalogue but not bound", scenario.model));
+}
+
+std::vector<Channel> channels_without_walls(const Scenario& scenario) {
+  if (scenario.model == "packing") {
+    const double initial = initial_packing_fraction_of(scenario, packing_law_of(scenario));
+    return {{"packing", {initial, initial, Control::packing_fraction}, scenario.loading.steps}};
+  }
+  throw std::logic_error(fmt::format("model '{}' has neither walls nor channels", scenario.model));
 }
 
 }  // namespace monograin

@@ -29,8 +29,8 @@ std::optional<double> nonlocal_limit_of(const Scenario& scenario) {
   for (std::size_t c = 0; c < scene.classes.size(); ++c) {
     const double start = -scene.classes[c].gap / scenario.radius;
     ramps.push_back({start, start, Control::displacement});
-    if (scene.programs[c].empty()) continue;
-    const Step& step = scene.programs[c].front();
+    if (scene.channels[c].program.empty()) continue;
+    const Step& step = scene.channels[c].program.front();
     if (step.kind == Step::Kind::force) return std::nullopt;
     if (step.kind != Step::Kind::displacement) continue;
     ramps.back().end = step.target / scenario.radius;

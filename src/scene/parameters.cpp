@@ -9,6 +9,7 @@
 #include "mdr/contact.hpp"
 #include "scene/compressible_law.hpp"
 #include "scene/nonlocal_model.hpp"
+#include "scene/packing_law.hpp"
 #include "scene/plastic_law.hpp"
 #include "scene/pressure_curve.hpp"
 
@@ -163,10 +164,36 @@ void add_compressible(const Scenario& scenario, List& list) {
   list.push_back({"separation", curve.separation(), "-", "d0 from 0.5"});
 }
 
+void add_packing(const Scenario& scenario, List& list) {
+  const packing::Law law = packing_law_of(scenario);
+  add_material(scenario, {{"youngs_modulus", "Pa"}, {"poisson_ratio", "-"}}, list);
+  if (law.given.plasticity) add_material(scenario, {{"yield_stress", "Pa"}, {"hardening_modulus", "Pa"}}, list);
+  list.push_back({"shear_modulus", law.shear_modulus, "Pa", "G"});
+  list.push_back({"bulk_modulus", law.bulk_modulus, "Pa", "K"});
+  list.push_back({"modulus_at_one", law.modulus_at_one, "Pa", "M"});
+  list.push_back({"critical_porosity", law.given.critical_porosity, "-", "p_c"});
+  list.push_back({"c2", law.given.strain_offset, "-"});
+  list.push_back({"jamming", law.jamming, "-", "Phi_J"});
+  list.push_back({"initial_packing_fraction", initial_packing_fraction_of(scenario, law), "-"});
+  const packing::State state = packing::state(law, law.jamming);
+  list.push_back({"jamming_strain", state.strain, "-", "e(Phi_J)"});
+  list.push_back({"jamming_stress", state.stress, "Pa", "sigma(Phi_J)"});
+  const packing::Branch strain = packing::growing_branch(law, packing::Measure::strain);
+  list.push_back({"greatest_strain", strain.greatest, "-"});
+  list.push_back({"greatest_strain_fraction", strain.end, "-"});
+  const packing::Branch stress = packing::growing_branch(law, packing::Measure::stress);
+  list.push_back({"greatest_stress", stress.greatest, "Pa"});
+  list.push_back({"greatest_stress_fraction", stress.end, "-"});
+  if (!law.given.plasticity) return;
+  list.push_back({"softening_fraction", packing::softening(law), "-"});
+  list.push_back({"fully_plastic_fraction", packing::full_plasticity(law), "-"});
+}
+
 }  // namespace
 
 std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
-  List list{{"radius", scenario.radius, "m"}};
+  List list;
+  if (scenario.radius > 0.0) list.push_back({"radius", scenario.radius, "m"});
   if (scenario.model == "hertz" || scenario.model == "mdr") {
     add_mdr(scenario, list);
     return list;
@@ -177,6 +204,10 @@ std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
   }
   if (scenario.model == "compressible") {
     add_compressible(scenario, list);
+    return list;
+  }
+  if (scenario.model == "packing") {
+    add_packing(scenario, list);
     return list;
   }
   add_material(scenario,

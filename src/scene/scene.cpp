@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catalogue.hpp"
+
 namespace monograin {
 namespace {
 
@@ -62,21 +64,57 @@ std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::
   return names;
 }
 
-double largest_target(const std::vector<std::vector<Step>>& programs, Step::Kind kind) {
+double largest_target(const std::vector<Channel>& channels, Step::Kind kind) {
   double largest = 0.0;
-  for (const auto& program : programs) {
-    for (const Step& step : program) {
+  for (const Channel& channel : channels) {
+    for (const Step& step : channel.program) {
       if (step.kind == kind) largest = std::max(largest, std::abs(step.target));
     }
   }
   return largest;
 }
 
+/// Contact classes of the walls and their channels.
+void add_walls(const Scenario& scenario, bool merges_walls, Scene& scene) {
+  const std::vector<Wall> walls = make_walls(scenario);
+  std::vector<std::size_t> class_of(walls.size());
+  if (merges_walls) {
+    class_of = symmetry_classes(walls);
+  } else {
+    for (std::size_t i = 0; i < walls.size(); ++i) class_of[i] = i;
+  }
+  const std::size_t class_count = walls.empty() ? 0 : *std::ranges::max_element(class_of) + 1;
+  std::vector<std::size_t> first_wall(class_count, walls.size());
+  for (std::size_t i = walls.size(); i-- > 0;) first_wall[class_of[i]] = i;
+
+  scene.classes.resize(class_count);
+  scene.walls.resize(class_count);
+  const std::vector<std::string> names = class_names(walls, first_wall);
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    scene.classes[class_of[i]].normals.push_back(walls[i].normal);
+    scene.walls[class_of[i]].push_back(walls[i].name);
+  }
+  for (std::size_t c = 0; c < class_count; ++c) {
+    scene.classes[c].name = names[c];
+    scene.classes[c].gap = walls[first_wall[c]].gap;
+    const double start = -scene.classes[c].gap;
+    scene.channels.push_back({names[c], {start, start, Control::displacement}, walls[first_wall[c]].steps});
+    scene.classes[c].takes_force =
+        std::ranges::any_of(scene.channels[c].program, [](const Step& step) { return step.kind == Step::Kind::force; });
+  }
+  if (class_count < walls.size()) {
+    std::vector<std::string> parts;
+    for (const ContactClass& c : scene.classes) parts.push_back(fmt::format("{} x{}", c.name, c.normals.size()));
+    scene.skipped.push_back(fmt::format("{} of {} walls, the same by symmetry: {}", walls.size() - class_count,
+                                        walls.size(), fmt::join(parts, ", ")));
+  }
+}
+
 }  // namespace
 
 std::size_t Scene::step_count() const noexcept {
   std::size_t count = 0;
-  for (const auto& program : programs) count = std::max(count, program.size());
+  for (const Channel& channel : channels) count = std::max(count, channel.program.size());
   return count;
 }
 
@@ -92,46 +130,20 @@ std::vector<Wall> make_walls(const Scenario& scenario) {
 }
 
 Scene make_scene(const Scenario& scenario, bool merges_walls) {
-  const std::vector<Wall> walls = make_walls(scenario);
-  std::vector<std::size_t> class_of(walls.size());
-  if (merges_walls) {
-    class_of = symmetry_classes(walls);
-  } else {
-    for (std::size_t i = 0; i < walls.size(); ++i) class_of[i] = i;
-  }
-  const std::size_t class_count = walls.empty() ? 0 : *std::ranges::max_element(class_of) + 1;
-  std::vector<std::size_t> first_wall(class_count, walls.size());
-  for (std::size_t i = walls.size(); i-- > 0;) first_wall[class_of[i]] = i;
-
+  const bool has_walls = find_model(scenario.model)->has_walls();
   Scene scene;
-  scene.classes.resize(class_count);
-  scene.walls.resize(class_count);
-  const std::vector<std::string> names = class_names(walls, first_wall);
-  for (std::size_t i = 0; i < walls.size(); ++i) {
-    scene.classes[class_of[i]].normals.push_back(walls[i].normal);
-    scene.walls[class_of[i]].push_back(walls[i].name);
-  }
-  for (std::size_t c = 0; c < class_count; ++c) {
-    scene.classes[c].name = names[c];
-    scene.classes[c].gap = walls[first_wall[c]].gap;
-    scene.programs.push_back(walls[first_wall[c]].steps);
-    scene.classes[c].takes_force =
-        std::ranges::any_of(scene.programs[c], [](const Step& step) { return step.kind == Step::Kind::force; });
-  }
-  if (class_count < walls.size()) {
-    std::vector<std::string> parts;
-    for (const ContactClass& c : scene.classes) parts.push_back(fmt::format("{} x{}", c.name, c.normals.size()));
-    scene.skipped.push_back(fmt::format("{} of {} walls, the same by symmetry: {}", walls.size() - class_count,
-                                        walls.size(), fmt::join(parts, ", ")));
-  }
+  if (has_walls)
+    add_walls(scenario, merges_walls, scene);
+  else
+    scene.channels = channels_without_walls(scenario);
   scene.system = bind_model(scenario, scene.classes,
-                            {.displacement = largest_target(scene.programs, Step::Kind::displacement),
-                             .force = largest_target(scene.programs, Step::Kind::force)});
+                            {.displacement = largest_target(scene.channels, Step::Kind::displacement),
+                             .force = largest_target(scene.channels, Step::Kind::force)});
 
   const auto unknowns = scene.system->unknowns();
   const auto is_algebraic = [](const Unknown& u) { return u.kind == Unknown::Kind::algebraic; };
   const bool takes_force = std::ranges::any_of(scene.classes, &ContactClass::takes_force);
-  if (!takes_force && std::ranges::none_of(unknowns, is_algebraic)) {
+  if (has_walls && !takes_force && std::ranges::none_of(unknowns, is_algebraic)) {
     scene.skipped.emplace_back(scenario.loading.centre_is_free
                                    ? "algebraic unknowns: by symmetry the wall forces balance on the centre at rest"
                                    : "algebraic unknowns: displacements are prescribed and the centre is fixed");

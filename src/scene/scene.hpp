@@ -20,10 +20,18 @@ struct Wall {
   std::vector<Step> steps;                            ///< empty: fixed
 };
 
+/// What the program prescribes one value of at a time: the walls of a contact class; a packing; the axial or the
+/// lateral direction of a material point.
+struct Channel {
+  std::string name;           ///< for messages; that of the contact class
+  Ramp at_rest;               ///< before the first step
+  std::vector<Step> program;  ///< empty: nothing changes
+};
+
 struct Scene {
-  std::vector<ContactClass> classes;
+  std::vector<ContactClass> classes;            ///< empty where the model has no walls
   std::vector<std::vector<std::string>> walls;  ///< names of each class's walls
-  std::vector<std::vector<Step>> programs;      ///< one per class; empty: fixed
+  std::vector<Channel> channels;                ///< those of the contact classes in their order, where there are walls
   std::vector<std::string> skipped;             ///< what is not computed because the scene does not need it
   std::unique_ptr<HybridSystem> system;
 
@@ -48,7 +56,10 @@ struct Reach {
   double force = 0.0;         ///< [N]
 };
 
-/// The model of a scenario over given classes.
+/// Channels of a scenario whose model has no walls.
+[[nodiscard]] std::vector<Channel> channels_without_walls(const Scenario& scenario);
+
+/// The model of a scenario over given classes, which are empty where it has no walls.
 [[nodiscard]] std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<ContactClass> classes,
                                                        const Reach& reach);
 

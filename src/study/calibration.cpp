@@ -16,6 +16,8 @@ namespace {
 
 constexpr double k_direct_noise = 1e-13;     // of a response without time integration
 constexpr std::size_t k_curve_points = 400;  // of the curve between the data
+constexpr double k_high_correlation = 0.95;  // of two parameters
+constexpr double k_poor = 0.1;               // relative standard error
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Relative error of the responses.
@@ -36,13 +38,12 @@ std::vector<double> refined(std::span<const double> x) {
   return result;
 }
 
-/// The response as the residuals of a problem, with the parameters of a fit.
-class Responses {
+/// The response of one curve's scenario as the residuals of a problem, with the parameters of a fit.
+class Response {
  public:
-  Responses(const Calibration& calibration, const std::vector<double>& x)
+  Response(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<double>& x)
       : calibration_(calibration),
-        replay_(calibration.scenario,
-                {calibration.x.observable, calibration.y.observable, calibration.control, calibration.start}, x) {}
+        replay_(curve.scenario, {curve.driven, calibration.y.observable, curve.control, curve.start}, x) {}
 
   bool operator()(std::span<const double> parameters, std::span<double> response) {
     for (std::size_t k = 0; k < parameters.size(); ++k) replay_.set(calibration_.free[k].key.path, parameters[k]);
@@ -56,13 +57,24 @@ class Responses {
   Replay replay_;
 };
 
+/// A curve's share of values that are kept row by row.
+template <class T>
+std::span<T> rows_of(std::vector<T>& values, const MeasuredCurve& curve) {
+  return std::span(values).subspan(curve.begin, curve.end - curve.begin);
+}
+
+std::vector<double> x_of(const Calibration& calibration, const MeasuredCurve& curve) {
+  const auto begin = calibration.x.values.begin();
+  return {begin + static_cast<std::ptrdiff_t>(curve.begin), begin + static_cast<std::ptrdiff_t>(curve.end)};
+}
+
 class Fit {
  public:
   Fit(const Calibration& calibration, const LeastSquaresProblem::Progress& progress)
-      : calibration_(calibration),
-        procedures_(model_fits(calibration)),
-        responses_(calibration, calibration.x.values),
-        response_(calibration.x.values.size()) {
+      : calibration_(calibration), procedures_(model_fits(calibration)), response_(calibration.x.values.size()) {
+    for (const MeasuredCurve& curve : calibration.curves) {
+      responses_.emplace_back(calibration, curve, x_of(calibration, curve));
+    }
     for (std::size_t row = 0; row < calibration.weights.size(); ++row) {
       if (calibration.weights[row] > 0.0) rows_.push_back(row);
     }
@@ -73,7 +85,7 @@ class Fit {
     problem_.noise = noise_of(calibration.scenario);
     problem_.progress = progress;
     problem_.residuals = [this](std::span<const double> parameters, std::span<double> residuals) {
-      if (!responses_(parameters, response_)) return false;
+      if (failing(parameters) < responses_.size()) return false;
       for (std::size_t i = 0; i < rows_.size(); ++i) {
         const std::size_t row = rows_[i];
         residuals[i] = calibration_.weights[row] * (calibration_.y.values[row] - response_[row]);
@@ -96,10 +108,15 @@ class Fit {
     }
     result.uncertainty = uncertainty_of(problem_, result.solution, residual_jacobian(problem_, parameters),
                                         rows_.size(), calibration_.confidence);
-    result.fit = curve_through(calibration_.x.values, result);
-    result.curve = curve_through(refined(calibration_.x.values), result);
+    for (const MeasuredCurve& curve : calibration_.curves) {
+      const std::vector<double> x = x_of(calibration_, curve);
+      append(curve_through(curve, x, result), result.fit);
+      result.curves.push_back(curve_through(curve, refined(x), result));
+    }
     result.points = rows_.size();
-    result.program_steps = responses_.replay().scenario().loading.steps.size();
+    for (const Response& response : responses_) {
+      result.program_steps += response.replay().scenario().loading.steps.size();
+    }
     add_statistics(result);
     add_notes(result);
     return result;
@@ -116,29 +133,46 @@ class Fit {
     }
   }
 
+  /// Runs all curves. @return the first that cannot be followed; their number where all can
+  std::size_t failing(std::span<const double> parameters) {
+    for (std::size_t c = 0; c < responses_.size(); ++c) {
+      if (!responses_[c](parameters, rows_of(response_, calibration_.curves[c]))) return c;
+    }
+    return responses_.size();
+  }
+
+  static void append(const FittedCurve& part, FittedCurve& whole) {
+    whole.x.insert(whole.x.end(), part.x.begin(), part.x.end());
+    whole.y.insert(whole.y.end(), part.y.begin(), part.y.end());
+    whole.band.insert(whole.band.end(), part.band.begin(), part.band.end());
+  }
+
   /// No place of the scan has a response: says what happens in the middle of the bounds.
   [[noreturn]] void no_response() {
     std::vector<double> middle;
     for (const FreeParameter& parameter : calibration_.free)
       middle.push_back(std::midpoint(parameter.lower, parameter.upper));
-    static_cast<void>(responses_(middle, response_));
-    const Replay& replay = responses_.replay();
+    // Where the middle can be followed, the corners could not.
+    const std::size_t failed = failing(middle) % responses_.size();
+    const Replay& replay = responses_[failed].replay();
+    const MeasuredCurve& curve = calibration_.curves[failed];
     throw_fault(
-        {calibration_.data_file, calibration_.lines[replay.failed_at()]},
+        {curve.file, calibration_.lines[curve.begin + replay.failed_at()]},
         fmt::format("the scenario cannot follow the data beyond this row with any parameters that were tried: {}; "
                     "expected other bounds, or data that model '{}' can follow",
                     replay.problem(), calibration_.scenario.model));
   }
 
-  [[nodiscard]] FittedCurve curve_through(const std::vector<double>& x, const CalibrationResult& result) {
-    Responses responses(calibration_, x);
+  [[nodiscard]] FittedCurve curve_through(const MeasuredCurve& measured, const std::vector<double>& x,
+                                          const CalibrationResult& result) {
+    Response response_through(calibration_, measured, x);
     LeastSquaresProblem problem = problem_;
     problem.residual_count = x.size();
-    problem.residuals = [&responses](std::span<const double> parameters, std::span<double> response) {
-      return responses(parameters, response);
+    problem.residuals = [&response_through](std::span<const double> parameters, std::span<double> response) {
+      return response_through(parameters, response);
     };
     FittedCurve curve{x, std::vector<double>(x.size(), k_nan), std::vector<double>(x.size(), k_nan)};
-    if (!responses(result.solution.parameters, curve.y)) return curve;
+    if (!response_through(result.solution.parameters, curve.y)) return curve;
     const Eigen::MatrixXd gradients = residual_jacobian(problem, result.solution.parameters);
     for (std::size_t i = 0; i < x.size(); ++i) {
       curve.band[i] = result.uncertainty.half_width(gradients.row(static_cast<Eigen::Index>(i)).transpose());
@@ -195,18 +229,42 @@ class Fit {
       note(fmt::format("{} of {} trial runs ended early, outside the model's domain, and were passed over",
                        solution.failures, solution.evaluations));
     }
-    const std::vector<double>& x = calibration_.x.values;
-    const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
-    if (changed != x.end() && *changed < x.front() && x.front() > calibration_.start) {
-      note("the data begin with unloading; the particle is loaded to their first row from rest");
+    for (const MeasuredCurve& curve : calibration_.curves) {
+      const std::vector<double> x = x_of(calibration_, curve);
+      const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
+      if (changed != x.end() && *changed < x.front() && x.front() > curve.start) {
+        note("the data begin with unloading; the particle is loaded to their first row from rest");
+      }
+    }
+    note_correlations(result);
+  }
+
+  /// Pairs of parameters of which the data tell little more than a combination.
+  void note_correlations(CalibrationResult& result) const {
+    for (std::size_t i = 0; i < calibration_.free.size(); ++i) {
+      for (std::size_t j = i + 1; j < calibration_.free.size(); ++j) {
+        const double correlation = result.uncertainty.correlation(i, j);
+        if (!(std::abs(correlation) > k_high_correlation)) continue;
+        // The one of which the data know less.
+        const auto relative = [&](std::size_t k) {
+          return result.uncertainty.standard_error(k) / std::abs(result.solution.parameters[k]);
+        };
+        const std::size_t poor = relative(i) > relative(j) ? i : j;
+        if (!(relative(poor) > k_poor)) continue;
+        result.notes.push_back(fmt::format(
+            "the data determine '{}' poorly, to {:.0f} %: its correlation with '{}' is {:.3f}; hold one of them if it "
+            "is known otherwise",
+            calibration_.free[poor].key.path, 100.0 * relative(poor), calibration_.free[i + j - poor].key.path,
+            correlation));
+      }
     }
   }
 
   const Calibration& calibration_;
   ModelFits procedures_;
-  Responses responses_;
-  std::vector<double> response_;   ///< in every row
-  std::vector<std::size_t> rows_;  ///< that take part
+  std::vector<Response> responses_;  ///< of the curves
+  std::vector<double> response_;     ///< in every row
+  std::vector<std::size_t> rows_;    ///< that take part
   LeastSquaresProblem problem_;
 };
 

@@ -33,7 +33,20 @@ struct MeasuredQuantity {
   std::vector<double> values;
 };
 
-/// A calibration file with all that it names, checked.
+/// One of the measured curves: rows of the data, and the scenario that follows them.
+struct MeasuredCurve {
+  std::size_t begin = 0;  ///< its rows among all
+  std::size_t end = 0;
+  std::string file;
+  std::string text;
+  std::vector<std::string> overrides;  ///< of the scenario, for this curve
+  Scenario scenario;                   ///< with them
+  std::string driven;                  ///< observable that x holds
+  Step::Kind control = Step::Kind::displacement;
+  double start = 0.0;  ///< of x, before the first step [SI]
+};
+
+/// A calibration file with all that it names, checked. The rows of its curves follow one another.
 struct Calibration {
   std::string name;  ///< of the file, without folder and extension
   std::string file;
@@ -41,22 +54,24 @@ struct Calibration {
   std::string title;
   Scenario scenario;  ///< with its own steps
   std::string scenario_text;
-  std::string data_file;
-  std::string data_text;
+  std::vector<MeasuredCurve> curves;  ///< at least one
   MeasuredQuantity x;
   MeasuredQuantity y;
   std::string weighting;           ///< absolute, relative, column, area
   std::vector<double> weights;     ///< factors of y's residuals [1/SI], >= 0; 0: a row that only drives
-  std::vector<std::size_t> lines;  ///< of the rows in the data file
+  std::vector<std::size_t> lines;  ///< of the rows in their data file
   std::vector<FreeParameter> free;
   LossFunction loss;
   double confidence = 0.95;
-  Step::Kind control = Step::Kind::displacement;
-  double start = 0.0;  ///< of x, before the first step [SI]
 
   /// Rows that take part in the fit.
   [[nodiscard]] std::size_t counted() const noexcept;
+  /// The curve that a row is of.
+  [[nodiscard]] const MeasuredCurve& curve_of(std::size_t row) const noexcept;
 };
+
+/// Names of the data's files, without their folders.
+[[nodiscard]] std::string data_names(const Calibration& calibration);
 
 /// Reads and checks a calibration file, its scenario and its data.
 /// @throws ScenarioError with all faults of all three
@@ -72,17 +87,17 @@ struct FittedCurve {
 struct CalibrationResult {
   LeastSquaresSolution solution;
   Uncertainty uncertainty;
-  ModelFits procedures;            ///< of the model's own, and this fit by their measures; empty: it has none
-  FittedCurve fit;                 ///< at the data
-  FittedCurve curve;               ///< in between, too
-  std::size_t points = 0;          ///< rows that take part
-  std::size_t program_steps = 0;   ///< of the loading made from the data
-  double sum_of_squares = 0.0;     ///< of weighted residuals
-  double rms = 0.0;                ///< of residuals [SI of y], over all rows that take part
-  double largest = 0.0;            ///< of their magnitudes
-  std::size_t largest_at = 0;      ///< its row
-  double r_squared = 0.0;          ///< 1 - sum (y - fit)^2 / sum (y - mean)^2, unweighted
-  std::vector<std::string> notes;  ///< what the user should know
+  ModelFits procedures;             ///< of the model's own, and this fit by their measures; empty: it has none
+  FittedCurve fit;                  ///< at the data
+  std::vector<FittedCurve> curves;  ///< in between, too: one for each measured curve
+  std::size_t points = 0;           ///< rows that take part
+  std::size_t program_steps = 0;    ///< of the loading made from the data
+  double sum_of_squares = 0.0;      ///< of weighted residuals
+  double rms = 0.0;                 ///< of residuals [SI of y], over all rows that take part
+  double largest = 0.0;             ///< of their magnitudes
+  std::size_t largest_at = 0;       ///< its row
+  double r_squared = 0.0;           ///< 1 - sum (y - fit)^2 / sum (y - mean)^2, unweighted
+  std::vector<std::string> notes;   ///< what the user should know
 };
 
 /// Fits. @throws ScenarioError where the scenario cannot follow the data with any of the parameters tried

@@ -1,6 +1,7 @@
 // Reading of calibration files.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +59,7 @@ class CalibrationReader {
     made_.name = file_.stem().string();
     const toml::table tree = parse_document(made_.text, made_.file);
     const bool scenario_is_table = tree["scenario"].is_table();
-    const Keys keys = root_keys(scenario_is_table);
+    const Keys keys = root_keys(scenario_is_table, tree["data"].is_array());
     const Section root(reading_, {&tree, {made_.file}, "the calibration"}, keys);
     made_.title = root.text("title");
     has_scenario_ = read_own_scenario(root, scenario_is_table);
@@ -72,12 +73,18 @@ class CalibrationReader {
   }
 
  private:
+  /// The scenario with overrides, from wherever it stands.
+  [[nodiscard]] Scenario scenario_with(const std::vector<std::string>& overrides) const {
+    return scenario_file_ == made_.file ? parse_scenario_table(made_.text, "scenario", made_.file, overrides)
+                                        : read_scenario(scenario_file_, overrides);
+  }
+
   bool read_own_scenario(const Section& root, bool is_table) {
     if (!root.has("scenario")) return false;
     try {
       if (is_table) {
         scenario_file_ = made_.file;
-        made_.scenario = parse_scenario_table(made_.text, "scenario", made_.file);
+        made_.scenario = scenario_with({});
         made_.scenario_text = text_of_table(made_.text, "scenario", made_.file);
       } else {
         const std::string name = root.text("scenario");
@@ -91,7 +98,7 @@ class CalibrationReader {
           return false;
         }
         scenario_file_ = path.string();
-        made_.scenario = read_scenario(path);
+        made_.scenario = scenario_with({});
         made_.scenario_text = made_.scenario.text;
       }
       measurable_ = measurable_in(made_.scenario);
@@ -113,7 +120,7 @@ class CalibrationReader {
                               "expected walls that are fixed or follow [[loading.steps]]",
                               wall.name));
     }
-    if (measurable_.driven.empty()) faults_.add(root.value_place("scenario"), "the scenario has no wall that moves");
+    if (measurable_.drives.empty()) faults_.add(root.value_place("scenario"), "the scenario has no wall that moves");
   }
 
   void read_fit(const Section& root) {
@@ -138,7 +145,12 @@ class CalibrationReader {
   // --- data
 
   void read_data(const Section& root) {
-    const Section::Origin origin = root.table("data", "[data]");
+    const std::vector<Section::Origin> curves = root.tables("data", "[[data]]");
+    if (curves.empty()) return read_curve(root.table("data", "[data]"));
+    for (const Section::Origin& origin : curves) read_curve(origin);
+  }
+
+  void read_curve(const Section::Origin& origin) {
     const auto is_table = [&origin](std::string_view key) {
       const toml::node* node = origin.table->get(key);
       return node != nullptr && node->is_table();
@@ -147,9 +159,15 @@ class CalibrationReader {
     const std::size_t before = faults_.size();
     const Section data(reading_, origin, keys);
     const bool is_clean = faults_.size() == before;
-    made_.weighting = data.text("weights");
+    const std::string weighting = data.text("weights");
+    if (made_.curves.empty()) made_.weighting = weighting;
+    if (weighting != made_.weighting) {
+      faults_.add(data.value_place("weights"),
+                  fmt::format("weights = \"{}\": those of the first curve are \"{}\"; expected the same for all",
+                              weighting, made_.weighting));
+    }
     std::vector<ColumnSpec> specs{column_spec(data, "x", is_table("x")), column_spec(data, "y", is_table("y"))};
-    if (made_.weighting == "column") {
+    if (weighting == "column") {
       if (!data.has_or_misspells("weight_column")) {
         faults_.add(data.value_place("weights"),
                     "weights = \"column\" needs the column; expected for example weight_column = \"weight[-]\"");
@@ -157,7 +175,7 @@ class CalibrationReader {
       specs.push_back(column_spec(data, "weight_column", false));
     } else if (is_clean && data.has("weight_column")) {
       faults_.add(data.key_place("weight_column"),
-                  fmt::format("key 'weight_column' belongs to weights = \"column\"; this is \"{}\"", made_.weighting));
+                  fmt::format("key 'weight_column' belongs to weights = \"column\"; this is \"{}\"", weighting));
     }
 
     const std::string name = data.text("file");
@@ -172,16 +190,60 @@ class CalibrationReader {
                          fmt::format("file = \"{}\": {} ({}); expected a path relative to this file", shown(name),
                                      problem, on_one_line(path.string())));
     }
-    made_.data_file = path.string();
+    MeasuredCurve curve;
+    curve.begin = curve.end = made_.lines.size();
+    curve.file = path.string();
     std::vector<ColumnRequest> wanted;
     for (const ColumnSpec& spec : specs) wanted.push_back(spec.request);
-    MeasuredData measured = parse_measured(text, made_.data_file, wanted, faults_);
-    made_.data_text = std::move(measured.text);
-    made_.lines = std::move(measured.lines);
-    made_.x = quantity(specs[0], measured.columns[0]);
-    made_.y = quantity(specs[1], measured.columns[1]);
-    if (!made_.x.observable.empty()) check_drive(specs[0]);
-    if (faults_.size() == before && !made_.y.values.empty()) read_weights(measured);
+    MeasuredData measured = parse_measured(text, curve.file, wanted, faults_);
+    curve.text = std::move(measured.text);
+    curve.overrides = data.texts("set");
+    take_scenario(data, curve);
+    const MeasuredQuantity x = quantity(specs[0], measured.columns[0]);
+    const MeasuredQuantity y = quantity(specs[1], measured.columns[1]);
+    if (!x.observable.empty()) check_drive(specs[0], x, curve);
+    std::vector<double> weights;
+    if (faults_.size() == before && !y.values.empty()) weights = weights_of(measured, x, y, curve.file);
+    if (faults_.size() > before) return;
+    curve.end += measured.lines.size();
+    append(measured.lines, made_.lines);
+    append(weights, made_.weights);
+    add_quantity(x, specs[0], made_.x);
+    add_quantity(y, specs[1], made_.y);
+    made_.curves.push_back(std::move(curve));
+  }
+
+  template <class T>
+  static void append(const std::vector<T>& part, std::vector<T>& whole) {
+    whole.insert(whole.end(), part.begin(), part.end());
+  }
+
+  /// A column of one more curve; residuals can only be put together if all are of one quantity.
+  void add_quantity(const MeasuredQuantity& added, const ColumnSpec& spec, MeasuredQuantity& quantity) {
+    if (made_.curves.empty()) {
+      quantity = added;
+    } else if (added.observable != quantity.observable) {
+      faults_.add(spec.quantity_at, fmt::format("'{}' is not what the first curve has, '{}'; expected the same columns",
+                                                added.observable, quantity.observable));
+    } else {
+      append(added.values, quantity.values);
+    }
+  }
+
+  /// The scenario with the curve's overrides, and what can be measured in it.
+  void take_scenario(const Section& data, MeasuredCurve& curve) {
+    if (!has_scenario_) return;
+    try {
+      curve.scenario = curve.overrides.empty() ? made_.scenario : scenario_with(curve.overrides);
+      measurable_ = measurable_in(curve.scenario);
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) faults_.add(data.value_place("set"), fault.message);
+      return;
+    }
+    if (curve.scenario.model != made_.scenario.model) {
+      faults_.add(data.value_place("set"),
+                  fmt::format("the scenario's model is '{}'; expected the same for every curve", made_.scenario.model));
+    }
   }
 
   [[nodiscard]] ColumnSpec column_spec(const Section& data, std::string_view key, bool is_table) {
@@ -206,9 +268,9 @@ class CalibrationReader {
   /// The column in SI; without an observable where something is wrong with it, or with the scenario.
   [[nodiscard]] MeasuredQuantity quantity(const ColumnSpec& spec, const MeasuredColumn& column) {
     MeasuredQuantity result;
-    if (column.heading.empty() || !has_scenario_ || measurable_.driven.empty()) return result;
+    if (column.heading.empty() || !has_scenario_ || measurable_.drives.empty()) return result;
     const std::string name = spec.quantity.empty() ? std::string(name_in(column.heading)) : spec.quantity;
-    const Measurable::Column* found = measurable_.find(measurable_.driven.front().name + '.' + name);
+    const Measurable::Column* found = measurable_.find(measurable_.prefix() + name);
     if (found == nullptr) found = measurable_.find(name);
     if (found == nullptr) {
       unknown_quantity(name, spec);
@@ -226,7 +288,7 @@ class CalibrationReader {
   }
 
   void unknown_quantity(const std::string& name, const ColumnSpec& spec) {
-    const std::string own = measurable_.driven.front().name + '.';
+    const std::string own = measurable_.prefix();
     std::vector<std::string_view> names;
     for (const Measurable::Column& column : measurable_.columns) {
       std::string_view known = column.name;
@@ -262,69 +324,65 @@ class CalibrationReader {
     return one.value;
   }
 
-  void check_drive(const ColumnSpec& spec) {
-    const std::string& name = made_.x.observable;
-    const std::size_t dot = name.rfind('.');
-    const std::string contact_class = name.substr(0, dot == std::string::npos ? 0 : dot);
-    const std::string quantity = name.substr(dot + 1);
-    const auto driven = std::ranges::find(measurable_.driven, contact_class, &Measurable::Driven::name);
-    if (driven == measurable_.driven.end()) {
-      faults_.add(spec.quantity_at, fmt::format("'{}' cannot drive the particle; expected a displacement or a force of "
-                                                "{}, whose walls move",
-                                                name, measurable_.driven.front().name));
-    } else if (quantity == "displacement") {
-      made_.control = Step::Kind::displacement;
-      made_.start = -driven->gap;
-    } else if (quantity == "force") {
-      made_.control = Step::Kind::force;
-    } else {
-      faults_.add(spec.quantity_at,
-                  fmt::format("'{}' cannot drive the particle; expected a displacement or a force as x", name));
+  void check_drive(const ColumnSpec& spec, const MeasuredQuantity& x, MeasuredCurve& curve) {
+    const auto drive = std::ranges::find(measurable_.drives, x.observable, &Measurable::Drive::column);
+    if (drive == measurable_.drives.end()) {
+      std::vector<std::string_view> columns;
+      for (const Measurable::Drive& possible : measurable_.drives) columns.push_back(possible.column);
+      return faults_.add(spec.quantity_at, fmt::format("'{}' cannot drive the particle; expected one of {}",
+                                                       x.observable, listed(columns)));
     }
-    const DataProgram program = program_through(made_.x.values, made_.control, made_.start);
-    if (!made_.x.values.empty() && program.steps.empty()) {
+    curve.driven = drive->column;
+    curve.control = drive->kind;
+    curve.start = drive->start;
+    const DataProgram program = program_through(x.values, curve.control, curve.start);
+    if (!x.values.empty() && program.steps.empty()) {
       faults_.add(spec.request.where,
                   fmt::format("{}: it never changes; expected data along a loading path", spec.request.naming));
     }
   }
 
-  void read_weights(const MeasuredData& measured) {
-    const std::vector<double>& y = made_.y.values;
+  [[nodiscard]] std::vector<double> weights_of(const MeasuredData& measured, const MeasuredQuantity& x,
+                                               const MeasuredQuantity& quantity, const std::string& file) {
+    const std::vector<double>& y = quantity.values;
     double largest = 0.0;
     for (const double value : y) largest = std::max(largest, std::abs(value));
     const auto at = [&](std::size_t row, std::size_t column) {
-      return SourceLocation{made_.data_file, made_.lines[row], measured.columns[column].at[row]};
+      return SourceLocation{file, measured.lines[row], measured.columns[column].at[row]};
     };
-    if (largest == 0.0) return faults_.add(at(0, 1), "y is zero in every row; there is nothing to fit");
-    made_.weights.assign(y.size(), 1.0 / largest);
-    if (made_.weighting == "area") weigh_by_path();
+    if (largest == 0.0) {
+      faults_.add(at(0, 1), "y is zero in every row; there is nothing to fit");
+      return {};
+    }
+    std::vector<double> weights(y.size(), 1.0 / largest);
+    if (made_.weighting == "area") weigh_by_path(x.values, weights);
     std::size_t found = 0;
     for (std::size_t row = 0; row < y.size() && found < k_most_zeros; ++row) {
       if (made_.weighting == "relative") {
-        made_.weights[row] = 1.0 / std::abs(y[row]);
+        weights[row] = 1.0 / std::abs(y[row]);
         if (y[row] != 0.0) continue;
         ++found;
         faults_.add(at(row, 1), "y = 0 has no relative weight; expected other weights, or a file without this row");
       } else if (made_.weighting == "column") {
         const double factor = measured.columns[2].values[row];
-        made_.weights[row] *= factor;
+        weights[row] *= factor;
         if (factor >= 0.0) continue;
         ++found;
         faults_.add(at(row, 2),
                     fmt::format("weight = {}: expected 0 (the row only drives the particle) or more", factor));
       }
     }
+    return weights;
   }
 
   /// The roots of the trapezoidal rule's weights, along the path of x; 1 on the mean.
-  void weigh_by_path() {
-    const std::vector<double>& x = made_.x.values;
+  static void weigh_by_path(const std::vector<double>& x, std::vector<double>& weights) {
     double path = 0.0;
     for (std::size_t row = 1; row < x.size(); ++row) path += std::abs(x[row] - x[row - 1]);
     for (std::size_t row = 0; row < x.size(); ++row) {
       const double before = row > 0 ? std::abs(x[row] - x[row - 1]) : 0.0;
       const double after = row + 1 < x.size() ? std::abs(x[row + 1] - x[row]) : 0.0;
-      made_.weights[row] *= std::sqrt(0.5 * (before + after) / path * static_cast<double>(x.size()));
+      weights[row] *= std::sqrt(0.5 * (before + after) / path * static_cast<double>(x.size()));
     }
   }
 
@@ -410,7 +468,8 @@ class CalibrationReader {
   void check_place(const Section& free, const FreeParameter& parameter) {
     const std::string& path = parameter.key.path;
     try {
-      const std::string text = with_values(made_.scenario_text, {{path, fmt::format("{:e}", parameter.lower)}});
+      const std::string text =
+          with_values(made_.scenario_text, {{path, fmt::format("{:e}", parameter.start.value_or(parameter.lower))}});
       static_cast<void>(parse_scenario(text, scenario_file_));
     } catch (const ScenarioError& error) {
       faults_.add(free.key_place(path), fmt::format("the scenario does not take '{}': {}", path,
@@ -444,6 +503,16 @@ class CalibrationReader {
 
 std::size_t Calibration::counted() const noexcept {
   return static_cast<std::size_t>(std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }));
+}
+
+const MeasuredCurve& Calibration::curve_of(std::size_t row) const noexcept {
+  return *std::ranges::find_if(curves, [row](const MeasuredCurve& curve) { return row < curve.end; });
+}
+
+std::string data_names(const Calibration& calibration) {
+  std::vector<std::string> names;
+  for (const MeasuredCurve& curve : calibration.curves) names.push_back(fs::path(curve.file).filename().string());
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 Calibration read_calibration(const fs::path& file) { return CalibrationReader(file).read(); }

@@ -1,6 +1,7 @@
 // What a calibration leaves: text, tables, a figure and a scenario.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -141,28 +142,34 @@ Table fit_table(const Calibration& calibration, const CalibrationResult& result)
   const MeasuredQuantity& x = calibration.x;
   const MeasuredQuantity& y = calibration.y;
   const std::string inverse = "1/" + y.si;
-  Table table({{x.observable, x.si, {}},
-               {y.observable, y.si, {}},
-               {"fit", y.si, {}},
-               {"residual", y.si, {}},
-               {"band_lower", y.si, {}},
-               {"band_upper", y.si, {}},
-               {"weight", inverse, {}}});
+  std::vector<Column> columns{{x.observable, x.si, {}}, {y.observable, y.si, {}}, {"fit", y.si, {}},
+                              {"residual", y.si, {}},   {"band_lower", y.si, {}}, {"band_upper", y.si, {}},
+                              {"weight", inverse, {}}};
+  const bool has_several = calibration.curves.size() > 1;
+  if (has_several) columns.push_back({"curve", "", {}});
+  Table table(std::move(columns));
   table.header = {{"program", fmt::format("monograin {}", version())},
                   {"calibration", calibration.name},
                   {"scenario", calibration.scenario.name},
                   {"scenario_digest", scenario_digest(calibration.scenario)},
                   {"model", calibration.scenario.model},
-                  {"data", calibration.data_file},
+                  {"data", calibration.curves.front().file},
                   {"band", fmt::format("confidence band of the fit at level {:g}", result.uncertainty.level)}};
+  for (std::size_t c = 1; c < calibration.curves.size(); ++c) {
+    table.header.emplace_back(fmt::format("data_{}", c + 1), calibration.curves[c].file);
+  }
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
     table.header.emplace_back(calibration.free[k].key.path, fmt::format("{:.17g}", result.solution.parameters[k]));
   }
   for (std::size_t row = 0; row < x.values.size(); ++row) {
     const double fit = result.fit.y[row];
     const double band = result.fit.band[row];
-    table.append(std::array{x.values[row], y.values[row], fit, y.values[row] - fit, fit - band, fit + band,
-                            calibration.weights[row]});
+    std::vector<double> cells{x.values[row], y.values[row],           fit, y.values[row] - fit, fit - band,
+                              fit + band,    calibration.weights[row]};
+    if (has_several) {
+      cells.push_back(static_cast<double>(&calibration.curve_of(row) - calibration.curves.data() + 1));
+    }
+    table.append(cells);
   }
   return table;
 }
@@ -182,45 +189,60 @@ std::vector<double> in_unit(const std::vector<double>& values, const MeasuredQua
   return result;
 }
 
+/// What tells a curve from the others.
+std::string name_of(const MeasuredCurve& curve) {
+  return curve.overrides.empty() ? fs::path(curve.file).stem().string()
+                                 : fmt::format("{}", fmt::join(curve.overrides, ", "));
+}
+
 figure::Chart chart_of(const Calibration& calibration, const CalibrationResult& result) {
   using Style = figure::ChartSeries::Style;
-  const std::vector<double> x = in_unit(calibration.x.values, calibration.x);
-  const std::vector<double> curve_x = in_unit(result.curve.x, calibration.x);
-  const auto band = [&](const std::vector<double>& middle) {
-    figure::ChartBand made{.legend = fmt::format("{:g} % confidence band", 100.0 * result.uncertainty.level),
-                           .colour = 0x9FC5E8,
-                           .x = curve_x,
-                           .lower = middle,
-                           .upper = middle};
-    for (std::size_t i = 0; i < middle.size(); ++i) {
-      made.lower[i] -= result.curve.band[i] / calibration.y.unit_factor;
-      made.upper[i] += result.curve.band[i] / calibration.y.unit_factor;
-    }
-    return made;
-  };
-  std::vector<double> residuals(x.size(), k_nan);
-  for (std::size_t row = 0; row < x.size(); ++row) {
-    if (calibration.weights[row] > 0.0) {
-      residuals[row] = (calibration.y.values[row] - result.fit.y[row]) / calibration.y.unit_factor;
-    }
-  }
   const std::string x_label = label_of(calibration.x);
   const std::string y_label = label_of(calibration.y);
   figure::ChartPanel curves{.x = {.label = x_label}, .y = {.label = y_label}};
   figure::ChartPanel rest{.x = {.label = x_label}, .y = {.label = "Data - fit: " + y_label}};
   rest.y.label[rest.y.label.find(y_label)] = static_cast<char>(std::tolower(y_label[0]));
-  if (result.uncertainty.degrees_of_freedom > 0) {
-    curves.bands = {band(in_unit(result.curve.y, calibration.y))};
-    rest.bands = {band(std::vector<double>(curve_x.size(), 0.0))};
+  const std::vector<double> x = in_unit(calibration.x.values, calibration.x);
+  const std::vector<double> y = in_unit(calibration.y.values, calibration.y);
+  for (std::size_t c = 0; c < calibration.curves.size(); ++c) {
+    const MeasuredCurve& measured = calibration.curves[c];
+    const FittedCurve& fitted = result.curves[c];
+    const bool is_only_one = calibration.curves.size() == 1;
+    const std::string suffix = is_only_one ? "" : ": " + name_of(measured);
+    const auto own_colour = is_only_one ? std::nullopt : std::optional(c);
+    const std::vector<double> curve_x = in_unit(fitted.x, calibration.x);
+    const std::vector<double> curve_y = in_unit(fitted.y, calibration.y);
+    const auto band = [&](const std::vector<double>& middle) {
+      figure::ChartBand made{.legend = fmt::format("{:g} % confidence band", 100.0 * result.uncertainty.level),
+                             .colour = 0x9FC5E8,
+                             .x = curve_x,
+                             .lower = middle,
+                             .upper = middle};
+      for (std::size_t i = 0; i < middle.size(); ++i) {
+        made.lower[i] -= fitted.band[i] / calibration.y.unit_factor;
+        made.upper[i] += fitted.band[i] / calibration.y.unit_factor;
+      }
+      return made;
+    };
+    if (result.uncertainty.degrees_of_freedom > 0) {
+      curves.bands.push_back(band(curve_y));
+      rest.bands.push_back(band(std::vector<double>(curve_x.size(), 0.0)));
+    }
+    std::vector<double> own_x;
+    std::vector<double> own_y;
+    std::vector<double> residuals;
+    for (std::size_t row = measured.begin; row < measured.end; ++row) {
+      own_x.push_back(x[row]);
+      own_y.push_back(y[row]);
+      residuals.push_back(calibration.weights[row] > 0.0 ? y[row] - result.fit.y[row] / calibration.y.unit_factor
+                                                         : k_nan);
+    }
+    curves.series.push_back({.legend = "fit" + suffix, .style = Style::solid, .colour = c, .x = curve_x, .y = curve_y});
+    curves.series.push_back(
+        {.legend = "data" + suffix, .style = Style::points, .colour = own_colour, .x = own_x, .y = own_y});
+    rest.series.push_back(
+        {.legend = "data" + suffix, .style = Style::points, .colour = own_colour, .x = own_x, .y = residuals});
   }
-  curves.series = {
-      {.legend = "fit", .style = Style::solid, .colour = 0, .x = curve_x, .y = in_unit(result.curve.y, calibration.y)},
-      {.legend = "data",
-       .style = Style::points,
-       .colour = {},
-       .x = x,
-       .y = in_unit(calibration.y.values, calibration.y)}};
-  rest.series = {{.legend = "data", .style = Style::points, .colour = {}, .x = x, .y = residuals}};
   return {{std::move(curves), std::move(rest)}};
 }
 
@@ -229,7 +251,7 @@ std::string draw(const Calibration& calibration, const CalibrationResult& result
   try {
     const figure::FigureFiles files(folder / k_figure);
     const figure::Chart chart = chart_of(calibration, result);
-    files.write(figure::chart_data(chart, fmt::format("{}: {}", calibration.name, calibration.data_file)),
+    files.write(figure::chart_data(chart, fmt::format("{}: {}", calibration.name, data_names(calibration))),
                 figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
   } catch (const FigureError& error) {
     return error.what();
@@ -287,6 +309,16 @@ Json procedures_json(const ModelFits& procedures) {
   return fits;
 }
 
+/// One curve, or a list of them, as the calibration's file has it.
+Json data_json(const Calibration& calibration) {
+  Json list = Json::array();
+  for (const MeasuredCurve& curve : calibration.curves) {
+    list.push_back({{"file", curve.file}, {"text", curve.text}});
+    if (!curve.overrides.empty()) list.back()["set"] = curve.overrides;
+  }
+  return list.size() == 1 ? list.front() : list;
+}
+
 /// Numbers that are undefined become null.
 Json to_json(const Calibration& calibration, const CalibrationResult& result) {
   const LeastSquaresSolution& solution = result.solution;
@@ -336,7 +368,7 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
             {"model", calibration.scenario.model},
             {"digest", scenario_digest(calibration.scenario)},
             {"text", calibration.scenario_text}}},
-          {"data", {{"file", calibration.data_file}, {"text", calibration.data_text}}},
+          {"data", data_json(calibration)},
           {"text", calibration.text}};
 }
 
@@ -348,7 +380,7 @@ std::string table_name(const std::string& option) { return option + ".csv"; }
 std::string fitted_scenario_text(const Calibration& calibration, const CalibrationResult& result) {
   std::vector<TextEdit> edits;
   std::string head = fmt::format("# Numbers fitted by monograin calibrate ({}, {} points of {}):\n", calibration.name,
-                                 result.points, fs::path(calibration.data_file).filename().string());
+                                 result.points, data_names(calibration));
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
     const FreeParameter& parameter = calibration.free[k];
     const double value = result.solution.parameters[k];
@@ -368,16 +400,18 @@ std::string fitted_scenario_text(const Calibration& calibration, const Calibrati
 std::string calibration_text(const Calibration& calibration, const CalibrationResult& result) {
   const MeasuredQuantity& y = calibration.y;
   const auto in_y = [&y](double value) { return with_unit(value / y.unit_factor, y.unit == "-" ? "" : y.unit); };
+  const fs::path worst = calibration.curve_of(result.largest_at).file;
+  const std::string of_file = calibration.curves.size() > 1 ? worst.filename().string() + ", " : "";
   std::string text = parameter_table(calibration, result) + '\n';
   if (calibration.free.size() > 1 && has_errors(result)) text += correlation_table(calibration, result) + '\n';
   if (!result.procedures.fits.empty()) text += procedure_table(result.procedures) + '\n';
-  std::vector<Row> rows{
-      {"points", fmt::format("{}", result.points)},
-      {"degrees of freedom", fmt::format("{}", result.uncertainty.degrees_of_freedom)},
-      {"sum of squares (weighted)", shown_number(result.sum_of_squares)},
-      {"rms residual", in_y(result.rms)},
-      {"largest residual", fmt::format("{} (line {})", in_y(result.largest), calibration.lines[result.largest_at])},
-      {"R^2", std::isfinite(result.r_squared) ? fmt::format("{:.8f}", result.r_squared) : "-"}};
+  std::vector<Row> rows{{"points", fmt::format("{}", result.points)},
+                        {"degrees of freedom", fmt::format("{}", result.uncertainty.degrees_of_freedom)},
+                        {"sum of squares (weighted)", shown_number(result.sum_of_squares)},
+                        {"rms residual", in_y(result.rms)},
+                        {"largest residual", fmt::format("{} ({}line {})", in_y(result.largest), of_file,
+                                                         calibration.lines[result.largest_at])},
+                        {"R^2", std::isfinite(result.r_squared) ? fmt::format("{:.8f}", result.r_squared) : "-"}};
   if (calibration.loss.kind != Loss::linear) rows.push_back({"cost (with loss)", shown_number(result.solution.cost)});
   return text + aligned(rows);
 }

@@ -37,7 +37,7 @@ KeySpec bound_key(std::string_view name, std::string_view meaning, const NumberK
 
 }  // namespace
 
-Keys root_keys(bool scenario_is_table) {
+Keys root_keys(bool scenario_is_table, bool data_is_list) {
   return {
       {.name = "title", .meaning = "what is calibrated", .kind = Kind::text, .example = "\"MCC PH-200\""},
       {.name = "scenario",
@@ -45,7 +45,11 @@ Keys root_keys(bool scenario_is_table) {
        .kind = scenario_is_table ? Kind::table : Kind::file,
        .is_required = true,
        .example = scenario_is_table ? "[scenario]" : "\"uniaxial.toml\""},
-      {.name = "data", .meaning = "what was measured", .kind = Kind::table, .is_required = true, .example = "[data]"},
+      {.name = "data",
+       .meaning = "what was measured: one curve, or several that are fitted together",
+       .kind = data_is_list ? Kind::tables : Kind::table,
+       .is_required = true,
+       .example = data_is_list ? "[[data]]" : "[data]"},
       {.name = "free",
        .meaning = "which numbers of the scenario are sought, and between which bounds",
        .kind = Kind::table,
@@ -69,7 +73,12 @@ Keys data_keys(bool x_is_table, bool y_is_table) {
        .kind = Kind::file,
        .is_required = true,
        .example = "\"measured.csv\""},
-      column_key("x", "column that drives the particle: displacement or force", x_is_table, "\"displacement[m]\""),
+      {.name = "set",
+       .meaning = "overrides of the scenario for this curve",
+       .kind = Kind::texts,
+       .example = "[\"material.yield_stress=20 MPa\"]"},
+      column_key("x", "column that drives the scenario: displacement or force, or what its steps prescribe", x_is_table,
+                 "\"displacement[m]\""),
       column_key("y", "column that is fitted", y_is_table, "\"force[N]\""),
       weights,
       {.name = "weight_column",

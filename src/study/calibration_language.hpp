@@ -18,7 +18,7 @@ inline constexpr std::array<std::string_view, 4> k_losses{"linear", "huber", "so
 inline constexpr std::array<std::string_view, 2> k_scales{"linear", "log"};
 
 /// The calibration as a whole. @param scenario_is_table  whether the scenario stands in the file itself
-[[nodiscard]] Keys root_keys(bool scenario_is_table);
+[[nodiscard]] Keys root_keys(bool scenario_is_table, bool data_is_list);
 /// The measured data. @param x_is_table, y_is_table  whether a column is described by a table
 [[nodiscard]] Keys data_keys(bool x_is_table, bool y_is_table);
 /// A column whose heading does not tell what it holds.

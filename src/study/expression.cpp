@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "elastic/line_contact.hpp"
 #include "elastic/nonlocal_coupling.hpp"
 #include "scenario/words.hpp"
 
@@ -26,13 +27,22 @@ struct ValueFunction {
   double (*value)(double);
 };
 
+/// P/(D E*) of an elastic cylinder between flat walls over delta/D; undefined beyond its closed form.
+double line_contact(double strain) {
+  try {
+    return line_contact_at_strain(1.0, strain).stress;
+  } catch (const std::domain_error&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
 constexpr ValueFunction k_value_functions[] = {
     {"sqrt", [](double x) { return std::sqrt(x); }}, {"exp", [](double x) { return std::exp(x); }},
     {"log", [](double x) { return std::log(x); }},   {"abs", [](double x) { return std::abs(x); }},
     {"sin", [](double x) { return std::sin(x); }},   {"cos", [](double x) { return std::cos(x); }},
     {"tan", [](double x) { return std::tan(x); }},   {"atan", [](double x) { return std::atan(x); }},
     {"sinh", [](double x) { return std::sinh(x); }}, {"cosh", [](double x) { return std::cosh(x); }},
-    {"tanh", [](double x) { return std::tanh(x); }}};
+    {"tanh", [](double x) { return std::tanh(x); }}, {"line_contact", line_contact}};
 
 /// Laws that are no formula. Without a value where the law has none.
 struct LawFunction {

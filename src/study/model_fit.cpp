@@ -23,10 +23,10 @@ std::string_view class_of(const MeasuredQuantity& quantity) {
   return std::string_view(quantity.observable).substr(0, quantity.observable.rfind('.'));
 }
 
-/// Whether the data are forces over displacements of one contact, in the law's units whatever is fitted.
+/// Whether the data are one curve, of forces over displacements of one contact, in the law's units whatever is fitted.
 bool is_force_curve(const Calibration& calibration) {
-  return calibration.control == Step::Kind::displacement && calibration.y.observable.ends_with(".force") &&
-         class_of(calibration.x) == class_of(calibration.y) &&
+  return calibration.curves.size() == 1 && calibration.curves.front().control == Step::Kind::displacement &&
+         calibration.y.observable.ends_with(".force") && class_of(calibration.x) == class_of(calibration.y) &&
          free_parameter(calibration, "material.yield_pressure") == nullptr;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "catalogue.hpp"
 #include "engine/drive.hpp"
 #include "scenario/numbers.hpp"
 
@@ -85,8 +86,19 @@ Measurable measurable_in(const Scenario& scenario) {
   const Scene scene = make_scene(scenario);
   Measurable measurable;
   for (std::size_t c = 0; c < scene.classes.size(); ++c) {
-    if (scene.programs[c].empty()) continue;
-    measurable.driven.push_back({scene.classes[c].name, scene.classes[c].gap});
+    if (scene.channels[c].program.empty()) continue;
+    const std::string& name = scene.classes[c].name;
+    measurable.driven.push_back(name);
+    measurable.drives.push_back({name + ".displacement", Step::Kind::displacement, scene.channels[c].at_rest.start});
+    measurable.drives.push_back({name + ".force", Step::Kind::force, 0.0});
+  }
+  if (scene.classes.empty()) {
+    std::vector<double> y(scene.system->unknowns().size());
+    scene.system->start(y);
+    for (const DriveKey& drive : find_model(scenario.model)->drives) {
+      measurable.drives.push_back(
+          {std::string(drive.name), ramp_of(drive.control), scene.system->controlled(drive.control, 0, 0.0, y)});
+    }
   }
   for (const Observable& observable : scene.system->observables()) {
     if (observable.words.empty()) measurable.columns.push_back({observable.name, observable.unit});
@@ -103,9 +115,10 @@ Replay::Replay(Scenario scenario, ReplayColumns columns, std::vector<double> val
   scenario_.loading.steps = std::move(program.steps);
   scenario_.output.times = std::move(program.times);
   rows_ = std::move(program.rows);
-  // A displacement is that of the program whatever happens; a force is not borne where a contact has been lost.
+  // What else is prescribed is that of the program whatever happens; a force is not borne where a contact has been
+  // lost.
   for (const double value : values_) resolution_ = std::max(resolution_, k_same_force * std::abs(value));
-  if (columns_.control == Step::Kind::displacement) resolution_ = std::numeric_limits<double>::infinity();
+  if (columns_.control != Step::Kind::force) resolution_ = std::numeric_limits<double>::infinity();
 }
 
 void Replay::set(std::string_view path, double value) { set_number(scenario_, path, value); }

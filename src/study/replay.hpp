@@ -1,4 +1,5 @@
-/// A scenario whose walls follow measured data: its response at every datum, as often as wanted.
+/// A scenario whose walls, or whatever its program drives, follow measured data: its response at every datum, as often
+/// as wanted.
 #pragma once
 
 #include <array>
@@ -20,7 +21,7 @@ struct DataProgram {
 };
 
 /// Values that follow each other without any change (relative to the largest: 1e-12) share an instant.
-/// @param kind   displacement or force
+/// @param kind   a ramp
 /// @param start  where the program begins: the same quantity before the first step
 [[nodiscard]] DataProgram program_through(std::span<const double> values, Step::Kind kind, double start);
 
@@ -30,15 +31,20 @@ struct Measurable {
     std::string name;  ///< of an observable that is a number: "axial.force"
     std::string unit;  ///< SI
   };
-  struct Driven {
-    std::string name;
-    double gap = 0.0;  ///< [m]
+  /// A column that a program can go through.
+  struct Drive {
+    std::string column;  ///< "axial.displacement"
+    Step::Kind kind = Step::Kind::displacement;
+    double start = 0.0;  ///< its value before the first step [SI]
   };
-  std::vector<Driven> driven;  ///< contact classes whose walls move
+  std::vector<std::string> driven;  ///< contact classes whose walls move
+  std::vector<Drive> drives;
   std::vector<Column> columns;
 
   /// The column of that name, or nullptr.
   [[nodiscard]] const Column* find(std::string_view name) const noexcept;
+  /// The first driven class with a full stop, as columns begin; empty where there are no walls.
+  [[nodiscard]] std::string prefix() const { return driven.empty() ? std::string() : driven.front() + '.'; }
 };
 
 /// @throws ScenarioError where the walls' programs do not go together
@@ -48,7 +54,7 @@ struct Measurable {
 struct ReplayColumns {
   std::string driven;
   std::string watched;
-  Step::Kind control = Step::Kind::displacement;  ///< that of the driven column: displacement or force
+  Step::Kind control = Step::Kind::displacement;  ///< that of the driven column
   double start = 0.0;                             ///< its value before the first step
 };
 

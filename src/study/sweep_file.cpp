@@ -209,6 +209,8 @@ class SweepReader {
   /// A factor for the key, or a fault at its place.
   [[nodiscard]] std::optional<Factor> make_factor(const std::string& key, const SourceLocation& where) {
     KeyAnswer answer = find_spec(key);
+    // A pair is varied as the single number that may stand for it.
+    if (answer.spec && answer.spec->kind == KeySpec::Kind::pair) answer.spec->kind = KeySpec::Kind::quantity;
     if (answer.spec && !can_be_varied(answer.spec->kind)) {
       const bool is_table = answer.spec->kind == Kind::table;
       answer.problem = is_table ? fmt::format(

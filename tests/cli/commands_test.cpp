@@ -478,5 +478,63 @@ TEST_F(Commands, ManualAndCompletionKnowEveryCommand) {
   EXPECT_GE(count, 7);
 }
 
+constexpr const char* k_packing = R"(model = "packing"
+[material]
+hardening_modulus = "1 MPa"
+[[loading.steps]]
+packing_fraction = 0.95
+rate = "0.1 1/s"
+[output]
+points = 4
+)";
+
+TEST_F(Commands, RunAPackingWhichHasNeitherParticleNorWalls) {
+  write_text(folder() / "p.toml", k_packing);
+  EXPECT_EQ(monograin("check p.toml").code, 0);
+  const Outcome outcome = monograin("run p.toml --plot");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Table history = read_csv(folder() / "runs/p/history.csv");
+  std::vector<std::string> names;
+  for (const Column& column : history.columns()) {
+    names.push_back(column.unit.empty() ? column.name : column.name + '[' + column.unit + ']');
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"time[s]", "step", "row", "packing_fraction[-]", "strain[-]", "stress[Pa]",
+                                             "stress_elastic[Pa]", "coordination_number[-]", "plastic_fraction[-]",
+                                             "regime"}));
+  EXPECT_TRUE(history.header_value("R0").empty());
+  EXPECT_FALSE(history.header_value("E").empty());
+  const auto run = nlohmann::json::parse(read_text(folder() / "runs/p/run.json"));
+  EXPECT_TRUE(run.at("classes").empty());
+  EXPECT_EQ(run.at("status"), "complete");
+  EXPECT_TRUE(fs::exists(folder() / "runs/p/figure.svg"));
+  EXPECT_EQ(monograin("plot runs/p -o p.pdf").code, 0);
+  EXPECT_EQ(monograin("plot runs/p --profile 0.1").code, 2);
+  const Outcome models = monograin("models packing --parameters p.toml");
+  EXPECT_EQ(models.code, 0) << models.err;
+  EXPECT_NE(models.out.find("jamming_stress              10772.0222293"), std::string::npos) << models.out;
+  EXPECT_EQ(models.out.find("radius"), std::string::npos);
+  EXPECT_NE(monograin("models packing").out.find("jamming_fraction"), std::string::npos);
+}
+
+TEST_F(Commands, EndAPackingWithTheExitCodeOfItsEnd) {
+  write_text(folder() / "p.toml", k_packing);
+  const Outcome full = monograin("run p.toml --set loading.steps[0].packing_fraction=1.05");
+  EXPECT_EQ(full.code, 3);
+  EXPECT_NE(full.err.find("no pores are left"), std::string::npos) << full.err;
+  EXPECT_NE(read_text(folder() / "runs/p/history.csv").find("# status: stopped"), std::string::npos);
+  EXPECT_EQ(monograin("run p.toml --set packing.f_E=0.1").code, 2);
+  EXPECT_EQ(monograin("run p.toml --set material.poisson_ratio=0.5").code, 2);
+  EXPECT_EQ(monograin("run p.toml --set packing.initial_packing_fraction=0.96").code, 2);  // would unload
+}
+
+TEST_F(Commands, SweepAPacking) {
+  write_text(folder() / "p.toml", k_packing);
+  write_text(folder() / "s.toml",
+             "scenario = \"p.toml\"\ndesign = \"grid\"\n[vary]\n\"packing.alpha\" = { values = [1, 2.5] }\n"
+             "\"loading.steps[0].packing_fraction\" = { from = 0.9, to = 0.95, points = 2 }\n");
+  const Outcome outcome = monograin("sweep s.toml");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
 }  // namespace
 }  // namespace monograin

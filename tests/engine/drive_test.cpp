@@ -7,6 +7,7 @@
 
 #include "elastic/hertz.hpp"
 #include "support/test_run.hpp"
+#include "support/toy_system.hpp"
 
 namespace monograin {
 namespace {
@@ -250,6 +251,38 @@ TEST(RunStatus, HasAWord) {
   EXPECT_EQ(to_string(RunStatus::complete), "complete");
   EXPECT_EQ(to_string(RunStatus::stopped), "stopped");
   EXPECT_EQ(to_string(RunStatus::failed), "failed");
+}
+
+// --- channels
+
+TEST(Channels, WithoutATimeOfTheirOwnTakeAsLongAsTheOthers) {
+  auto toy = std::make_unique<ToySystem>();
+  Scene scene = toy_scene(std::move(toy));
+  scene.channels[0].program[0].duration = 2.0;
+  Step follower;
+  follower.kind = Step::Kind::displacement;
+  follower.target = 1.0;
+  scene.channels.push_back({"follower", {}, {follower}});
+  const RunRecord record = record_run(scene, "direct", {}, {.points = 2, .times = {}});
+  EXPECT_EQ(record.status, RunStatus::complete) << record.message;
+  EXPECT_EQ(record.history.column("time").back(), 2.0);
+}
+
+TEST(Rows, DoNotTellOfASilentGuard) {
+  for (const bool is_silent : {false, true}) {
+    for (const char* integrator : k_integrators) {
+      auto toy = std::make_unique<ToySystem>();
+      toy->watched.push_back({.name = is_silent ? "" : "seen",
+                              .value = [](double, ToySystem::View y) { return y[0] - 0.4; },
+                              .transition = [](std::span<double>) {},
+                              .is_silent = is_silent});
+      Scene scene = toy_scene(std::move(toy));
+      const RunRecord record = record_run(scene, integrator, {}, {.points = 2, .times = {}});
+      EXPECT_EQ(toy_in(scene).fired_together.size(), 1U) << integrator;
+      // Start, middle, and before, at and after the end; two more around the event.
+      EXPECT_EQ(record.history.row_count(), is_silent ? 5U : 7U) << integrator;
+    }
+  }
 }
 
 }  // namespace

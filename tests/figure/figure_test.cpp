@@ -227,5 +227,43 @@ TEST_F(Figure, PutsTheHandlerOfSigpipeBack) {
   EXPECT_EQ(after.sa_handler, ours.sa_handler);
 }
 
+constexpr const char* k_packing_history =
+    "# E: 1e7\n# model: packing\n"
+    "time[s],step,row,packing_fraction[-],strain[-],stress[Pa],stress_elastic[Pa],coordination_number[-],"
+    "plastic_fraction[-],regime\n"
+    "0,1,0,0.75,-0.05,0,0,nan,0,unjammed\n"
+    "1,1,0,0.8,0.01,1e4,1e4,4,0,elastic\n"
+    "2,1,0,0.9,0.12,6e5,6e5,5.4,0,elastic\n";
+constexpr const char* k_packing_events =
+    "time[s],class,event,step,packing_fraction[-],strain[-],stress[Pa],stress_elastic[Pa],coordination_number[-],"
+    "plastic_fraction[-],regime\n"
+    "1,,jamming,1,0.8,0.01,1e4,1e4,4,0,elastic\n"
+    "2,,step-end,1,0.9,0.12,6e5,6e5,5.4,0,elastic\n";
+
+TEST_F(Figure, OfAModelWithoutWallsShowsItsOwnColumns) {
+  for (const char* name : {"first", "second"}) {
+    write(in_folder(name) / "history.csv", k_packing_history);
+    write(in_folder(name) / "events.csv", k_packing_events);
+  }
+  draw_runs({in_folder("first")}, in_folder("p.svg"));
+  const std::string data = contents(in_folder("p.dat"));
+  EXPECT_NE(data.find("0.9 0.06"), std::string::npos) << data;  // stress over modulus
+  EXPECT_NE(data.find("0.8 0.001"), std::string::npos) << data;
+  const std::string script = contents(in_folder("p.gp"));
+  EXPECT_NE(script.find("Coordination number"), std::string::npos);
+  EXPECT_NE(script.find("jamming"), std::string::npos);
+  EXPECT_EQ(script.find("step-end"), std::string::npos);
+  EXPECT_EQ(script.find("first"), std::string::npos);  // one run needs no name
+  draw_runs({in_folder("first"), in_folder("second") / "history.csv"}, in_folder("q.svg"));
+  EXPECT_NE(contents(in_folder("q.gp")).find("second"), std::string::npos);
+}
+
+TEST_F(Figure, DoesNotMixModelsWithAndWithoutWalls) {
+  write(in_folder("packing") / "history.csv", k_packing_history);
+  EXPECT_NE(fault_of({in_folder("packing"), run()}, in_folder("p.svg")).find("has no column 'packing_fraction'"),
+            std::string::npos);
+  EXPECT_NE(fault_of({run(), in_folder("packing")}, in_folder("p.svg")).find("no contacts to draw"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace monograin

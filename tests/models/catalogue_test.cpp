@@ -93,6 +93,9 @@ TEST(Catalogue, HasDefaultsInsideTheirRanges) {
     for (const QuantityKey& key : model.material) {
       EXPECT_TRUE(!key.default_value || key.range.contains(*key.default_value)) << model.name << ": " << key.name;
     }
+    for (const OptionKey& key : model.options) {
+      EXPECT_TRUE(!key.default_value || key.range.contains(*key.default_value)) << model.name << ": " << key.name;
+    }
   }
 }
 
@@ -106,6 +109,7 @@ TEST(Catalogue, KnowsOnlyEventsOfTheContract) {
 
 TEST(Catalogue, KnowsOnlyWallConfigurationsOfTheLanguage) {
   for (const ModelInfo& model : model_catalogue()) {
+    if (!model.has_walls()) continue;
     EXPECT_FALSE(model.configurations.empty()) << model.name;
     for (const string_view name : model.configurations) {
       EXPECT_TRUE(contains(k_configurations, name)) << model.name << ": " << name;

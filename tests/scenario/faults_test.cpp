@@ -19,7 +19,7 @@ struct FaultRow {
 };
 
 /// All that can be run.
-const std::string k_models = "hertz, mdr, similarity, semimech, hardening, nonlocal, compressible";
+const std::string k_models = "hertz, mdr, similarity, semimech, hardening, nonlocal, compressible, packing";
 
 class FaultTable : public ::testing::TestWithParam<FaultRow> {};
 
@@ -33,14 +33,15 @@ const std::vector<FaultRow> k_rows{
              1,
              "title = 3",
              {"die.toml:1:9: title = 3: expected a text in quotes, for example \"die compaction\""}},
-    FaultRow{"UnknownTable",
-             1,
-             "[outptu]\npoints = 3\n[_]",
-             {"die.toml:1:1: key 'model' is missing in the scenario; expected for example model = \"mdr\"",
-              "die.toml:1:2: unknown key 'outptu' in the scenario; did you mean 'output'?",
-              "die.toml:3:2: unknown key '_' in the scenario; expected one of title, model, particle, material, "
-              "loading, output, numerics, hertz, mdr, similarity, semimech, hardening, compressible, nonlocal, "
-              "material-point, packing"}},
+    FaultRow{
+        "UnknownTable",
+        1,
+        "[outptu]\npoints = 3\n[_]",
+        {"die.toml:1:1: key 'model' is missing in the scenario; expected for example model = \"mdr\"",
+         "die.toml:1:2: unknown key 'outptu' in the scenario; did you mean 'output'?",
+         "die.toml:3:2: unknown key '_' in the scenario; expected one of title, model, particle, material, "
+         "loading, output, numerics, hertz, mdr, similarity, semimech, hardening, packing, nonlocal, compressible, "
+         "material-point"}},
     FaultRow{"UnknownRootKey",
              1,
              "titel = \"t\"",

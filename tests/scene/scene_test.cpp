@@ -55,7 +55,7 @@ TEST(Scene, NamesTheClassesOfAFreeSetAfterTheirFirstWalls) {
   EXPECT_EQ(names_and_multiplicities(scene), (Named{{"top", 2}, {"side", 2}}));
   EXPECT_EQ(scene.walls[1], (std::vector<std::string>{"side", "other side"}));
   EXPECT_EQ(scene.classes[1].gap, 0.05);
-  EXPECT_TRUE(scene.programs[1].empty());
+  EXPECT_TRUE(scene.channels[1].program.empty());
   for (const ContactClass& c : scene.classes) {
     for (const Eigen::Vector3d& normal : c.normals) EXPECT_DOUBLE_EQ(normal.norm(), 1.0) << c.name;
   }

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <random>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -154,6 +156,45 @@ TEST(PlasticCalibration, RecoversTheConstantsOfEveryModel) {
                            "[[loading.steps]]\ndisplacement = \"0.399 R0\"\nduration = 1\n"
                            "[semimech]\nunloading = \"mdr\"\n"),
           "material.youngs_modulus", 1e11, "{ from = \"20 GPa\", to = \"500 GPa\" }");
+}
+
+/// Numbers after a word of a header line, up to a semicolon.
+std::vector<double> numbers_after(const std::string& line, const std::string& word) {
+  std::istringstream rest(line.substr(line.find(word) + word.size()));
+  std::vector<double> numbers;
+  for (std::string item; rest >> item && item != ";";) {
+    const std::size_t equals = item.find('=');
+    numbers.push_back(std::stod(equals == std::string::npos ? item : item.substr(equals + 1)));
+  }
+  return numbers;
+}
+
+TEST(PackingCalibration, OfFourCurvesTogetherMeetsTheFitComputedElsewhere) {
+  const Table table = read_csv(MONOGRAIN_SOURCE_DIR "/tests/models/packing/reference/pack06_fit_data.csv");
+  const std::string line(table.header_value("fit_estimate"));
+  const std::vector<double> estimates = numbers_after(line, "");  // four and the rms
+  const std::vector<double> errors = numbers_after(line, "standard_errors:");
+  ASSERT_EQ(estimates.size(), 5U) << line;
+  ASSERT_EQ(errors.size(), 4U) << line;
+  const Calibration calibration = read_calibration(MONOGRAIN_SOURCE_DIR "/scenarios/calibrate/packing.toml");
+  ASSERT_EQ(calibration.curves.size(), 4U);
+  EXPECT_EQ(calibration.y.values.size(), table.row_count());
+  const CalibrationResult result = calibrate(calibration);
+  for (std::size_t k = 0; k < 4; ++k) {
+    // Printed with nine digits.
+    EXPECT_NEAR(result.solution.parameters[k], estimates[k], 1e-8) << calibration.free[k].key.path;
+    EXPECT_NEAR(result.uncertainty.standard_error(k), errors[k], 1e-7) << calibration.free[k].key.path;
+  }
+  EXPECT_NEAR(result.uncertainty.correlation(0, 2), 0.987, 5e-4);
+  // s = sqrt(sum/(n - p)) is what the header calls rms.
+  EXPECT_NEAR(std::sqrt(result.sum_of_squares / 140.0), estimates[4], 1e-10);
+  const auto tells = [&result](const std::string& text) {
+    return std::ranges::any_of(result.notes,
+                               [&](const std::string& note) { return note.find(text) != std::string::npos; });
+  };
+  EXPECT_TRUE(tells("determine 'packing.c1' poorly"));
+  EXPECT_TRUE(tells("outside the model's domain"));  // f_E below f_G was tried
+  EXPECT_EQ(result.curves.size(), 4U);
 }
 
 }  // namespace

@@ -473,7 +473,7 @@ constexpr FaultCase k_faults[] = {
     {"MissingColumn", "c.toml", "force[N]", "forse[N]", "c.toml:5:5: y = \"forse[N]\": "},
     {"XIsNoDrive", "c.toml", "x = \"displacement[m]\"",
      "x = { column = \"displacement[m]\", quantity = \"contact_radius\", unit = \"m\" }",
-     "c.toml:4:46: 'axial.contact_radius' cannot drive the particle; expected a displacement or a force as x"},
+     "c.toml:4:46: 'axial.contact_radius' cannot drive the particle; expected one of axial.displacement, axial.force"},
     {"QuantityMisspelt", "c.toml", "x = \"displacement[m]\"",
      "x = { column = \"displacement[m]\", quantity = \"displacment\", unit = \"m\" }",
      "c.toml:4:46: 'displacment' is no quantity of this scenario; expected one of "},
@@ -616,6 +616,66 @@ TEST_F(CalibrationTest, DataThatNoParametersCanFollowAreRefusedWithTheRow) {
     EXPECT_EQ(fault.where.line, 3U);
     EXPECT_NE(fault.message.find("cannot follow the data beyond this row"), std::string::npos) << fault.message;
   }
+}
+
+// --- several curves
+
+constexpr const char* k_two_curves = R"(scenario = "s.toml"
+[[data]]
+file = "d.csv"
+x = "displacement[m]"
+y = "force[N]"
+[[data]]
+file = "e.csv"
+set = ["material.poisson_ratio=0.4"]
+x = "displacement[m]"
+y = "force[N]"
+[free]
+"material.youngs_modulus" = { from = "10 GPa", to = "300 GPa" }
+)";
+
+TEST_F(CalibrationTest, FitsSeveralCurvesTogetherEachWithItsOverrides) {
+  const auto curve = [](double poisson, std::initializer_list<double> displacements) {
+    std::string text = "displacement[m],force[N]\n";
+    for (const double d : displacements) {
+      text += fmt::format("{:.17g},{:.17g}\n", d, hertz_force(70e9 / (1.0 - poisson * poisson), k_radius, d));
+    }
+    return text;
+  };
+  write("d.csv", curve(0.22, {1e-5, 2e-5, 3e-5}));
+  write("e.csv", curve(0.4, {2e-5, 1e-5}));
+  write("c.toml", k_two_curves);
+  const Calibration calibration = read();
+  ASSERT_EQ(calibration.curves.size(), 2U);
+  EXPECT_EQ(calibration.curves[1].begin, 3U);
+  EXPECT_EQ(calibration.curves[1].end, 5U);
+  EXPECT_EQ(calibration.counted(), 5U);
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_NEAR(result.solution.parameters[0] / 70e9, 1.0, 1e-9);
+  EXPECT_LT(result.sum_of_squares, 1e-18);
+  EXPECT_EQ(result.fit.y.size(), 5U);
+  EXPECT_EQ(result.curves.size(), 2U);
+  EXPECT_EQ(result.program_steps, 3U);  // the second curve turns
+  EXPECT_EQ(write_calibration(calibration, result, folder() / "out"), "");
+  const Table fit = read_csv(folder() / "out" / "fit.csv");
+  EXPECT_EQ(fit.column("curve"), (std::vector<double>{1, 1, 1, 2, 2}));
+  const auto json = nlohmann::json::parse(text_of("out/calibration.json"));
+  ASSERT_EQ(json.at("data").size(), 2U);
+  EXPECT_EQ(json.at("data")[1].at("set")[0], "material.poisson_ratio=0.4");
+}
+
+TEST_F(CalibrationTest, ReportsTheFaultsOfEveryCurve) {
+  write("e.csv", k_data);
+  write("c.toml", replaced(k_two_curves, "poisson_ratio=0.4", "poisson_ratio=0.7"));
+  EXPECT_EQ(faults(),
+            (std::vector<std::string>{"c.toml:8:7: poisson_ratio = 0.7: out of range; expected a number above "
+                                      "-1 and up to 0.5"}));
+  write("c.toml", replaced(k_two_curves, "poisson_ratio=0.4\"]", "poisson_ratio=0.4\"]\nweights = \"relative\""));
+  EXPECT_EQ(faults(), (std::vector<std::string>{"c.toml:9:11: weights = \"relative\": those of the first curve are "
+                                                "\"absolute\"; expected the same for all"}));
+  write("c.toml", replaced(k_two_curves, "file = \"e.csv\"", "file = \"absent.csv\""));
+  ASSERT_EQ(faults().size(), 1U);
+  EXPECT_TRUE(faults()[0].starts_with("c.toml:7:8: file = \"absent.csv\"")) << faults()[0];
 }
 
 }  // namespace

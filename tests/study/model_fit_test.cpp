@@ -147,7 +147,7 @@ TEST_F(CompressibleCalibration, HasNoProcedureForOtherQuestions) {
   const std::vector<double> f{0.0, 0.3, 0.5, 0.7, 1.0};
   EXPECT_TRUE(model_fits(prepared(d, f, "\"material.yield_pressure\" = { from = 1e6, to = 1e9 }\n")).fits.empty());
   Calibration driven_by_force = prepared(d, f);
-  driven_by_force.control = Step::Kind::force;
+  driven_by_force.curves.front().control = Step::Kind::force;
   EXPECT_TRUE(model_fits(driven_by_force).fits.empty());
   Calibration two = prepared(d, f);
   two.free.pop_back();

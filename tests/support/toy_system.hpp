@@ -25,6 +25,7 @@ class ToySystem final : public HybridSystem {
     std::function<double(double xi, View y)> value;
     std::function<void(std::span<double> y)> transition = {};
     bool ends_domain = false;
+    bool is_silent = false;
   };
 
   State initial{0.0};
@@ -52,7 +53,7 @@ class ToySystem final : public HybridSystem {
       observables_.push_back({std::string(k_names[k]), "m", {}});
     }
     for (std::size_t g = 0; g < watched.size(); ++g) {
-      guards_.push_back({static_cast<int>(g), 0, watched[g].direction, watched[g].name});
+      guards_.push_back({static_cast<int>(g), 0, watched[g].direction, watched[g].name, watched[g].is_silent});
     }
   }
 
@@ -96,7 +97,9 @@ class ToySystem final : public HybridSystem {
   [[nodiscard]] std::span<const Observable> observables() const noexcept override { return observables_; }
   void observe(double, View y, std::span<double> values) override { std::ranges::copy(y, values.begin()); }
   [[nodiscard]] double quantity(Quantity, int, double, View y) override { return y[0]; }
-  [[nodiscard]] double wall_position(int, double xi, std::span<const double>) override { return xi; }
+  [[nodiscard]] double controlled(Control control, int, double xi, View y) override {
+    return control == Control::force ? y[0] : xi;
+  }
   [[nodiscard]] bool is_open(int) const noexcept override { return false; }
   [[nodiscard]] std::vector<Finding> warnings() const override { return {}; }
 
@@ -126,7 +129,7 @@ class ToySystem final : public HybridSystem {
   scene.walls = {{"toy"}};
   Step step;
   step.duration = 1.0;
-  scene.programs.emplace_back(steps, step);
+  scene.channels.push_back({"toy", {}, std::vector<Step>(steps, step)});
   scene.system = std::move(toy);
   return scene;
 }

@@ -162,7 +162,9 @@ double largest_drift(const Scenario& scenario, std::string_view integrator, doub
   std::vector<double> y(system.unknowns().size());
   std::vector<Event> log;
   std::vector<Ramp> ramps;
-  for (const auto& program : scene.programs) ramps.push_back({0.0, program.empty() ? 0.0 : program[0].target});
+  for (const Channel& channel : scene.channels) {
+    ramps.push_back({0.0, channel.program.empty() ? 0.0 : channel.program[0].target});
+  }
   system.start(y);
   system.begin_step(ramps, y, log);
   Watch watch(system);

@@ -256,7 +256,7 @@ double distance_from_program(const TestRun& result) {
   const auto rows = result.column("row");
   double worst = 0.0;
   for (std::size_t c = 0; c < result.scene.classes.size(); ++c) {
-    const std::vector<Step>& program = result.scene.programs[c];
+    const std::vector<Step>& program = result.scene.channels[c].program;
     const std::string& name = result.scene.classes[c].name;
     const auto forces = result.column(name + ".force");
     const std::size_t regime = *table.find(name + ".regime");

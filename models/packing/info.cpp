@@ -1,0 +1,253 @@
+#include "packing/info.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace monograin::packing {
+namespace {
+
+using std::string_view;
+
+constexpr Range k_positive{.lower = 0.0, .lower_is_open = true};
+constexpr Range k_not_negative{.lower = 0.0};
+constexpr Range k_inside_one{.lower = 0.0, .upper = 1.0, .lower_is_open = true, .upper_is_open = true};
+constexpr Range k_to_one{.lower = 0.0, .upper = 1.0, .lower_is_open = true};
+constexpr Range k_poisson{.lower = -1.0, .upper = 0.5, .lower_is_open = true, .upper_is_open = true};
+// Beyond 1 the run stops with an event.
+constexpr Range k_fraction{.lower = 0.0, .upper = 2.0, .lower_is_open = true};
+
+constexpr Parameters k_published{};
+constexpr double k_published_yield_stress = 0.4e6;
+// Share of a packing fraction within which two targets are one.
+constexpr double k_same = 1e-9;
+
+constexpr std::array<string_view, 2> k_couplings{"published", "consistent"};
+constexpr std::array<string_view, 4> k_regime_words{"unjammed", "elastic", "elastic-plastic", "fully-plastic"};
+
+constexpr std::array k_material{
+    QuantityKey{"youngs_modulus", "Young's modulus of the particles", Dimension::stress, k_positive,
+                k_published.youngs_modulus},
+    QuantityKey{"poisson_ratio", "their Poisson's ratio", Dimension::none, k_poisson, k_published.poisson_ratio},
+    QuantityKey{"yield_stress", "their uniaxial yield stress", Dimension::stress, k_positive, k_published_yield_stress},
+    QuantityKey{"hardening_modulus",
+                "their plastic modulus d sigma_y/d eps_p; absent: they stay elastic",
+                Dimension::stress,
+                k_not_negative,
+                {},
+                true},
+};
+
+constexpr OptionKey number(string_view name, string_view meaning, const Range& range, std::optional<double> value) {
+  return {.name = name,
+          .meaning = meaning,
+          .kind = OptionKey::Kind::quantity,
+          .choices = {},
+          .range = range,
+          .default_value = value};
+}
+
+constexpr std::array k_options{
+    number("f_E", "exponent of the stretching modulus", k_positive, k_published.stretch_exponent),
+    number("f_G", "exponent of the shear modulus, not above f_E", k_positive, k_published.shear_exponent),
+    number("critical_porosity", "porosity at which the moduli vanish", k_inside_one, k_published.critical_porosity),
+    number("c1", "factor of the particles' volume stiffness", k_positive, k_published.coupling_factor),
+    number("c2", "logarithmic strain at Phi = 1, counted from where the stress is zero", k_positive,
+           k_published.strain_offset),
+    number("alpha", "growth of the plastic fraction", k_positive, k_published.plastic_growth),
+    number("jamming_fraction", "packing fraction Phi_c at jamming", k_inside_one, k_published.jamming_fraction),
+    number("Z_c", "coordination number at jamming (not of the source)", k_positive,
+           k_published.coordination_at_jamming),
+    number("Z_1", "coordination number at Phi_1 (not of the source)", k_positive,
+           k_published.coordination_at_reference),
+    number("Phi_1", "packing fraction at which Z_1 is given (not of the source)", k_to_one,
+           k_published.reference_fraction),
+    OptionKey{
+        "coupling",
+        "sign of the particles' share in the strain: as printed, to which the parameters belong, or as eqs. 18-20 "
+        "give it",
+        OptionKey::Kind::choice, k_couplings},
+    OptionKey{.name = "continuous_jamming",
+              .meaning = "put critical_porosity = 1 - jamming_fraction and c2 = -ln jamming_fraction, so that the "
+                         "stress begins at zero",
+              .kind = OptionKey::Kind::toggle,
+              .choices = {}},
+    number("initial_packing_fraction", "packing fraction at the start; absent: where the packing jams", k_inside_one,
+           {}),
+};
+
+constexpr std::array k_drives{
+    DriveKey{"packing_fraction", "ramp to this packing fraction", Control::packing_fraction, Dimension::none,
+             k_fraction, "0.95"},
+    DriveKey{"strain",
+             "ramp to this strain since jamming, compression positive",
+             Control::strain,
+             Dimension::none,
+             {.lower = -10.0, .upper = 10.0},
+             "0.1"},
+    DriveKey{"stress", "ramp to this stress, compression positive", Control::stress, Dimension::stress, k_not_negative,
+             "\"0.5 MPa\""},
+};
+
+constexpr std::array k_regimes{
+    Term{k_regime_words[0], "the packing rearranges without stress"},
+    Term{k_regime_words[1], "elastic particles bear stress"},
+    Term{k_regime_words[2], "a growing fraction of the contacts is plastic"},
+    Term{k_regime_words[3], "the plastic fraction has reached 1"},
+};
+
+constexpr std::array k_events{
+    Term{"jamming", "the packing begins to bear stress, or comes loose"},
+    Term{"plastic-softening", "from here on the plastic packing is softer than the elastic one"},
+    Term{"fully-plastic", "the plastic fraction reaches 1; the stress has a kink"},
+    Term{"full", "no pores are left (Phi = 1); a run that would go on stops"},
+    Term{"limit", "the prescribed strain or stress cannot grow any further"},
+    Term{"step-end", "a step of the program is complete"},
+    Term{"until-met", "a step ends early because its condition is met"},
+};
+
+constexpr std::array<string_view, 7> k_domain{
+    "discs in plane strain; packing fractions up to 1",
+    "f_E >= f_G > 0 and a Poisson's ratio below 0.5; at 0.45 the modulus grows fourfold between Phi = 0.97 and 1",
+    "jamming at the largest of jamming_fraction, 1 - critical_porosity and exp(-c2): with the published values the "
+    "stress jumps there from 0 to 0.0108 MPa",
+    "the strain has its greatest value before Phi = 1 (published: 0.2028 at Phi = 0.9918), the stress may; strain or "
+    "stress control ends there",
+    "plastic particles: compaction only; just above jamming the plastic packing is stiffer than the elastic one",
+    "consistent coupling: stress and strain fall by less than a millionth just above Phi_c before they grow",
+    "coordination law: Z_c, Z_1 and Phi_1 are assumed (isostatic frictionless discs, 6 contacts at Phi = 1)",
+};
+
+/// Where the steps of a packing lead.
+class Destinations {
+ public:
+  explicit Destinations(const Law& law) : law_(law) {}
+
+  /// Packing fraction that a step leads to from one before; infinite where it leads out of the model.
+  double of(const Prescription& step, double now) {
+    if (step.control == Control::packing_fraction) return step.target;
+    const bool is_strain = step.control == Control::strain;
+    if (is_strain) {
+      const double at_jamming = state(law_, law_.jamming).strain;
+      if (step.target <= at_jamming) return law_.jamming * std::exp(step.target - at_jamming);
+    } else if (step.target == 0.0 && now <= law_.jamming) {
+      return now;
+    }
+    std::optional<Branch>& branch = is_strain ? strain_ : stress_;
+    if (!branch) branch = growing_branch(law_, is_strain ? Measure::strain : Measure::stress);
+    if (step.target > branch->greatest) return std::numeric_limits<double>::infinity();
+    return step.target <= branch->least ? law_.jamming : packing_fraction_at(law_, *branch, step.target);
+  }
+
+ private:
+  const Law& law_;
+  std::optional<Branch> strain_;
+  std::optional<Branch> stress_;
+};
+
+/// Steps of a plastic packing that go back. What a step leaves open by its condition is the run's to find out.
+void check_only_compaction(const Law& law, double initial, const Given& given, std::vector<Objection>& found) {
+  Destinations destinations(law);
+  double least = initial;
+  for (std::size_t k = 0; k < given.program.size(); ++k) {
+    const PlannedStep& step = given.program[k];
+    if (!step.first) continue;
+    const double next = destinations.of(*step.first, least);
+    if (next < least * (1.0 - k_same)) {
+      found.push_back({"",
+                       "the packing goes back from packing fraction " + std::to_string(least) + " to " +
+                           std::to_string(next) +
+                           ", and there is no law of unloading for plastic particles; expected growing targets, or "
+                           "elastic particles (no hardening_modulus)",
+                       k});
+      return;
+    }
+    if (!step.may_end_early) least = std::max(least, next);
+  }
+}
+
+/// The key whose value does not go with the others.
+const char* culprit(const Parameters& p) {
+  if (p.stretch_exponent < p.shear_exponent) return "f_E";
+  if (p.coordination_at_reference < p.coordination_at_jamming) return "Z_1";
+  if (p.reference_fraction <= p.jamming_fraction) return "Phi_1";
+  return "jamming_fraction";
+}
+
+std::vector<Objection> objections(const Given& given) {
+  const auto value = [&given](const char* key) -> std::optional<double> {
+    for (const auto* table : {&given.material, &given.numbers}) {
+      if (const auto found = table->find(key); found != table->end()) return found->second;
+    }
+    return std::nullopt;
+  };
+  const Parameters parameters =
+      parameters_from(value, given.choices.at("coupling"), given.toggles.at("continuous_jamming"));
+  std::vector<Objection> found;
+  if (parameters.has_continuous_jamming) {
+    const auto check_absent = [&](const char* key, double given_value, double default_value) {
+      if (given_value == default_value) return;
+      found.push_back({key, std::string("key '") + key +
+                                "' does not go with continuous_jamming = true, which sets it; expected one of them"});
+    };
+    check_absent("critical_porosity", parameters.critical_porosity, k_published.critical_porosity);
+    check_absent("c2", parameters.strain_offset, k_published.strain_offset);
+  }
+  try {
+    const Law law = make_law(parameters);
+    const double initial = value("initial_packing_fraction").value_or(law.jamming);
+    static_cast<void>(state(law, std::max(initial, law.jamming)));
+    if (parameters.plasticity) check_only_compaction(law, initial, given, found);
+  } catch (const std::invalid_argument& error) {
+    found.push_back({culprit(parameters), error.what()});
+  } catch (const std::domain_error& error) {
+    found.push_back({"c1", error.what()});
+  }
+  return found;
+}
+
+}  // namespace
+
+std::span<const string_view> regime_words() noexcept { return k_regime_words; }
+
+Parameters parameters_from(const std::function<std::optional<double>(const char*)>& value, string_view coupling,
+                           bool has_continuous_jamming) {
+  Parameters p;
+  p.youngs_modulus = value("youngs_modulus").value();
+  p.poisson_ratio = value("poisson_ratio").value();
+  if (const auto hardening = value("hardening_modulus")) p.plasticity = {value("yield_stress").value(), *hardening};
+  p.stretch_exponent = value("f_E").value();
+  p.shear_exponent = value("f_G").value();
+  p.critical_porosity = value("critical_porosity").value();
+  p.coupling_factor = value("c1").value();
+  p.strain_offset = value("c2").value();
+  p.plastic_growth = value("alpha").value();
+  p.jamming_fraction = value("jamming_fraction").value();
+  p.coordination_at_jamming = value("Z_c").value();
+  p.coordination_at_reference = value("Z_1").value();
+  p.reference_fraction = value("Phi_1").value();
+  p.coupling = coupling == k_couplings.front() ? Coupling::published : Coupling::consistent;
+  p.has_continuous_jamming = has_continuous_jamming;
+  return p;
+}
+
+ModelInfo packing_info() noexcept {
+  return {.name = "packing",
+          .summary = "compaction of a packing of elastic or plastic discs, from jamming to no pores left",
+          .source = "004_9c343b0bc13eca8e.txt, eqs. 5-22; signs corrected",
+          .material = k_material,
+          .options = k_options,
+          .configurations = {},
+          .has_free_centre = false,
+          .regimes = k_regimes,
+          .events = k_events,
+          .domain = k_domain,
+          .takes_ludwik = false,
+          .objections = objections,
+          .drives = k_drives};
+}
+
+}  // namespace monograin::packing

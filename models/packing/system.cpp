@@ -1,0 +1,382 @@
+#include "packing/system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "packing/info.hpp"
+
+namespace monograin::packing {
+namespace {
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+constexpr int k_iterations = 30;
+constexpr double k_resolution = 1e-14;  // of the last step but one of an iteration that doubles its digits
+constexpr double k_start = 1e-6;        // share of Phi up to which the start is closed
+constexpr double k_margin = 1e-6;       // share of what is prescribed by which a run ends before the branch does
+
+// Places of the unknowns.
+constexpr std::size_t k_particles = 0;
+constexpr std::size_t k_fraction = 1;
+
+// Kinds of guards.
+constexpr int k_jams = 0;    // the packing jams, or comes loose
+constexpr int k_grips = 1;   // the stress with which its branch begins
+constexpr int k_starts = 2;  // the end of the closed start
+constexpr int k_softens = 3;
+constexpr int k_plastic = 4;
+constexpr int k_full = 5;
+constexpr int k_limit = 6;
+
+/// Why a branch ends before the packing is full.
+const char* end_of_branch(Control control) {
+  if (control == Control::strain) return "the packing's strain does not grow any further";
+  if (control == Control::stress) return "the packing's stress does not grow any further";
+  return "the particles give way as much as the packing, whose stress becomes infinite";
+}
+
+/// v = m e of the closed form.
+double particle_strain(const Law& law, double packing_fraction) {
+  return law.sign * (total_strain(law, packing_fraction) - state(law, packing_fraction).strain);
+}
+
+/// Half way through the compaction.
+double typical_particle_strain(const Law& law) { return particle_strain(law, std::midpoint(law.jamming, law.end)); }
+
+Branch branch_of(const Law& law, Control control) {
+  if (control == Control::strain) return growing_branch(law, Measure::strain);
+  if (control == Control::stress) return growing_branch(law, Measure::stress);
+  return {.measure = Measure::strain, .begin = law.jamming, .end = law.end, .least = law.jamming, .greatest = law.end};
+}
+
+}  // namespace
+
+System::System(const Law& law, double initial_packing_fraction)
+    : law_(law),
+      initial_(initial_packing_fraction),
+      at_jamming_(state(law, law.jamming)),
+      softening_(softening(law)),
+      unknowns_{Unknown{"particle_strain", Unknown::Kind::differential, typical_particle_strain(law), false, false},
+                Unknown{"packing_fraction", Unknown::Kind::algebraic, 1.0, true, false}},
+      observables_{{"packing_fraction", "-", {}},
+                   {"strain", "-", {}},
+                   {"stress", "Pa", {}},
+                   {"stress_elastic", "Pa", {}},
+                   {"coordination_number", "-", {}},
+                   {"plastic_fraction", "-", {}},
+                   {"regime", "", regime_words()}} {}
+
+void System::start(std::span<double> y) {
+  mode_ = Mode::unjammed;
+  at_rest_ = initial_;
+  is_jammed_ = initial_ > law_.jamming;
+  is_softer_ = is_jammed_ && initial_ >= softening_;
+  is_fully_plastic_ = std::max(initial_, law_.jamming) >= full_plasticity(law_);
+  y[k_fraction] = initial_;
+  y[k_particles] = is_jammed_ ? particle_strain(law_, initial_) : 0.0;
+}
+
+// --- what is prescribed
+
+double System::told(double xi) const noexcept { return std::lerp(ramp_.start, ramp_.end, xi); }
+
+int System::direction() const noexcept { return (ramp_.end > ramp_.start) - (ramp_.end < ramp_.start); }
+
+/// What is prescribed where a jammed packing has this packing fraction.
+double System::prescribed_at(double packing_fraction) const {
+  if (ramp_.control == Control::packing_fraction) return packing_fraction;
+  return measured(law_, branch_.measure, packing_fraction);
+}
+
+void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
+  const bool is_other = ramps[0].control != ramp_.control || branch_.begin == 0.0;
+  ramp_ = ramps[0];
+  if (is_other) take_branch();
+  if (law_.given.plasticity && direction() < 0) {
+    throw std::domain_error("a packing of plastic particles is unloaded, for which there is no law");
+  }
+  if (is_jammed_ && direction() > 0 && y[k_fraction] >= 1.0) throw std::domain_error("no pores are left");
+  if (!is_jammed_) at_rest_ = y[k_fraction];
+  settle(0.0, log);
+  // An integrated state goes on; elsewhere the law says what it is.
+  complete(0.0, y);
+  watch(0.0);
+}
+
+void System::take_branch() {
+  branch_ = branch_of(law_, ramp_.control);
+  start_end_ = std::max(law_.jamming, branch_.begin) * (1.0 + k_start);
+}
+
+/// Mode at the start of a step.
+void System::settle(double xi, std::vector<Event>& log) {
+  const double value = told(xi);
+  const int d = direction();
+  const bool was_jammed = is_jammed_;
+  if (ramp_.control == Control::stress) {
+    is_jammed_ = was_jammed || value > 0.0 || d > 0;
+  } else {
+    const double jamming = ramp_.control == Control::strain ? at_jamming_.strain : law_.jamming;
+    is_jammed_ = value > jamming || (value == jamming && (d > 0 || (d == 0 && was_jammed)));
+  }
+  if (is_jammed_ != was_jammed) log.push_back({"jamming"});
+  const double end_of_start = prescribed_at(start_end_);
+  if (!is_jammed_)
+    mode_ = Mode::unjammed;
+  else if (ramp_.control == Control::stress && (value < branch_.least || (value == branch_.least && d <= 0)))
+    mode_ = Mode::held;
+  else if (value < end_of_start || (value == end_of_start && d < 0))
+    mode_ = Mode::starting;
+  else
+    mode_ = Mode::jammed;
+}
+
+// --- the state
+
+/// State by the closed form, for what is prescribed.
+System::Seen System::by_law(double xi) const {
+  const double value = told(xi);
+  if (mode_ == Mode::unjammed) {
+    double phi = at_rest_;
+    if (ramp_.control == Control::packing_fraction) phi = value;
+    if (ramp_.control == Control::strain) phi = law_.jamming * std::exp(value - at_jamming_.strain);
+    return {.packing_fraction = phi, .strain = at_jamming_.strain + std::log(phi / law_.jamming)};
+  }
+  if (mode_ == Mode::held) {
+    const State s = state(law_, branch_.begin);
+    return {branch_.begin, s.stress_elastic, s.strain, value};
+  }
+  // A trial may go beyond the stretch that this mode has, where a guard ends it: the end is seen instead.
+  const double last = mode_ == Mode::starting ? prescribed_at(start_end_) : branch_.greatest;
+  const double inside = std::clamp(value, branch_.least, last);
+  const double phi = ramp_.control == Control::packing_fraction ? inside : packing_fraction_at(law_, branch_, inside);
+  const State s = state(law_, phi);
+  return {phi, s.stress_elastic, s.strain, s.stress};
+}
+
+/// Strain of the packing: what the particles leave of the whole.
+double System::strain_of(std::span<const double> y) const noexcept {
+  return total_strain(law_, y[k_fraction]) - law_.sign * y[k_particles];
+}
+
+System::Seen System::seen(double xi, std::span<const double> y) const {
+  if (mode_ != Mode::jammed) return by_law(xi);
+  const double phi = y[k_fraction];
+  const double strain = strain_of(y);
+  const double stress_elastic = strain * effective_modulus(law_, phi);
+  return {phi, stress_elastic, strain, total_stress(law_, phi, stress_elastic)};
+}
+
+/// How far a jammed packing is from what is prescribed. A trial may go beyond the stress that the branch ends with,
+/// where a guard ends it.
+double System::excess(double xi, std::span<const double> y) const {
+  const double phi = y[k_fraction];
+  if (ramp_.control == Control::packing_fraction) return phi - told(xi);
+  if (ramp_.control == Control::strain) return strain_of(y) - told(xi);
+  const double stress = total_stress(law_, phi, strain_of(y) * effective_modulus(law_, phi));
+  return (stress - std::min(told(xi), branch_.greatest)) / law_.given.youngs_modulus;
+}
+
+void System::complete(double xi, std::span<double> y) {
+  if (mode_ != Mode::jammed) return solve(xi, y);
+  if (ramp_.control == Control::packing_fraction) {
+    y[k_fraction] = told(xi);
+    return;
+  }
+  if (ramp_.control == Control::strain) {
+    y[k_fraction] = law_.zero_stress * std::exp(told(xi) + law_.sign * y[k_particles]);
+    return;
+  }
+  // Newton's method from the present value, which is kept where it fails: the next trial begins there.
+  const double guess = y[k_fraction];
+  double trial = guess;
+  for (int k = 0; k < k_iterations; ++k) {
+    y[k_fraction] = trial;
+    const double slope = slopes(law_, trial, strain_of(y)).at_given_particles / law_.given.youngs_modulus;
+    const double step = excess(xi, y) / slope;
+    trial = std::clamp(trial - step, law_.jamming * (1.0 + 0.5 * k_start), law_.end + k_margin);
+    if (std::abs(step) > k_resolution) continue;
+    y[k_fraction] = trial;
+    return;
+  }
+  y[k_fraction] = guess;
+  throw std::domain_error("no packing fraction bears the stress");
+}
+
+void System::solve(double xi, std::span<double> y) {
+  const Seen now = by_law(xi);
+  y[k_fraction] = now.packing_fraction;
+  y[k_particles] = mode_ == Mode::unjammed ? 0.0 : particle_strain(law_, now.packing_fraction);
+}
+
+void System::all_rates(double /*xi*/, std::span<const double> y, std::span<double> dy) {
+  dy[k_particles] = dy[k_fraction] = 0.0;
+  if (mode_ != Mode::jammed || direction() == 0) return;
+  const double phi = y[k_fraction];
+  const Slopes s = slopes(law_, phi, strain_of(y));
+  const double growth = ramp_.control == Control::strain ? s.strain : ramp_.control == Control::stress ? s.stress : 1.0;
+  if (!(growth > 0.0)) throw std::domain_error(end_of_branch(ramp_.control));
+  dy[k_fraction] = (ramp_.end - ramp_.start) / growth;
+  dy[k_particles] = law_.sign * (1.0 / phi - s.strain) * dy[k_fraction];
+}
+
+void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
+  std::array<double, 2> all{};
+  all_rates(xi, y, all);
+  dy[k_particles] = all[k_particles];
+}
+
+void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
+  res[k_particles] = dy[k_particles];
+  if (mode_ != Mode::jammed) {
+    res[k_fraction] = y[k_fraction] - by_law(xi).packing_fraction;
+    return;
+  }
+  std::array<double, 2> all{};
+  all_rates(xi, y, all);
+  res[k_particles] -= all[k_particles];
+  res[k_fraction] = excess(xi, y);
+}
+
+// --- events
+
+void System::add_guard(int kind, std::string_view name, double place) {
+  guards_.push_back({kind, 0, direction(), name, name.empty()});
+  places_.push_back(place);
+}
+
+/// Lists what is ahead on the way to the ramp's end.
+void System::watch(double xi) {
+  guards_.clear();
+  places_.clear();
+  const int d = direction();
+  if (d == 0) return;
+  const double value = told(xi);
+  const auto is_ahead = [&](double place) { return d > 0 ? place <= ramp_.end : place >= ramp_.end; };
+  const auto watch_place = [&](int kind, std::string_view name, double place) {
+    if (is_ahead(place)) add_guard(kind, name, place);
+  };
+  const double jamming = ramp_.control == Control::strain ? at_jamming_.strain : law_.jamming;
+  switch (mode_) {
+    case Mode::unjammed:
+      // Under stress it jams at once, where a step begins.
+      if (d > 0 && ramp_.control != Control::stress) watch_place(k_jams, "jamming", jamming);
+      break;
+    case Mode::held:
+      if (d > 0) watch_place(k_grips, "", branch_.least);
+      break;
+    case Mode::starting:
+      if (d > 0)
+        watch_place(k_starts, "", prescribed_at(start_end_));
+      else if (ramp_.control == Control::stress)
+        watch_place(k_grips, "", branch_.least);
+      else
+        watch_place(k_jams, "jamming", jamming);
+      break;
+    case Mode::jammed:
+      if (d < 0) watch_place(k_starts, "", prescribed_at(start_end_));
+      break;
+  }
+  if (d < 0) return;
+  const double end = branch_.end;
+  if (!is_softer_ && softening_ <= end) watch_place(k_softens, "plastic-softening", prescribed_at(softening_));
+  const double plastic = full_plasticity(law_);
+  if (!is_fully_plastic_ && plastic <= std::min(1.0, end)) {
+    watch_place(k_plastic, "fully-plastic", prescribed_at(plastic));
+  }
+  if (branch_.end == 1.0) {
+    if (value < branch_.greatest) watch_place(k_full, "full", branch_.greatest);
+  } else {
+    // The rates are infinite at the end itself.
+    watch_place(k_limit, "limit", branch_.greatest - k_margin * (branch_.greatest - branch_.least));
+  }
+}
+
+void System::guard_values(double xi, std::span<const double> /*y*/, std::span<double> values) {
+  const double length = std::abs(ramp_.end - ramp_.start);
+  for (std::size_t g = 0; g < guards_.size(); ++g) values[g] = (told(xi) - places_[g]) / length;
+}
+
+void System::set_mode(Mode mode, double xi, std::span<double> y) {
+  mode_ = mode;
+  if (mode != Mode::jammed) return;
+  solve(xi, y);
+}
+
+std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
+                                      std::vector<Event>& log) {
+  std::optional<DomainEnd> end;
+  const bool is_up = direction() > 0;
+  for (const std::size_t g : fired) {
+    const Event event{guards_[g].name};
+    if (!event.name.empty()) log.push_back(event);
+    switch (guards_[g].kind) {
+      case k_jams:
+        is_jammed_ = is_up;
+        set_mode(is_up ? Mode::starting : Mode::unjammed, xi, y);
+        break;
+      case k_grips:
+        set_mode(is_up ? Mode::starting : Mode::held, xi, y);
+        break;
+      case k_starts:
+        set_mode(is_up ? Mode::jammed : Mode::starting, xi, y);
+        break;
+      case k_softens:
+        is_softer_ = true;
+        break;
+      case k_plastic:
+        is_fully_plastic_ = true;
+        break;
+      case k_full:
+        if (ramp_.end > places_[g]) end = DomainEnd{event, {"no pores are left", "packing fraction", 1.0}};
+        break;
+      default:
+        end = DomainEnd{event, {end_of_branch(ramp_.control), "greatest value", branch_.greatest}};
+        break;
+    }
+  }
+  if (!end) watch(xi);
+  return end;
+}
+
+// --- what is seen
+
+Regime System::regime() const noexcept {
+  if (!is_jammed_) return Regime::unjammed;
+  if (!law_.given.plasticity) return Regime::elastic;
+  return is_fully_plastic_ ? Regime::fully_plastic : Regime::elastic_plastic;
+}
+
+void System::observe(double xi, std::span<const double> y, std::span<double> values) {
+  const Seen now = seen(xi, y);
+  values[0] = now.packing_fraction;
+  values[1] = now.strain;
+  values[2] = now.stress;
+  values[3] = now.stress_elastic;
+  values[4] = is_jammed_ ? coordination_number(law_, now.packing_fraction) : k_nan;
+  values[5] = is_jammed_ ? plastic_fraction(law_, now.packing_fraction) : 0.0;
+  values[6] = static_cast<double>(regime());
+}
+
+double System::quantity(Quantity /*quantity*/, int /*channel*/, double /*xi*/, std::span<const double> /*y*/) {
+  throw std::logic_error("a packing has no such quantity");
+}
+
+double System::controlled(Control control, int /*channel*/, double xi, std::span<const double> y) {
+  const Seen now = seen(xi, y);
+  switch (control) {
+    case Control::packing_fraction:
+      return now.packing_fraction;
+    case Control::strain:
+      return now.strain;
+    case Control::stress:
+      return now.stress;
+    default:
+      throw std::logic_error("a packing does not know what is prescribed");
+  }
+}
+
+}  // namespace monograin::packing

@@ -1,0 +1,109 @@
+/// A packing of soft discs under a prescribed packing fraction, strain or stress as a hybrid system.
+///
+/// Loose, it rearranges without stress: its strain is then that at jamming plus ln(Phi/Phi_J), so that it goes on
+/// through jamming, where the published parameters let the stress jump. Jammed, the direct form is the closed form, its
+/// inverse where strain or stress is prescribed. The others integrate eq. 21 as the appendix puts it together, the
+/// strain of the particles v = m e (eqs. 19, 20) beside that of the packing:
+///
+///   v' = s (1/Phi - d e/d Phi) Phi'     with e = ln Phi + c2 - s v; singular where the packing jams
+///   0  = Phi, e or sigma less what is prescribed    gives Phi
+///
+/// from a millionth of Phi_J above the singular point, where eq. 22 starts them. Under a prescribed stress the packing
+/// stays at jamming until that stress is reached with which its branch begins.
+///
+/// A prescribed strain or stress that the packing cannot reach, or a packing fraction beyond its equations, ends the
+/// run a little before, where the rates are still finite.
+///
+/// All events lie at known packing fractions, and so at known values of what is prescribed.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "hybrid_system.hpp"
+#include "packing/law.hpp"
+
+namespace monograin::packing {
+
+enum class Regime { unjammed, elastic, elastic_plastic, fully_plastic };
+
+class System final : public HybridSystem {
+ public:
+  /// @param initial_packing_fraction  in (0, 1)
+  System(const Law& law, double initial_packing_fraction);
+
+  [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return unknowns_; }
+  void start(std::span<double> y) override;
+  /// @throws std::domain_error where a plastic packing would be unloaded, or a full one compacted
+  void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override;
+  void complete(double xi, std::span<double> y) override;
+  void rates(double xi, std::span<const double> y, std::span<double> dy) override;
+  void all_rates(double xi, std::span<const double> y, std::span<double> dy) override;
+  void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
+  void solve(double xi, std::span<double> y) override;
+  [[nodiscard]] std::optional<double> closed_quadrature(double /*xi*/, std::span<const double> /*y*/) override {
+    return std::nullopt;
+  }
+  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
+  void guard_values(double xi, std::span<const double> y, std::span<double> values) override;
+  std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
+                                std::vector<Event>& log) override;
+  [[nodiscard]] std::span<const Observable> observables() const noexcept override { return observables_; }
+  void observe(double xi, std::span<const double> y, std::span<double> values) override;
+  /// @throws std::logic_error always: the language offers no condition but events
+  [[nodiscard]] double quantity(Quantity quantity, int channel, double xi, std::span<const double> y) override;
+  [[nodiscard]] double controlled(Control control, int channel, double xi, std::span<const double> y) override;
+  [[nodiscard]] std::vector<Finding> warnings() const override { return {}; }
+
+ private:
+  enum class Mode {
+    unjammed,
+    held,      ///< at jamming, under less stress than its branch begins with
+    starting,  ///< next to the singular point: closed form
+    jammed     ///< integrated where there is an integrator
+  };
+
+  /// What is seen at an instant.
+  struct Seen {
+    double packing_fraction = 0.0;
+    double stress_elastic = 0.0;  ///< [Pa]
+    double strain = 0.0;
+    double stress = 0.0;  ///< [Pa]
+  };
+
+  [[nodiscard]] double told(double xi) const noexcept;
+  [[nodiscard]] int direction() const noexcept;
+  [[nodiscard]] Seen by_law(double xi) const;
+  [[nodiscard]] Seen seen(double xi, std::span<const double> y) const;
+  [[nodiscard]] double prescribed_at(double packing_fraction) const;
+  [[nodiscard]] double strain_of(std::span<const double> y) const noexcept;
+  [[nodiscard]] double excess(double xi, std::span<const double> y) const;
+  [[nodiscard]] Regime regime() const noexcept;
+
+  void take_branch();
+  void settle(double xi, std::vector<Event>& log);
+  void set_mode(Mode mode, double xi, std::span<double> y);
+  void watch(double xi);
+  void add_guard(int kind, std::string_view name, double place);
+
+  Law law_;
+  double initial_ = 0.0;
+  State at_jamming_;
+  double softening_ = 0.0;  ///< Phi from which on the plastic packing is softer than the elastic one; infinite: never
+  std::array<Unknown, 2> unknowns_;
+  std::vector<Observable> observables_;
+
+  Ramp ramp_;
+  Branch branch_;           ///< of what is prescribed
+  double start_end_ = 0.0;  ///< Phi up to which the start is closed
+  Mode mode_ = Mode::unjammed;
+  double at_rest_ = 0.0;  ///< Phi of an unjammed packing under no stress
+  bool is_jammed_ = false;
+  bool is_softer_ = false;
+  bool is_fully_plastic_ = false;
+  std::vector<Guard> guards_;
+  std::vector<double> places_;  ///< of the guards, in what is prescribed
+};
+
+}  // namespace monograin::packing

@@ -1,0 +1,127 @@
+#include "figure/body_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "figure/figure.hpp"
+#include "history/table.hpp"
+
+namespace monograin::figure {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Shown {
+  std::string_view column;
+  std::string_view label;  ///< gnuplot's enhanced text
+  std::string_view scale;  ///< key of the header whose number it is divided by; empty: none
+};
+
+/// What is drawn of a model: told by the column of its abscissa.
+struct BodyFigure {
+  Shown x;
+  std::span<const Shown> panels;
+};
+
+constexpr std::array<Shown, 4> k_packing{
+    Shown{"stress", "Stress {/:Italic σ} / {/:Italic E}", "E"},
+    Shown{"strain", "Strain since jamming {/:Italic e}", ""},
+    Shown{"coordination_number", "Coordination number {/:Italic Z}", ""},
+    Shown{"plastic_fraction", "Plastic fraction {/:Italic f}_p", ""},
+};
+constexpr std::array k_figures{
+    BodyFigure{{"packing_fraction", "Packing fraction {/:Italic Φ}", ""}, k_packing},
+};
+
+fs::path history_of(const fs::path& run) {
+  std::error_code ignored;
+  return fs::is_directory(run, ignored) ? run / "history.csv" : run;
+}
+
+Table read_table(const fs::path& file) {
+  try {
+    return read_csv(file);
+  } catch (const std::runtime_error& fault) {
+    throw FigureError(fault.what());
+  }
+}
+
+const BodyFigure* figure_of(const Table& history) {
+  const auto found = std::ranges::find_if(
+      k_figures, [&](const BodyFigure& figure) { return history.find(figure.x.column).has_value(); });
+  return found == k_figures.end() ? nullptr : &*found;
+}
+
+/// A column over its scale; @param history  whose header has that
+std::vector<double> values_of(const Table& table, const Table& history, const Shown& shown) {
+  std::vector<double> values = table.column(shown.column);
+  const double scale = shown.scale.empty() ? 1.0 : history.header_number(shown.scale).value_or(1.0);
+  for (double& value : values) value /= scale;
+  return values;
+}
+
+/// Circles at the events, one series for each name; those of the program are where the curves turn.
+void append_events(const Table& events, const Table& history, const BodyFigure& figure, std::size_t panel,
+                   std::vector<ChartSeries>& series) {
+  const auto name = events.find("event");
+  if (!name || events.row_count() == 0 || !events.columns()[*name].holds_words()) return;
+  const std::vector<double> x = values_of(events, history, figure.x);
+  const std::vector<double> y = values_of(events, history, figure.panels[panel]);
+  for (std::size_t row = 0; row < events.row_count(); ++row) {
+    const std::string event(events.word(row, *name));
+    if (event == "step-end" || event == "until-met") continue;
+    auto found = std::ranges::find(series, event, &ChartSeries::legend);
+    if (found == series.end()) {
+      found = series.insert(series.end(),
+                            {.legend = event, .style = ChartSeries::Style::points, .colour = {}, .x = {}, .y = {}});
+    }
+    found->x.push_back(x[row]);
+    found->y.push_back(y[row]);
+  }
+}
+
+}  // namespace
+
+std::optional<Chart> body_chart(const std::vector<fs::path>& runs) {
+  const Table first = read_table(history_of(runs.front()));
+  const BodyFigure* figure = figure_of(first);
+  if (figure == nullptr) return std::nullopt;
+  Chart chart;
+  for (const Shown& shown : figure->panels) {
+    chart.panels.push_back({.x = {.label = std::string(figure->x.label)}, .y = {.label = std::string(shown.label)}});
+  }
+  std::vector<std::vector<ChartSeries>> events(figure->panels.size());
+  for (const fs::path& run : runs) {
+    const fs::path file = history_of(run);
+    const Table history = read_table(file);
+    if (figure_of(history) != figure) {
+      throw FigureError(
+          fmt::format("{}: has no column '{}'; expected runs of one kind", file.string(), figure->x.column));
+    }
+    const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
+    std::error_code ignored;
+    const Table marks = fs::exists(folder / "events.csv", ignored) ? read_table(folder / "events.csv") : Table{};
+    for (std::size_t panel = 0; panel < figure->panels.size(); ++panel) {
+      // One run needs no name, and is drawn while its folder has none yet.
+      chart.panels[panel].series.push_back({.legend = runs.size() > 1 ? folder.filename().string() : "",
+                                            .style = ChartSeries::Style::phases,
+                                            .colour = {},
+                                            .x = values_of(history, history, figure->x),
+                                            .y = values_of(history, history, figure->panels[panel])});
+      append_events(marks, history, *figure, panel, events[panel]);
+    }
+  }
+  for (std::size_t panel = 0; panel < events.size(); ++panel) {
+    std::ranges::move(events[panel], std::back_inserter(chart.panels[panel].series));
+  }
+  return chart;
+}
+
+}  // namespace monograin::figure
