@@ -80,6 +80,17 @@ struct DriveKey {
   bool may_take_lateral = false;
 };
 
+/// A material of a source's table: values of keys in `[material]`, not of all of them.
+struct Preset {
+  struct Value {
+    std::string_view key;
+    double value = 0.0;  ///< [SI]
+  };
+  std::string_view name;
+  std::string_view source;  ///< table
+  std::span<const Value> values;
+};
+
 /// A regime or an event with one sentence about it.
 struct Term {
   std::string_view name;
@@ -107,6 +118,7 @@ struct Given {
   const std::map<std::string, bool>& toggles;         ///< options of kind toggle
   std::string_view configuration;                     ///< empty where the model has none
   std::span<const PlannedStep> program;               ///< empty where there are walls
+  std::string_view integrator;                        ///< as asked for
 };
 
 /// Why values do not go together.
@@ -127,11 +139,15 @@ struct ModelInfo {
   bool has_contact_area = true;  ///< there are contact radii, pressures, and a surface that may move
   std::span<const Term> regimes;
   std::span<const Term> events;
-  std::span<const std::string_view> domain;  ///< limits of validity, a sentence each
-  double least_wall_angle = 0.0;             ///< [rad], between any two walls
+  std::span<const std::string_view> domain;       ///< limits of validity, a sentence each
+  double least_wall_angle = 0.0;                  ///< [rad], between any two walls
+  std::span<const OptionKey> material_options{};  ///< options that stand in `[material]`
+  /// What `preset` in `[material]` may name. Keys that are given beside it win.
+  std::span<const Preset> presets{};
   /// `strength` and `hardening_exponent` may be given by Ludwik's law instead.
   bool takes_ludwik = false;
   std::vector<Objection> (*objections)(const Given& given) = nullptr;  ///< null: none
+  std::string_view sign{};  ///< convention of stresses and strains, where it is not that compression is positive
   /// How steps are told of a model that has neither particle nor walls; empty: it has both.
   std::span<const DriveKey> drives{};
   /// What such a step can prescribe besides, in a second channel, under keys of their own.
@@ -144,9 +160,6 @@ struct ModelInfo {
 
 /// All models this version can run, in the order in which they are listed to users.
 [[nodiscard]] std::span<const ModelInfo> model_catalogue() noexcept;
-
-/// Names of models the language reserves but this version cannot run.
-[[nodiscard]] std::span<const std::string_view> reserved_models() noexcept;
 
 /// The entry of that name, or nullptr.
 [[nodiscard]] const ModelInfo* find_model(std::string_view name) noexcept;

@@ -18,6 +18,7 @@
 
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,6 +66,16 @@ struct Finding {
 struct DomainEnd {
   Event event;
   Finding finding;
+};
+
+/// The system cannot take up the step that begins.
+class CannotBegin : public std::domain_error {
+ public:
+  explicit CannotBegin(const DomainEnd& end) : std::domain_error(std::string(end.finding.message)), end_(end) {}
+  [[nodiscard]] const DomainEnd& end() const noexcept { return end_; }
+
+ private:
+  DomainEnd end_;
 };
 
 /// A column of the history that the system fills.
@@ -121,9 +132,11 @@ class HybridSystem {
 
   /// Takes up the next step and decides the mode at its start; what changes there is logged.
   /// @param ramps  one per channel of the scene: per contact class where there are walls
+  /// @throws CannotBegin
   virtual void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) = 0;
 
-  /// Fills the algebraic unknowns for given differential ones; their present values are the first guess.
+  /// Fills the algebraic unknowns for given differential ones; their present values are the first guess. May move the
+  /// differential ones by their own error, to where the exact solution would keep them.
   virtual void complete(double xi, std::span<double> y) = 0;
 
   /// d/dxi of differential unknowns and quadratures; y is complete.
@@ -134,7 +147,14 @@ class HybridSystem {
 
   virtual void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) = 0;
 
-  /// Solves for everything but the quadratures; the present values are the first guess.
+  /// Whether residual() can be solved for the rates of the differential unknowns and the algebraic ones together. If
+  /// not (an equation without rates that belongs to an unknown with one), all_rates() has to be consistent by itself.
+  [[nodiscard]] virtual bool is_semi_explicit() const noexcept { return true; }
+
+  /// Whether solve() finds the state at any instant of the program. If not, the direct form is not offered.
+  [[nodiscard]] virtual bool is_solvable() const noexcept { return true; }
+  /// Solves for everything but the quadratures; the present values are the first guess. Of a system that is not
+  /// solvable: for what jumps in a transition.
   /// @throws std::domain_error where there is no solution
   virtual void solve(double xi, std::span<double> y) = 0;
 

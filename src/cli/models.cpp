@@ -57,7 +57,6 @@ std::string to_text(const Range& range) {
 
 void print_list() {
   for (const ModelInfo& model : model_catalogue()) fmt::print("{:<16}{}\n", model.name, model.summary);
-  fmt::print("\nreserved for later: {}\n", fmt::join(reserved_models(), ", "));
 }
 
 void print_terms(std::string_view title, std::span<const Term> terms) {
@@ -81,21 +80,8 @@ void print_steps(const ModelInfo& model) {
   print_keys(model.lateral_drives);
 }
 
-void print_model(const ModelInfo& model) {
-  fmt::print("{}: {}\nsource: {}\n\n[material]\n", model.name, model.summary, model.source);
-  for (const QuantityKey& key : model.material) {
-    const std::string default_text = key.default_value ? fmt::format("default {}", *key.default_value)
-                                     : key.is_optional ? "optional"
-                                                       : "required";
-    print_quantity(key, default_text);
-  }
-  if (model.takes_ludwik) {
-    fmt::print("  {:<25}{}\n", "ludwik",
-               "instead of strength and hardening_exponent: { yield_stress, strength, exponent = 1/n, eps_max = 1, "
-               "fit = \"both\" or \"exponent\" }");
-  }
-  if (!model.options.empty()) fmt::print("\n[{}]\n", model.name);
-  for (const OptionKey& key : model.options) {
+void print_options(std::span<const OptionKey> options) {
+  for (const OptionKey& key : options) {
     switch (key.kind) {
       case OptionKey::Kind::choice:
         fmt::print("  {:<25}{}: {} (default {})\n", key.name, key.meaning, fmt::join(key.choices, ", "),
@@ -112,6 +98,28 @@ void print_model(const ModelInfo& model) {
         break;
     }
   }
+}
+
+void print_model(const ModelInfo& model) {
+  fmt::print("{}: {}\nsource: {}\n\n[material]\n", model.name, model.summary, model.source);
+  print_options(model.material_options);
+  if (!model.presets.empty()) {
+    fmt::print("  {:<25}a material of the source's tables; keys beside it win. One of\n", "preset");
+    for (const Preset& preset : model.presets) fmt::print("  {:<27}{} ({})\n", "", preset.name, preset.source);
+  }
+  for (const QuantityKey& key : model.material) {
+    const std::string default_text = key.default_value ? fmt::format("default {}", *key.default_value)
+                                     : key.is_optional ? "optional"
+                                                       : "required";
+    print_quantity(key, default_text);
+  }
+  if (model.takes_ludwik) {
+    fmt::print("  {:<25}{}\n", "ludwik",
+               "instead of strength and hardening_exponent: { yield_stress, strength, exponent = 1/n, eps_max = 1, "
+               "fit = \"both\" or \"exponent\" }");
+  }
+  if (!model.options.empty()) fmt::print("\n[{}]\n", model.name);
+  print_options(model.options);
   if (!model.has_walls()) print_steps(model);
   if (!model.configurations.empty()) fmt::print("\nconfigurations: {}\n", fmt::join(model.configurations, ", "));
   if (model.has_walls()) fmt::print("centre: fixed{}\n", model.has_free_centre ? ", equilibrium" : "");
@@ -133,10 +141,7 @@ int run_models(const ModelsOptions& options) {
   if (!options.name.empty() && model == nullptr) {
     std::vector<std::string_view> names;
     for (const ModelInfo& known : model_catalogue()) names.push_back(known.name);
-    const bool is_reserved = std::ranges::find(reserved_models(), options.name) != reserved_models().end();
-    throw UsageError(fmt::format("{} '{}'; available: {}",
-                                 is_reserved ? "this version does not have model" : "there is no model", options.name,
-                                 fmt::join(names, ", ")));
+    throw UsageError(fmt::format("there is no model '{}'; available: {}", options.name, fmt::join(names, ", ")));
   }
   if (options.file.empty()) {
     if (model == nullptr)

@@ -51,6 +51,10 @@ Quantity to_quantity(Until::Quantity quantity) {
   throw std::logic_error("an event is not a quantity");
 }
 
+std::string text_of(const Finding& finding) {
+  return fmt::format("{} ({} = {:.9g})", finding.message, finding.quantity, finding.value);
+}
+
 /// One step of the program, worked out from where its channels stand when it begins.
 struct Plan {
   std::vector<Ramp> ramps;
@@ -88,6 +92,10 @@ class Drive {
     } catch (const Stop& stop) {
       result.status = RunStatus::stopped;
       result.message = stop.message;
+    } catch (const CannotBegin& error) {
+      result.status = RunStatus::stopped;
+      result.message = where(0.0) + text_of(error.end().finding);
+      close_instant(step_start_, 0.0, {error.end().event});
     } catch (const std::domain_error& error) {
       result.status = RunStatus::stopped;
       result.message = where(xi_) + error.what();
@@ -252,8 +260,7 @@ class Drive {
       const auto end = system_.fire(of_system, xi_, y_, log);
       if (is_seen) close_instant(time(xi_), xi_, log);
       if (end) {
-        const Finding& finding = end->finding;
-        throw Stop{fmt::format("{}{} ({} = {:.9g})", where(xi_), finding.message, finding.quantity, finding.value)};
+        throw Stop{where(xi_) + text_of(end->finding)};
       }
       system_.solve(xi_, y_);
       is_met = is_met || watch_.is_met(xi_, y_) || std::ranges::any_of(log, [&](const Event& event) {

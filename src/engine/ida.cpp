@@ -67,7 +67,7 @@ class Ida final : public Integrator {
     check("IDAReInit", IDAReInit(memory_.get(), xi, y_.get(), dy_.get()));
     check("IDASetStopTime", IDASetStopTime(memory_.get(), 1.0));
     // The system's own rates are consistent; IDACalcIC brings the rest within the tolerance and says so if it cannot.
-    check("IDACalcIC", IDACalcIC(memory_.get(), IDA_YA_YDP_INIT, 1.0));
+    if (system_.is_semi_explicit()) check("IDACalcIC", IDACalcIC(memory_.get(), IDA_YA_YDP_INIT, 1.0));
     check("IDARootInit", IDARootInit(memory_.get(), 0, nullptr));
     roots_.found.assign(watch_.size(), 0);
     if (watch_.size() == 0) return;

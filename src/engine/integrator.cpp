@@ -24,6 +24,7 @@ Statistics& Statistics::operator+=(const Statistics& other) noexcept {
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
                                             const Tolerances& tolerances) {
+  if (name == "direct" && !system.is_solvable()) throw std::logic_error("the system has no direct form");
   if (name == "direct") return make_direct(system, watch);
   if (name == "cvode-adams") return make_cvode(CvodeMethod::adams, system, watch, tolerances);
   if (name == "cvode-bdf") return make_cvode(CvodeMethod::bdf, system, watch, tolerances);
@@ -31,10 +32,15 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem&
   throw std::logic_error(fmt::format("no integrator is called '{}'", name));
 }
 
-IntegratorChoice choose_integrator(const std::string& asked) {
+IntegratorChoice choose_integrator(const std::string& asked, const HybridSystem& system) {
   if (asked != "auto") return {asked, asked, "asked for"};
-  return {asked, "direct",
-          "the state at any instant follows from equations that need no history: nothing is integrated"};
+  if (system.is_solvable()) {
+    return {asked, "direct",
+            "the state at any instant follows from equations that need no history: nothing is integrated"};
+  }
+  return {asked, "cvode-bdf",
+          "the state depends on the way to it, so that it is integrated; in its explicit form, by the method that "
+          "stiff phases do not slow down"};
 }
 
 std::string sundials_version() {

@@ -74,7 +74,7 @@ class Integrator {
 };
 
 /// @param name  direct, cvode-bdf, cvode-adams or ida
-/// @throws std::logic_error for another name
+/// @throws std::logic_error for another name, or where direct is asked of a system that is not solvable
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
                                                           const Tolerances& tolerances);
 
@@ -85,8 +85,8 @@ struct IntegratorChoice {
   std::string why;
 };
 
-/// The integrator asked for, or for "auto" the cheapest that reaches the accuracy.
-[[nodiscard]] IntegratorChoice choose_integrator(const std::string& asked);
+/// The integrator asked for, or for "auto" the cheapest that reaches the accuracy and that the system allows.
+[[nodiscard]] IntegratorChoice choose_integrator(const std::string& asked, const HybridSystem& system);
 
 /// Version of the SUNDIALS library in use.
 [[nodiscard]] std::string sundials_version();

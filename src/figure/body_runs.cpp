@@ -36,8 +36,15 @@ constexpr std::array<Shown, 4> k_packing{
     Shown{"coordination_number", "Coordination number {/:Italic Z}", ""},
     Shown{"plastic_fraction", "Plastic fraction {/:Italic f}_p", ""},
 };
+constexpr std::array<Shown, 4> k_material_point{
+    Shown{"stress_axial", "Axial stress {/:Italic σ}_a / {/:Italic σ}_{y0}", "yield_pressure"},
+    Shown{"p", "Mean stress {/:Italic p} / {/:Italic σ}_{y0}", "yield_pressure"},
+    Shown{"q", "Deviatoric stress {/:Italic q} / {/:Italic σ}_{y0}", "yield_pressure"},
+    Shown{"relative_density", "Relative density {/:Italic ρ}", ""},
+};
 constexpr std::array k_figures{
     BodyFigure{{"packing_fraction", "Packing fraction {/:Italic Φ}", ""}, k_packing},
+    BodyFigure{{"strain_axial", "Axial strain (tension positive)", ""}, k_material_point},
 };
 
 fs::path history_of(const fs::path& run) {

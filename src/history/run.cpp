@@ -5,6 +5,7 @@
 
 #include <chrono>
 
+#include "catalogue.hpp"
 #include "history/recorder.hpp"
 
 namespace monograin {
@@ -29,7 +30,12 @@ class Stopwatch {
 
 /// Symbols under which material constants stand in the header of a history.
 constexpr std::pair<std::string_view, std::string_view> k_symbols[] = {
-    {"youngs_modulus", "E"}, {"poisson_ratio", "nu"}, {"yield_stress", "Y"}, {"surface_energy", "surface_energy"}};
+    {"youngs_modulus", "E"},
+    {"poisson_ratio", "nu"},
+    {"yield_stress", "Y"},
+    {"surface_energy", "surface_energy"},
+    {"yield_pressure", "yield_pressure"},
+};
 
 std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
   const Scenario& scenario = run.scenario;
@@ -42,6 +48,7 @@ std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
                                                           {"rtol", fmt::format("{}", scenario.numerics.rtol)},
                                                           {"atol", fmt::format("{}", scenario.numerics.atol)}};
   if (scenario.radius > 0.0) header.emplace_back("R0", fmt::format("{}", scenario.radius));
+  if (!find_model(scenario.model)->sign.empty()) header.emplace_back("sign", find_model(scenario.model)->sign);
   for (const auto& [key, symbol] : k_symbols) {
     const auto found = scenario.material.find(std::string(key));
     if (found != scenario.material.end()) header.emplace_back(symbol, fmt::format("{}", found->second));
@@ -84,7 +91,7 @@ Run run_scenario(const Scenario& scenario) {
   run.scenario = scenario;
   Stopwatch watch;
   Scene scene = make_scene(scenario);
-  run.integrator = choose_integrator(scenario.numerics.integrator);
+  run.integrator = choose_integrator(scenario.numerics.integrator, *scene.system);
   run.timings.setup = watch.lap();
   run.record =
       record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);

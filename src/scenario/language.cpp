@@ -42,29 +42,7 @@ constexpr ModelInfo k_any_model{.name = {},
                                 .events = {},
                                 .domain = {}};
 
-// Keys of models that the language reserves; those of available models come from the catalogue.
-constexpr std::array<string_view, 21> k_reserved_material{"ludwik",
-                                                          "stiffness_ratio",
-                                                          "shear_ratio",
-                                                          "tensile_ratio",
-                                                          "eta",
-                                                          "xi",
-                                                          "zeta",
-                                                          "omega",
-                                                          "xi1",
-                                                          "xi2",
-                                                          "eps0",
-                                                          "nu0",
-                                                          "relative_density",
-                                                          "reference_density",
-                                                          "yield_pressure",
-                                                          "preset",
-                                                          "yield_model",
-                                                          "transition_width",
-                                                          "hardening_modulus",
-                                                          "surface_energy",
-                                                          "yield_stress"};
-// Keys of steps and conditions of all models, also of those that the language reserves.
+// Keys of steps and conditions of all models.
 constexpr std::array<string_view, 8> k_step_keys{
     "displacement", "force", "detach", "strain", "stress", "lateral_strain", "lateral_stress", "packing_fraction"};
 constexpr std::array<string_view, 8> k_until_keys{"force",          "displacement",    "pressure",
@@ -103,8 +81,6 @@ std::vector<KeySpec> root_keys() {
        .kind = Kind::choice,
        .is_required = true,
        .choices = model_names(),
-       .reserved = words_of(reserved_models()),
-       .reserved_where = "in this version",
        .example = "\"mdr\""},
       {.name = "particle", .meaning = "the particle", .kind = Kind::table, .example = "[particle]"},
       {.name = "material", .meaning = "parameters of the contact law", .kind = Kind::table, .example = "[material]"},
@@ -114,11 +90,11 @@ std::vector<KeySpec> root_keys() {
   };
 }
 
-std::vector<KeySpec> particle_keys(bool is_required) {
+std::vector<KeySpec> particle_keys() {
   return {{.name = "radius",
            .meaning = "initial radius R0",
            .kind = Kind::quantity,
-           .is_required = is_required,
+           .is_required = true,
            .dimension = Dimension::length,
            .range = k_positive,
            .knows_initial_radius = false}};
@@ -192,9 +168,46 @@ std::vector<KeySpec> wall_keys() {
 
 // --- tables that depend on the model
 
+KeySpec option_key(const OptionKey& option) {
+  KeySpec spec{.name = option.name, .meaning = option.meaning};
+  switch (option.kind) {
+    case OptionKey::Kind::choice:
+      spec.kind = Kind::choice;
+      spec.choices = words_of(option.choices);
+      spec.default_value = option.choices.front();
+      break;
+    case OptionKey::Kind::toggle:
+      spec.kind = Kind::toggle;
+      spec.default_value = option.default_toggle;
+      break;
+    case OptionKey::Kind::file:
+      spec.kind = Kind::file;
+      spec.example = "\"file.csv\"";
+      spec.columns = option.columns;
+      break;
+    case OptionKey::Kind::quantity:
+      spec.kind = Kind::quantity;
+      spec.dimension = option.dimension;
+      spec.range = option.range;
+      if (option.default_value) spec.default_value = *option.default_value;
+      break;
+  }
+  return spec;
+}
+
 std::vector<KeySpec> material_keys(const ModelInfo& model) {
   std::vector<KeySpec> keys;
-  for (const QuantityKey& key : model.material) keys.push_back(quantity_key(key));
+  for (const OptionKey& option : model.material_options) keys.push_back(option_key(option));
+  if (!model.presets.empty()) {
+    KeySpec preset{.name = "preset", .meaning = "a material of the source's tables", .kind = Kind::choice};
+    for (const Preset& material : model.presets) preset.choices.push_back(material.name);
+    keys.push_back(std::move(preset));
+  }
+  for (const QuantityKey& key : model.material) {
+    keys.push_back(quantity_key(key));
+    // The preset may have it; the reader knows what is missing then.
+    if (!model.presets.empty()) keys.back().is_required = false;
+  }
   if (model.takes_ludwik) {
     keys.push_back(
         {.name = "ludwik",
@@ -236,33 +249,6 @@ std::vector<KeySpec> ludwik_keys() {
        .choices = words_of(k_ludwik_fits),
        .default_value = k_ludwik_fits.front()},
   };
-}
-
-KeySpec option_key(const OptionKey& option) {
-  KeySpec spec{.name = option.name, .meaning = option.meaning};
-  switch (option.kind) {
-    case OptionKey::Kind::choice:
-      spec.kind = Kind::choice;
-      spec.choices = words_of(option.choices);
-      spec.default_value = option.choices.front();
-      break;
-    case OptionKey::Kind::toggle:
-      spec.kind = Kind::toggle;
-      spec.default_value = option.default_toggle;
-      break;
-    case OptionKey::Kind::file:
-      spec.kind = Kind::file;
-      spec.example = "\"file.csv\"";
-      spec.columns = option.columns;
-      break;
-    case OptionKey::Kind::quantity:
-      spec.kind = Kind::quantity;
-      spec.dimension = option.dimension;
-      spec.range = option.range;
-      if (option.default_value) spec.default_value = *option.default_value;
-      break;
-  }
-  return spec;
 }
 
 KeySpec steps_key(string_view meaning) {
@@ -476,8 +462,9 @@ std::vector<ForeignKey> foreign_keys(std::span<const string_view> names, std::sp
 }
 
 std::vector<string_view> material_names_of_all_models() {
-  std::vector<string_view> names = words_of(k_reserved_material);
+  std::vector<string_view> names{"ludwik", "preset"};
   for (const ModelInfo& model : model_catalogue()) {
+    for (const OptionKey& option : model.material_options) names.push_back(option.name);
     for (const QuantityKey& key : model.material) {
       if (!is_in(names, key.name)) names.push_back(key.name);
     }
@@ -487,7 +474,6 @@ std::vector<string_view> material_names_of_all_models() {
 
 void add_model_tables(Language& language, string_view model) {
   std::vector<string_view> names = model_names();
-  names.insert(names.end(), reserved_models().begin(), reserved_models().end());
   // Without a valid model nobody can say whose options are the right ones.
   const bool is_known = is_in(names, model);
   for (const string_view name : names) {
@@ -529,14 +515,11 @@ void add_material_and_options(Language& language, const ModelInfo& model) {
 
 Language language_of(string_view model) {
   Language language;
-  // Reserved models need no particle; whether they do is theirs to say once they are there.
-  const bool is_reserved = is_in(reserved_models(), model);
   language.root = root_keys();
-  language.particle = particle_keys(!is_reserved);
+  language.particle = particle_keys();
   language.output = output_keys();
   language.numerics = numerics_keys();
   add_model_tables(language, model);
-  if (is_reserved) return language;
   const ModelInfo* info = find_model(model);
   if (info != nullptr) add_material_and_options(language, *info);
   if (info != nullptr && !info->has_walls()) {

@@ -76,13 +76,13 @@ inline constexpr double k_greatest_normal = 1e6;
 
 /// The language as one model understands it.
 struct Language {
-  const ModelInfo* model = nullptr;  ///< null: unknown or reserved
+  const ModelInfo* model = nullptr;  ///< null: unknown
   std::vector<KeySpec> root;
   std::vector<KeySpec> particle;  ///< empty where the model has none
   std::vector<KeySpec> material;  ///< empty without a model
   std::vector<KeySpec> options;   ///< empty without a model
   std::vector<KeySpec> ludwik;    ///< the table in `[material]`; empty where the model does not take it
-  std::vector<KeySpec> loading;   ///< empty with a reserved model: its steps are other ones
+  std::vector<KeySpec> loading;
   std::vector<KeySpec> wall;
   std::vector<KeySpec> until;
   std::vector<KeySpec> output;

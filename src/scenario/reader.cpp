@@ -22,8 +22,7 @@ namespace {
 /// The model whose language the file is checked against: the one it names, or a near one that it misspells.
 std::string model_to_check_against(const toml::table& root) {
   const std::string word = root["model"].value_or(std::string());
-  const auto reserved = reserved_models();
-  if (find_model(word) != nullptr || std::ranges::find(reserved, word) != reserved.end()) return word;
+  if (find_model(word) != nullptr) return word;
   std::vector<std::string_view> names;
   for (const ModelInfo& model : model_catalogue()) names.push_back(model.name);
   const std::string_view nearest = nearest_word(word, names);
@@ -70,12 +69,50 @@ void read_ludwik(Reading& reading, const Section& material, const Language& lang
   }
 }
 
+std::optional<OptionValue> option_value(const Section& options, const KeySpec& spec) {
+  if (spec.kind == KeySpec::Kind::toggle) return options.toggle(spec.name).value_or(false);
+  if (spec.kind == KeySpec::Kind::quantity) return options.number(spec.name);
+  return options.text(spec.name);
+}
+
+/// What the named preset says of keys that are not given, and what is missing all the same.
+void read_preset(Reading& reading, const Section& material, const Language& language, Scenario& scenario) {
+  const auto presets = language.model->presets;
+  const std::string name = material.text("preset");
+  if (const auto preset = std::ranges::find(presets, name, &Preset::name); preset != presets.end()) {
+    for (const auto& [key, value] : preset->values) {
+      const KeySpec* spec = find_key(language.material, key);
+      if (spec != nullptr && !material.has_or_misspells(key))
+        scenario.material.insert_or_assign(std::string(key), value);
+    }
+  }
+  if (name.empty() && material.has_or_misspells("preset")) return;
+  for (const QuantityKey& key : language.model->material) {
+    const bool is_needed = !key.default_value && !key.is_optional;
+    if (!is_needed || scenario.material.contains(std::string(key.name)) || material.has_or_misspells(key.name))
+      continue;
+    reading.faults.add(
+        material.place(),
+        name.empty() ? fmt::format("key '{}' is missing in [material]; expected for example {}, or {}", key.name,
+                                   example_line(*find_key(language.material, key.name)),
+                                   example_line(*find_key(language.material, "preset")))
+                     : fmt::format("key '{}' is missing in [material], and preset '{}' does not have it; expected for "
+                                   "example {}",
+                                   key.name, name, example_line(*find_key(language.material, key.name))));
+  }
+}
+
 void read_material(Reading& reading, const Section& root, const Language& language, Scenario& scenario) {
   const Section material(reading, root.table("material", "[material]"), language.material, language.foreign_material);
-  for (const KeySpec& spec : language.material) {
-    if (spec.kind == KeySpec::Kind::table) continue;
-    if (const auto value = material.number(spec.name)) scenario.material.emplace(spec.name, *value);
+  for (const QuantityKey& key : language.model->material) {
+    if (const auto value = material.number(key.name)) scenario.material.emplace(key.name, *value);
   }
+  for (const OptionKey& option : language.model->material_options) {
+    if (auto value = option_value(material, *find_key(language.material, option.name))) {
+      scenario.options.emplace(option.name, std::move(*value));
+    }
+  }
+  if (!language.model->presets.empty()) read_preset(reading, material, language, scenario);
   if (language.ludwik.empty()) return;
   if (material.has_or_misspells("ludwik")) return read_ludwik(reading, material, language, scenario);
   for (const char* key : {"strength", "hardening_exponent"}) {
@@ -84,12 +121,6 @@ void read_material(Reading& reading, const Section& root, const Language& langua
                        fmt::format("key '{}' is missing in [material]; expected for example {}, or ludwik = {{ ... }}",
                                    key, example_line(*find_key(language.material, key))));
   }
-}
-
-std::optional<OptionValue> option_value(const Section& options, const KeySpec& spec) {
-  if (spec.kind == KeySpec::Kind::toggle) return options.toggle(spec.name).value_or(false);
-  if (spec.kind == KeySpec::Kind::quantity) return options.number(spec.name);
-  return options.text(spec.name);
 }
 
 /// The curve in the file that an option names, if it names one.
@@ -144,9 +175,10 @@ Scenario read_tree(const toml::table& tree, const std::string& origin, FaultList
   if (!language.loading.empty()) {
     scenario.loading = read_loading(reading, root.table("loading", "[loading]"), language);
   }
-  if (language.model != nullptr && reading.faults.size() == 0) check_rules(reading, tree, origin, language, scenario);
+  const std::size_t faults_so_far = reading.faults.size();
   read_output(reading, root, language, scenario);
   read_numerics(reading, root, language, scenario);
+  if (language.model != nullptr && faults_so_far == 0) check_rules(reading, tree, origin, language, scenario);
   return scenario;
 }
 

@@ -38,7 +38,8 @@ std::string_view configuration_word(Loading::Configuration configuration) {
 /// Where a key stands, in whichever of the tables it may.
 SourceLocation place_of_key(const toml::table& tree, const std::string& origin, std::string_view model,
                             std::string_view key) {
-  for (const std::string_view name : {std::string_view("material"), model, std::string_view("loading")}) {
+  for (const std::string_view name :
+       {std::string_view("material"), model, std::string_view("loading"), std::string_view("numerics")}) {
     const toml::table* table = tree[name].as_table();
     if (table == nullptr) continue;
     if (const auto found = table->find(key); found != table->end()) return place_of(found->second.source(), {origin});
@@ -72,7 +73,8 @@ void check_objections(Reading& reading, const toml::table& tree, const std::stri
                     .numbers = numbers,
                     .toggles = toggles,
                     .configuration = has_configuration ? configuration_word(scenario.loading.configuration) : "",
-                    .program = program};
+                    .program = program,
+                    .integrator = scenario.numerics.integrator};
   for (const Objection& objection : model.objections(given)) {
     reading.faults.add(
         objection.step ? steps[*objection.step].where : place_of_key(tree, origin, model.name, objection.key),

@@ -5,6 +5,8 @@
 #include <stdexcept>
 
 #include "compressible/contact_system.hpp"
+#include "compressible/material_point.hpp"
+#include "compressible/material_point_info.hpp"
 #include "elastic/hertz.hpp"
 #include "elastic/nonlocal_system.hpp"
 #include "mdr/system.hpp"
@@ -106,6 +108,13 @@ compressible::ContactSettings compressible_settings(const Scenario& scenario, co
           .largest_force = reach.force};
 }
 
+compressible::MaterialPoint::Settings material_point_settings(const Scenario& scenario) {
+  return {.parameters = compressible::parameters_from(scenario.material,
+                                                      std::get<std::string>(scenario.options.at("yield_model"))),
+          .yield_pressure = scenario.material.at("yield_pressure"),
+          .is_hydrostatic = scenario.loading.configuration == Loading::Configuration::hydrostatic};
+}
+
 }  // namespace
 
 std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<ContactClass> classes,
@@ -130,6 +139,9 @@ std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<C
     const packing::Law law = packing_law_of(scenario);
     return std::make_unique<packing::System>(law, initial_packing_fraction_of(scenario, law));
   }
+  if (scenario.model == "material-point") {
+    return std::make_unique<compressible::MaterialPoint>(material_point_settings(scenario));
+  }
   throw std::logic_error(fmt::format("model '{}' is in the catalogue but not bound", scenario.model));
 }
 
@@ -138,7 +150,22 @@ std::vector<Channel> channels_without_walls(const Scenario& scenario) {
     const double initial = initial_packing_fraction_of(scenario, packing_law_of(scenario));
     return {{"packing", {initial, initial, Control::packing_fraction}, scenario.loading.steps}};
   }
-  throw std::logic_error(fmt::format("model '{}' has neither walls nor channels", scenario.model));
+  using Configuration = Loading::Configuration;
+  const Configuration configuration = scenario.loading.configuration;
+  std::vector<Channel> channels{{"axial", {0.0, 0.0, Control::strain}, scenario.loading.steps}};
+  if (configuration == Configuration::hydrostatic) return channels;
+  const bool is_free = configuration == Configuration::simple || configuration == Configuration::triaxial;
+  Channel lateral{"lateral", {0.0, 0.0, is_free ? Control::stress : Control::strain}, {}};
+  for (const Step& step : scenario.loading.steps) {
+    Step follows;  // takes as long as the axial one
+    if (step.lateral) {
+      follows.kind = step.lateral->kind;
+      follows.target = step.lateral->target;
+    }
+    lateral.program.push_back(std::move(follows));
+  }
+  channels.push_back(std::move(lateral));
+  return channels;
 }
 
 }  // namespace monograin

@@ -4,6 +4,8 @@
 #include <limits>
 #include <numbers>
 
+#include "compressible/material_point_info.hpp"
+#include "compressible/yield_surface.hpp"
 #include "elastic/hertz.hpp"
 #include "elastic/nonlocal_coupling.hpp"
 #include "mdr/contact.hpp"
@@ -189,6 +191,34 @@ void add_packing(const Scenario& scenario, List& list) {
   list.push_back({"fully_plastic_fraction", packing::full_plasticity(law), "-"});
 }
 
+/// The material where it starts.
+void add_material_point(const Scenario& scenario, List& list) {
+  using namespace compressible;
+  const Parameters m = parameters_from(scenario.material, std::get<std::string>(scenario.options.at("yield_model")));
+  const double unit = scenario.material.at("yield_pressure");
+  const Properties at = properties_at(m, 0.0);
+  list.push_back({"yield_pressure", unit, "Pa", "sigma_y0"});
+  list.push_back({"youngs_modulus", unit * at.youngs_modulus.value, "Pa", "E"});
+  list.push_back({"poisson_ratio", at.poisson_ratio.value, "-", "nu"});
+  list.push_back({"bulk_modulus", unit * at.bulk_modulus.value, "Pa", "K"});
+  list.push_back({"shear_modulus", unit * at.shear_modulus.value, "Pa", "G"});
+  list.push_back({"shear_strength", unit * at.shear_strength.value, "Pa", "Gamma"});
+  if (!is_compressible(m.model)) return;
+  list.push_back({"relative_density", at.relative_density, "-", "rho"});
+  list.push_back({"hydrostatic_strength", unit * at.yield_pressure.value, "Pa", "sigma_y"});
+  list.push_back({"tensile_strength", unit * at.tensile_strength.value, "Pa", "Lambda"});
+  list.push_back({"axis_ratio", at.axis_ratio.value, "-", "eps"});
+  list.push_back({"cap_centre", unit * at.cap_centre.value, "Pa", "pi3"});
+  if (m.model != YieldModel::dpc) return;
+  const CapConstants cap = cap_constants(m, at);
+  list.push_back({"friction_slope", cap.slope, "-", "tan pi6"});
+  list.push_back({"cohesion", unit * cap.cohesion, "Pa", "pi5"});
+  list.push_back({"arc_radius", unit * cap.arc_radius, "Pa", "pi8 C"});
+  list.push_back({"arc_centre", unit * cap.arc_centre, "Pa", "(1 - A) C"});
+  list.push_back({"flow_stretch", cap.flow_stretch, "-", "B"});
+  list.push_back({"transition_start", unit * cap.transition_start, "Pa", "p_i"});
+}
+
 }  // namespace
 
 std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
@@ -208,6 +238,10 @@ std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
   }
   if (scenario.model == "packing") {
     add_packing(scenario, list);
+    return list;
+  }
+  if (scenario.model == "material-point") {
+    add_material_point(scenario, list);
     return list;
   }
   add_material(scenario,

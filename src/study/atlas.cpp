@@ -262,11 +262,22 @@ class FigureMaker {
       }
       return curves;
     }
-    for (const Scenario& scenario : spec.scenarios) {
+    const auto curve_from = [&](const Scenario& scenario) {
       const Table& table = spec.profile_at          ? profiles_of(scenario, *spec.profile_at)
                            : !spec.at_event.empty() ? states_at(scenario, spec.at_event)
                                                     : run_of(scenario).history;
-      curves.push_back(curve_of(spec.x, spec.y, Scope(&table, derived_parameters(scenario), parameter), faults_));
+      return curve_of(spec.x, spec.y, Scope(&table, derived_parameters(scenario), parameter), faults_);
+    };
+    for (const Scenario& scenario : spec.scenarios) curves.push_back(curve_from(scenario));
+    for (std::size_t k = 0; k < spec.references.size(); ++k) {
+      const Values reference = curve_from(spec.references[k]).y;
+      Values& y = curves[k].y;
+      if (y.size() != reference.size()) {
+        faults_.add(spec.y.where, fmt::format("{} rows, and {} in the run that they are held against; expected as many",
+                                              y.size(), reference.size()));
+        continue;
+      }
+      for (std::size_t row = 0; row < y.size(); ++row) y[row] = std::abs(y[row] - reference[row]);
     }
     if (spec.scenarios.empty()) curves.push_back(curve_of(spec.x, spec.y, Scope(nullptr, {}, parameter), faults_));
     return curves;

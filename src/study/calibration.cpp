@@ -22,7 +22,9 @@ constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Relative error of the responses.
 double noise_of(const Scenario& scenario) {
-  return choose_integrator(scenario.numerics.integrator).used == "direct" ? k_direct_noise : scenario.numerics.rtol;
+  const Scene scene = make_scene(scenario);
+  return choose_integrator(scenario.numerics.integrator, *scene.system).used == "direct" ? k_direct_noise
+                                                                                         : scenario.numerics.rtol;
 }
 
 /// x with further values in between, so that a curve through it is smooth.

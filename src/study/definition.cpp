@@ -226,7 +226,7 @@ class DefinitionReader {
   [[nodiscard]] std::vector<Override> sweep(const Section& curve, CurveSpec& spec) {
     static const Keys keys = sweep_keys();
     const Section section(reading_, curve.table("sweep", "sweep"), keys);
-    for (const std::string_view other : {"parameter", "profile_at", "at_event"}) {
+    for (const std::string_view other : {"parameter", "profile_at", "at_event", "against"}) {
       if (curve.has(other)) {
         faults_.add(curve.key_place(other), fmt::format("'{}' does not go with 'sweep', which has no history", other));
       }
@@ -285,10 +285,15 @@ class DefinitionReader {
   /// The scenarios of one curve: one, or one for each value that is swept.
   void add_curve(const Section& curve, const std::vector<Override>& varied, const std::vector<Override>& swept,
                  CurveSpec& spec) {
-    std::vector<Override> overrides = own_overrides(curve);
+    std::vector<Override> overrides = overrides_in(curve, "set");
     overrides.insert(overrides.end(), varied.begin(), varied.end());
     if (!curve.has("sweep")) {
-      if (auto made = checked_scenario(curve, overrides)) spec.scenarios.push_back(std::move(*made));
+      auto made = checked_scenario(curve, overrides);
+      if (!made) return;
+      spec.scenarios.push_back(std::move(*made));
+      if (!curve.has("against")) return;
+      for (const Override& entry : overrides_in(curve, "against")) overrides.push_back(entry);
+      if (auto reference = checked_scenario(curve, overrides)) spec.references.push_back(std::move(*reference));
       return;
     }
     for (const Override& value : swept) {
@@ -300,10 +305,10 @@ class DefinitionReader {
     }
   }
 
-  [[nodiscard]] static std::vector<Override> own_overrides(const Section& section) {
+  [[nodiscard]] static std::vector<Override> overrides_in(const Section& section, std::string_view key) {
     std::vector<Override> overrides;
-    for (const std::string& text : section.texts("set")) {
-      overrides.push_back({text, section.value_place("set", overrides.size())});
+    for (const std::string& text : section.texts(key)) {
+      overrides.push_back({text, section.value_place(key, overrides.size())});
     }
     return overrides;
   }
@@ -414,7 +419,7 @@ class DefinitionReader {
       static const Keys row_keys = value_keys();
       const Section entry(reading_, row, row_keys);
       spec.rows.push_back({.label = plain(entry, "label"),
-                           .scenario = checked_scenario(entry, own_overrides(entry)),
+                           .scenario = checked_scenario(entry, overrides_in(entry, "set")),
                            .value = formula(entry, "value").value_or(PlacedExpression{}),
                            .printed = printed_number(entry),
                            .reference = entry.has("reference") ? std::optional(reference(entry)) : std::nullopt,

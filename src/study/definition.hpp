@@ -41,6 +41,8 @@ struct CurveSpec {
   RowChoice rows = RowChoice::all;
   std::vector<figure::ChartSeries::Style> styles{figure::ChartSeries::Style::phases};  ///< likewise
   std::optional<std::size_t> colour;
+  /// One for each scenario: y is then its distance from the reference's y, which is evaluated over the same rows.
+  std::vector<Scenario> references{};
   std::optional<double> profile_at;  ///< [s]; then columns are those of contact profiles at that instant
   std::string at_event;  ///< then rows are the states just after events of this name; empty: those of the history
   std::optional<Parameter> parameter;

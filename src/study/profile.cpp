@@ -81,7 +81,7 @@ Table contact_profiles(const Scenario& scenario, double time) {
   Scene scene = make_scene(scenario);
   ProfileSink sink(*scene.system, time);
   const Output output{.points = 0, .times = {time}};
-  const IntegratorChoice integrator = choose_integrator(scenario.numerics.integrator);
+  const IntegratorChoice integrator = choose_integrator(scenario.numerics.integrator, *scene.system);
   const DriveResult result =
       drive(scene, integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, output, sink);
   if (!sink.has_come()) {

@@ -22,13 +22,13 @@ struct RegressionResult {
   }
 };
 
-/// Runs every scenario of a folder with every integrator, and compares with NAME.csv and NAME.events.csv of another
-/// folder.
+/// Runs every scenario of a folder with every integrator that it can be run with, and compares with NAME.csv and
+/// NAME.events.csv of another folder.
 [[nodiscard]] std::vector<RegressionResult> regress(const std::filesystem::path& scenarios,
                                                     const std::filesystem::path& curves);
 
-/// Stores the curve of every scenario anew, computed by the direct form. Returns how far each new curve is from the old
-/// one.
+/// Stores the curve of every scenario anew, computed by the direct form, or where there is none, by an integrator at a
+/// hundredth of the scenario's tolerances. Returns how far each new curve is from the old one.
 std::vector<RegressionResult> accept_curves(const std::filesystem::path& scenarios,
                                             const std::filesystem::path& curves);
 

@@ -108,7 +108,7 @@ Measurable measurable_in(const Scenario& scenario) {
 
 Replay::Replay(Scenario scenario, ReplayColumns columns, std::vector<double> values)
     : scenario_(std::move(scenario)),
-      integrator_(choose_integrator(scenario_.numerics.integrator).used),
+      integrator_(choose_integrator(scenario_.numerics.integrator, *make_scene(scenario_).system).used),
       columns_(std::move(columns)),
       values_(std::move(values)) {
   DataProgram program = program_through(values_, columns_.control, columns_.start);

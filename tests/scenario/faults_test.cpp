@@ -19,7 +19,8 @@ struct FaultRow {
 };
 
 /// All that can be run.
-const std::string k_models = "hertz, mdr, similarity, semimech, hardening, nonlocal, compressible, packing";
+const std::string k_models =
+    "hertz, mdr, similarity, semimech, hardening, nonlocal, compressible, packing, material-point";
 
 class FaultTable : public ::testing::TestWithParam<FaultRow> {};
 
@@ -33,15 +34,14 @@ const std::vector<FaultRow> k_rows{
              1,
              "title = 3",
              {"die.toml:1:9: title = 3: expected a text in quotes, for example \"die compaction\""}},
-    FaultRow{
-        "UnknownTable",
-        1,
-        "[outptu]\npoints = 3\n[_]",
-        {"die.toml:1:1: key 'model' is missing in the scenario; expected for example model = \"mdr\"",
-         "die.toml:1:2: unknown key 'outptu' in the scenario; did you mean 'output'?",
-         "die.toml:3:2: unknown key '_' in the scenario; expected one of title, model, particle, material, "
-         "loading, output, numerics, hertz, mdr, similarity, semimech, hardening, packing, nonlocal, compressible, "
-         "material-point"}},
+    FaultRow{"UnknownTable",
+             1,
+             "[outptu]\npoints = 3\n[_]",
+             {"die.toml:1:1: key 'model' is missing in the scenario; expected for example model = \"mdr\"",
+              "die.toml:1:2: unknown key 'outptu' in the scenario; did you mean 'output'?",
+              "die.toml:3:2: unknown key '_' in the scenario; expected one of title, model, particle, material, "
+              "loading, output, numerics, hertz, mdr, similarity, semimech, hardening, nonlocal, compressible, "
+              "packing, material-point"}},
     FaultRow{"UnknownRootKey",
              1,
              "titel = \"t\"",
@@ -56,10 +56,6 @@ const std::vector<FaultRow> k_rows{
              {"die.toml:2:9: model = \"mrd\": expected one of " + k_models + "; did you mean 'mdr'?"}},
     FaultRow{
         "UnknownModel", 2, "model = \"granite\"", {"die.toml:2:9: model = \"granite\": expected one of " + k_models}},
-    FaultRow{"ReservedModel",
-             2,
-             "model = \"packing\"",
-             {"die.toml:2:9: model 'packing' is not available in this version; available: " + k_models}},
     FaultRow{"ModelIsNoText", 2, "model = 1", {"die.toml:2:9: model = 1: expected one of " + k_models}},
     FaultRow{"MissingRadius",
              4,
@@ -377,23 +373,6 @@ TEST(ScenarioFaults, OfTextsInTheFileStayOnOneLine) {
   for (const std::string& fault : faults_of(with_line(4, "radius = \"1\\n\\u0007\\nmm\"\n\"a\\nb\" = 1"))) {
     EXPECT_TRUE(fault.starts_with("die.toml:")) << fault;
   }
-}
-
-TEST(ReservedModel, IsRefusedOnceAndItsKeysAreKnown) {
-  const std::vector<std::string> faults = faults_of(
-      "model = \"material-point\"\n[material]\nyield_model = \"dpc\"\n[loading]\nconfiguration = \"triaxial\"\n"
-      "[[loading.steps]]\nstrain = -0.1\nduration = 1\n");
-  EXPECT_EQ(faults,
-            std::vector<std::string>{
-                "die.toml:1:9: model 'material-point' is not available in this version; available: " + k_models});
-}
-
-TEST(ReservedModel, DoesNotHideFaultsThatNeedNoModel) {
-  const std::vector<std::string> faults =
-      faults_of("model = \"packing\"\n[packing]\nf_E = 1.2\n[particle]\nradius = \"1 MPa\"\n[mdr]\n");
-  ASSERT_EQ(faults.size(), 3U);
-  EXPECT_TRUE(faults[1].starts_with("die.toml:5:10: radius")) << faults[1];
-  EXPECT_TRUE(faults[2].starts_with("die.toml:6:2: key 'mdr' is the table of another model")) << faults[2];
 }
 
 TEST(MisspeltModel, IsCheckedAsTheOneThatWasMeant) {

@@ -113,6 +113,25 @@ curve = [{ vary = { key = "material.poisson_ratio", values = [0.0, 0.25, 0.5] },
   EXPECT_EQ(made.chart.panels[0].series[0].x, (std::vector<double>{0.0, 0.25, 0.5}));
 }
 
+TEST_F(Atlas, DrawsTheDistanceFromAnotherRun) {
+  const AtlasFigure made = make(std::string(k_head) + k_scenario + R"toml(
+[[panel]]
+x = "nu"
+y = "max(axial.force) / (E * R0^2)"
+curve = [{ vary = { key = "material.poisson_ratio", values = [0.0, 0.5] }, against = ["material.poisson_ratio=0"] }]
+)toml");
+  const std::vector<double>& distance = made.chart.panels[0].series.at(0).y;
+  ASSERT_EQ(distance.size(), 2U);
+  EXPECT_EQ(distance[0], 0.0);
+  EXPECT_NEAR(distance[1], 4.0 / 9.0 * std::pow(0.01, 1.5), 1e-15);  // (1/(1 - nu^2) - 1) of the force at nu = 0
+}
+
+TEST_F(Atlas, WantsAsManyRowsInTheRunThatACurveIsHeldAgainst) {
+  const std::string fault =
+      fault_of(std::string(k_head) + k_scenario + "[[panel]]\ncurve = [{ against = [\"output.points=7\"] }]\n");
+  EXPECT_NE(fault.find("in the run that they are held against"), std::string::npos) << fault;
+}
+
 TEST_F(Atlas, DrawsAFormulaOfAParameterWithoutARun) {
   const AtlasFigure made = make(R"toml(title = "t"
 source = "s"

@@ -1,0 +1,555 @@
+#include "compressible/material_point.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+namespace monograin::compressible {
+namespace {
+
+using std::string_view;
+
+// Places in y.
+constexpr std::size_t k_phi = 0;
+constexpr std::size_t k_deviatoric = 1;
+constexpr std::size_t k_multiplier = 2;
+
+constexpr std::size_t k_axial = 0;
+constexpr std::size_t k_lateral = 1;
+
+// The multiplier starts from zero in every plastic phase, but has no more digits than the strains that f is made of.
+constexpr std::array k_unknowns{
+    Unknown{"phi", Unknown::Kind::differential, 0.1},
+    Unknown{"plastic_strain_deviatoric", Unknown::Kind::differential, 0.1},
+    Unknown{"plastic_multiplier", Unknown::Kind::quadrature, 1.0},
+};
+
+// What is nearer than this to the end of an elastic phase has arrived there (step coordinates).
+constexpr double k_round_off = 1e-13;
+// Cosine between the normal of the yield surface and the elastic rate of stress below which the two are at right
+// angles.
+constexpr double k_neutral = 1e-12;
+// A state this near to the end of a segment, over the yield pressure, is beyond it if the program moves it there: f is
+// quadratic in the distance.
+constexpr double k_arrived = 1e-9;
+// Share of its usual size that the stiffness along the flow has to keep. Under prescribed strains it goes to zero like
+// the root of the way that is left; under prescribed stresses in proportion to it.
+constexpr double k_least_stiffness = 1e-6;
+// Distance of Poisson's ratio from 1/2, where the bulk modulus is infinite, at which a run ends.
+constexpr double k_least_compressibility = 1e-6;
+// Newton's method on f = 0: strain correction below which the next one is round-off, and how many there may be.
+constexpr double k_last_correction = 1e-11;
+constexpr int k_most_corrections = 60;
+
+// Share of the strength below which a negative work of the flow is round-off.
+constexpr double k_negligible_work = 1e-9;
+
+enum Regime { elastic, plastic_tension, plastic_shear, plastic_transition, plastic_cap };
+constexpr std::array<string_view, 5> k_regimes{"elastic", "plastic-tension", "plastic-shear", "plastic-transition",
+                                               "plastic-cap"};
+
+Regime regime_of(Segment segment) {
+  switch (segment) {
+    case Segment::tension:
+      return plastic_tension;
+    case Segment::shear:
+      return plastic_shear;
+    case Segment::transition:
+      return plastic_transition;
+    case Segment::cap:
+      return plastic_cap;
+  }
+  return elastic;
+}
+
+}  // namespace
+
+MaterialPoint::MaterialPoint(const Settings& settings) : settings_(settings) {
+  for (const char* name : {"strain_axial", "strain_lateral"}) observables_.push_back({name, "-", {}});
+  for (const char* name : {"p", "s", "q", "stress_axial", "stress_lateral"}) observables_.push_back({name, "Pa", {}});
+  for (const char* name : {"relative_density", "plastic_strain_volumetric", "plastic_strain_deviatoric", "phi"}) {
+    observables_.push_back({name, "-", {}});
+  }
+  observables_.push_back({"youngs_modulus", "Pa", {}});
+  observables_.push_back({"yield_function", "-", {}});
+  observables_.push_back({"regime", "", k_regimes});
+}
+
+std::span<const Unknown> MaterialPoint::unknowns() const noexcept { return k_unknowns; }
+
+// The flow of von Mises keeps its direction (d(phi) = |d(g^p)|), and so does flow without deviator: f = 0 along that
+// line is one equation.
+bool MaterialPoint::is_solvable() const noexcept {
+  return settings_.parameters.model == YieldModel::vm || settings_.is_hydrostatic;
+}
+
+void MaterialPoint::start(std::span<double> y) { std::ranges::fill(y, 0.0); }
+
+// --- elastic response
+
+bool MaterialPoint::is_stress(std::size_t channel) const noexcept { return ramps_[channel].control == Control::stress; }
+
+double MaterialPoint::prescribed(std::size_t channel, double xi) const noexcept {
+  return std::lerp(ramps_[channel].start, ramps_[channel].end, xi);
+}
+
+double MaterialPoint::prescribed_rate(std::size_t channel) const noexcept {
+  return ramps_[channel].end - ramps_[channel].start;
+}
+
+/// p = K (e_v - e_v^p), s = 3G (g - g^p), with the strains that are not prescribed from the stresses that are.
+MaterialPoint::Response MaterialPoint::response(double xi, std::span<const double> y) const {
+  Response now{.at = properties_at(settings_.parameters, y[k_phi])};
+  if (!(now.at.poisson_ratio.value < 0.5)) throw std::domain_error("Poisson's ratio has passed 1/2");
+  const double bulk = now.at.bulk_modulus.value;
+  const double shear = now.at.shear_modulus.value;
+  const double swelling = is_compressible(settings_.parameters.model) ? -y[k_phi] : 0.0;  // e_v^p
+  const double flow = y[k_deviatoric];
+  const double axial = prescribed(k_axial, xi);
+  const double lateral = prescribed(k_lateral, xi);
+  if (is_stress(k_axial) && is_stress(k_lateral)) {
+    now.p = (axial + 2.0 * lateral) / 3.0;
+    now.s = axial - lateral;
+    const double volumetric = now.p / bulk + swelling;
+    const double deviatoric = now.s / (3.0 * shear) + flow;
+    now.axial_strain = volumetric / 3.0 + deviatoric;
+    now.lateral_strain = volumetric / 3.0 - deviatoric / 2.0;
+    return now;
+  }
+  if (is_stress(k_lateral)) {
+    now.axial_strain = axial;
+    now.lateral_strain = (lateral - (bulk - 2.0 * shear / 3.0) * axial + bulk * swelling - shear * flow) /
+                         (2.0 * bulk + 2.0 * shear / 3.0);
+  } else if (is_stress(k_axial)) {
+    now.lateral_strain = lateral;
+    now.axial_strain = (axial - (2.0 * bulk - 4.0 * shear / 3.0) * lateral + bulk * swelling + 2.0 * shear * flow) /
+                       (bulk + 4.0 * shear / 3.0);
+  } else {
+    now.axial_strain = axial;
+    now.lateral_strain = lateral;
+  }
+  now.p = bulk * (now.axial_strain + 2.0 * now.lateral_strain - swelling);
+  now.s = 2.0 * shear * (now.axial_strain - now.lateral_strain) - 3.0 * shear * flow;
+  return now;
+}
+
+/// Change of stress for a change of what is prescribed, and one that the moduli and the plastic strains would bring at
+/// fixed strains.
+MaterialPoint::Increment MaterialPoint::stress_change(const Properties& at, Increment stiff, double axial,
+                                                      double lateral) const {
+  if (is_stress(k_axial) && is_stress(k_lateral)) return {(axial + 2.0 * lateral) / 3.0, axial - lateral};
+  const double bulk = at.bulk_modulus.value;
+  const double shear = at.shear_modulus.value;
+  if (is_stress(k_lateral)) {
+    lateral =
+        (lateral - stiff.p + stiff.s / 3.0 - (bulk - 2.0 * shear / 3.0) * axial) / (2.0 * bulk + 2.0 * shear / 3.0);
+  } else if (is_stress(k_axial)) {
+    axial = (axial - stiff.p - 2.0 * stiff.s / 3.0 - (2.0 * bulk - 4.0 * shear / 3.0) * lateral) /
+            (bulk + 4.0 * shear / 3.0);
+  }
+  return {stiff.p + bulk * (axial + 2.0 * lateral), stiff.s + 2.0 * shear * (axial - lateral)};
+}
+
+MaterialPoint::Increment MaterialPoint::elastic_rate(const Properties& at) const {
+  return stress_change(at, {}, prescribed_rate(k_axial), prescribed_rate(k_lateral));
+}
+
+// --- plastic flow
+
+/// Consistency: N - D l' = 0 is the derivative of f = 0 (section 2, with total moduli).
+MaterialPoint::Flow MaterialPoint::flow(const Response& now) const {
+  const Properties& at = now.at;
+  Flow flow;
+  flow.yield = yield_on(settings_.parameters, at, branch_, now.p, now.s);
+  const Yield& y = flow.yield;
+  const bool compressible = is_compressible(settings_.parameters.model);
+  flow.phi = compressible ? -y.g_p : std::abs(y.g_s);
+  flow.deviatoric = y.g_s;
+  flow.elastic = elastic_rate(at);
+  flow.loading = y.f_p * flow.elastic.p + y.f_s * flow.elastic.s;
+  // At fixed strains: densification takes elastic strain away and stiffens what is left.
+  const double bulk = at.bulk_modulus.value;
+  const double shear = at.shear_modulus.value;
+  const Increment by_phi = stress_change(
+      at, {(compressible ? bulk : 0.0) + now.p * at.bulk_modulus.slope / bulk, now.s * at.shear_modulus.slope / shear},
+      0.0, 0.0);
+  const Increment by_deviatoric = stress_change(at, {0.0, -3.0 * shear}, 0.0, 0.0);
+  flow.f_by_phi = y.f_phi + y.f_p * by_phi.p + y.f_s * by_phi.s;
+  flow.f_by_deviatoric = y.f_p * by_deviatoric.p + y.f_s * by_deviatoric.s;
+  flow.stiffness = -(flow.f_by_phi * flow.phi + flow.f_by_deviatoric * flow.deviatoric);
+  return flow;
+}
+
+/// Of the angle between the surface's normal and the elastic rate of stress; 0 where nothing is prescribed to move.
+double MaterialPoint::cosine(const Flow& flow) noexcept {
+  const double length = std::hypot(flow.yield.f_p, flow.yield.f_s) * std::hypot(flow.elastic.p, flow.elastic.s);
+  return length > 0.0 ? flow.loading / length : 0.0;
+}
+
+void MaterialPoint::rates(double xi, std::span<const double> y, std::span<double> dy) {
+  std::ranges::fill(dy, 0.0);
+  if (!is_plastic_) return;
+  const Flow now = flow(response(xi, y));
+  if (now.loading == 0.0) return;
+  if (!(now.stiffness > 0.0)) throw std::domain_error("the strain that follows from the program is not unique");
+  dy[k_multiplier] = now.loading / now.stiffness;
+  dy[k_phi] = dy[k_multiplier] * now.phi;
+  dy[k_deviatoric] = dy[k_multiplier] * now.deviatoric;
+}
+
+void MaterialPoint::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
+  if (!is_plastic_) {
+    std::ranges::copy(dy, res.begin());
+    return;
+  }
+  const Flow now = flow(response(xi, y));
+  res[k_phi] = dy[k_phi] - dy[k_multiplier] * now.phi;
+  res[k_deviatoric] = dy[k_deviatoric] - dy[k_multiplier] * now.deviatoric;
+  res[k_multiplier] = now.yield.f;
+}
+
+/// Brings the plastic strains to f = 0 along the flow. Where stresses are prescribed, f does not depend on g^p, and
+/// near a critical state the flow hardly changes phi: there along the gradient.
+void MaterialPoint::complete(double xi, std::span<double> y) {
+  if (!is_plastic_) return;
+  const bool follows_gradient = is_stress(k_axial) && is_stress(k_lateral) && !is_solvable();
+  for (int i = 0; i < k_most_corrections; ++i) {
+    const Flow now = flow(response(xi, y));
+    const double by_phi = follows_gradient ? now.f_by_phi : now.phi;
+    const double by_deviatoric = follows_gradient ? now.f_by_deviatoric : now.deviatoric;
+    const double step = -now.yield.f / (now.f_by_phi * by_phi + now.f_by_deviatoric * by_deviatoric);
+    const double phi = step * by_phi;
+    const double deviatoric = step * by_deviatoric;
+    if (!std::isfinite(step)) break;
+    y[k_phi] += phi;
+    y[k_deviatoric] += deviatoric;
+    if (std::hypot(phi, deviatoric) < k_last_correction) return;
+  }
+  throw std::domain_error("no plastic strain brings the stress back to the yield surface");
+}
+
+void MaterialPoint::solve(double xi, std::span<double> y) { complete(xi, y); }
+
+std::optional<double> MaterialPoint::closed_quadrature(double, std::span<const double>) { return std::nullopt; }
+
+// --- modes
+
+void MaterialPoint::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
+  for (std::size_t channel = 0; channel < ramps_.size(); ++channel) {
+    Ramp& ramp = ramps_[channel];
+    ramp = ramps[std::min(channel, ramps.size() - 1)];
+    if (ramp.control != Control::stress) continue;
+    ramp.start /= settings_.yield_pressure;
+    ramp.end /= settings_.yield_pressure;
+  }
+  const Response now = response(0.0, y);
+  if (is_plastic_) choose_side(now);
+  if (is_plastic_ && goes_on_yielding(now)) {
+    go_on_plastic(now, log);
+    return;
+  }
+  if (is_plastic_) log.push_back({"plastic-off"});
+  is_plastic_ = false;
+  watch_elastic(0.0, now);
+  if (guards_.empty() || exit_ > k_round_off) return;
+  // The last step ended on the surface, and this one goes out of it.
+  log.push_back({"yield"});
+  turn_plastic(exit_branch_, now);
+  go_on_plastic(now, log);
+}
+
+void MaterialPoint::go_on_plastic(const Response& now, std::vector<Event>& log) {
+  pass_ends(now, log);
+  const Flow flow_now = flow(now);
+  const bool stands_still = flow_now.elastic.p == 0.0 && flow_now.elastic.s == 0.0;
+  if (!stands_still && margin(Limit::uniqueness, now) <= 0.0) throw CannotBegin(domain_end(Limit::uniqueness, now));
+  watch_plastic(now);
+}
+
+/// Whether plastic flow continues over a corner of the program. A program that stands still changes nothing; one that
+/// leaves along the tangent of a curved surface goes out of it.
+bool MaterialPoint::goes_on_yielding(const Response& now) const {
+  const Flow flow_now = flow(now);
+  if (flow_now.elastic.p == 0.0 && flow_now.elastic.s == 0.0) return true;
+  const double direction = cosine(flow_now);
+  if (std::abs(direction) > k_neutral) return direction > 0.0;
+  const auto out = way_out(settings_.parameters, now.at, now.p, now.s, flow_now.elastic.p, flow_now.elastic.s);
+  return out && out->t <= k_round_off;
+}
+
+void MaterialPoint::turn_plastic(Branch branch, const Response& now) {
+  is_plastic_ = true;
+  branch_ = branch;
+  choose_side(now);
+}
+
+/// Of s, where that is zero: the one it goes to; none, where it stays.
+void MaterialPoint::choose_side(const Response& now) {
+  if (now.s != 0.0) return;
+  const double rate = elastic_rate(now.at).s;
+  branch_.side = rate > 0.0 ? 1.0 : rate < 0.0 ? -1.0 : 0.0;
+}
+
+/// Moves on from the ends of segments that the state lies at and the program goes through.
+void MaterialPoint::pass_ends(const Response& now, std::vector<Event>& log) {
+  for (const bool towards_compression : {false, true}) {
+    const auto distance = distance_to_end(settings_.parameters, now.at, branch_.segment, towards_compression, now.p);
+    if (!distance || *distance > k_arrived * now.at.yield_pressure.value) continue;
+    if (!is_isochoric_end(branch_.segment, towards_compression)) continue;
+    const double rate = pressure_rate_at_end(now, towards_compression);
+    if (towards_compression ? rate >= 0.0 : rate <= 0.0) continue;
+    enter_neighbour(now, towards_compression);
+    log.push_back({"segment-change"});
+    return;
+  }
+}
+
+/// On the caps s may have changed its sign.
+void MaterialPoint::enter_neighbour(const Response& now, bool towards_compression) {
+  branch_.segment = neighbour(settings_.parameters, branch_.segment, towards_compression);
+  branch_.side = now.s > 0.0 ? 1.0 : -1.0;
+}
+
+bool MaterialPoint::is_isochoric_end(Segment segment, bool towards_compression) const noexcept {
+  if (settings_.parameters.model == YieldModel::vmdc) return true;
+  const Segment other = neighbour(settings_.parameters, segment, towards_compression);
+  return segment == Segment::cap || other == Segment::cap;
+}
+
+/// How fast the pressure moves at an isochoric end, where phi stands still and s follows p along the tangent.
+double MaterialPoint::pressure_rate_at_end(const Response& now, bool towards_compression) const {
+  const Parameters& parameters = settings_.parameters;
+  const bool is_corner = parameters.model == YieldModel::dpc && branch_.segment == Segment::shear &&
+                         neighbour(parameters, branch_.segment, towards_compression) == Segment::cap;
+  const double tangent = is_corner ? branch_.side * cap_constants(parameters, now.at).slope : 0.0;  // -ds/dp
+  const double axial = prescribed_rate(k_axial);
+  const double lateral = prescribed_rate(k_lateral);
+  if (is_stress(k_axial) && is_stress(k_lateral)) return (axial + 2.0 * lateral) / 3.0;
+  if (is_stress(k_lateral)) return lateral / (1.0 + tangent / 3.0);
+  if (is_stress(k_axial)) return axial / (1.0 - 2.0 * tangent / 3.0);
+  return now.at.bulk_modulus.value * (axial + 2.0 * lateral);
+}
+
+// --- guards
+
+void MaterialPoint::watch_elastic(double xi, const Response& now) {
+  guards_.clear();
+  const Increment rate = elastic_rate(now.at);
+  const auto out = way_out(settings_.parameters, now.at, now.p, now.s, rate.p, rate.s);
+  if (!out || xi + out->t > 1.0) return;
+  exit_ = xi + out->t;
+  exit_branch_ = out->branch;
+  guards_.push_back({yielding, 0, 1, "yield"});
+}
+
+void MaterialPoint::watch_plastic(const Response& now) {
+  guards_.clear();
+  const Parameters& parameters = settings_.parameters;
+  for (const bool towards_compression : {false, true}) {
+    if (!distance_to_end(parameters, now.at, branch_.segment, towards_compression, now.p)) continue;
+    if (is_isochoric_end(branch_.segment, towards_compression)) {
+      const double rate = pressure_rate_at_end(now, towards_compression);
+      if (towards_compression ? rate >= 0.0 : rate <= 0.0) continue;
+    }
+    guards_.push_back({end_of_segment, towards_compression ? 1 : 0, -1, "segment-change"});
+  }
+  if (parameters.model == YieldModel::dpc && branch_.segment == Segment::shear && now.s != 0.0) {
+    guards_.push_back({apex, 0, -1, "segment-change"});
+  }
+  const auto watch = [&](Limit limit, string_view name) {
+    guards_.push_back({domain_end_guard, static_cast<int>(limit), -1, name});
+  };
+  watch(Limit::uniqueness, "loss-of-uniqueness");
+  const bool is_frozen = parameters.model == YieldModel::vmdc && branch_.segment == Segment::shear;
+  if (is_frozen) return;
+  if (parameters.xi1 != 0.0) watch(Limit::poisson, "poisson-half");
+  if (!is_compressible(parameters.model)) return;
+  watch(Limit::density, "density-limit");
+  watch(Limit::cap_centre, "cap-centre-tensile");
+  if (parameters.xi2 != 0.0) watch(Limit::cap_axis, "cap-axis-nonpositive");
+}
+
+void MaterialPoint::guard_values(double xi, std::span<const double> y, std::span<double> values) {
+  if (guards_.empty()) return;
+  if (!is_plastic_) {
+    values[0] = xi - exit_;
+    return;
+  }
+  const Response now = response(xi, y);
+  for (std::size_t g = 0; g < guards_.size(); ++g) {
+    switch (static_cast<GuardKind>(guards_[g].kind)) {
+      case yielding:
+        break;
+      case end_of_segment:
+        values[g] = *distance_to_end(settings_.parameters, now.at, branch_.segment, guards_[g].index == 1, now.p) /
+                    now.at.yield_pressure.value;
+        break;
+      case apex:
+        values[g] = branch_.side * now.s / now.at.yield_pressure.value;
+        break;
+      case domain_end_guard:
+        values[g] = margin(static_cast<Limit>(guards_[g].index), now);
+        break;
+    }
+  }
+}
+
+/// How far the state is from the end of the equations' domain; negative beyond it.
+double MaterialPoint::margin(Limit limit, const Response& now) const {
+  switch (limit) {
+    case Limit::density:
+      return 1.0 - now.at.relative_density;
+    case Limit::cap_centre:
+      return now.at.cap_centre.value / now.at.yield_pressure.value;
+    case Limit::cap_axis:
+      return now.at.axis_ratio.value;
+    case Limit::poisson:
+      return 0.5 - now.at.poisson_ratio.value - k_least_compressibility;
+    case Limit::uniqueness:
+      break;
+  }
+  const Flow flow_now = flow(now);
+  const Yield& y = flow_now.yield;
+  if (is_stress(k_axial) && is_stress(k_lateral)) {  // nothing but hardening resists
+    const double hardening = std::abs(y.f_phi) * std::hypot(flow_now.phi, flow_now.deviatoric);
+    return hardening > 0.0 ? flow_now.stiffness / hardening - k_least_stiffness : 0.0;
+  }
+  const double bulk = is_compressible(settings_.parameters.model) ? now.at.bulk_modulus.value : 0.0;
+  const double elastic_stiffness = bulk * y.f_p * y.g_p + 3.0 * now.at.shear_modulus.value * y.f_s * y.g_s;
+  return flow_now.stiffness / elastic_stiffness - k_least_stiffness;
+}
+
+DomainEnd MaterialPoint::domain_end(Limit limit, const Response& now) const {
+  switch (limit) {
+    case Limit::density:
+      return {{"density-limit"}, {"no pores are left", "relative density", now.at.relative_density}};
+    case Limit::cap_centre:
+      return {{"cap-centre-tensile"},
+              {"the cap's centre has reached zero pressure, beyond which the segments of the yield surface overlap",
+               "pi3 over the yield pressure", now.at.cap_centre.value / now.at.yield_pressure.value}};
+    case Limit::cap_axis:
+      return {{"cap-axis-nonpositive"},
+              {"the linear law of the cap's axis ratio ends: the cap has shrunk to a line", "axis ratio",
+               now.at.axis_ratio.value}};
+    case Limit::poisson:
+      return {{"poisson-half"},
+              {"the linear law of Poisson's ratio ends: the material cannot be compressed elastically",
+               "Poisson's ratio", now.at.poisson_ratio.value}};
+    case Limit::uniqueness:
+      break;
+  }
+  return {{"loss-of-uniqueness"},
+          {"the program no longer determines one plastic strain", "stiffness along the flow", flow(now).stiffness}};
+}
+
+std::optional<DomainEnd> MaterialPoint::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
+                                             std::vector<Event>& log) {
+  const Response now = response(xi, y);
+  for (const std::size_t g : fired) {
+    const Guard& guard = guards_[g];
+    if (guard.kind != domain_end_guard) continue;
+    log.push_back({guard.name});
+    return domain_end(static_cast<Limit>(guard.index), now);
+  }
+  for (const std::size_t g : fired) {
+    const Guard& guard = guards_[g];
+    log.push_back({guard.name});
+    switch (static_cast<GuardKind>(guard.kind)) {
+      case yielding:
+        turn_plastic(exit_branch_, now);
+        pass_ends(now, log);
+        if (margin(Limit::uniqueness, now) <= 0.0) {
+          log.push_back({"loss-of-uniqueness"});
+          return domain_end(Limit::uniqueness, now);
+        }
+        break;
+      case end_of_segment:
+        enter_neighbour(now, guard.index == 1);
+        break;
+      case apex:
+        branch_.side = -branch_.side;
+        break;
+      case domain_end_guard:
+        break;
+    }
+  }
+  watch_plastic(now);
+  return std::nullopt;
+}
+
+// --- output
+
+/// Work rate of the flow over the strength and the size of its strains.
+double MaterialPoint::flow_work(const Properties& at, const Yield& yield, double p, double s) noexcept {
+  return (p * yield.g_p + s * yield.g_s) / (at.shear_strength.value * std::hypot(yield.g_p, yield.g_s));
+}
+
+/// Of a direction; where it is prescribed, without the round-off of p and s.
+double MaterialPoint::stress(std::size_t channel, double xi, const Response& now) const noexcept {
+  if (is_stress(channel)) return prescribed(channel, xi);
+  return channel == k_axial ? now.p + 2.0 * now.s / 3.0 : now.p - now.s / 3.0;
+}
+
+void MaterialPoint::observe(double xi, std::span<const double> y, std::span<double> values) {
+  const Response now = response(xi, y);
+  const double unit = settings_.yield_pressure;
+  const bool compressible = is_compressible(settings_.parameters.model);
+  double f = 0.0;
+  if (is_plastic_) {
+    const Yield yield = yield_on(settings_.parameters, now.at, branch_, now.p, now.s);
+    f = yield.f;
+    if (compressible) least_work_ = std::min(least_work_, flow_work(now.at, yield, now.p, now.s));
+  } else {
+    f = yield_function(settings_.parameters, now.at, now.p, now.s);
+  }
+  const double all[] = {
+      now.axial_strain,
+      now.lateral_strain,
+      unit * now.p,
+      unit * now.s,
+      unit * std::abs(now.s),
+      unit * stress(k_axial, xi, now),
+      unit * stress(k_lateral, xi, now),
+      now.at.relative_density,
+      compressible ? 0.0 - y[k_phi] : 0.0,  // not -0
+      y[k_deviatoric],
+      y[k_phi],
+      unit * now.at.youngs_modulus.value,
+      f,
+      static_cast<double>(is_plastic_ ? regime_of(branch_.segment) : elastic),
+  };
+  std::ranges::copy(all, values.begin());
+}
+
+std::vector<Finding> MaterialPoint::warnings() const {
+  if (least_work_ > -k_negligible_work) return {};
+  return {{"flow that is not associated (dpc) does negative plastic work: it lives on the elastic energy",
+           "least work rate over the strength", least_work_}};
+}
+
+double MaterialPoint::quantity(Quantity quantity, int, double xi, std::span<const double> y) {
+  const Response now = response(xi, y);
+  switch (quantity) {
+    case Quantity::stress_axial:
+      return settings_.yield_pressure * stress(k_axial, xi, now);
+    case Quantity::stress_lateral:
+      return settings_.yield_pressure * stress(k_lateral, xi, now);
+    case Quantity::relative_density:
+      return now.at.relative_density;
+    default:
+      break;
+  }
+  throw std::logic_error("a material point has no walls to ask for this");
+}
+
+double MaterialPoint::controlled(Control control, int channel, double xi, std::span<const double> y) {
+  const bool is_axial = channel == static_cast<int>(k_axial);
+  if (control == Control::stress) {
+    return quantity(is_axial ? Quantity::stress_axial : Quantity::stress_lateral, channel, xi, y);
+  }
+  const Response now = response(xi, y);
+  return is_axial ? now.axial_strain : now.lateral_strain;
+}
+
+}  // namespace monograin::compressible

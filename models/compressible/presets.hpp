@@ -1,0 +1,14 @@
+/// Materials of the source's tables, by the names of the keys in `[material]`.
+#pragma once
+
+#include <span>
+
+#include "catalogue.hpp"
+
+namespace monograin::compressible {
+
+/// Rows of Tables 4 and 6 (whole materials) and of Table 5 (their stiffness ratio only).
+/// Source: 001_3cd85d3b0dc520cf.txt. Values are those at the reference density, 0.4 or 0.7.
+[[nodiscard]] std::span<const Preset> presets() noexcept;
+
+}  // namespace monograin::compressible

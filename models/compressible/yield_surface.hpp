@@ -1,0 +1,84 @@
+/// Yield functions and flow potentials in the plane of mean stress p and signed deviatoric stress s.
+///
+/// p is tension positive, s axial minus lateral stress, q = |s|. Every segment's formula goes on smoothly beyond the
+/// segment's ends, so that trial steps and roots may look there.
+/// Source: 001_3cd85d3b0dc520cf.txt, Tables 2 and 3 (with eps = (pi4 - pi3)/pi2, corrected).
+#pragma once
+
+#include <optional>
+
+#include "compressible/properties.hpp"
+
+namespace monograin::compressible {
+
+/// Pieces of a yield surface. vm has `shear` alone, vmdc all but `transition`, dpc all but `tension`.
+enum class Segment { tension, shear, transition, cap };
+
+/// A place on or near the surface, and the formula that is taken there.
+struct Branch {
+  Segment segment = Segment::shear;
+  /// Of s: q = side s, or 0 for a state that stays on the axis s = 0, where f does not depend on s to first order. Only
+  /// on the shear and transition segments of dpc; elsewhere s stands squared.
+  double side = -1.0;
+
+  friend bool operator==(const Branch&, const Branch&) = default;
+};
+
+/// Yield function f and flow potential g of one branch, with their partial derivatives. f is without dimension for vm
+/// and vmdc, and in units of the yield pressure for dpc.
+struct Yield {
+  double f = 0.0;
+  double f_p = 0.0;
+  double f_s = 0.0;
+  double f_phi = 0.0;  ///< at constant p and s
+  double g = 0.0;
+  double g_p = 0.0;
+  double g_s = 0.0;
+};
+
+/// Relations between the constants of the Drucker-Prager cap (Table 2, below the table; Table 3).
+struct CapConstants {
+  double slope = 0.0;             ///< tan pi6 of the shear line
+  double cohesion = 0.0;          ///< pi5, where the line meets p = 0
+  double arc_radius = 0.0;        ///< pi8 C
+  double arc_centre = 0.0;        ///< (1 - A) C: the arc's centre along q, above p = -pi3
+  double flow_stretch = 0.0;      ///< B
+  double transition_start = 0.0;  ///< p_i: the arc begins at p = -p_i
+};
+
+/// @throws std::domain_error where the line, the arc or the cap has no place (Lambda + pi3 <= 0, B <= 0, arc below q =
+/// 0)
+[[nodiscard]] CapConstants cap_constants(const Parameters& parameters, const Properties& properties);
+
+/// The segment that the surface has at this pressure.
+[[nodiscard]] Segment segment_at(const Parameters& parameters, const Properties& properties, double p);
+
+/// The branch at this stress; side -1 (axial compression) where s is zero.
+[[nodiscard]] Branch branch_at(const Parameters& parameters, const Properties& properties, double p, double s);
+
+/// f, g and their derivatives on the formula of a branch, wherever p is.
+[[nodiscard]] Yield yield_on(const Parameters& parameters, const Properties& properties, Branch branch, double p,
+                             double s);
+
+/// f at any stress, by the segment at its pressure: negative inside, also below the arc's centre (corrected).
+[[nodiscard]] double yield_function(const Parameters& parameters, const Properties& properties, double p, double s);
+
+/// Distance along p from the end of a segment, positive inside the segment; nullopt where it has no end on that side.
+/// @param towards_compression  the end at lower p, else that at higher p
+[[nodiscard]] std::optional<double> distance_to_end(const Parameters& parameters, const Properties& properties,
+                                                    Segment segment, bool towards_compression, double p);
+
+/// The segment next to that end.
+[[nodiscard]] Segment neighbour(const Parameters& parameters, Segment segment, bool towards_compression);
+
+/// Where the straight way (p + t p', s + t s') leaves the elastic domain.
+struct Exit {
+  double t = 0.0;  ///< >= 0
+  Branch branch;
+};
+/// @param p, s  inside the domain or on its surface
+/// @return nothing where the way never leaves, or stands still
+[[nodiscard]] std::optional<Exit> way_out(const Parameters& parameters, const Properties& properties, double p,
+                                          double s, double p_rate, double s_rate);
+
+}  // namespace monograin::compressible

@@ -1,0 +1,64 @@
+/// Material points written in code: materials, programs, and the reference histories beside the tests.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compressible/material_point_info.hpp"
+#include "compressible/properties.hpp"
+#include "support/test_run.hpp"
+
+namespace monograin::compressible {
+
+/// The source's base case (Table 6).
+[[nodiscard]] Parameters base_case();
+/// The same with other ratios of stiffness, shear and tensile strength.
+[[nodiscard]] Parameters base_case(double stiffness_ratio, double shear_ratio, double tensile_ratio);
+/// Lactose DT (Table 4) from relative density 0.5 as a Drucker-Prager cap.
+[[nodiscard]] Parameters lactose(double transition_width);
+/// Von Mises with constant moduli; eta = 0: perfectly plastic.
+[[nodiscard]] Parameters von_mises(double eta);
+
+// --- programs: logarithmic strains, and stresses in yield pressures (the yield pressure is 1 Pa here)
+
+[[nodiscard]] Step strain(double axial, double duration = 1.0);
+[[nodiscard]] Step strains(double axial, double lateral, double duration = 1.0);
+[[nodiscard]] Step stress(double axial, double duration = 1.0);
+/// A step of a triaxial program: axial stress and lateral stress.
+[[nodiscard]] Step stresses(double axial, double lateral, double duration = 1.0);
+[[nodiscard]] Step strain_and_stress(double axial_strain, double lateral_stress, double duration = 1.0);
+
+[[nodiscard]] Scenario point(const Parameters& parameters, Configuration configuration, std::vector<Step> steps);
+
+// --- reference histories
+
+/// A file of tests/models/compressible/reference with the scenario that its header describes.
+struct PointReference {
+  Table table;
+  Scenario scenario;  ///< output at the file's instants that are not events
+};
+inline constexpr const char* k_reference_points[] = {
+    "mp01_vmdc_base_hydrostatic",    "mp02_vmdc_base_oedometric",      "mp03_vmdc_base_uniaxial_stress",
+    "mp04_vmdc_base_triaxial",       "mp05_vmdc_tension_compression",  "mp06_dpc_lactose_dt_oedometric",
+    "mp07_vm_hardening_uniaxial",    "mp08_vmdc_base_oedometric_stop", "mp09_vmdc_base_oedometric_cycles",
+    "mp10_vmdc_general_strain_path",
+};
+[[nodiscard]] PointReference load_point(const std::string& name);
+
+struct PointErrors {
+  double largest = 0.0;         ///< of all rows and columns but yield_function, over the column's largest magnitude
+  std::string column;           ///< that has it
+  double time = 0.0;            ///< where
+  double yield_function = 0.0;  ///< of that column, which is not among the others: a stress counts 2/Lambda there
+  double event_time = 0.0;      ///< over the run's length
+  std::string mismatch;         ///< of rows, regimes or events; empty: none
+};
+[[nodiscard]] PointErrors errors_against(const PointReference& reference, const RunRecord& run);
+
+/// Whether this integrator can run that scenario.
+[[nodiscard]] bool is_offered(std::string_view integrator, const Scenario& scenario);
+
+}  // namespace monograin::compressible
