@@ -17,7 +17,7 @@ macro(monograin_find package debian_package)
   endif()
 endmacro()
 
-monograin_find(SUNDIALS libsundials-dev COMPONENTS cvode ida)
+monograin_find(SUNDIALS libsundials-dev COMPONENTS arkode cvode ida)
 monograin_find(Eigen3 libeigen3-dev)
 monograin_find(Boost "libboost-dev libboost-iostreams-dev libboost-system-dev libboost-filesystem-dev"
                COMPONENTS iostreams system filesystem)

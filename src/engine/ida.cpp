@@ -22,7 +22,6 @@ using IdaMemory = std::unique_ptr<void, IdaDeleter>;
 
 constexpr double k_slave_tolerance = 1e-4;  // loose, but small enough for difference quotients
 constexpr int k_most_failures = 50;         // of one step
-constexpr long k_most_steps = 200'000;      // internal steps of one segment
 
 class Ida final : public Integrator {
  public:
@@ -72,8 +71,8 @@ class Ida final : public Integrator {
     roots_.found.assign(watch_.size(), 0);
     if (watch_.size() == 0) return;
     check("IDARootInit", IDARootInit(memory_.get(), static_cast<int>(watch_.size()), guards));
-    std::vector<int> directions(watch_.directions().begin(), watch_.directions().end());
-    check("IDASetRootDirection", IDASetRootDirection(memory_.get(), directions.data()));
+    roots_.directions.assign(watch_.directions().begin(), watch_.directions().end());
+    check("IDASetRootDirection", IDASetRootDirection(memory_.get(), roots_.directions.data()));
     check("IDASetNoInactiveRootWarn", IDASetNoInactiveRootWarn(memory_.get()));
   }
 

@@ -3,6 +3,12 @@
 #include <fmt/format.h>
 #include <sundials/sundials_version.h>
 
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
 namespace monograin {
 
 SolverError::SolverError(std::string call, std::string flag, double xi, double step, std::string details)
@@ -22,13 +28,53 @@ Statistics& Statistics::operator+=(const Statistics& other) noexcept {
   return *this;
 }
 
+namespace {
+
+using Method = std::variant<OdeMethod, OdeintMethod, GslMethod>;
+
+/// Integrators of the explicit form with error control.
+constexpr std::array<std::pair<std::string_view, Method>, 11> k_of_explicit_form{{
+    {"cvode-adams", OdeMethod::cvode_adams},
+    {"cvode-bdf", OdeMethod::cvode_bdf},
+    {"arkode-erk", OdeMethod::arkode_erk},
+    {"arkode-dirk", OdeMethod::arkode_dirk},
+    {"odeint-dopri5", OdeintMethod::dopri5},
+    {"odeint-fehlberg78", OdeintMethod::fehlberg78},
+    {"odeint-bulirsch-stoer", OdeintMethod::bulirsch_stoer},
+    {"odeint-rosenbrock4", OdeintMethod::rosenbrock4},
+    {"gsl-rk8pd", GslMethod::rk8pd},
+    {"gsl-msadams", GslMethod::msadams},
+    {"gsl-msbdf", GslMethod::msbdf},
+}};
+
+}  // namespace
+
+std::span<const std::string_view> integrator_names() noexcept {
+  static const auto k_names = [] {
+    std::array<std::string_view, k_of_explicit_form.size() + 3> names{"direct", "ida", "explicit"};
+    std::ranges::transform(k_of_explicit_form, names.begin() + 3, [](const auto& named) { return named.first; });
+    return names;
+  }();
+  return k_names;
+}
+
 std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
                                             const Tolerances& tolerances) {
   if (name == "direct" && !system.is_solvable()) throw std::logic_error("the system has no direct form");
   if (name == "direct") return make_direct(system, watch);
-  if (name == "cvode-adams") return make_cvode(CvodeMethod::adams, system, watch, tolerances);
-  if (name == "cvode-bdf") return make_cvode(CvodeMethod::bdf, system, watch, tolerances);
   if (name == "ida") return make_ida(system, watch, tolerances);
+  if (name == "explicit") return make_fixed_step(system, watch, tolerances);
+  for (const auto& [word, method] : k_of_explicit_form) {
+    if (word != name) continue;
+    return std::visit(
+        [&](auto chosen) {
+          if constexpr (std::is_same_v<decltype(chosen), OdeMethod>)
+            return make_sundials_ode(chosen, system, watch, tolerances);
+          else
+            return make_stepped(chosen, system, watch, tolerances);
+        },
+        method);
+  }
   throw std::logic_error(fmt::format("no integrator is called '{}'", name));
 }
 

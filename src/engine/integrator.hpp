@@ -73,7 +73,10 @@ class Integrator {
   [[nodiscard]] virtual Statistics statistics() const = 0;
 };
 
-/// @param name  direct, cvode-bdf, cvode-adams or ida
+/// What make_integrator makes: the names of scenario files but "auto".
+[[nodiscard]] std::span<const std::string_view> integrator_names() noexcept;
+
+/// @param name  as in scenario files, but not "auto"
 /// @throws std::logic_error for another name, or where direct is asked of a system that is not solvable
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
                                                           const Tolerances& tolerances);
@@ -93,9 +96,18 @@ struct IntegratorChoice {
 
 // One adapter per library.
 [[nodiscard]] std::unique_ptr<Integrator> make_direct(HybridSystem& system, Watch& watch);
-enum class CvodeMethod { adams, bdf };
-[[nodiscard]] std::unique_ptr<Integrator> make_cvode(CvodeMethod method, HybridSystem& system, Watch& watch,
-                                                     const Tolerances& tolerances);
+enum class OdeMethod { cvode_adams, cvode_bdf, arkode_erk, arkode_dirk };
+[[nodiscard]] std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, HybridSystem& system, Watch& watch,
+                                                            const Tolerances& tolerances);
+enum class OdeintMethod { dopri5, fehlberg78, bulirsch_stoer, rosenbrock4 };
+[[nodiscard]] std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, Watch& watch,
+                                                       const Tolerances& tolerances);
+enum class GslMethod { rk8pd, msadams, msbdf };
+[[nodiscard]] std::unique_ptr<Integrator> make_stepped(GslMethod method, HybridSystem& system, Watch& watch,
+                                                       const Tolerances& tolerances);
+/// Forward Euler with 1/rtol steps in each step of the program, at most 1e7; transitions at the ends of steps.
+[[nodiscard]] std::unique_ptr<Integrator> make_fixed_step(HybridSystem& system, Watch& watch,
+                                                          const Tolerances& tolerances);
 [[nodiscard]] std::unique_ptr<Integrator> make_ida(HybridSystem& system, Watch& watch, const Tolerances& tolerances);
 
 }  // namespace monograin

@@ -21,10 +21,21 @@ constexpr Range k_right_angle{
     .lower = 0.0, .upper = std::numbers::pi / 2.0, .lower_is_open = true, .upper_is_open = true};
 constexpr double k_default_oblique_angle = 37.5 * std::numbers::pi / 180.0;
 
-constexpr std::array<string_view, 5> k_integrators{"auto", "direct", "cvode-bdf", "cvode-adams", "ida"};
-constexpr std::array<string_view, 10> k_reserved_integrators{
-    "arkode-erk",         "arkode-dirk", "odeint-dopri5", "odeint-fehlberg78", "odeint-bulirsch-stoer",
-    "odeint-rosenbrock4", "gsl-rk8pd",   "gsl-msadams",   "gsl-msbdf",         "explicit"};
+constexpr std::array<string_view, 15> k_integrators{"auto",
+                                                    "direct",
+                                                    "cvode-bdf",
+                                                    "cvode-adams",
+                                                    "ida",
+                                                    "arkode-erk",
+                                                    "arkode-dirk",
+                                                    "odeint-dopri5",
+                                                    "odeint-fehlberg78",
+                                                    "odeint-bulirsch-stoer",
+                                                    "odeint-rosenbrock4",
+                                                    "gsl-rk8pd",
+                                                    "gsl-msadams",
+                                                    "gsl-msbdf",
+                                                    "explicit"};
 constexpr std::array<string_view, 7> k_configurations{"simple", "die",      "hydrostatic", "oblique-die",
                                                       "walls",  "triaxial", "strain-path"};
 constexpr std::array<string_view, 2> k_centres{"fixed", "equilibrium"};
@@ -122,8 +133,6 @@ std::vector<KeySpec> numerics_keys() {
        .meaning = "method; auto picks the cheapest",
        .kind = Kind::choice,
        .choices = words_of(k_integrators),
-       .reserved = words_of(k_reserved_integrators),
-       .reserved_where = "in this version",
        .default_value = "auto"},
       {.name = "rtol",
        .meaning = "relative tolerance",

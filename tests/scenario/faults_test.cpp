@@ -274,16 +274,12 @@ const std::vector<FaultRow> k_rows{
              13,
              "duration = 1\n[output]\ntimes = []",
              {"die.toml:15:9: times = an empty array: expected a list of ascending times, for example [0.1, 0.25]"}},
-    FaultRow{"ReservedIntegrator",
-             13,
-             "duration = 1\n[numerics]\nintegrator = \"explicit\"",
-             {"die.toml:15:14: integrator 'explicit' is not available in this version; available: auto, direct, "
-              "cvode-bdf, cvode-adams, ida"}},
     FaultRow{"MisspeltIntegrator",
              13,
              "duration = 1\n[numerics]\nintegrator = \"cvode-bfd\"",
-             {"die.toml:15:14: integrator = \"cvode-bfd\": expected one of auto, direct, cvode-bdf, cvode-adams, ida; "
-              "did you mean 'cvode-bdf'?"}},
+             {"die.toml:15:14: integrator = \"cvode-bfd\": expected one of auto, direct, cvode-bdf, cvode-adams, ida, "
+              "arkode-erk, arkode-dirk, odeint-dopri5, odeint-fehlberg78, odeint-bulirsch-stoer, "
+              "odeint-rosenbrock4, gsl-rk8pd, gsl-msadams, gsl-msbdf, explicit; did you mean 'cvode-bdf'?"}},
     FaultRow{"RtolTooSmall",
              13,
              "duration = 1\n[numerics]\nrtol = 1e-15",

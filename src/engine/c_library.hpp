@@ -1,0 +1,55 @@
+/// The border to solvers written in C: who owns their objects, and what becomes of exceptions in their callbacks.
+#pragma once
+
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace monograin {
+
+template <auto Free>
+struct HandleDeleter {
+  template <class T>
+  void operator()(T* handle) const noexcept {
+    Free(handle);
+  }
+};
+template <class H, auto Free>
+using Handle = std::unique_ptr<std::remove_pointer_t<H>, HandleDeleter<Free>>;
+
+/// What callbacks do with exceptions: a domain error asks for a smaller step, anything else is kept and
+/// rethrown once the solver has returned, because exceptions must not cross C.
+class Pending {
+ public:
+  template <class Function>
+  int guard(Function&& function) noexcept {
+    try {
+      return function() ? 0 : 1;
+    } catch (const std::domain_error& error) {
+      domain_end_ = error.what();
+      return 1;
+    } catch (...) {
+      exception_ = std::current_exception();
+      return -1;
+    }
+  }
+
+  void forget() noexcept {
+    exception_ = nullptr;
+    domain_end_.clear();
+  }
+  void rethrow() {
+    if (exception_) std::rethrow_exception(std::exchange(exception_, nullptr));
+  }
+  /// Why the equations ended at some trial since the last forget(); empty if they did not.
+  [[nodiscard]] const std::string& domain_end() const noexcept { return domain_end_; }
+
+ private:
+  std::exception_ptr exception_;
+  std::string domain_end_;
+};
+
+}  // namespace monograin

@@ -1,0 +1,99 @@
+/// The explicit form of a system as integrators of ordinary differential equations see it: differential unknowns and
+/// quadratures only.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "engine/integrator.hpp"
+
+namespace monograin {
+
+/// Relative tolerance of one step for a wanted accuracy of the curve. Work and radius only ever grow, so the errors of
+/// the steps have one sign and add up; a tenth keeps the curve's error within a few rtol over some hundred steps.
+[[nodiscard]] inline double local_rtol(const Tolerances& tolerances) noexcept {
+  return std::max(0.1 * tolerances.rtol, 1e-14);
+}
+/// Absolute tolerance of one step over an unknown's scale; finer than this, round-off keeps a corrector from
+/// converging.
+[[nodiscard]] inline double local_atol(const Tolerances& tolerances) noexcept {
+  return std::max(tolerances.atol, 1e-14);
+}
+/// How near to zero a guard counts as fired together with another, where both carry an integrator's error.
+[[nodiscard]] inline double guard_tolerance_of(const Tolerances& tolerances) noexcept { return 1e-2 * tolerances.rtol; }
+
+/// A step this short that has met the end of the equations has arrived there (step coordinates).
+inline constexpr double k_least_progress = 1e-13;
+/// Internal steps of one segment.
+inline constexpr long k_most_steps = 200'000;
+
+[[nodiscard]] inline bool all_finite(std::span<const double> values) noexcept {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+/// Quadratures counted anew from every segment's start: their relative tolerance then refers to the segment's own
+/// share, and a hundred cycles of loading and unloading do not wear the total away.
+class SegmentQuadratures {
+ public:
+  explicit SegmentQuadratures(std::span<const Unknown> unknowns) : offsets_(unknowns.size(), 0.0) {
+    for (std::size_t k = 0; k < unknowns.size(); ++k) {
+      if (unknowns[k].kind == Unknown::Kind::quadrature) places_.push_back(k);
+    }
+  }
+  /// Takes the quadratures out of a segment's first state.
+  void begin(std::span<double> y) {
+    for (const std::size_t k : places_) offsets_[k] = std::exchange(y[k], 0.0);
+  }
+  void add_to(std::span<double> y) const {
+    for (const std::size_t k : places_) y[k] += offsets_[k];
+  }
+
+ private:
+  std::vector<std::size_t> places_;
+  std::vector<double> offsets_;
+};
+
+class ExplicitForm {
+ public:
+  explicit ExplicitForm(HybridSystem& system)
+      : system_(system), quadratures_(system.unknowns()), complete_(system.unknowns().size()) {
+    size_ = static_cast<std::size_t>(std::ranges::count_if(
+        system.unknowns(), [](const Unknown& unknown) { return unknown.kind != Unknown::Kind::algebraic; }));
+  }
+
+  /// Number of unknowns that are integrated: the first ones of the system.
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] const Unknown& unknown(std::size_t k) const noexcept { return system_.unknowns()[k]; }
+
+  /// Takes up a segment's first complete state; the integrated part of it goes to `integrated`.
+  void begin(std::span<const double> complete, std::span<double> integrated) {
+    std::ranges::copy(complete, complete_.begin());
+    std::ranges::copy(complete.first(size_), integrated.begin());
+    quadratures_.begin(integrated);
+  }
+
+  /// The complete state of an integrated one; valid until the next call of this object.
+  [[nodiscard]] std::span<const double> complete(double xi, std::span<const double> integrated) {
+    std::ranges::copy(integrated, complete_.begin());
+    quadratures_.add_to(complete_);
+    system_.complete(xi, complete_);
+    return complete_;
+  }
+
+  /// @param rates  as many as there are integrated unknowns
+  /// @throws std::domain_error where the equations end
+  void rates(double xi, std::span<const double> integrated, std::span<double> rates) {
+    system_.rates(xi, complete(xi, integrated), rates);
+  }
+
+ private:
+  HybridSystem& system_;
+  SegmentQuadratures quadratures_;
+  std::vector<double> complete_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace monograin

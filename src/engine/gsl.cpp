@@ -1,0 +1,148 @@
+// Steppers of the GNU Scientific Library. They have no interpolation: a state in a step is found by integrating to it
+// from the step's beginning with the Runge-Kutta method of order 8.
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_odeiv2.h>
+
+#include <algorithm>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "engine/c_library.hpp"
+#include "engine/stepper.hpp"
+
+namespace monograin {
+namespace {
+
+using Driver = Handle<gsl_odeiv2_driver*, gsl_odeiv2_driver_free>;
+
+constexpr double k_first_step = 1e-3;
+constexpr double k_smallest_step = 1e-15;
+
+const gsl_odeiv2_step_type* type_of(GslMethod method) {
+  switch (method) {
+    case GslMethod::rk8pd:
+      return gsl_odeiv2_step_rk8pd;
+    case GslMethod::msadams:
+      return gsl_odeiv2_step_msadams;
+    case GslMethod::msbdf:
+      return gsl_odeiv2_step_msbdf;
+  }
+  return nullptr;
+}
+
+class GslStepper final : public Stepper {
+ public:
+  GslStepper(GslMethod method, ScaledForm& form, const Tolerances& tolerances)
+      : form_(form),
+        system_{rates, jacobian, form.size(), this},
+        driver_(make_driver(type_of(method), tolerances)),
+        reaching_(make_driver(gsl_odeiv2_step_rk8pd, tolerances)),
+        old_(form.size()),
+        now_(form.size()),
+        between_(form.size()) {}
+
+  void begin(double xi, std::span<const double> z) override {
+    std::ranges::copy(z, now_.begin());
+    begin_ = end_ = xi;
+    step_ = std::min(k_first_step, 1.0 - xi);
+    gsl_odeiv2_driver_reset(driver_.get());
+  }
+
+  double step() override {
+    std::ranges::copy(now_, old_.begin());
+    begin_ = end_;
+    pending_.forget();
+    for (;;) {
+      double at = begin_;
+      const unsigned long rejected = driver_->e->failed_steps;
+      const int status =
+          gsl_odeiv2_evolve_apply(driver_->e, driver_->c, driver_->s, &system_, &at, 1.0, &step_, now_.data());
+      rejections += static_cast<long>(driver_->e->failed_steps - rejected);
+      pending_.rethrow();
+      if (status == GSL_SUCCESS && at > begin_) {
+        end_ = at;
+        order = static_cast<int>(gsl_odeiv2_step_order(driver_->s));
+        return end_;
+      }
+      // Its history may hold what lies beyond the end of the equations.
+      std::ranges::copy(old_, now_.begin());
+      gsl_odeiv2_driver_reset(driver_.get());
+      step_ = 0.1 * std::min(step_, 1.0 - begin_);
+      ++rejections;
+      if (step_ >= k_least_progress) continue;
+      if (!pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
+      if (step_ < k_smallest_step)
+        throw SolverError("gsl_odeiv2_evolve_apply", gsl_strerror(status), begin_, step_, {});
+    }
+  }
+
+  void state_at(double xi, std::span<double> z) override {
+    if (xi == end_) {
+      std::ranges::copy(now_, z.begin());
+      return;
+    }
+    std::ranges::copy(old_, between_.begin());
+    double at = begin_;
+    reaching_->h = xi - begin_;
+    gsl_odeiv2_evolve_reset(reaching_->e);
+    gsl_odeiv2_step_reset(reaching_->s);
+    pending_.forget();
+    if (xi > begin_) {
+      const int status = gsl_odeiv2_driver_apply(reaching_.get(), &at, xi, between_.data());
+      pending_.rethrow();
+      if (status != GSL_SUCCESS && !pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
+      if (status != GSL_SUCCESS) throw SolverError("gsl_odeiv2_driver_apply", gsl_strerror(status), at, 0.0, {});
+    }
+    std::ranges::copy(between_, z.begin());
+  }
+
+ private:
+  [[nodiscard]] Driver make_driver(const gsl_odeiv2_step_type* type, const Tolerances& tolerances) {
+    Driver driver(
+        gsl_odeiv2_driver_alloc_y_new(&system_, type, k_first_step, local_atol(tolerances), local_rtol(tolerances)));
+    if (!driver) throw std::bad_alloc();
+    return driver;
+  }
+
+  /// What rates() does with a domain error: GSL then tries a smaller step.
+  static int answer(int pending) { return pending == 0 ? GSL_SUCCESS : pending > 0 ? GSL_EDOM : GSL_EBADFUNC; }
+
+  static int rates(double xi, const double* z, double* dz, void* self) noexcept {
+    auto& stepper = *static_cast<GslStepper*>(self);
+    const std::size_t size = stepper.form_.size();
+    return answer(stepper.pending_.guard([&] {
+      stepper.form_.rates(xi, {z, size}, {dz, size});
+      return true;
+    }));
+  }
+
+  static int jacobian(double xi, const double* z, double* by_z, double* by_xi, void* self) noexcept {
+    auto& stepper = *static_cast<GslStepper*>(self);
+    const std::size_t size = stepper.form_.size();
+    ++stepper.jacobian_evaluations;
+    return answer(stepper.pending_.guard([&] {
+      difference_jacobian(stepper.form_, xi, {z, size}, {by_z, size * size}, {by_xi, size});
+      return true;
+    }));
+  }
+
+  ScaledForm& form_;
+  gsl_odeiv2_system system_;
+  Driver driver_;
+  Driver reaching_;
+  Pending pending_;
+  std::vector<double> old_, now_, between_;
+  double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_gsl(GslMethod method, ScaledForm& form, const Tolerances& tolerances) {
+  // Every return value is looked at; the library's own handler would end the program.
+  [[maybe_unused]] static auto* const before = gsl_set_error_handler_off();
+  return std::make_unique<GslStepper>(method, form, tolerances);
+}
+
+}  // namespace monograin

@@ -1,0 +1,240 @@
+// Steppers of Boost.Odeint. Small states stand in arrays of fixed size, filled up with zeros.
+
+#include <algorithm>
+#include <array>
+#include <boost/numeric/odeint/stepper/bulirsch_stoer.hpp>
+#include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
+#include <boost/numeric/odeint/stepper/generation.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
+#include <stdexcept>
+#include <type_traits>
+
+#include "engine/rosenbrock.hpp"
+#include "engine/stepper.hpp"
+
+namespace monograin {
+namespace {
+
+namespace odeint = boost::numeric::odeint;
+
+constexpr double k_first_step = 1e-3;
+constexpr double k_smallest_step = 1e-15;
+constexpr int k_most_tries = 500;  // of one step
+
+template <class State>
+State zeros(std::size_t size) {
+  if constexpr (std::is_same_v<State, std::vector<double>>)
+    return State(size, 0.0);
+  else
+    return State{};
+}
+
+/// Bounds a step by the end of the program's step, and makes it smaller where the equations end in it.
+template <class Try>
+double controlled_step(double xi, double& step, long& rejections, Try&& attempt) {
+  for (int tries = 0; tries < k_most_tries; ++tries) {
+    // What is left is not split into a step and a rest that is rounding.
+    const bool is_last = xi + 1.1 * step >= 1.0;
+    double now = is_last ? 1.0 - xi : step;
+    double end = xi;
+    try {
+      const double tried = now;
+      if (attempt(end, now) == odeint::success) {
+        step = std::max(now, is_last ? step : 0.0);
+        return is_last ? 1.0 : xi + tried;
+      }
+      step = now;
+    } catch (const std::domain_error&) {
+      step = 0.25 * std::min(step, 1.0 - xi);
+      if (step < k_least_progress) throw;
+    }
+    ++rejections;
+    if (step < k_smallest_step) break;
+  }
+  throw SolverError("try_step", "no step passes the error test", xi, step, {});
+}
+
+/// Explicit methods. That of order 5 has an interpolation of its own; in steps of the others a state is found by
+/// integrating to it with the method of order 8.
+template <class State, class Controlled>
+class ExplicitStepper final : public Stepper {
+ public:
+  using Reaching = odeint::controlled_runge_kutta<odeint::runge_kutta_fehlberg78<State>>;
+  static constexpr bool has_interpolation =
+      std::is_same_v<Controlled, odeint::controlled_runge_kutta<odeint::runge_kutta_dopri5<State>>>;
+
+  ExplicitStepper(ScaledForm& form, Controlled controlled, const Tolerances& tolerances, int method_order)
+      : form_(form),
+        controlled_(std::move(controlled)),
+        reaching_(typename Reaching::error_checker_type(local_atol(tolerances), local_rtol(tolerances), 1.0, 0.0)) {
+    order = method_order;
+    for (State* state : {&old_, &old_rates_, &now_, &now_rates_, &between_}) *state = zeros<State>(form.size());
+  }
+
+  void begin(double xi, std::span<const double> z) override {
+    std::ranges::copy(z, now_.begin());
+    begin_ = end_ = xi;
+    step_ = std::min(k_first_step, 1.0 - xi);
+    has_rates_ = false;
+  }
+
+  double step() override {
+    if (!has_rates_) rates(now_, now_rates_, end_);
+    has_rates_ = true;
+    std::swap(old_, now_);
+    std::swap(old_rates_, now_rates_);
+    begin_ = end_;
+    end_ = controlled_step(begin_, step_, rejections, [&](double& end, double& step) {
+      if constexpr (has_interpolation)
+        return controlled_.try_step(system(), old_, old_rates_, end, now_, now_rates_, step);
+      else
+        return controlled_.try_step(system(), old_, old_rates_, end, now_, step);
+    });
+    if constexpr (!has_interpolation) rates(now_, now_rates_, end_);
+    return end_;
+  }
+
+  void state_at(double xi, std::span<double> z) override {
+    if (xi == end_)
+      std::copy_n(now_.begin(), z.size(), z.begin());
+    else if (xi == begin_)
+      std::copy_n(old_.begin(), z.size(), z.begin());
+    else
+      interpolate(xi, z);
+  }
+
+ private:
+  void interpolate(double xi, std::span<double> z) {
+    if constexpr (has_interpolation) {
+      controlled_.stepper().calc_state(xi, between_, old_, old_rates_, begin_, now_, now_rates_, end_);
+    } else {
+      between_ = old_;
+      double at = begin_;
+      double step = xi - begin_;
+      for (int tries = 0; xi - at > k_smallest_step; ++tries) {
+        if (tries == k_most_tries) throw SolverError("try_step", "a state in a step is not reached", at, step, {});
+        step = std::min(step, xi - at);
+        static_cast<void>(reaching_.try_step(system(), between_, at, step));
+      }
+    }
+    std::copy_n(between_.begin(), z.size(), z.begin());
+  }
+
+  void rates(const State& z, State& dz, double xi) {
+    form_.rates(xi, {z.data(), form_.size()}, {dz.data(), form_.size()});
+    std::fill(dz.begin() + static_cast<std::ptrdiff_t>(form_.size()), dz.end(), 0.0);
+  }
+  auto system() {
+    return [this](const State& z, State& dz, double xi) { rates(z, dz, xi); };
+  }
+
+  ScaledForm& form_;
+  Controlled controlled_;
+  Reaching reaching_;
+  State old_, old_rates_, now_, now_rates_, between_;
+  double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
+  bool has_rates_ = false;
+};
+
+/// The linearly implicit method of order 4. xi is one more unknown: with Boost 1.74 equations that hold it explicitly
+/// are integrated with order 1.
+class RosenbrockStepper final : public Stepper {
+ public:
+  RosenbrockStepper(ScaledForm& form, const Tolerances& tolerances)
+      : form_(form),
+        size_(form.size()),
+        method_({size_ + 1, rates, jacobian, this}, local_atol(tolerances), local_rtol(tolerances)),
+        start_(size_ + 1),
+        by_z_(size_ * size_),
+        by_xi_(size_) {
+    order = 4;
+  }
+
+  void begin(double xi, std::span<const double> z) override {
+    std::ranges::copy(z, start_.begin());
+    start_[size_] = xi;
+    method_.begin(start_.data());
+    begin_ = end_ = xi;
+    step_ = std::min(k_first_step, 1.0 - xi);
+  }
+
+  double step() override {
+    begin_ = end_;
+    method_.begin_step();
+    end_ = controlled_step(begin_, step_, rejections, [&](double& end, double& step) {
+      return method_.try_step(end, step) ? odeint::success : odeint::fail;
+    });
+    return end_;
+  }
+
+  void state_at(double xi, std::span<double> z) override {
+    const double* state = xi == end_     ? method_.end_state()
+                          : xi == begin_ ? method_.begin_state()
+                                         : method_.state_at(xi, begin_);
+    std::copy_n(state, size_, z.begin());
+  }
+
+ private:
+  static void rates(void* self, double, const double* z, double* dz) {
+    auto& stepper = *static_cast<RosenbrockStepper*>(self);
+    stepper.form_.rates(z[stepper.size_], {z, stepper.size_}, {dz, stepper.size_});
+    dz[stepper.size_] = 1.0;
+  }
+
+  static void jacobian(void* self, double, const double* z, double* matrix, double* by_time) {
+    auto& stepper = *static_cast<RosenbrockStepper*>(self);
+    const std::size_t size = stepper.size_;
+    ++stepper.jacobian_evaluations;
+    difference_jacobian(stepper.form_, z[size], {z, size}, stepper.by_z_, stepper.by_xi_);
+    std::fill_n(by_time, size + 1, 0.0);
+    for (std::size_t i = 0; i < size; ++i) {
+      double* const row = std::copy_n(stepper.by_z_.data() + i * size, size, matrix + i * (size + 1));
+      *row = stepper.by_xi_[i];
+    }
+    std::fill_n(matrix + size * (size + 1), size + 1, 0.0);
+  }
+
+  ScaledForm& form_;
+  std::size_t size_;
+  Rosenbrock4 method_;
+  std::vector<double> start_, by_z_, by_xi_;
+  double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
+};
+
+template <class State>
+std::unique_ptr<Stepper> make_explicit(OdeintMethod method, ScaledForm& form, const Tolerances& tolerances) {
+  const double rtol = local_rtol(tolerances);
+  const double atol = local_atol(tolerances);
+  switch (method) {
+    case OdeintMethod::dopri5: {
+      using Controlled = odeint::controlled_runge_kutta<odeint::runge_kutta_dopri5<State>>;
+      return std::make_unique<ExplicitStepper<State, Controlled>>(
+          form, Controlled(typename Controlled::error_checker_type(atol, rtol, 1.0, 0.0)), tolerances, 5);
+    }
+    case OdeintMethod::fehlberg78: {
+      using Controlled = odeint::controlled_runge_kutta<odeint::runge_kutta_fehlberg78<State>>;
+      return std::make_unique<ExplicitStepper<State, Controlled>>(
+          form, Controlled(typename Controlled::error_checker_type(atol, rtol, 1.0, 0.0)), tolerances, 8);
+    }
+    case OdeintMethod::bulirsch_stoer: {
+      using Controlled = odeint::bulirsch_stoer<State>;
+      return std::make_unique<ExplicitStepper<State, Controlled>>(form, Controlled(atol, rtol, 1.0, 0.0), tolerances,
+                                                                  0);
+    }
+    case OdeintMethod::rosenbrock4:
+      return std::make_unique<RosenbrockStepper>(form, tolerances);
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_odeint(OdeintMethod method, ScaledForm& form, const Tolerances& tolerances) {
+  if (form.size() <= 2) return make_explicit<std::array<double, 2>>(method, form, tolerances);
+  if (form.size() <= 4) return make_explicit<std::array<double, 4>>(method, form, tolerances);
+  if (form.size() <= 8) return make_explicit<std::array<double, 8>>(method, form, tolerances);
+  return make_explicit<std::vector<double>>(method, form, tolerances);
+}
+
+}  // namespace monograin

@@ -1,0 +1,207 @@
+// Codes without root finding of their own, with events located along their interpolated steps; and the fixed-step
+// scheme that locates none.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "engine/event_locator.hpp"
+#include "engine/stepper.hpp"
+
+namespace monograin {
+namespace {
+
+class Stepped final : public EventLocator {
+ public:
+  template <class Make>
+  Stepped(HybridSystem& system, Watch& watch, const Tolerances& tolerances, Make&& make)
+      : EventLocator(system, watch), tolerances_(tolerances), form_(system), stepper_(make(form_)), z_(form_.size()) {}
+
+  void begin(double xi, std::span<const double> y) override {
+    form_.begin(y, z_);
+    stepper_->begin(xi, z_);
+    step_end_ = xi;
+    segment_steps_ = 0;
+    begin_segment(xi, y);
+  }
+
+  Advance advance() override {
+    begin_piece();
+    if (begin_ >= step_end_) {
+      if (++segment_steps_ > k_most_steps) throw SolverError("step", "TOO_MUCH_WORK", begin_, 0.0, {});
+      step_end_ = stepper_->step();
+      ++statistics_.steps;
+      statistics_.last_step = step_end_ - begin_;
+    }
+    move_end(std::min(next_piece_end(begin_), step_end_));
+    locate_event();
+    return {.xi = end_, .hit_guard = !fired_.empty()};
+  }
+
+  void dense_output(double xi, std::span<double> y) override {
+    if (xi == end_)
+      std::ranges::copy(end_state_, y.begin());
+    else
+      state_at(xi, y);
+  }
+
+  [[nodiscard]] double guard_tolerance() const noexcept override { return guard_tolerance_of(tolerances_); }
+
+  [[nodiscard]] Statistics statistics() const override {
+    Statistics now = statistics_;
+    now.rhs_evaluations = form_.evaluations();
+    now.jacobian_evaluations = stepper_->jacobian_evaluations;
+    now.error_test_failures = stepper_->rejections;
+    now.last_order = stepper_->order;
+    return now;
+  }
+
+ private:
+  void state_at(double xi, std::span<double> y) override {
+    stepper_->state_at(xi, z_);
+    std::ranges::copy(form_.complete(xi, z_), y.begin());
+  }
+
+  /// Where y holds the beginning of a segment, along its tangent.
+  void state_ahead(double xi, std::span<double> y) override {
+    stepper_->state_at(end_, z_);
+    std::vector<double> slope(z_.size());
+    form_.rates(end_, z_, slope);
+    for (std::size_t k = 0; k < z_.size(); ++k) z_[k] += (xi - end_) * slope[k];
+    std::ranges::copy(form_.complete(xi, z_), y.begin());
+  }
+
+  void move_end(double xi) override {
+    end_ = xi;
+    state_at(xi, end_state_);
+    look(xi, end_state_, end_values_);
+  }
+
+  Tolerances tolerances_;
+  ScaledForm form_;
+  std::unique_ptr<Stepper> stepper_;
+  std::vector<double> z_;
+  double step_end_ = 0.0;
+  long segment_steps_ = 0;
+};
+
+/// Forward Euler with a fixed step, as explicit codes of the discrete-element kind go: transitions take effect at the
+/// first step's end that finds them past.
+class FixedStep final : public Integrator {
+ public:
+  FixedStep(HybridSystem& system, Watch& watch, const Tolerances& tolerances)
+      : watch_(watch),
+        form_(system),
+        complete_(system.unknowns().size()),
+        begin_state_(form_.size()),
+        end_state_(form_.size()),
+        rates_(form_.size()),
+        z_(form_.size()) {
+    step_ = 1.0 / std::ceil(1.0 / std::max(tolerances.rtol, k_least_step));
+  }
+
+  void begin(double xi, std::span<const double> y) override {
+    ++statistics_.segments;
+    begin_ = end_ = xi;
+    form_.begin(y, end_state_);
+    values_.resize(watch_.size());
+    before_.resize(watch_.size());
+    fired_.reserve(watch_.size());
+    watch_.values(xi, y, values_);
+    form_.rates(end_, end_state_, rates_);
+  }
+
+  Advance advance() override {
+    std::swap(begin_state_, end_state_);
+    std::swap(before_, values_);
+    begin_ = end_;
+    end_ = begin_ + step_ > 1.0 - 0.5 * step_ ? 1.0 : begin_ + step_;
+    for (std::size_t k = 0; k < rates_.size(); ++k) end_state_[k] = begin_state_[k] + (end_ - begin_) * rates_[k];
+    form_.rates(end_, end_state_, rates_);
+    ++statistics_.steps;
+    ++statistics_.guard_evaluations;
+    statistics_.last_step = end_ - begin_;
+    watch_.values(end_, form_.complete(end_, end_state_), values_);
+    fired_.clear();
+    for (std::size_t g = 0; g < values_.size(); ++g) {
+      const int direction = watch_.directions()[g];
+      const bool rises = before_[g] < 0.0 && values_[g] >= 0.0 && direction >= 0;
+      const bool falls = before_[g] > 0.0 && values_[g] <= 0.0 && direction <= 0;
+      if (rises || falls) fired_.push_back(g);
+    }
+    return {.xi = end_, .hit_guard = !fired_.empty()};
+  }
+
+  [[nodiscard]] std::span<const std::size_t> fired() const noexcept override { return fired_; }
+
+  void dense_output(double xi, std::span<double> y) override {
+    const double share = end_ > begin_ ? (xi - begin_) / (end_ - begin_) : 1.0;
+    for (std::size_t k = 0; k < z_.size(); ++k) z_[k] = std::lerp(begin_state_[k], end_state_[k], share);
+    std::ranges::copy(form_.complete(xi, z_), y.begin());
+  }
+
+  [[nodiscard]] double guard_tolerance() const noexcept override { return 0.0; }
+
+  [[nodiscard]] Statistics statistics() const override {
+    Statistics now = statistics_;
+    now.rhs_evaluations = form_.evaluations();
+    now.last_order = 1;
+    return now;
+  }
+
+ private:
+  static constexpr double k_least_step = 1e-7;  // of a step of the program
+
+  Watch& watch_;
+  ScaledForm form_;
+  double step_;
+  double begin_ = 0.0;
+  double end_ = 0.0;
+  std::vector<double> complete_;
+  std::vector<double> begin_state_, end_state_, rates_, z_;
+  std::vector<double> values_, before_;
+  std::vector<std::size_t> fired_;
+  Statistics statistics_;
+};
+
+}  // namespace
+
+void difference_jacobian(ScaledForm& form, double xi, std::span<const double> z, std::span<double> jacobian,
+                         std::span<double> by_xi) {
+  static const double k_root = std::sqrt(std::numeric_limits<double>::epsilon());
+  const std::size_t n = z.size();
+  std::vector<double> base(n);
+  std::vector<double> shifted(n);
+  std::vector<double> point(z.begin(), z.end());
+  form.rates(xi, point, base);
+  for (std::size_t j = 0; j < n; ++j) {
+    const double step = k_root * std::max(std::abs(z[j]), 1e-2);
+    point[j] = z[j] + step;
+    form.rates(xi, point, shifted);
+    for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted[i] - base[i]) / step;
+    point[j] = z[j];
+  }
+  // Backwards: beyond 1 the program goes on differently.
+  const double step = xi > 0.5 ? -k_root : k_root;
+  form.rates(xi + step, point, shifted);
+  for (std::size_t i = 0; i < n; ++i) by_xi[i] = (shifted[i] - base[i]) / step;
+}
+
+std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, Watch& watch,
+                                         const Tolerances& tolerances) {
+  return std::make_unique<Stepped>(system, watch, tolerances,
+                                   [&](ScaledForm& form) { return make_odeint(method, form, tolerances); });
+}
+
+std::unique_ptr<Integrator> make_stepped(GslMethod method, HybridSystem& system, Watch& watch,
+                                         const Tolerances& tolerances) {
+  return std::make_unique<Stepped>(system, watch, tolerances,
+                                   [&](ScaledForm& form) { return make_gsl(method, form, tolerances); });
+}
+
+std::unique_ptr<Integrator> make_fixed_step(HybridSystem& system, Watch& watch, const Tolerances& tolerances) {
+  return std::make_unique<FixedStep>(system, watch, tolerances);
+}
+
+}  // namespace monograin

@@ -1,0 +1,287 @@
+// The explicit form integrated by CVODE and ARKODE, which share everything but the names of their functions.
+
+#include <arkode/arkode_arkstep.h>
+#include <cvode/cvode.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "engine/sundials.hpp"
+
+namespace monograin {
+namespace {
+
+using namespace sundials_boundary;
+
+/// CVODE under names that the adapter knows.
+struct CvodeLibrary {
+  static constexpr const char* name = "CVode";
+  static constexpr int root_return = CV_ROOT_RETURN;
+  static constexpr int stop_return = CV_TSTOP_RETURN;
+  static constexpr int one_step = CV_ONE_STEP;
+  static constexpr auto free = CVodeFree;
+  static constexpr auto set_error_handler = CVodeSetErrHandlerFn;
+  static constexpr auto set_user_data = CVodeSetUserData;
+  static constexpr auto set_tolerances = CVodeSVtolerances;
+  static constexpr auto set_most_steps = CVodeSetMaxNumSteps;
+  static constexpr auto set_linear_solver = CVodeSetLinearSolver;
+  static constexpr auto set_stop_time = CVodeSetStopTime;
+  static constexpr auto init_roots = CVodeRootInit;
+  static constexpr auto set_root_direction = CVodeSetRootDirection;
+  static constexpr auto set_no_inactive_root_warning = CVodeSetNoInactiveRootWarn;
+  static constexpr auto evolve = CVode;
+  static constexpr auto root_info = CVodeGetRootInfo;
+  static constexpr auto derivative = CVodeGetDky;
+  static constexpr auto steps = CVodeGetNumSteps;
+  static constexpr auto linear_rhs_evaluations = CVodeGetNumLinRhsEvals;
+  static constexpr auto jacobian_evaluations = CVodeGetNumJacEvals;
+  static constexpr auto error_test_failures = CVodeGetNumErrTestFails;
+  static constexpr auto convergence_failures = CVodeGetNumNonlinSolvConvFails;
+  static constexpr auto guard_evaluations = CVodeGetNumGEvals;
+  static constexpr auto last_step = CVodeGetLastStep;
+  static constexpr auto current_step = CVodeGetCurrentStep;
+  static constexpr auto error_weights = CVodeGetErrWeights;
+  static constexpr auto local_errors = CVodeGetEstLocalErrors;
+  static constexpr auto flag_name = CVodeGetReturnFlagName;
+
+  static int reinit(void* memory, OdeMethod, CVRhsFn, realtype xi, N_Vector y) { return CVodeReInit(memory, xi, y); }
+  static long rhs_evaluations(void* memory) {
+    long count = 0;
+    CVodeGetNumRhsEvals(memory, &count);
+    return count;
+  }
+  static int last_order(void* memory) {
+    int order = 0;
+    CVodeGetLastOrder(memory, &order);
+    return order;
+  }
+};
+
+/// ARKODE likewise, as its additive Runge-Kutta module with one part of the two.
+struct ArkodeLibrary {
+  static constexpr const char* name = "ARKStepEvolve";
+  static constexpr int root_return = ARK_ROOT_RETURN;
+  static constexpr int stop_return = ARK_TSTOP_RETURN;
+  static constexpr int one_step = ARK_ONE_STEP;
+  static constexpr auto free = ARKStepFree;
+  static constexpr auto set_error_handler = ARKStepSetErrHandlerFn;
+  static constexpr auto set_user_data = ARKStepSetUserData;
+  static constexpr auto set_tolerances = ARKStepSVtolerances;
+  static constexpr auto set_most_steps = ARKStepSetMaxNumSteps;
+  static constexpr auto set_linear_solver = ARKStepSetLinearSolver;
+  static constexpr auto set_stop_time = ARKStepSetStopTime;
+  static constexpr auto init_roots = ARKStepRootInit;
+  static constexpr auto set_root_direction = ARKStepSetRootDirection;
+  static constexpr auto set_no_inactive_root_warning = ARKStepSetNoInactiveRootWarn;
+  static constexpr auto evolve = ARKStepEvolve;
+  static constexpr auto root_info = ARKStepGetRootInfo;
+  static constexpr auto derivative = ARKStepGetDky;
+  static constexpr auto steps = ARKStepGetNumSteps;
+  static constexpr auto linear_rhs_evaluations = ARKStepGetNumLinRhsEvals;
+  static constexpr auto jacobian_evaluations = ARKStepGetNumJacEvals;
+  static constexpr auto error_test_failures = ARKStepGetNumErrTestFails;
+  static constexpr auto convergence_failures = ARKStepGetNumNonlinSolvConvFails;
+  static constexpr auto guard_evaluations = ARKStepGetNumGEvals;
+  static constexpr auto last_step = ARKStepGetLastStep;
+  static constexpr auto current_step = ARKStepGetCurrentStep;
+  static constexpr auto error_weights = ARKStepGetErrWeights;
+  static constexpr auto local_errors = ARKStepGetEstLocalErrors;
+  static constexpr auto flag_name = ARKStepGetReturnFlagName;
+  static constexpr int order = 5;  // the highest with which its interpolation keeps up
+
+  static int reinit(void* memory, OdeMethod method, ARKRhsFn rates, realtype xi, N_Vector y) {
+    const bool is_implicit = method == OdeMethod::arkode_dirk;
+    return ARKStepReInit(memory, is_implicit ? nullptr : rates, is_implicit ? rates : nullptr, xi, y);
+  }
+  static long rhs_evaluations(void* memory) {
+    long of_explicit = 0;
+    long of_implicit = 0;
+    ARKStepGetNumRhsEvals(memory, &of_explicit, &of_implicit);
+    return of_explicit + of_implicit;
+  }
+  static int last_order(void*) { return order; }
+};
+
+template <class Library>
+class SundialsOde final : public Integrator {
+ public:
+  SundialsOde(OdeMethod method, HybridSystem& system, Watch& watch, const Tolerances& tolerances)
+      : system_(system), watch_(watch), method_(method), tolerances_(tolerances), form_(system) {
+    const auto size = static_cast<sunindextype>(form_.size());
+    for (NVector* vector : {&y_, &atol_, &weights_, &errors_}) vector->reset(N_VNew_Serial(size, context_));
+    N_VConst(0.0, y_.get());
+    for (std::size_t k = 0; k < form_.size(); ++k) {
+      view(atol_.get())[k] = local_atol(tolerances) * form_.unknown(k).scale;
+    }
+    create();
+    check("SetErrHandlerFn", Library::set_error_handler(memory_.get(), keep_message, &message_));
+    check("SetUserData", Library::set_user_data(memory_.get(), this));
+    check("SVtolerances", Library::set_tolerances(memory_.get(), local_rtol(tolerances), atol_.get()));
+    check("SetMaxNumSteps", Library::set_most_steps(memory_.get(), k_most_steps));
+    if (method_ == OdeMethod::cvode_bdf || method_ == OdeMethod::arkode_dirk) {
+      matrix_.reset(SUNDenseMatrix(size, size, context_));
+      linear_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_));
+      check("SetLinearSolver", Library::set_linear_solver(memory_.get(), linear_.get(), matrix_.get()));
+    }
+  }
+
+  void begin(double xi, std::span<const double> y) override {
+    // Counters are reset with the state.
+    past_ = statistics();
+    ++past_.segments;
+    segment_steps_ = 0;
+    end_ = xi;
+    form_.begin(y, view(y_.get()));
+    check("ReInit", Library::reinit(memory_.get(), method_, right_hand_side, xi, y_.get()));
+    check("SetStopTime", Library::set_stop_time(memory_.get(), 1.0));
+    // Unlisting all guards first makes the library forget which ones it had switched off.
+    check("RootInit", Library::init_roots(memory_.get(), 0, nullptr));
+    roots_.found.assign(watch_.size(), 0);
+    if (watch_.size() == 0) return;
+    check("RootInit", Library::init_roots(memory_.get(), static_cast<int>(watch_.size()), guards));
+    roots_.directions.assign(watch_.directions().begin(), watch_.directions().end());
+    check("SetRootDirection", Library::set_root_direction(memory_.get(), roots_.directions.data()));
+    check("SetNoInactiveRootWarn", Library::set_no_inactive_root_warning(memory_.get()));
+  }
+
+  Advance advance() override {
+    if (++segment_steps_ > k_most_steps) throw failure(Library::name, "TOO_MUCH_WORK");
+    pending_.forget();
+    roots_.fired.clear();
+    const double begin = end_;
+    const int flag = Library::evolve(memory_.get(), 1.0, y_.get(), &end_, Library::one_step);
+    pending_.rethrow();
+    if (flag < 0 && !pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
+    check(Library::name, flag);
+    // Ever smaller steps towards the end of the equations would never get there.
+    if (!pending_.domain_end().empty() && end_ - begin < k_least_progress) {
+      throw std::domain_error(pending_.domain_end());
+    }
+    if (flag == Library::root_return) {
+      check("GetRootInfo", Library::root_info(memory_.get(), roots_.found.data()));
+      roots_.collect();
+    } else if (flag == Library::stop_return) {
+      end_ = 1.0;
+    }
+    return {.xi = end_, .hit_guard = flag == Library::root_return};
+  }
+
+  [[nodiscard]] std::span<const std::size_t> fired() const noexcept override { return roots_.fired; }
+
+  void dense_output(double xi, std::span<double> y) override {
+    check("GetDky", Library::derivative(memory_.get(), xi, 0, errors_.get()));
+    std::ranges::copy(form_.complete(xi, view(errors_.get())), y.begin());
+  }
+
+  [[nodiscard]] double guard_tolerance() const noexcept override { return guard_tolerance_of(tolerances_); }
+
+  [[nodiscard]] Statistics statistics() const override {
+    if (past_.segments == 0) return past_;
+    Statistics now;
+    long for_jacobian = 0;
+    Library::steps(memory_.get(), &now.steps);
+    if (linear_) {
+      Library::linear_rhs_evaluations(memory_.get(), &for_jacobian);
+      Library::jacobian_evaluations(memory_.get(), &now.jacobian_evaluations);
+    }
+    now.rhs_evaluations = Library::rhs_evaluations(memory_.get()) + for_jacobian;
+    Library::error_test_failures(memory_.get(), &now.error_test_failures);
+    Library::convergence_failures(memory_.get(), &now.convergence_failures);
+    Library::guard_evaluations(memory_.get(), &now.guard_evaluations);
+    now.last_order = Library::last_order(memory_.get());
+    Library::last_step(memory_.get(), &now.last_step);
+    return now += past_;
+  }
+
+ private:
+  struct Deleter {
+    void operator()(void* memory) const noexcept { Library::free(&memory); }
+  };
+
+  void create();
+
+  static int right_hand_side(realtype xi, N_Vector y, N_Vector dy, void* self) noexcept {
+    auto& ode = *static_cast<SundialsOde*>(self);
+    return ode.pending_.guard([&] {
+      ode.form_.rates(xi, view(y), view(dy));
+      return all_finite(view(dy));
+    });
+  }
+
+  static int guards(realtype xi, N_Vector y, realtype* values, void* self) noexcept {
+    auto& ode = *static_cast<SundialsOde*>(self);
+    return ode.pending_.guard([&] {
+      ode.watch_.values(xi, ode.form_.complete(xi, view(y)), {values, ode.watch_.size()});
+      return true;
+    });
+  }
+
+  void check(const char* call, int flag) {
+    if (flag < 0) throw failure(call, flag_name(Library::flag_name(flag)));
+  }
+
+  [[nodiscard]] SolverError failure(const char* call, std::string flag) {
+    double step = 0.0;
+    std::string details = message_;
+    // Weights and errors are there once a step has been tried.
+    if (memory_ && Library::current_step(memory_.get(), &step) == 0 &&
+        Library::error_weights(memory_.get(), weights_.get()) == 0 &&
+        Library::local_errors(memory_.get(), errors_.get()) == 0) {
+      details += worst_components(system_.unknowns(), view(weights_.get()), view(errors_.get()));
+    }
+    return {call, std::move(flag), end_, step, details};
+  }
+
+  HybridSystem& system_;
+  Watch& watch_;
+  OdeMethod method_;
+  Tolerances tolerances_;
+  ExplicitForm form_;
+  std::string message_;
+  Pending pending_;
+  RootList roots_;
+  double end_ = 0.0;
+  long segment_steps_ = 0;
+  Statistics past_;
+
+  sundials::Context context_;  // first in, last out
+  NVector y_, atol_, weights_, errors_;
+  Matrix matrix_;
+  LinearSolver linear_;
+  NonlinearSolver nonlinear_;
+  std::unique_ptr<void, Deleter> memory_;
+};
+
+template <>
+void SundialsOde<CvodeLibrary>::create() {
+  const bool is_adams = method_ == OdeMethod::cvode_adams;
+  memory_.reset(CVodeCreate(is_adams ? CV_ADAMS : CV_BDF, context_));
+  check("CVodeInit", CVodeInit(memory_.get(), right_hand_side, 0.0, y_.get()));
+  if (!is_adams) return;
+  nonlinear_.reset(SUNNonlinSol_FixedPoint(y_.get(), 0, context_));
+  check("CVodeSetNonlinearSolver", CVodeSetNonlinearSolver(memory_.get(), nonlinear_.get()));
+}
+
+template <>
+void SundialsOde<ArkodeLibrary>::create() {
+  const bool is_implicit = method_ == OdeMethod::arkode_dirk;
+  memory_.reset(ARKStepCreate(is_implicit ? nullptr : right_hand_side, is_implicit ? right_hand_side : nullptr, 0.0,
+                              y_.get(), context_));
+  if (!memory_) throw failure("ARKStepCreate", "no memory");
+  check("ARKStepSetOrder", ARKStepSetOrder(memory_.get(), ArkodeLibrary::order));
+}
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, HybridSystem& system, Watch& watch,
+                                              const Tolerances& tolerances) {
+  if (method == OdeMethod::cvode_adams || method == OdeMethod::cvode_bdf) {
+    return std::make_unique<SundialsOde<CvodeLibrary>>(method, system, watch, tolerances);
+  }
+  return std::make_unique<SundialsOde<ArkodeLibrary>>(method, system, watch, tolerances);
+}
+
+}  // namespace monograin

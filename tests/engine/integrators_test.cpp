@@ -1,0 +1,91 @@
+// Every integrator over systems of every kind: the same curves and events as the direct form.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "engine/integrator.hpp"
+#include "scenario/scenario.hpp"
+#include "support/test_run.hpp"
+
+namespace monograin {
+namespace {
+
+const char* const k_scenes[] = {"die",      "adhesion",  "force",    "cycles", "late-wall",
+                                "semimech", "hardening", "nonlocal", "hertz"};
+
+Scenario scene(const std::string& name) {
+  Scenario scenario = read_scenario(MONOGRAIN_SOURCE_DIR "/scenarios/" + name + ".toml");
+  scenario.output.points = 20;
+  return scenario;
+}
+
+class EveryIntegrator : public ::testing::TestWithParam<std::string_view> {};
+
+TEST_P(EveryIntegrator, GivesTheCurvesAndEventsOfTheDirectForm) {
+  const std::string name(GetParam());
+  for (const char* const label : k_scenes) {
+    SCOPED_TRACE(label);
+    const TestRun direct = run(scene(label));
+    const TestRun now = run(scene(label), name);
+    ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
+    EXPECT_EQ(now.events(), direct.events());
+    for (const ContactClass& c : now.scene.classes) {
+      const std::string force = c.name + ".force";
+      EXPECT_LE(difference(now.outputs(force), direct.outputs(force)), 1e-6) << force;
+    }
+    EXPECT_LE(difference(now.outputs("work"), direct.outputs("work")), 1e-6);
+  }
+}
+
+/// All but the one without error control.
+std::vector<std::string_view> controlled() {
+  std::vector<std::string_view> names(integrator_names().begin(), integrator_names().end());
+  std::erase(names, "explicit");
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryIntegrator, ::testing::ValuesIn(controlled()), [](const auto& tested) {
+  std::string name(tested.param);
+  std::erase(name, '-');
+  return name;
+});
+
+TEST_P(EveryIntegrator, GetsBetterWithItsTolerance) {
+  const Scenario scenario = scene("die");
+  const TestRun direct = run(scenario);
+  for (const double rtol : {1e-4, 1e-6, 1e-8, 1e-10}) {
+    const TestRun now = run(scenario, GetParam(), relative(rtol));
+    EXPECT_LE(difference(now.outputs("axial.force"), direct.outputs("axial.force")), 100.0 * rtol) << rtol;
+  }
+}
+
+TEST(FixedSteps, ConvergeWithTheirLength) {
+  const Scenario scenario = scene("die");
+  const TestRun direct = run(scenario);
+  double last = 1.0;
+  for (const double rtol : {1e-2, 1e-3, 1e-4}) {
+    const TestRun now = run(scenario, "explicit", relative(rtol));
+    ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
+    const double error = difference(now.outputs("axial.force"), direct.outputs("axial.force"));
+    EXPECT_LT(error, 0.2 * last) << rtol;
+    EXPECT_GE(static_cast<double>(now.record.statistics.steps), 3.0 / rtol);
+    last = error;
+  }
+  EXPECT_LT(last, 1e-3);
+}
+
+TEST(IntegratorNames, AreThoseOfScenarioFiles) {
+  for (const std::string_view name : integrator_names()) {
+    EXPECT_NO_THROW(static_cast<void>(
+        parse_scenario(default_scenario_text(), "default", {"numerics.integrator=" + std::string(name)})))
+        << name;
+  }
+  EXPECT_EQ(std::set(integrator_names().begin(), integrator_names().end()).size(), 14U);
+}
+
+}  // namespace
+}  // namespace monograin
