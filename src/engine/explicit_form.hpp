@@ -83,6 +83,14 @@ class ExplicitForm {
     return complete_;
   }
 
+  /// The same for a state that is only looked at: what was last completed stays the first guess.
+  void complete(double xi, std::span<const double> integrated, std::span<double> complete) {
+    std::ranges::copy(complete_, complete.begin());
+    std::ranges::copy(integrated, complete.begin());
+    quadratures_.add_to(complete);
+    system_.complete(xi, complete);
+  }
+
   /// @param rates  as many as there are integrated unknowns
   /// @throws std::domain_error where the equations end
   void rates(double xi, std::span<const double> integrated, std::span<double> rates) {

@@ -21,6 +21,9 @@ namespace odeint = boost::numeric::odeint;
 constexpr double k_first_step = 1e-3;
 constexpr double k_smallest_step = 1e-15;
 constexpr int k_most_tries = 500;  // of one step
+// Of Fehlberg's method, whose error estimate does not see quadratures: it is zero for rates that depend on xi alone.
+// Nor may it then step farther than it has come, because rates may be singular where a segment begins.
+constexpr double k_longest_fehlberg = 1.0 / 32.0;
 
 template <class State>
 State zeros(std::size_t size) {
@@ -74,7 +77,7 @@ class ExplicitStepper final : public Stepper {
 
   void begin(double xi, std::span<const double> z) override {
     std::ranges::copy(z, now_.begin());
-    begin_ = end_ = xi;
+    segment_begin_ = begin_ = end_ = xi;
     step_ = std::min(k_first_step, 1.0 - xi);
     has_rates_ = false;
   }
@@ -92,6 +95,9 @@ class ExplicitStepper final : public Stepper {
         return controlled_.try_step(system(), old_, old_rates_, end, now_, step);
     });
     if constexpr (!has_interpolation) rates(now_, now_rates_, end_);
+    if constexpr (std::is_same_v<Controlled, Reaching>) {
+      step_ = std::min({step_, k_longest_fehlberg, std::max(k_first_step, end_ - segment_begin_)});
+    }
     return end_;
   }
 
@@ -114,7 +120,7 @@ class ExplicitStepper final : public Stepper {
       double step = xi - begin_;
       for (int tries = 0; xi - at > k_smallest_step; ++tries) {
         if (tries == k_most_tries) throw SolverError("try_step", "a state in a step is not reached", at, step, {});
-        step = std::min(step, xi - at);
+        step = std::min({step, xi - at, k_longest_fehlberg});
         static_cast<void>(reaching_.try_step(system(), between_, at, step));
       }
     }
@@ -133,7 +139,7 @@ class ExplicitStepper final : public Stepper {
   Controlled controlled_;
   Reaching reaching_;
   State old_, old_rates_, now_, now_rates_, between_;
-  double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
+  double segment_begin_ = 0.0, begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
   bool has_rates_ = false;
 };
 

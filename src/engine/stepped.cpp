@@ -60,7 +60,7 @@ class Stepped final : public EventLocator {
  private:
   void state_at(double xi, std::span<double> y) override {
     stepper_->state_at(xi, z_);
-    std::ranges::copy(form_.complete(xi, z_), y.begin());
+    form_.complete(xi, z_, y);
   }
 
   /// Where y holds the beginning of a segment, along its tangent.
@@ -69,13 +69,22 @@ class Stepped final : public EventLocator {
     std::vector<double> slope(z_.size());
     form_.rates(end_, z_, slope);
     for (std::size_t k = 0; k < z_.size(); ++k) z_[k] += (xi - end_) * slope[k];
-    std::ranges::copy(form_.complete(xi, z_), y.begin());
+    form_.complete(xi, z_, y);
   }
 
+  /// A step may lead over an event to where this mode has no state; comes as near as it takes to get one.
   void move_end(double xi) override {
-    end_ = xi;
-    state_at(xi, end_state_);
-    look(xi, end_state_, end_values_);
+    for (;;) {
+      end_ = xi;
+      try {
+        state_at(xi, end_state_);
+        look(xi, end_state_, end_values_);
+        return;
+      } catch (const std::domain_error&) {
+        if (xi - begin_ < k_smallest) throw;
+        xi = 0.5 * (begin_ + xi);
+      }
+    }
   }
 
   Tolerances tolerances_;
@@ -122,7 +131,8 @@ class FixedStep final : public Integrator {
     ++statistics_.steps;
     ++statistics_.guard_evaluations;
     statistics_.last_step = end_ - begin_;
-    watch_.values(end_, form_.complete(end_, end_state_), values_);
+    form_.complete(end_, end_state_, complete_);
+    watch_.values(end_, complete_, values_);
     fired_.clear();
     for (std::size_t g = 0; g < values_.size(); ++g) {
       const int direction = watch_.directions()[g];
@@ -138,7 +148,7 @@ class FixedStep final : public Integrator {
   void dense_output(double xi, std::span<double> y) override {
     const double share = end_ > begin_ ? (xi - begin_) / (end_ - begin_) : 1.0;
     for (std::size_t k = 0; k < z_.size(); ++k) z_[k] = std::lerp(begin_state_[k], end_state_[k], share);
-    std::ranges::copy(form_.complete(xi, z_), y.begin());
+    form_.complete(xi, z_, y);
   }
 
   [[nodiscard]] double guard_tolerance() const noexcept override { return 0.0; }

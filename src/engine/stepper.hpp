@@ -23,10 +23,9 @@ class ScaledForm {
     for (std::size_t k = 0; k < size(); ++k) z[k] = y_[k] / form_.unknown(k).scale;
   }
 
-  /// Valid until the next call of this object.
-  [[nodiscard]] std::span<const double> complete(double xi, std::span<const double> z) {
+  void complete(double xi, std::span<const double> z, std::span<double> complete) {
     scale_back(z);
-    return form_.complete(xi, y_);
+    form_.complete(xi, y_, complete);
   }
 
   /// @throws std::domain_error where the equations end, or have no finite rates

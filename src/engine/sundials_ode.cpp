@@ -173,7 +173,7 @@ class SundialsOde final : public Integrator {
 
   void dense_output(double xi, std::span<double> y) override {
     check("GetDky", Library::derivative(memory_.get(), xi, 0, errors_.get()));
-    std::ranges::copy(form_.complete(xi, view(errors_.get())), y.begin());
+    form_.complete(xi, view(errors_.get()), y);
   }
 
   [[nodiscard]] double guard_tolerance() const noexcept override { return guard_tolerance_of(tolerances_); }
