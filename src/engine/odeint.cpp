@@ -238,7 +238,6 @@ std::unique_ptr<Stepper> make_explicit(OdeintMethod method, ScaledForm& form, co
 
 std::unique_ptr<Stepper> make_odeint(OdeintMethod method, ScaledForm& form, const Tolerances& tolerances) {
   if (form.size() <= 2) return make_explicit<std::array<double, 2>>(method, form, tolerances);
-  if (form.size() <= 4) return make_explicit<std::array<double, 4>>(method, form, tolerances);
   if (form.size() <= 8) return make_explicit<std::array<double, 8>>(method, form, tolerances);
   return make_explicit<std::vector<double>>(method, form, tolerances);
 }

@@ -192,7 +192,7 @@ TEST(PackingEvents, FullPlasticityKinksTheStressAndNotTheState) {
 
 TEST(PackingRuns, FollowThePrintedEquationsForAnyParameters) {
   int counted = 0;
-  for (const Parameters& p : random_parameters(24)) {
+  for (const Parameters& p : random_parameters(6)) {
     const Law law = make_law(p);
     try {
       static_cast<void>(state(law, law.jamming));
@@ -213,7 +213,7 @@ TEST(PackingRuns, FollowThePrintedEquationsForAnyParameters) {
       ++counted;
     }
   }
-  EXPECT_GT(counted, 45);
+  EXPECT_GT(counted, 12);
 }
 
 TEST(PackingRuns, ErrAsTheirToleranceSays) {
