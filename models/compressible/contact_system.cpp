@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
 
+#include "undefined.hpp"
+
 namespace monograin::compressible {
 namespace {
-
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 // In the order of Regime.
 constexpr std::array<std::string_view, 4> k_regime_words{"open", "linear", "exponential", "unloading"};

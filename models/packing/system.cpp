@@ -7,11 +7,11 @@
 #include <stdexcept>
 
 #include "packing/info.hpp"
+#include "undefined.hpp"
 
 namespace monograin::packing {
 namespace {
 
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr int k_iterations = 30;
 constexpr double k_resolution = 1e-14;  // of the last step but one of an iteration that doubles its digits

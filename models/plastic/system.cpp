@@ -8,12 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "undefined.hpp"
+
 namespace monograin::plastic {
 namespace {
 
 using std::numbers::pi;
-
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 // In the order of Regime.
 constexpr std::array<std::string_view, 9> k_regime_words{

@@ -21,7 +21,7 @@ constexpr std::size_t k_nodes = 12;
 // Share of the last Legendre coefficients below which a quadrature has converged.
 constexpr double k_tail = 1e-13;
 // Share of the work that is round-off in it.
-constexpr double k_round_off = 1e-16;
+constexpr double k_quadrature_accuracy = 1e-16;
 // Quadrature pieces are not refined below this; what is left is below round-off of the whole.
 constexpr double k_smallest_quadrature = 1e-6;
 
@@ -191,7 +191,7 @@ class Direct final : public EventLocator {
       return rates_[*quadrature_];
     });
     const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
-    if (!integral_.has_converged(k_round_off * scale) && end_ - begin_ > k_smallest_quadrature) return false;
+    if (!integral_.has_converged(k_quadrature_accuracy * scale) && end_ - begin_ > k_smallest_quadrature) return false;
     end_state_[*quadrature_] = begin_state_[*quadrature_] + integral_(end_);
     return true;
   }

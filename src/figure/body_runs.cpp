@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "figure/figure.hpp"
+#include "figure/run_curves.hpp"
 #include "history/table.hpp"
 
 namespace monograin::figure {
@@ -50,14 +51,6 @@ constexpr std::array k_figures{
 fs::path history_of(const fs::path& run) {
   std::error_code ignored;
   return fs::is_directory(run, ignored) ? run / "history.csv" : run;
-}
-
-Table read_table(const fs::path& file) {
-  try {
-    return read_csv(file);
-  } catch (const std::runtime_error& fault) {
-    throw FigureError(fault.what());
-  }
 }
 
 const BodyFigure* figure_of(const Table& history) {

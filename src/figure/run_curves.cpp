@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string_view>
 #include <system_error>
@@ -11,23 +10,15 @@
 
 #include "figure/figure.hpp"
 #include "history/table.hpp"
+#include "undefined.hpp"
 
 namespace monograin::figure {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double k_round_off = 1e-12;  ///< share of a displacement by which none is passed
 constexpr std::string_view k_displacement = ".displacement";
-
-[[nodiscard]] Table read_table(const fs::path& file) {
-  try {
-    return read_csv(file);
-  } catch (const std::runtime_error& fault) {
-    throw FigureError(fault.what());
-  }
-}
 
 /// A scale to divide by.
 [[nodiscard]] std::optional<double> header_scale(const Table& table, std::string_view key) {
@@ -137,6 +128,14 @@ class StateReader {
 }
 
 }  // namespace
+
+Table read_table(const fs::path& file) {
+  try {
+    return read_csv(file);
+  } catch (const std::runtime_error& fault) {
+    throw FigureError(fault.what());
+  }
+}
 
 std::vector<Phase> phases_along(std::span<const double> displacements) {
   std::vector<Phase> phases(displacements.size(), Phase::loading);

@@ -9,7 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "history/table.hpp"
+
 namespace monograin::figure {
+
+/// A table of a run. @throws FigureError where it cannot be read
+[[nodiscard]] Table read_table(const std::filesystem::path& file);
 
 enum class Quantity { force, pressure, area, apparent_radius };
 inline constexpr std::array k_quantities{Quantity::force, Quantity::pressure, Quantity::area,

@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "undefined.hpp"
+
 namespace monograin {
 namespace {
-
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Share of the range of x within which two jumps, or two ends, are the same one: events are located about as exactly
 /// as the solution that crosses them.

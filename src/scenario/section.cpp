@@ -213,7 +213,7 @@ std::optional<double> Section::read_quantity(const KeySpec& spec, const toml::no
   const auto* text = node.as_string();
   if (text != nullptr && spec.dimension != Dimension::none) {
     const auto radius = spec.knows_initial_radius ? std::optional(reading_.initial_radius) : std::nullopt;
-    const Quantity quantity = parse_quantity(text->get(), spec.dimension, radius);
+    const ParsedQuantity quantity = parse_quantity(text->get(), spec.dimension, radius);
     if (!quantity.value) return fault(spec, node, quantity.problem);
     value = quantity.value;
   }

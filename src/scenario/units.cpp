@@ -136,7 +136,7 @@ std::string describe(Dimension dimension, const Range& range) {
                      range.upper_is_open ? "below" : "up to", upper);
 }
 
-Quantity parse_quantity(std::string_view text, Dimension dimension, std::optional<double> initial_radius) {
+ParsedQuantity parse_quantity(std::string_view text, Dimension dimension, std::optional<double> initial_radius) {
   const DimensionInfo& info = dimension_info(dimension);
   const std::string_view content = trimmed(text);
   const LeadingNumber number = split_number(content);

@@ -37,7 +37,7 @@ struct DimensionInfo {
 /// "a length from 1e-12 m to 1e+06 m"
 [[nodiscard]] std::string describe(Dimension dimension, const Range& range);
 
-struct Quantity {
+struct ParsedQuantity {
   std::optional<double> value;  ///< SI; none where the text is not a quantity of that dimension
   std::string problem;          ///< then: what is wrong and what is expected
   std::string unit{};           ///< as it was given
@@ -46,6 +46,7 @@ struct Quantity {
 /// Reads a number followed by a unit, independently of the locale.
 ///
 /// @param initial_radius  length of the unit R0 [m]; none where R0 cannot be used
-[[nodiscard]] Quantity parse_quantity(std::string_view text, Dimension dimension, std::optional<double> initial_radius);
+[[nodiscard]] ParsedQuantity parse_quantity(std::string_view text, Dimension dimension,
+                                            std::optional<double> initial_radius);
 
 }  // namespace monograin

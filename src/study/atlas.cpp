@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -22,6 +21,7 @@
 #include "study/adhesion_panels.hpp"
 #include "study/definition.hpp"
 #include "study/profile.hpp"
+#include "undefined.hpp"
 
 namespace monograin {
 namespace {
@@ -30,7 +30,6 @@ namespace fs = std::filesystem;
 using Values = std::vector<double>;
 
 constexpr std::size_t k_parameter_values = 201;
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 [[nodiscard]] std::vector<fs::path> definition_files(const fs::path& folder) {
   if (!fs::is_directory(folder)) {

@@ -6,11 +6,11 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "figure/page.hpp"
 #include "study/atlas.hpp"
+#include "undefined.hpp"
 
 namespace monograin {
 namespace {
@@ -40,8 +40,6 @@ constexpr Cell k_cells[] = {
 [[nodiscard]] std::string shown_number(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : std::string("-");
 }
-
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 using Row = std::vector<std::string>;
 

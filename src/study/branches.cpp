@@ -5,10 +5,11 @@
 #include <limits>
 #include <optional>
 
+#include "undefined.hpp"
+
 namespace monograin {
 namespace {
 
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double k_slope_share = 0.05;         ///< of the force at the reversal, by which it falls for the slope
 constexpr double k_same_reversal = 0.01;       ///< share of x within which two reversals are one
 constexpr double k_worth_a_line = 1.0 + 1e-3;  ///< loading beyond the last reversal, relative to its x

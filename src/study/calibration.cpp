@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 
 #include "engine/drive.hpp"
 #include "scenario/faults.hpp"
+#include "undefined.hpp"
 
 namespace monograin {
 namespace {
@@ -18,7 +18,6 @@ constexpr double k_direct_noise = 1e-13;     // of a response without time integ
 constexpr std::size_t k_curve_points = 400;  // of the curve between the data
 constexpr double k_high_correlation = 0.95;  // of two parameters
 constexpr double k_poor = 0.1;               // relative standard error
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Relative error of the responses.
 double noise_of(const Scenario& scenario) {

@@ -310,7 +310,7 @@ class CalibrationReader {
       faults_.add(spec.unit_at, fmt::format("unknown unit '{}'; expected '{}'", shown(column.unit), column.si));
       return std::nullopt;
     }
-    const Quantity one = parse_quantity("1 " + column.unit, *dimension, made_.scenario.radius);
+    const ParsedQuantity one = parse_quantity("1 " + column.unit, *dimension, made_.scenario.radius);
     if (!one.value) {
       const std::string_view noun = dimension_info(*dimension).noun;
       faults_.add(

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -18,6 +17,7 @@
 #include "scenario/edit.hpp"
 #include "study/calibration.hpp"
 #include "study/calibration_language.hpp"
+#include "undefined.hpp"
 
 namespace monograin {
 namespace {
@@ -27,7 +27,6 @@ using Json = nlohmann::ordered_json;
 using Bound = LeastSquaresSolution::Bound;
 
 constexpr const char* k_figure = "figure.svg";
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string_view word_of(Bound bound) {
   switch (bound) {

@@ -19,7 +19,6 @@ using Kind = KeySpec::Kind;
 
 constexpr double k_most_points = 1e6;
 constexpr std::array<std::string_view, 2> k_scales{"linear", "log"};
-constexpr std::string_view k_example_range = "{ from = 0.2, to = 0.48 }";
 
 /// The keys that say over what a key is varied.
 std::vector<KeySpec> level_keys(const KeySpec& varied) {
@@ -57,7 +56,7 @@ std::vector<KeySpec> level_keys(const KeySpec& varied) {
   if (bare && unit.empty()) return {FactorValue{.number = *bare}, {}};
   if (spec.dimension == Dimension::none) return {{}, "expected a number"};
   const std::string quantity = bare ? fmt::format("{} {}", text, unit) : text;
-  const Quantity read =
+  const ParsedQuantity read =
       parse_quantity(quantity, spec.dimension, spec.knows_initial_radius ? std::optional(1.0) : std::nullopt);
   if (!read.value) return {{}, read.problem};
   return {FactorValue{.number = *read.value, .is_in_radii = is_in_radii(quantity, spec.dimension)}, {}};

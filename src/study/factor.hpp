@@ -13,6 +13,8 @@
 
 namespace monograin {
 
+inline constexpr std::string_view k_example_range = "{ from = 0.2, to = 0.48 }";
+
 /// A value of a key, before it is known how long the unit R0 is.
 struct FactorValue {
   double number = 0.0;       ///< in SI, or in initial radii

@@ -31,7 +31,6 @@ constexpr double k_most_runs = 1e6;
 constexpr double k_most_maxpro_runs = 1e5;
 constexpr std::size_t k_most_faults = 20;  ///< of a table's rows: nobody reads on
 constexpr std::array<std::string_view, 3> k_designs{"grid", "table", "maxpro"};
-constexpr const char* k_example_range = "{ from = 0.2, to = 0.48 }";
 
 // --- the language
 

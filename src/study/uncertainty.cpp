@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <limits>
+
+#include "undefined.hpp"
 
 namespace monograin {
 namespace {
 
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double k_share_of_null_vector = 1e-2;  // with which a parameter belongs to what is not determined
 
 /// s, or the factor that stands for it where the loss is not linear.

@@ -19,7 +19,7 @@ class UnitTable : public ::testing::TestWithParam<UnitRow> {};
 
 TEST_P(UnitTable, ReadsTextInSi) {
   const UnitRow& row = GetParam();
-  const Quantity quantity = parse_quantity(row.text, row.dimension, 0.01);
+  const ParsedQuantity quantity = parse_quantity(row.text, row.dimension, 0.01);
   ASSERT_TRUE(quantity.value) << row.text << ": " << quantity.problem;
   // One rounding in the factor, one in the product.
   EXPECT_NEAR(*quantity.value, row.si, 4e-16 * std::abs(row.si)) << row.text;
@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(
 class NoQuantity : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(NoQuantity, IsRefusedAsLength) {
-  const Quantity quantity = parse_quantity(GetParam(), Dimension::length, 0.01);
+  const ParsedQuantity quantity = parse_quantity(GetParam(), Dimension::length, 0.01);
   EXPECT_FALSE(quantity.value) << GetParam();
   EXPECT_NE(quantity.problem.find("expected a length, for example \"10 mm\""), std::string::npos) << quantity.problem;
 }
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Units, NoQuantity,
                                            "+-1 m", "e5 m", "-R0", "10 mm mm", "10 R1", ". m"));
 
 TEST(Units, InitialRadiusIsRefusedWhereItIsBeingDefined) {
-  const Quantity quantity = parse_quantity("1 R0", Dimension::length, std::nullopt);
+  const ParsedQuantity quantity = parse_quantity("1 R0", Dimension::length, std::nullopt);
   EXPECT_FALSE(quantity.value);
   EXPECT_NE(quantity.problem.find("cannot be given in itself"), std::string::npos) << quantity.problem;
 }
@@ -83,7 +83,7 @@ struct DecimalComma : std::numpunct<char> {
 
 TEST(Units, DoNotDependOnTheLocale) {
   const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
-  const Quantity quantity = parse_quantity("1.5 m", Dimension::length, std::nullopt);
+  const ParsedQuantity quantity = parse_quantity("1.5 m", Dimension::length, std::nullopt);
   std::locale::global(before);
   ASSERT_TRUE(quantity.value);
   EXPECT_EQ(*quantity.value, 1.5);
