@@ -78,6 +78,7 @@ struct DriveKey {
   std::string_view example;  ///< as written in a file
   /// `[axial, lateral]` stands for a value of this key and one that controls the same in the second channel.
   bool may_take_lateral = false;
+  std::string_view column{};  ///< of the history, that shows what it prescribes; empty: that of its name
 };
 
 /// A material of a source's table: values of keys in `[material]`, not of all of them.

@@ -151,6 +151,10 @@ class HybridSystem {
   /// not (an equation without rates that belongs to an unknown with one), all_rates() has to be consistent by itself.
   [[nodiscard]] virtual bool is_semi_explicit() const noexcept { return true; }
 
+  /// How many times the relative error of the unknowns that of the curves may be, because these show small differences
+  /// of them: so much more accurately the unknowns are integrated.
+  [[nodiscard]] virtual double error_gain() const noexcept { return 1.0; }
+
   /// Whether solve() finds the state at any instant of the program. If not, the direct form is not offered.
   [[nodiscard]] virtual bool is_solvable() const noexcept { return true; }
   /// Solves for everything but the quadratures; the present values are the first guess. Of a system that is not

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "compressible/presets.hpp"
 #include "compressible/regressions.hpp"
 
 namespace monograin::compressible {
@@ -134,6 +135,7 @@ ModelInfo contact_info() noexcept {
           .regimes = k_regimes,
           .events = k_events,
           .domain = k_domain,
+          .presets = presets(),
           .takes_ludwik = false,
           .objections = objections};
 }

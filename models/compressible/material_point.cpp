@@ -24,6 +24,8 @@ constexpr std::array k_unknowns{
     Unknown{"plastic_strain_deviatoric", Unknown::Kind::differential, 0.1},
     Unknown{"plastic_multiplier", Unknown::Kind::quadrature, 1.0},
 };
+// Plastic strains over elastic ones, as they usually are: the stress is made of what is left of the strains.
+constexpr double k_error_gain = 10.0;
 
 // What is nearer than this to the end of an elastic phase has arrived there (step coordinates).
 constexpr double k_round_off = 1e-13;
@@ -77,6 +79,8 @@ MaterialPoint::MaterialPoint(const Settings& settings) : settings_(settings) {
 }
 
 std::span<const Unknown> MaterialPoint::unknowns() const noexcept { return k_unknowns; }
+
+double MaterialPoint::error_gain() const noexcept { return k_error_gain; }
 
 // The flow of von Mises keeps its direction (d(phi) = |d(g^p)|), and so does flow without deviator: f = 0 along that
 // line is one equation.

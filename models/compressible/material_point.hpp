@@ -41,6 +41,7 @@ class MaterialPoint final : public HybridSystem {
   explicit MaterialPoint(const Settings& settings);
 
   [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override;
+  [[nodiscard]] double error_gain() const noexcept override;
   [[nodiscard]] bool is_solvable() const noexcept override;
   [[nodiscard]] bool is_semi_explicit() const noexcept override { return false; }
   void start(std::span<double> y) override;

@@ -29,6 +29,9 @@ namespace monograin {
 inline constexpr double k_least_progress = 1e-13;
 /// Internal steps of one segment.
 inline constexpr long k_most_steps = 200'000;
+/// What an explicit method that needs more of them is told.
+inline constexpr const char* k_stiff_for_explicit =
+    "the equations are most likely stiff here, which slows explicit methods down; expected cvode-bdf or ida";
 
 [[nodiscard]] inline bool all_finite(std::span<const double> values) noexcept {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });

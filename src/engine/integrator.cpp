@@ -59,11 +59,15 @@ std::span<const std::string_view> integrator_names() noexcept {
 }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
-                                            const Tolerances& tolerances) {
+                                            const Tolerances& asked) {
   if (name == "direct" && !system.is_solvable()) throw std::logic_error("the system has no direct form");
   if (name == "direct") return make_direct(system, watch);
+  if (name == "explicit") return make_fixed_step(system, watch, asked);
+  const double gain = system.error_gain();
+  const double rtol = asked.rtol / gain;
+  // No smaller than it takes to let the relative one count: equations without rates have round-off.
+  const Tolerances tolerances{rtol, std::min(asked.atol, std::max(asked.atol / gain, 0.1 * rtol))};
   if (name == "ida") return make_ida(system, watch, tolerances);
-  if (name == "explicit") return make_fixed_step(system, watch, tolerances);
   for (const auto& [word, method] : k_of_explicit_form) {
     if (word != name) continue;
     return std::visit(

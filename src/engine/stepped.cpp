@@ -29,7 +29,11 @@ class Stepped final : public EventLocator {
   Advance advance() override {
     begin_piece();
     if (begin_ >= step_end_) {
-      if (++segment_steps_ > k_most_steps) throw SolverError("step", "TOO_MUCH_WORK", begin_, 0.0, {});
+      if (++segment_steps_ > k_most_steps) {
+        const bool is_explicit = stepper_->jacobian_evaluations == 0;
+        throw SolverError("step", "TOO_MUCH_WORK", begin_, statistics_.last_step,
+                          is_explicit ? k_stiff_for_explicit : "");
+      }
       step_end_ = stepper_->step();
       ++statistics_.steps;
       statistics_.last_step = step_end_ - begin_;

@@ -148,7 +148,10 @@ class SundialsOde final : public Integrator {
   }
 
   Advance advance() override {
-    if (++segment_steps_ > k_most_steps) throw failure(Library::name, "TOO_MUCH_WORK");
+    if (++segment_steps_ > k_most_steps) {
+      if (!linear_) message_ = k_stiff_for_explicit;
+      throw failure(Library::name, "TOO_MUCH_WORK");
+    }
     pending_.forget();
     roots_.fired.clear();
     const double begin = end_;

@@ -23,6 +23,7 @@ struct Shown {
   std::string_view column;
   std::string_view label;  ///< gnuplot's enhanced text
   std::string_view scale;  ///< key of the header whose number it is divided by; empty: none
+  bool has_sign = false;   ///< recorded with tension positive, and drawn as the abscissa begins
 };
 
 /// What is drawn of a model: told by the column of its abscissa.
@@ -38,14 +39,14 @@ constexpr std::array<Shown, 4> k_packing{
     Shown{"plastic_fraction", "Plastic fraction {/:Italic f}_p", ""},
 };
 constexpr std::array<Shown, 4> k_material_point{
-    Shown{"stress_axial", "Axial stress {/:Italic σ}_a / {/:Italic σ}_{y0}", "yield_pressure"},
-    Shown{"p", "Mean stress {/:Italic p} / {/:Italic σ}_{y0}", "yield_pressure"},
+    Shown{"stress_axial", "Axial stress {/:Italic σ}_a / {/:Italic σ}_{y0}", "yield_pressure", true},
+    Shown{"p", "Mean stress {/:Italic p} / {/:Italic σ}_{y0}", "yield_pressure", true},
     Shown{"q", "Deviatoric stress {/:Italic q} / {/:Italic σ}_{y0}", "yield_pressure"},
     Shown{"relative_density", "Relative density {/:Italic ρ}", ""},
 };
 constexpr std::array k_figures{
     BodyFigure{{"packing_fraction", "Packing fraction {/:Italic Φ}", ""}, k_packing},
-    BodyFigure{{"strain_axial", "Axial strain (tension positive)", ""}, k_material_point},
+    BodyFigure{{"strain_axial", "Axial strain", "", true}, k_material_point},
 };
 
 fs::path history_of(const fs::path& run) {
@@ -59,21 +60,29 @@ const BodyFigure* figure_of(const Table& history) {
   return found == k_figures.end() ? nullptr : &*found;
 }
 
-/// A column over its scale; @param history  whose header has that
-std::vector<double> values_of(const Table& table, const Table& history, const Shown& shown) {
+/// The sign that makes the abscissa grow at first, so that compression and tension are drawn as loading alike.
+double sign_of(const Table& history, const Shown& x) {
+  if (!x.has_sign) return 1.0;
+  const std::vector<double> values = history.column(x.column);
+  const auto moved = std::ranges::find_if(values, [&](double value) { return value != values.front(); });
+  return moved != values.end() && *moved < values.front() ? -1.0 : 1.0;
+}
+
+/// A column over its scale; @param history  whose header has that; @param sign  of what has one
+std::vector<double> values_of(const Table& table, const Table& history, const Shown& shown, double sign) {
   std::vector<double> values = table.column(shown.column);
   const double scale = shown.scale.empty() ? 1.0 : history.header_number(shown.scale).value_or(1.0);
-  for (double& value : values) value /= scale;
+  for (double& value : values) value *= (shown.has_sign ? sign : 1.0) / scale;
   return values;
 }
 
 /// Circles at the events, one series for each name; those of the program are where the curves turn.
-void append_events(const Table& events, const Table& history, const BodyFigure& figure, std::size_t panel,
+void append_events(const Table& events, const Table& history, const BodyFigure& figure, double sign, std::size_t panel,
                    std::vector<ChartSeries>& series) {
   const auto name = events.find("event");
   if (!name || events.row_count() == 0 || !events.columns()[*name].holds_words()) return;
-  const std::vector<double> x = values_of(events, history, figure.x);
-  const std::vector<double> y = values_of(events, history, figure.panels[panel]);
+  const std::vector<double> x = values_of(events, history, figure.x, sign);
+  const std::vector<double> y = values_of(events, history, figure.panels[panel], sign);
   for (std::size_t row = 0; row < events.row_count(); ++row) {
     const std::string event(events.word(row, *name));
     if (event == "step-end" || event == "until-met") continue;
@@ -93,9 +102,14 @@ std::optional<Chart> body_chart(const std::vector<fs::path>& runs) {
   const Table first = read_table(history_of(runs.front()));
   const BodyFigure* figure = figure_of(first);
   if (figure == nullptr) return std::nullopt;
+  const double sign = sign_of(first, figure->x);
+  const std::string_view convention = !figure->x.has_sign ? ""
+                                      : sign < 0.0        ? ", compression positive"
+                                                          : ", tension positive";
   Chart chart;
   for (const Shown& shown : figure->panels) {
-    chart.panels.push_back({.x = {.label = std::string(figure->x.label)}, .y = {.label = std::string(shown.label)}});
+    chart.panels.push_back(
+        {.x = {.label = fmt::format("{}{}", figure->x.label, convention)}, .y = {.label = std::string(shown.label)}});
   }
   std::vector<std::vector<ChartSeries>> events(figure->panels.size());
   for (const fs::path& run : runs) {
@@ -113,9 +127,9 @@ std::optional<Chart> body_chart(const std::vector<fs::path>& runs) {
       chart.panels[panel].series.push_back({.legend = runs.size() > 1 ? folder.filename().string() : "",
                                             .style = ChartSeries::Style::phases,
                                             .colour = {},
-                                            .x = values_of(history, history, figure->x),
-                                            .y = values_of(history, history, figure->panels[panel])});
-      append_events(marks, history, *figure, panel, events[panel]);
+                                            .x = values_of(history, history, figure->x, sign),
+                                            .y = values_of(history, history, figure->panels[panel], sign)});
+      append_events(marks, history, *figure, sign, panel, events[panel]);
     }
   }
   for (std::size_t panel = 0; panel < events.size(); ++panel) {

@@ -16,6 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double k_most_decade_tics = 6.0;  // of a logarithmic axis: more of their labels run into each other
+
 [[nodiscard]] Format format_of(const fs::path& output) {
   const std::string extension = output.extension().string();
   if (extension == ".svg") return Format::svg;
@@ -51,10 +53,13 @@ void make_folder(const fs::path& folder) {
 [[nodiscard]] std::string axis_text(char name, const Axis& axis) {
   const auto& [lowest, highest, tic_step] = axis.range;
   if (axis.is_logarithmic) {
+    const double decades = std::log10(highest / lowest);
+    const std::string tics =
+        decades > k_most_decade_tics ? fmt::format("1e{:.0f}", std::ceil(decades / k_most_decade_tics)) : "autofreq";
     return fmt::format(
-        "set logscale {0}; set {0}range [{1:.6g}:{2:.6g}]; set {0}tics autofreq; "
+        "set logscale {0}; set {0}range [{1:.6g}:{2:.6g}]; set {0}tics {3}; "
         "set format {0} '10^{{%T}}'\n",
-        name, lowest, highest);
+        name, lowest, highest, tics);
   }
   return fmt::format("set {0}range [{1:.6g}:{2:.6g}]; set {0}tics {3:.6g}\n", name, lowest, highest, tic_step);
 }

@@ -35,7 +35,7 @@ std::string_view configuration_word(Loading::Configuration configuration) {
   return {};
 }
 
-/// Where a key stands, in whichever of the tables it may.
+/// Where a key stands, in whichever of the tables it may, or the preset that gives it.
 SourceLocation place_of_key(const toml::table& tree, const std::string& origin, std::string_view model,
                             std::string_view key) {
   for (const std::string_view name :
@@ -44,6 +44,7 @@ SourceLocation place_of_key(const toml::table& tree, const std::string& origin, 
     if (table == nullptr) continue;
     if (const auto found = table->find(key); found != table->end()) return place_of(found->second.source(), {origin});
   }
+  if (const toml::node* preset = tree["material"]["preset"].node()) return place_of(preset->source(), {origin});
   return {origin};
 }
 

@@ -108,9 +108,13 @@ compressible::ContactSettings compressible_settings(const Scenario& scenario, co
           .largest_force = reach.force};
 }
 
+/// @throws std::invalid_argument where the material has no meaning at the start: a fit tries such numbers too
 compressible::MaterialPoint::Settings material_point_settings(const Scenario& scenario) {
-  return {.parameters = compressible::parameters_from(scenario.material,
-                                                      std::get<std::string>(scenario.options.at("yield_model"))),
+  const auto parameters =
+      compressible::parameters_from(scenario.material, std::get<std::string>(scenario.options.at("yield_model")));
+  const std::vector<Objection> objections = compressible::start_objections(parameters);
+  if (!objections.empty()) throw std::invalid_argument(objections.front().message);
+  return {.parameters = parameters,
           .yield_pressure = scenario.material.at("yield_pressure"),
           .is_hydrostatic = scenario.loading.configuration == Loading::Configuration::hydrostatic};
 }

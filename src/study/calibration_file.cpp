@@ -121,6 +121,17 @@ class CalibrationReader {
                               wall.name));
     }
     if (measurable_.drives.empty()) faults_.add(root.value_place("scenario"), "the scenario has no wall that moves");
+    check_lateral(made_.scenario, root.value_place("scenario"));
+  }
+
+  /// The data stand in for all steps, and tell of one direction only.
+  void check_lateral(const Scenario& scenario, const SourceLocation& where) {
+    const bool has_lateral =
+        std::ranges::any_of(scenario.loading.steps, [](const Step& step) { return step.lateral.has_value(); });
+    if (!has_lateral) return;
+    faults_.add(where,
+                "the scenario's steps prescribe the lateral direction too, and the data drive the axial one alone; "
+                "expected a scenario whose configuration says what happens laterally: simple, die or hydrostatic");
   }
 
   void read_fit(const Section& root) {
@@ -236,6 +247,7 @@ class CalibrationReader {
     try {
       curve.scenario = curve.overrides.empty() ? made_.scenario : scenario_with(curve.overrides);
       measurable_ = measurable_in(curve.scenario);
+      if (!curve.overrides.empty()) check_lateral(curve.scenario, data.value_place("set"));
     } catch (const ScenarioError& error) {
       for (const Fault& fault : error.faults()) faults_.add(data.value_place("set"), fault.message);
       return;

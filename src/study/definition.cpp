@@ -31,10 +31,13 @@ template <std::size_t N>
   return place < N ? place : 0;  // a word that is none of them has been reported
 }
 
-/// The formulas and axes that a panel takes from the definition where it has none.
+/// What a curve takes from its panel, and that from the definition, where it has none of its own.
 struct Inherited {
-  std::optional<PlacedExpression> x;
-  std::optional<PlacedExpression> y;
+  std::optional<PlacedExpression> x{};
+  std::optional<PlacedExpression> y{};
+  const Section* vary = nullptr;     ///< the section that has one; null: none
+  const Section* against = nullptr;  ///< likewise
+  const Section* panel = nullptr;    ///< whose overrides come before the curve's; null: none
 };
 
 class DefinitionReader {
@@ -58,7 +61,7 @@ class DefinitionReader {
                           .tables = {},
                           .value_tables = {}};
     if (root.has("adhesion_map")) definition.adhesion_map = adhesion_map(root);
-    const Inherited inherited{formula(root, "x"), formula(root, "y")};
+    const Inherited inherited{.x = formula(root, "x"), .y = formula(root, "y")};
     for (const auto& table : root.tables("panel", "[[panel]]")) {
       definition.panels.push_back(panel(table, root, inherited));
     }
@@ -157,10 +160,18 @@ class DefinitionReader {
     check_range(section, spec.y, 'y');
     const auto own_x = formula(section, "x");
     const auto own_y = formula(section, "y");
-    const Inherited formulas{own_x ? own_x : inherited.x, own_y ? own_y : inherited.y};
-    for (const auto& entry : section.tables("curve", "[[panel.curve]]")) spec.curves.push_back(curve(entry, formulas));
+    const auto having = [&](std::string_view key) {
+      return section.has(key) ? &section : root.has(key) ? &root : nullptr;
+    };
+    const Inherited handed_on{.x = own_x ? own_x : inherited.x,
+                              .y = own_y ? own_y : inherited.y,
+                              .vary = having("vary"),
+                              .against = having("against"),
+                              .panel = &section};
+    for (const auto& entry : root.tables("curve", "[[curve]]")) spec.curves.push_back(curve(entry, handed_on));
+    for (const auto& entry : section.tables("curve", "[[panel.curve]]")) spec.curves.push_back(curve(entry, handed_on));
     for (const auto& entry : section.tables("points", "[[panel.points]]")) spec.points.push_back(points(entry));
-    if (!section.has_or_misspells("curve") && !section.has_or_misspells("points")) {
+    if (!root.has("curve") && !section.has_or_misspells("curve") && !section.has_or_misspells("points")) {
       faults_.add(section.place(), "the panel is empty; expected [[panel.curve]] or [[panel.points]]");
     }
     return spec;
@@ -182,10 +193,15 @@ class DefinitionReader {
                    .parameter = {}};
     if (section.has("parameter")) spec.parameter = parameter(section);
     const std::vector<Override> swept = section.has("sweep") ? sweep(section, spec) : std::vector<Override>{};
-    if (section.has("vary")) {
-      vary(section, swept, spec);
-    } else if (!spec.parameter || has_scenario_ || section.has("scenario")) {
-      add_curve(section, {}, swept, spec);
+    const CurveSections sections{.curve = section,
+                                 .panel = inherited.panel,
+                                 .vary = section.has("vary") ? &section : inherited.vary,
+                                 .against = section.has("against") ? &section : inherited.against};
+    const bool has_runs = !spec.parameter || has_scenario_ || section.has("scenario");
+    if (section.has("vary") || (sections.vary != nullptr && has_runs)) {
+      vary(sections, swept, spec);
+    } else if (has_runs) {
+      add_curve(sections, {}, swept, spec);
     }
     if (!spec.at_event.empty()) check_event(section, spec);
     return spec;
@@ -215,6 +231,14 @@ class DefinitionReader {
     const Section section(reading_, curve.table("parameter", "parameter"), keys);
     return {section.number("from").value_or(0.0), section.number("to").value_or(1.0)};
   }
+
+  /// Where what makes the runs of a curve stands.
+  struct CurveSections {
+    const Section& curve;
+    const Section* panel;    ///< null: none, as in what follows
+    const Section* vary;     ///< has the key
+    const Section* against;  ///< likewise
+  };
 
   /// An override of a scenario, and where the definition asks for it.
   struct Override {
@@ -251,9 +275,9 @@ class DefinitionReader {
     return overrides;
   }
 
-  void vary(const Section& curve, const std::vector<Override>& swept, CurveSpec& spec) {
+  void vary(const CurveSections& sections, const std::vector<Override>& swept, CurveSpec& spec) {
     static const Keys keys = vary_keys();
-    const Section section(reading_, curve.table("vary", "vary"), keys);
+    const Section section(reading_, sections.vary->table("vary", "vary"), keys);
     const std::string key = section.text("key");
     const std::vector<std::string> values = section.texts("values");
     std::vector<std::string> legends = section.texts("legends");
@@ -277,22 +301,28 @@ class DefinitionReader {
     const bool is_named = !legends.empty() || !spec.legends.front().empty();
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (!is_named) legends.push_back(fmt::format("{} = {}", key.substr(key.rfind('.') + 1), values[k]));
-      add_curve(curve, {{fmt::format("{}={}", key, values[k]), section.value_place("values", k)}}, swept, spec);
+      add_curve(sections, {{fmt::format("{}={}", key, values[k]), section.value_place("values", k)}}, swept, spec);
     }
     if (!legends.empty()) spec.legends = std::move(legends);
   }
 
   /// The scenarios of one curve: one, or one for each value that is swept.
-  void add_curve(const Section& curve, const std::vector<Override>& varied, const std::vector<Override>& swept,
+  void add_curve(const CurveSections& sections, const std::vector<Override>& varied, const std::vector<Override>& swept,
                  CurveSpec& spec) {
-    std::vector<Override> overrides = overrides_in(curve, "set");
-    overrides.insert(overrides.end(), varied.begin(), varied.end());
+    const Section& curve = sections.curve;
+    std::vector<Override> overrides;
+    const auto add = [&overrides](const std::vector<Override>& more) {
+      overrides.insert(overrides.end(), more.begin(), more.end());
+    };
+    if (sections.panel != nullptr) add(overrides_in(*sections.panel, "set"));
+    add(overrides_in(curve, "set"));
+    add(varied);
     if (!curve.has("sweep")) {
       auto made = checked_scenario(curve, overrides);
       if (!made) return;
       spec.scenarios.push_back(std::move(*made));
-      if (!curve.has("against")) return;
-      for (const Override& entry : overrides_in(curve, "against")) overrides.push_back(entry);
+      if (sections.against == nullptr) return;
+      add(overrides_in(*sections.against, "against"));
       if (auto reference = checked_scenario(curve, overrides)) spec.references.push_back(std::move(*reference));
       return;
     }
@@ -395,7 +425,7 @@ class DefinitionReader {
     const Section section(reading_, table, keys);
     const auto own_x = formula(section, "x");
     const auto own_y = formula(section, "y");
-    const Inherited formulas{own_x ? own_x : inherited.x, own_y ? own_y : inherited.y};
+    const Inherited formulas{.x = own_x ? own_x : inherited.x, .y = own_y ? own_y : inherited.y};
     TableSpec spec{.title = plain(section, "title"), .rows = {}};
     for (const auto& row : section.tables("row", "[[table.row]]")) {
       static const Keys row_keys = comparison_keys();

@@ -51,8 +51,17 @@ KeySpec table_key(std::string_view name, std::string_view meaning, std::string e
       .name = name, .meaning = meaning, .kind = Kind::table, .is_required = is_required, .example = std::move(example)};
 }
 
-/// The axes, which may be given once for all panels.
-void append_axis_keys(Keys& keys) {
+KeySpec overrides_key(std::string_view meaning) {
+  return {.name = "set", .meaning = meaning, .kind = Kind::texts, .example = "[\"material.yield_stress=20 MPa\"]"};
+}
+
+/// Axes and what is done to runs, which may be given once for all panels, and for all curves of a panel.
+void append_shared_keys(Keys& keys) {
+  keys.push_back(table_key("vary", "one curve for each value of a key", "{ key = \"...\", values = [...] }"));
+  keys.push_back({.name = "against",
+                  .meaning = "y is the distance from y of a run with these overrides besides",
+                  .kind = Kind::texts,
+                  .example = "[\"numerics.rtol=1e-13\"]"});
   keys.push_back(text_key("x", "formula of the abscissa", k_example_x));
   keys.push_back(text_key("y", "formula of the ordinate", k_example_y));
   keys.push_back(text_key("x_label", "label of the abscissa", "\"Displacement\""));
@@ -75,26 +84,25 @@ Keys root_keys() {
             table_key("scenario", "the scenario of curves that name no file", "[scenario]"),
             table_key("adhesion_map", "phase diagrams of adhesion as panels", "[adhesion_map]"),
             tables_key("panel", "panels of the figure", "[[panel]]"),
+            tables_key("curve", "curves of every panel, before its own", "[[curve]]"),
             tables_key("table", "tables of how far curves are from points", "[[table]]"),
             tables_key("values", "tables of single values", "[[values]]")};
-  append_axis_keys(keys);
+  append_shared_keys(keys);
   return keys;
 }
 
 Keys panel_keys() {
   Keys keys{text_key("note", "text above the panel", "\"E/Y = 200\""),
+            overrides_key("overrides of the scenario of every curve"),
             tables_key("curve", "curves from runs", "[[panel.curve]]"),
             tables_key("points", "points from files", "[[panel.points]]")};
-  append_axis_keys(keys);
+  append_shared_keys(keys);
   return keys;
 }
 
 Keys curve_keys() {
   return {text_key("scenario", "scenario file, sought from the definition's folder", "\"../scenarios/die.toml\""),
-          {.name = "set",
-           .meaning = "overrides of the scenario",
-           .kind = Kind::texts,
-           .example = "[\"material.yield_stress=20 MPa\"]"},
+          overrides_key("overrides of the scenario"),
           table_key("vary", "one curve for each value of a key", "{ key = \"...\", values = [...] }"),
           {.name = "against",
            .meaning = "y is the distance from y of a run with these overrides besides",
@@ -191,10 +199,7 @@ Keys value_table_keys() {
 Keys value_keys() {
   return {text_key("label", "name of the row", "\"D1\"", true),
           text_key("scenario", "scenario file, sought from the definition's folder", "\"../scenarios/die.toml\""),
-          {.name = "set",
-           .meaning = "overrides of the scenario",
-           .kind = Kind::texts,
-           .example = "[\"material.yield_stress=20 MPa\"]"},
+          overrides_key("overrides of the scenario"),
           text_key("value", "formula of the parameters that the model derives", "\"radius_first\"", true),
           text_key("printed", "the value as the source prints it", "\"1.7527\""),
           table_key("reference", "instead: rows of a file, whose mean it is held against",

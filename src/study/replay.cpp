@@ -96,8 +96,8 @@ Measurable measurable_in(const Scenario& scenario) {
     std::vector<double> y(scene.system->unknowns().size());
     scene.system->start(y);
     for (const DriveKey& drive : find_model(scenario.model)->drives) {
-      measurable.drives.push_back(
-          {std::string(drive.name), ramp_of(drive.control), scene.system->controlled(drive.control, 0, 0.0, y)});
+      measurable.drives.push_back({std::string(drive.column.empty() ? drive.name : drive.column),
+                                   ramp_of(drive.control), scene.system->controlled(drive.control, 0, 0.0, y)});
     }
   }
   for (const Observable& observable : scene.system->observables()) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "elastic/hertz.hpp"
 #include "support/test_run.hpp"
@@ -282,6 +283,23 @@ TEST(Rows, DoNotTellOfASilentGuard) {
       // Start, middle, and before, at and after the end; two more around the event.
       EXPECT_EQ(record.history.row_count(), is_silent ? 5U : 7U) << integrator;
     }
+  }
+}
+
+// --- failures
+
+TEST(Failures, OfAnExplicitMethodNameThoseForStiffEquations) {
+  for (const char* integrator : {"cvode-adams", "odeint-dopri5", "cvode-bdf"}) {
+    auto toy = std::make_unique<ToySystem>();
+    toy->rates_function = [](double xi, ToySystem::View y, std::span<double> dy) { dy[0] = 1e9 * (xi - y[0]); };
+    Scene scene = toy_scene(std::move(toy));
+    const RunRecord record = record_run(scene, integrator, {}, {.points = 2, .times = {}});
+    if (std::string_view(integrator) == "cvode-bdf") {
+      EXPECT_EQ(record.status, RunStatus::complete) << record.message;
+      continue;
+    }
+    EXPECT_EQ(record.status, RunStatus::failed) << integrator;
+    EXPECT_NE(record.message.find("expected cvode-bdf or ida"), std::string::npos) << record.message;
   }
 }
 

@@ -96,7 +96,10 @@ TEST(Chart, ALogarithmicAxisTakesWholeDecadesOfPositiveValues) {
   Chart chart = chart_of({series("a")});
   chart.panels[0].y.is_logarithmic = true;
   chart.panels[0].series[0].y = {-1.0, 20.0, 3000.0};
-  EXPECT_NE(script_of(chart).find("set logscale y; set yrange [10:10000]"), std::string::npos) << script_of(chart);
+  EXPECT_NE(script_of(chart).find("set logscale y; set yrange [10:10000]; set ytics autofreq;"), std::string::npos)
+      << script_of(chart);
+  chart.panels[0].series[0].y = {2e-12, 20.0, 3000.0};
+  EXPECT_NE(script_of(chart).find("set ytics 1e3;"), std::string::npos) << "16 decades with six labels";
 }
 
 TEST(Chart, IsDrawnWithPointsLinesAndAreas) {

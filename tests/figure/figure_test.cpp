@@ -258,6 +258,24 @@ TEST_F(Figure, OfAModelWithoutWallsShowsItsOwnColumns) {
   EXPECT_NE(contents(in_folder("q.gp")).find("second"), std::string::npos);
 }
 
+// Tension is positive in the file; a compression is drawn as the loading it is.
+TEST_F(Figure, OfAMaterialPointGrowsTheWayItsProgramBegins) {
+  const std::string head =
+      "# yield_pressure: 1e6\ntime[s],step,row,strain_axial[-],stress_axial[Pa],p[Pa],q[Pa],relative_density[-]\n";
+  write(in_folder("pressed") / "history.csv",
+        head + "0,1,0,0,0,0,0,0.7\n1,1,0,-0.25,-4e6,-3e6,1e6,0.8\n2,2,0,-0.125,-1e6,-1e6,5e5,0.8\n");
+  draw_runs({in_folder("pressed")}, in_folder("p.svg"));
+  const std::string pressed = contents(in_folder("p.dat"));
+  EXPECT_NE(pressed.find("0.25 4\n"), std::string::npos) << pressed;
+  EXPECT_NE(pressed.find("0.25 1\n"), std::string::npos) << "q has no sign";
+  EXPECT_NE(contents(in_folder("p.gp")).find("compression positive"), std::string::npos);
+  EXPECT_EQ(contents(in_folder("p.gp")).find("reloading"), std::string::npos);
+  write(in_folder("pulled") / "history.csv", head + "0,1,0,0,0,0,0,0.7\n1,1,0,0.25,4e6,3e6,1e6,0.7\n");
+  draw_runs({in_folder("pulled")}, in_folder("q.svg"));
+  EXPECT_NE(contents(in_folder("q.dat")).find("0.25 4\n"), std::string::npos);
+  EXPECT_NE(contents(in_folder("q.gp")).find("tension positive"), std::string::npos);
+}
+
 TEST_F(Figure, DoesNotMixModelsWithAndWithoutWalls) {
   write(in_folder("packing") / "history.csv", k_packing_history);
   EXPECT_NE(fault_of({in_folder("packing"), run()}, in_folder("p.svg")).find("has no column 'packing_fraction'"),

@@ -89,6 +89,28 @@ TEST(CompressibleRules, RefuseMaterialsWithoutARegressionAllAtOnce) {
              "[material], or all three in [compressible]"}));
 }
 
+TEST(CompressibleRules, TakePresets) {
+  const Scenario base = parse_scenario(granule_with("preset = \"Base case\"\nnu0 = 0.2", ""), "a.toml");
+  EXPECT_EQ(base.material, (std::map<std::string, double>{{"stiffness_ratio", 100.0},
+                                                          {"shear_ratio", 1.0},
+                                                          {"tensile_ratio", 0.01},
+                                                          {"nu0", 0.2},
+                                                          {"yield_pressure", 150e6}}))
+      << "what the model has, less what is given beside";
+  EXPECT_EQ(faults_of(granule_with("preset = \"Dical Fujicalin\"", "")), Lines());
+  // Most of the source's powders are stronger in shear than the materials of its simulations.
+  const std::string powder = "preset = \"MCC PH-200\"";
+  EXPECT_EQ(faults_of(granule_with(powder, "")),
+            (Lines{"die.toml:5:10: shear_ratio = 1.351 is outside 0.25 to 1, where k, delta_t and a follow from the "
+                   "material; expected a value in there, or k, delta_t and a in [compressible]"}));
+  EXPECT_EQ(faults_of(granule_with(powder, "k = 3\ndelta_t = 0.1\na = 3")), Lines());
+  EXPECT_EQ(faults_of(granule_with(powder + "\nshear_ratio = 1", "")), Lines());
+  EXPECT_EQ(
+      faults_of(granule_with("preset = \"Starch, dry\"\nnu0 = 0.3\nshear_ratio = 0.5", "")),
+      (Lines{"die.toml:4:1: key 'yield_pressure' is missing in [material], and preset 'Starch, dry' does not have "
+             "it; expected for example yield_pressure = \"50 MPa\""}));
+}
+
 TEST(CompressibleRules, RefuseNumbersOutOfRangeAndQuantitiesTheLawDoesNotHave) {
   EXPECT_EQ(faults_of(granule_with(k_granule, "k = 0\nalpha = 0.9\nbeta = -1")),
             (Lines{"die.toml:15:5: k = 0: out of range; expected a number above 0 and up to 1e+100",

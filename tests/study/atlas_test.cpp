@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include "figure/figure.hpp"
 #include "plastic/compression.hpp"
@@ -124,6 +125,54 @@ curve = [{ vary = { key = "material.poisson_ratio", values = [0.0, 0.5] }, again
   ASSERT_EQ(distance.size(), 2U);
   EXPECT_EQ(distance[0], 0.0);
   EXPECT_NEAR(distance[1], 4.0 / 9.0 * std::pow(0.01, 1.5), 1e-15);  // (1/(1 - nu^2) - 1) of the force at nu = 0
+}
+
+TEST_F(Atlas, HandsOnWhatPanelsAndCurvesHaveInCommon) {
+  const AtlasFigure made = make(std::string(k_head) + R"toml(
+vary = { key = "material.poisson_ratio", values = [0.0, 0.5] }
+against = ["material.poisson_ratio=0"]
+)toml" + k_scenario + R"toml(
+[[curve]]
+x = "nu"
+y = "max(axial.force) / R0^2"
+legend = "common"
+
+[[panel]]
+set = ["material.youngs_modulus=20 GPa"]
+[[panel.curve]]
+set = ["material.youngs_modulus=30 GPa"]
+x = "nu"
+y = "max(axial.force) / R0^2"
+
+[[panel]]
+against = ["material.youngs_modulus=5 GPa"]
+[[panel.curve]]
+vary = { key = "material.youngs_modulus", values = ["40 GPa"] }
+against = ["material.youngs_modulus=10 GPa"]
+x = "nu"
+y = "max(axial.force) / R0^2"
+)toml");
+  const double unit = 4.0 / 3.0 * 1e10 * std::pow(0.01, 1.5);  // at 10 GPa and nu = 0; by 1/(1 - nu^2) = 4/3 at 0.5
+  const auto& first = made.chart.panels.at(0).series;
+  ASSERT_EQ(first.size(), 2U);
+  EXPECT_EQ(first[0].legend, "common");
+  EXPECT_EQ(first[0].x, (std::vector<double>{0.0, 0.5}));
+  EXPECT_NEAR(first[0].y.at(1), 2.0 / 3.0 * unit, 1e-10 * unit) << "the panel's overrides";
+  EXPECT_NEAR(first[1].y.at(1), unit, 1e-10 * unit) << "its own overrides after them";
+  const auto& second = made.chart.panels.at(1).series;
+  ASSERT_EQ(second.size(), 2U);
+  EXPECT_NEAR(second[0].y.at(0), 0.5 * unit, 1e-10 * unit) << "the panel's reference";
+  EXPECT_NEAR(second[0].y.at(1), 2.0 / 3.0 * unit, 1e-10 * unit);
+  EXPECT_NEAR(second[1].y.at(0), 3.0 * unit, 1e-10 * unit) << "its own";
+}
+
+TEST_F(Atlas, HandsNoRunsOnToAFormula) {
+  const AtlasFigure made = make(std::string(k_head) + R"toml(
+vary = { key = "material.poisson_ratio", values = [0.0, 0.5] }
+[[panel]]
+curve = [{ parameter = { from = 0, to = 1 }, x = "t", y = "t" }]
+)toml");
+  EXPECT_EQ(made.chart.panels.at(0).series.size(), 1U);
 }
 
 TEST_F(Atlas, WantsAsManyRowsInTheRunThatACurveIsHeldAgainst) {
@@ -505,21 +554,35 @@ TEST_F(Atlas, SaysWhichRunsDidNotEnd) {
   EXPECT_FALSE(made.chart.panels[0].series[0].x.empty()) << "the curve goes as far as the run";
 }
 
-TEST(ReadyAtlas, ReadsAndComputesEveryDefinition) {
-  const auto figures = make_atlas(MONOGRAIN_SOURCE_DIR "/plots", {});
-  EXPECT_GE(figures.size(), 9U);
-  for (const AtlasFigure& made : figures) {
-    EXPECT_FALSE(made.chart.panels.empty() && made.tables.empty() && made.value_tables.empty()) << made.name;
-    EXPECT_EQ(made.status, RunStatus::complete) << made.name;
-    for (const figure::ChartPanel& panel : made.chart.panels) {
-      EXPECT_FALSE(panel.x.label.empty() || panel.y.label.empty()) << made.name;
-      for (const figure::ChartSeries& series : panel.series) {
-        const bool is_line = series.style != figure::ChartSeries::Style::points;
-        EXPECT_GT(series.x.size(), is_line ? 1U : 0U) << made.name;
-      }
+class ReadyDefinition : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ReadyDefinition, IsReadAndComputed) {
+  const AtlasFigure made = make_atlas(MONOGRAIN_SOURCE_DIR "/plots", {GetParam()}).front();
+  EXPECT_FALSE(made.chart.panels.empty() && made.tables.empty() && made.value_tables.empty());
+  EXPECT_EQ(made.status, RunStatus::complete);
+  for (const figure::ChartPanel& panel : made.chart.panels) {
+    EXPECT_FALSE(panel.x.label.empty() || panel.y.label.empty());
+    for (const figure::ChartSeries& series : panel.series) {
+      const bool is_line = series.style != figure::ChartSeries::Style::points;
+      EXPECT_GT(series.x.size(), is_line ? 1U : 0U);
     }
   }
 }
+
+std::vector<std::string> ready_definitions() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(MONOGRAIN_SOURCE_DIR "/plots")) {
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Plots, ReadyDefinition, ::testing::ValuesIn(ready_definitions()), [](const auto& definition) {
+  std::string name = definition.param;
+  std::ranges::replace(name, '-', '_');
+  return name;
+});
 
 /// The laws of the source are within some tens of per cent of the continuum; far more would be a wrong scale.
 TEST(ReadyAtlas, HoldsModelMdrAgainstFiniteElements) {

@@ -188,6 +188,95 @@ TEST_F(CalibrationTest, FindsTheParametersOfForceDrivenData) {
   EXPECT_NEAR(result.solution.parameters[1] / 3.1e7, 1.0, 1e-8);
 }
 
+constexpr const char* k_powder = R"(model = "material-point"
+[material]
+preset = "MCC PH-200"
+relative_density = 0.45
+yield_pressure = "5 MPa"
+eta = 4
+[loading]
+configuration = "die"
+[[loading.steps]]
+strain = -0.3
+duration = "1 s"
+[numerics]
+rtol = 1e-6
+)";
+
+constexpr const char* k_hardening = R"(scenario = "s.toml"
+[data]
+file = "d.csv"
+x = "X"
+y = "Y"
+[free]
+"material.yield_pressure" = { from = "2 MPa", to = "20 MPa" }
+"material.eta" = { from = 2, to = 10 }
+)";
+
+// Loading, unloading and reloading in a die, by the method that integrates.
+TEST_F(CalibrationTest, FindsTheHardeningOfAMaterialPoint) {
+  write("s.toml", k_powder);
+  write("c.toml", replaced(replaced(k_hardening, "\"X\"", "\"strain_axial\""), "\"Y\"", "\"stress_axial\""));
+  const auto rows =
+      measure(k_powder,
+              {"material.yield_pressure=8.61e6", "material.eta=6.11", "output.points=5",
+               "loading.steps=[{strain=-0.2,duration=1},{strain=-0.19,duration=1},{strain=-0.25,duration=1}]"},
+              "strain_axial", "stress_axial");
+  write("d.csv", csv_of(rows, "strain_axial[-],stress_axial[Pa],w"));
+  const CalibrationResult result = calibrate(read());
+  EXPECT_EQ(result.program_steps, 3U);
+  EXPECT_NEAR(result.solution.parameters[0] / 8.61e6, 1.0, 1e-6);
+  EXPECT_NEAR(result.solution.parameters[1] / 6.11, 1.0, 1e-6);
+  EXPECT_TRUE(result.solution.has_converged);
+}
+
+// Density over pressure: the stress drives.
+TEST_F(CalibrationTest, FindsTheHardeningBehindDensities) {
+  write("s.toml", k_powder);
+  write("c.toml",
+        replaced(replaced(replaced(k_hardening, "\"X\"", "\"stress_axial\""), "\"Y\"", "\"relative_density\""),
+                 "\"material.yield_pressure\" = { from = \"2 MPa\", to = \"20 MPa\" }\n", ""));
+  const auto rows = measure(
+      k_powder,
+      {"material.eta=6.11", "output.points=6",
+       "loading.steps=[{stress='-15 MPa',duration=1},{stress='-10 MPa',duration=1},{stress='-40 MPa',duration=1}]"},
+      "stress_axial", "relative_density");
+  write("d.csv", csv_of(rows, "stress_axial[Pa],relative_density[-],w"));
+  const CalibrationResult result = calibrate(read());
+  EXPECT_NEAR(result.solution.parameters[0] / 6.11, 1.0, 1e-6);
+  EXPECT_TRUE(result.solution.has_converged);
+}
+
+// Numbers for which there is no yield surface are passed over.
+TEST_F(CalibrationTest, TriesNoMaterialWithoutAYieldSurface) {
+  write("s.toml", k_powder);
+  write("c.toml", R"(scenario = "s.toml"
+[data]
+file = "d.csv"
+x = "strain_axial"
+y = "stress_axial"
+[free]
+"material.eps0" = { from = -0.4, to = 1.4, start = 0.3 }
+)");
+  write("d.csv", csv_of(measure(k_powder, {"output.points=12"}, "strain_axial", "stress_axial"),
+                        "strain_axial[-],stress_axial[Pa],w"));
+  const CalibrationResult result = calibrate(read());
+  EXPECT_NEAR(result.solution.parameters[0], 0.147, 1e-6);
+  EXPECT_GT(result.solution.failures, 0U);
+}
+
+TEST_F(CalibrationTest, DataDriveTheAxialDirectionAlone) {
+  const std::string steps = "strain = -0.3\n";
+  write("s.toml",
+        replaced(replaced(k_powder, "\"die\"", "\"triaxial\""), steps, steps + "lateral_stress = \"-1 MPa\"\n"));
+  write("c.toml", replaced(replaced(k_hardening, "\"X\"", "\"strain_axial\""), "\"Y\"", "\"stress_axial\""));
+  write("d.csv", "strain_axial[-],stress_axial[Pa]\n-0.1,-1e6\n-0.2,-2e6\n-0.3,-4e6\n");
+  const auto messages = faults();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_TRUE(messages[0].starts_with("c.toml:1:12: the scenario's steps prescribe the lateral direction too"))
+      << messages[0];
+}
+
 /// Noisy Hertz data, for which the fit has a closed form: force is linear in Young's modulus.
 std::vector<Row> noisy_hertz() {
   std::mt19937 generator(11);

@@ -254,9 +254,7 @@ PointErrors errors_against(const PointReference& reference, const RunRecord& run
         continue;
       }
       const double error = std::abs(ours.at(*row, *our_column) - values[i]) / (scale > 0.0 ? scale : 1.0);
-      if (column.name == "yield_function") {
-        errors.yield_function = std::max(errors.yield_function, error);
-      } else if (error > errors.largest) {
+      if (error > errors.largest) {
         errors.largest = error;
         errors.column = column.name;
         errors.time = times[i];

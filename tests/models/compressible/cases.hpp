@@ -49,12 +49,11 @@ inline constexpr const char* k_reference_points[] = {
 [[nodiscard]] PointReference load_point(const std::string& name);
 
 struct PointErrors {
-  double largest = 0.0;         ///< of all rows and columns but yield_function, over the column's largest magnitude
-  std::string column;           ///< that has it
-  double time = 0.0;            ///< where
-  double yield_function = 0.0;  ///< of that column, which is not among the others: a stress counts 2/Lambda there
-  double event_time = 0.0;      ///< over the run's length
-  std::string mismatch;         ///< of rows, regimes or events; empty: none
+  double largest = 0.0;     ///< of all rows and columns, over the column's largest magnitude
+  std::string column;       ///< that has it
+  double time = 0.0;        ///< where
+  double event_time = 0.0;  ///< over the run's length
+  std::string mismatch;     ///< of rows, regimes or events; empty: none
 };
 [[nodiscard]] PointErrors errors_against(const PointReference& reference, const RunRecord& run);
 

@@ -346,7 +346,7 @@ TEST(ClosedForm, UniaxialStressOnTheShearSegmentIsPerfectlyPlastic) {
     const TestRun actual = run(scenario, integrator);
     EXPECT_NEAR(actual.time_of("yield"), 0.5 / 100.0 / 0.1, 1e-14);
     EXPECT_NEAR(actual.last("stress_axial"), -0.5, 1e-12) << integrator;
-    EXPECT_EQ(actual.last("phi"), 0.0);
+    EXPECT_LT(std::abs(actual.last("phi")), 1e-30) << "ida's linear algebra leaves that much";
     EXPECT_EQ(actual.events(), (std::vector<std::string>{"yield"}));
   }
 }

@@ -20,7 +20,6 @@ class ReferencePoint : public ::testing::TestWithParam<const char*> {
               << actual.record.statistics.steps << " steps\n";
     EXPECT_EQ(errors.mismatch, "") << integrator << ": " << actual.record.message;
     EXPECT_LT(errors.largest, tolerance) << integrator << ", " << errors.column << " at t = " << errors.time;
-    EXPECT_LT(errors.yield_function, 10.0 * tolerance) << integrator;
     EXPECT_LT(errors.event_time, event_tolerance) << integrator;
     const bool stops = reference.table.header_value("status") != "ok";
     EXPECT_EQ(actual.record.status, stops ? RunStatus::stopped : RunStatus::complete) << actual.record.message;
