@@ -233,7 +233,30 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
   throw std::domain_error("no plastic strain brings the stress back to the yield surface");
 }
 
-void MaterialPoint::solve(double xi, std::span<double> y) { complete(xi, y); }
+/// The plastic strains of an elastic phase are those it began with; those of a solvable plastic one lie on a line
+/// through them, from which a guess may be off by rounding.
+void MaterialPoint::solve(double xi, std::span<double> y) {
+  double along_phi = 0.0;
+  double along_deviatoric = 0.0;
+  if (is_plastic_) {
+    const Flow now = flow(response(xi, y));
+    const double phi = y[k_phi] - held_phi_;
+    const double deviatoric = y[k_deviatoric] - held_deviatoric_;
+    const double share =
+        (phi * now.phi + deviatoric * now.deviatoric) / (now.phi * now.phi + now.deviatoric * now.deviatoric);
+    along_phi = share * now.phi;
+    along_deviatoric = share * now.deviatoric;
+  }
+  y[k_phi] = held_phi_ + along_phi;
+  y[k_deviatoric] = held_deviatoric_ + along_deviatoric;
+  complete(xi, y);
+}
+
+/// What solve() starts from in the phase that begins.
+void MaterialPoint::hold(std::span<const double> y) noexcept {
+  held_phi_ = y[k_phi];
+  held_deviatoric_ = y[k_deviatoric];
+}
 
 std::optional<double> MaterialPoint::closed_quadrature(double, std::span<const double>) { return std::nullopt; }
 
@@ -247,6 +270,7 @@ void MaterialPoint::begin_step(std::span<const Ramp> ramps, std::span<double> y,
     ramp.start /= settings_.yield_pressure;
     ramp.end /= settings_.yield_pressure;
   }
+  hold(y);
   const Response now = response(0.0, y);
   if (is_plastic_) choose_side(now);
   if (is_plastic_ && goes_on_yielding(now)) {
@@ -449,6 +473,7 @@ DomainEnd MaterialPoint::domain_end(Limit limit, const Response& now) const {
 
 std::optional<DomainEnd> MaterialPoint::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                              std::vector<Event>& log) {
+  hold(y);
   const Response now = response(xi, y);
   for (const std::size_t g : fired) {
     const Guard& guard = guards_[g];

@@ -108,6 +108,7 @@ class MaterialPoint final : public HybridSystem {
 
   [[nodiscard]] bool goes_on_yielding(const Response& now) const;
   void turn_plastic(Branch branch, const Response& now);
+  void hold(std::span<const double> y) noexcept;
   void choose_side(const Response& now);
   void go_on_plastic(const Response& now, std::vector<Event>& log);
   void pass_ends(const Response& now, std::vector<Event>& log);
@@ -120,6 +121,8 @@ class MaterialPoint final : public HybridSystem {
   Settings settings_;
   std::vector<Observable> observables_;
   std::array<Ramp, 2> ramps_{};  ///< stresses in units of the yield pressure
+  double held_phi_ = 0.0;
+  double held_deviatoric_ = 0.0;
   bool is_plastic_ = false;
   Branch branch_;      ///< while plastic
   double exit_ = 0.0;  ///< xi at which the present elastic phase ends

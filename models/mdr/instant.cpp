@@ -19,11 +19,21 @@ const UnloadingShape& System::shape(std::size_t i, double r) {
 
 /// Contacts of all classes at an instant.
 void System::look(double xi, std::span<const double> y) {
+  forget_look();
   for (std::size_t i = 0; i < now_.size(); ++i) {
     look_at(i, is_loaded(i) ? y[wall_places_[i]] : displacement_as_told(i, xi, y), y[k_radius]);
     now_[i].position = now_[i].displacement - carried_by_centre(i, y);
   }
   sum_up(xi, y[k_radius]);
+  seen_xi_ = xi;
+  std::ranges::copy(y, seen_.begin());
+}
+
+/// The same, unless they were looked at there last: right-hand side, guards and observables are asked for in turn.
+void System::look_once(double xi, std::span<const double> y) {
+  bool is_seen = seen_xi_ == xi && seen_[k_radius] == y[k_radius];
+  for (std::size_t k = k_centre; is_seen && k < y.size(); ++k) is_seen = seen_[k] == y[k];
+  if (!is_seen) look(xi, y);
 }
 
 void System::look_at(std::size_t i, double displacement, double r) {
@@ -60,6 +70,7 @@ void System::look_at(std::size_t i, double displacement, double r) {
 
 /// Force times displacement of the contacts under force.
 double System::force_work(std::span<const double> y) {
+  forget_look();
   double sum = 0.0;
   for (std::size_t i = 0; i < now_.size(); ++i) {
     if (!is_loaded(i)) continue;
@@ -137,7 +148,10 @@ double System::displacement_under_force(std::size_t i, double xi, double r, doub
 
 /// Displacement of a wall as the program and a free centre make it.
 double System::displacement_as_told(std::size_t i, double xi, std::span<const double> y) const noexcept {
-  return std::lerp(ramps_[i].start, ramps_[i].end, xi) + carried_by_centre(i, y);
+  // As exact as std::lerp, which takes longer than the rest of this.
+  const Ramp& ramp = ramps_[i];
+  const double told = xi == 1.0 ? ramp.end : ramp.start + xi * (ramp.end - ramp.start);
+  return told + carried_by_centre(i, y);
 }
 
 /// How far a free centre has come towards the walls of a class.

@@ -290,6 +290,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
   frozen_balance_ = is_growing_ ? sums_.balance : 0.0;
   hold_centre(y);
   watch(xi, y);
+  forget_look();
 }
 
 // --- guards
@@ -332,11 +333,14 @@ double System::edge_guard(int kind, std::size_t i, double xi, double overlap, do
 }
 
 double System::cap_guard(const CapPair& pair, double r) const {
-  const auto half_angle = [&](int i) {
-    const double distance = 1.0 - now_[static_cast<std::size_t>(i)].displacement;
-    return std::acos(std::min(1.0, distance / (1.0 + r)));
+  // How far the cosine of the sum of their half angles is below that of the angle between their normals.
+  const auto cosine = [&](int i) {
+    return std::min(1.0, (1.0 - now_[static_cast<std::size_t>(i)].displacement) / (1.0 + r));
   };
-  return half_angle(pair.first) + half_angle(pair.second) - pair.angle;
+  const double first = cosine(pair.first);
+  const double second = cosine(pair.second);
+  const double sines = std::sqrt((1.0 - first) * (1.0 + first) * (1.0 - second) * (1.0 + second));
+  return pair.cosine - (first * second - sines);
 }
 
 /// Lists the guards that can fire before the step ends.
@@ -440,7 +444,7 @@ void System::watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_o
 }
 
 void System::guard_values(double xi, std::span<const double> y, std::span<double> values) {
-  look(xi, y);
+  look_once(xi, y);
   const double r = y[k_radius];
   const Motion now = motion(is_growing_);
   for (std::size_t g = 0; g < guards_.size(); ++g) {

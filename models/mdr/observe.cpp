@@ -55,7 +55,7 @@ double System::contact_energy(std::size_t i, double r, PlasticPart plastic_part)
 }
 
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
-  look(xi, y);
+  look_once(xi, y);
   const double r = y[k_radius];
   const double length = settings_.initial_radius;
   const double force_unit = stress_unit_ * length * length;
@@ -95,7 +95,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
 }
 
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
-  look(xi, y);
+  look_once(xi, y);
   const Instant& now = now_[static_cast<std::size_t>(contact_class)];
   const double length = settings_.initial_radius;
   switch (quantity) {

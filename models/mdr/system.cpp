@@ -73,6 +73,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   }
 
   trial_.resize(unknowns_.size());
+  seen_.resize(unknowns_.size());
 
   const bool grows = settings_.radius_rule != RadiusRule::fixed;
   for (std::size_t i = 0; grows && i < count; ++i) {
@@ -85,7 +86,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
       }
       // Two caps on opposite sides meet only where the particle is squeezed to nothing.
       if (closest > -1.0 + 1e-12) {
-        cap_pairs_.push_back({static_cast<int>(i), static_cast<int>(j), std::acos(std::clamp(closest, -1.0, 1.0))});
+        cap_pairs_.push_back({static_cast<int>(i), static_cast<int>(j), std::min(closest, 1.0)});
       }
     }
   }
@@ -161,32 +162,6 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   settle(0.0, y, std::nullopt, log);
 }
 
-bool System::touches(Regime regime) noexcept {
-  switch (regime) {
-    case Regime::open:
-    case Regime::separated:
-      return false;
-    case Regime::elastic:
-    case Regime::fully_plastic:
-    case Regime::unloading:
-      return true;
-  }
-  return false;
-}
-
-bool System::is_member(const Memory& memory) const noexcept {
-  switch (settings_.radius_rule) {
-    case RadiusRule::gated:
-    case RadiusRule::seed:
-      return touches(memory.regime);
-    case RadiusRule::yielded:
-      return memory.regime == Regime::fully_plastic;
-    case RadiusRule::fixed:
-      return false;
-  }
-  return false;
-}
-
 bool System::is_open(int contact_class) const noexcept {
   return !touches(memory_[static_cast<std::size_t>(contact_class)].regime);
 }
@@ -201,7 +176,7 @@ void System::complete(double xi, std::span<double> y) {
 }
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
-  look(xi, y);
+  look_once(xi, y);
   const Motion now = is_growing_ ? growing_motion() : Motion{};
   dy[k_radius] = now.growth;
   dy[k_work] = sums_.power;
@@ -248,7 +223,7 @@ void System::solve(double xi, std::span<double> y) {
 
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
   if (is_growing_) return std::nullopt;
-  look(xi, y);
+  look_once(xi, y);
   return energy(y[k_radius], PlasticPart::work_done) - sums_.force_work;
 }
 

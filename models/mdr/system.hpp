@@ -160,11 +160,25 @@ class System final : public HybridSystem {
   struct CapPair {
     int first = 0;
     int second = 0;
-    double angle = 0.0;  ///< smallest angle between two of their normals
+    double cosine = 0.0;  ///< of the smallest angle between two of their normals
   };
 
-  [[nodiscard]] static bool touches(Regime regime) noexcept;
-  [[nodiscard]] bool is_member(const Memory& memory) const noexcept;
+  [[nodiscard]] static bool touches(Regime regime) noexcept {
+    return regime != Regime::open && regime != Regime::separated;
+  }
+  /// Whether a contact takes part in the growth of the apparent radius.
+  [[nodiscard]] bool is_member(const Memory& memory) const noexcept {
+    switch (settings_.radius_rule) {
+      case RadiusRule::gated:
+      case RadiusRule::seed:
+        return touches(memory.regime);
+      case RadiusRule::yielded:
+        return memory.regime == Regime::fully_plastic;
+      case RadiusRule::fixed:
+        return false;
+    }
+    return false;
+  }
   [[nodiscard]] double largest_overlap(const Memory& memory, double r) const noexcept;
   [[nodiscard]] const UnloadingShape& shape(std::size_t i, double r);
   [[nodiscard]] double inward_rate(std::size_t i, const Motion& motion) const noexcept;
@@ -181,6 +195,8 @@ class System final : public HybridSystem {
   void note_walls(double xi, std::span<double> y) const noexcept;
 
   void look(double xi, std::span<const double> y);
+  void look_once(double xi, std::span<const double> y);
+  void forget_look() noexcept { seen_xi_ = std::numeric_limits<double>::quiet_NaN(); }
   void look_at(std::size_t i, double displacement, double r);
   [[nodiscard]] double force_work(std::span<const double> y);
   void sum_up(double xi, double r);
@@ -264,6 +280,8 @@ class System final : public HybridSystem {
   // Work space, so that nothing is allocated while integrating.
   std::vector<double> trial_;
   std::vector<Instant> now_;
+  double seen_xi_ = std::numeric_limits<double>::quiet_NaN();  ///< where look() was last
+  std::vector<double> seen_;
   std::vector<UnloadingShape> shapes_;
   std::vector<PullOff> pull_offs_;
   std::vector<Edge> edges_before_;

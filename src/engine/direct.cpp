@@ -5,89 +5,156 @@
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "engine/event_locator.hpp"
 
 namespace monograin {
 namespace {
 
+// Pieces of a step of the program; shorter where the state or the quadrature needs it.
+constexpr double k_longest = 0.25;
+// What is left of a step is not split off where it is no more than this share of a piece.
+constexpr double k_rest = 0.25;
 // The first piece where there are slaved unknowns, and how fast pieces grow from there.
 constexpr double k_first = 1e-9;
 constexpr double k_grading = 30.0;
 constexpr std::size_t k_nodes = 12;
-// Share of the last Legendre coefficients below which a quadrature has converged.
-constexpr double k_tail = 1e-13;
+// Places before a node from which its state is guessed, where the slopes there are known.
+constexpr std::size_t k_known = 3;
+// Share of the last Legendre coefficients below which a rate has converged. Its integral over the piece is exact to the
+// square of that, and to a fiftieth of it in between.
+constexpr double k_tail = 1e-11;
+// How much pieces change at most, and how much shorter they are than would just do.
+constexpr double k_most_growth = 2.0;
+constexpr double k_most_shrinkage = 0.2;
+constexpr double k_safety = 0.85;
 // Share of the work that is round-off in it.
 constexpr double k_quadrature_accuracy = 1e-16;
 // Quadrature pieces are not refined below this; what is left is below round-off of the whole.
 constexpr double k_smallest_quadrature = 1e-6;
 
-/// Cumulative integral of a function known at the Gauss-Legendre nodes of an interval.
-class LegendreIntegral {
- public:
-  template <class Function>
-  void sample(double begin, double end, Function&& function) {
-    begin_ = begin;
-    end_ = end;
-    std::array<double, k_nodes> samples{};
-    for (std::size_t j = 0; j < k_nodes; ++j) samples[j] = function(begin + 0.5 * (end - begin) * (1.0 + node(j)));
-    coefficients_.fill(0.0);
+using Rule = boost::math::quadrature::gauss<double, k_nodes>;
+using Samples = std::array<double, k_nodes>;
+
+/// The next of the Legendre polynomials, from (P_(k-1), P_k) to (P_k, P_(k+1)).
+constexpr void next_legendre(std::size_t k, double x, double& previous, double& legendre) noexcept {
+  const auto n = static_cast<double>(k);
+  const double after = ((2.0 * n + 1.0) * x * legendre - n * previous) / (n + 1.0);
+  previous = legendre;
+  legendre = after;
+}
+
+/// The rule on [-1, 1], and what samples at its nodes are multiplied by.
+struct Nodes {
+  /// What extends the polynomial through values and slopes at the last places before a node, the nearest first, to that
+  /// node; the beginning of the interval, -1, is one of the places.
+  struct Ahead {
+    std::array<double, k_known> values{};
+    std::array<double, k_known> slopes{};
+  };
+
+  Samples places{};
+  std::array<Samples, k_nodes> to_coefficients{};  ///< of Legendre polynomials
+  std::array<Ahead, k_nodes> ahead{};
+
+  Nodes() {
+    constexpr std::size_t k_half = k_nodes / 2;
     for (std::size_t j = 0; j < k_nodes; ++j) {
+      const std::size_t from_middle = j < k_half ? k_half - 1 - j : j - k_half;
+      places[j] = (j < k_half ? -1.0 : 1.0) * Rule::abscissa()[from_middle];
       double previous = 0.0;
       double legendre = 1.0;
       for (std::size_t k = 0; k < k_nodes; ++k) {
-        coefficients_[k] += 0.5 * (2.0 * static_cast<double>(k) + 1.0) * weight(j) * samples[j] * legendre;
-        next(k, node(j), previous, legendre);
+        to_coefficients[k][j] = 0.5 * (2.0 * static_cast<double>(k) + 1.0) * Rule::weights()[from_middle] * legendre;
+        next_legendre(k, places[j], previous, legendre);
+      }
+    }
+    for (std::size_t j = 0; j < k_nodes; ++j) {
+      for (std::size_t i = 0; i < std::min(j + 1, k_known); ++i) {
+        const auto [value, slope_there] = cardinal(j, i, std::min(j + 1, k_known));
+        const double distance = places[j] - place_before(j, i);
+        ahead[j].values[i] = (1.0 - 2.0 * distance * slope_there) * value * value;
+        ahead[j].slopes[i] = distance * value * value;
       }
     }
   }
 
-  /// @param negligible  error of the integral that does not count, however large a share of it that is
-  [[nodiscard]] bool has_converged(double negligible) const noexcept {
+ private:
+  [[nodiscard]] double place_before(std::size_t j, std::size_t back) const noexcept {
+    return j > back ? places[j - 1 - back] : -1.0;
+  }
+
+  /// The polynomial that is 1 at one of the last places before a node and 0 at the others: its value at the node, and
+  /// its slope at its own place.
+  [[nodiscard]] std::pair<double, double> cardinal(std::size_t j, std::size_t i, std::size_t count) const noexcept {
+    double value = 1.0;
+    double slope = 0.0;
+    for (std::size_t m = 0; m < count; ++m) {
+      if (m == i) continue;
+      const double distance = place_before(j, i) - place_before(j, m);
+      value *= (places[j] - place_before(j, m)) / distance;
+      slope += 1.0 / distance;
+    }
+    return {value, slope};
+  }
+};
+
+const Nodes& nodes() {
+  static const Nodes k_instance;
+  return k_instance;
+}
+
+/// A function known at the nodes of a piece, in between, and its integral.
+class LegendreSeries {
+ public:
+  void fit(const Nodes& rule, const Samples& samples) noexcept {
+    for (std::size_t k = 0; k < k_nodes; ++k) {
+      coefficients_[k] = 0.0;
+      for (std::size_t j = 0; j < k_nodes; ++j) coefficients_[k] += rule.to_coefficients[k][j] * samples[j];
+    }
+  }
+
+  /// How many times as long the piece could be for the series to have converged just so; its last term goes with the
+  /// length to the power of its degree.
+  /// @param negligible  error of the integral over [-1, 1] that does not count, however large a share of it that is
+  [[nodiscard]] double reach(double negligible) const noexcept {
     double largest = 0.0;
     for (const double c : coefficients_) largest = std::max(largest, std::abs(c));
     const double tail = std::abs(coefficients_[k_nodes - 1]) + std::abs(coefficients_[k_nodes - 2]);
-    return tail <= k_tail * largest || tail * (end_ - begin_) <= negligible;
+    const double allowed = std::max(k_tail * largest, 0.5 * negligible);
+    return tail > 0.0 ? std::pow(allowed / tail, 1.0 / (k_nodes - 1)) : k_most_growth;
   }
 
-  /// Integral from the interval's beginning to x.
-  [[nodiscard]] double operator()(double x) const noexcept {
-    const double t = std::clamp(2.0 * (x - begin_) / (end_ - begin_) - 1.0, -1.0, 1.0);
+  /// @param t  in [-1, 1]
+  [[nodiscard]] double value(double t) const noexcept {
+    double sum = 0.0;
+    double previous = 0.0;
+    double legendre = 1.0;
+    for (std::size_t k = 0; k < k_nodes; ++k) {
+      sum += coefficients_[k] * legendre;
+      next_legendre(k, t, previous, legendre);
+    }
+    return sum;
+  }
+
+  /// From -1 to t.
+  [[nodiscard]] double integral(double t) const noexcept {
     double sum = coefficients_[0] * (t + 1.0);
     double previous = 1.0;  // P_(k-1)
     double legendre = t;    // P_k
     for (std::size_t k = 1; k < k_nodes; ++k) {
       const double before = previous;
-      next(k, t, previous, legendre);
+      next_legendre(k, t, previous, legendre);
       sum += coefficients_[k] * (legendre - before) / (2.0 * static_cast<double>(k) + 1.0);
     }
-    return 0.5 * (end_ - begin_) * sum;
+    return sum;
   }
 
  private:
-  using Rule = boost::math::quadrature::gauss<double, k_nodes>;
-  static constexpr std::size_t k_half = k_nodes / 2;
-
-  [[nodiscard]] static double node(std::size_t j) noexcept {
-    return j < k_half ? -Rule::abscissa()[k_half - 1 - j] : Rule::abscissa()[j - k_half];
-  }
-  [[nodiscard]] static double weight(std::size_t j) noexcept {
-    return Rule::weights()[j < k_half ? k_half - 1 - j : j - k_half];
-  }
-  /// From (P_(k-1), P_k) to (P_k, P_(k+1)).
-  static void next(std::size_t k, double x, double& previous, double& legendre) noexcept {
-    const auto n = static_cast<double>(k);
-    const double after = ((2.0 * n + 1.0) * x * legendre - n * previous) / (n + 1.0);
-    previous = legendre;
-    legendre = after;
-  }
-
-  double begin_ = 0.0;
-  double end_ = 1.0;
-  std::array<double, k_nodes> coefficients_{};
+  Samples coefficients_{};
 };
 
 class Direct final : public EventLocator {
@@ -99,10 +166,17 @@ class Direct final : public EventLocator {
     has_slaves_ = std::ranges::any_of(unknowns, &Unknown::is_slaved);
     trial_.resize(unknowns.size());
     rates_.resize(unknowns.size());
+    begin_rates_.resize(unknowns.size());
+    integrated_ = static_cast<std::size_t>(std::ranges::count_if(
+        unknowns, [](const Unknown& unknown) { return unknown.kind != Unknown::Kind::algebraic; }));
+    gains_.resize(unknowns.size());
+    slopes_.resize(integrated_);
+    series_.resize(unknowns.size());
   }
 
   void begin(double xi, std::span<const double> y) override {
     segment_begin_ = xi;
+    length_ = k_longest;
     is_closed_ = !quadrature_;
     if (const auto primitive = system_.closed_quadrature(xi, y); quadrature_ && primitive) {
       is_closed_ = true;
@@ -114,11 +188,22 @@ class Direct final : public EventLocator {
   Advance advance() override {
     ++statistics_.steps;
     begin_piece();
-    double next = next_piece_end(begin_);
     // Slaved unknowns may start with a singularity, over which guards cross and come back within no time.
-    if (has_slaves_) next = std::min(next, begin_ + std::max(k_first, k_grading * (begin_ - segment_begin_)));
-    move_end(next);
-    while (!finish_piece()) move_end(0.5 * (begin_ + end_));
+    if (has_slaves_) length_ = std::min(length_, std::max(k_first, k_grading * (begin_ - segment_begin_)));
+    double rest = k_rest;
+    for (bool is_covered = false; !is_covered; rest = 0.0) {
+      piece_end_ = 1.0 - begin_ <= (1.0 + rest) * length_ ? 1.0 : begin_ + length_;
+      const double tried = piece_end_ - begin_;
+      double factor = 0.5;
+      try {
+        is_covered = cover_piece(factor);
+      } catch (const std::domain_error&) {
+        // The equations end in it, or Newton's method has left the domain although there is a solution.
+        if (tried < k_smallest) throw;
+        factor = 0.5;
+      }
+      length_ = std::min(k_longest, factor * tried);
+    }
     statistics_.last_step = end_ - begin_;
     return {.xi = end_, .hit_guard = !fired_.empty()};
   }
@@ -129,80 +214,105 @@ class Direct final : public EventLocator {
       return;
     }
     state_at(xi, y);
-    if (!quadrature_) return;
-    if (is_closed_)
-      y[*quadrature_] = primitive_offset_ + *system_.closed_quadrature(xi, y);
-    else
-      y[*quadrature_] = begin_state_[*quadrature_] + integral_(xi);
+    if (quadrature_) y[*quadrature_] = quadrature_at(xi, y);
   }
 
   [[nodiscard]] double guard_tolerance() const noexcept override { return 1e-13; }
 
  private:
-  /// The line through the ends of the present piece is the first guess.
+  /// Place in the piece, from -1 to 1.
+  [[nodiscard]] double place(double xi) const noexcept {
+    return piece_end_ > begin_ ? std::clamp(2.0 * (xi - begin_) / (piece_end_ - begin_) - 1.0, -1.0, 1.0) : -1.0;
+  }
+
+  /// The series through the nodes of the piece are the first guess.
   void state_at(double xi, std::span<double> y) override {
     ++statistics_.rhs_evaluations;
-    const double share = end_ > begin_ ? (xi - begin_) / (end_ - begin_) : 0.0;
-    for (std::size_t k = 0; k < y.size(); ++k) y[k] = std::lerp(begin_state_[k], end_state_[k], share);
+    const double t = place(xi);
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] = begin_state_[k] + series_[k].value(t);
     system_.solve(xi, y);
   }
 
   void state_ahead(double xi, std::span<double> y) override { system_.solve(xi, y); }
 
-  /// Where the equations end before xi, comes as near as it takes to get a solution.
   void move_end(double xi) override {
-    for (;;) {
-      end_ = xi;
-      std::ranges::copy(begin_state_, end_state_.begin());
-      try {
-        ++statistics_.rhs_evaluations;
-        system_.solve(xi, end_state_);
-        look(xi, end_state_, end_values_);
-        return;
-      } catch (const std::domain_error&) {
-        if (xi - begin_ < k_smallest) throw;
-        xi = 0.5 * (begin_ + xi);
-      }
-    }
+    end_ = xi;
+    state_at(xi, end_state_);
+    look(xi, end_state_, end_values_);
   }
 
-  /// Locates the piece's event and integrates over it; false where the piece is too long for either.
-  bool finish_piece() {
-    try {
-      locate_event();
-      return integrate();
-    } catch (const std::domain_error&) {
-      // From a guess far off, Newton's method can leave the domain although there is a solution.
-      if (end_ - begin_ < k_smallest) throw;
-      return false;
-    }
-  }
-
-  /// Integrates the quadrature over the piece; false where the piece is too long for it.
-  bool integrate() {
-    if (!quadrature_) return true;
-    if (is_closed_) {
-      end_state_[*quadrature_] = primitive_offset_ + *system_.closed_quadrature(end_, end_state_);
-      return true;
-    }
-    integral_.sample(begin_, end_, [&](double xi) {
-      state_at(xi, trial_);
+  /// Solves for the state at the nodes of the piece, finds its event and integrates over it; false where the piece is
+  /// too long for that.
+  /// @param factor  how many times as long the next piece, or this one, should be
+  bool cover_piece(double& factor) {
+    forget_looks();
+    if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
+    for (std::size_t j = 0; j < k_nodes; ++j) {
+      const double xi = begin_ + 0.5 * (piece_end_ - begin_) * (1.0 + nodes_.places[j]);
+      guess_ahead(j);
+      ++statistics_.rhs_evaluations;
+      system_.solve(xi, trial_);
+      if (piece_end_ - begin_ > k_smallest_looked_into) look_inside(xi, trial_);
+      for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
+      if (is_closed_) continue;
       system_.rates(xi, trial_, rates_);
-      return rates_[*quadrature_];
-    });
-    const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
-    if (!integral_.has_converged(k_quadrature_accuracy * scale) && end_ - begin_ > k_smallest_quadrature) return false;
-    end_state_[*quadrature_] = begin_state_[*quadrature_] + integral_(end_);
+      for (std::size_t k = 0; k < integrated_; ++k) slopes_[k][j] = rates_[k];
+    }
+    for (std::size_t k = 0; k < series_.size(); ++k) series_[k].fit(nodes_, gains_[k]);
+    factor = k_most_growth;
+    if (!is_closed_) {
+      work_.fit(nodes_, slopes_[*quadrature_]);
+      const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
+      const double length = piece_end_ - begin_;
+      const double reach = work_.reach(2.0 * k_quadrature_accuracy * scale / length);
+      factor = std::clamp(k_safety * reach, k_most_shrinkage, k_most_growth);
+      if (reach < 1.0 && length > k_smallest_quadrature) return false;
+    }
+    move_end(piece_end_);
+    locate_event();
+    if (quadrature_) end_state_[*quadrature_] = quadrature_at(end_, end_state_);
     return true;
+  }
+
+  /// From what is known at the beginning of the piece and the nodes so far. One after another: the guess is then never
+  /// far from the solution, which may not be the only one. Algebraic unknowns may be singular, so that polynomials
+  /// overshoot, and where nothing determines them they have to stay what they are: the last ones are their guess.
+  void guess_ahead(std::size_t j) {
+    const Nodes::Ahead& ahead = nodes_.ahead[j];
+    const double half = 0.5 * (piece_end_ - begin_);
+    for (std::size_t k = 0; k < trial_.size(); ++k) {
+      const auto gone = [&](std::size_t i) { return j > i ? gains_[k][j - 1 - i] : 0.0; };
+      double gain = 0.0;
+      if (!is_closed_ && k < integrated_) {
+        for (std::size_t i = 0; i < std::min(j + 1, k_known); ++i) {
+          gain +=
+              ahead.values[i] * gone(i) + half * ahead.slopes[i] * (j > i ? slopes_[k][j - 1 - i] : begin_rates_[k]);
+        }
+      } else {
+        gain = gone(0);
+      }
+      trial_[k] = begin_state_[k] + gain;
+    }
+  }
+
+  [[nodiscard]] double quadrature_at(double xi, std::span<const double> y) {
+    if (is_closed_) return primitive_offset_ + *system_.closed_quadrature(xi, y);
+    return begin_state_[*quadrature_] + 0.5 * (piece_end_ - begin_) * work_.integral(place(xi));
   }
 
   std::optional<std::size_t> quadrature_;
   bool is_closed_ = false;
   double primitive_offset_ = 0.0;
-  LegendreIntegral integral_;
   bool has_slaves_ = false;
   double segment_begin_ = 0.0;
-  std::vector<double> trial_, rates_;
+  double length_ = k_longest;            ///< of the next piece
+  double piece_end_ = 0.0;               ///< where the piece would end without an event
+  LegendreSeries work_;                  ///< rate of the quadrature
+  std::size_t integrated_ = 0;           ///< unknowns that rates() knows: the first ones
+  std::vector<Samples> gains_, slopes_;  ///< at the nodes: what the unknowns have gained since the beginning, rates
+  std::vector<LegendreSeries> series_;   ///< of the gains
+  std::vector<double> trial_, rates_, begin_rates_;
+  const Nodes& nodes_ = nodes();
 };
 
 }  // namespace

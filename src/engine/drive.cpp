@@ -83,6 +83,7 @@ class Drive {
         y_(system_.unknowns().size()),
         output_state_(y_.size()) {
     for (const Channel& channel : scene.channels) held_.push_back(channel.at_rest);
+    outputs_.reserve(output.times.empty() ? static_cast<std::size_t>(output.points) : output.times.size());
   }
 
   DriveResult run() {

@@ -4,17 +4,15 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <limits>
 #include <stdexcept>
 
 namespace monograin {
 namespace {
 
-// Pieces of a step in which guards are looked at; events do not depend on it as long as guards cross once per piece.
-constexpr double k_pieces = 32.0;
-// Shorter pieces are not searched for guards that cross twice.
+// Looks that are nearer to each other than this are not searched for guards that cross twice.
 constexpr double k_smallest_hidden = 1e-6;
-// An extremum this near to zero, over the guard in the middle of the piece, is looked at.
+// An extremum this near to zero, over the guard where it was last seen, is looked at.
 constexpr double k_near = 0.5;
 // How far ahead the side of a guard that begins at zero is read.
 constexpr double k_ahead = 1e-9;
@@ -31,15 +29,12 @@ EventLocator::EventLocator(HybridSystem& system, Watch& watch) : system_(system)
   for (auto* state : {&begin_state_, &end_state_, &guess_}) state->resize(system.unknowns().size());
 }
 
-double EventLocator::next_piece_end(double xi) noexcept {
-  return std::min(1.0, (std::floor(xi * k_pieces + 1e-9) + 1.0) / k_pieces);
-}
-
 void EventLocator::begin_segment(double xi, std::span<const double> y) {
   ++statistics_.segments;
   begin_ = end_ = xi;
   std::ranges::copy(y, end_state_.begin());
-  for (auto* values : {&values_, &middle_values_, &begin_values_, &end_values_}) values->resize(watch_.size());
+  for (auto* values : {&values_, &extremum_values_, &begin_values_, &end_values_}) values->resize(watch_.size());
+  for (Look& one : looks_) one.values.resize(watch_.size());
   fired_.reserve(watch_.size());
   look(end_, end_state_, end_values_);
   read_sides();
@@ -50,6 +45,20 @@ void EventLocator::begin_piece() {
   std::swap(begin_state_, end_state_);
   std::swap(begin_values_, end_values_);
   fired_.clear();
+  forget_looks();
+}
+
+void EventLocator::look_inside(double xi, std::span<const double> y) {
+  if (look_count_ == looks_.size()) looks_.push_back({.values = std::vector<double>(watch_.size())});
+  Look& next = looks_[look_count_];
+  next.xi = xi;
+  look(xi, y, next.values);
+  // A guard that is zero but for rounding is on the side where it was.
+  const View last = seen(look_count_);
+  for (std::size_t g = 0; g < next.values.size(); ++g) {
+    if (std::abs(next.values[g]) <= guard_tolerance()) next.values[g] = last.values[g];
+  }
+  ++look_count_;
 }
 
 void EventLocator::look(double xi, std::span<const double> y, std::span<double> values) {
@@ -78,84 +87,106 @@ void EventLocator::read_sides() {
   }
 }
 
+/// The guards at the beginning, inside, and at the end of the piece, in this order.
+EventLocator::View EventLocator::seen(std::size_t place) const {
+  if (place == 0) return {begin_, begin_values_};
+  if (place > look_count_) return {end_, end_values_};
+  return {looks_[place - 1].xi, looks_[place - 1].values};
+}
+
+bool EventLocator::any_crosses(const View& before, const View& after) const {
+  const auto directions = watch_.directions();
+  for (std::size_t g = 0; g < directions.size(); ++g) {
+    if (crosses(directions[g], before.values[g], after.values[g])) return true;
+  }
+  return false;
+}
+
+/// Where between a look and the next a guard may have crossed and come back: the extremum of the parabola through these
+/// two and a third; where there is none, the next look.
+double EventLocator::hidden_extremum(std::size_t place) const {
+  const View a = seen(place);
+  const View b = seen(place + 1);
+  if (b.xi - a.xi < k_smallest_hidden || look_count_ == 0) return b.xi;
+  const View third = seen(place < look_count_ ? place + 2 : place - 1);
+  const auto directions = watch_.directions();
+  double extremum = b.xi;
+  for (std::size_t g = 0; g < directions.size(); ++g) {
+    const double at_a = a.values[g];
+    const double at_b = b.values[g];
+    const double sign = at_a < 0.0 ? 1.0 : -1.0;  // towards zero
+    if (at_a == 0.0 || (directions[g] != 0 && directions[g] != static_cast<int>(sign))) continue;
+    const double slope = (at_b - at_a) / (b.xi - a.xi);
+    const double curvature = ((third.values[g] - at_b) / (third.xi - b.xi) - slope) / (third.xi - a.xi);
+    if (!(sign * curvature < 0.0)) continue;
+    const double place_of_extremum = 0.5 * (a.xi + b.xi - slope / curvature);
+    if (!(place_of_extremum > a.xi && place_of_extremum < b.xi)) continue;
+    const double height = at_a + (place_of_extremum - a.xi) * (slope + curvature * (place_of_extremum - b.xi));
+    if (sign * height < -k_near * std::min(std::abs(at_a), std::abs(at_b))) continue;
+    extremum = std::min(extremum, place_of_extremum);
+  }
+  return extremum;
+}
+
 /// Moves the end of the piece to the first root in it, if there is one.
 void EventLocator::locate_event() {
   fired_.clear();
-  for (;;) {
-    const auto directions = watch_.directions();
-    std::size_t first = directions.size();
-    double root = end_;
-    for (std::size_t g = 0; g < directions.size(); ++g) {
-      if (!crosses(directions[g], begin_values_[g], end_values_[g])) continue;
-      const double found = polish(g);
-      if (first == directions.size() || found < root) {
-        first = g;
-        root = found;
-      }
+  for (std::size_t place = 0; place <= look_count_;) {
+    const View before = seen(place);
+    View after = seen(place + 1);
+    if (!any_crosses(before, after)) {
+      const double extremum = hidden_extremum(place);
+      ++place;
+      if (extremum == after.xi) continue;
+      state_at(extremum, guess_);
+      look(extremum, guess_, extremum_values_);
+      after = {extremum, extremum_values_};
+      if (!any_crosses(before, after)) continue;
+      --place;
     }
-    if (first == directions.size()) {
-      if (!shorten_to_hidden_crossing()) return;
-      continue;
-    }
+    std::size_t first = 0;
+    const double root = first_root(before, after, first);
     const bool is_shorter = root < end_ - k_smallest;
+    look_count_ = place;
     if (root < end_) move_end(root);
-    // An earlier root that this piece's ends did not show is looked for again in the shorter piece.
     fired_.clear();
     bool has_earlier = false;
+    const auto directions = watch_.directions();
+    const View last = seen(place);
     for (std::size_t g = 0; g < directions.size(); ++g) {
       if (g == first) {
         fired_.push_back(g);
-      } else if (crosses(directions[g], begin_values_[g], end_values_[g])) {
+      } else if (crosses(directions[g], last.values[g], end_values_[g])) {
         if (!is_shorter || std::abs(end_values_[g]) <= guard_tolerance())
           fired_.push_back(g);
         else
           has_earlier = true;
       }
     }
-    if (!has_earlier && !shorten_to_hidden_crossing()) return;
+    // A root that these looks did not show is looked for again in what is left of them.
+    if (!has_earlier) return;
     fired_.clear();
   }
 }
 
-/// A guard that is on the same side at both ends of the piece may have crossed and come back in between. Looks at the
-/// middle, and from there at the extremum of the parabola through the three; where a guard is past, ends the piece.
-bool EventLocator::shorten_to_hidden_crossing() {
-  if (end_ - begin_ < k_smallest_hidden || watch_.size() == 0) return false;
-  const double middle = std::midpoint(begin_, end_);
-  state_at(middle, guess_);
-  look(middle, guess_, middle_values_);
+/// The first of the roots between two looks, and the guard whose it is.
+double EventLocator::first_root(const View& before, const View& after, std::size_t& guard) {
   const auto directions = watch_.directions();
-  double extremum = end_;
+  double first = std::numeric_limits<double>::infinity();
   for (std::size_t g = 0; g < directions.size(); ++g) {
-    const double before = begin_values_[g];
-    const double sign = before < 0.0 ? 1.0 : -1.0;  // towards zero
-    if (before == 0.0 || (directions[g] != 0 && directions[g] != static_cast<int>(sign))) continue;
-    if (crosses(directions[g], before, middle_values_[g])) {
-      move_end(middle);
-      return true;
+    if (!crosses(directions[g], before.values[g], after.values[g])) continue;
+    const double root = polish(g, before, after);
+    if (root < first) {
+      first = root;
+      guard = g;
     }
-    const double slope = end_values_[g] - before;
-    const double curvature = 2.0 * (before + end_values_[g] - 2.0 * middle_values_[g]);
-    if (!(sign * curvature < 0.0)) continue;
-    const double place = 0.5 - 0.5 * slope / curvature;  // share of the piece
-    const double height = before + place * (slope - curvature * (1.0 - place));
-    if (place <= 0.0 || place >= 1.0 || sign * height < -k_near * std::abs(middle_values_[g])) continue;
-    extremum = std::min(extremum, std::lerp(begin_, end_, place));
   }
-  if (extremum == end_) return false;
-  state_at(extremum, guess_);
-  look(extremum, guess_, middle_values_);
-  for (std::size_t g = 0; g < directions.size(); ++g) {
-    if (!crosses(directions[g], begin_values_[g], middle_values_[g])) continue;
-    move_end(extremum);
-    return true;
-  }
-  return false;
+  return first;
 }
 
-/// Root of one guard in the piece.
-double EventLocator::polish(std::size_t guard) {
-  if (end_values_[guard] == 0.0) return end_;
+/// Root of one guard between two looks.
+double EventLocator::polish(std::size_t guard, const View& before, const View& after) {
+  if (after.values[guard] == 0.0) return after.xi;
   std::uintmax_t iterations = 100;
   const auto function = [&](double xi) {
     state_at(xi, guess_);
@@ -163,7 +194,7 @@ double EventLocator::polish(std::size_t guard) {
     return values_[guard];
   };
   const auto [below, above] = boost::math::tools::toms748_solve(
-      function, begin_, end_, begin_values_[guard], end_values_[guard],
+      function, before.xi, after.xi, before.values[guard], after.values[guard],
       [](double a, double b) { return b - a <= 1e-15 * std::max(1e-3, std::abs(b)); }, iterations);
   return above;  // on or just past the boundary, so that the event lies behind and not ahead
 }

@@ -8,8 +8,9 @@
 
 namespace monograin {
 
-/// A piece of the solution is shorter than 1/32 of a step of the program, so that guards cross once in it; one that
-/// crosses and comes back is looked for in its middle and at the extremum of the parabola through three values.
+/// The integrator looks at the guards at the ends of a piece and wherever it wants in between, not farther apart than
+/// about 1/50 of a step of the program. Guards cross once between two looks; one that crosses and comes back is looked
+/// for at the extremum of the parabola through three values.
 class EventLocator : public Integrator {
  public:
   [[nodiscard]] std::span<const std::size_t> fired() const noexcept override { return fired_; }
@@ -20,13 +21,17 @@ class EventLocator : public Integrator {
 
   /// A piece is not made smaller than this, in step coordinates.
   static constexpr double k_smallest = 1e-13;
+  /// Shorter pieces are not looked into: guards near zero are rounding there.
+  static constexpr double k_smallest_looked_into = 1e-6;
 
-  /// Where the piece that begins at xi has to end.
-  [[nodiscard]] static double next_piece_end(double xi) noexcept;
   /// Takes up a segment: state, guards, and their sides.
   void begin_segment(double xi, std::span<const double> y);
   /// What was the end is the beginning.
   void begin_piece();
+  /// Looks at the guards inside of the piece that has begun, beyond the last such look.
+  void look_inside(double xi, std::span<const double> y);
+  /// Forgets the looks inside of the piece.
+  void forget_looks() noexcept { look_count_ = 0; }
   /// Moves the end of the piece to the first root in it, if there is one.
   void locate_event();
   void look(double xi, std::span<const double> y, std::span<double> values);
@@ -41,6 +46,16 @@ class EventLocator : public Integrator {
   Statistics statistics_;
 
  private:
+  /// The guards at one place of the piece.
+  struct Look {
+    double xi = 0.0;
+    std::vector<double> values;
+  };
+  struct View {
+    double xi = 0.0;
+    std::span<const double> values;
+  };
+
   /// The complete state in the present piece.
   virtual void state_at(double xi, std::span<double> y) = 0;
   /// The same just ahead of a segment's beginning, where y holds the state.
@@ -49,11 +64,16 @@ class EventLocator : public Integrator {
   virtual void move_end(double xi) = 0;
 
   void read_sides();
-  bool shorten_to_hidden_crossing();
-  [[nodiscard]] double polish(std::size_t guard);
+  [[nodiscard]] View seen(std::size_t place) const;
+  [[nodiscard]] bool any_crosses(const View& before, const View& after) const;
+  [[nodiscard]] double hidden_extremum(std::size_t place) const;
+  [[nodiscard]] double first_root(const View& before, const View& after, std::size_t& guard);
+  [[nodiscard]] double polish(std::size_t guard, const View& before, const View& after);
 
+  std::vector<Look> looks_;  ///< room for more than there are
+  std::size_t look_count_ = 0;
   std::vector<double> guess_;
-  std::vector<double> values_, middle_values_;
+  std::vector<double> values_, extremum_values_;
 };
 
 }  // namespace monograin

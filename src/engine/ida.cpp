@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <ida/ida.h>
-#include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include <algorithm>
@@ -51,7 +50,7 @@ class Ida final : public Integrator {
     check("IDASetMaxConvFails", IDASetMaxConvFails(memory_.get(), k_most_failures));
     check("IDASetId", IDASetId(memory_.get(), id_.get()));
     matrix_.reset(SUNDenseMatrix(size, size, context_));
-    linear_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_));
+    linear_ = make_dense_solver(y_.get(), matrix_.get(), context_);
     check("IDASetLinearSolver", IDASetLinearSolver(memory_.get(), linear_.get(), matrix_.get()));
   }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "engine/event_locator.hpp"
@@ -12,11 +13,20 @@
 namespace monograin {
 namespace {
 
+// Pieces of a step of the program that are looked at one by one; events do not depend on it as long as guards cross
+// once between two looks.
+constexpr double k_pieces = 32.0;
+
 class Stepped final : public EventLocator {
  public:
   template <class Make>
   Stepped(HybridSystem& system, Watch& watch, const Tolerances& tolerances, Make&& make)
-      : EventLocator(system, watch), tolerances_(tolerances), form_(system), stepper_(make(form_)), z_(form_.size()) {}
+      : EventLocator(system, watch),
+        tolerances_(tolerances),
+        form_(system),
+        stepper_(make(form_)),
+        z_(form_.size()),
+        middle_state_(system.unknowns().size()) {}
 
   void begin(double xi, std::span<const double> y) override {
     form_.begin(y, z_);
@@ -38,7 +48,13 @@ class Stepped final : public EventLocator {
       ++statistics_.steps;
       statistics_.last_step = step_end_ - begin_;
     }
-    move_end(std::min(next_piece_end(begin_), step_end_));
+    const double end = std::min(std::min(1.0, (std::floor(begin_ * k_pieces + 1e-9) + 1.0) / k_pieces), step_end_);
+    move_end(end);
+    if (end_ - begin_ > k_smallest_looked_into && watch_.size() > 0) {
+      const double middle = std::midpoint(begin_, end_);
+      state_at(middle, middle_state_);
+      look_inside(middle, middle_state_);
+    }
     locate_event();
     return {.xi = end_, .hit_guard = !fired_.empty()};
   }
@@ -95,6 +111,7 @@ class Stepped final : public EventLocator {
   ScaledForm form_;
   std::unique_ptr<Stepper> stepper_;
   std::vector<double> z_;
+  std::vector<double> middle_state_;
   double step_end_ = 0.0;
   long segment_steps_ = 0;
 };

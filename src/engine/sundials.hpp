@@ -53,6 +53,9 @@ inline void keep_message(int, const char*, const char*, char* message, void* sin
   *static_cast<std::string*>(sink) = message;
 }
 
+/// A solver of small dense systems; timed where a LinearAlgebraClock runs.
+[[nodiscard]] LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context);
+
 /// The unknowns with the largest weighted local errors, worst first, as "name (weighted error)".
 [[nodiscard]] std::string worst_components(std::span<const Unknown> unknowns, std::span<const double> weights,
                                            std::span<const double> errors);

@@ -2,7 +2,6 @@
 
 #include <arkode/arkode_arkstep.h>
 #include <cvode/cvode.h>
-#include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
@@ -123,7 +122,7 @@ class SundialsOde final : public Integrator {
     check("SetMaxNumSteps", Library::set_most_steps(memory_.get(), k_most_steps));
     if (method_ == OdeMethod::cvode_bdf || method_ == OdeMethod::arkode_dirk) {
       matrix_.reset(SUNDenseMatrix(size, size, context_));
-      linear_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_));
+      linear_ = make_dense_solver(y_.get(), matrix_.get(), context_);
       check("SetLinearSolver", Library::set_linear_solver(memory_.get(), linear_.get(), matrix_.get()));
     }
   }

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "figure/page.hpp"
 #include "study/atlas.hpp"
+#include "study/markdown.hpp"
 #include "undefined.hpp"
 
 namespace monograin {
@@ -41,7 +41,7 @@ constexpr Cell k_cells[] = {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : std::string("-");
 }
 
-using Row = std::vector<std::string>;
+using Row = MarkdownRow;
 
 [[nodiscard]] std::vector<Row> rows_of(const ComparisonTable& table) {
   std::vector<Row> rows{{"case"}};
@@ -54,31 +54,6 @@ using Row = std::vector<std::string>;
     }
   }
   return rows;
-}
-
-void append_markdown(std::string& text, const std::vector<Row>& rows) {
-  std::vector<std::size_t> widths(rows.front().size(), 3);
-  for (const Row& row : rows) {
-    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
-  }
-  const auto is_word = [](const std::string& cell) {
-    return !cell.empty() && std::isalpha(static_cast<unsigned char>(cell.front())) != 0;
-  };
-  const auto holds_words = [&](std::size_t k) {
-    return k == 0 || std::any_of(rows.begin() + 1, rows.end(), [&](const Row& row) { return is_word(row[k]); });
-  };
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    for (std::size_t k = 0; k < widths.size(); ++k) {
-      text += holds_words(k) ? fmt::format("| {:<{}} ", rows[r][k], widths[k])
-                             : fmt::format("| {:>{}} ", rows[r][k], widths[k]);
-    }
-    text += "|\n";
-    if (r > 0) continue;
-    for (std::size_t k = 0; k < widths.size(); ++k) {
-      text += fmt::format("| {}{} ", std::string(widths[k] - 1, '-'), holds_words(k) ? '-' : ':');
-    }
-    text += "|\n";
-  }
 }
 
 /// Half a unit in the last place of a printed number: how far it may be from the value it stands for.

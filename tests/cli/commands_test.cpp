@@ -536,5 +536,43 @@ TEST_F(Commands, SweepAPacking) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
+// --- bench
+
+constexpr const char* k_bench_scenes = " --scenes '" MONOGRAIN_SOURCE_DIR "/scenarios/bench/scenes.toml'";
+
+TEST_F(Commands, BenchMeasuresNamedScenesAndScenarioFiles) {
+  write_text(folder() / "small.toml", k_small);
+  const Outcome outcome =
+      monograin(std::string("bench mdr-die-50 small.toml --integrator auto cvode-bdf --rtol 1e-5 --profile -o out") +
+                k_bench_scenes);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* text : {"| mdr-die-50 ", "| small ", "| cvode-bdf ", "## Where the time goes"}) {
+    EXPECT_NE(outcome.out.find(text), std::string::npos) << text;
+  }
+  for (const char* file : {"bench.csv", "bench.md", "bench-mdr-die-50.svg", "bench-small.svg", "bench-summary.svg"}) {
+    EXPECT_TRUE(fs::exists(folder() / "out" / file)) << file;
+  }
+}
+
+TEST_F(Commands, BenchRefusesWhatItDoesNotKnow) {
+  const Outcome scene = monograin(std::string("bench nowhere -o out") + k_bench_scenes);
+  EXPECT_EQ(scene.code, 2);
+  EXPECT_NE(scene.err.find("nowhere: no such scene"), std::string::npos) << scene.err;
+  EXPECT_NE(scene.err.find("mdr-die-50"), std::string::npos) << scene.err;
+  const Outcome integrator = monograin(std::string("bench mdr-die-50 --integrator euler -o out") + k_bench_scenes);
+  EXPECT_EQ(integrator.code, 2);
+  EXPECT_NE(integrator.err.find("'euler'"), std::string::npos) << integrator.err;
+  EXPECT_FALSE(fs::exists(folder() / "out"));
+}
+
+TEST_F(Commands, BenchHoldsLawsAgainstFiniteElements) {
+  const Outcome outcome = monograin("bench --against-fe --plots '" MONOGRAIN_SOURCE_DIR "/plots' -o out");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("| E/Y = 200: semimech"), std::string::npos) << outcome.out;
+  for (const char* file : {"laws-fe.svg", "laws-fe.csv", "laws-fe.md"}) {
+    EXPECT_TRUE(fs::exists(folder() / "out" / file)) << file;
+  }
+}
+
 }  // namespace
 }  // namespace monograin

@@ -77,7 +77,8 @@ TEST(Rows, AreTheIntegratorsOwnStepsWithoutOutputPoints) {
     // All but the step that ends at the corner, and those that end at an event; and the start.
     const auto own = static_cast<long>(result.outputs("time").size());
     EXPECT_EQ(own, result.record.statistics.steps - result.record.statistics.events) << integrator;
-    EXPECT_GT(own, 20) << integrator;
+    // What is solved for directly has pieces, and they are long.
+    EXPECT_GT(own, std::string_view(integrator) == "direct" ? 5 : 20) << integrator;
   }
 }
 

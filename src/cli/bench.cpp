@@ -1,0 +1,120 @@
+// `monograin bench`: run time against error.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "cli/commands.hpp"
+#include "cli/progress.hpp"
+#include "study/atlas.hpp"
+#include "study/bench.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BenchOptions {
+  std::vector<std::string> scenes;
+  std::string list = "scenarios/bench/scenes.toml";
+  std::string definitions = "plots";
+  std::string output = "plots";
+  std::vector<std::string> integrators;
+  std::vector<double> tolerances;
+  bool is_against_fe = false;
+  bool profiles = false;
+};
+
+constexpr const char* k_fe_figure = "laws-fe";
+
+/// Every law beside finite-element curves.
+int bench_against_fe(const BenchOptions& options) {
+  const std::vector<AtlasFigure> figures = make_atlas(options.definitions, {k_fe_figure});
+  for (const fs::path& file : write_atlas(figures, options.output)) fmt::print(stderr, "-> {}\n", file.string());
+  for (const AtlasFigure& figure : figures) fmt::print("{}\n", tables_text(figure));
+  return exit_code_of(figures.front().status);
+}
+
+/// The scenes that are named: in the list, or as scenario files.
+std::vector<Scenario> chosen_scenes(const BenchOptions& options) {
+  const bool needs_list = options.scenes.empty() || std::ranges::any_of(options.scenes, [](const std::string& name) {
+                            return fs::path(name).extension() != ".toml";
+                          });
+  std::vector<Scenario> listed;
+  if (needs_list) listed = read_bench_scenes(options.list);
+  if (options.scenes.empty()) return listed;
+  std::vector<Scenario> chosen;
+  for (const std::string& name : options.scenes) {
+    const auto found = std::ranges::find(listed, name, &Scenario::name);
+    if (found != listed.end()) {
+      chosen.push_back(*found);
+    } else if (fs::path(name).extension() == ".toml") {
+      chosen.push_back(read_scenario(name));
+    } else {
+      std::string names;
+      for (const Scenario& scene : listed) names += (names.empty() ? "" : ", ") + scene.name;
+      throw UsageError(
+          fmt::format("{}: no such scene in {}, nor a scenario file (.toml); there are {}", name, options.list, names));
+    }
+  }
+  return chosen;
+}
+
+void check_integrators(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (name == "auto" || std::ranges::find(integrator_names(), name) != integrator_names().end()) continue;
+    throw UsageError(fmt::format("no integrator is called '{}'; expected auto or one of {}", name,
+                                 fmt::join(integrator_names(), ", ")));
+  }
+}
+
+int bench(const BenchOptions& options) {
+  if (options.is_against_fe) return bench_against_fe(options);
+  check_integrators(options.integrators);
+  const BenchSettings settings{.integrators = options.integrators, .tolerances = options.tolerances};
+  const std::vector<Scenario> scenarios = chosen_scenes(options);
+  std::vector<BenchScene> scenes;
+  std::vector<BenchProfile> profiles;
+  {
+    ProgressBar bar("scenes");
+    for (const Scenario& scenario : scenarios) {
+      const std::size_t done = scenes.size();
+      scenes.push_back(measure_scene(scenario, settings, [&] { bar.show(done, scenarios.size()); }));
+      if (!options.profiles) continue;
+      std::vector<std::string> integrators = options.integrators;
+      if (integrators.empty()) integrators = {"auto", "cvode-bdf", "ida"};
+      for (const std::string& name : integrators) profiles.push_back(profile_scene(scenario, name));
+    }
+  }
+  std::vector<BenchSaving> savings;
+  if (options.scenes.empty()) savings = measure_savings(settings);
+  fmt::print("{}", bench_text(scenes, profiles, savings));
+  for (const fs::path& file : write_bench(scenes, profiles, savings, options.output)) {
+    fmt::print(stderr, "-> {}\n", file.string());
+  }
+  return k_success;
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, Action& action) {
+  auto options = std::make_shared<BenchOptions>();
+  CLI::App* command = app.add_subcommand("bench", "Measure run time against error over integrators and tolerances");
+  command->add_option("SCENE", options->scenes, "Scenes of the list, or scenario files [all of the list]");
+  command->add_option("--scenes", options->list, "List of scenes [scenarios/bench/scenes.toml]");
+  command->add_option("--integrator", options->integrators, "Integrators to measure [auto and all there are]");
+  command->add_option("--rtol", options->tolerances, "Relative tolerances [1e-2 to 1e-13]")
+      ->check(CLI::Range(1e-15, 0.1));
+  command->add_flag("--profile", options->profiles, "Also tell where the time goes");
+  command->add_flag("--against-fe", options->is_against_fe,
+                    "Instead hold every law against finite-element curves: errors, slopes and a figure");
+  command->add_option("--plots", options->definitions, "Folder of the definition for --against-fe [plots]");
+  command->add_option("-o,--output", options->output, "Folder of table, CSV and figures [plots]");
+  command->footer("Example: monograin bench mdr-die-50 --integrator auto cvode-bdf -o bench");
+  command->callback([options, &action] { action = [options] { return bench(*options); }; });
+}
+
+}  // namespace monograin

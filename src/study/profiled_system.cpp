@@ -1,0 +1,168 @@
+#include "study/profiled_system.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <utility>
+
+namespace monograin {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using State = std::span<double>;
+using View = std::span<const double>;
+
+/// What a reading of the clock takes [s], where nothing else takes the processor.
+double clock_cost() {
+  constexpr int k_readings = 100;
+  double least = std::numeric_limits<double>::infinity();
+  for (int batch = 0; batch < 20; ++batch) {
+    const auto start = Clock::now();
+    Clock::time_point last = start;
+    for (int i = 0; i < k_readings; ++i) last = Clock::now();
+    least = std::min(least, std::chrono::duration<double>(last - start).count() / k_readings);
+  }
+  return least;
+}
+
+/// Passes everything on to another system.
+class Wrapped : public HybridSystem {
+ public:
+  explicit Wrapped(std::unique_ptr<HybridSystem> system) : system_(std::move(system)) {}
+
+  [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return system_->unknowns(); }
+  [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return system_->classes(); }
+  void start(State y) override { system_->start(y); }
+  void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
+    system_->begin_step(ramps, y, log);
+  }
+  void complete(double xi, State y) override { system_->complete(xi, y); }
+  void rates(double xi, View y, State dy) override { system_->rates(xi, y, dy); }
+  void all_rates(double xi, View y, State dy) override { system_->all_rates(xi, y, dy); }
+  void residual(double xi, View y, View dy, State res) override { system_->residual(xi, y, dy, res); }
+  [[nodiscard]] bool is_semi_explicit() const noexcept override { return system_->is_semi_explicit(); }
+  [[nodiscard]] double error_gain() const noexcept override { return system_->error_gain(); }
+  [[nodiscard]] bool is_solvable() const noexcept override { return system_->is_solvable(); }
+  void solve(double xi, State y) override { system_->solve(xi, y); }
+  [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
+    return system_->closed_quadrature(xi, y);
+  }
+  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return system_->guards(); }
+  void guard_values(double xi, View y, State values) override { system_->guard_values(xi, y, values); }
+  std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, State y,
+                                std::vector<Event>& log) override {
+    return system_->fire(fired, xi, y, log);
+  }
+  [[nodiscard]] std::span<const Observable> observables() const noexcept override { return system_->observables(); }
+  void observe(double xi, View y, State values) override { system_->observe(xi, y, values); }
+  [[nodiscard]] double quantity(Quantity quantity, int channel, double xi, View y) override {
+    return system_->quantity(quantity, channel, xi, y);
+  }
+  [[nodiscard]] double controlled(Control control, int channel, double xi, View y) override {
+    return system_->controlled(control, channel, xi, y);
+  }
+  [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, View y) override {
+    return system_->surface(contact_class, xi, y);
+  }
+  [[nodiscard]] bool is_open(int contact_class) const noexcept override { return system_->is_open(contact_class); }
+  [[nodiscard]] std::vector<Finding> warnings() const override { return system_->warnings(); }
+
+ private:
+  std::unique_ptr<HybridSystem> system_;
+};
+
+class Profiled final : public Wrapped {
+ public:
+  Profiled(std::unique_ptr<HybridSystem> system, SystemProfile& profile)
+      : Wrapped(std::move(system)), profile_(profile), clock_cost_(clock_cost()) {}
+
+  void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
+    time(profile_.law, [&] { Wrapped::begin_step(ramps, y, log); });
+  }
+  void complete(double xi, State y) override {
+    time(profile_.law, [&] { Wrapped::complete(xi, y); });
+  }
+  void rates(double xi, View y, State dy) override {
+    time(profile_.law, [&] { Wrapped::rates(xi, y, dy); });
+  }
+  void all_rates(double xi, View y, State dy) override {
+    time(profile_.law, [&] { Wrapped::all_rates(xi, y, dy); });
+  }
+  void residual(double xi, View y, View dy, State res) override {
+    time(profile_.law, [&] { Wrapped::residual(xi, y, dy, res); });
+  }
+  void solve(double xi, State y) override {
+    time(profile_.law, [&] { Wrapped::solve(xi, y); });
+  }
+  [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
+    std::optional<double> result;
+    time(profile_.law, [&] { result = Wrapped::closed_quadrature(xi, y); });
+    return result;
+  }
+  void guard_values(double xi, View y, State values) override {
+    time(profile_.guards, [&] { Wrapped::guard_values(xi, y, values); });
+  }
+  std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, State y,
+                                std::vector<Event>& log) override {
+    std::optional<DomainEnd> result;
+    time(profile_.law, [&] { result = Wrapped::fire(fired, xi, y, log); });
+    return result;
+  }
+  void observe(double xi, View y, State values) override {
+    time(profile_.recording, [&] { Wrapped::observe(xi, y, values); });
+  }
+
+ private:
+  /// Also where the work ends by an exception.
+  template <class Work>
+  void time(SystemProfile::Share& share, Work&& work) {
+    struct Lap {
+      SystemProfile::Share& share;
+      double clock_cost;
+      Clock::time_point start = Clock::now();
+      ~Lap() {
+        share.seconds += std::chrono::duration<double>(Clock::now() - start).count() - clock_cost;
+        ++share.calls;
+      }
+    };
+    const Lap lap{share, clock_cost_};
+    work();
+  }
+
+  SystemProfile& profile_;
+  double clock_cost_;
+};
+
+class AlwaysObserved final : public Wrapped {
+ public:
+  explicit AlwaysObserved(std::unique_ptr<HybridSystem> system)
+      : Wrapped(std::move(system)), values_(observables().size()) {}
+
+  void rates(double xi, View y, State dy) override {
+    Wrapped::rates(xi, y, dy);
+    observe(xi, y, values_);
+  }
+  void residual(double xi, View y, View dy, State res) override {
+    Wrapped::residual(xi, y, dy, res);
+    observe(xi, y, values_);
+  }
+  void solve(double xi, State y) override {
+    Wrapped::solve(xi, y);
+    observe(xi, y, values_);
+  }
+
+ private:
+  std::vector<double> values_;
+};
+
+}  // namespace
+
+std::unique_ptr<HybridSystem> profiled(std::unique_ptr<HybridSystem> system, SystemProfile& profile) {
+  return std::make_unique<Profiled>(std::move(system), profile);
+}
+
+std::unique_ptr<HybridSystem> always_observed(std::unique_ptr<HybridSystem> system) {
+  return std::make_unique<AlwaysObserved>(std::move(system));
+}
+
+}  // namespace monograin

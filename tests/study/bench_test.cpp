@@ -1,0 +1,195 @@
+#include "study/bench.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include "history/run.hpp"
+#include "scene/scene.hpp"
+#include "study/profiled_system.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path k_scenes = fs::path(MONOGRAIN_SOURCE_DIR) / "scenarios/bench/scenes.toml";
+
+Scenario die(const std::vector<std::string>& overrides = {}) {
+  return parse_scenario(default_scenario_text(), "die.toml", overrides);
+}
+
+const BenchPoint& point_of(const BenchScene& scene, std::string_view integrator, double rtol) {
+  for (const BenchPoint& point : scene.points) {
+    if (point.integrator == integrator && point.rtol == rtol) return point;
+  }
+  throw std::logic_error("no such point");
+}
+
+// --- a scene
+
+TEST(BenchScene, HasErrorsThatFollowTheTolerance) {
+  const BenchScene scene = measure_scene(
+      die({"output.points=20"}),
+      {.integrators = {"auto", "direct", "cvode-adams"}, .tolerances = {1e-4, 1e-7, 1e-10}, .least_time = 0.0}, {});
+  EXPECT_EQ(scene.chosen, "direct");
+  EXPECT_EQ(scene.reference, "direct");
+  EXPECT_NE(scene.check, "direct");
+  EXPECT_LT(scene.agreement, 1e-11);
+  EXPECT_GT(scene.rows, 60U);
+  EXPECT_GT(scene.setup, 0.0);
+  EXPECT_GT(scene.evaluation, 0.0);
+  // The direct form has no tolerance: once by its own name, once as auto.
+  ASSERT_EQ(scene.points.size(), 5U);
+  EXPECT_LT(point_of(scene, "direct", 1e-4).curve_error, 1e-11);
+  for (const double rtol : {1e-4, 1e-7, 1e-10}) {
+    const BenchPoint& point = point_of(scene, "cvode-adams", rtol);
+    EXPECT_GT(point.curve_error, 1e-2 * rtol);
+    EXPECT_LT(point.curve_error, 100.0 * rtol);
+    EXPECT_LE(point.end_error, point.curve_error);
+    EXPECT_LT(point.event_error, 10.0 * rtol);
+    EXPECT_LE(point.fastest, point.median);
+    EXPECT_GT(point.statistics.steps, 0);
+    EXPECT_EQ(point.fault, "");
+  }
+}
+
+TEST(BenchScene, WithoutADirectFormIsHeldAgainstTwoOthers) {
+  const fs::path file = fs::path(MONOGRAIN_SOURCE_DIR) / "scenarios/material-point.toml";
+  const BenchScene scene =
+      measure_scene(read_scenario(file, {"output.points=20"}),
+                    {.integrators = {"direct", "ida"}, .tolerances = {1e-6}, .least_time = 0.0}, {});
+  ASSERT_EQ(scene.points.size(), 1U) << "there is no direct form";
+  EXPECT_NE(scene.reference, scene.check);
+  EXPECT_LT(scene.agreement, 1e-9);
+  EXPECT_LT(scene.points.front().curve_error, 1e-5);
+}
+
+TEST(BenchScene, TimeToAnErrorIsThatOfTheFastestRunThatReachesIt) {
+  BenchScene scene{.name = "a", .title = {}, .chosen = {}, .reference = {}, .check = {}, .points = {}};
+  const auto add = [&](const char* name, double error, double time) {
+    BenchPoint point{.integrator = name, .statistics = {}, .fault = {}};
+    point.curve_error = error;
+    point.fastest = time;
+    scene.points.push_back(point);
+  };
+  add("ida", 1e-3, 1.0);
+  add("ida", 1e-6, 3.0);
+  add("ida", 1e-7, 2.0);
+  add("ida", std::nan(""), 0.1);
+  EXPECT_EQ(time_to_error(scene, "ida", 1e-2), 1.0);
+  EXPECT_EQ(time_to_error(scene, "ida", 1e-5), 2.0);
+  EXPECT_TRUE(std::isnan(time_to_error(scene, "ida", 1e-8)));
+  EXPECT_TRUE(std::isnan(time_to_error(scene, "direct", 1.0)));
+}
+
+// --- the scenes there are
+
+TEST(BenchScenes, EachRunsToItsEnd) {
+  std::set<std::string> names;
+  for (const Scenario& scenario : read_bench_scenes(k_scenes)) {
+    EXPECT_TRUE(names.insert(scenario.name).second) << scenario.name;
+    const monograin::Run run = run_scenario(scenario);
+    EXPECT_EQ(run.record.status, RunStatus::complete) << scenario.name << ": " << run.record.message;
+  }
+  EXPECT_GE(names.size(), 16U);
+}
+
+TEST(BenchScenes, FaultsHaveTheirPlaces) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "scenes.toml";
+  std::ofstream(file) << "[[scene]]\nname = \"a\"\nscenario = \"none.toml\"\ncolour = 3\n";
+  try {
+    static_cast<void>(read_bench_scenes(file));
+    FAIL() << "no fault";
+  } catch (const ScenarioError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("scenes.toml:4:1: unknown key 'colour'"), std::string::npos) << text;
+    EXPECT_NE(text.find("'title'"), std::string::npos) << text;
+    EXPECT_NE(text.find("none.toml"), std::string::npos) << text;
+  }
+  EXPECT_THROW(static_cast<void>(read_bench_scenes(folder.path() / "none.toml")), ScenarioError);
+}
+
+// --- profile and savings
+
+/// Same rows, same columns, bit by bit.
+void expect_same(const Table& a, const Table& b) {
+  ASSERT_EQ(a.row_count(), b.row_count());
+  ASSERT_EQ(a.columns().size(), b.columns().size());
+  for (std::size_t i = 0; i < a.row_count(); ++i) {
+    for (std::size_t c = 0; c < a.columns().size(); ++c) {
+      const double x = a.at(i, c);
+      const double y = b.at(i, c);
+      EXPECT_TRUE(x == y || (std::isnan(x) && std::isnan(y))) << a.columns()[c].name << " in row " << i;
+    }
+  }
+}
+
+TEST(BenchProfile, LooksOnOnly) {
+  for (const Scenario& scenario : read_bench_scenes(k_scenes)) {
+    for (const char* integrator : {"direct", "cvode-bdf", "ida"}) {
+      Scene plain = make_scene(scenario);
+      if (std::string_view(integrator) == "direct" && !plain.system->is_solvable()) continue;
+      SCOPED_TRACE(scenario.name + ", " + integrator);
+      SystemProfile profile;
+      Scene timed = make_scene(scenario);
+      timed.system = profiled(std::move(timed.system), profile);
+      const RunRecord a = record_run(plain, integrator, {}, scenario.output);
+      const RunRecord b = record_run(timed, integrator, {}, scenario.output);
+      expect_same(a.history, b.history);
+      EXPECT_EQ(a.warnings, b.warnings);
+      EXPECT_GT(profile.law.calls, 0);
+      EXPECT_GT(profile.recording.calls, 0);
+      EXPECT_GT(profile.law.seconds, 0.0);
+    }
+  }
+}
+
+TEST(BenchProfile, KnowsTheLinearAlgebraOfSundialsOnly) {
+  EXPECT_GT(profile_scene(die(), "cvode-bdf").linear_algebra, 0.0);
+  EXPECT_GT(profile_scene(die(), "ida").linear_algebra, 0.0);
+  EXPECT_EQ(profile_scene(die(), "cvode-adams").linear_algebra, 0.0);
+  const BenchProfile direct = profile_scene(die(), "auto");
+  EXPECT_EQ(direct.integrator, "direct");
+  EXPECT_EQ(direct.linear_algebra, 0.0);
+  EXPECT_GT(direct.law, 0.0);
+  EXPECT_GT(direct.total, direct.recording);
+}
+
+TEST(BenchSavings, LeaveTheCurvesAsTheyAre) {
+  const std::vector<BenchSaving> savings = measure_savings({.least_time = 0.0});
+  EXPECT_GE(savings.size(), 6U);
+  for (const BenchSaving& saving : savings) {
+    EXPECT_LT(saving.difference, 1e-6) << saving.what << ", " << saving.scene;
+    EXPECT_GT(saving.undone, 0.0);
+  }
+}
+
+// --- what it leaves
+
+TEST(BenchFiles, AreATableItsNumbersAndFigures) {
+  const TemporaryFolder folder;
+  const std::vector<BenchScene> scenes{
+      measure_scene(die({"output.points=10"}),
+                    {.integrators = {"auto", "cvode-bdf"}, .tolerances = {1e-4, 1e-6}, .least_time = 0.0}, {})};
+  const std::vector<BenchProfile> profiles{profile_scene(die(), "cvode-bdf")};
+  const auto files = write_bench(scenes, profiles, {}, folder.path() / "new");
+  ASSERT_EQ(files.size(), 5U);
+  for (const fs::path& file : files) EXPECT_GT(fs::file_size(file), 100U) << file;
+  const Table csv = read_csv(folder.path() / "new/bench.csv");
+  EXPECT_EQ(csv.row_count(), 3U);
+  EXPECT_EQ(csv.word(0, *csv.find("scene")), "die");
+  EXPECT_GT(csv.column("fastest[s]").at(1), 0.0);
+  const std::string text = bench_text(scenes, profiles, {});
+  for (const char* heading : {"## `auto`", "## Tolerances", "## Where the time goes", "## die"}) {
+    EXPECT_NE(text.find(heading), std::string::npos) << heading;
+  }
+  EXPECT_EQ(text.find("## What is not computed"), std::string::npos) << "no savings were measured";
+}
+
+}  // namespace
+}  // namespace monograin
