@@ -87,7 +87,7 @@ constexpr std::array k_events{
     Term{"limit", "the law ends, at a displacement of 0.5 R0"},
 };
 
-constexpr std::array<string_view, 7> k_domain{
+constexpr std::array<string_view, 8> k_domain{
     "displacement up to 0.5 R0, where the source's data end",
     "k, delta_t, a from the material: stiffness_ratio from 3 to 500, shear_ratio from 0.25 to 1; a warning below 4.5, "
     "where the source left delta_t and a unfitted; two printed coefficients are misprints and corrected",
@@ -96,6 +96,9 @@ constexpr std::array<string_view, 7> k_domain{
     "unloading: the source has no law for alpha and beta; a warning where Hertz's 1.5 and 1 stand in for them",
     "unloading ends at first touch or before: where beta would have it beyond, alpha stays and a warning counts it",
     "reloading: not in the source; elastic on the way of the unloading",
+    "warned: dissipation below -1e-6 of the work, where alpha, beta or a soft material make the unloading softer than "
+    "the "
+    "loading",
 };
 
 std::optional<double> value_of(const std::map<std::string, double>& values, const char* key) {

@@ -108,6 +108,7 @@ class ContactSystem final : public HybridSystem {
   std::vector<Guard> guards_;
   std::vector<double> guard_places_;  ///< displacement at which they are zero
 
+  EnergyWatch energies_;
   int clipped_ = 0;           ///< unloadings that would have opened before first touch
   double least_ratio_ = 1.0;  ///< of the slopes where a contact that was looked at has turned back, or would
 };

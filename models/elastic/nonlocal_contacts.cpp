@@ -19,6 +19,7 @@ constexpr int k_first_touch_steps = 20;
 constexpr double k_stagnation = 1e-9;   // rounding grows with 1/margin near the limit
 constexpr double k_balance = 1e-9;      // net force over the sum of forces
 constexpr double k_least_step = 1e-13;  // of the way to a state that is not found at once
+constexpr int k_most_steps = 4000;      // on that way, tried ones included
 constexpr double k_same_surroundings = 1e-9;
 
 std::size_t in(Eigen::Index index) noexcept { return static_cast<std::size_t>(index); }
@@ -314,7 +315,7 @@ void Contacts::approach_in_steps(std::span<double> y) {
 
   double done = 0.0;
   double step = 0.5;
-  while (done < 1.0) {
+  for (int steps = 1; done < 1.0; ++steps) {
     const double next = std::min(1.0, done + step);
     for (std::size_t j = 0; j < n; ++j) {
       targets_[j] = next == 1.0 ? last_targets_[j]
@@ -331,7 +332,8 @@ void Contacts::approach_in_steps(std::span<double> y) {
       continue;
     }
     step *= 0.5;
-    if (step > k_least_step) continue;
+    // Short steps that succeed now and then do not arrive either.
+    if (step > k_least_step && steps < k_most_steps) continue;
     if (is_on_branch) {
       throw std::domain_error("no contact holds the centre of the particle where the forces of the others drive it");
     }

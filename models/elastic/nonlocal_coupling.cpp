@@ -17,9 +17,11 @@ using std::numbers::pi;
 /// C, of which all compliances are multiples.
 double unit_compliance(double nu) noexcept { return (1.0 + nu) / (4.0 * pi); }
 
-double integral(const auto& f, double begin, double end) {
+/// @param rounding  of the integrand over its magnitude, below which no refinement gets
+double integral(const auto& f, double begin, double end, double rounding = 0.0) {
   // The estimated error is that of the Gauss rule inside; the value is exact to rounding long before.
-  return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(f, begin, end, 8, 1e-12);
+  const double tolerance = std::max(1e-12, rounding);
+  return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(f, begin, end, 8, tolerance);
 }
 
 /// Displacement of a half-space's surface under a point force (eqs. A.4, A.5), over C: along the force, and away from
@@ -105,7 +107,10 @@ double edge_influence(bool is_projected, double nu, double theta, double x) {
     return axial + (edge.radial_over_sine * edge_sine - middle.radial_over_sine * sine) * length;
   };
   // The length of eq. A.10 is |sin(phi)| at theta = pi/2: the halves are smooth, the whole is not.
-  return unit_compliance(nu) / pi * (integral(outward, 0.0, 0.5 * pi) + integral(outward, 0.5 * pi, pi));
+  // Displacements at the edge and in the middle differ by a share of the order of x.
+  const double rounding = 64.0 * std::numeric_limits<double>::epsilon() / x;
+  return unit_compliance(nu) / pi *
+         (integral(outward, 0.0, 0.5 * pi, rounding) + integral(outward, 0.5 * pi, pi, rounding));
 }
 
 }  // namespace

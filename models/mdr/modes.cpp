@@ -266,7 +266,10 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
   held_radius_ = y[k_radius];
   const std::size_t most_rounds = 4 * memory_.size() + 8;
   for (std::size_t round = 0;; ++round) {
-    if (round == most_rounds) throw std::domain_error("the regimes of the contacts do not settle");
+    if (round == most_rounds) {
+      throw std::domain_error(
+          "there is no mode in which every contact's branch agrees with its motion: the regimes do not settle");
+    }
     is_growing_ = growth ? *growth : wants_growth(xi, y);
     look(xi, y);
     const Motion now = motion(is_growing_);

@@ -62,9 +62,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   const double energy_unit = force_unit * length;
   const double work = y[k_work] + sums_.force_work;
   const double stored = energy(r, PlasticPart::recoverable);
-  const double dissipation = work - stored;
-  largest_work_ = std::max(largest_work_, work);
-  lowest_dissipation_ = std::min(lowest_dissipation_, dissipation);
+  energies_.see(work, stored);
 
   auto out = values.begin();
   if (settings_.radius_rule != RadiusRule::fixed) {
@@ -75,7 +73,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   }
   *out++ = work * energy_unit;
   *out++ = stored * energy_unit;
-  *out++ = dissipation * energy_unit;
+  *out++ = (work - stored) * energy_unit;
   for (std::size_t i = 0; i < now_.size(); ++i) {
     const Contact& c = now_[i].contact;
     *out++ = now_[i].displacement * length;
@@ -167,9 +165,9 @@ std::vector<Finding> System::warnings() const {
                       radius_at_caps_});
   }
   if (validity_) result.push_back(*validity_);
-  if (lowest_dissipation_ < -1e-6 * largest_work_) {
-    result.push_back({"the growing apparent radius creates energy; radius_rule = \"yielded\" avoids it",
-                      "lowest dissipation over work", lowest_dissipation_ / largest_work_});
+  if (const auto made =
+          energies_.finding("the growing apparent radius creates energy; radius_rule = \"yielded\" avoids it")) {
+    result.push_back(*made);
   }
   return result;
 }

@@ -130,8 +130,7 @@ void System::start(std::span<double> y) {
   memory_.assign(classes_.size(), Memory{});
   is_growing_ = false;
   held_radius_ = 0.0;
-  largest_work_ = 0.0;
-  lowest_dissipation_ = 0.0;
+  energies_ = {};
   validity_.reset();
   caps_have_met_ = false;
   has_begun_ = false;

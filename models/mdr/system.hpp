@@ -286,8 +286,7 @@ class System final : public HybridSystem {
   std::vector<PullOff> pull_offs_;
   std::vector<Edge> edges_before_;
   Sums sums_;
-  double largest_work_ = 0.0;
-  double lowest_dissipation_ = 0.0;
+  EnergyWatch energies_;
   std::optional<Finding> validity_;  ///< of the first adhesive contact to unload for which the model is not valid
   bool caps_have_met_ = false;
   double radius_at_caps_ = 0.0;

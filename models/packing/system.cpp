@@ -13,8 +13,9 @@ namespace monograin::packing {
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
-constexpr int k_iterations = 30;
+constexpr int k_iterations = 60;
 constexpr double k_resolution = 1e-14;  // of the last step but one of an iteration that doubles its digits
+constexpr double k_noise = 1e-11;       // steps below it may be rounding
 constexpr double k_start = 1e-6;        // share of Phi up to which the start is closed
 constexpr double k_margin = 1e-6;       // share of what is prescribed by which a run ends before the branch does
 
@@ -99,10 +100,18 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     throw std::domain_error("a packing of plastic particles is unloaded, for which there is no law");
   }
   if (is_jammed_ && direction() > 0 && y[k_fraction] >= 1.0) throw std::domain_error("no pores are left");
+  // Another control may find the packing where what it prescribes falls as the packing is compacted.
+  if (is_jammed_ && y[k_fraction] > branch_.end * (1.0 + k_margin)) {
+    throw std::domain_error(end_of_branch(ramp_.control));
+  }
   if (!is_jammed_) at_rest_ = y[k_fraction];
+  const Mode before = mode_;
   settle(0.0, log);
-  // An integrated state goes on; elsewhere the law says what it is.
-  complete(0.0, y);
+  // An integrated state goes on; elsewhere the law says what it is: a packing that jams beyond its closed start, too.
+  if (mode_ == before)
+    complete(0.0, y);
+  else
+    solve(0.0, y);
   watch(0.0);
 }
 
@@ -190,19 +199,29 @@ void System::complete(double xi, std::span<double> y) {
     y[k_fraction] = law_.zero_stress * std::exp(told(xi) + law_.sign * y[k_particles]);
     return;
   }
-  // Newton's method from the present value, which is kept where it fails: the next trial begins there.
+  // Newton's method from the present value, between bounds: the stress has a kink where the plastic fraction reaches 1.
   const double guess = y[k_fraction];
-  double trial = guess;
+  double lower = law_.jamming * (1.0 + 0.5 * k_start);
+  double upper = branch_.end + k_margin;
+  double trial = std::clamp(guess, lower, upper);
+  double last = upper - lower;
   for (int k = 0; k < k_iterations; ++k) {
     y[k_fraction] = trial;
     const double slope = slopes(law_, trial, strain_of(y)).at_given_particles / law_.given.youngs_modulus;
-    const double step = excess(xi, y) / slope;
-    trial = std::clamp(trial - step, law_.jamming * (1.0 + 0.5 * k_start), law_.end + k_margin);
-    if (std::abs(step) > k_resolution) continue;
+    const double value = excess(xi, y);
+    (value > 0.0 ? upper : lower) = trial;
+    double next = trial - value / slope;
+    if (!(next >= lower && next <= upper)) next = std::midpoint(lower, upper);
+    const double step = std::abs(next - trial);
+    trial = next;
+    // Corrections that no longer shrink are rounding.
+    const bool is_rounding = step < k_noise && step > 0.5 * last;
+    last = step;
+    if (step > k_resolution && !is_rounding) continue;
     y[k_fraction] = trial;
     return;
   }
-  y[k_fraction] = guess;
+  y[k_fraction] = guess;  // the next trial begins there
   throw std::domain_error("no packing fraction bears the stress");
 }
 

@@ -154,15 +154,22 @@ constexpr string_view k_extension =
     "that "
     "has not yielded goes back the way it came";
 
-constexpr std::array<string_view, 5> k_similarity_domain{
+constexpr string_view k_energy =
+    "warned: dissipation below -1e-6 of the work, possible with unloading = \"mdr\" where the elastic indenter holds "
+    "more "
+    "energy than the law's own pressure has put in: soft materials, contacts that have just yielded, and beyond zero "
+    "porosity";
+
+constexpr std::array<string_view, 6> k_similarity_domain{
     "small strains: the source sees the law leave its calculations at gamma/2R of about 0.03; a warning beyond",
     "every contact is independent of the others",
     "gamma/2R below 1",
     k_loading_only,
     k_extension,
+    k_energy,
 };
 
-constexpr std::array<string_view, 9> k_semimech_domain{
+constexpr std::array<string_view, 10> k_semimech_domain{
     "E/((1-nu^2) Y) from 22.0931 on; a warning outside 117.24 to 5933.40",
     "die and hydrostatic: nu below 0.5; a warning outside E/Y = 100 to 5000, nu = 0.2 to 0.48, "
     "E/(3 (1-2 nu) Y) = 64 to 28000",
@@ -176,15 +183,17 @@ constexpr std::array<string_view, 9> k_semimech_domain{
     "lateral contacts do not act back on the axial ones",
     k_loading_only,
     k_extension,
+    k_energy,
 };
 
-constexpr std::array<string_view, 5> k_hardening_domain{
+constexpr std::array<string_view, 6> k_hardening_domain{
     "rigid-plastic: no elastic strain; the run ends where the particle fills its cell (die: gamma/2R = 0.4764, "
     "hydrostatic: 0.1940)",
     "simple: a warning beyond gamma/2R = 0.5",
     "lateral contacts of a die: the source has no law for them",
     k_loading_only,
     k_extension,
+    k_energy,
 };
 
 // --- objections

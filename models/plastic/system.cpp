@@ -29,6 +29,12 @@ constexpr double k_nearest_opening = 1e-7;
 // Guards a rounding error beyond the end of a ramp are watched too.
 constexpr double k_reach_margin = 1e-9;
 constexpr double k_opening_power = 1.5;
+// Share of a prescribed value that is rounding.
+constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
+// Depth over R0 below which a contact is rounding.
+constexpr double k_least_depth = 1e-12;
+// Contacts shallower than this over R0 have no digits left where a ramp takes the wall there.
+constexpr double k_least_typical = 1e-7;
 
 double signed_power(double x, double exponent) noexcept { return std::copysign(std::pow(std::abs(x), exponent), x); }
 
@@ -75,8 +81,8 @@ System::System(Settings settings, std::vector<ContactClass> classes)
     if (!classes_[i].takes_force) continue;
     places_[i] = unknowns_.size();
     // Where there is a yield point, what lies before it counts too.
-    const double typical =
-        boundaries_.empty() || !begins_elastic(law) ? reach : std::min(reach, boundaries_[0].approach);
+    const double first = boundaries_.empty() || !begins_elastic(law) ? reach : std::min(reach, boundaries_[0].approach);
+    const double typical = std::max(first, k_least_typical);
     unknowns_.push_back({classes_[i].name, Unknown::Kind::differential, std::pow(typical, first_power(law)), true});
   }
   work_place_ = unknowns_.size();
@@ -99,6 +105,7 @@ void System::start(std::span<double> y) {
   memory_.assign(classes_.size(), Memory{});
   has_begun_ = false;
   farthest_ = 0.0;
+  energies_ = {};
   has_lateral_gap_ = false;
   overshooting_.reset();
   for (std::size_t i = 0; i < classes_.size(); ++i) {
@@ -117,9 +124,12 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     if (is_lateral(i)) continue;
     const double x = displacement(i, 0.0, y);
     if (touches(memory_[i].regime)) {
-      if (direction(i) < 0 && memory_[i].is_virgin) turn_back(i, x, log);
-      // From where a force has ended at nothing.
-      if (direction(i) < 0 && !is_loaded(i) && x <= origin(i)) {
+      // A wall that has only touched leaves no dent.
+      const bool has_pressed = x > (is_loaded(i) ? 0.0 : k_least_depth);
+      if (direction(i) < 0 && memory_[i].is_virgin && has_pressed) turn_back(i, x, log);
+      // From there, and from where a force has ended at nothing.
+      const bool is_left = memory_[i].is_virgin ? !has_pressed : !is_loaded(i) && x <= origin(i);
+      if (direction(i) < 0 && is_left) {
         lose_contact(i);
         log.push_back({"contact-lost", static_cast<int>(i)});
       }
@@ -138,8 +148,11 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   watch(0.0, y);
 }
 
+/// A ramp that rounding has left between two equal values goes nowhere.
 int System::direction(std::size_t i) const noexcept {
-  return ramps_[i].end > ramps_[i].start ? 1 : ramps_[i].end < ramps_[i].start ? -1 : 0;
+  const double way = ramps_[i].end - ramps_[i].start;
+  if (std::abs(way) <= k_rounding * std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end))) return 0;
+  return way > 0.0 ? 1 : -1;
 }
 
 /// Displacement or force as the program says.
@@ -527,6 +540,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
     for (std::size_t i = 0; i < memory_.size(); ++i) {
       if (!is_lateral(i)) stored += classes_[i].multiplicity() * stored_energy(i, displacement(i, xi, y));
     }
+    energies_.see(y[work_place_], stored);
     *out++ = stored * energy_unit;
     *out++ = (y[work_place_] - stored) * energy_unit;
   }
@@ -606,6 +620,11 @@ std::vector<Finding> System::warnings() const {
         {"a contact recovers more than it was compressed: so small a contact is not plastic enough for "
          "unloading = \"mdr\"",
          "recovery over displacement", *overshooting_});
+  }
+  if (const auto made = energies_.finding(
+          "unloading = \"mdr\" creates energy: the contact is not plastic enough for it, or the particle is compressed "
+          "as a whole")) {
+    result.push_back(*made);
   }
   return result;
 }

@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
   add_calibrate_command(app, action);
   add_sweep_command(app, action);
   add_bench_command(app, action);
+  add_stress_command(app, action);
   add_schema_command(app, action);
 
   if (names_no_command(app, argc, argv)) return k_usage;

@@ -3,7 +3,7 @@
 _monograin() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} options
   if ((COMP_CWORD == 1)); then
-    mapfile -t COMPREPLY < <(compgen -W "run check models plot atlas compare regress calibrate sweep bench schema --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "run check models plot atlas compare regress calibrate sweep bench stress schema --help --version" -- "$current")
     return
   fi
   if [[ $previous == models ]]; then
@@ -20,6 +20,7 @@ _monograin() {
     calibrate) options="--output --confidence --quiet --help" ;;
     sweep) options="--jobs --shard --design-only --output --help" ;;
     bench) options="--scenes --integrator --rtol --profile --against-fe --plots --output --help" ;;
+    stress) options="--time --seed --first --scenes --jobs --output --help" ;;
     regress) options="--accept --scenarios --curves --help" ;;
     *) options="--help" ;;
   esac

@@ -199,7 +199,7 @@ class Direct final : public EventLocator {
         is_covered = cover_piece(factor);
       } catch (const std::domain_error&) {
         // The equations end in it, or Newton's method has left the domain although there is a solution.
-        if (tried < k_smallest) throw;
+        if (tried < least_progress(begin_)) throw;
         factor = 0.5;
       }
       length_ = std::min(k_longest, factor * tried);

@@ -19,6 +19,8 @@ namespace {
 constexpr double k_round_off = 1e-13;
 // Events in a row without progress after which two modes are chattering.
 constexpr int k_most_idle_events = 50;
+// Finer tolerances may be below the rounding of a scene's own equations.
+constexpr double k_surest_rtol = 1e-11;
 // Durations of walls that end their steps together (relative).
 constexpr double k_same_duration = 1e-9;
 
@@ -78,6 +80,7 @@ class Drive {
         system_(*scene.system),
         watch_(system_),
         integrator_(make_integrator(integrator, system_, watch_, tolerances)),
+        tolerances_(tolerances),
         sink_(sink),
         output_(output),
         y_(system_.unknowns().size()),
@@ -104,6 +107,10 @@ class Drive {
     } catch (const SolverError& error) {
       result.status = RunStatus::failed;
       result.message = where(error.xi()) + error.what();
+      if (tolerances_.rtol < k_surest_rtol) {
+        result.message += fmt::format("; rtol = {:.3g} asks for errors of the size of rounding, expected {:g} or more",
+                                      tolerances_.rtol, k_surest_rtol);
+      }
     }
     result.statistics = integrator_->statistics();
     result.statistics.events = event_count_;
@@ -216,6 +223,7 @@ class Drive {
     plan_outputs();
     if (is_detached()) return false;
     int idle_events = 0;
+    long steps = 0;
     while (plan_.duration > 0.0 && 1.0 - xi_ > k_round_off) {
       const double segment_start = xi_;
       integrator_->begin(xi_, y_);
@@ -223,6 +231,7 @@ class Drive {
       double last = xi_;
       do {
         last = xi_;
+        if (++steps > integrator_->most_steps()) throw too_much_work(steps - 1);
         advance = integrator_->advance();
         xi_ = advance.xi;
         emit_outputs_before(last, xi_);
@@ -291,6 +300,14 @@ class Drive {
     }
     std::ranges::sort(fired);
     return fired;
+  }
+
+  [[nodiscard]] SolverError too_much_work(long steps) const {
+    return {
+        "integration", "too much work", xi_, integrator_->statistics().last_step,
+        fmt::format("{} internal steps have not brought this step of the program to its end; where the equations are "
+                    "stiff, expected cvode-bdf or ida",
+                    steps)};
   }
 
   [[nodiscard]] SolverError chattering() const {
@@ -375,6 +392,7 @@ class Drive {
   HybridSystem& system_;
   Watch watch_;
   std::unique_ptr<Integrator> integrator_;
+  Tolerances tolerances_;
   HistorySink& sink_;
   const Output& output_;
   std::vector<double> y_;

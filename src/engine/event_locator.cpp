@@ -146,7 +146,7 @@ void EventLocator::locate_event() {
     }
     std::size_t first = 0;
     const double root = first_root(before, after, first);
-    const bool is_shorter = root < end_ - k_smallest;
+    const bool is_shorter = root < end_ - least_progress(begin_);
     look_count_ = place;
     if (root < end_) move_end(root);
     fired_.clear();

@@ -19,8 +19,6 @@ class EventLocator : public Integrator {
  protected:
   EventLocator(HybridSystem& system, Watch& watch);
 
-  /// A piece is not made smaller than this, in step coordinates.
-  static constexpr double k_smallest = 1e-13;
   /// Shorter pieces are not looked into: guards near zero are rounding there.
   static constexpr double k_smallest_looked_into = 1e-6;
 

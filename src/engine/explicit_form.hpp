@@ -25,13 +25,8 @@ namespace monograin {
 /// How near to zero a guard counts as fired together with another, where both carry an integrator's error.
 [[nodiscard]] inline double guard_tolerance_of(const Tolerances& tolerances) noexcept { return 1e-2 * tolerances.rtol; }
 
-/// A step this short that has met the end of the equations has arrived there (step coordinates).
-inline constexpr double k_least_progress = 1e-13;
-/// Internal steps of one segment.
-inline constexpr long k_most_steps = 200'000;
-/// What an explicit method that needs more of them is told.
-inline constexpr const char* k_stiff_for_explicit =
-    "the equations are most likely stiff here, which slows explicit methods down; expected cvode-bdf or ida";
+/// What a step is made shorter by that has met the end of the equations.
+inline constexpr double k_retreat = 0.1;
 
 [[nodiscard]] inline bool all_finite(std::span<const double> values) noexcept {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });

@@ -18,7 +18,7 @@ namespace {
 using Driver = Handle<gsl_odeiv2_driver*, gsl_odeiv2_driver_free>;
 
 constexpr double k_first_step = 1e-3;
-constexpr double k_smallest_step = 1e-15;
+constexpr double k_smallest_step = 1e-2;  // over the least progress
 
 const gsl_odeiv2_step_type* type_of(GslMethod method) {
   switch (method) {
@@ -61,7 +61,11 @@ class GslStepper final : public Stepper {
           gsl_odeiv2_evolve_apply(driver_->e, driver_->c, driver_->s, &system_, &at, 1.0, &step_, now_.data());
       rejections += static_cast<long>(driver_->e->failed_steps - rejected);
       pending_.rethrow();
-      if (status == GSL_SUCCESS && at > begin_) {
+      // A step that ends where the equations do not hold is none, however small its error.
+      const bool is_accepted =
+          status == GSL_SUCCESS && at > begin_ && rates(at, now_.data(), between_.data(), this) == GSL_SUCCESS;
+      pending_.rethrow();
+      if (is_accepted) {
         end_ = at;
         order = static_cast<int>(gsl_odeiv2_step_order(driver_->s));
         return end_;
@@ -71,9 +75,9 @@ class GslStepper final : public Stepper {
       gsl_odeiv2_driver_reset(driver_.get());
       step_ = 0.1 * std::min(step_, 1.0 - begin_);
       ++rejections;
-      if (step_ >= k_least_progress) continue;
+      if (step_ >= least_progress(begin_)) continue;
       if (!pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
-      if (step_ < k_smallest_step)
+      if (step_ < k_smallest_step * least_progress(begin_))
         throw SolverError("gsl_odeiv2_evolve_apply", gsl_strerror(status), begin_, step_, {});
     }
   }

@@ -28,7 +28,9 @@ class Ida final : public Integrator {
       : system_(system), watch_(watch), tolerances_(tolerances), quadratures_(system.unknowns()) {
     const auto unknowns = system.unknowns();
     const auto size = static_cast<sunindextype>(unknowns.size());
-    for (NVector* vector : {&y_, &dy_, &id_, &atol_, &weights_, &errors_}) vector->reset(N_VNew_Serial(size, context_));
+    for (NVector* vector : {&y_, &dy_, &begin_state_, &begin_rates_, &id_, &atol_, &weights_, &errors_}) {
+      vector->reset(N_VNew_Serial(size, context_));
+    }
     complete_.resize(unknowns.size());
     N_VConst(0.0, y_.get());
     N_VConst(0.0, dy_.get());
@@ -44,7 +46,7 @@ class Ida final : public Integrator {
     check("IDAInit", IDAInit(memory_.get(), residual, 0.0, y_.get(), dy_.get()));
     check("IDASetUserData", IDASetUserData(memory_.get(), this));
     check("IDASVtolerances", IDASVtolerances(memory_.get(), local_rtol(tolerances), atol_.get()));
-    check("IDASetMaxNumSteps", IDASetMaxNumSteps(memory_.get(), k_most_steps));
+    check("IDASetMaxNumSteps", IDASetMaxNumSteps(memory_.get(), k_most_internal_steps));
     // From where a force is zero, the first steps are smaller than IDA's guess by many orders.
     check("IDASetMaxErrTestFails", IDASetMaxErrTestFails(memory_.get(), k_most_failures));
     check("IDASetMaxConvFails", IDASetMaxConvFails(memory_.get(), k_most_failures));
@@ -55,37 +57,40 @@ class Ida final : public Integrator {
   }
 
   void begin(double xi, std::span<const double> y) override {
-    past_ = statistics();  // counters are reset by IDAReInit
-    ++past_.segments;
-    segment_steps_ = 0;
-    end_ = xi;
     std::ranges::copy(y, view(y_.get()).begin());
     quadratures_.begin(view(y_.get()));
     system_.all_rates(xi, y, view(dy_.get()));
-    check("IDAReInit", IDAReInit(memory_.get(), xi, y_.get(), dy_.get()));
-    check("IDASetStopTime", IDASetStopTime(memory_.get(), 1.0));
-    // The system's own rates are consistent; IDACalcIC brings the rest within the tolerance and says so if it cannot.
-    if (system_.is_semi_explicit()) check("IDACalcIC", IDACalcIC(memory_.get(), IDA_YA_YDP_INIT, 1.0));
-    check("IDARootInit", IDARootInit(memory_.get(), 0, nullptr));
-    roots_.found.assign(watch_.size(), 0);
-    if (watch_.size() == 0) return;
-    check("IDARootInit", IDARootInit(memory_.get(), static_cast<int>(watch_.size()), guards));
-    roots_.directions.assign(watch_.directions().begin(), watch_.directions().end());
-    check("IDASetRootDirection", IDASetRootDirection(memory_.get(), roots_.directions.data()));
-    check("IDASetNoInactiveRootWarn", IDASetNoInactiveRootWarn(memory_.get()));
+    start(xi, 0.0);
+    ++past_.segments;
+    // The system's own rates are consistent; IDACalcIC brings the rest within the tolerance. Where it cannot, because
+    // the balance is singular (first touch), the first step shows whether they were.
+    if (!system_.is_semi_explicit()) return;
+    pending_.forget();
+    const int flag = IDACalcIC(memory_.get(), IDA_YA_YDP_INIT, 1.0);
+    pending_.rethrow();
+    if (flag < 0) start(xi, 0.0);
   }
 
   Advance advance() override {
-    if (++segment_steps_ > k_most_steps) throw failure("IDASolve", "IDA_TOO_MUCH_WORK");
-    pending_.forget();
     roots_.fired.clear();
     const double begin = end_;
-    const int flag = IDASolve(memory_.get(), 1.0, &end_, y_.get(), dy_.get(), IDA_ONE_STEP);
-    pending_.rethrow();
-    if (flag < 0 && !pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
+    N_VScale(1.0, y_.get(), begin_state_.get());
+    N_VScale(1.0, dy_.get(), begin_rates_.get());
+    pending_.forget();
+    int flag = evolve();
+    // A step whose trials, or whose guards, leave the domain is tried anew, shorter than the library itself would.
+    for (double step = 0.0; flag < 0 && !pending_.domain_end().empty(); flag = evolve()) {
+      // Before its first step the library has none.
+      if (step == 0.0 && (IDAGetCurrentStep(memory_.get(), &step) != IDA_SUCCESS || !(step > 0.0))) step = 1.0;
+      step = k_retreat * std::min(step, 1.0 - begin);
+      if (!(step > least_progress(begin))) throw std::domain_error(pending_.domain_end());
+      N_VScale(1.0, begin_state_.get(), y_.get());
+      N_VScale(1.0, begin_rates_.get(), dy_.get());
+      start(begin, step);
+    }
     check("IDASolve", flag);
     // Ever smaller steps towards the end of the equations would never get there.
-    if (!pending_.domain_end().empty() && end_ - begin < k_least_progress) {
+    if (!pending_.domain_end().empty() && end_ - begin < least_progress(begin)) {
       throw std::domain_error(pending_.domain_end());
     }
     if (flag == IDA_ROOT_RETURN) {
@@ -126,6 +131,28 @@ class Ida final : public Integrator {
   }
 
  private:
+  /// Begins at xi with the state in y_ and dy_. @param step  the first to be tried; 0: the library's choice
+  void start(double xi, double step) {
+    past_ = statistics();  // counters are reset with the state
+    end_ = xi;
+    check("IDAReInit", IDAReInit(memory_.get(), xi, y_.get(), dy_.get()));
+    check("IDASetInitStep", IDASetInitStep(memory_.get(), step));
+    check("IDASetStopTime", IDASetStopTime(memory_.get(), 1.0));
+    check("IDARootInit", IDARootInit(memory_.get(), 0, nullptr));
+    roots_.found.assign(watch_.size(), 0);
+    if (watch_.size() == 0) return;
+    check("IDARootInit", IDARootInit(memory_.get(), static_cast<int>(watch_.size()), guards));
+    roots_.directions.assign(watch_.directions().begin(), watch_.directions().end());
+    check("IDASetRootDirection", IDASetRootDirection(memory_.get(), roots_.directions.data()));
+    check("IDASetNoInactiveRootWarn", IDASetNoInactiveRootWarn(memory_.get()));
+  }
+
+  int evolve() {
+    const int flag = IDASolve(memory_.get(), 1.0, &end_, y_.get(), dy_.get(), IDA_ONE_STEP);
+    pending_.rethrow();
+    return flag;
+  }
+
   static int residual(realtype xi, N_Vector y, N_Vector dy, N_Vector res, void* self) noexcept {
     auto& ida = *static_cast<Ida*>(self);
     return ida.pending_.guard([&] {
@@ -170,11 +197,10 @@ class Ida final : public Integrator {
   Pending pending_;
   RootList roots_;
   double end_ = 0.0;
-  long segment_steps_ = 0;
   Statistics past_;
 
   sundials::Context context_;  // first in, last out
-  NVector y_, dy_, id_, atol_, weights_, errors_;
+  NVector y_, dy_, begin_state_, begin_rates_, id_, atol_, weights_, errors_;
   Matrix matrix_;
   LinearSolver linear_;
   IdaMemory memory_;

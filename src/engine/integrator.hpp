@@ -1,6 +1,7 @@
 /// What the engine asks of an integrator, and the integrators there are.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -45,6 +46,13 @@ class SolverError : public std::runtime_error {
   double xi_;
 };
 
+/// A step from xi this short that has met the end of the equations has arrived there (step coordinates). Where a step
+/// of the program begins, shorter ones are still told apart: a contact may be that much shallower than the ramp.
+[[nodiscard]] inline double least_progress(double xi) noexcept { return 1e-13 * std::max(xi, 1e-7); }
+
+/// Internal steps of one step of the program after which it is given up.
+inline constexpr long k_most_internal_steps = 200'000;
+
 /// Integrates one system over segments: pieces of a step without a kink, from one restart to the next.
 class Integrator {
  public:
@@ -71,6 +79,9 @@ class Integrator {
   [[nodiscard]] virtual double guard_tolerance() const noexcept = 0;
 
   [[nodiscard]] virtual Statistics statistics() const = 0;
+
+  /// How many internal steps a step of the program may take.
+  [[nodiscard]] virtual long most_steps() const noexcept { return k_most_internal_steps; }
 };
 
 /// What make_integrator makes: the names of scenario files but "auto".

@@ -7,8 +7,10 @@
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
+#include <cmath>
 #include <stdexcept>
 #include <type_traits>
+#include <vector>
 
 #include "engine/rosenbrock.hpp"
 #include "engine/stepper.hpp"
@@ -19,11 +21,8 @@ namespace {
 namespace odeint = boost::numeric::odeint;
 
 constexpr double k_first_step = 1e-3;
-constexpr double k_smallest_step = 1e-15;
-constexpr int k_most_tries = 500;  // of one step
-// Of Fehlberg's method, whose error estimate does not see quadratures: it is zero for rates that depend on xi alone.
-// Nor may it then step farther than it has come, because rates may be singular where a segment begins.
-constexpr double k_longest_fehlberg = 1.0 / 32.0;
+constexpr double k_smallest_step = 1e-2;  // over the least progress
+constexpr int k_most_tries = 500;         // of one step
 
 template <class State>
 State zeros(std::size_t size) {
@@ -50,34 +49,107 @@ double controlled_step(double xi, double& step, long& rejections, Try&& attempt)
       step = now;
     } catch (const std::domain_error&) {
       step = 0.25 * std::min(step, 1.0 - xi);
-      if (step < k_least_progress) throw;
+      if (step < least_progress(xi)) throw;
     }
     ++rejections;
-    if (step < k_smallest_step) break;
+    if (step < k_smallest_step * least_progress(xi)) break;
   }
   throw SolverError("try_step", "no step passes the error test", xi, step, {});
 }
+
+/// Fehlberg's own error estimate does not see quadratures: it is zero for rates that depend on xi alone. For those the
+/// method is the Newton-Cotes rule with nodes 0, 1/6 ... 1, and the rule of order 6 with five of them stands beside it.
+template <class State>
+class QuadratureErrors {
+ public:
+  QuadratureErrors(const ScaledForm& form, const Tolerances& tolerances)
+      : rtol_(local_rtol(tolerances)), atol_(local_atol(tolerances)), sums_(zeros<State>(form.size())) {
+    for (std::size_t k = 0; k < form.size(); ++k) {
+      if (form.is_quadrature(k)) places_.push_back(k);
+    }
+  }
+
+  /// @param stage  whose rates come first: 1 where those at the step's beginning are known
+  void begin(std::size_t stage) noexcept {
+    stage_ = stage;
+    for (const std::size_t k : places_) sums_[k] = 0.0;
+  }
+  /// Rates of the method's stages, in their order.
+  void see(const State& rates) noexcept {
+    const double weight = k_differences[stage_];
+    if (stage_ + 1 < k_differences.size()) ++stage_;
+    if (weight == 0.0) return;
+    for (const std::size_t k : places_) sums_[k] += weight * rates[k];
+  }
+  /// Over what is tolerated.
+  [[nodiscard]] double largest(const State& begin, double step) const noexcept {
+    double largest = 0.0;
+    for (const std::size_t k : places_) {
+      largest = std::max(largest, std::abs(step * sums_[k]) / (atol_ + rtol_ * std::abs(begin[k])));
+    }
+    return largest;
+  }
+
+ private:
+  // The weights of the two rules, one less the other, by stage.
+  static constexpr double k_end = 41.0 / 840.0 - 7.0 / 150.0;
+  static constexpr double k_sixth = 9.0 / 35.0 - 27.0 / 100.0;
+  static constexpr std::array<double, 13> k_differences{
+      0.0,         0.0,         0.0, 0.0,   0.0,  34.0 / 105.0 - 11.0 / 30.0, k_sixth, k_sixth,
+      9.0 / 280.0, 9.0 / 280.0, 0.0, k_end, k_end};
+  double rtol_, atol_;
+  std::vector<std::size_t> places_;
+  State sums_;
+  std::size_t stage_ = 0;
+};
+
+/// What Odeint asks for the error of a step over what is tolerated.
+template <class State>
+class FehlbergErrorChecker
+    : public odeint::default_error_checker<double, typename odeint::runge_kutta_fehlberg78<State>::algebra_type,
+                                           odeint::default_operations> {
+ public:
+  using Base = odeint::default_error_checker<double, typename odeint::runge_kutta_fehlberg78<State>::algebra_type,
+                                             odeint::default_operations>;
+  FehlbergErrorChecker(const Tolerances& tolerances, const QuadratureErrors<State>& quadratures)
+      : Base(local_atol(tolerances), local_rtol(tolerances), 1.0, 0.0), quadratures_(&quadratures) {}
+
+  template <class Old, class Rates, class Error, class Time>
+  double error(typename Base::algebra_type& algebra, const Old& old, const Rates& rates, Error& error,
+               Time step) const {
+    return std::max(static_cast<double>(Base::error(algebra, old, rates, error, step)),
+                    quadratures_->largest(old, step));
+  }
+
+ private:
+  const QuadratureErrors<State>* quadratures_;
+};
+
+template <class State>
+using Fehlberg = odeint::controlled_runge_kutta<odeint::runge_kutta_fehlberg78<State>, FehlbergErrorChecker<State>>;
 
 /// Explicit methods. That of order 5 has an interpolation of its own; in steps of the others a state is found by
 /// integrating to it with the method of order 8.
 template <class State, class Controlled>
 class ExplicitStepper final : public Stepper {
  public:
-  using Reaching = odeint::controlled_runge_kutta<odeint::runge_kutta_fehlberg78<State>>;
   static constexpr bool has_interpolation =
       std::is_same_v<Controlled, odeint::controlled_runge_kutta<odeint::runge_kutta_dopri5<State>>>;
 
-  ExplicitStepper(ScaledForm& form, Controlled controlled, const Tolerances& tolerances, int method_order)
+  /// @param make  the controlled method, of the errors of its quadratures
+  template <class Make>
+  ExplicitStepper(ScaledForm& form, const Tolerances& tolerances, int method_order, Make&& make)
       : form_(form),
-        controlled_(std::move(controlled)),
-        reaching_(typename Reaching::error_checker_type(local_atol(tolerances), local_rtol(tolerances), 1.0, 0.0)) {
+        quadratures_(form, tolerances),
+        controlled_(make(quadratures_)),
+        reaching_(FehlbergErrorChecker<State>(tolerances, quadratures_)) {
     order = method_order;
     for (State* state : {&old_, &old_rates_, &now_, &now_rates_, &between_}) *state = zeros<State>(form.size());
   }
 
   void begin(double xi, std::span<const double> z) override {
     std::ranges::copy(z, now_.begin());
-    segment_begin_ = begin_ = end_ = xi;
+    begin_ = end_ = xi;
     step_ = std::min(k_first_step, 1.0 - xi);
     has_rates_ = false;
   }
@@ -89,15 +161,16 @@ class ExplicitStepper final : public Stepper {
     std::swap(old_rates_, now_rates_);
     begin_ = end_;
     end_ = controlled_step(begin_, step_, rejections, [&](double& end, double& step) {
-      if constexpr (has_interpolation)
+      if constexpr (has_interpolation) {
         return controlled_.try_step(system(), old_, old_rates_, end, now_, now_rates_, step);
-      else
-        return controlled_.try_step(system(), old_, old_rates_, end, now_, step);
+      } else {
+        quadratures_.begin(1);
+        const auto result = controlled_.try_step(system(), old_, old_rates_, end, now_, step);
+        // A step that ends where the equations do not hold is none, however small its error.
+        if (result == odeint::success) rates(now_, now_rates_, end);
+        return result;
+      }
     });
-    if constexpr (!has_interpolation) rates(now_, now_rates_, end_);
-    if constexpr (std::is_same_v<Controlled, Reaching>) {
-      step_ = std::min({step_, k_longest_fehlberg, std::max(k_first_step, end_ - segment_begin_)});
-    }
     return end_;
   }
 
@@ -118,9 +191,10 @@ class ExplicitStepper final : public Stepper {
       between_ = old_;
       double at = begin_;
       double step = xi - begin_;
-      for (int tries = 0; xi - at > k_smallest_step; ++tries) {
+      for (int tries = 0; xi - at > k_smallest_step * least_progress(at); ++tries) {
         if (tries == k_most_tries) throw SolverError("try_step", "a state in a step is not reached", at, step, {});
-        step = std::min({step, xi - at, k_longest_fehlberg});
+        step = std::min(step, xi - at);
+        quadratures_.begin(0);
         static_cast<void>(reaching_.try_step(system(), between_, at, step));
       }
     }
@@ -132,14 +206,18 @@ class ExplicitStepper final : public Stepper {
     std::fill(dz.begin() + static_cast<std::ptrdiff_t>(form_.size()), dz.end(), 0.0);
   }
   auto system() {
-    return [this](const State& z, State& dz, double xi) { rates(z, dz, xi); };
+    return [this](const State& z, State& dz, double xi) {
+      rates(z, dz, xi);
+      quadratures_.see(dz);
+    };
   }
 
   ScaledForm& form_;
+  QuadratureErrors<State> quadratures_;
   Controlled controlled_;
-  Reaching reaching_;
+  Fehlberg<State> reaching_;
   State old_, old_rates_, now_, now_rates_, between_;
-  double segment_begin_ = 0.0, begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
+  double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
   bool has_rates_ = false;
 };
 
@@ -153,7 +231,8 @@ class RosenbrockStepper final : public Stepper {
         method_({size_ + 1, rates, jacobian, this}, local_atol(tolerances), local_rtol(tolerances)),
         start_(size_ + 1),
         by_z_(size_ * size_),
-        by_xi_(size_) {
+        by_xi_(size_),
+        end_rates_(size_) {
     order = 4;
   }
 
@@ -169,7 +248,10 @@ class RosenbrockStepper final : public Stepper {
     begin_ = end_;
     method_.begin_step();
     end_ = controlled_step(begin_, step_, rejections, [&](double& end, double& step) {
-      return method_.try_step(end, step) ? odeint::success : odeint::fail;
+      if (!method_.try_step(end, step)) return odeint::fail;
+      // A step that ends where the equations do not hold is none, however small its error.
+      form_.rates(end, {method_.end_state(), size_}, end_rates_);
+      return odeint::success;
     });
     return end_;
   }
@@ -204,7 +286,7 @@ class RosenbrockStepper final : public Stepper {
   ScaledForm& form_;
   std::size_t size_;
   Rosenbrock4 method_;
-  std::vector<double> start_, by_z_, by_xi_;
+  std::vector<double> start_, by_z_, by_xi_, end_rates_;
   double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
 };
 
@@ -215,18 +297,19 @@ std::unique_ptr<Stepper> make_explicit(OdeintMethod method, ScaledForm& form, co
   switch (method) {
     case OdeintMethod::dopri5: {
       using Controlled = odeint::controlled_runge_kutta<odeint::runge_kutta_dopri5<State>>;
-      return std::make_unique<ExplicitStepper<State, Controlled>>(
-          form, Controlled(typename Controlled::error_checker_type(atol, rtol, 1.0, 0.0)), tolerances, 5);
+      return std::make_unique<ExplicitStepper<State, Controlled>>(form, tolerances, 5, [&](const auto&) {
+        return Controlled(typename Controlled::error_checker_type(atol, rtol, 1.0, 0.0));
+      });
     }
-    case OdeintMethod::fehlberg78: {
-      using Controlled = odeint::controlled_runge_kutta<odeint::runge_kutta_fehlberg78<State>>;
-      return std::make_unique<ExplicitStepper<State, Controlled>>(
-          form, Controlled(typename Controlled::error_checker_type(atol, rtol, 1.0, 0.0)), tolerances, 8);
-    }
+    case OdeintMethod::fehlberg78:
+      return std::make_unique<ExplicitStepper<State, Fehlberg<State>>>(
+          form, tolerances, 8, [&](const QuadratureErrors<State>& quadratures) {
+            return Fehlberg<State>(FehlbergErrorChecker<State>(tolerances, quadratures));
+          });
     case OdeintMethod::bulirsch_stoer: {
       using Controlled = odeint::bulirsch_stoer<State>;
-      return std::make_unique<ExplicitStepper<State, Controlled>>(form, Controlled(atol, rtol, 1.0, 0.0), tolerances,
-                                                                  0);
+      return std::make_unique<ExplicitStepper<State, Controlled>>(
+          form, tolerances, 0, [&](const auto&) { return Controlled(atol, rtol, 1.0, 0.0); });
     }
     case OdeintMethod::rosenbrock4:
       return std::make_unique<RosenbrockStepper>(form, tolerances);

@@ -32,18 +32,12 @@ class Stepped final : public EventLocator {
     form_.begin(y, z_);
     stepper_->begin(xi, z_);
     step_end_ = xi;
-    segment_steps_ = 0;
     begin_segment(xi, y);
   }
 
   Advance advance() override {
     begin_piece();
     if (begin_ >= step_end_) {
-      if (++segment_steps_ > k_most_steps) {
-        const bool is_explicit = stepper_->jacobian_evaluations == 0;
-        throw SolverError("step", "TOO_MUCH_WORK", begin_, statistics_.last_step,
-                          is_explicit ? k_stiff_for_explicit : "");
-      }
       step_end_ = stepper_->step();
       ++statistics_.steps;
       statistics_.last_step = step_end_ - begin_;
@@ -101,7 +95,7 @@ class Stepped final : public EventLocator {
         look(xi, end_state_, end_values_);
         return;
       } catch (const std::domain_error&) {
-        if (xi - begin_ < k_smallest) throw;
+        if (xi - begin_ < least_progress(begin_)) throw;
         xi = 0.5 * (begin_ + xi);
       }
     }
@@ -113,8 +107,11 @@ class Stepped final : public EventLocator {
   std::vector<double> z_;
   std::vector<double> middle_state_;
   double step_end_ = 0.0;
-  long segment_steps_ = 0;
 };
+
+// Difference quotients: what a step is made shorter by that leaves the domain, and how often.
+constexpr double k_nearer = 1e-2;
+constexpr int k_most_nearer = 8;
 
 /// Forward Euler with a fixed step, as explicit codes of the discrete-element kind go: transitions take effect at the
 /// first step's end that finds them past.
@@ -181,6 +178,9 @@ class FixedStep final : public Integrator {
     return now;
   }
 
+  /// Their number is asked for; every event cuts one in two.
+  [[nodiscard]] long most_steps() const noexcept override { return std::lround(1.0 / step_) + k_most_internal_steps; }
+
  private:
   static constexpr double k_least_step = 1e-7;  // of a step of the program
 
@@ -206,16 +206,27 @@ void difference_jacobian(ScaledForm& form, double xi, std::span<const double> z,
   std::vector<double> shifted(n);
   std::vector<double> point(z.begin(), z.end());
   form.rates(xi, point, base);
+  // Where the equations end nearer than that, a regime is as short, and its own scale so much smaller.
+  const auto differ = [&](double step, auto&& shift) {
+    for (int nearer = 0;; ++nearer, step *= k_nearer) {
+      try {
+        shift(step);
+        return step;
+      } catch (const std::domain_error&) {
+        if (nearer == k_most_nearer) throw;
+      }
+    }
+  };
   for (std::size_t j = 0; j < n; ++j) {
-    const double step = k_root * std::max(std::abs(z[j]), 1e-2);
-    point[j] = z[j] + step;
-    form.rates(xi, point, shifted);
+    const double step = differ(k_root * std::max(std::abs(z[j]), 1e-2), [&](double by) {
+      point[j] = z[j] + by;
+      form.rates(xi, point, shifted);
+    });
     for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted[i] - base[i]) / step;
     point[j] = z[j];
   }
   // Backwards: beyond 1 the program goes on differently.
-  const double step = xi > 0.5 ? -k_root : k_root;
-  form.rates(xi + step, point, shifted);
+  const double step = differ(xi > 0.5 ? -k_root : k_root, [&](double by) { form.rates(xi + by, point, shifted); });
   for (std::size_t i = 0; i < n; ++i) by_xi[i] = (shifted[i] - base[i]) / step;
 }
 

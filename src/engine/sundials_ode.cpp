@@ -27,7 +27,9 @@ struct CvodeLibrary {
   static constexpr auto set_tolerances = CVodeSVtolerances;
   static constexpr auto set_most_steps = CVodeSetMaxNumSteps;
   static constexpr auto set_linear_solver = CVodeSetLinearSolver;
+  static constexpr auto set_jacobian_frequency = CVodeSetJacEvalFrequency;
   static constexpr auto set_stop_time = CVodeSetStopTime;
+  static constexpr auto set_first_step = CVodeSetInitStep;
   static constexpr auto init_roots = CVodeRootInit;
   static constexpr auto set_root_direction = CVodeSetRootDirection;
   static constexpr auto set_no_inactive_root_warning = CVodeSetNoInactiveRootWarn;
@@ -71,7 +73,9 @@ struct ArkodeLibrary {
   static constexpr auto set_tolerances = ARKStepSVtolerances;
   static constexpr auto set_most_steps = ARKStepSetMaxNumSteps;
   static constexpr auto set_linear_solver = ARKStepSetLinearSolver;
+  static constexpr auto set_jacobian_frequency = ARKStepSetJacEvalFrequency;
   static constexpr auto set_stop_time = ARKStepSetStopTime;
+  static constexpr auto set_first_step = ARKStepSetInitStep;
   static constexpr auto init_roots = ARKStepRootInit;
   static constexpr auto set_root_direction = ARKStepSetRootDirection;
   static constexpr auto set_no_inactive_root_warning = ARKStepSetNoInactiveRootWarn;
@@ -110,7 +114,8 @@ class SundialsOde final : public Integrator {
   SundialsOde(OdeMethod method, HybridSystem& system, Watch& watch, const Tolerances& tolerances)
       : system_(system), watch_(watch), method_(method), tolerances_(tolerances), form_(system) {
     const auto size = static_cast<sunindextype>(form_.size());
-    for (NVector* vector : {&y_, &atol_, &weights_, &errors_}) vector->reset(N_VNew_Serial(size, context_));
+    for (NVector* vector : {&y_, &begin_state_, &atol_, &weights_, &errors_})
+      vector->reset(N_VNew_Serial(size, context_));
     N_VConst(0.0, y_.get());
     for (std::size_t k = 0; k < form_.size(); ++k) {
       view(atol_.get())[k] = local_atol(tolerances) * form_.unknown(k).scale;
@@ -119,47 +124,40 @@ class SundialsOde final : public Integrator {
     check("SetErrHandlerFn", Library::set_error_handler(memory_.get(), keep_message, &message_));
     check("SetUserData", Library::set_user_data(memory_.get(), this));
     check("SVtolerances", Library::set_tolerances(memory_.get(), local_rtol(tolerances), atol_.get()));
-    check("SetMaxNumSteps", Library::set_most_steps(memory_.get(), k_most_steps));
+    check("SetMaxNumSteps", Library::set_most_steps(memory_.get(), k_most_internal_steps));
     if (method_ == OdeMethod::cvode_bdf || method_ == OdeMethod::arkode_dirk) {
       matrix_.reset(SUNDenseMatrix(size, size, context_));
       linear_ = make_dense_solver(y_.get(), matrix_.get(), context_);
       check("SetLinearSolver", Library::set_linear_solver(memory_.get(), linear_.get(), matrix_.get()));
+      // With one from a singular start Newton's corrections are far too small, and taken for convergence.
+      check("SetJacEvalFrequency", Library::set_jacobian_frequency(memory_.get(), 1));
     }
   }
 
   void begin(double xi, std::span<const double> y) override {
-    // Counters are reset with the state.
-    past_ = statistics();
-    ++past_.segments;
-    segment_steps_ = 0;
-    end_ = xi;
     form_.begin(y, view(y_.get()));
-    check("ReInit", Library::reinit(memory_.get(), method_, right_hand_side, xi, y_.get()));
-    check("SetStopTime", Library::set_stop_time(memory_.get(), 1.0));
-    // Unlisting all guards first makes the library forget which ones it had switched off.
-    check("RootInit", Library::init_roots(memory_.get(), 0, nullptr));
-    roots_.found.assign(watch_.size(), 0);
-    if (watch_.size() == 0) return;
-    check("RootInit", Library::init_roots(memory_.get(), static_cast<int>(watch_.size()), guards));
-    roots_.directions.assign(watch_.directions().begin(), watch_.directions().end());
-    check("SetRootDirection", Library::set_root_direction(memory_.get(), roots_.directions.data()));
-    check("SetNoInactiveRootWarn", Library::set_no_inactive_root_warning(memory_.get()));
+    start(xi, 0.0);
+    ++past_.segments;
   }
 
   Advance advance() override {
-    if (++segment_steps_ > k_most_steps) {
-      if (!linear_) message_ = k_stiff_for_explicit;
-      throw failure(Library::name, "TOO_MUCH_WORK");
-    }
-    pending_.forget();
     roots_.fired.clear();
     const double begin = end_;
-    const int flag = Library::evolve(memory_.get(), 1.0, y_.get(), &end_, Library::one_step);
-    pending_.rethrow();
-    if (flag < 0 && !pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
+    N_VScale(1.0, y_.get(), begin_state_.get());
+    pending_.forget();
+    int flag = evolve();
+    // A step whose trials, or whose guards, leave the domain is tried anew, shorter than the library itself would.
+    for (double step = 0.0; flag < 0 && !pending_.domain_end().empty(); flag = evolve()) {
+      // Before its first step the library has none.
+      if (step == 0.0 && (Library::current_step(memory_.get(), &step) != 0 || !(step > 0.0))) step = 1.0;
+      step = k_retreat * std::min(step, 1.0 - begin);
+      if (!(step > least_progress(begin))) throw std::domain_error(pending_.domain_end());
+      N_VScale(1.0, begin_state_.get(), y_.get());
+      start(begin, step);
+    }
     check(Library::name, flag);
     // Ever smaller steps towards the end of the equations would never get there.
-    if (!pending_.domain_end().empty() && end_ - begin < k_least_progress) {
+    if (!pending_.domain_end().empty() && end_ - begin < least_progress(begin)) {
       throw std::domain_error(pending_.domain_end());
     }
     if (flag == Library::root_return) {
@@ -205,6 +203,29 @@ class SundialsOde final : public Integrator {
 
   void create();
 
+  /// Begins at xi with the state in y_. @param step  the first to be tried; 0: the library's choice
+  void start(double xi, double step) {
+    past_ = statistics();  // counters are reset with the state
+    end_ = xi;
+    check("ReInit", Library::reinit(memory_.get(), method_, right_hand_side, xi, y_.get()));
+    check("SetInitStep", Library::set_first_step(memory_.get(), step));
+    check("SetStopTime", Library::set_stop_time(memory_.get(), 1.0));
+    // Unlisting all guards first makes the library forget which ones it had switched off.
+    check("RootInit", Library::init_roots(memory_.get(), 0, nullptr));
+    roots_.found.assign(watch_.size(), 0);
+    if (watch_.size() == 0) return;
+    check("RootInit", Library::init_roots(memory_.get(), static_cast<int>(watch_.size()), guards));
+    roots_.directions.assign(watch_.directions().begin(), watch_.directions().end());
+    check("SetRootDirection", Library::set_root_direction(memory_.get(), roots_.directions.data()));
+    check("SetNoInactiveRootWarn", Library::set_no_inactive_root_warning(memory_.get()));
+  }
+
+  int evolve() {
+    const int flag = Library::evolve(memory_.get(), 1.0, y_.get(), &end_, Library::one_step);
+    pending_.rethrow();
+    return flag;
+  }
+
   static int right_hand_side(realtype xi, N_Vector y, N_Vector dy, void* self) noexcept {
     auto& ode = *static_cast<SundialsOde*>(self);
     return ode.pending_.guard([&] {
@@ -246,11 +267,10 @@ class SundialsOde final : public Integrator {
   Pending pending_;
   RootList roots_;
   double end_ = 0.0;
-  long segment_steps_ = 0;
   Statistics past_;
 
   sundials::Context context_;  // first in, last out
-  NVector y_, atol_, weights_, errors_;
+  NVector y_, begin_state_, atol_, weights_, errors_;
   Matrix matrix_;
   LinearSolver linear_;
   NonlinearSolver nonlinear_;

@@ -64,11 +64,18 @@ std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::
   return names;
 }
 
+/// How far a wall that is withdrawn so far is taken to reach into the particle: its contacts would have tolerances of
+/// the order of what the particle bears there.
+constexpr double k_share_of_withdrawal = 1e-4;
+
+/// Largest displacement or force of the programs.
 double largest_target(const std::vector<Channel>& channels, Step::Kind kind) {
   double largest = 0.0;
   for (const Channel& channel : channels) {
     for (const Step& step : channel.program) {
-      if (step.kind == kind) largest = std::max(largest, std::abs(step.target));
+      if (step.kind != kind) continue;
+      const bool withdraws = kind == Step::Kind::displacement && step.target < 0.0;
+      largest = std::max(largest, (withdraws ? k_share_of_withdrawal : 1.0) * std::abs(step.target));
     }
   }
   return largest;

@@ -9,8 +9,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <random>
 #include <stdexcept>
+
+#include "study/dice.hpp"
 
 namespace monograin {
 namespace {
@@ -25,25 +26,11 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
 using Members = std::vector<std::size_t>;  ///< indices of candidates
 
-/// Random numbers that are the same with every standard library, which the distributions of <random> are not.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
+void shuffle(std::vector<std::size_t>& values, Dice& dice) {
+  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[dice.below(i)]);
+}
 
-  /// In [0, 1).
-  double uniform() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
-
-  void shuffle(std::vector<std::size_t>& values) {
-    for (std::size_t i = values.size(); i > 1; --i) {
-      std::swap(values[i - 1], values[static_cast<std::size_t>(uniform() * static_cast<double>(i))]);
-    }
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
-
-[[nodiscard]] std::vector<double> draw_candidates(const DesignSpace& space, std::size_t count, Random& random) {
+[[nodiscard]] std::vector<double> draw_candidates(const DesignSpace& space, std::size_t count, Dice& dice) {
   std::vector<double> candidates;
   candidates.reserve(count * space.factors);
   std::vector<double> point(space.factors);
@@ -52,7 +39,7 @@ class Random {
     if (++draws > k_most_draws_per_candidate * count) {
       throw std::domain_error(fmt::format("less than {:g} of the space is allowed", 1.0 / k_most_draws_per_candidate));
     }
-    for (double& coordinate : point) coordinate = random.uniform();
+    for (double& coordinate : point) coordinate = dice.uniform(0.0, 1.0);
     if (!space.contains || space.contains(point)) candidates.insert(candidates.end(), point.begin(), point.end());
   }
   return candidates;
@@ -219,13 +206,13 @@ class Arrangement {
 /// The sub-clusters that the points are taken from, one for each place of the arrangement: those of the first level,
 /// then those of the second, and so on.
 [[nodiscard]] std::vector<Members> allotted_clusters(const std::vector<std::vector<Members>>& sub_clusters,
-                                                     std::size_t level_count, Random& random) {
+                                                     std::size_t level_count, Dice& dice) {
   const std::size_t primary_count = sub_clusters.size();
   std::vector<Members> allotted(primary_count * level_count);
   std::vector<std::size_t> levels(level_count);
   std::iota(levels.begin(), levels.end(), std::size_t{0});
   for (std::size_t c = 0; c < primary_count; ++c) {
-    random.shuffle(levels);
+    shuffle(levels, dice);
     for (std::size_t s = 0; s < level_count; ++s) allotted[levels[s] * primary_count + c] = sub_clusters[c][s];
   }
   return allotted;
@@ -282,10 +269,10 @@ Design maxpro_design(const DesignSpace& space, std::size_t runs, std::uint64_t s
   if (runs == 0 || runs % levels != 0) {
     throw std::invalid_argument(fmt::format("{} runs are no multiple of the {} levels", runs, levels));
   }
-  Random random(seed);
+  Dice dice(seed);
   std::size_t count = std::max(k_candidates_per_run * runs, k_least_candidates);
   for (int enlargement = 0;; ++enlargement, count *= 2) {
-    const Candidates candidates(draw_candidates(space, count, random), space.factors);
+    const Candidates candidates(draw_candidates(space, count, dice), space.factors);
     std::vector<std::vector<Members>> sub_clusters;
     for (const Members& cluster : candidates.clusters(runs / levels)) {
       sub_clusters.push_back(candidates.ward(cluster, levels));
@@ -296,7 +283,7 @@ Design maxpro_design(const DesignSpace& space, std::size_t runs, std::uint64_t s
       if (enlargement < k_most_enlargements) continue;
       throw std::domain_error(fmt::format("no clusters of at least {} points found", levels));
     }
-    const std::vector<Members> clusters = allotted_clusters(sub_clusters, levels, random);
+    const std::vector<Members> clusters = allotted_clusters(sub_clusters, levels, dice);
     Design design{.factors = space.factors, .level_count = space.level_count, .coordinates = {}, .levels = {}};
     const std::vector<std::size_t> chosen = improved(candidates, clusters, space.factors, levels);
     for (std::size_t i = 0; i < chosen.size(); ++i) {

@@ -35,9 +35,7 @@ TEST_P(AnyIntegrator, GivesTheCurvesAndEventsOfTheDirectForm) {
     EXPECT_EQ(now.events(), direct.events());
     const std::string force = now.scene.classes.front().name + ".force";
     EXPECT_LE(difference(now.outputs(force), direct.outputs(force)), 1e-6);
-    // Fehlberg's error estimate is zero for quadratures, so that only a longest step bounds their error.
-    const double work_bound = name == "odeint-fehlberg78" ? 2e-5 : 1e-6;
-    EXPECT_LE(difference(now.outputs("work"), direct.outputs("work")), work_bound);
+    EXPECT_LE(difference(now.outputs("work"), direct.outputs("work")), 1e-6);
   }
 }
 

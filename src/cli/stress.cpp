@@ -1,0 +1,87 @@
+// `monograin stress`.
+
+#include "study/stress.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/progress.hpp"
+#include "study/stress_checks.hpp"
+
+namespace monograin {
+namespace {
+
+struct CommandOptions {
+  std::vector<std::string> files;
+  double seconds = 60.0;
+  std::uint64_t seed = 1;
+  std::size_t scenes = 0;
+  std::uint64_t first = 0;
+  int threads = 0;
+  std::string output = "runs/stress";
+};
+
+/// Checks given scenarios, such as those that a stress test has left.
+int check_files(const std::vector<std::string>& files) {
+  int code = k_success;
+  std::vector<Scenario> scenarios;
+  for (const std::string& file : files) scenarios.push_back(read_scenario(file));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const StressVerdict verdict = check_scene(scenarios[i]);
+    if (!verdict.violations.empty()) code = k_solver_failure;
+    if (verdict.violations.empty()) fmt::print("{}: passes ({})\n", files[i], verdict.end);
+    for (const Violation& violation : verdict.violations) {
+      fmt::print("{}: {}: {}\n", files[i], violation.check, violation.detail);
+    }
+  }
+  return code;
+}
+
+int stress(const CommandOptions& options) {
+  if (!options.files.empty()) return check_files(options.files);
+  const StressReport report = [&] {
+    ProgressBar bar("scenes");
+    return run_stress({.seed = options.seed,
+                       .seconds = options.seconds,
+                       .scenes = options.scenes,
+                       .first = options.first,
+                       .threads = options.threads,
+                       .folder = options.output,
+                       .progress = [&](auto done, auto of) { bar.show(done, of); }});
+  }();
+  fmt::print("{}", report.text());
+  fmt::print(stderr, "{} scenes, {} failures -> {}; the slowest, {}, took {:.1f} s\n", report.scenes,
+             report.failures.size(), options.output, report.slowest, report.slowest_seconds);
+  return report.failures.empty() ? k_success : k_solver_failure;
+}
+
+}  // namespace
+
+void add_stress_command(CLI::App& app, Action& action) {
+  auto options = std::make_shared<CommandOptions>();
+  CLI::App* command = app.add_subcommand(
+      "stress", "Hunt for numerical instability: extreme and random scenes of every model, and what must hold of them");
+  command->add_option("FILE", options->files, "Check these scenarios instead of drawn ones");
+  const std::map<std::string, double> units{{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}};
+  command->add_option("--time", options->seconds, "How long: 60s, 5min, 1h [60s]")
+      ->transform(CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::CASE_SENSITIVE))
+      ->check(CLI::PositiveNumber)
+      ->type_name("TIME");
+  command->add_option("--seed", options->seed, "Which sequence of scenes [1]");
+  command->add_option("-n,--scenes", options->scenes, "End after so many scenes [none: when the time is up]");
+  command->add_option("--first", options->first, "Index of the scene to begin with [0]");
+  command->add_option("-j,--jobs", options->threads, "Number of threads [one for each core]")
+      ->check(CLI::Range(1, 1024));
+  command->add_option("-o,--output", options->output, "Folder of the report and the failing scenes [runs/stress]");
+  command->footer("Example: monograin stress --time 20s --seed 7");
+  command->callback([options, &action] { action = [options] { return stress(*options); }; });
+}
+
+}  // namespace monograin

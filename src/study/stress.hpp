@@ -1,0 +1,58 @@
+/// The stress test: extreme and random scenes, the rules that every run has to keep, and what breaks them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace monograin {
+
+struct StressOptions {
+  std::uint64_t seed = 1;
+  double seconds = 60.0;    ///< wall time for drawing, checking and shrinking
+  std::size_t scenes = 0;   ///< at most so many; 0: as many as there is time for
+  std::uint64_t first = 0;  ///< index of the scene to begin with
+  int threads = 0;          ///< 0: one for each core
+  std::filesystem::path folder;
+  /// Called after every scene with how many are done, and about how many there will be; one call at a time.
+  std::function<void(std::size_t done, std::size_t of)> progress;
+};
+
+/// A rule that a scene breaks.
+struct StressFailure {
+  std::uint64_t index = 0;  ///< of the scene in the seed's sequence
+  std::string model;
+  std::string integrator;
+  std::string check;
+  std::string detail;
+  std::string text;  ///< the smallest scenario found that still breaks it
+  std::string file;  ///< its name in the folder
+};
+
+/// What a stress test has come to. Scene by scene the same for the same seed, whatever the number of threads.
+struct StressReport {
+  std::uint64_t seed = 1;
+  std::size_t scenes = 0;
+  long runs = 0;
+  std::size_t ill_conditioned = 0;
+  std::map<std::pair<std::string, std::string>, std::size_t> by_model_and_integrator;  ///< scenes
+  std::map<std::pair<std::string, std::string>, std::size_t> ends;                     ///< by model and how they ended
+  std::vector<StressFailure> failures;                                                 ///< in the order of the scenes
+  std::uint64_t slowest = 0;                                                           ///< index of a scene
+  double slowest_seconds = 0.0;
+
+  /// Tables of the scenes and their ends, and a line for every failure.
+  [[nodiscard]] std::string text() const;
+};
+
+/// Draws scenes and checks them until the time is up, shrinks those that break a rule, and leaves report.txt and a
+/// scenario for every failure in the folder, which is written whole.
+/// @throws std::runtime_error where the folder holds something else, or cannot be written
+[[nodiscard]] StressReport run_stress(const StressOptions& options);
+
+}  // namespace monograin

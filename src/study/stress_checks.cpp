@@ -1,0 +1,262 @@
+#include "study/stress_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "catalogue.hpp"
+#include "study/stress_distance.hpp"
+#include "study/stress_events.hpp"
+#include "study/stress_variants.hpp"
+
+namespace monograin {
+namespace {
+
+// What a scene does with changed data is measured by a few samples of all directions; the worst is a few times worse.
+constexpr double k_sample_multiple = 10.0;
+constexpr int k_samples = 6;
+// Overlaps over R0 below which there is nothing but rounding (README, "Limits").
+constexpr double k_resolution = 1e-12;
+constexpr double k_slower = 1e6;
+constexpr Magnification k_magnification{.length = 1e3, .stress = 1e-5};
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+
+/// The larger of two, of which not a number is the largest.
+double worse(double a, double b) { return a > b || std::isnan(a) ? a : b; }
+
+std::string quoted(const Run& run) {
+  return fmt::format("'{}'", run.record.status == RunStatus::complete ? "complete" : run.record.message);
+}
+
+/// The softest of a material's moduli and strengths.
+double softest(const Scenario& scenario) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const QuantityKey& key : find_model(scenario.model)->material) {
+    const auto found = scenario.material.find(std::string(key.name));
+    if (key.dimension == Dimension::stress && found != scenario.material.end() && found->second > 0.0) {
+      least = std::min(least, found->second);
+    }
+  }
+  return least;
+}
+
+/// Whether contacts are nowhere deeper than what is rounding in lengths of the order of R0.
+bool is_below_resolution(const Run& run) {
+  return run.scenario.radius > 0.0 &&
+         largest_of_kind(run.record.history, "overlap") < k_resolution * run.scenario.radius;
+}
+
+class SceneCheck {
+ public:
+  explicit SceneCheck(const Scenario& scenario) : scenario_(scenario) {}
+
+  StressVerdict verdict() {
+    const std::optional<Run> run = try_run(scenario_, "the scene");
+    if (!run) return std::move(verdict_);
+    verdict_.end = stated_end(*run);
+    verdict_.violations = check_run(*run);
+    // What is broken already would be found again by every comparison.
+    if (!verdict_.violations.empty() || run->record.status == RunStatus::failed) return std::move(verdict_);
+    // The scheme without error control says nothing of how near it comes; rows at an integrator's own steps have none
+    // beside them in other runs.
+    if (run->integrator.used == "explicit" || scenario_.output.points == 0) return std::move(verdict_);
+
+    if (is_below_resolution(*run)) return std::move(verdict_);
+
+    const bool is_direct = run->integrator.used == "direct";
+    const std::optional<Run> reference = is_direct ? run : try_run(as_reference(scenario_), "reference form");
+    if (!reference) return std::move(verdict_);
+    reference_ = &*reference;
+    if (!is_direct) verdict_.violations = check_run(*reference);
+    if (!verdict_.violations.empty()) return std::move(verdict_);
+    share_ = is_direct ? k_stress_rounding : scenario_.numerics.rtol;
+    tolerance_ = std::max(own_tolerance(*run), own_tolerance(*reference));
+    nothing_ = {.unit = {.length = scenario_.radius, .stress = softest(scenario_)},
+                .share = is_direct ? k_stress_rounding : scenario_.numerics.atol};
+    if (!is_direct) compare("agreement", *reference, *run);
+    check_rate(*run);
+    if (const auto other = try_run(magnified(scenario_, k_magnification), "larger and softer")) {
+      compare("scale", *run, *other, k_magnification);
+    }
+    check_restart(*run);
+    check_retrace(*run);
+    return std::move(verdict_);
+  }
+
+ private:
+  std::optional<Run> try_run(const Scenario& scenario, std::string_view what) {
+    ++verdict_.runs;
+    try {
+      return run_scenario(scenario);
+    } catch (const std::exception& error) {
+      verdict_.violations.push_back({"exception", fmt::format("{}: {}", what, error.what())});
+      return std::nullopt;
+    }
+  }
+
+  /// Reference runs of a scene with data changed by up to that share.
+  std::vector<Run> runs_beside(const Scenario& scenario, double share) {
+    std::vector<Run> runs;
+    for (std::uint64_t sample = 1; sample <= k_samples; ++sample) {
+      ++verdict_.runs;
+      try {
+        runs.push_back(run_scenario(as_reference(changed(scenario, share, sample))));
+      } catch (const std::exception&) {
+        continue;  // changed out of what is admissible
+      }
+    }
+    return runs;
+  }
+
+  const std::vector<Run>& neighbours() {
+    if (!neighbours_) neighbours_ = runs_beside(scenario_, share_);
+    return *neighbours_;
+  }
+
+  /// How far changed data take what is measured between two runs.
+  template <class Measure>
+  double spread(const Run& reference, const std::vector<Run>& runs, Measure&& measure) {
+    double widest = runs.empty() ? k_nan : 0.0;
+    for (const Run& run : runs) widest = worse(measure(reference, run), widest);
+    return widest;
+  }
+
+  /// Whether something holds of the reference and of its neighbours, those farthest away included that an integrator
+  /// with the errors it may have cannot tell from it.
+  template <class Property>
+  bool all_share(Property&& property) {
+    const auto own = property(*reference_);
+    const auto has_it = [&](const Run& run) { return property(run) == own; };
+    if (!far_neighbours_) far_neighbours_ = runs_beside(scenario_, tolerance_);
+    return std::ranges::all_of(neighbours(), has_it) && std::ranges::all_of(*far_neighbours_, has_it);
+  }
+
+  [[nodiscard]] Distance between(const Run& a, const Run& b, const Magnification& larger = {}) const {
+    return distance_between(a.record.history, b.record.history, nothing_, larger);
+  }
+
+  /// At the last rows of two runs; not a number where either has not come to its end.
+  [[nodiscard]] Distance between_ends(const Run& a, const Run& b) const {
+    if (a.record.status != RunStatus::complete || b.record.status != RunStatus::complete) return {k_nan, {}, 0.0};
+    const Table& first = a.record.history;
+    const Table& second = b.record.history;
+    return distance_at(first, second, {{first.row_count() - 1, second.row_count() - 1}}, nothing_);
+  }
+
+  void compare(const char* check, const Run& expected, const Run& actual, const Magnification& larger = {}) {
+    // An integrator that gives up at a stated limit says nothing of how the scene goes on.
+    const bool has_given_up = (actual.record.status == RunStatus::failed && !stated_end(actual).empty()) ||
+                              (expected.record.status == RunStatus::failed && !stated_end(expected).empty());
+    const bool has_same_end = has_given_up || stated_end(actual) == stated_end(expected);
+    const Distance apart = between(expected, actual, larger);
+    const EventNames expected_events = has_given_up ? EventNames{} : sorted_events(expected);
+    const EventNames events = has_given_up ? EventNames{} : sorted_events(actual);
+    if (has_same_end && events == expected_events && apart.value <= tolerance_) return;
+
+    // A spread that is no number is without bounds: an empty column, or data that cannot be changed.
+    const double widest =
+        spread(*reference_, neighbours(), [this](const Run& a, const Run& b) { return between(a, b).value; });
+    const bool is_apart = !(apart.value <= tolerance_ + k_sample_multiple * widest);
+    // Where a decision is as near as errors are large, either way is right.
+    const bool is_toss = events != expected_events && !all_share(sorted_events);
+    if (is_apart && !std::isnan(widest) && !is_toss) {
+      report(check, fmt::format("{} differs by {:.3g}, above {:.3g} ({:.3g} with data changed by {:.1g}), t = {:.9g} s",
+                                apart.column, apart.value, tolerance_, widest, share_, apart.time));
+      return;
+    }
+    if (!has_same_end && all_share(stated_end)) {
+      report(check, fmt::format("ends {} against {}", quoted(actual), quoted(expected)));
+      return;
+    }
+    const bool is_complete = has_same_end && stated_end(actual) == "complete";
+    const bool are_crowded = have_company(actual, missing_from(expected_events, events), tolerance_) &&
+                             have_company(expected, missing_from(events, expected_events), tolerance_);
+    if (is_complete && events != expected_events && !are_crowded && !is_toss) {
+      report(fmt::format("{}-events", check), first_difference(events, expected_events));
+      return;
+    }
+    verdict_.is_ill_conditioned = true;
+  }
+
+  void report(std::string check, std::string detail) {
+    verdict_.violations.push_back({std::move(check), std::move(detail)});
+  }
+
+  /// A program knows its steps, not the seconds that they take: no digit may depend on them.
+  void check_rate(const Run& run) {
+    const std::optional<Run> other = try_run(slower(scenario_, k_slower), "slower");
+    if (!other) return;
+    const Distance apart = distance_between(run.record.history, other->record.history);
+    if (apart.value > 0.0 || std::isnan(apart.value)) {
+      report("rate", fmt::format("{} differs by {:.3g}, t = {:.9g} s", apart.column, apart.value, apart.time));
+    } else if (stated_end(run) != stated_end(*other) || sorted_events(run) != sorted_events(*other)) {
+      report("rate", fmt::format("ends {} against {}", quoted(*other), quoted(run)));
+    }
+  }
+
+  /// A program that stops in the middle of a step and goes on ends where it would have ended.
+  void check_restart(const Run& run) {
+    std::size_t cut = 0;
+    const std::optional<Scenario> halves = halved(scenario_, cut);
+    if (!halves || run.record.status != RunStatus::complete) return;
+    const std::optional<Run> other = try_run(*halves, "cut in two");
+    if (!other) return;
+    const Distance apart = between_ends(run, *other);
+    if (apart.value <= tolerance_) return;
+    const double widest =
+        spread(*reference_, neighbours(), [this](const Run& a, const Run& b) { return between_ends(a, b).value; });
+    if (std::isnan(widest) || apart.value <= tolerance_ + k_sample_multiple * widest) {
+      verdict_.is_ill_conditioned = true;
+      return;
+    }
+    report("restart",
+           fmt::format("step {} in two: {} at the end differs by {:.3g}, above {:.3g} ({:.3g} with changed data); {}",
+                       cut + 1, apart.column, apart.value, tolerance_, widest, quoted(*other)));
+  }
+
+  /// An elastic law goes back the way it came.
+  void check_retrace(const Run& of_scene) {
+    const std::optional<Scenario> there = forth_and_back(scenario_);
+    if (!there || !(is_elastic(scenario_) || stays_elastic(of_scene))) return;
+    const std::optional<Run> run = try_run(*there, "forth and back");
+    if (!run || run->record.status != RunStatus::complete) return;
+    const Table& table = run->record.history;
+    const std::vector<std::size_t> rows = output_rows(table);
+    const auto points = static_cast<std::size_t>(scenario_.output.points);
+    if (rows.size() != 2 * points + 1) return;
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (std::size_t k = 0; k < points; ++k) pairs.emplace_back(rows[k], rows[2 * points - k]);
+    const Distance apart = distance_at(table, table, pairs, nothing_);
+    if (apart.value <= tolerance_) return;
+    const double widest =
+        spread(*run, runs_beside(*there, share_), [this](const Run& a, const Run& b) { return between(a, b).value; });
+    if (std::isnan(widest) || apart.value <= tolerance_ + k_sample_multiple * widest) {
+      verdict_.is_ill_conditioned = true;
+      return;
+    }
+    report("retrace", fmt::format("{} differs by {:.3g}, above {:.3g} ({:.3g} with changed data), from t = {:.9g} s on",
+                                  apart.column, apart.value, tolerance_, widest, apart.time));
+  }
+
+  const Scenario& scenario_;
+  const Run* reference_ = nullptr;
+  double tolerance_ = 0.0;
+  Negligible nothing_;
+  double share_ = 0.0;  ///< of the data, that errors of the runs amount to
+  std::optional<std::vector<Run>> neighbours_, far_neighbours_;
+  StressVerdict verdict_;
+};
+
+}  // namespace
+
+StressVerdict check_scene(const Scenario& scenario) { return SceneCheck(scenario).verdict(); }
+
+}  // namespace monograin

@@ -1,0 +1,124 @@
+#include "study/stress_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace monograin {
+namespace {
+
+bool is_energy(const Column& column) { return column.unit == "J"; }
+
+/// Of a material point or a packing: directions, invariants and parts of one strain.
+bool is_strain(const Column& column) {
+  return column.name.starts_with("strain") || column.name.starts_with("plastic_strain") || column.name == "phi";
+}
+
+bool is_stress(const Column& column) {
+  return column.unit == "Pa" && kind_of(column) != "pressure" && column.name != "youngs_modulus";
+}
+
+/// Against what differences of a column count: magnitudes of one kind may cancel in one of them.
+double scale_of(const Table& table, std::size_t column) {
+  const Column& own = table.columns()[column];
+  for (const auto is_kin : {is_energy, is_strain, is_stress}) {
+    if (!is_kin(own)) continue;
+    double largest = 0.0;
+    for (std::size_t c = 0; c < table.columns().size(); ++c) {
+      if (is_kin(table.columns()[c])) largest = std::max(largest, largest_magnitude(table, c));
+    }
+    return largest;
+  }
+  return largest_of_kind(table, kind_of(own));
+}
+
+/// Not what says where a row is, nor what has rules of its own.
+bool is_compared(const Column& column) {
+  return !column.holds_words() && column.name != "time" && column.name != "step" && column.name != "row" &&
+         column.name != "yield_function" && kind_of(column) != "pressure";
+}
+
+double factor_of(const std::string& unit, const Magnification& larger) {
+  if (unit == "m") return larger.length;
+  if (unit == "m3") return std::pow(larger.length, 3);
+  if (unit == "Pa") return larger.stress;
+  if (unit == "N") return larger.stress * std::pow(larger.length, 2);
+  return unit == "J" ? larger.stress * std::pow(larger.length, 3) : 1.0;
+}
+
+}  // namespace
+
+std::string_view kind_of(const Column& column) {
+  const std::size_t dot = column.name.rfind('.');
+  return dot == std::string::npos ? std::string_view(column.name) : std::string_view(column.name).substr(dot + 1);
+}
+
+double largest_magnitude(const Table& table, std::size_t column) {
+  double largest = 0.0;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const double value = std::abs(table.at(row, column));
+    if (value > largest) largest = value;
+  }
+  return largest;
+}
+
+double largest_of_kind(const Table& table, std::string_view kind) {
+  double largest = 0.0;
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    if (kind_of(table.columns()[c]) == kind) largest = std::max(largest, largest_magnitude(table, c));
+  }
+  return largest;
+}
+
+std::vector<std::size_t> output_rows(const Table& table) {
+  std::vector<std::size_t> rows;
+  const auto side = *table.find("row");
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    if (table.at(row, side) == 0.0) rows.push_back(row);
+  }
+  return rows;
+}
+
+Distance distance_at(const Table& first, const Table& second,
+                     const std::vector<std::pair<std::size_t, std::size_t>>& rows, const Negligible& nothing,
+                     const Magnification& larger) {
+  Distance worst;
+  for (std::size_t c = 0; c < first.columns().size(); ++c) {
+    if (!is_compared(first.columns()[c])) continue;
+    const double factor = factor_of(first.columns()[c].unit, larger);
+    const double scale = std::max(scale_of(first, c), scale_of(second, c) / factor);
+    if (scale == 0.0) continue;
+    const bool is_root = kind_of(first.columns()[c]).starts_with("contact_radius");
+    const double floor = nothing.share * factor_of(first.columns()[c].unit, nothing.unit);
+    for (const auto& [a, b] : rows) {
+      const double x = first.at(a, c);
+      const double y = second.at(b, c) / factor;
+      if (std::isnan(x) && std::isnan(y)) continue;
+      if (std::isnan(x - y)) return {x - y, first.columns()[c].name, first.at(a, 0)};
+      // The area of a contact is smooth at first touch, its root is not.
+      const double value =
+          is_root ? std::abs(x * x - y * y) / (scale * scale) : std::max(0.0, std::abs(x - y) - floor) / scale;
+      if (value > worst.value) worst = {value, first.columns()[c].name, first.at(a, 0)};
+    }
+  }
+  return worst;
+}
+
+Distance distance_between(const Table& first, const Table& second, const Negligible& nothing,
+                          const Magnification& larger) {
+  const std::vector<std::size_t> a = output_rows(first);
+  const std::vector<std::size_t> b = output_rows(second);
+  const auto step = *first.find("step");
+  std::vector<std::pair<std::size_t, std::size_t>> rows;
+  for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+    // A step that a condition ends may have a row more or less.
+    const double of_a = first.at(a[i], step);
+    const double of_b = second.at(b[j], step);
+    if (of_a == of_b) rows.emplace_back(a[i], b[j]);
+    if (of_a <= of_b) ++i;
+    if (of_b <= of_a) ++j;
+  }
+  return distance_at(first, second, rows, nothing, larger);
+}
+
+}  // namespace monograin

@@ -1,0 +1,54 @@
+/// How far the histories of two runs are apart.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "history/table.hpp"
+
+namespace monograin {
+
+/// By which factors lengths and stresses of one run are larger than those of another; forces and energies accordingly.
+struct Magnification {
+  double length = 1.0;
+  double stress = 1.0;
+};
+
+struct Distance {
+  double value = 0.0;  ///< largest over all columns, each over the largest magnitude of its kind; nan: not comparable
+  std::string column;
+  double time = 0.0;
+};
+
+/// "force" of "axial.force".
+[[nodiscard]] std::string_view kind_of(const Column& column);
+
+[[nodiscard]] double largest_magnitude(const Table& table, std::size_t column);
+
+/// Over all columns of that kind.
+[[nodiscard]] double largest_of_kind(const Table& table, std::string_view kind);
+
+/// Rows at output points of a history.
+[[nodiscard]] std::vector<std::size_t> output_rows(const Table& table);
+
+/// A particle's own measures, and what share of them is nothing: an absolute tolerance, or rounding.
+struct Negligible {
+  Magnification unit;
+  double share = 0.0;
+};
+
+/// At pairs of rows, without the pressure (a force over an area, both of which are compared; where both vanish their
+/// quotient has no digits).
+/// @param larger  the second by the first
+[[nodiscard]] Distance distance_at(const Table& first, const Table& second,
+                                   const std::vector<std::pair<std::size_t, std::size_t>>& rows,
+                                   const Negligible& nothing = {}, const Magnification& larger = {});
+
+/// At the output points that both have.
+[[nodiscard]] Distance distance_between(const Table& first, const Table& second, const Negligible& nothing = {},
+                                        const Magnification& larger = {});
+
+}  // namespace monograin

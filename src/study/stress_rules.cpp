@@ -1,0 +1,395 @@
+#include "study/stress_rules.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "catalogue.hpp"
+#include "study/stress_distance.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
+
+// Error of a controlled integrator over its rtol; README, "Accuracy and speed".
+constexpr double k_rtol_multiple = 100.0;
+// The same of every step of a long program: errors of work have one sign, and add up (measured: 16).
+constexpr double k_rtol_multiple_of_step = 25.0;
+// Two runs of the direct form: each is polished to 1e-12 of the largest values (README), and work is a sum of
+// quadratures.
+constexpr double k_direct_tolerance = 1e-10;
+// Dissipation below zero from which on models warn, over the work.
+constexpr double k_tolerated_loss = 1e-6;
+// Events of one step of the program; a fifty-fold of what scenes show.
+constexpr std::size_t k_most_events_per_step = 200;
+
+/// A limit of a model, as its messages name it.
+struct StatedLimit {
+  std::string_view words;  ///< in a message
+  std::string_view end;    ///< the limit; one limit may be met in a trial step or by its event
+};
+
+constexpr std::string_view k_used_up = "the free surface of the particle is used up";
+constexpr std::string_view k_applicability = "limit of applicability";
+constexpr std::string_view k_fills = "the particle fills its cell";
+constexpr std::string_view k_free_centre = "no contact holds the free centre of the particle";
+
+constexpr std::string_view k_full = "no pores are left";
+constexpr std::string_view k_poisson = "Poisson's ratio at 1/2";
+constexpr std::string_view k_uniqueness = "loss of uniqueness";
+
+// The models' domains (`monograin models NAME`) say the reasons.
+constexpr StatedLimit k_stated_limits[] = {
+    // mdr and hertz
+    {k_used_up, k_used_up},
+    {"singular growth of the apparent radius", k_used_up},
+    {"the volume balance of the growing radius has no solution nearby", k_used_up},
+    {"the particle is compressed elastically to half its volume", "half the volume"},
+    {"elastic compression to less than half the volume", "half the volume"},
+    {"a wall has reached the centre of the particle", "a wall at the centre"},
+    {"the wall has reached the centre of the particle", "a wall at the centre"},
+    {"the force is above the largest that a plastic contact bears", "largest force"},
+    {"overlap above twice the apparent radius", "overlap of the diameter"},
+    {"contact caps intersect", "contact caps intersect"},
+    {"outside the pressure table", "outside the pressure table"},
+    {"there is no mode in which every contact's branch agrees", "no mode agrees"},
+    {k_free_centre, k_free_centre},
+    // plastic laws
+    {"the walls meet", "the walls meet"},
+    {k_fills, k_fills},
+    {"above the greatest", "largest force"},
+    {"is not below", "the walls meet"},
+    {"would go back at gamma/2R", "no unloading"},
+    {"leads to gamma/2R", "the walls meet"},
+    {"the law of low compressibility demands", k_fills},
+    // nonlocal; the branch of equilibria ends where the margin does, and has no definite end where walls only touch
+    {k_applicability, k_applicability},
+    {"where the margin is 0.000", k_applicability},
+    {"a contact is as wide as the particle", "contact as wide as the particle"},
+    {"contact radius of R or more", "contact as wide as the particle"},
+    {"would have to pull", "a wall would have to pull"},
+    {"no contact holds the centre of the particle", k_free_centre},
+    {"the largest contact radius over R 0.000000", k_free_centre},
+    {"a wall cannot pull", "a wall would have to pull"},
+    // compressible
+    {"the law ends where the source's data do", "end of the data"},
+    // material-point
+    {"no pores are left", k_full},
+    {"the cap's centre has reached zero pressure", "cap's centre at zero pressure"},
+    {"the linear law of the cap's axis ratio ends", "cap's axis ratio at zero"},
+    {"the linear law of Poisson's ratio ends", k_poisson},
+    {"the program no longer determines one plastic strain", k_uniqueness},
+    {"the strain that follows from the program is not unique", k_uniqueness},
+    {"no plastic strain brings the stress back to the yield surface", k_uniqueness},
+    {"Poisson's ratio has passed 1/2", k_poisson},
+    {"transition_width is too large", "the arc ends above the axis"},
+    // packing
+    {"the packing's strain does not grow any further", "greatest strain"},
+    {"the packing's stress does not grow any further", "greatest stress"},
+    {"the particles give way as much as the packing", "infinite stress"},
+};
+
+double material(const Scenario& scenario, const char* key) {
+  const auto found = scenario.material.find(key);
+  return found == scenario.material.end() ? 0.0 : found->second;
+}
+
+std::string option(const Scenario& scenario, const char* key) {
+  const auto found = scenario.options.find(key);
+  const auto* word = found == scenario.options.end() ? nullptr : std::get_if<std::string>(&found->second);
+  return word == nullptr ? std::string() : *word;
+}
+
+Dimension find_dimension(const std::string& model, std::string_view key) {
+  const std::span<const QuantityKey> keys = find_model(model)->material;
+  return std::ranges::find(keys, key, &QuantityKey::name)->dimension;
+}
+
+/// Rounding of an energy: overlaps are differences of lengths of the order of R0.
+double energy_floor(const Run& run) {
+  double stiffest = 0.0;
+  for (const auto& [key, value] : run.scenario.material) {
+    if (find_dimension(run.scenario.model, key) == Dimension::stress) stiffest = std::max(stiffest, value);
+  }
+  return k_stress_rounding * stiffest * std::pow(run.scenario.radius, 3);
+}
+
+using Violations = std::vector<Violation>;
+
+void check_end(const Run& run, Violations& found) {
+  if (!stated_end(run).empty()) return;
+  // Fixed steps run past transitions and into places that no law has; that they stop there is all there is to ask.
+  if (run.integrator.used == "explicit" && run.record.status == RunStatus::stopped) return;
+  const bool has_failed = run.record.status == RunStatus::failed;
+  found.push_back({has_failed ? "solver" : "unstated-limit", run.record.message});
+}
+
+void check_numbers(const Run& run, Violations& found) {
+  const Table& table = run.record.history;
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    const Column& column = table.columns()[c];
+    if (column.holds_words()) continue;
+    const std::size_t dot = column.name.rfind('.');
+    const auto regime = dot == std::string::npos ? std::nullopt : table.find(column.name.substr(0, dot) + ".regime");
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+      if (std::isfinite(table.at(row, c))) continue;
+      // Where a source has no law for a lateral contact, its columns are empty.
+      const bool may_be_empty = regime && std::isnan(table.at(row, c)) &&
+                                (run.scenario.model == "semimech" || run.scenario.model == "hardening") &&
+                                column.name.starts_with("lateral");
+      // The formulas of the deformed contact radius end where a contact is as wide as the particle.
+      const auto radius = table.find(column.name.substr(0, dot) + ".contact_radius");
+      const bool is_beyond = column.name.ends_with(".contact_radius_deformed") && radius &&
+                             table.at(row, *radius) >= run.scenario.radius * (1.0 - k_stress_rounding);
+      if (is_beyond && std::isnan(table.at(row, c))) continue;
+      // Below jamming there is no coordination number.
+      if (may_be_empty || (column.name == "coordination_number" && std::isnan(table.at(row, c)))) continue;
+      found.push_back({"no-number", fmt::format("{} = {} in row {}, t = {:.9g} s", column.name, table.at(row, c), row,
+                                                table.at(row, 0))});
+      return;
+    }
+  }
+}
+
+void check_forces(const Run& run, Violations& found) {
+  // A fixed step does not end where a contact opens.
+  if (material(run.scenario, "surface_energy") > 0.0 || run.integrator.used == "explicit") return;
+  const Table& table = run.record.history;
+  const double scale = largest_of_kind(table, "force");
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    if (kind_of(table.columns()[c]) != "force") continue;
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+      if (!(table.at(row, c) < -own_tolerance(run) * scale)) continue;
+      found.push_back({"tension", fmt::format("{} = {:.6g} N of at most {:.6g} N at t = {:.9g} s",
+                                              table.columns()[c].name, table.at(row, c), scale, table.at(row, 0))});
+      return;
+    }
+  }
+}
+
+void check_energy(const Run& run, Violations& found) {
+  const Table& table = run.record.history;
+  const auto work = table.find("work");
+  const auto stored = table.find("stored_energy");
+  const auto dissipation = table.find("dissipation");
+  if (!work || !stored) return;
+  const double scale = std::max(largest_magnitude(table, *work), largest_magnitude(table, *stored));
+  if (scale == 0.0) return;
+  const bool is_conservative = is_elastic(run.scenario);
+  // What integrators leave open is found where they are compared with the direct form.
+  if (run.integrator.used != "direct") return;
+  // Laws that dissipate may give a little more back than was put in, and say so (domain of the models) - but not this
+  // rule of this law.
+  const bool must_keep = run.scenario.model == "mdr" && option(run.scenario, "radius_rule") == "yielded";
+  const bool is_warned = !must_keep && std::ranges::any_of(run.record.warnings, [](const std::string& warning) {
+    return warning.find("creates energy") != std::string::npos;
+  });
+  const double share = is_conservative || must_keep ? k_direct_tolerance : k_tolerated_loss;
+  const double most = share * scale + energy_floor(run);
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const double lost = table.at(row, *work) - table.at(row, *stored);
+    if (dissipation) {
+      const double gap = lost - table.at(row, *dissipation);
+      // Their sum is rounded once or twice.
+      if (std::abs(gap) > 8.0 * k_epsilon * scale) {
+        found.push_back(
+            {"energy-balance", fmt::format("work - stored energy - dissipation = {:.3g} of {:.6g} J, t = {:.9g} s", gap,
+                                           scale, table.at(row, 0))});
+        return;
+      }
+    }
+    if ((lost < -most && !is_warned) || (is_conservative && std::abs(lost) > most)) {
+      found.push_back(
+          {is_conservative ? "elastic-energy" : "energy-made",
+           fmt::format("work - stored energy = {:.3g} of {:.6g} J, t = {:.9g} s", lost, scale, table.at(row, 0))});
+      return;
+    }
+  }
+}
+
+void check_ratchet(const Run& run, Violations& found) {
+  const Table& table = run.record.history;
+  const auto radius = table.find("apparent_radius");
+  if (!radius) return;
+  // At a yield under a prescribed force the wall gives way and takes the radius along: by 1e-4 R0 where E/Y is 10 and
+  // more (the model's domain), in softer materials, which yield later, by three times as much.
+  const bool is_soft = material(run.scenario, "youngs_modulus") < 10.0 * material(run.scenario, "yield_stress");
+  const double dip = option(run.scenario, "elastic_profile") == "parabola" ? 0.0 : is_soft ? 3e-4 : 1e-4;
+  const double most = (dip + own_tolerance(run)) * run.scenario.radius;
+  double largest = 0.0;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const double now = table.at(row, *radius);
+    if (largest - now > most) {
+      found.push_back({"shrinking", fmt::format("apparent radius falls by {:.3g} R0, t = {:.9g} s",
+                                                (largest - now) / run.scenario.radius, table.at(row, 0))});
+      return;
+    }
+    largest = std::max(largest, now);
+  }
+}
+
+void check_events(const Run& run, Violations& found) {
+  std::map<double, std::size_t> counts;
+  const Table& events = run.record.events;
+  const auto step = *events.find("step");
+  for (std::size_t row = 0; row < events.row_count(); ++row) {
+    if (++counts[events.at(row, step)] == k_most_events_per_step) {
+      found.push_back(
+          {"endless-events", fmt::format("{} events in step {}", k_most_events_per_step, events.at(row, step))});
+    }
+  }
+  const auto time = *run.record.history.find("time");
+  for (std::size_t row = 1; row < run.record.history.row_count(); ++row) {
+    const double before = run.record.history.at(row - 1, time);
+    const double now = run.record.history.at(row, time);
+    if (now >= before) continue;
+    found.push_back({"time", fmt::format("goes back from {} s to {} s", before, now)});
+    return;
+  }
+}
+
+/// Rows of a history that break something, the first of each: where `excess` is not below zero.
+template <class Excess>
+void check_rows(const Run& run, const char* check, const char* what, Violations& found, Excess&& excess) {
+  const Table& table = run.record.history;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const double value = excess(table, row);
+    if (value <= 0.0) continue;
+    found.push_back({check, fmt::format("{}, by {:.3g} at t = {:.9g} s", what, value, table.at(row, 0))});
+    return;
+  }
+}
+
+/// That a column's values only grow.
+void check_growth(const Run& run, const char* name, double tolerance, Violations& found) {
+  double largest = 0.0;
+  check_rows(run, "shrinking", name, found, [&, place = *run.record.history.find(name)](const Table& table, auto row) {
+    const double value = table.at(row, place);
+    largest = std::max(largest, value);
+    return largest - value - tolerance;
+  });
+}
+
+void check_packing(const Run& run, Violations& found) {
+  const Table& table = run.record.history;
+  const double tolerance = own_tolerance(run);
+  const auto fraction = *table.find("packing_fraction");
+  check_rows(run, "density", "the packing fraction passes 1", found,
+             [&](const Table& t, std::size_t row) { return t.at(row, fraction) - 1.0 - tolerance; });
+  const auto stress = *table.find("stress");
+  const double scale = largest_magnitude(table, stress);
+  check_rows(run, "tension", "the packing pulls", found,
+             [&](const Table& t, std::size_t row) { return -t.at(row, stress) - tolerance * scale; });
+  const auto plastic = *table.find("plastic_fraction");
+  check_rows(run, "plastic-fraction", "the plastic fraction is not within 0 and 1", found,
+             [&](const Table& t, std::size_t row) {
+               return std::max(-t.at(row, plastic), t.at(row, plastic) - 1.0) - tolerance;
+             });
+  if (!is_elastic(run.scenario)) check_growth(run, "plastic_fraction", tolerance, found);
+}
+
+void check_material_point(const Run& run, Violations& found) {
+  const Scenario& scenario = run.scenario;
+  const Table& table = run.record.history;
+  const double tolerance = own_tolerance(run);
+  const bool is_compressible = option(scenario, "yield_model") != "vm";
+  const double yield_pressure = material(scenario, "yield_pressure");
+  // Stresses are moduli times strains; what is prescribed stands there without their rounding.
+  const auto modulus = *table.find("youngs_modulus");
+  const double stiffest =
+      std::max(largest_magnitude(table, modulus), yield_pressure) / (1.0 - 2.0 * material(scenario, "nu0"));
+  const double largest_strain = std::max(1.0, largest_magnitude(table, *table.find("strain_axial")));
+  const double rounding = k_stress_rounding * stiffest * largest_strain;
+  const auto p = *table.find("p");
+  const auto s = *table.find("s");
+  const auto axial = *table.find("stress_axial");
+  const auto lateral = *table.find("stress_lateral");
+  const double scale = std::max(largest_magnitude(table, p), largest_magnitude(table, s));
+  check_rows(run, "stress-invariants", "p and s do not belong to the axial and the lateral stress", found,
+             [&](const Table& t, std::size_t row) {
+               const double of_axial = t.at(row, p) + 2.0 / 3.0 * t.at(row, s) - t.at(row, axial);
+               const double of_lateral = t.at(row, p) - t.at(row, s) / 3.0 - t.at(row, lateral);
+               return std::max(std::abs(of_axial), std::abs(of_lateral)) - tolerance * scale - rounding;
+             });
+  const auto f = *table.find("yield_function");
+  check_rows(run, "yield", "the stress is outside the yield surface", found,
+             [&](const Table& t, std::size_t row) { return t.at(row, f) - tolerance - rounding / yield_pressure; });
+  if (!is_compressible) {
+    check_growth(run, "phi", tolerance, found);
+    return;
+  }
+  // Solid is neither made nor lost.
+  const auto density = *table.find("relative_density");
+  const auto volumetric = *table.find("plastic_strain_volumetric");
+  const double initial = table.at(0, density);
+  check_rows(run, "mass", "relative density and plastic strain do not belong together", found,
+             [&](const Table& t, std::size_t row) {
+               const double solid = t.at(row, density) * std::exp(t.at(row, volumetric));
+               return std::abs(solid / initial - 1.0) - k_stress_rounding;
+             });
+  check_rows(run, "density", "the relative density passes 1", found,
+             [&](const Table& t, std::size_t row) { return t.at(row, density) - 1.0 - tolerance; });
+}
+
+}  // namespace
+
+bool is_elastic(const Scenario& scenario) {
+  if (scenario.model == "packing") return !scenario.material.contains("hardening_modulus");
+  return scenario.model == "hertz" || scenario.model == "nonlocal";
+}
+
+bool stays_elastic(const Run& run) {
+  if (run.scenario.model != "material-point") return false;
+  const Table& events = run.record.events;
+  const auto event = *events.find("event");
+  for (std::size_t row = 0; row < events.row_count(); ++row) {
+    if (events.word(row, event) == "yield") return false;
+  }
+  return true;
+}
+
+double own_tolerance(const Run& run) {
+  if (run.integrator.used == "direct") return k_direct_tolerance;
+  const Loading& loading = run.scenario.loading;
+  std::size_t steps = loading.steps.size();
+  for (const WallSpec& wall : loading.walls) steps = std::max(steps, wall.steps.size());
+  return std::max(k_rtol_multiple, k_rtol_multiple_of_step * static_cast<double>(steps)) * run.scenario.numerics.rtol;
+}
+
+std::vector<Violation> check_run(const Run& run) {
+  Violations found;
+  check_end(run, found);
+  check_numbers(run, found);
+  check_forces(run, found);
+  check_energy(run, found);
+  check_ratchet(run, found);
+  check_events(run, found);
+  // Fixed steps control no error, and have none of these.
+  if (run.integrator.used == "explicit") return found;
+  if (run.scenario.model == "packing") check_packing(run, found);
+  if (run.scenario.model == "material-point") check_material_point(run, found);
+  return found;
+}
+
+std::string stated_end(const Run& run) {
+  if (run.record.status == RunStatus::complete) return "complete";
+  if (run.record.status == RunStatus::failed) {
+    const bool is_finest = run.record.message.find("errors of the size of rounding") != std::string::npos;
+    if (is_finest) return "tolerance of the size of rounding";
+    const bool is_stiff =
+        run.scenario.model == "material-point" && run.record.message.find("too much work") != std::string::npos;
+    return is_stiff ? "too much work" : "";
+  }
+  const auto names_it = [&](const StatedLimit& l) { return run.record.message.find(l.words) != std::string::npos; };
+  const auto found = std::ranges::find_if(k_stated_limits, names_it);
+  return found == std::end(k_stated_limits) ? std::string() : std::string(found->end);
+}
+
+}  // namespace monograin

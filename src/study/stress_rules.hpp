@@ -1,0 +1,39 @@
+/// What must hold of every run by itself, whatever its model, walls, program and integrator.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "history/run.hpp"
+#include "scenario/scenario.hpp"
+
+namespace monograin {
+
+/// A rule that is broken, with the numbers that show it.
+struct Violation {
+  std::string check;
+  std::string detail;
+};
+
+/// Changes of a scene's data that stand for rounding on the way from a text to a state.
+inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::epsilon();
+
+/// What a run alone has to keep: it ends complete or at a stated limit, every number is one, forces do not pull without
+/// adhesion, energy is neither made nor lost, what only grows does not shrink, events do not go on without end, and the
+/// identities of the model's own columns.
+[[nodiscard]] std::vector<Violation> check_run(const Run& run);
+
+/// How a run has ended: "complete", or the limit of the model that its message states; empty: neither.
+[[nodiscard]] std::string stated_end(const Run& run);
+
+/// Error of a run's own that its rules have to grant, over the largest values.
+[[nodiscard]] double own_tolerance(const Run& run);
+
+/// Whether the law of a scenario goes back the way it came.
+[[nodiscard]] bool is_elastic(const Scenario& scenario);
+
+/// Whether a material point has not yielded.
+[[nodiscard]] bool stays_elastic(const Run& run);
+
+}  // namespace monograin

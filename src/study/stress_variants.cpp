@@ -1,0 +1,237 @@
+#include "study/stress_variants.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "catalogue.hpp"
+#include "scene/scene.hpp"
+#include "study/dice.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr std::uint64_t k_of_steps = 1000;  // from where seeds of steps begin
+constexpr double k_reference_rtol = 1e-11;
+
+void for_each_program(Scenario& scenario, const std::function<void(std::vector<Step>&, double gap)>& change) {
+  change(scenario.loading.steps, 0.0);
+  for (WallSpec& wall : scenario.loading.walls) change(wall.steps, wall.gap);
+}
+
+double factor_of(Step::Kind kind, const Magnification& by) {
+  switch (kind) {
+    case Step::Kind::displacement:
+    case Step::Kind::detach:
+      return by.length;
+    case Step::Kind::force:
+      return by.stress * by.length * by.length;
+    case Step::Kind::stress:
+      return by.stress;
+    case Step::Kind::strain:
+    case Step::Kind::packing_fraction:
+    case Step::Kind::hold:
+      break;
+  }
+  return 1.0;
+}
+
+double factor_of(Until::Quantity quantity, const Magnification& by) {
+  switch (quantity) {
+    case Until::Quantity::force:
+      return by.stress * by.length * by.length;
+    case Until::Quantity::displacement:
+    case Until::Quantity::contact_radius:
+    case Until::Quantity::apparent_radius:
+      return by.length;
+    case Until::Quantity::pressure:
+    case Until::Quantity::stress_axial:
+    case Until::Quantity::stress_lateral:
+      return by.stress;
+    case Until::Quantity::relative_density:
+    case Until::Quantity::event:
+      break;
+  }
+  return 1.0;
+}
+
+double factor_of(Dimension dimension, const Magnification& by) {
+  if (dimension == Dimension::stress) return by.stress;
+  return dimension == Dimension::surface_energy ? by.stress * by.length : 1.0;
+}
+
+/// Whether walls that start at different places share one program: what starts it is then no property of the program.
+bool starts_anywhere(const Scenario& scenario) {
+  return std::ranges::any_of(scenario.loading.walls, [](const WallSpec& wall) {
+    return wall.steps.empty() && !wall.is_fixed && wall.gap > 0.0;
+  });
+}
+
+using Target = std::pair<Step::Kind, double>;  ///< of a ramp
+
+/// Where the program stands after a step that says so: a ramp leaves what it has controlled at its target.
+std::optional<Target> after(std::optional<Target> before, Step::Kind kind, double target) {
+  return control_of(kind) ? Target{kind, target} : before;
+}
+
+/// What a step ramps, and from where, as the program says it; nothing where an earlier step leaves that open.
+struct Start {
+  std::optional<Target> first;
+  std::optional<Target> lateral;
+};
+
+Start start_of(const std::vector<Step>& steps, std::size_t index, const Start& at_rest) {
+  Start start = at_rest;
+  for (std::size_t i = 0; i < index; ++i) {
+    const Step& step = steps[i];
+    if (!step.until.empty() || step.kind == Step::Kind::detach) return {};
+    start.first = after(start.first, step.kind, step.target);
+    if (step.lateral) start.lateral = after(start.lateral, step.lateral->kind, step.lateral->target);
+  }
+  return start;
+}
+
+/// At the start a wall stands at its gap, and a material point bears nothing; where a packing is, only its law knows.
+Start rest_of(const Scenario& scenario, const Step& first, double gap) {
+  if (find_model(scenario.model)->has_walls()) return {.first = Target{Step::Kind::displacement, -gap}, .lateral = {}};
+  if (scenario.model != "material-point") return {};
+  Start start{.first = Target{first.kind, 0.0}, .lateral = {}};
+  if (first.lateral) start.lateral = Target{first.lateral->kind, 0.0};
+  return start;
+}
+
+/// Puts a target half way; false where it is not known from where.
+bool halve(const std::optional<Target>& start, Step::Kind kind, double& target) {
+  if (!start || start->first != kind) return false;
+  target = std::midpoint(start->second, target);
+  return true;
+}
+
+/// The first half of a step; nothing where it cannot be cut.
+std::optional<Step> first_half(const Scenario& scenario, const std::vector<Step>& steps, std::size_t index,
+                               double gap) {
+  Step half = steps[index];
+  if (!half.until.empty() || half.kind == Step::Kind::detach) return {};
+  const Start start = start_of(steps, index, rest_of(scenario, steps.front(), gap));
+  if (control_of(half.kind) && !halve(start.first, half.kind, half.target)) return {};
+  if (half.lateral && !halve(start.lateral, half.lateral->kind, half.lateral->target)) return {};
+  if (half.duration) *half.duration *= 0.5;
+  return half;
+}
+
+}  // namespace
+
+Scenario with_integrator(Scenario scenario, std::string integrator) {
+  scenario.numerics.integrator = std::move(integrator);
+  return scenario;
+}
+
+Scenario as_reference(Scenario scenario) {
+  if (make_scene(scenario).system->is_solvable()) return with_integrator(std::move(scenario), "direct");
+  scenario.numerics = {.integrator = "cvode-bdf", .rtol = k_reference_rtol, .atol = 1e-4 * k_reference_rtol};
+  return scenario;
+}
+
+Scenario slower(Scenario scenario, double factor) {
+  for_each_program(scenario, [&](std::vector<Step>& steps, double) {
+    for (Step& step : steps) {
+      if (step.duration) *step.duration *= factor;
+      if (step.rate) *step.rate /= factor;
+    }
+  });
+  return scenario;
+}
+
+Scenario magnified(Scenario scenario, const Magnification& by) {
+  scenario.radius *= by.length;
+  for (const QuantityKey& key : find_model(scenario.model)->material) {
+    const auto found = scenario.material.find(std::string(key.name));
+    if (found != scenario.material.end()) found->second *= factor_of(key.dimension, by);
+  }
+  for (WallSpec& wall : scenario.loading.walls) wall.gap *= by.length;
+  for_each_program(scenario, [&](std::vector<Step>& steps, double) {
+    for (Step& step : steps) {
+      step.target *= factor_of(step.kind, by);
+      if (step.rate) *step.rate *= factor_of(step.kind, by);
+      if (step.lateral) step.lateral->target *= factor_of(step.lateral->kind, by);
+      for (Until& until : step.until) until.value *= factor_of(until.quantity, by);
+    }
+  });
+  return scenario;
+}
+
+std::optional<Scenario> halved(Scenario scenario, std::size_t& cut) {
+  if (starts_anywhere(scenario)) return {};
+  std::size_t count = scenario.loading.steps.size();
+  for (const WallSpec& wall : scenario.loading.walls) count = std::max(count, wall.steps.size());
+  for (cut = count; cut-- > 0;) {
+    bool is_possible = true;
+    Scenario halves = scenario;
+    for_each_program(halves, [&](std::vector<Step>& steps, double gap) {
+      if (cut >= steps.size()) return;
+      const std::optional<Step> half = first_half(scenario, steps, cut, gap);
+      is_possible = is_possible && half;
+      if (!half) return;
+      steps[cut].duration = half->duration;
+      steps.insert(steps.begin() + static_cast<std::ptrdiff_t>(cut), *half);
+    });
+    if (is_possible) return halves;
+  }
+  return {};
+}
+
+std::optional<Scenario> forth_and_back(Scenario scenario) {
+  bool is_possible = !starts_anywhere(scenario) && scenario.output.points > 0;
+  const Scenario given = scenario;
+  for_each_program(scenario, [&](std::vector<Step>& steps, double gap) {
+    if (steps.empty()) return;
+    const Step& first = steps.front();
+    const Start start = rest_of(given, first, gap);
+    const auto knows = [](const std::optional<Target>& target, Step::Kind kind) {
+      return target && target->first == kind;
+    };
+    is_possible = is_possible && first.until.empty() && knows(start.first, first.kind) &&
+                  (!first.lateral || knows(start.lateral, first.lateral->kind));
+    if (!is_possible) return;
+    Step back = first;
+    back.target = start.first->second;
+    if (back.lateral) back.lateral->target = start.lateral->second;
+    steps = {first, back};
+  });
+  return is_possible ? std::optional(scenario) : std::nullopt;
+}
+
+Scenario changed(Scenario scenario, double share, std::uint64_t sample) {
+  Dice dice(sample);
+  for (auto& [key, value] : scenario.material) {
+    // Down, where there is an upper end of what is admissible.
+    const bool is_ratio = key == "poisson_ratio" || key == "nu0" || key == "hardening_exponent";
+    value *= 1.0 + share * (is_ratio ? dice.uniform(-1.0, 0.0) : dice.uniform(-1.0, 1.0));
+  }
+  const double radius = scenario.radius;
+  // Walls of one class stay so: what symmetry puts together rounding does not take apart. But a free centre is as
+  // steady as the walls hold it on all sides, and errors know of no symmetry.
+  const bool is_skewed = scenario.loading.centre_is_free && sample % 2 == 0;
+  for (WallSpec& wall : scenario.loading.walls) {
+    wall.gap *= 1.0 + share;
+    if (is_skewed) wall.gap += share * radius * dice.uniform(0.0, 1.0);
+  }
+  for_each_program(scenario, [&](std::vector<Step>& steps, double) {
+    Dice of_steps(sample + k_of_steps);
+    for (Step& step : steps) {
+      const double factor = of_steps.uniform(-1.0, 1.0);
+      step.target *= 1.0 + share * factor;
+      // Overlaps are differences of lengths of the order of R0; strains, of logarithms of lengths of the order of 1.
+      if (step.kind == Step::Kind::displacement) step.target += share * factor * radius;
+      if (step.kind == Step::Kind::strain) step.target += share * factor;
+      if (step.lateral) step.lateral->target *= 1.0 + share * factor;
+      for (Until& until : step.until) until.value *= 1.0 + share * of_steps.uniform(-1.0, 1.0);
+    }
+  });
+  return scenario;
+}
+
+}  // namespace monograin

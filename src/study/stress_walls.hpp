@@ -1,0 +1,14 @@
+/// Walls of the stress test's scenes: all around, opposite each other, nearly parallel.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "study/dice.hpp"
+
+namespace monograin {
+
+/// Normals of two to six walls, no two of them nearer than an angle.
+[[nodiscard]] std::vector<std::array<double, 3>> draw_normals(Dice& dice, double least_angle);
+
+}  // namespace monograin

@@ -1,0 +1,196 @@
+#include "study/stress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+
+#include "history/run.hpp"
+#include "study/stress_checks.hpp"
+#include "study/stress_distance.hpp"
+#include "study/stress_generator.hpp"
+#include "study/stress_scene.hpp"
+#include "study/stress_shrink.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StressScenes : public ::testing::Test {
+ protected:
+  StressScenes() { write_stress_tables(folder_.path()); }
+  [[nodiscard]] const fs::path& tables() const { return folder_.path(); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(StressScenes, AreTheSameForTheSameSeedAndOthersForAnother) {
+  for (const std::uint64_t index : {0U, 7U, 91U}) {
+    const std::string text = scenario_text(draw_stress_scene(5, index, tables()));
+    EXPECT_EQ(text, scenario_text(draw_stress_scene(5, index, tables())));
+    EXPECT_NE(text, scenario_text(draw_stress_scene(6, index, tables())));
+    EXPECT_NE(text, scenario_text(draw_stress_scene(5, index + 1, tables())));
+  }
+}
+
+TEST_F(StressScenes, AreScenariosOfEveryModelOfTheCatalogue) {
+  std::set<std::string> models;
+  for (std::uint64_t index = 0; index < 300; ++index) {
+    const std::string text = scenario_text(draw_stress_scene(2, index, tables()));
+    try {
+      models.insert(parse_stress_text(text, tables()).model);
+    } catch (const ScenarioError& error) {
+      ADD_FAILURE() << "scene " << index << ": " << error.what() << '\n' << text;
+    }
+  }
+  for (const ModelInfo& model : model_catalogue()) EXPECT_TRUE(models.contains(std::string(model.name))) << model.name;
+}
+
+/// The history of a run with one number changed.
+Run with_number(Run run, const std::string& column, std::size_t row, double value) {
+  const Table& whole = run.record.history;
+  Table broken(whole.columns());
+  for (std::size_t r = 0; r < whole.row_count(); ++r) {
+    std::vector<double> values(whole.row(r).begin(), whole.row(r).end());
+    if (r == row) values[*whole.find(column)] = value;
+    broken.append(values);
+  }
+  run.record.history = broken;
+  return run;
+}
+
+bool breaks(const std::vector<Violation>& violations, const std::string& check) {
+  return std::ranges::any_of(violations, [&](const Violation& v) { return v.check == check; });
+}
+
+class BrokenHistory : public ::testing::Test {
+ protected:
+  monograin::Run run_ = run_scenario(parse_scenario(default_scenario_text(), "default", {"mdr.radius_rule=yielded"}));
+  std::size_t row_ = run_.record.history.row_count() / 2;
+};
+
+TEST_F(BrokenHistory, IsNoneAsItWasRun) {
+  EXPECT_TRUE(check_run(run_).empty());
+  EXPECT_EQ(stated_end(run_), "complete");
+}
+
+TEST_F(BrokenHistory, IsFoundByTheRuleThatItBreaks) {
+  const double radius = run_.scenario.radius;
+  EXPECT_TRUE(breaks(check_run(with_number(run_, "axial.overlap", row_, std::nan(""))), "no-number"));
+  EXPECT_TRUE(breaks(check_run(with_number(run_, "axial.force", row_, -1.0)), "tension"));
+  EXPECT_TRUE(breaks(check_run(with_number(run_, "dissipation", row_, 1.0)), "energy-balance"));
+  const double work = run_.record.history.column("work")[row_];
+  const auto generous = with_number(with_number(run_, "stored_energy", row_, 1e3), "dissipation", row_, work - 1e3);
+  EXPECT_TRUE(breaks(check_run(generous), "energy-made"));
+  EXPECT_TRUE(breaks(check_run(with_number(run_, "apparent_radius", row_, 0.9 * radius)), "shrinking"));
+  EXPECT_TRUE(breaks(check_run(with_number(run_, "time", row_, -1.0)), "time"));
+}
+
+TEST_F(BrokenHistory, IsFoundWhereARunEndsWithoutReason) {
+  run_.record.status = RunStatus::failed;
+  EXPECT_TRUE(breaks(check_run(run_), "solver"));
+  run_.record.status = RunStatus::stopped;
+  run_.record.message = "the iteration got lost";
+  EXPECT_TRUE(breaks(check_run(run_), "unstated-limit"));
+  run_.record.message = "step 1, t = 1 s: a wall has reached the centre of the particle (distance/R0 = 0)";
+  EXPECT_TRUE(check_run(run_).empty());
+}
+
+TEST_F(BrokenHistory, IsFarFromTheWholeOne) {
+  const auto output = *run_.record.history.find("row");
+  const auto force = *run_.record.history.find("axial.force");
+  for (row_ = 0; run_.record.history.at(row_, output) != 0.0 || run_.record.history.at(row_, force) <= 0.0;) ++row_;
+  const double value = run_.record.history.at(row_, force);
+  const auto other = with_number(run_, "axial.force", row_, 1.01 * value);
+  const Distance apart = distance_between(run_.record.history, other.record.history);
+  EXPECT_EQ(apart.column, "axial.force");
+  EXPECT_GT(apart.value, 0.0);
+  EXPECT_LE(apart.value, 0.01 + 1e-12);
+  EXPECT_EQ(distance_between(run_.record.history, run_.record.history).value, 0.0);
+  EXPECT_GT(distance_between(run_.record.history, run_.record.history, {}, {.length = 2.0}).value, 0.5);
+}
+
+TEST(BrokenMaterialPoint, IsFoundByTheRuleThatItBreaks) {
+  const monograin::Run run = run_scenario(read_scenario(MONOGRAIN_SOURCE_DIR "/scenarios/material-point.toml"));
+  const std::size_t row = run.record.history.row_count() / 2;
+  EXPECT_TRUE(check_run(run).empty()) << check_run(run).front().detail;
+  EXPECT_TRUE(breaks(check_run(with_number(run, "p", row, 0.0)), "stress-invariants"));
+  EXPECT_TRUE(breaks(check_run(with_number(run, "yield_function", row, 0.1)), "yield"));
+  EXPECT_TRUE(breaks(check_run(with_number(run, "relative_density", row, 0.9)), "mass"));
+  EXPECT_TRUE(breaks(check_run(with_number(run, "relative_density", row, 1.1)), "density"));
+}
+
+TEST(BrokenPacking, IsFoundByTheRuleThatItBreaks) {
+  const monograin::Run run = run_scenario(read_scenario(MONOGRAIN_SOURCE_DIR "/scenarios/packing.toml"));
+  const std::size_t row = run.record.history.row_count() / 2;
+  EXPECT_TRUE(check_run(run).empty()) << check_run(run).front().detail;
+  EXPECT_TRUE(breaks(check_run(with_number(run, "packing_fraction", row, 1.1)), "density"));
+  EXPECT_TRUE(breaks(check_run(with_number(run, "stress", row, -1e6)), "tension"));
+  EXPECT_TRUE(breaks(check_run(with_number(run, "plastic_fraction", row, 1.5)), "plastic-fraction"));
+  EXPECT_TRUE(breaks(check_run(with_number(run, "plastic_fraction", row, 0.0)), "shrinking"));
+}
+
+TEST_F(StressScenes, ShrinkToWhatIsFaulty) {
+  StressScene scene = draw_stress_scene(1, 0, tables());
+  scene.model = find_model("mdr");
+  scene.material = {{"youngs_modulus", 1.0}, {"poisson_ratio", 0.2837}, {"yield_stress", 0.0123456}};
+  scene.options = {{"radius_rule", std::string("seed")}, {"strict", true}};
+  scene.configuration = "die";
+  scene.cycles = 12;
+  scene.radius = 3.217e-4;
+  scene.steps.clear();
+  for (const double target : {0.123, 0.0456, 0.3019, 0.2004, 0.1})
+    scene.steps.push_back({.target = target, .lateral = {}, .until = {}, .until_event = {}});
+  // Faulty is what goes farther than 0.3 and then back.
+  const auto is_faulty = [](const StressScene& candidate) {
+    for (std::size_t i = 1; i < candidate.steps.size(); ++i) {
+      if (candidate.steps[i - 1].target > 0.25 && candidate.steps[i].target < candidate.steps[i - 1].target)
+        return true;
+    }
+    return false;
+  };
+  ASSERT_TRUE(is_faulty(scene));
+  const StressScene small = shrink(scene, is_faulty);
+  EXPECT_TRUE(is_faulty(small));
+  EXPECT_EQ(small.steps.size(), 2U);
+  EXPECT_EQ(small.steps[0].target, 0.3);
+  EXPECT_EQ(small.cycles, 1);
+  EXPECT_TRUE(small.options.empty());
+  EXPECT_EQ(small.radius, 1.0);
+  EXPECT_EQ(small.material.at("yield_stress"), 0.01);
+}
+
+TEST(StressTestRuns, GiveTheSameReportWhateverTheNumberOfThreads) {
+  const TemporaryFolder folder;
+  const auto report = [&](int threads) {
+    const fs::path target = folder.path() / std::to_string(threads);
+    const StressReport found =
+        run_stress({.seed = 32, .seconds = 300.0, .scenes = 40, .threads = threads, .folder = target, .progress = {}});
+    EXPECT_EQ(found.text(), text_of(target / "report.txt"));
+    return found.text();
+  };
+  EXPECT_EQ(report(1), report(3));
+}
+
+TEST(StressTestRuns, PassEightyScenes) {
+  const TemporaryFolder folder;
+  const StressReport report = run_stress(
+      {.seed = 32, .seconds = 600.0, .scenes = 80, .threads = 0, .folder = folder.path() / "stress", .progress = {}});
+  EXPECT_EQ(report.scenes, 80U);
+  EXPECT_TRUE(report.failures.empty()) << report.text();
+}
+
+}  // namespace
+}  // namespace monograin
