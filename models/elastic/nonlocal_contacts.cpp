@@ -428,12 +428,12 @@ double Contacts::margin(std::span<const double> y) {
   return eigenvalues_.compute(modes_, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
 
-double Contacts::least_pivot(std::span<const double> y) {
+double Contacts::least_pivot(std::span<const double> y, double shift) {
   look(y);
   const Eigen::Index count = modes_.rows();
   for (Eigen::Index k = 0; k < count; ++k) {
     modes_.col(k) = -stiffness_[mode_class_[in(k)]] * mode_coupling_.col(k);
-    modes_(k, k) += 1.0;
+    modes_(k, k) += 1.0 - shift;
   }
   double least = modes_(0, 0);
   for (Eigen::Index p = 0; p < count; ++p) {
@@ -464,9 +464,10 @@ double Contacts::deformed_radius(RadiusRule rule, std::size_t index, std::span<c
   const double a = now_[index].contact_radius;
   if (a == 0.0 || rule == RadiusRule::none) return a;
   double sum = a + forces_[index] * local_radius_influence(poisson_ratio_, a);
+  const RadiusInfluence influence(rule, poisson_ratio_, a);
   for (const Neighbour& neighbour : neighbours_[index]) {
     const double force = forces_[neighbour.contact_class];
-    if (force > 0.0) sum += force * radius_influence(rule, poisson_ratio_, neighbour.angle, a);
+    if (force > 0.0) sum += force * influence(neighbour.angle);
   }
   return sum;
 }

@@ -99,9 +99,9 @@ class Contacts {
   /// The margin, over all walls and whatever their control: modes that break the symmetry of the classes count where
   /// negative couplings let them come first.
   [[nodiscard]] double margin(std::span<const double> y);
-  /// The least pivot of an elimination, or the first that is not positive: has the sign of the margin, goes smoothly
-  /// through zero with it, and costs a tenth.
-  [[nodiscard]] double least_pivot(std::span<const double> y);
+  /// The least pivot of an elimination, or the first that is not positive: has the sign of the margin less the shift,
+  /// goes smoothly through zero with it, and costs a tenth.
+  [[nodiscard]] double least_pivot(std::span<const double> y, double shift = 0.0);
 
   /// All contacts, one per class.
   void contacts(std::span<const double> y, std::span<ContactState> states);

@@ -67,15 +67,8 @@ void require_inside(double x) {
 /// Quotient in eq. 11.
 double first_order(double nu, double theta) noexcept {
   const double half_cosine = std::cos(0.5 * theta);
-  return half_cosine * half_cosine * (4.0 * nu - 3.0 - std::cos(theta)) / std::sin(0.5 * theta);
-}
-
-double closed_influence(double nu, double theta, double x) {  // eqs. 14, 15
-  const double pole = pole_radius_influence(nu, x);
-  const double slope = 0.25 * unit_compliance(nu) * (1.0 + 2.0 * nu);
-  const double critical = pi - pole / slope;
-  if (theta > critical) return pole - slope * (pi - theta);
-  return 0.25 * unit_compliance(nu) * x * (first_order(nu, theta) - first_order(nu, critical));
+  const double square = half_cosine * half_cosine;
+  return square * (4.0 * nu - 2.0 - 2.0 * square) / std::sin(0.5 * theta);
 }
 
 /// Mean over the contact's edge of the displacement away from its middle (eq. 8).
@@ -168,19 +161,33 @@ double pole_radius_influence(double poisson_ratio, double x) {
          (x / std::sqrt(2.0 * (1.0 + q)) - (1.0 - 2.0 * poisson_ratio) * x / ((1.0 + q) * (1.0 + k)));
 }
 
-double radius_influence(RadiusRule rule, double poisson_ratio, double theta, double x) {
+RadiusInfluence::RadiusInfluence(RadiusRule rule, double poisson_ratio, double x)
+    : rule_(rule), poisson_ratio_(poisson_ratio), x_(x) {
   require_inside(x);
-  switch (rule) {
-    case RadiusRule::closed:
-      return closed_influence(poisson_ratio, theta, x);
+  if (rule != RadiusRule::closed) return;
+  pole_ = pole_radius_influence(poisson_ratio, x);
+  slope_ = 0.25 * unit_compliance(poisson_ratio) * (1.0 + 2.0 * poisson_ratio);
+  critical_angle_ = pi - pole_ / slope_;
+  at_critical_angle_ = first_order(poisson_ratio, critical_angle_);
+}
+
+double RadiusInfluence::operator()(double theta) const {
+  switch (rule_) {
+    case RadiusRule::closed:  // eqs. 14, 15
+      if (theta > critical_angle_) return pole_ - slope_ * (pi - theta);
+      return 0.25 * unit_compliance(poisson_ratio_) * x_ * (first_order(poisson_ratio_, theta) - at_critical_angle_);
     case RadiusRule::integral:
-      return edge_influence(false, poisson_ratio, theta, x);
+      return edge_influence(false, poisson_ratio_, theta, x_);
     case RadiusRule::projected:
-      return edge_influence(true, poisson_ratio, theta, x);
+      return edge_influence(true, poisson_ratio_, theta, x_);
     case RadiusRule::none:
       return 0.0;
   }
   return 0.0;
+}
+
+double radius_influence(RadiusRule rule, double poisson_ratio, double theta, double x) {
+  return RadiusInfluence(rule, poisson_ratio, x)(theta);
 }
 
 double angle_between_edges(double theta, double radius, double displacement, double other_radius,

@@ -51,6 +51,23 @@ enum class RadiusRule { closed, integral, projected, none };
 /// @throws std::domain_error for x >= 1
 [[nodiscard]] double radius_influence(RadiusRule rule, double poisson_ratio, double theta, double x);
 
+/// The same of one contact for many others: what does not depend on their angles is computed once.
+class RadiusInfluence {
+ public:
+  /// @throws std::domain_error for x >= 1
+  RadiusInfluence(RadiusRule rule, double poisson_ratio, double x);
+  [[nodiscard]] double operator()(double theta) const;
+
+ private:
+  RadiusRule rule_;
+  double poisson_ratio_;
+  double x_;
+  double pole_ = 0.0;   ///< of the closed form: its value at the opposite contact, slope there, and the angle
+  double slope_ = 0.0;  ///< from which it is a straight line
+  double critical_angle_ = 0.0;
+  double at_critical_angle_ = 0.0;
+};
+
 /// Angle left between the edges of two contacts (eq. 37); they impinge where it is zero.
 /// @param radius        contact radius in the deformed configuration, over R
 /// @param displacement  of the wall towards the centre, over R, < 1

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "undefined.hpp"
+
 namespace monograin::nonlocal {
 namespace {
 
@@ -67,6 +69,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   rates_.resize(contacts_.unknown_count());
   all_rates_.resize(unknowns_.size());
   now_.resize(count);
+  deformed_radii_.resize(count);
   for (const ContactClass& c : classes_) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& normal : c.normals) mean += normal / c.multiplicity();
@@ -294,13 +297,20 @@ double System::depth(std::size_t i, double xi) {
 }
 
 double System::edge_angle(const Pair& pair, double xi) {
-  const auto radius = [&](std::size_t i) { return contacts_.deformed_radius(settings_.radius_rule, i, state_); };
+  // Each belongs to many pairs.
+  const auto radius = [&](std::size_t i) {
+    if (std::isnan(deformed_radii_[i])) {
+      deformed_radii_[i] = contacts_.deformed_radius(settings_.radius_rule, i, state_);
+    }
+    return deformed_radii_[i];
+  };
   return angle_between_edges(pair.angle, radius(pair.first), depth(pair.first, xi), radius(pair.second),
                              depth(pair.second, xi));
 }
 
 void System::guard_values(double xi, std::span<const double> y, std::span<double> values) {
   look_closely(xi, y);
+  deformed_radii_.assign(classes_.size(), k_nan);
   for (std::size_t g = 0; g < guards_.size(); ++g) {
     const auto index = static_cast<std::size_t>(std::max(0, guards_[g].index));
     switch (guards_[g].kind) {
@@ -314,7 +324,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = edge_angle(pairs_[index], xi);
         break;
       case k_stiffening:
-        values[g] = contacts_.margin(state_) - k_stiff_margin;
+        values[g] = contacts_.least_pivot(state_, k_stiff_margin);  // zero where the margin is that
         break;
       case k_radius:
         values[g] = 1.0 - now_[index].contact_radius;

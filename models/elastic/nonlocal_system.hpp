@@ -99,6 +99,7 @@ class System final : public HybridSystem {
   std::vector<double> state_, rates_;  ///< unknowns of contacts_
   std::vector<double> all_rates_;
   std::vector<ContactState> now_;
+  std::vector<double> deformed_radii_;  ///< as far as the guards have asked for them; nan: not yet
   std::vector<Ramp> drawn_ramps_;
 };
 

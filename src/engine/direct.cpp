@@ -54,6 +54,7 @@ struct Nodes {
   struct Ahead {
     std::array<double, k_known> values{};
     std::array<double, k_known> slopes{};
+    double onward = 0.0;  ///< the distance to the node over that between the last two places
   };
 
   Samples places{};
@@ -73,6 +74,9 @@ struct Nodes {
       }
     }
     for (std::size_t j = 0; j < k_nodes; ++j) {
+      if (j > 0) {
+        ahead[j].onward = (places[j] - place_before(j, 0)) / (place_before(j, 0) - place_before(j, 1));
+      }
       for (std::size_t i = 0; i < std::min(j + 1, k_known); ++i) {
         const auto [value, slope_there] = cardinal(j, i, std::min(j + 1, k_known));
         const double distance = places[j] - place_before(j, i);
@@ -258,7 +262,9 @@ class Direct final : public EventLocator {
       system_.rates(xi, trial_, rates_);
       for (std::size_t k = 0; k < integrated_; ++k) slopes_[k][j] = rates_[k];
     }
-    for (std::size_t k = 0; k < series_.size(); ++k) series_[k].fit(nodes_, gains_[k]);
+    for (std::size_t k = 0; k < series_.size(); ++k) {
+      if (k != quadrature_) series_[k].fit(nodes_, gains_[k]);
+    }
     factor = k_most_growth;
     if (!is_closed_) {
       work_.fit(nodes_, slopes_[*quadrature_]);
@@ -275,8 +281,8 @@ class Direct final : public EventLocator {
   }
 
   /// From what is known at the beginning of the piece and the nodes so far. One after another: the guess is then never
-  /// far from the solution, which may not be the only one. Algebraic unknowns may be singular, so that polynomials
-  /// overshoot, and where nothing determines them they have to stay what they are: the last ones are their guess.
+  /// far from the solution, which may not be the only one. Algebraic unknowns may be singular, over which a polynomial
+  /// of higher degree overshoots: a line. What nothing determines stays exactly what it is.
   void guess_ahead(std::size_t j) {
     const Nodes::Ahead& ahead = nodes_.ahead[j];
     const double half = 0.5 * (piece_end_ - begin_);
@@ -288,8 +294,8 @@ class Direct final : public EventLocator {
           gain +=
               ahead.values[i] * gone(i) + half * ahead.slopes[i] * (j > i ? slopes_[k][j - 1 - i] : begin_rates_[k]);
         }
-      } else {
-        gain = gone(0);
+      } else if (j > 0) {
+        gain = gone(0) + ahead.onward * (gone(0) - gone(1));
       }
       trial_[k] = begin_state_[k] + gain;
     }

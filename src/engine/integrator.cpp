@@ -47,6 +47,8 @@ constexpr std::array<std::pair<std::string_view, Method>, 11> k_of_explicit_form
     {"gsl-msbdf", GslMethod::msbdf},
 }};
 
+constexpr std::string_view k_switching = "odeint-dopri5, cvode-bdf where stiff";
+
 }  // namespace
 
 std::span<const std::string_view> integrator_names() noexcept {
@@ -68,6 +70,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem&
   // No smaller than it takes to let the relative one count: equations without rates have round-off.
   const Tolerances tolerances{rtol, std::min(asked.atol, std::max(asked.atol / gain, 0.1 * rtol))};
   if (name == "ida") return make_ida(system, watch, tolerances);
+  if (name == k_switching) return make_switching(system, watch, tolerances);
   for (const auto& [word, method] : k_of_explicit_form) {
     if (word != name) continue;
     return std::visit(
@@ -88,9 +91,10 @@ IntegratorChoice choose_integrator(const std::string& asked, const HybridSystem&
     return {asked, "direct",
             "the state at any instant follows from equations that need no history: nothing is integrated"};
   }
-  return {asked, "cvode-bdf",
-          "the state depends on the way to it, so that it is integrated; in its explicit form, by the method that "
-          "stiff phases do not slow down"};
+  return {
+      asked, std::string(k_switching),
+      "the state depends on the way to it, so that it is integrated, in its explicit form: by the cheapest method, and "
+      "from the first phase that slows that down by one for stiff equations"};
 }
 
 std::string sundials_version() {

@@ -87,7 +87,7 @@ class Integrator {
 /// What make_integrator makes: the names of scenario files but "auto".
 [[nodiscard]] std::span<const std::string_view> integrator_names() noexcept;
 
-/// @param name  as in scenario files, but not "auto"
+/// @param name  as in scenario files but "auto", or as choose_integrator() has chosen it
 /// @throws std::logic_error for another name, or where direct is asked of a system that is not solvable
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
                                                           const Tolerances& tolerances);
@@ -119,6 +119,9 @@ enum class GslMethod { rk8pd, msadams, msbdf };
 /// Forward Euler with 1/rtol steps in each step of the program, at most 1e7; transitions at the ends of steps.
 [[nodiscard]] std::unique_ptr<Integrator> make_fixed_step(HybridSystem& system, Watch& watch,
                                                           const Tolerances& tolerances);
+/// Odeint's dopri5, and CVODE's BDF from where that takes too many steps; what "auto" integrates with.
+[[nodiscard]] std::unique_ptr<Integrator> make_switching(HybridSystem& system, Watch& watch,
+                                                         const Tolerances& tolerances);
 [[nodiscard]] std::unique_ptr<Integrator> make_ida(HybridSystem& system, Watch& watch, const Tolerances& tolerances);
 
 }  // namespace monograin

@@ -62,7 +62,7 @@ TEST_F(MaterialPointCommand, RunsAndSaysWhyItIntegrates) {
   EXPECT_TRUE(history.find("strain_axial[-]").has_value());
   const auto run = nlohmann::json::parse(text("runs/point/run.json"));
   EXPECT_EQ(run.at("integrator").at("asked"), "auto");
-  EXPECT_EQ(run.at("integrator").at("used"), "cvode-bdf");
+  EXPECT_EQ(run.at("integrator").at("used"), "odeint-dopri5, cvode-bdf where stiff");
   EXPECT_NE(run.at("integrator").at("why").get<std::string>().find("depends on the way"), std::string::npos);
   EXPECT_TRUE(run.at("classes").empty());
 }

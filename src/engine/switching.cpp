@@ -1,0 +1,60 @@
+// An explicit method as long as it does, then an implicit one.
+
+#include "engine/integrator.hpp"
+
+namespace monograin {
+namespace {
+
+// Steps of one segment after which the equations are taken for stiff: some ten times as many as smooth ones need.
+constexpr long k_most_explicit_steps = 400;
+
+class Switching final : public Integrator {
+ public:
+  Switching(HybridSystem& system, Watch& watch, const Tolerances& tolerances)
+      : explicit_(make_stepped(OdeintMethod::dopri5, system, watch, tolerances)),
+        implicit_(make_sundials_ode(OdeMethod::cvode_bdf, system, watch, tolerances)),
+        state_(system.unknowns().size()) {}
+
+  void begin(double xi, std::span<const double> y) override {
+    segment_steps_ = explicit_->statistics().steps;
+    active_->begin(xi, y);
+  }
+
+  Advance advance() override {
+    if (active_ == explicit_.get() && explicit_->statistics().steps - segment_steps_ > k_most_explicit_steps) {
+      // Stiff here is stiff later: there is no way back.
+      explicit_->dense_output(end_, state_);
+      active_ = implicit_.get();
+      active_->begin(end_, state_);
+    }
+    const Advance step = active_->advance();
+    end_ = step.xi;
+    return step;
+  }
+
+  [[nodiscard]] std::span<const std::size_t> fired() const noexcept override { return active_->fired(); }
+  void dense_output(double xi, std::span<double> y) override { active_->dense_output(xi, y); }
+  [[nodiscard]] double guard_tolerance() const noexcept override { return active_->guard_tolerance(); }
+
+  [[nodiscard]] Statistics statistics() const override {
+    Statistics sum = active_->statistics();
+    if (active_ == implicit_.get()) sum += explicit_->statistics();
+    return sum;
+  }
+
+ private:
+  std::unique_ptr<Integrator> explicit_;
+  std::unique_ptr<Integrator> implicit_;
+  Integrator* active_ = explicit_.get();
+  std::vector<double> state_;
+  double end_ = 0.0;
+  long segment_steps_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_switching(HybridSystem& system, Watch& watch, const Tolerances& tolerances) {
+  return std::make_unique<Switching>(system, watch, tolerances);
+}
+
+}  // namespace monograin
