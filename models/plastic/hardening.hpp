@@ -51,8 +51,9 @@ constexpr double k_zero_porosity_margin = 1e-9;
 [[nodiscard]] ContactState state_in(const HardeningLaw& law, Regime regime, double x);
 
 /// x under a force over kappa R^2; 0 for no force.
+/// @param near  an x to begin with; 0: none is known
 /// @throws std::domain_error for forces that the law does not reach below its limit
-[[nodiscard]] double approach_under(const HardeningLaw& law, double force);
+[[nodiscard]] double approach_under(const HardeningLaw& law, double force, double near = 0.0);
 
 /// x at which the contacts reach each other. Die and hydrostatic compression only.
 /// @throws std::invalid_argument for simple compression

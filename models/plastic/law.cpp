@@ -1,5 +1,7 @@
 #include "plastic/law.hpp"
 
+#include <type_traits>
+
 namespace monograin::plastic {
 namespace {
 
@@ -26,8 +28,15 @@ ContactState state_in(const Law& law, Regime regime, double x) {
                     law);
 }
 
-double approach_under(const Law& law, double force) {
-  return std::visit([&](const auto& any) { return approach_under(any, force); }, law);
+double approach_under(const Law& law, double force, double near) {
+  const auto under = [&](const auto& any) {
+    // The similarity law needs no guess.
+    if constexpr (std::is_same_v<std::decay_t<decltype(any)>, SimilarityLaw>)
+      return approach_under(any, force);
+    else
+      return approach_under(any, force, near);
+  };
+  return std::visit(under, law);
 }
 
 double work_per_wall(const Law& law, double x) {

@@ -23,8 +23,9 @@ using Law = std::variant<SimilarityLaw, SemimechLaw, HardeningLaw>;
 [[nodiscard]] ContactState state_in(const Law& law, Regime regime, double x);
 
 /// x under a force over S R^2, whatever the regime; 0 for no force.
+/// @param near  an x to begin with; 0: none is known
 /// @throws std::domain_error for forces that the law does not reach
-[[nodiscard]] double approach_under(const Law& law, double force);
+[[nodiscard]] double approach_under(const Law& law, double force, double near = 0.0);
 
 /// int P dx of one wall over S R^3, from first touch.
 /// @throws std::domain_error beyond the law's limit

@@ -217,7 +217,7 @@ ContactState state_in(const SemimechLaw& law, Regime regime, double x) {
   return loaded_contact(regime, contact_radius(law.radius, x), pressure_in(law, regime, x));
 }
 
-double approach_under(const SemimechLaw& law, double force) {
+double approach_under(const SemimechLaw& law, double force, double near) {
   if (!(force > 0.0)) {
     if (force <= 0.0) return 0.0;
     throw std::domain_error("the force is not a number");
@@ -234,15 +234,15 @@ double approach_under(const SemimechLaw& law, double force) {
   for (std::size_t k = 0; k < ends.size(); ++k) {
     const Boundary& end = ends[k];
     if (force <= law.boundary_forces[k]) {
-      return regime == Regime::elastic ? approach_from_touch(state, end.approach, force, guess)
-                                       : approach_between(state, lower, end.approach, force, lower);
+      return regime == Regime::elastic ? approach_from_touch(state, end.approach, force, near > 0.0 ? near : guess)
+                                       : approach_between(state, lower, end.approach, force, std::max(near, lower));
     }
     lower = end.approach;
     regime = end.beyond;
   }
   const double last = std::nextafter(SemimechLaw::limit, 0.0);
   const double greatest = state(last).force;
-  if (force <= greatest) return approach_between(state, lower, last, force, lower);
+  if (force <= greatest) return approach_between(state, lower, last, force, std::max(near, lower));
   throw std::domain_error("a force of " + text(force) + " Y R^2 is above the greatest, " + text(greatest) +
                           " Y R^2 just below gamma/2R = 1, where the walls meet");
 }

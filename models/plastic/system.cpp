@@ -190,7 +190,7 @@ double System::displacement(std::size_t i, double xi, std::span<const double> y)
   return origin(i) + length * signed_power(y[places_[i]] / unit, 1.0 / power);
 }
 
-double System::displacement_under_force(std::size_t i, double force) const {
+double System::displacement_under_force(std::size_t i, double force, double near) const {
   switch (memory_[i].regime) {
     case Regime::open:
     case Regime::separated:
@@ -198,7 +198,7 @@ double System::displacement_under_force(std::size_t i, double force) const {
     case Regime::unloading:
       return mdr::unloading_overlap(memory_[i].indenter, std::max(force, 0.0));
     default:
-      return approach_under(settings_.law, std::max(force, 0.0));
+      return approach_under(settings_.law, std::max(force, 0.0), near);
   }
 }
 
@@ -269,7 +269,9 @@ void System::complete(double xi, std::span<double> y) {
 void System::solve(double xi, std::span<double> y) {
   complete(xi, y);
   for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (is_loaded(i)) y[places_[i]] = coordinate(i, displacement_under_force(i, told(i, xi)));
+    if (!is_loaded(i)) continue;
+    const double near = displacement(i, xi, y);
+    y[places_[i]] = coordinate(i, displacement_under_force(i, told(i, xi), near));
   }
 }
 

@@ -108,7 +108,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double coordinate(std::size_t i, double x) const noexcept;
   [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const noexcept;
   [[nodiscard]] std::optional<double> known_coordinate(std::size_t i, double xi) const;
-  [[nodiscard]] double displacement_under_force(std::size_t i, double force) const;
+  [[nodiscard]] double displacement_under_force(std::size_t i, double force, double near = 0.0) const;
   [[nodiscard]] Contact seen(std::size_t i, double xi, std::span<const double> y) const;
   [[nodiscard]] Contact contact(std::size_t i, double x) const;
   [[nodiscard]] Contact lateral_contact(std::size_t i, double x) const;

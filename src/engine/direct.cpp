@@ -256,7 +256,8 @@ class Direct final : public EventLocator {
       guess_ahead(j);
       ++statistics_.rhs_evaluations;
       system_.solve(xi, trial_);
-      if (piece_end_ - begin_ > k_smallest_looked_into) look_inside(xi, trial_);
+      // Where nothing has to be integrated, the guards are all that a node is for.
+      if (piece_end_ - begin_ > k_smallest_looked_into && (!is_closed_ || j % 2 == 0)) look_inside(xi, trial_);
       for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
       if (is_closed_) continue;
       system_.rates(xi, trial_, rates_);
