@@ -215,5 +215,39 @@ TEST(MakeIntegrator, RefusesUnknownNames) {
   EXPECT_THROW(static_cast<void>(make_integrator("euler", *toy, watch, {})), std::logic_error);
 }
 
+// --- the one that "auto" integrates with
+
+/// y0 follows cos(xi) as fast as the rate says.
+std::unique_ptr<ToySystem> following_toy(double rate) {
+  auto toy = std::make_unique<ToySystem>();
+  toy->initial = {1.0};
+  toy->rates_function = [rate](double xi, View y, std::span<double> dy) {
+    dy[0] = -rate * (y[0] - std::cos(xi)) - std::sin(xi);
+  };
+  return toy;
+}
+
+TEST(Automatic, GoesOverToTheStiffMethodWhereThatPays) {
+  const auto steps = [](double rate, std::string_view integrator) {
+    const TestRun result = run_toy(following_toy(rate), integrator);
+    EXPECT_EQ(result.record.status, RunStatus::complete) << result.record.message;
+    EXPECT_NEAR(result.last("y0"), std::cos(1.0), 1e-7) << integrator << ", rate " << rate;
+    return result.record.statistics.steps;
+  };
+  constexpr std::string_view k_automatic = "odeint-dopri5, cvode-bdf where stiff";
+  EXPECT_EQ(steps(1.0, k_automatic), steps(1.0, "odeint-dopri5")) << "nothing is stiff";
+  EXPECT_GT(steps(1e5, "odeint-dopri5"), 10'000) << "stiff";
+  EXPECT_LT(steps(1e5, k_automatic), 2'000);
+}
+
+TEST(Automatic, StaysWithTheStiffMethod) {
+  auto toy = following_toy(1e5);
+  toy->watched = {{"down", -1, [](double, View y) { return y[0] - 0.8; }, [](std::span<double>) {}}};
+  const TestRun result = run_toy(std::move(toy), "odeint-dopri5, cvode-bdf where stiff", 1e-8, 3);
+  ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
+  EXPECT_GE(result.record.statistics.events, 1);
+  EXPECT_LT(result.record.statistics.steps, 3'000);
+}
+
 }  // namespace
 }  // namespace monograin
