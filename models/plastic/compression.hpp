@@ -17,6 +17,7 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -185,6 +186,25 @@ template <class State>
   const double x = std::clamp(std::exp(root), lower, upper);
   const ContactState s = state(x);
   return std::clamp(x + (force - s.force) / s.force_by_approach, lower, upper);
+}
+
+/// The same from a close guess, without looking at the bounds; none where it is not close.
+template <class State>
+[[nodiscard]] std::optional<double> approach_near(const State& state, double lower, double upper, double force,
+                                                  double guess) {
+  if (!(guess > lower && guess < upper)) return std::nullopt;
+  double x = guess;
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    const ContactState s = state(x);
+    if (!(s.force > 0.0 && s.force_by_approach > 0.0)) return std::nullopt;
+    // Newton's method on the logarithms, of which the next step is round-off below 1e-8.
+    const double step = std::log(force / s.force) * s.force / (x * s.force_by_approach);
+    if (!(std::abs(step) < 0.5)) return std::nullopt;
+    x *= std::exp(step);
+    if (!(x > lower && x < upper)) return std::nullopt;
+    if (std::abs(step) < 1e-8) return x;
+  }
+  return std::nullopt;
 }
 
 /// The same between first touch and an upper bound.

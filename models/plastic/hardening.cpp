@@ -117,12 +117,13 @@ double approach_under(const HardeningLaw& law, double force, double near) {
   double greatest = fully_plastic(end).force;
   if (force <= greatest) {
     const double guess = std::pow(force / small_force_coefficient(law), 1.0 / (1.0 + 0.5 * law.exponent));
-    return approach_from_touch(fully_plastic, end, force, near > 0.0 ? near : guess);
+    const auto found = approach_near(fully_plastic, 0.0, end, force, near);
+    return found ? *found : approach_from_touch(fully_plastic, end, force, guess);
   }
   if (is_enclosed(law)) {
     const auto stiffening = [&](double x) { return state_in(law, Regime::low_compressibility, x); };
     greatest = stiffening(last).force;
-    if (force <= greatest) return approach_between(stiffening, end, last, force, std::max(near, end));
+    if (force <= greatest) return approach_between(stiffening, end, last, force, end);
   }
   throw std::domain_error("a force of " + text(force) + " kappa R^2 is above the greatest, " + text(greatest) +
                           " kappa R^2 just below gamma/2R = " + text(law.limit) + ", " +

@@ -234,15 +234,19 @@ double approach_under(const SemimechLaw& law, double force, double near) {
   for (std::size_t k = 0; k < ends.size(); ++k) {
     const Boundary& end = ends[k];
     if (force <= law.boundary_forces[k]) {
-      return regime == Regime::elastic ? approach_from_touch(state, end.approach, force, near > 0.0 ? near : guess)
-                                       : approach_between(state, lower, end.approach, force, std::max(near, lower));
+      if (const auto found = approach_near(state, lower, end.approach, force, near)) return *found;
+      return regime == Regime::elastic ? approach_from_touch(state, end.approach, force, guess)
+                                       : approach_between(state, lower, end.approach, force, lower);
     }
     lower = end.approach;
     regime = end.beyond;
   }
   const double last = std::nextafter(SemimechLaw::limit, 0.0);
   const double greatest = state(last).force;
-  if (force <= greatest) return approach_between(state, lower, last, force, std::max(near, lower));
+  if (force <= greatest) {
+    const auto found = approach_near(state, lower, last, force, near);
+    return found ? *found : approach_between(state, lower, last, force, lower);
+  }
   throw std::domain_error("a force of " + text(force) + " Y R^2 is above the greatest, " + text(greatest) +
                           " Y R^2 just below gamma/2R = 1, where the walls meet");
 }
