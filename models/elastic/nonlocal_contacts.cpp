@@ -19,7 +19,7 @@ constexpr int k_first_touch_steps = 20;
 constexpr double k_stagnation = 1e-9;   // rounding grows with 1/margin near the limit
 constexpr double k_balance = 1e-9;      // net force over the sum of forces
 constexpr double k_least_step = 1e-13;  // of the way to a state that is not found at once
-constexpr int k_most_steps = 4000;      // on that way, tried ones included
+constexpr int k_most_steps = 1000;      // on that way, tried ones included
 constexpr double k_same_surroundings = 1e-9;
 
 std::size_t in(Eigen::Index index) noexcept { return static_cast<std::size_t>(index); }

@@ -16,6 +16,7 @@ using std::numbers::pi;
 
 constexpr double k_round_off = std::numeric_limits<double>::epsilon();
 constexpr int k_newton_limit = 60;
+constexpr int k_most_halvings = 40;
 
 }  // namespace
 
@@ -164,10 +165,15 @@ void System::move_centre(double xi, std::span<double> y) {
     step_size = step.norm();
     Small before = Small::Zero();
     for (int k = 0; k < free_count_; ++k) before[k] = y[centre_place(k)];
-    for (int halving = 0; halving < 40; ++halving) {
+    for (int halving = 0; halving < k_most_halvings; ++halving) {
       for (int k = 0; k < free_count_; ++k) y[centre_place(k)] = before[k] + step[k];
-      look(xi, y);
-      if (sums_.force.norm() < error || step.norm() < k_round_off) break;
+      try {
+        look(xi, y);
+        if (sums_.force.norm() < error || step.norm() < k_round_off) break;
+      } catch (const std::domain_error&) {
+        // A trial may lead out of a branch; a state that is nearer lies in it, or there is none.
+        if (step.norm() < k_round_off || halving + 1 == k_most_halvings) throw;
+      }
       step *= 0.5;
     }
     if (step.norm() < 2.0 * k_round_off) return;

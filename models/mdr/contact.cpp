@@ -214,10 +214,10 @@ double yield_area_constant(double yield_overlap_ratio, double radius) noexcept {
 }
 
 Contact plastic_contact(const Material& material, double radius, double overlap, double area_constant) {
+  // Without area the same formulas pull a trial back to where there is some.
   const double area = 2.0 * overlap * radius - overlap * overlap + area_constant;
-  if (!(area > 0.0)) throw std::domain_error("contact area of a plastic contact is not positive");
   const auto [pressure, decrement] = plastic_pressure(material, overlap / radius);
-  return {.contact_radius = std::sqrt(area),
+  return {.contact_radius = std::sqrt(std::max(area, 0.0)),
           .force = pi * pressure * area,
           .by_overlap = pi * (2.0 * pressure * (radius - overlap) - decrement / radius * area),
           .by_radius = pi * (2.0 * pressure * overlap + decrement * overlap / (radius * radius) * area)};

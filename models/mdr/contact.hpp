@@ -77,9 +77,9 @@ struct PlasticPressure {
 /// Area constant of a contact that yields at the apparent radius R, c = delta_Y^2 - delta_Y R (eqs. 42, 43; area/pi).
 [[nodiscard]] double yield_area_constant(double yield_overlap_ratio, double radius) noexcept;
 
-/// Fully plastic contact at its largest overlap (eqs. 16, 21, 28, 36): F = pi p_Y (2 delta R - delta^2 + c).
-/// @param area_constant  c of yield_area_constant
-/// @throws std::domain_error where the contact area is not positive, and beyond the end of the material's own curve
+/// Fully plastic contact at its largest overlap (eqs. 16, 21, 28, 36): F = pi p_Y (2 delta R - delta^2 + c), in
+/// trials also below zero, where there is no area. @param area_constant  c of yield_area_constant
+/// @throws std::domain_error beyond the end of the material's own curve
 [[nodiscard]] Contact plastic_contact(const Material& material, double radius, double overlap, double area_constant);
 
 /// Elastic indenter that is left when a fully plastic contact unloads (eqs. 27-35), fixed while R and the largest

@@ -70,7 +70,9 @@ bool System::gate_is_open(const Motion& now) const noexcept {
   const double least = k_touch * speed_scale();
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (!is_member(memory_[i])) continue;
-    if (settings_.radius_rule == RadiusRule::seed) return true;
+    // What only touches and keeps up with its wall displaces nothing.
+    const bool is_idle = !is_loaded(i) && now_[i].contact.force == 0.0 && std::abs(inward_rate(i, now)) <= least;
+    if (settings_.radius_rule == RadiusRule::seed && !is_idle) return true;
     const bool is_driven = is_loaded(i) ? ramps_[i].end > ramps_[i].start : inward_rate(i, now) > least;
     if (memory_[i].is_virgin && is_driven) return true;
   }
@@ -137,6 +139,15 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
   const std::string_view why = xi == 0.0 ? "load-reversal" : "retreat";
 
   Memory& memory = memory_[i];
+  // Where a first touch is all that there is, its wall would take the free centre along although nothing pulls.
+  const bool withdraws = ramps_[i].end < ramps_[i].start;
+  const bool is_bare = memory.regime == Regime::elastic && now_[i].contact.force == 0.0 && !adheres();
+  if (free_count_ > 0 && is_bare && withdraws && !is_loaded(i) && directions_[i].norm() > k_no_direction &&
+      !is_backed(i)) {
+    lose_contact(i);
+    log.push_back(event("contact-lost"));
+    return true;
+  }
   switch (memory.regime) {
     case Regime::open:
       if (!(moves_in || is_pressed) || !is_past(k_made, 1.0)) return false;

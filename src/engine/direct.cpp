@@ -27,6 +27,14 @@ constexpr std::size_t k_known = 3;
 // Share of the last Legendre coefficients below which a rate has converged. Its integral over the piece is exact to the
 // square of that, and to a fiftieth of it in between.
 constexpr double k_tail = 1e-11;
+// Where the second half of the coefficients falls by less than this factor, they are rounding, which shorter pieces
+// have too; and how many times as large they may be there, as a share and where the whole is next to nothing.
+constexpr double k_flat = 10.0;
+constexpr double k_noise = 100.0;
+constexpr double k_noise_of_nothing = 1e4;
+// Tiny pieces of a segment in which the equations may end: more of them are rounding that gets nowhere.
+constexpr double k_tiny = 1e-10;
+constexpr int k_most_refusals = 200;
 // How much pieces change at most, and how much shorter they are than would just do.
 constexpr double k_most_growth = 2.0;
 constexpr double k_most_shrinkage = 0.2;
@@ -128,7 +136,12 @@ class LegendreSeries {
     double largest = 0.0;
     for (const double c : coefficients_) largest = std::max(largest, std::abs(c));
     const double tail = std::abs(coefficients_[k_nodes - 1]) + std::abs(coefficients_[k_nodes - 2]);
+    double before_tail = 0.0;
+    for (std::size_t k = k_nodes / 2; k < k_nodes - 2; ++k)
+      before_tail = std::max(before_tail, std::abs(coefficients_[k]));
     const double allowed = std::max(k_tail * largest, 0.5 * negligible);
+    const double noise = std::max(k_noise * k_tail * largest, k_noise_of_nothing * 0.5 * negligible);
+    if (before_tail <= k_flat * tail && tail <= noise) return k_most_growth;
     return tail > 0.0 ? std::pow(allowed / tail, 1.0 / (k_nodes - 1)) : k_most_growth;
   }
 
@@ -180,6 +193,7 @@ class Direct final : public EventLocator {
 
   void begin(double xi, std::span<const double> y) override {
     segment_begin_ = xi;
+    refusals_ = 0;
     length_ = k_longest;
     is_closed_ = !quadrature_;
     if (const auto primitive = system_.closed_quadrature(xi, y); quadrature_ && primitive) {
@@ -203,7 +217,7 @@ class Direct final : public EventLocator {
         is_covered = cover_piece(factor);
       } catch (const std::domain_error&) {
         // The equations end in it, or Newton's method has left the domain although there is a solution.
-        if (tried < least_progress(begin_)) throw;
+        if (tried < least_progress(begin_) || (tried < k_tiny && ++refusals_ > k_most_refusals)) throw;
         factor = 0.5;
       }
       length_ = std::min(k_longest, factor * tried);
@@ -312,6 +326,7 @@ class Direct final : public EventLocator {
   double primitive_offset_ = 0.0;
   bool has_slaves_ = false;
   double segment_begin_ = 0.0;
+  int refusals_ = 0;                     ///< of tiny pieces in this segment
   double length_ = k_longest;            ///< of the next piece
   double piece_end_ = 0.0;               ///< where the piece would end without an event
   LegendreSeries work_;                  ///< rate of the quadrature

@@ -19,6 +19,8 @@ namespace {
 constexpr double k_round_off = 1e-13;
 // Events in a row without progress after which two modes are chattering.
 constexpr int k_most_idle_events = 50;
+// Events of one step of the program after which they are taken to go on without end.
+constexpr int k_most_events = 1000;
 // Finer tolerances may be below the rounding of a scene's own equations.
 constexpr double k_surest_rtol = 1e-11;
 // Durations of walls that end their steps together (relative).
@@ -223,6 +225,7 @@ class Drive {
     plan_outputs();
     if (is_detached()) return false;
     int idle_events = 0;
+    int events = 0;
     long steps = 0;
     while (plan_.duration > 0.0 && 1.0 - xi_ > k_round_off) {
       const double segment_start = xi_;
@@ -246,6 +249,7 @@ class Drive {
       }
       for (const std::size_t guard : integrator_->fired()) idle_guards_.insert(watch_.name(guard));
       if (++idle_events > k_most_idle_events) throw chattering();
+      if (++events > k_most_events) throw endless();
       if (handle_event(last)) return true;
       if (is_detached()) return false;
     }
@@ -313,6 +317,11 @@ class Drive {
   [[nodiscard]] SolverError chattering() const {
     return {"event location", "chattering", xi_, 0.0,
             fmt::format("events without progress: {}", fmt::join(idle_guards_, ", "))};
+  }
+
+  [[nodiscard]] SolverError endless() const {
+    return {"event location", "endless events", xi_, 0.0,
+            fmt::format("{} events in one step of the program", k_most_events)};
   }
 
   // --- recording

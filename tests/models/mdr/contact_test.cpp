@@ -242,9 +242,20 @@ TEST(MdrPlasticContact, CarriesTheFittedPressureOverTheAreaOfTheCap) {
   }
 }
 
-TEST(MdrPlasticContact, EndsWhereItsAreaVanishes) {
+TEST(MdrPlasticContact, PullsTrialsBackWhereItHasNoArea) {
   const Dent dent{Grain{20}, 0.01};  // far below the yield overlap of 0.06
-  EXPECT_THROW(static_cast<void>(dent.plastic(1.0, dent.overlap_max)), std::domain_error);
+  constexpr double k_step = 1e-6;
+  const Contact contact = dent.plastic(1.0, dent.overlap_max);
+  EXPECT_EQ(contact.contact_radius, 0.0);
+  EXPECT_LT(contact.force, 0.0);
+  EXPECT_GT(contact.by_overlap, 0.0);
+  const double rise =
+      dent.plastic(1.0, dent.overlap_max + k_step).force - dent.plastic(1.0, dent.overlap_max - k_step).force;
+  EXPECT_NEAR(rise / (2.0 * k_step), contact.by_overlap, 1e-8 * contact.by_overlap);
+}
+
+TEST(MdrUnloading, LeavesNoDentWithoutArea) {
+  const Dent dent{Grain{20}, 0.01};
   EXPECT_THROW(static_cast<void>(dent.shape()), std::domain_error);
 }
 
