@@ -296,8 +296,9 @@ class Direct final : public EventLocator {
   }
 
   /// From what is known at the beginning of the piece and the nodes so far. One after another: the guess is then never
-  /// far from the solution, which may not be the only one. Algebraic unknowns may be singular, over which a polynomial
-  /// of higher degree overshoots: a line. What nothing determines stays exactly what it is.
+  /// far from the solution, which may not be the only one. Algebraic unknowns may be singular, over which polynomials
+  /// overshoot: from a line if an equation gives them outright, else the last one. What nothing determines stays
+  /// exactly what it is.
   void guess_ahead(std::size_t j) {
     const Nodes::Ahead& ahead = nodes_.ahead[j];
     const double half = 0.5 * (piece_end_ - begin_);
@@ -310,7 +311,8 @@ class Direct final : public EventLocator {
               ahead.values[i] * gone(i) + half * ahead.slopes[i] * (j > i ? slopes_[k][j - 1 - i] : begin_rates_[k]);
         }
       } else if (j > 0) {
-        gain = gone(0) + ahead.onward * (gone(0) - gone(1));
+        gain = gone(0);
+        if (system_.unknowns()[k].is_slaved) gain += ahead.onward * (gone(0) - gone(1));
       }
       trial_[k] = begin_state_[k] + gain;
     }

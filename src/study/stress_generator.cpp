@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 
 constexpr double k_right_angle = std::numbers::pi / 2.0;
 constexpr int k_most_cycles = 50;
-constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 // To draw a scene that is admissible.
 constexpr int k_most_tries = 200;
 
@@ -132,7 +131,7 @@ void refine(Dice& dice, StressScene& scene, const StressBounds& bounds, const fs
   const Places places = find_places(scene, tables);
   if (!places.of_events.empty() && dice.happens(0.7)) {
     StressStep corner = places.of_events[dice.below(places.of_events.size())];
-    const double rounding = k_epsilon * std::floor(dice.uniform(-4.0, 5.0));
+    const double rounding = std::numeric_limits<double>::epsilon() * std::floor(dice.uniform(-4.0, 5.0));
     const double nearby = dice.one_of({0.0, 0.0, 1e-14, 1e-12, 1e-10, 1e-8}) * dice.uniform(-1.0, 1.0);
     corner.target *= 1.0 + rounding + nearby;
     corner.until.clear();
