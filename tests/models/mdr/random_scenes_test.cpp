@@ -14,12 +14,12 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <random>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "study/dice.hpp"
 #include "support/test_run.hpp"
 
 namespace monograin {
@@ -27,32 +27,12 @@ namespace {
 
 // --- the scenes
 
-/// Numbers that are the same with every standard library, which the distributions of <random> are not.
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : engine_(seed) {}
-
-  /// In [low, high).
-  double uniform(double low, double high) {
-    return low + (high - low) * (static_cast<double>(engine_() >> 11U) * 0x1p-53);
-  }
-  double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-  std::size_t below(std::size_t count) { return static_cast<std::size_t>(uniform(0.0, static_cast<double>(count))); }
-  bool happens(double probability) { return uniform(0.0, 1.0) < probability; }
-  template <class T>
-  T one_of(std::initializer_list<T> values) {
-    return *(values.begin() + below(values.size()));
-  }
-  Eigen::Vector3d direction() {
-    const double z = uniform(-1.0, 1.0);
-    const double angle = uniform(0.0, 2.0 * std::numbers::pi);
-    const double rho = std::sqrt(1.0 - z * z);
-    return {rho * std::cos(angle), rho * std::sin(angle), z};
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
+Eigen::Vector3d direction(Dice& dice) {
+  const double z = dice.uniform(-1.0, 1.0);
+  const double angle = dice.uniform(0.0, 2.0 * std::numbers::pi);
+  const double rho = std::sqrt(1.0 - z * z);
+  return {rho * std::cos(angle), rho * std::sin(angle), z};
+}
 
 // Where a wall goes at most: soft and well confined scenes meet their limits on the way.
 constexpr double k_deepest = 0.35;
@@ -89,7 +69,7 @@ std::vector<Eigen::Vector3d> random_normals(Dice& dice) {
   std::vector<Eigen::Vector3d> normals;
   const std::size_t count = 2 + dice.below(5);
   while (normals.size() < count) {
-    const Eigen::Vector3d candidate = dice.direction();
+    const Eigen::Vector3d candidate = direction(dice);
     const bool is_apart = std::ranges::all_of(
         normals, [&](const Eigen::Vector3d& n) { return candidate.dot(n) < std::cos(k_least_angle); });
     if (is_apart) normals.push_back(candidate);
