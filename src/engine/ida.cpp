@@ -124,10 +124,11 @@ class Ida final : public Integrator {
     now.rhs_evaluations += for_jacobian;
     IDAGetNumErrTestFails(memory_.get(), &now.error_test_failures);
     IDAGetNumNonlinSolvConvFails(memory_.get(), &now.convergence_failures);
-    IDAGetNumGEvals(memory_.get(), &now.guard_evaluations);
     IDAGetLastOrder(memory_.get(), &now.last_order);
     IDAGetLastStep(memory_.get(), &now.last_step);
-    return now += past_;
+    now += past_;
+    now.guard_evaluations = roots_.evaluations;
+    return now;
   }
 
  private:
@@ -163,6 +164,7 @@ class Ida final : public Integrator {
 
   static int guards(realtype xi, N_Vector y, N_Vector, realtype* values, void* self) noexcept {
     auto& ida = *static_cast<Ida*>(self);
+    ++ida.roots_.evaluations;
     return ida.pending_.guard([&] {
       std::ranges::copy(view(y), ida.complete_.begin());
       if (ida.has_slaves_) ida.system_.complete(xi, ida.complete_);

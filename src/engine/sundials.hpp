@@ -32,6 +32,7 @@ struct RootList {
   std::vector<int> directions;
   std::vector<int> found;
   std::vector<std::size_t> fired;
+  long evaluations = 0;  ///< counted here: the libraries' own counters are not set before a first step
 
   void collect() {
     fired.clear();

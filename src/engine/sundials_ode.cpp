@@ -41,7 +41,6 @@ struct CvodeLibrary {
   static constexpr auto jacobian_evaluations = CVodeGetNumJacEvals;
   static constexpr auto error_test_failures = CVodeGetNumErrTestFails;
   static constexpr auto convergence_failures = CVodeGetNumNonlinSolvConvFails;
-  static constexpr auto guard_evaluations = CVodeGetNumGEvals;
   static constexpr auto last_step = CVodeGetLastStep;
   static constexpr auto current_step = CVodeGetCurrentStep;
   static constexpr auto error_weights = CVodeGetErrWeights;
@@ -87,7 +86,6 @@ struct ArkodeLibrary {
   static constexpr auto jacobian_evaluations = ARKStepGetNumJacEvals;
   static constexpr auto error_test_failures = ARKStepGetNumErrTestFails;
   static constexpr auto convergence_failures = ARKStepGetNumNonlinSolvConvFails;
-  static constexpr auto guard_evaluations = ARKStepGetNumGEvals;
   static constexpr auto last_step = ARKStepGetLastStep;
   static constexpr auto current_step = ARKStepGetCurrentStep;
   static constexpr auto error_weights = ARKStepGetErrWeights;
@@ -190,10 +188,11 @@ class SundialsOde final : public Integrator {
     now.rhs_evaluations = Library::rhs_evaluations(memory_.get()) + for_jacobian;
     Library::error_test_failures(memory_.get(), &now.error_test_failures);
     Library::convergence_failures(memory_.get(), &now.convergence_failures);
-    Library::guard_evaluations(memory_.get(), &now.guard_evaluations);
     now.last_order = Library::last_order(memory_.get());
     Library::last_step(memory_.get(), &now.last_step);
-    return now += past_;
+    now += past_;
+    now.guard_evaluations = roots_.evaluations;
+    return now;
   }
 
  private:
@@ -236,6 +235,7 @@ class SundialsOde final : public Integrator {
 
   static int guards(realtype xi, N_Vector y, realtype* values, void* self) noexcept {
     auto& ode = *static_cast<SundialsOde*>(self);
+    ++ode.roots_.evaluations;
     return ode.pending_.guard([&] {
       ode.watch_.values(xi, ode.form_.complete(xi, view(y)), {values, ode.watch_.size()});
       return true;
