@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compressible/contact_law.hpp"
+#include "energy_watch.hpp"
 #include "hybrid_system.hpp"
 
 namespace monograin::compressible {

@@ -122,11 +122,6 @@ System::Small System::balance_step(const Small& force) const {
 }
 
 System::Motion System::motion(bool growing) const {
-  if (free_count_ == 0) {
-    Motion result{.demand = -sums_.by_time, .slope = sums_.by_radius, .growth = 0.0, .centre = Small::Zero()};
-    if (growing) result.growth = result.demand / result.slope;
-    return result;
-  }
   const Small by_time = balance_step(sums_.force_by_time);
   const Small by_radius = balance_step(sums_.force_by_radius);
   Motion result{.demand = -sums_.by_time - sums_.by_centre.dot(by_time),
@@ -212,14 +207,6 @@ void System::grow(double xi, std::span<double> y) {
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     move_walls(xi, y);
     look(xi, y);
-    if (free_count_ == 0) {
-      if (!(sums_.by_radius > 0.0)) throw std::domain_error("singular growth of the apparent radius");
-      const double step = std::clamp((frozen_balance_ - sums_.balance) / sums_.by_radius, -0.1, 0.1);
-      y[k_radius] += step;
-      // Quadratic convergence: below 1e-10 the next step is round-off.
-      if (std::abs(step) < 1e-10) return;
-      continue;
-    }
     const Small to_balance = balance_step(sums_.force);
     const Small by_radius = balance_step(sums_.force_by_radius);
     const double slope = sums_.by_radius + sums_.by_centre.dot(by_radius);
@@ -229,9 +216,10 @@ void System::grow(double xi, std::span<double> y) {
     const Small centre_step = to_balance + step * by_radius;
     y[k_radius] += step;
     for (int k = 0; k < free_count_; ++k) y[centre_place(k)] += centre_step[k];
-    // Below 1e-9 the next step need not be round-off: the centre's square-root forces may still be settling.
+    // Quadratic convergence: below 1e-10 the next step is round-off, unless the centre's square-root forces are still
+    // settling.
     const double size = std::max(std::abs(step), centre_step.norm());
-    if (size < 2.0 * k_round_off) return;
+    if (size < (free_count_ == 0 ? 1e-10 : 2.0 * k_round_off)) return;
     if (size >= 0.5 * step_size && size < 1e-12) return;
     step_size = size;
   }

@@ -14,9 +14,11 @@
 #include <memory>
 #include <vector>
 
+#include "energy_watch.hpp"
 #include "hybrid_system.hpp"
 #include "mdr/adhesion.hpp"
 #include "mdr/contact.hpp"
+#include "undefined.hpp"
 
 namespace monograin::mdr {
 
@@ -196,7 +198,7 @@ class System final : public HybridSystem {
 
   void look(double xi, std::span<const double> y);
   void look_once(double xi, std::span<const double> y);
-  void forget_look() noexcept { seen_xi_ = std::numeric_limits<double>::quiet_NaN(); }
+  void forget_look() noexcept { seen_xi_ = k_nan; }
   void look_at(std::size_t i, double displacement, double r);
   [[nodiscard]] double force_work(std::span<const double> y);
   void sum_up(double xi, double r);
@@ -280,7 +282,7 @@ class System final : public HybridSystem {
   // Work space, so that nothing is allocated while integrating.
   std::vector<double> trial_;
   std::vector<Instant> now_;
-  double seen_xi_ = std::numeric_limits<double>::quiet_NaN();  ///< where look() was last
+  double seen_xi_ = k_nan;  ///< where look() was last
   std::vector<double> seen_;
   std::vector<UnloadingShape> shapes_;
   std::vector<PullOff> pull_offs_;

@@ -116,9 +116,9 @@ double approach_under(const HardeningLaw& law, double force, double near) {
   const double end = std::min(law.fall.end, last);
   double greatest = fully_plastic(end).force;
   if (force <= greatest) {
+    if (const auto found = approach_near(fully_plastic, 0.0, end, force, near)) return *found;
     const double guess = std::pow(force / small_force_coefficient(law), 1.0 / (1.0 + 0.5 * law.exponent));
-    const auto found = approach_near(fully_plastic, 0.0, end, force, near);
-    return found ? *found : approach_from_touch(fully_plastic, end, force, guess);
+    return approach_from_touch(fully_plastic, end, force, guess);
   }
   if (is_enclosed(law)) {
     const auto stiffening = [&](double x) { return state_in(law, Regime::low_compressibility, x); };

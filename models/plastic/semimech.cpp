@@ -118,6 +118,13 @@ double integral(const Integrand& f, double a, double b) {
   return boost::math::quadrature::gauss<double, Points>::integrate(f, a, b);
 }
 
+/// x under a small force, where a/R = D1 x^(1/2): off by a relative error of order x.
+double small_approach(const SemimechLaw& law, double force) {
+  const double first = law.radius.first;
+  const double root = std::cbrt(3.0 * force / (4.0 * law.material.modulus_over_yield * first * first));
+  return root * root;
+}
+
 }  // namespace
 
 SemimechMaterial make_semimech_material(double youngs_modulus, double poisson_ratio, double yield_stress) {
@@ -222,11 +229,6 @@ double approach_under(const SemimechLaw& law, double force, double near) {
     if (force <= 0.0) return 0.0;
     throw std::domain_error("the force is not a number");
   }
-  // The force for small x, where a/R = D1 x^(1/2), off by a relative error of order x.
-  const double first = law.radius.first;
-  const double root = std::cbrt(3.0 * force / (4.0 * law.material.modulus_over_yield * first * first));
-  const double guess = root * root;
-
   double lower = 0.0;
   Regime regime = Regime::elastic;
   const auto state = [&](double x) { return state_in(law, regime, x); };
@@ -235,7 +237,7 @@ double approach_under(const SemimechLaw& law, double force, double near) {
     const Boundary& end = ends[k];
     if (force <= law.boundary_forces[k]) {
       if (const auto found = approach_near(state, lower, end.approach, force, near)) return *found;
-      return regime == Regime::elastic ? approach_from_touch(state, end.approach, force, guess)
+      return regime == Regime::elastic ? approach_from_touch(state, end.approach, force, small_approach(law, force))
                                        : approach_between(state, lower, end.approach, force, lower);
     }
     lower = end.approach;

@@ -14,6 +14,7 @@
 
 #include <vector>
 
+#include "energy_watch.hpp"
 #include "hybrid_system.hpp"
 #include "mdr/contact.hpp"
 #include "plastic/law.hpp"

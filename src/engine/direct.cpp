@@ -2,14 +2,12 @@
 // work is a closed form or a Gauss-Legendre quadrature.
 
 #include <algorithm>
-#include <array>
-#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
-#include <utility>
 
 #include "engine/event_locator.hpp"
+#include "engine/legendre_series.hpp"
 
 namespace monograin {
 namespace {
@@ -21,17 +19,6 @@ constexpr double k_rest = 0.25;
 // The first piece where there are slaved unknowns, and how fast pieces grow from there.
 constexpr double k_first = 1e-9;
 constexpr double k_grading = 30.0;
-constexpr std::size_t k_nodes = 12;
-// Places before a node from which its state is guessed, where the slopes there are known.
-constexpr std::size_t k_known = 3;
-// Share of the last Legendre coefficients below which a rate has converged. Its integral over the piece is exact to the
-// square of that, and to a fiftieth of it in between.
-constexpr double k_tail = 1e-11;
-// Where the second half of the coefficients falls by less than this factor, they are rounding, which shorter pieces
-// have too; and how many times as large they may be there, as a share and where the whole is next to nothing.
-constexpr double k_flat = 10.0;
-constexpr double k_noise = 100.0;
-constexpr double k_noise_of_nothing = 1e4;
 // Tiny pieces of a segment in which the equations may end: more of them are rounding that gets nowhere.
 constexpr double k_tiny = 1e-10;
 constexpr int k_most_refusals = 200;
@@ -43,136 +30,6 @@ constexpr double k_safety = 0.85;
 constexpr double k_quadrature_accuracy = 1e-16;
 // Quadrature pieces are not refined below this; what is left is below round-off of the whole.
 constexpr double k_smallest_quadrature = 1e-6;
-
-using Rule = boost::math::quadrature::gauss<double, k_nodes>;
-using Samples = std::array<double, k_nodes>;
-
-/// The next of the Legendre polynomials, from (P_(k-1), P_k) to (P_k, P_(k+1)).
-constexpr void next_legendre(std::size_t k, double x, double& previous, double& legendre) noexcept {
-  const auto n = static_cast<double>(k);
-  const double after = ((2.0 * n + 1.0) * x * legendre - n * previous) / (n + 1.0);
-  previous = legendre;
-  legendre = after;
-}
-
-/// The rule on [-1, 1], and what samples at its nodes are multiplied by.
-struct Nodes {
-  /// What extends the polynomial through values and slopes at the last places before a node, the nearest first, to that
-  /// node; the beginning of the interval, -1, is one of the places.
-  struct Ahead {
-    std::array<double, k_known> values{};
-    std::array<double, k_known> slopes{};
-    double onward = 0.0;  ///< the distance to the node over that between the last two places
-  };
-
-  Samples places{};
-  std::array<Samples, k_nodes> to_coefficients{};  ///< of Legendre polynomials
-  std::array<Ahead, k_nodes> ahead{};
-
-  Nodes() {
-    constexpr std::size_t k_half = k_nodes / 2;
-    for (std::size_t j = 0; j < k_nodes; ++j) {
-      const std::size_t from_middle = j < k_half ? k_half - 1 - j : j - k_half;
-      places[j] = (j < k_half ? -1.0 : 1.0) * Rule::abscissa()[from_middle];
-      double previous = 0.0;
-      double legendre = 1.0;
-      for (std::size_t k = 0; k < k_nodes; ++k) {
-        to_coefficients[k][j] = 0.5 * (2.0 * static_cast<double>(k) + 1.0) * Rule::weights()[from_middle] * legendre;
-        next_legendre(k, places[j], previous, legendre);
-      }
-    }
-    for (std::size_t j = 0; j < k_nodes; ++j) {
-      if (j > 0) {
-        ahead[j].onward = (places[j] - place_before(j, 0)) / (place_before(j, 0) - place_before(j, 1));
-      }
-      for (std::size_t i = 0; i < std::min(j + 1, k_known); ++i) {
-        const auto [value, slope_there] = cardinal(j, i, std::min(j + 1, k_known));
-        const double distance = places[j] - place_before(j, i);
-        ahead[j].values[i] = (1.0 - 2.0 * distance * slope_there) * value * value;
-        ahead[j].slopes[i] = distance * value * value;
-      }
-    }
-  }
-
- private:
-  [[nodiscard]] double place_before(std::size_t j, std::size_t back) const noexcept {
-    return j > back ? places[j - 1 - back] : -1.0;
-  }
-
-  /// The polynomial that is 1 at one of the last places before a node and 0 at the others: its value at the node, and
-  /// its slope at its own place.
-  [[nodiscard]] std::pair<double, double> cardinal(std::size_t j, std::size_t i, std::size_t count) const noexcept {
-    double value = 1.0;
-    double slope = 0.0;
-    for (std::size_t m = 0; m < count; ++m) {
-      if (m == i) continue;
-      const double distance = place_before(j, i) - place_before(j, m);
-      value *= (places[j] - place_before(j, m)) / distance;
-      slope += 1.0 / distance;
-    }
-    return {value, slope};
-  }
-};
-
-const Nodes& nodes() {
-  static const Nodes k_instance;
-  return k_instance;
-}
-
-/// A function known at the nodes of a piece, in between, and its integral.
-class LegendreSeries {
- public:
-  void fit(const Nodes& rule, const Samples& samples) noexcept {
-    for (std::size_t k = 0; k < k_nodes; ++k) {
-      coefficients_[k] = 0.0;
-      for (std::size_t j = 0; j < k_nodes; ++j) coefficients_[k] += rule.to_coefficients[k][j] * samples[j];
-    }
-  }
-
-  /// How many times as long the piece could be for the series to have converged just so; its last term goes with the
-  /// length to the power of its degree.
-  /// @param negligible  error of the integral over [-1, 1] that does not count, however large a share of it that is
-  [[nodiscard]] double reach(double negligible) const noexcept {
-    double largest = 0.0;
-    for (const double c : coefficients_) largest = std::max(largest, std::abs(c));
-    const double tail = std::abs(coefficients_[k_nodes - 1]) + std::abs(coefficients_[k_nodes - 2]);
-    double before_tail = 0.0;
-    for (std::size_t k = k_nodes / 2; k < k_nodes - 2; ++k)
-      before_tail = std::max(before_tail, std::abs(coefficients_[k]));
-    const double allowed = std::max(k_tail * largest, 0.5 * negligible);
-    const double noise = std::max(k_noise * k_tail * largest, k_noise_of_nothing * 0.5 * negligible);
-    if (before_tail <= k_flat * tail && tail <= noise) return k_most_growth;
-    return tail > 0.0 ? std::pow(allowed / tail, 1.0 / (k_nodes - 1)) : k_most_growth;
-  }
-
-  /// @param t  in [-1, 1]
-  [[nodiscard]] double value(double t) const noexcept {
-    double sum = 0.0;
-    double previous = 0.0;
-    double legendre = 1.0;
-    for (std::size_t k = 0; k < k_nodes; ++k) {
-      sum += coefficients_[k] * legendre;
-      next_legendre(k, t, previous, legendre);
-    }
-    return sum;
-  }
-
-  /// From -1 to t.
-  [[nodiscard]] double integral(double t) const noexcept {
-    double sum = coefficients_[0] * (t + 1.0);
-    double previous = 1.0;  // P_(k-1)
-    double legendre = t;    // P_k
-    for (std::size_t k = 1; k < k_nodes; ++k) {
-      const double before = previous;
-      next_legendre(k, t, previous, legendre);
-      sum += coefficients_[k] * (legendre - before) / (2.0 * static_cast<double>(k) + 1.0);
-    }
-    return sum;
-  }
-
- private:
-  Samples coefficients_{};
-};
 
 class Direct final : public EventLocator {
  public:
@@ -212,7 +69,7 @@ class Direct final : public EventLocator {
     for (bool is_covered = false; !is_covered; rest = 0.0) {
       piece_end_ = 1.0 - begin_ <= (1.0 + rest) * length_ ? 1.0 : begin_ + length_;
       const double tried = piece_end_ - begin_;
-      double factor = 0.5;
+      double factor = k_most_growth;
       try {
         is_covered = cover_piece(factor);
       } catch (const std::domain_error&) {
@@ -261,11 +118,11 @@ class Direct final : public EventLocator {
 
   /// Solves for the state at the nodes of the piece, finds its event and integrates over it; false where the piece is
   /// too long for that.
-  /// @param factor  how many times as long the next piece, or this one, should be
+  /// @param factor  how many times as long the next piece, or this one, should be; left alone where nothing says
   bool cover_piece(double& factor) {
     forget_looks();
     if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
-    for (std::size_t j = 0; j < k_nodes; ++j) {
+    for (std::size_t j = 0; j < k_legendre_nodes; ++j) {
       const double xi = begin_ + 0.5 * (piece_end_ - begin_) * (1.0 + nodes_.places[j]);
       guess_ahead(j);
       ++statistics_.rhs_evaluations;
@@ -280,7 +137,6 @@ class Direct final : public EventLocator {
     for (std::size_t k = 0; k < series_.size(); ++k) {
       if (k != quadrature_) series_[k].fit(nodes_, gains_[k]);
     }
-    factor = k_most_growth;
     if (!is_closed_) {
       work_.fit(nodes_, slopes_[*quadrature_]);
       const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
@@ -300,13 +156,13 @@ class Direct final : public EventLocator {
   /// overshoot: from a line if an equation gives them outright, else the last one. What nothing determines stays
   /// exactly what it is.
   void guess_ahead(std::size_t j) {
-    const Nodes::Ahead& ahead = nodes_.ahead[j];
+    const LegendreNodes::Ahead& ahead = nodes_.ahead[j];
     const double half = 0.5 * (piece_end_ - begin_);
     for (std::size_t k = 0; k < trial_.size(); ++k) {
       const auto gone = [&](std::size_t i) { return j > i ? gains_[k][j - 1 - i] : 0.0; };
       double gain = 0.0;
       if (!is_closed_ && k < integrated_) {
-        for (std::size_t i = 0; i < std::min(j + 1, k_known); ++i) {
+        for (std::size_t i = 0; i < std::min(j + 1, LegendreNodes::k_known); ++i) {
           gain +=
               ahead.values[i] * gone(i) + half * ahead.slopes[i] * (j > i ? slopes_[k][j - 1 - i] : begin_rates_[k]);
         }
@@ -328,15 +184,16 @@ class Direct final : public EventLocator {
   double primitive_offset_ = 0.0;
   bool has_slaves_ = false;
   double segment_begin_ = 0.0;
-  int refusals_ = 0;                     ///< of tiny pieces in this segment
-  double length_ = k_longest;            ///< of the next piece
-  double piece_end_ = 0.0;               ///< where the piece would end without an event
-  LegendreSeries work_;                  ///< rate of the quadrature
-  std::size_t integrated_ = 0;           ///< unknowns that rates() knows: the first ones
-  std::vector<Samples> gains_, slopes_;  ///< at the nodes: what the unknowns have gained since the beginning, rates
-  std::vector<LegendreSeries> series_;   ///< of the gains
+  int refusals_ = 0;            ///< of tiny pieces in this segment
+  double length_ = k_longest;   ///< of the next piece
+  double piece_end_ = 0.0;      ///< where the piece would end without an event
+  LegendreSeries work_;         ///< rate of the quadrature
+  std::size_t integrated_ = 0;  ///< unknowns that rates() knows: the first ones
+  std::vector<LegendreSamples> gains_,
+      slopes_;                          ///< at the nodes: what the unknowns have gained since the beginning, rates
+  std::vector<LegendreSeries> series_;  ///< of the gains
   std::vector<double> trial_, rates_, begin_rates_;
-  const Nodes& nodes_ = nodes();
+  const LegendreNodes& nodes_ = LegendreNodes::instance();
 };
 
 }  // namespace

@@ -25,9 +25,6 @@ namespace monograin {
 /// How near to zero a guard counts as fired together with another, where both carry an integrator's error.
 [[nodiscard]] inline double guard_tolerance_of(const Tolerances& tolerances) noexcept { return 1e-2 * tolerances.rtol; }
 
-/// What a step is made shorter by that has met the end of the equations.
-inline constexpr double k_retreat = 0.1;
-
 [[nodiscard]] inline bool all_finite(std::span<const double> values) noexcept {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }

@@ -36,6 +36,7 @@ class GslStepper final : public Stepper {
  public:
   GslStepper(GslMethod method, ScaledForm& form, const Tolerances& tolerances)
       : form_(form),
+        jacobian_(form),
         system_{rates, jacobian, form.size(), this},
         driver_(make_driver(type_of(method), tolerances)),
         reaching_(make_driver(gsl_odeiv2_step_rk8pd, tolerances)),
@@ -127,12 +128,13 @@ class GslStepper final : public Stepper {
     const std::size_t size = stepper.form_.size();
     ++stepper.jacobian_evaluations;
     return answer(stepper.pending_.guard([&] {
-      difference_jacobian(stepper.form_, xi, {z, size}, {by_z, size * size}, {by_xi, size});
+      stepper.jacobian_.at(xi, {z, size}, {by_z, size * size}, {by_xi, size});
       return true;
     }));
   }
 
   ScaledForm& form_;
+  DifferenceJacobian jacobian_;
   gsl_odeiv2_system system_;
   Driver driver_;
   Driver reaching_;

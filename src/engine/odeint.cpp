@@ -227,6 +227,7 @@ class RosenbrockStepper final : public Stepper {
  public:
   RosenbrockStepper(ScaledForm& form, const Tolerances& tolerances)
       : form_(form),
+        jacobian_(form),
         size_(form.size()),
         method_({size_ + 1, rates, jacobian, this}, local_atol(tolerances), local_rtol(tolerances)),
         start_(size_ + 1),
@@ -274,7 +275,7 @@ class RosenbrockStepper final : public Stepper {
     auto& stepper = *static_cast<RosenbrockStepper*>(self);
     const std::size_t size = stepper.size_;
     ++stepper.jacobian_evaluations;
-    difference_jacobian(stepper.form_, z[size], {z, size}, stepper.by_z_, stepper.by_xi_);
+    stepper.jacobian_.at(z[size], {z, size}, stepper.by_z_, stepper.by_xi_);
     std::fill_n(by_time, size + 1, 0.0);
     for (std::size_t i = 0; i < size; ++i) {
       double* const row = std::copy_n(stepper.by_z_.data() + i * size, size, matrix + i * (size + 1));
@@ -284,6 +285,7 @@ class RosenbrockStepper final : public Stepper {
   }
 
   ScaledForm& form_;
+  DifferenceJacobian jacobian_;
   std::size_t size_;
   Rosenbrock4 method_;
   std::vector<double> start_, by_z_, by_xi_, end_rates_;

@@ -26,6 +26,7 @@ class Stepped final : public EventLocator {
         form_(system),
         stepper_(make(form_)),
         z_(form_.size()),
+        slope_(form_.size()),
         middle_state_(system.unknowns().size()) {}
 
   void begin(double xi, std::span<const double> y) override {
@@ -80,9 +81,8 @@ class Stepped final : public EventLocator {
   /// Where y holds the beginning of a segment, along its tangent.
   void state_ahead(double xi, std::span<double> y) override {
     stepper_->state_at(end_, z_);
-    std::vector<double> slope(z_.size());
-    form_.rates(end_, z_, slope);
-    for (std::size_t k = 0; k < z_.size(); ++k) z_[k] += (xi - end_) * slope[k];
+    form_.rates(end_, z_, slope_);
+    for (std::size_t k = 0; k < z_.size(); ++k) z_[k] += (xi - end_) * slope_[k];
     form_.complete(xi, z_, y);
   }
 
@@ -104,7 +104,7 @@ class Stepped final : public EventLocator {
   Tolerances tolerances_;
   ScaledForm form_;
   std::unique_ptr<Stepper> stepper_;
-  std::vector<double> z_;
+  std::vector<double> z_, slope_;
   std::vector<double> middle_state_;
   double step_end_ = 0.0;
 };
@@ -198,36 +198,36 @@ class FixedStep final : public Integrator {
 
 }  // namespace
 
-void difference_jacobian(ScaledForm& form, double xi, std::span<const double> z, std::span<double> jacobian,
-                         std::span<double> by_xi) {
+/// Where the equations end nearer than a step, a regime is as short, and its own scale so much smaller.
+/// @return the step that was taken
+template <class Shift>
+double DifferenceJacobian::differ(double step, Shift&& shift) {
+  for (int nearer = 0;; ++nearer, step *= k_nearer) {
+    try {
+      shift(step);
+      return step;
+    } catch (const std::domain_error&) {
+      if (nearer == k_most_nearer) throw;
+    }
+  }
+}
+
+void DifferenceJacobian::at(double xi, std::span<const double> z, std::span<double> jacobian, std::span<double> by_xi) {
   static const double k_root = std::sqrt(std::numeric_limits<double>::epsilon());
   const std::size_t n = z.size();
-  std::vector<double> base(n);
-  std::vector<double> shifted(n);
-  std::vector<double> point(z.begin(), z.end());
-  form.rates(xi, point, base);
-  // Where the equations end nearer than that, a regime is as short, and its own scale so much smaller.
-  const auto differ = [&](double step, auto&& shift) {
-    for (int nearer = 0;; ++nearer, step *= k_nearer) {
-      try {
-        shift(step);
-        return step;
-      } catch (const std::domain_error&) {
-        if (nearer == k_most_nearer) throw;
-      }
-    }
-  };
+  std::ranges::copy(z, point_.begin());
+  form_.rates(xi, point_, base_);
   for (std::size_t j = 0; j < n; ++j) {
     const double step = differ(k_root * std::max(std::abs(z[j]), 1e-2), [&](double by) {
-      point[j] = z[j] + by;
-      form.rates(xi, point, shifted);
+      point_[j] = z[j] + by;
+      form_.rates(xi, point_, shifted_);
     });
-    for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted[i] - base[i]) / step;
-    point[j] = z[j];
+    for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted_[i] - base_[i]) / step;
+    point_[j] = z[j];
   }
   // Backwards: beyond 1 the program goes on differently.
-  const double step = differ(xi > 0.5 ? -k_root : k_root, [&](double by) { form.rates(xi + by, point, shifted); });
-  for (std::size_t i = 0; i < n; ++i) by_xi[i] = (shifted[i] - base[i]) / step;
+  const double step = differ(xi > 0.5 ? -k_root : k_root, [&](double by) { form_.rates(xi + by, point_, shifted_); });
+  for (std::size_t i = 0; i < n; ++i) by_xi[i] = (shifted_[i] - base_[i]) / step;
 }
 
 std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, Watch& watch,

@@ -70,9 +70,21 @@ class Stepper {
 [[nodiscard]] std::unique_ptr<Stepper> make_odeint(OdeintMethod method, ScaledForm& form, const Tolerances& tolerances);
 [[nodiscard]] std::unique_ptr<Stepper> make_gsl(GslMethod method, ScaledForm& form, const Tolerances& tolerances);
 
-/// d(rates)/dz by forward differences, and d(rates)/dxi.
-/// @param jacobian  row by row
-void difference_jacobian(ScaledForm& form, double xi, std::span<const double> z, std::span<double> jacobian,
-                         std::span<double> by_xi);
+/// d(rates)/dz and d(rates)/dxi by forward differences.
+class DifferenceJacobian {
+ public:
+  explicit DifferenceJacobian(ScaledForm& form)
+      : form_(form), base_(form.size()), shifted_(form.size()), point_(form.size()) {}
+
+  /// @param jacobian  row by row
+  void at(double xi, std::span<const double> z, std::span<double> jacobian, std::span<double> by_xi);
+
+ private:
+  template <class Shift>
+  double differ(double step, Shift&& shift);
+
+  ScaledForm& form_;
+  std::vector<double> base_, shifted_, point_;
+};
 
 }  // namespace monograin

@@ -57,6 +57,29 @@ inline void keep_message(int, const char*, const char*, char* message, void* sin
 /// A solver of small dense systems; timed where a LinearAlgebraClock runs.
 [[nodiscard]] LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context);
 
+/// What a step is made shorter by that has met the end of the equations.
+inline constexpr double k_retreat = 0.1;
+
+/// One step. Where its trials, or its guards, leave the domain, it is tried anew, shorter than the library itself
+/// would.
+/// @param evolve        takes the step and returns the library's flag
+/// @param current_step  puts the step that the library would take next into its argument, and returns its flag
+/// @param restart       begins anew where the step began, with this first step
+/// @throws std::domain_error where no step gets anywhere
+template <class Evolve, class CurrentStep, class Restart>
+int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentStep&& current_step, Restart&& restart) {
+  pending.forget();
+  int flag = evolve();
+  for (double step = 0.0; flag < 0 && !pending.domain_end().empty(); flag = evolve()) {
+    // Before its first step the library has none.
+    if (step == 0.0 && (current_step(&step) != 0 || !(step > 0.0))) step = 1.0;
+    step = k_retreat * std::min(step, 1.0 - begin);
+    if (!(step > least_progress(begin))) throw std::domain_error(pending.domain_end());
+    restart(step);
+  }
+  return flag;
+}
+
 /// The unknowns with the largest weighted local errors, worst first, as "name (weighted error)".
 [[nodiscard]] std::string worst_components(std::span<const Unknown> unknowns, std::span<const double> weights,
                                            std::span<const double> errors);

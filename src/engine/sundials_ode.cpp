@@ -142,17 +142,13 @@ class SundialsOde final : public Integrator {
     roots_.fired.clear();
     const double begin = end_;
     N_VScale(1.0, y_.get(), begin_state_.get());
-    pending_.forget();
-    int flag = evolve();
-    // A step whose trials, or whose guards, leave the domain is tried anew, shorter than the library itself would.
-    for (double step = 0.0; flag < 0 && !pending_.domain_end().empty(); flag = evolve()) {
-      // Before its first step the library has none.
-      if (step == 0.0 && (Library::current_step(memory_.get(), &step) != 0 || !(step > 0.0))) step = 1.0;
-      step = k_retreat * std::min(step, 1.0 - begin);
-      if (!(step > least_progress(begin))) throw std::domain_error(pending_.domain_end());
-      N_VScale(1.0, begin_state_.get(), y_.get());
-      start(begin, step);
-    }
+    const int flag = step_within_domain(
+        pending_, begin, [this] { return evolve(); },
+        [this](double* step) { return Library::current_step(memory_.get(), step); },
+        [&](double step) {
+          N_VScale(1.0, begin_state_.get(), y_.get());
+          start(begin, step);
+        });
     check(Library::name, flag);
     // Ever smaller steps towards the end of the equations would never get there.
     if (!pending_.domain_end().empty() && end_ - begin < least_progress(begin)) {

@@ -15,6 +15,7 @@
 #include "study/stress_distance.hpp"
 #include "study/stress_events.hpp"
 #include "study/stress_variants.hpp"
+#include "undefined.hpp"
 
 namespace monograin {
 namespace {
@@ -26,8 +27,6 @@ constexpr int k_samples = 6;
 constexpr double k_resolution = 1e-12;
 constexpr double k_slower = 1e6;
 constexpr Magnification k_magnification{.length = 1e3, .stress = 1e-5};
-
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The larger of two, of which not a number is the largest.
 double worse(double a, double b) { return a > b || std::isnan(a) ? a : b; }

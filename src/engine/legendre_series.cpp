@@ -1,0 +1,127 @@
+#include "engine/legendre_series.hpp"
+
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+
+namespace monograin {
+namespace {
+
+using Rule = boost::math::quadrature::gauss<double, k_legendre_nodes>;
+
+// Share of the last Legendre coefficients below which a rate has converged. Its integral over the piece is exact to the
+// square of that, and to a fiftieth of it in between.
+constexpr double k_tail = 1e-11;
+// Where the second half of the coefficients falls by less than this factor, they are rounding, which shorter pieces
+// have too; and how many times as large they may be there, as a share and where the whole is next to nothing.
+constexpr double k_flat = 10.0;
+constexpr double k_noise = 100.0;
+constexpr double k_noise_of_nothing = 1e4;
+// How many times as long the interval could be where there is nothing to tell it from.
+constexpr double k_farthest = 2.0;
+
+/// The next of the Legendre polynomials, from (P_(k-1), P_k) to (P_k, P_(k+1)).
+void next_legendre(std::size_t k, double x, double& previous, double& legendre) noexcept {
+  const auto n = static_cast<double>(k);
+  const double after = ((2.0 * n + 1.0) * x * legendre - n * previous) / (n + 1.0);
+  previous = legendre;
+  legendre = after;
+}
+
+}  // namespace
+
+const LegendreNodes& LegendreNodes::instance() {
+  static const LegendreNodes k_instance;
+  return k_instance;
+}
+
+LegendreNodes::LegendreNodes() {
+  constexpr std::size_t k_half = k_legendre_nodes / 2;
+  for (std::size_t j = 0; j < k_legendre_nodes; ++j) {
+    const std::size_t from_middle = j < k_half ? k_half - 1 - j : j - k_half;
+    places[j] = (j < k_half ? -1.0 : 1.0) * Rule::abscissa()[from_middle];
+    double previous = 0.0;
+    double legendre = 1.0;
+    for (std::size_t k = 0; k < k_legendre_nodes; ++k) {
+      to_coefficients[k][j] = 0.5 * (2.0 * static_cast<double>(k) + 1.0) * Rule::weights()[from_middle] * legendre;
+      next_legendre(k, places[j], previous, legendre);
+    }
+  }
+  for (std::size_t j = 0; j < k_legendre_nodes; ++j) {
+    if (j > 0) ahead[j].onward = (places[j] - place_before(j, 0)) / (place_before(j, 0) - place_before(j, 1));
+    const std::size_t count = std::min(j + 1, k_known);
+    for (std::size_t i = 0; i < count; ++i) {
+      double slope_there = 0.0;
+      const double value = cardinal(j, i, count, slope_there);
+      const double distance = places[j] - place_before(j, i);
+      ahead[j].values[i] = (1.0 - 2.0 * distance * slope_there) * value * value;
+      ahead[j].slopes[i] = distance * value * value;
+    }
+  }
+}
+
+double LegendreNodes::place_before(std::size_t node, std::size_t back) const noexcept {
+  return node > back ? places[node - 1 - back] : -1.0;
+}
+
+/// The polynomial that is 1 at one of the last places before a node and 0 at the others, at the node.
+/// @param slope  becomes that at its own place
+double LegendreNodes::cardinal(std::size_t node, std::size_t i, std::size_t count, double& slope) const noexcept {
+  double value = 1.0;
+  slope = 0.0;
+  for (std::size_t m = 0; m < count; ++m) {
+    if (m == i) continue;
+    const double distance = place_before(node, i) - place_before(node, m);
+    value *= (places[node] - place_before(node, m)) / distance;
+    slope += 1.0 / distance;
+  }
+  return value;
+}
+
+void LegendreSeries::fit(const LegendreNodes& nodes, const LegendreSamples& samples) noexcept {
+  for (std::size_t k = 0; k < k_legendre_nodes; ++k) {
+    coefficients_[k] = 0.0;
+    for (std::size_t j = 0; j < k_legendre_nodes; ++j) coefficients_[k] += nodes.to_coefficients[k][j] * samples[j];
+  }
+}
+
+double LegendreSeries::value(double t) const noexcept {
+  double sum = 0.0;
+  double previous = 0.0;
+  double legendre = 1.0;
+  for (std::size_t k = 0; k < k_legendre_nodes; ++k) {
+    sum += coefficients_[k] * legendre;
+    next_legendre(k, t, previous, legendre);
+  }
+  return sum;
+}
+
+double LegendreSeries::integral(double t) const noexcept {
+  double sum = coefficients_[0] * (t + 1.0);
+  double previous = 1.0;  // P_(k-1)
+  double legendre = t;    // P_k
+  for (std::size_t k = 1; k < k_legendre_nodes; ++k) {
+    const double before = previous;
+    next_legendre(k, t, previous, legendre);
+    sum += coefficients_[k] * (legendre - before) / (2.0 * static_cast<double>(k) + 1.0);
+  }
+  return sum;
+}
+
+double LegendreSeries::reach(double negligible) const noexcept {
+  const auto largest_of = [this](std::size_t begin, std::size_t end) {
+    double largest = 0.0;
+    for (std::size_t k = begin; k < end; ++k) largest = std::max(largest, std::abs(coefficients_[k]));
+    return largest;
+  };
+  const double largest = largest_of(0, k_legendre_nodes);
+  const double before_tail = largest_of(k_legendre_nodes / 2, k_legendre_nodes - 2);
+  const double tail = std::abs(coefficients_[k_legendre_nodes - 1]) + std::abs(coefficients_[k_legendre_nodes - 2]);
+  const double allowed = std::max(k_tail * largest, 0.5 * negligible);
+  const double noise = std::max(k_noise * k_tail * largest, k_noise_of_nothing * 0.5 * negligible);
+  const bool is_noise = before_tail <= k_flat * tail && tail <= noise;
+  if (is_noise || tail == 0.0) return k_farthest;
+  return std::pow(allowed / tail, 1.0 / (k_legendre_nodes - 1));
+}
+
+}  // namespace monograin
