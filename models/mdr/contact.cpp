@@ -255,9 +255,9 @@ double unloading_fraction(const UnloadingShape& shape, double overlap) noexcept 
 }
 
 Contact unloading_contact(const UnloadingShape& shape, double composite_modulus, double overlap) {
-  const double u = unloading_fraction(shape, overlap);
+  // Beyond that, where only trials are, the force stays what it is there.
+  const double u = std::max(unloading_fraction(shape, overlap), -1.0);
   if (u >= 1.0) return {};
-  if (u < -1.0) throw std::domain_error("overlap beyond the end of the unloading branch");
   const double theta = unloading_angle(u);
   const double sine = std::sqrt((1.0 - u) * (1.0 + u));
   const double phi_theta = phi(theta);
@@ -337,7 +337,9 @@ double unloading_energy(const UnloadingShape& shape, double overlap) noexcept {
   const double u = unloading_fraction(shape, overlap);
   if (u >= 1.0) return 0.0;
   const double a = shape.contact_radius_max;
-  return 2.0 * shape.recovery * shape.pressure * a * a * psi(unloading_angle(u));
+  const double scale = 2.0 * shape.recovery * shape.pressure * a * a;
+  if (u <= -1.0) return scale * (psi(pi) - pi * (1.0 + u));
+  return scale * psi(unloading_angle(u));
 }
 
 double plastic_work_primitive(const Material& material, double radius, double overlap, double area_constant) {

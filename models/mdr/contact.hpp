@@ -114,8 +114,7 @@ struct UnloadingShape {
 [[nodiscard]] double unloading_fraction(const UnloadingShape& shape, double overlap) noexcept;
 
 /// Contact on the unloading branch; zeros where it is open (u >= 1). Overlaps above m continue the branch analytically,
-/// up to one recovery above.
-/// @throws std::domain_error beyond that (u < -1)
+/// up to one recovery above; beyond that the force is constant.
 [[nodiscard]] Contact unloading_contact(const UnloadingShape& shape, double composite_modulus, double overlap);
 
 // The overlap at which a contact bears a force >= 0, on each branch.
@@ -136,7 +135,7 @@ struct UnloadingShape {
 [[nodiscard]] double elastic_energy(ElasticProfile profile, double composite_modulus, double radius, double overlap);
 /// At its largest overlap: (1 - rho) (8/3) p_Y^2 a_max^3 / E*.
 [[nodiscard]] double plastic_energy(const UnloadingShape& shape) noexcept;
-/// On the unloading branch, for u >= -1; 0 where the contact is open.
+/// On the unloading branch and its continuation; 0 where the contact is open.
 [[nodiscard]] double unloading_energy(const UnloadingShape& shape, double overlap) noexcept;
 
 /// Primitive over the overlap of the force of plastic_contact at fixed R (up to a constant), for overlaps > 0.

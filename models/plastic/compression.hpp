@@ -192,16 +192,16 @@ template <class State>
 template <class State>
 [[nodiscard]] std::optional<double> approach_near(const State& state, double lower, double upper, double force,
                                                   double guess) {
-  if (!(guess > lower && guess < upper)) return std::nullopt;
-  double x = guess;
+  if (!(guess > lower)) return std::nullopt;
+  double x = std::min(guess, upper);
   for (int iteration = 0; iteration < 4; ++iteration) {
     const ContactState s = state(x);
     if (!(s.force > 0.0 && s.force_by_approach > 0.0)) return std::nullopt;
     // Newton's method on the logarithms, of which the next step is round-off below 1e-8.
     const double step = std::log(force / s.force) * s.force / (x * s.force_by_approach);
     if (!(std::abs(step) < 0.5)) return std::nullopt;
-    x *= std::exp(step);
-    if (!(x > lower && x < upper)) return std::nullopt;
+    x = std::min(x * std::exp(step), upper);
+    if (!(x > lower)) return std::nullopt;
     if (std::abs(step) < 1e-8) return x;
   }
   return std::nullopt;

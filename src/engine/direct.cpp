@@ -57,6 +57,7 @@ class Direct final : public EventLocator {
       is_closed_ = true;
       primitive_offset_ = y[*quadrature_] - *primitive;
     }
+    nodes_ = is_closed_ ? &LegendreNodes::few() : &LegendreNodes::many();
     begin_segment(xi, y);
   }
 
@@ -122,23 +123,22 @@ class Direct final : public EventLocator {
   bool cover_piece(double& factor) {
     forget_looks();
     if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
-    for (std::size_t j = 0; j < k_legendre_nodes; ++j) {
-      const double xi = begin_ + 0.5 * (piece_end_ - begin_) * (1.0 + nodes_.places[j]);
+    for (std::size_t j = 0; j < nodes_->count; ++j) {
+      const double xi = begin_ + 0.5 * (piece_end_ - begin_) * (1.0 + nodes_->places[j]);
       guess_ahead(j);
       ++statistics_.rhs_evaluations;
       system_.solve(xi, trial_);
-      // Where nothing has to be integrated, the guards are all that a node is for.
-      if (piece_end_ - begin_ > k_smallest_looked_into && (!is_closed_ || j % 2 == 0)) look_inside(xi, trial_);
+      if (piece_end_ - begin_ > k_smallest_looked_into) look_inside(xi, trial_);
       for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
       if (is_closed_) continue;
       system_.rates(xi, trial_, rates_);
       for (std::size_t k = 0; k < integrated_; ++k) slopes_[k][j] = rates_[k];
     }
     for (std::size_t k = 0; k < series_.size(); ++k) {
-      if (k != quadrature_) series_[k].fit(nodes_, gains_[k]);
+      if (k != quadrature_) series_[k].fit(*nodes_, gains_[k]);
     }
     if (!is_closed_) {
-      work_.fit(nodes_, slopes_[*quadrature_]);
+      work_.fit(*nodes_, slopes_[*quadrature_]);
       const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
       const double length = piece_end_ - begin_;
       const double reach = work_.reach(2.0 * k_quadrature_accuracy * scale / length);
@@ -147,6 +147,13 @@ class Direct final : public EventLocator {
     }
     move_end(piece_end_);
     locate_event();
+    // All that the nodes have seen lies beyond an event before the first: continuations of the mode, where the rate
+    // need not be that of the mode.
+    const double share = (end_ - begin_) / (piece_end_ - begin_);
+    if (!is_closed_ && 2.0 * share < 1.0 + nodes_->places[0] && end_ - begin_ > least_progress(begin_)) {
+      factor = 2.0 * share;
+      return false;
+    }
     if (quadrature_) end_state_[*quadrature_] = quadrature_at(end_, end_state_);
     return true;
   }
@@ -156,7 +163,7 @@ class Direct final : public EventLocator {
   /// overshoot: from a line if an equation gives them outright, else the last one. What nothing determines stays
   /// exactly what it is.
   void guess_ahead(std::size_t j) {
-    const LegendreNodes::Ahead& ahead = nodes_.ahead[j];
+    const LegendreNodes::Ahead& ahead = nodes_->ahead[j];
     const double half = 0.5 * (piece_end_ - begin_);
     for (std::size_t k = 0; k < trial_.size(); ++k) {
       const auto gone = [&](std::size_t i) { return j > i ? gains_[k][j - 1 - i] : 0.0; };
@@ -193,7 +200,7 @@ class Direct final : public EventLocator {
       slopes_;                          ///< at the nodes: what the unknowns have gained since the beginning, rates
   std::vector<LegendreSeries> series_;  ///< of the gains
   std::vector<double> trial_, rates_, begin_rates_;
-  const LegendreNodes& nodes_ = LegendreNodes::instance();
+  const LegendreNodes* nodes_ = nullptr;  ///< of the segment's pieces
 };
 
 }  // namespace

@@ -7,7 +7,8 @@
 namespace monograin {
 namespace {
 
-using Rule = boost::math::quadrature::gauss<double, k_legendre_nodes>;
+template <std::size_t count>
+using Rule = boost::math::quadrature::gauss<double, count>;
 
 // Share of the last Legendre coefficients below which a rate has converged. Its integral over the piece is exact to the
 // square of that, and to a fiftieth of it in between.
@@ -30,29 +31,35 @@ void next_legendre(std::size_t k, double x, double& previous, double& legendre) 
 
 }  // namespace
 
-const LegendreNodes& LegendreNodes::instance() {
-  static const LegendreNodes k_instance;
-  return k_instance;
+const LegendreNodes& LegendreNodes::few() {
+  static const LegendreNodes k_few(Rule<6>::abscissa(), Rule<6>::weights());
+  return k_few;
 }
 
-LegendreNodes::LegendreNodes() {
-  constexpr std::size_t k_half = k_legendre_nodes / 2;
-  for (std::size_t j = 0; j < k_legendre_nodes; ++j) {
-    const std::size_t from_middle = j < k_half ? k_half - 1 - j : j - k_half;
-    places[j] = (j < k_half ? -1.0 : 1.0) * Rule::abscissa()[from_middle];
+const LegendreNodes& LegendreNodes::many() {
+  static const LegendreNodes k_many(Rule<k_most_nodes>::abscissa(), Rule<k_most_nodes>::weights());
+  return k_many;
+}
+
+LegendreNodes::LegendreNodes(std::span<const double> abscissae, std::span<const double> weights)
+    : count(2 * abscissae.size()) {
+  const std::size_t half = abscissae.size();
+  for (std::size_t j = 0; j < count; ++j) {
+    const std::size_t from_middle = j < half ? half - 1 - j : j - half;
+    places[j] = (j < half ? -1.0 : 1.0) * abscissae[from_middle];
     double previous = 0.0;
     double legendre = 1.0;
-    for (std::size_t k = 0; k < k_legendre_nodes; ++k) {
-      to_coefficients[k][j] = 0.5 * (2.0 * static_cast<double>(k) + 1.0) * Rule::weights()[from_middle] * legendre;
+    for (std::size_t k = 0; k < count; ++k) {
+      to_coefficients[k][j] = 0.5 * (2.0 * static_cast<double>(k) + 1.0) * weights[from_middle] * legendre;
       next_legendre(k, places[j], previous, legendre);
     }
   }
-  for (std::size_t j = 0; j < k_legendre_nodes; ++j) {
+  for (std::size_t j = 0; j < count; ++j) {
     if (j > 0) ahead[j].onward = (places[j] - place_before(j, 0)) / (place_before(j, 0) - place_before(j, 1));
-    const std::size_t count = std::min(j + 1, k_known);
-    for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t known = std::min(j + 1, k_known);
+    for (std::size_t i = 0; i < known; ++i) {
       double slope_there = 0.0;
-      const double value = cardinal(j, i, count, slope_there);
+      const double value = cardinal(j, i, known, slope_there);
       const double distance = places[j] - place_before(j, i);
       ahead[j].values[i] = (1.0 - 2.0 * distance * slope_there) * value * value;
       ahead[j].slopes[i] = distance * value * value;
@@ -66,10 +73,10 @@ double LegendreNodes::place_before(std::size_t node, std::size_t back) const noe
 
 /// The polynomial that is 1 at one of the last places before a node and 0 at the others, at the node.
 /// @param slope  becomes that at its own place
-double LegendreNodes::cardinal(std::size_t node, std::size_t i, std::size_t count, double& slope) const noexcept {
+double LegendreNodes::cardinal(std::size_t node, std::size_t i, std::size_t known, double& slope) const noexcept {
   double value = 1.0;
   slope = 0.0;
-  for (std::size_t m = 0; m < count; ++m) {
+  for (std::size_t m = 0; m < known; ++m) {
     if (m == i) continue;
     const double distance = place_before(node, i) - place_before(node, m);
     value *= (places[node] - place_before(node, m)) / distance;
@@ -79,9 +86,10 @@ double LegendreNodes::cardinal(std::size_t node, std::size_t i, std::size_t coun
 }
 
 void LegendreSeries::fit(const LegendreNodes& nodes, const LegendreSamples& samples) noexcept {
-  for (std::size_t k = 0; k < k_legendre_nodes; ++k) {
+  count_ = nodes.count;
+  for (std::size_t k = 0; k < count_; ++k) {
     coefficients_[k] = 0.0;
-    for (std::size_t j = 0; j < k_legendre_nodes; ++j) coefficients_[k] += nodes.to_coefficients[k][j] * samples[j];
+    for (std::size_t j = 0; j < count_; ++j) coefficients_[k] += nodes.to_coefficients[k][j] * samples[j];
   }
 }
 
@@ -89,7 +97,7 @@ double LegendreSeries::value(double t) const noexcept {
   double sum = 0.0;
   double previous = 0.0;
   double legendre = 1.0;
-  for (std::size_t k = 0; k < k_legendre_nodes; ++k) {
+  for (std::size_t k = 0; k < count_; ++k) {
     sum += coefficients_[k] * legendre;
     next_legendre(k, t, previous, legendre);
   }
@@ -100,7 +108,7 @@ double LegendreSeries::integral(double t) const noexcept {
   double sum = coefficients_[0] * (t + 1.0);
   double previous = 1.0;  // P_(k-1)
   double legendre = t;    // P_k
-  for (std::size_t k = 1; k < k_legendre_nodes; ++k) {
+  for (std::size_t k = 1; k < count_; ++k) {
     const double before = previous;
     next_legendre(k, t, previous, legendre);
     sum += coefficients_[k] * (legendre - before) / (2.0 * static_cast<double>(k) + 1.0);
@@ -114,14 +122,14 @@ double LegendreSeries::reach(double negligible) const noexcept {
     for (std::size_t k = begin; k < end; ++k) largest = std::max(largest, std::abs(coefficients_[k]));
     return largest;
   };
-  const double largest = largest_of(0, k_legendre_nodes);
-  const double before_tail = largest_of(k_legendre_nodes / 2, k_legendre_nodes - 2);
-  const double tail = std::abs(coefficients_[k_legendre_nodes - 1]) + std::abs(coefficients_[k_legendre_nodes - 2]);
+  const double largest = largest_of(0, count_);
+  const double before_tail = largest_of(count_ / 2, count_ - 2);
+  const double tail = std::abs(coefficients_[count_ - 1]) + std::abs(coefficients_[count_ - 2]);
   const double allowed = std::max(k_tail * largest, 0.5 * negligible);
   const double noise = std::max(k_noise * k_tail * largest, k_noise_of_nothing * 0.5 * negligible);
   const bool is_noise = before_tail <= k_flat * tail && tail <= noise;
   if (is_noise || tail == 0.0) return k_farthest;
-  return std::pow(allowed / tail, 1.0 / (k_legendre_nodes - 1));
+  return std::pow(allowed / tail, 1.0 / static_cast<double>(count_ - 1));
 }
 
 }  // namespace monograin

@@ -3,11 +3,13 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 namespace monograin {
 
-inline constexpr std::size_t k_legendre_nodes = 12;
-using LegendreSamples = std::array<double, k_legendre_nodes>;
+inline constexpr std::size_t k_most_nodes = 12;
+/// One for each node; what is beyond their number is not used.
+using LegendreSamples = std::array<double, k_most_nodes>;
 
 /// The rule's nodes on [-1, 1], and what samples there are multiplied by.
 class LegendreNodes {
@@ -23,16 +25,21 @@ class LegendreNodes {
     double onward = 0.0;  ///< the distance to the node over that between the last two places
   };
 
-  [[nodiscard]] static const LegendreNodes& instance();
+  /// Six nodes: what a smooth state needs to be guessed from.
+  [[nodiscard]] static const LegendreNodes& few();
+  /// Twelve: what an integral needs to be round-off's.
+  [[nodiscard]] static const LegendreNodes& many();
 
+  std::size_t count;
   LegendreSamples places{};
-  std::array<LegendreSamples, k_legendre_nodes> to_coefficients{};  ///< of Legendre polynomials
-  std::array<Ahead, k_legendre_nodes> ahead{};
+  std::array<LegendreSamples, k_most_nodes> to_coefficients{};  ///< of Legendre polynomials
+  std::array<Ahead, k_most_nodes> ahead{};
 
  private:
-  LegendreNodes();
+  /// @param abscissae,weights  of the half from the middle onwards
+  LegendreNodes(std::span<const double> abscissae, std::span<const double> weights);
   [[nodiscard]] double place_before(std::size_t node, std::size_t back) const noexcept;
-  [[nodiscard]] double cardinal(std::size_t node, std::size_t i, std::size_t count, double& slope) const noexcept;
+  [[nodiscard]] double cardinal(std::size_t node, std::size_t i, std::size_t known, double& slope) const noexcept;
 };
 
 /// A sum of Legendre polynomials through samples at the nodes.
@@ -52,6 +59,7 @@ class LegendreSeries {
 
  private:
   LegendreSamples coefficients_{};
+  std::size_t count_ = 0;
 };
 
 }  // namespace monograin

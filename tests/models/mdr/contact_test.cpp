@@ -301,6 +301,24 @@ TEST(MdrUnloading, GoesOnAboveTheLargestOverlapAsTheMirrorImage) {
   }
 }
 
+TEST(MdrUnloading, KeepsItsForceBeyondTheMirrorImage) {
+  for (const Dent& dent : dents()) {
+    const UnloadingShape shape = dent.shape();
+    const double tolerance = k_rounding + 4.0 * k_epsilon * dent.overlap_max / shape.recovery;
+    const auto overlap = [&](double u) { return dent.overlap_max - u * shape.recovery; };
+    const auto at = [&](double u) { return unloading_contact(shape, dent.material.composite_modulus, overlap(u)); };
+    for (const double u : {-1.0, -1.5, -1e6}) {
+      EXPECT_LE(relative_error(at(u).force, 2.0 * at(0.0).force), tolerance) << dent << ", u = " << u;
+      // Its square root has the rounding of u where the image ends.
+      EXPECT_LE(at(u).contact_radius, 2.0 * std::sqrt(tolerance) * shape.contact_radius_max) << dent << ", u = " << u;
+      EXPECT_LE(relative_error(unloading_energy(shape, overlap(u - 0.5)) - unloading_energy(shape, overlap(u)),
+                               0.5 * shape.recovery * at(u).force),
+                4.0 * tolerance * std::abs(u))
+          << dent << ", u = " << u;
+    }
+  }
+}
+
 TEST(MdrUnloading, IsStifferThanAnElasticContactOfItsRadius) {
   for (const Dent& dent : dents()) {
     const UnloadingShape shape = dent.shape();
