@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -82,11 +83,11 @@ class Drive {
         system_(*scene.system),
         watch_(system_),
         integrator_(make_integrator(integrator, system_, watch_, tolerances)),
-        tolerances_(tolerances),
         sink_(sink),
         output_(output),
         y_(system_.unknowns().size()),
         output_state_(y_.size()) {
+    if (integrator != "direct") rtol_ = tolerances.rtol;
     for (const Channel& channel : scene.channels) held_.push_back(channel.at_rest);
     outputs_.reserve(output.times.empty() ? static_cast<std::size_t>(output.points) : output.times.size());
   }
@@ -109,9 +110,9 @@ class Drive {
     } catch (const SolverError& error) {
       result.status = RunStatus::failed;
       result.message = where(error.xi()) + error.what();
-      if (tolerances_.rtol < k_surest_rtol) {
+      if (rtol_ && *rtol_ < k_surest_rtol) {
         result.message += fmt::format("; rtol = {:.3g} asks for errors of the size of rounding, expected {:g} or more",
-                                      tolerances_.rtol, k_surest_rtol);
+                                      *rtol_, k_surest_rtol);
       }
     }
     result.statistics = integrator_->statistics();
@@ -401,7 +402,7 @@ class Drive {
   HybridSystem& system_;
   Watch watch_;
   std::unique_ptr<Integrator> integrator_;
-  Tolerances tolerances_;
+  std::optional<double> rtol_;  ///< none of the direct form, which has no tolerance
   HistorySink& sink_;
   const Output& output_;
   std::vector<double> y_;

@@ -1,8 +1,10 @@
 #include "scene/parameters.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
 
 #include "compressible/material_point_info.hpp"
 #include "compressible/yield_surface.hpp"
@@ -219,31 +221,7 @@ void add_material_point(const Scenario& scenario, List& list) {
   list.push_back({"transition_start", unit * cap.transition_start, "Pa", "p_i"});
 }
 
-}  // namespace
-
-std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
-  List list;
-  if (scenario.radius > 0.0) list.push_back({"radius", scenario.radius, "m"});
-  if (scenario.model == "hertz" || scenario.model == "mdr") {
-    add_mdr(scenario, list);
-    return list;
-  }
-  if (scenario.model == "nonlocal") {
-    add_nonlocal(scenario, list);
-    return list;
-  }
-  if (scenario.model == "compressible") {
-    add_compressible(scenario, list);
-    return list;
-  }
-  if (scenario.model == "packing") {
-    add_packing(scenario, list);
-    return list;
-  }
-  if (scenario.model == "material-point") {
-    add_material_point(scenario, list);
-    return list;
-  }
+void add_plastic(const Scenario& scenario, List& list) {
   add_material(scenario,
                {{"youngs_modulus", "Pa"},
                 {"poisson_ratio", "-"},
@@ -252,6 +230,33 @@ std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
                 {"hardening_exponent", "-"}},
                list);
   std::visit([&](const auto& law) { add_law(law, list); }, plastic_law_of(scenario));
+}
+
+struct ModelParameters {
+  std::string_view model;
+  void (*add)(const Scenario& scenario, List& list);
+};
+
+constexpr std::array k_parameters{
+    ModelParameters{"hertz", add_mdr},
+    ModelParameters{"mdr", add_mdr},
+    ModelParameters{"similarity", add_plastic},
+    ModelParameters{"semimech", add_plastic},
+    ModelParameters{"hardening", add_plastic},
+    ModelParameters{"nonlocal", add_nonlocal},
+    ModelParameters{"compressible", add_compressible},
+    ModelParameters{"packing", add_packing},
+    ModelParameters{"material-point", add_material_point},
+};
+
+}  // namespace
+
+std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
+  List list;
+  if (scenario.radius > 0.0) list.push_back({"radius", scenario.radius, "m"});
+  for (const auto& [model, add] : k_parameters) {
+    if (model == scenario.model) add(scenario, list);
+  }
   return list;
 }
 

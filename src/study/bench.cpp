@@ -232,6 +232,20 @@ std::vector<double> decades() {
   return tolerances;
 }
 
+/// The two walls of simple compression, and four beside the particle that it never reaches.
+Scenario with_walls_out_of_reach(Scenario simple) {
+  Loading& loading = simple.loading;
+  loading.configuration = Loading::Configuration::walls;
+  const double gap = 2.0 * simple.radius;
+  const auto wall = [](const char* name, const std::array<double, 3>& normal, double off) {
+    return WallSpec{.name = name, .normal = normal, .gap = off, .is_fixed = off > 0.0, .steps = {}, .where = {}};
+  };
+  loading.walls = {wall("axial", {0.0, 0.0, 1.0}, 0.0),      wall("axial-", {0.0, 0.0, -1.0}, 0.0),
+                   wall("lateral-x+", {1.0, 0.0, 0.0}, gap), wall("lateral-x-", {-1.0, 0.0, 0.0}, gap),
+                   wall("lateral-y+", {0.0, 1.0, 0.0}, gap), wall("lateral-y-", {0.0, -1.0, 0.0}, gap)};
+  return simple;
+}
+
 }  // namespace
 
 std::vector<Scenario> read_bench_scenes(const fs::path& file) {
@@ -374,19 +388,44 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings) {
   add("nothing is integrated where a state can be solved for", "die, direct / cvode-bdf", direct, bdf);
   add("no algebraic unknowns where there is an explicit form", "die, cvode-bdf / ida", bdf,
       measure(die, "ida", as_it_is));
-  const Alter observed = [](const Scenario& scenario) {
-    Scene scene = make_scene(scenario);
-    scene.system = always_observed(std::move(scene.system));
-    return scene;
+  using System = std::unique_ptr<HybridSystem>;
+  const auto wrapped = [](const std::function<System(System)>& wrap) -> Alter {
+    return [wrap](const Scenario& scenario) {
+      Scene scene = make_scene(scenario);
+      scene.system = wrap(std::move(scene.system));
+      return scene;
+    };
   };
-  add("observables only at output points", "die, direct", direct, measure(die, "direct", observed));
-  add("observables only at output points", "die, cvode-bdf", bdf, measure(die, "cvode-bdf", observed));
+  add("work in closed form where there is one", "die, direct", direct,
+      measure(die, "direct", wrapped(always_integrated)));
+  // A saving this small shows only beside a system that is wrapped as well.
+  for (const char* integrator : {"direct", "cvode-bdf"}) {
+    const auto looking = [&](double factor) {
+      return measure(die, integrator,
+                     wrapped([factor](System system) { return looking_beyond(std::move(system), factor); }));
+    };
+    add("no guard that cannot fire before the end of a step", fmt::format("die, {}", integrator), looking(1.0),
+        looking(10.0));
+  }
+  add("observables only at output points", "die, direct", direct, measure(die, "direct", wrapped(always_observed)));
+  add("observables only at output points", "die, cvode-bdf", bdf, measure(die, "cvode-bdf", wrapped(always_observed)));
 
   const std::string simple = "loading.configuration=simple";
   const Scenario plain = scene_of({simple});
   const Scenario sticky = scene_of({simple, "material.surface_energy=1e-12"});
-  add("no adhesion where the surface energy is zero", "simple, direct, against 1e-12 J/m2",
-      measure(plain, "direct", as_it_is), measure(sticky, "direct", as_it_is));
+  const Measured uniaxial = measure(plain, "direct", as_it_is);
+  add("no adhesion where the surface energy is zero", "simple, direct, against 1e-12 J/m2", uniaxial,
+      measure(sticky, "direct", as_it_is));
+  add("no contacts where nothing can touch", "simple, direct, against 4 walls out of reach", uniaxial,
+      measure(with_walls_out_of_reach(plain), "direct", as_it_is));
+  // Shallow enough for an elastic particle to keep its radius.
+  const Scenario elastic = scene_of({simple, "material.yield_stress=10 GPa", "mdr.elastic_profile=\"parabola\"",
+                                     "loading.steps[0].displacement=0.015 R0", "loading.steps[1].displacement=0.008 R0",
+                                     "loading.steps[2].displacement=0.018 R0"});
+  Scenario hertz = elastic;
+  hertz.model = "hertz";
+  add("no growth of the radius where nothing yields", "simple to 0.018 R0, direct, hertz / mdr that stays elastic",
+      measure(hertz, "direct", as_it_is), measure(elastic, "direct", as_it_is));
   return savings;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -155,6 +156,63 @@ class AlwaysObserved final : public Wrapped {
   std::vector<double> values_;
 };
 
+class AlwaysIntegrated final : public Wrapped {
+ public:
+  using Wrapped::Wrapped;
+  [[nodiscard]] std::optional<double> closed_quadrature(double, View) override { return std::nullopt; }
+};
+
+class LookingBeyond final : public Wrapped {
+ public:
+  LookingBeyond(std::unique_ptr<HybridSystem> system, double factor)
+      : Wrapped(std::move(system)), factor_(factor), inner_rates_(unknowns().size()) {}
+
+  void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
+    longer_.assign(ramps.begin(), ramps.end());
+    for (Ramp& ramp : longer_) ramp.end = std::lerp(ramp.start, ramp.end, factor_);
+    Wrapped::begin_step(longer_, y, log);
+  }
+  void complete(double xi, State y) override { Wrapped::complete(inner(xi), y); }
+  void rates(double xi, View y, State dy) override {
+    Wrapped::rates(inner(xi), y, dy);
+    for (double& rate : dy) rate /= factor_;
+  }
+  void all_rates(double xi, View y, State dy) override {
+    Wrapped::all_rates(inner(xi), y, dy);
+    for (double& rate : dy) rate /= factor_;
+  }
+  void residual(double xi, View y, View dy, State res) override {
+    std::ranges::transform(dy, inner_rates_.begin(), [this](double rate) { return factor_ * rate; });
+    Wrapped::residual(inner(xi), y, inner_rates_, res);
+  }
+  void solve(double xi, State y) override { Wrapped::solve(inner(xi), y); }
+  [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
+    return Wrapped::closed_quadrature(inner(xi), y);
+  }
+  void guard_values(double xi, View y, State values) override { Wrapped::guard_values(inner(xi), y, values); }
+  std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, State y,
+                                std::vector<Event>& log) override {
+    return Wrapped::fire(fired, inner(xi), y, log);
+  }
+  void observe(double xi, View y, State values) override { Wrapped::observe(inner(xi), y, values); }
+  [[nodiscard]] double quantity(Quantity quantity, int channel, double xi, View y) override {
+    return Wrapped::quantity(quantity, channel, inner(xi), y);
+  }
+  [[nodiscard]] double controlled(Control control, int channel, double xi, View y) override {
+    return Wrapped::controlled(control, channel, inner(xi), y);
+  }
+  [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, View y) override {
+    return Wrapped::surface(contact_class, inner(xi), y);
+  }
+
+ private:
+  [[nodiscard]] double inner(double xi) const noexcept { return xi / factor_; }
+
+  double factor_;
+  std::vector<Ramp> longer_;
+  std::vector<double> inner_rates_;
+};
+
 }  // namespace
 
 std::unique_ptr<HybridSystem> profiled(std::unique_ptr<HybridSystem> system, SystemProfile& profile) {
@@ -163,6 +221,14 @@ std::unique_ptr<HybridSystem> profiled(std::unique_ptr<HybridSystem> system, Sys
 
 std::unique_ptr<HybridSystem> always_observed(std::unique_ptr<HybridSystem> system) {
   return std::make_unique<AlwaysObserved>(std::move(system));
+}
+
+std::unique_ptr<HybridSystem> looking_beyond(std::unique_ptr<HybridSystem> system, double factor) {
+  return std::make_unique<LookingBeyond>(std::move(system), factor);
+}
+
+std::unique_ptr<HybridSystem> always_integrated(std::unique_ptr<HybridSystem> system) {
+  return std::make_unique<AlwaysIntegrated>(std::move(system));
 }
 
 }  // namespace monograin

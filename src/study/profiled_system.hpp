@@ -1,4 +1,4 @@
-/// A system that tells where the time goes, and one that wastes it.
+/// A system that tells where the time goes, and some that waste it.
 #pragma once
 
 #include <memory>
@@ -25,5 +25,14 @@ struct SystemProfile {
 /// The same system, which evaluates its observables wherever it evaluates its equations: what recording at output
 /// points only is measured against.
 [[nodiscard]] std::unique_ptr<HybridSystem> always_observed(std::unique_ptr<HybridSystem> system);
+
+/// The same system, to which every step of the program is the first part of one that many times as long: it watches
+/// what could happen after the step's end as well. With a factor of 10 what leaving out guards that cannot fire before
+/// the end of a step is measured against; with one of 1 the same system.
+/// @param factor  >= 1
+[[nodiscard]] std::unique_ptr<HybridSystem> looking_beyond(std::unique_ptr<HybridSystem> system, double factor);
+
+/// The same system, without closed forms of its work: what they save is measured against it.
+[[nodiscard]] std::unique_ptr<HybridSystem> always_integrated(std::unique_ptr<HybridSystem> system);
 
 }  // namespace monograin

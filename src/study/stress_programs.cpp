@@ -28,6 +28,23 @@ double draw_duration(Dice& dice, double usual) {
   return dice.happens(0.1) ? dice.log_uniform(1e-12, 1e12) : usual * dice.log_uniform(0.1, 10.0);
 }
 
+/// A step with its duration, one in twelve a hold.
+StressStep draw_step(Dice& dice, double usual) {
+  StressStep step;
+  step.pace = draw_duration(dice, usual);
+  if (dice.happens(0.08)) step.kind = Step::Kind::hold;
+  return step;
+}
+
+void give_rate(StressStep& step) {
+  step.has_rate = true;
+  step.pace = 1.0 / step.pace;
+}
+
+std::string_view draw_event(Dice& dice, const StressScene& scene) {
+  return scene.model->events[dice.below(scene.model->events.size())].name;
+}
+
 }  // namespace
 
 std::vector<StressStep> draw_program(Dice& dice, const StressScene& scene, const StressBounds& bounds,
@@ -45,8 +62,7 @@ std::vector<StressStep> draw_program(Dice& dice, const StressScene& scene, const
       step.kind = Step::Kind::hold;
     } else if (what < 0.14 && may_detach && !bounds.only_loads) {
       step.kind = Step::Kind::detach;
-      step.has_rate = true;
-      step.pace = 1.0 / step.pace;
+      give_rate(step);
     } else if (takes_forces && what < 0.5) {
       step.kind = Step::Kind::force;
       step.target = draw_force(dice, bounds);
@@ -60,16 +76,13 @@ std::vector<StressStep> draw_program(Dice& dice, const StressScene& scene, const
       present = step.target;
     }
     const bool is_ramp = step.kind == Step::Kind::displacement || step.kind == Step::Kind::force;
-    if (is_ramp && takes_rates && dice.happens(0.3)) {
-      step.has_rate = true;
-      step.pace = 1.0 / step.pace;
-    }
+    if (is_ramp && takes_rates && dice.happens(0.3)) give_rate(step);
     if (is_ramp && dice.happens(0.12)) {
       const bool has_area = scene.model->has_contact_area;
       const std::string_view key = dice.one_of<std::string_view>(
           {"force", "displacement", "event", has_area ? "pressure" : "force", has_area ? "contact_radius" : "event"});
       if (key == "event") {
-        step.until_event = scene.model->events[dice.below(scene.model->events.size())].name;
+        step.until_event = draw_event(dice, scene);
       } else {
         step.until = key;
         step.until_value = key == "force" || key == "pressure" ? draw_force(dice, bounds) : draw_depth(dice, bounds);
@@ -90,10 +103,8 @@ std::vector<StressStep> draw_packing_program(Dice& dice, const StressScene& scen
   std::vector<StressStep> program;
   double present = 0.0;  // share of the way
   for (std::size_t i = 0; i < count; ++i) {
-    StressStep step;
-    step.pace = draw_duration(dice, usual);
-    if (dice.happens(0.08)) {
-      step.kind = Kind::hold;
+    StressStep step = draw_step(dice, usual);
+    if (step.kind == Kind::hold) {
       program.push_back(step);
       continue;
     }
@@ -109,11 +120,8 @@ std::vector<StressStep> draw_packing_program(Dice& dice, const StressScene& scen
     } else {
       step.target = present * bounds.force * (bounds.only_loads ? 0.2 : 1.0);
     }
-    if (dice.happens(0.3)) {
-      step.has_rate = true;
-      step.pace = 1.0 / step.pace;
-    }
-    if (dice.happens(0.1)) step.until_event = scene.model->events[dice.below(scene.model->events.size())].name;
+    if (dice.happens(0.3)) give_rate(step);
+    if (dice.happens(0.1)) step.until_event = draw_event(dice, scene);
     program.push_back(step);
   }
   return program;
@@ -133,10 +141,8 @@ std::vector<StressStep> draw_point_program(Dice& dice, const StressScene& scene,
   std::vector<StressStep> program;
   double present = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    StressStep step;
-    step.pace = draw_duration(dice, usual);
-    if (dice.happens(0.08)) {
-      step.kind = Kind::hold;
+    StressStep step = draw_step(dice, usual);
+    if (step.kind == Kind::hold) {
       program.push_back(step);
       continue;
     }
@@ -154,15 +160,12 @@ std::vector<StressStep> draw_point_program(Dice& dice, const StressScene& scene,
       step.lateral_kind = Kind::stress;
       step.lateral = draw_stress();
     }
-    if (!step.lateral && dice.happens(0.3)) {
-      step.has_rate = true;
-      step.pace = 1.0 / step.pace;
-    }
+    if (!step.lateral && dice.happens(0.3)) give_rate(step);
     if (dice.happens(0.15)) {
       const std::string_view key =
           dice.one_of<std::string_view>({"stress_axial", "stress_lateral", "relative_density", "event"});
       if (key == "event") {
-        step.until_event = scene.model->events[dice.below(scene.model->events.size())].name;
+        step.until_event = draw_event(dice, scene);
       } else {
         step.until = key;
         step.until_value = key == "relative_density" ? dice.uniform(0.2, 0.999) : draw_stress();

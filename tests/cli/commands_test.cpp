@@ -1,69 +1,24 @@
 // Every command, run as a user runs it: as a process of its own, in a folder of its own.
 
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
-#include <thread>
 
 #include "history/table.hpp"
-#include "support/temporary_folder.hpp"
+#include "support/command_test.hpp"
 
 namespace monograin {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
-std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-void write_text(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
-
-class Commands : public ::testing::Test {
- protected:
-  /// Runs `monograin ARGUMENTS` in the test's folder.
-  Outcome monograin(const std::string& arguments) {
-    const std::string command = "cd '" + folder().string() + "' && '" MONOGRAIN_PROGRAM "' " + arguments +
-                                " > stdout.txt 2> stderr.txt < /dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder() / "stdout.txt"),
-            read_text(folder() / "stderr.txt")};
-  }
-
-  [[nodiscard]] const fs::path& folder() const { return folder_.path(); }
-
-  /// All files below the folder, but the two that catch the output.
-  [[nodiscard]] std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::recursive_directory_iterator(folder())) {
-      const std::string name = fs::relative(entry.path(), folder()).string();
-      if (name != "stdout.txt" && name != "stderr.txt") names.push_back(name);
-    }
-    return names;
-  }
-
- private:
-  TemporaryFolder folder_;
-};
+class Commands : public CommandTest {};
 
 constexpr const char* k_small = R"(title = "small"
 model = "mdr"
@@ -90,8 +45,8 @@ TEST_F(Commands, RunWithoutAFileLeavesTheDefaultSceneInRunsDie) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(outcome.out.empty()) << outcome.out;
   for (const char* file : {"history.csv", "events.csv", "run.json"})
-    EXPECT_TRUE(fs::exists(folder() / "runs/die" / file)) << file;
-  const Table history = read_csv(folder() / "runs/die/history.csv");
+    EXPECT_TRUE(fs::exists(path("runs/die") / file)) << file;
+  const Table history = read_csv(path("runs/die/history.csv"));
   EXPECT_EQ(history.header_value("status"), "complete");
   EXPECT_EQ(history.columns()[0].heading(), "time[s]");
   EXPECT_EQ(history.columns()[1].heading(), "step");
@@ -104,9 +59,9 @@ TEST_F(Commands, RunWithoutAFileLeavesTheDefaultSceneInRunsDie) {
 }
 
 TEST_F(Commands, RunWritesWhatIsNeededToRepeatIt) {
-  write_text(folder() / "small.toml", k_small);
+  write_text(path("small.toml"), k_small);
   ASSERT_EQ(monograin("run small.toml --set output.points=5").code, 0);
-  const auto json = nlohmann::json::parse(read_text(folder() / "runs/small/run.json"));
+  const auto json = nlohmann::json::parse(text("runs/small/run.json"));
   EXPECT_EQ(json["status"], "complete");
   EXPECT_EQ(json["classes"],
             nlohmann::json::parse(R"([{"name": "axial", "multiplicity": 2, "walls": ["axial-z+", "axial-z-"]}])"));
@@ -121,18 +76,18 @@ TEST_F(Commands, RunWritesWhatIsNeededToRepeatIt) {
 }
 
 TEST_F(Commands, TheSameInputGivesTheSameBytes) {
-  write_text(folder() / "small.toml", k_small);
+  write_text(path("small.toml"), k_small);
   ASSERT_EQ(monograin("run small.toml -o first").code, 0);
   ASSERT_EQ(monograin("run small.toml -o second").code, 0);
-  EXPECT_EQ(read_text(folder() / "first/history.csv"), read_text(folder() / "second/history.csv"));
-  EXPECT_EQ(read_text(folder() / "first/events.csv"), read_text(folder() / "second/events.csv"));
+  EXPECT_EQ(text("first/history.csv"), text("second/history.csv"));
+  EXPECT_EQ(text("first/events.csv"), text("second/events.csv"));
 }
 
 TEST_F(Commands, AFaultInOneFileRunsNothingAtAll) {
-  write_text(folder() / "good.toml", k_small);
+  write_text(path("good.toml"), k_small);
   std::string bad = k_small;
   bad.replace(bad.find("yield_stress"), 12, "yeild_stress");
-  write_text(folder() / "bad.toml", bad);
+  write_text(path("bad.toml"), bad);
   const Outcome outcome = monograin("run good.toml bad.toml");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("bad.toml:8:1: "), std::string::npos) << outcome.err;
@@ -141,7 +96,7 @@ TEST_F(Commands, AFaultInOneFileRunsNothingAtAll) {
 }
 
 TEST_F(Commands, OverridesAreCheckedLikeTheFile) {
-  write_text(folder() / "small.toml", k_small);
+  write_text(path("small.toml"), k_small);
   const Outcome outcome = monograin("run small.toml --set material.poisson_ratio=0.7");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("material.poisson_ratio=0.7"), std::string::npos) << outcome.err;
@@ -149,30 +104,30 @@ TEST_F(Commands, OverridesAreCheckedLikeTheFile) {
 }
 
 TEST_F(Commands, ARunThatLeavesTheDomainKeepsItsHistory) {
-  write_text(folder() / "small.toml", k_small);
+  write_text(path("small.toml"), k_small);
   const Outcome outcome =
       monograin("run small.toml --set loading.configuration=hydrostatic --set loading.steps[0].displacement='0.35 R0'");
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_NE(outcome.err.find("stopped"), std::string::npos) << outcome.err;
-  const Table history = read_csv(folder() / "runs/small/history.csv");
+  const Table history = read_csv(path("runs/small/history.csv"));
   EXPECT_EQ(history.header_value("status"), "stopped");
   EXPECT_GT(history.row_count(), 5U);
-  const Table events = read_csv(folder() / "runs/small/events.csv");
+  const Table events = read_csv(path("runs/small/events.csv"));
   EXPECT_EQ(events.word(events.row_count() - 1, *events.find("event")), "singular-growth");
 }
 
 TEST_F(Commands, TheReadyGranuleRunsAndStopsAtTheEndOfItsLaw) {
   const std::string file = MONOGRAIN_SOURCE_DIR "/scenarios/compressible.toml";
   ASSERT_EQ(monograin("run " + file).code, 0);
-  const Table history = read_csv(folder() / "runs/compressible/history.csv");
+  const Table history = read_csv(path("runs/compressible/history.csv"));
   EXPECT_TRUE(history.find("axial.force"));
   EXPECT_FALSE(history.find("axial.contact_radius") || history.find("axial.pressure"));
-  const auto run = nlohmann::json::parse(read_text(folder() / "runs/compressible/run.json"));
+  const auto run = nlohmann::json::parse(text("runs/compressible/run.json"));
   EXPECT_TRUE(run.at("scenario").at("files").contains("compressible.unloading_table")) << run.dump(2);
   const Outcome beyond = monograin("run " + file + " --set loading.steps[2].displacement='0.6 R0'");
   EXPECT_EQ(beyond.code, 3) << beyond.err;
   EXPECT_NE(beyond.err.find("half the radius"), std::string::npos) << beyond.err;
-  const Table events = read_csv(folder() / "runs/compressible/events.csv");
+  const Table events = read_csv(path("runs/compressible/events.csv"));
   EXPECT_EQ(events.word(events.row_count() - 1, *events.find("event")), "limit");
   const Outcome refused = monograin("run " + file + " --set material.stiffness_ratio=2");
   EXPECT_EQ(refused.code, 2);
@@ -185,45 +140,35 @@ TEST_F(Commands, TheReadyGranuleRunsAndStopsAtTheEndOfItsLaw) {
 }
 
 TEST_F(Commands, ANewRunReplacesTheOldOneAsAWhole) {
-  write_text(folder() / "small.toml", k_small);
+  write_text(path("small.toml"), k_small);
   ASSERT_EQ(monograin("run small.toml --plot").code, 0);
-  ASSERT_TRUE(fs::exists(folder() / "runs/small/figure.svg"));
+  ASSERT_TRUE(fs::exists(path("runs/small/figure.svg")));
   ASSERT_EQ(monograin("run small.toml").code, 0);
-  EXPECT_FALSE(fs::exists(folder() / "runs/small/figure.svg"));
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder() / "runs"), fs::directory_iterator{}), 1);
+  EXPECT_FALSE(fs::exists(path("runs/small/figure.svg")));
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("runs")), fs::directory_iterator{}), 1);
 }
 
 TEST_F(Commands, AFolderThatHoldsSomethingElseIsNotReplaced) {
-  write_text(folder() / "small.toml", k_small);
-  fs::create_directory(folder() / "mine");
-  write_text(folder() / "mine/notes.txt", "keep me");
+  write_text(path("small.toml"), k_small);
+  fs::create_directory(path("mine"));
+  write_text(path("mine/notes.txt"), "keep me");
   EXPECT_EQ(monograin("run small.toml -o mine").code, 2);
-  EXPECT_EQ(read_text(folder() / "mine/notes.txt"), "keep me");
+  EXPECT_EQ(text("mine/notes.txt"), "keep me");
 }
 
 TEST_F(Commands, AKillAtAnyMomentLeavesTheLastGoodResult) {
-  write_text(folder() / "small.toml", k_small);
+  write_text(path("small.toml"), k_small);
   ASSERT_EQ(monograin("run small.toml").code, 0);
-  const std::string good = read_text(folder() / "runs/small/history.csv");
-  const std::string file = (folder() / "small.toml").string();
+  const std::string good = text("runs/small/history.csv");
   for (int delay_us = 0; delay_us < 24'000; delay_us += 600) {
-    const pid_t child = fork();
-    if (child == 0) {
-      if (chdir(folder().c_str()) != 0) _exit(9);
-      execl(MONOGRAIN_PROGRAM, MONOGRAIN_PROGRAM, "run", file.c_str(), "--quiet", static_cast<char*>(nullptr));
-      _exit(9);
-    }
-    std::this_thread::sleep_for(std::chrono::microseconds(delay_us));
-    kill(child, SIGKILL);
-    int status = 0;
-    waitpid(child, &status, 0);
-    ASSERT_EQ(read_text(folder() / "runs/small/history.csv"), good) << "killed after " << delay_us << " us";
-    ASSERT_TRUE(fs::exists(folder() / "runs/small/run.json")) << "killed after " << delay_us << " us";
+    start_and_kill({"run", "small.toml", "--quiet"}, std::chrono::microseconds(delay_us));
+    ASSERT_EQ(text("runs/small/history.csv"), good) << "killed after " << delay_us << " us";
+    ASSERT_TRUE(fs::exists(path("runs/small/run.json"))) << "killed after " << delay_us << " us";
   }
 }
 
 TEST_F(Commands, CheckSaysNothingOfAGoodFile) {
-  write_text(folder() / "small.toml", k_small);
+  write_text(path("small.toml"), k_small);
   const Outcome outcome = monograin("check small.toml");
   EXPECT_EQ(outcome.code, 0);
   EXPECT_TRUE(outcome.out.empty() && outcome.err.empty()) << outcome.out << outcome.err;
@@ -237,14 +182,14 @@ TEST_F(Commands, ModelsListsAndDescribes) {
     EXPECT_NE(mdr.out.find(word), std::string::npos) << word;
   }
   EXPECT_EQ(monograin("models nonsense").code, 2);
-  write_text(folder() / "small.toml", k_small);
+  write_text(path("small.toml"), k_small);
   const Outcome parameters = monograin("models mdr --parameters small.toml");
   EXPECT_EQ(parameters.code, 0) << parameters.err;
   EXPECT_NE(parameters.out.find("yield_overlap_over_radius"), std::string::npos) << parameters.out;
 }
 
 TEST_F(Commands, CompareExitsWithFiveAboveTheTolerance) {
-  write_text(folder() / "small.toml", k_small);
+  write_text(path("small.toml"), k_small);
   ASSERT_EQ(monograin("run small.toml -o a").code, 0);
   ASSERT_EQ(monograin("run small.toml -o b --set material.yield_stress='20.2 MPa'").code, 0);
   EXPECT_EQ(monograin("compare a/history.csv a/history.csv --tol 0").code, 0);
@@ -255,7 +200,7 @@ TEST_F(Commands, CompareExitsWithFiveAboveTheTolerance) {
 }
 
 TEST_F(Commands, PlotDrawsRecordedRunsInEveryFormat) {
-  write_text(folder() / "small.toml", k_small);
+  write_text(path("small.toml"), k_small);
   ASSERT_EQ(monograin("run small.toml").code, 0);
   for (const char* file : {"f.svg", "f.pdf", "f.png"}) {
     const Outcome outcome = monograin(std::string("plot runs/small -o ") + file);
@@ -267,13 +212,13 @@ TEST_F(Commands, PlotDrawsRecordedRunsInEveryFormat) {
 }
 
 TEST_F(Commands, PlotDrawsProfilesAtAnInstant) {
-  write_text(folder() / "small.toml", k_small);
+  write_text(path("small.toml"), k_small);
   ASSERT_EQ(monograin("run small.toml").code, 0);
-  const double time = read_csv(folder() / "runs/small/history.csv").column("time").back();
+  const double time = read_csv(path("runs/small/history.csv")).column("time").back();
   const Outcome outcome = monograin("plot runs/small --profile " + std::to_string(0.5 * time));
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(fs::exists(folder() / "runs/small/profile.svg"));
-  EXPECT_GT(read_csv(folder() / "runs/small/profile.csv").row_count(), 100U);
+  EXPECT_TRUE(fs::exists(path("runs/small/profile.svg")));
+  EXPECT_GT(read_csv(path("runs/small/profile.csv")).row_count(), 100U);
   EXPECT_EQ(monograin("plot runs/small --profile " + std::to_string(2.0 * time)).code, 2);
   EXPECT_EQ(monograin("plot runs/small runs/small --profile 0").code, 2);
 }
@@ -284,12 +229,12 @@ TEST_F(Commands, SchemaPrintsJson) {
 }
 
 TEST_F(Commands, RegressFindsAMovedCurve) {
-  fs::create_directory(folder() / "scenarios");
-  write_text(folder() / "scenarios/small.toml", k_small);
+  fs::create_directory(path("scenarios"));
+  write_text(path("scenarios/small.toml"), k_small);
   ASSERT_EQ(monograin("regress --accept --curves curves").code, 0);
   const Outcome same = monograin("regress --curves curves");
   EXPECT_EQ(same.code, 0) << same.out;
-  const Table stored = read_csv(folder() / "curves/small.csv");
+  const Table stored = read_csv(path("curves/small.csv"));
   Table moved(stored.columns());
   moved.header = stored.header;
   for (std::size_t i = 0; i < stored.row_count(); ++i) {
@@ -297,7 +242,7 @@ TEST_F(Commands, RegressFindsAMovedCurve) {
     if (i == stored.row_count() / 2) row[*stored.find("axial.force")] *= 1.0 + 1e-9;
     moved.append(row);
   }
-  std::ofstream out(folder() / "curves/small.csv", std::ios::binary);
+  std::ofstream out(path("curves/small.csv"), std::ios::binary);
   write_csv(moved, out);
   out.close();
   EXPECT_EQ(monograin("regress --curves curves").code, 5);
@@ -342,10 +287,10 @@ points = { file = "p.csv", x = "x", y = "y" }
 )toml";
 
 TEST_F(Commands, AtlasMakesFiguresAndTablesAnew) {
-  fs::create_directories(folder() / "plots/scenarios");
-  write_text(folder() / "plots/scenarios/small.toml", k_small);
-  write_text(folder() / "plots/p.csv", "x,y\n0,0\n0.1,0.02\n0.2,0.04\n");
-  write_text(folder() / "plots/small.toml", k_definition);
+  fs::create_directories(path("plots/scenarios"));
+  write_text(path("plots/scenarios/small.toml"), k_small);
+  write_text(path("plots/p.csv"), "x,y\n0,0\n0.1,0.02\n0.2,0.04\n");
+  write_text(path("plots/small.toml"), k_definition);
   const Outcome listed = monograin("atlas --list");
   EXPECT_EQ(listed.code, 0) << listed.err;
   EXPECT_EQ(listed.out, "small  Small\n");
@@ -354,18 +299,18 @@ TEST_F(Commands, AtlasMakesFiguresAndTablesAnew) {
   EXPECT_NE(outcome.out.find("## Against a straight line"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.err.find("-> figures/small.svg"), std::string::npos) << outcome.err;
   for (const char* file : {"small.svg", "small.gp", "small.dat", "small.csv", "small.md"})
-    EXPECT_TRUE(fs::exists(folder() / "figures" / file)) << file;
+    EXPECT_TRUE(fs::exists(path("figures") / file)) << file;
   ASSERT_EQ(monograin("atlas").code, 0);
-  EXPECT_EQ(read_text(folder() / "plots/small.csv"), read_text(folder() / "figures/small.csv"));
+  EXPECT_EQ(text("plots/small.csv"), text("figures/small.csv"));
 }
 
 TEST_F(Commands, AtlasWritesNothingWhereADefinitionIsAtFault) {
-  fs::create_directories(folder() / "plots/scenarios");
-  write_text(folder() / "plots/scenarios/small.toml", k_small);
-  write_text(folder() / "plots/good.toml",
+  fs::create_directories(path("plots/scenarios"));
+  write_text(path("plots/scenarios/small.toml"), k_small);
+  write_text(path("plots/good.toml"),
              "title = \"t\"\nsource = \"s\"\n[[panel]]\n"
              "curve = [{ parameter = { from = 0, to = 1 }, x = \"t\", y = \"t\" }]\n");
-  write_text(folder() / "plots/small.toml", k_definition);
+  write_text(path("plots/small.toml"), k_definition);
   const auto before = files();
   const Outcome missing = monograin("atlas");
   EXPECT_EQ(missing.code, 2);
@@ -392,10 +337,10 @@ y = "axial.force"
 )toml";
 
 TEST_F(Commands, CalibrateFindsTheParameterOfARunAndLeavesAScenarioThatRuns) {
-  write_text(folder() / "small.toml", k_small);
-  write_text(folder() / "fit.toml", k_calibration);
+  write_text(path("small.toml"), k_small);
+  write_text(path("fit.toml"), k_calibration);
   ASSERT_EQ(monograin("run small.toml -o measured --set material.yield_stress='31 MPa'").code, 0);
-  const Table history = read_csv(folder() / "measured/history.csv");
+  const Table history = read_csv(path("measured/history.csv"));
   std::ostringstream data;
   data << "axial.displacement[m],axial.force[N]\n" << std::setprecision(17);
   for (std::size_t i = 0; i < history.row_count(); ++i) {
@@ -404,7 +349,7 @@ TEST_F(Commands, CalibrateFindsTheParameterOfARunAndLeavesAScenarioThatRuns) {
     data << history.at(i, *history.find("axial.displacement")) << ',' << history.at(i, *history.find("axial.force"))
          << '\n';
   }
-  write_text(folder() / "measured.csv", data.str());
+  write_text(path("measured.csv"), data.str());
   const Outcome outcome = monograin("calibrate fit.toml --confidence 0.9");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("material.yield_stress"), std::string::npos) << outcome.out;
@@ -412,8 +357,8 @@ TEST_F(Commands, CalibrateFindsTheParameterOfARunAndLeavesAScenarioThatRuns) {
   EXPECT_NE(outcome.out.find("90 % interval"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.err.find("-> runs/fit"), std::string::npos) << outcome.err;
   for (const char* file : {"fit.csv", "fitted.toml", "calibration.json", "figure.svg"})
-    EXPECT_TRUE(fs::exists(folder() / "runs/fit" / file)) << file;
-  const auto json = nlohmann::json::parse(read_text(folder() / "runs/fit/calibration.json"));
+    EXPECT_TRUE(fs::exists(path("runs/fit") / file)) << file;
+  const auto json = nlohmann::json::parse(text("runs/fit/calibration.json"));
   EXPECT_NEAR(json["parameters"][0]["value_in_unit"].get<double>(), 31.0, 1e-9);
   ASSERT_EQ(monograin("run runs/fit/fitted.toml -o again").code, 0);
   const Outcome same = monograin("compare measured/history.csv again/history.csv --tol 1e-9");
@@ -421,8 +366,8 @@ TEST_F(Commands, CalibrateFindsTheParameterOfARunAndLeavesAScenarioThatRuns) {
 }
 
 TEST_F(Commands, CalibrateWritesNothingWhereSomethingIsAtFault) {
-  write_text(folder() / "small.toml", k_small);
-  write_text(folder() / "fit.toml", k_calibration);
+  write_text(path("small.toml"), k_small);
+  write_text(path("fit.toml"), k_calibration);
   const auto before = files();
   const Outcome outcome = monograin("calibrate fit.toml");
   EXPECT_EQ(outcome.code, 2);
@@ -432,10 +377,10 @@ TEST_F(Commands, CalibrateWritesNothingWhereSomethingIsAtFault) {
   EXPECT_EQ(monograin("calibrate nowhere.toml").code, 2);
   EXPECT_EQ(monograin("calibrate fit.toml --confidence 1.5").code, 2);
   EXPECT_EQ(files(), before);
-  write_text(folder() / "measured.csv", "axial.displacement[m],axial.force[N]\n5e-5,5\n1e-4,12\n");
+  write_text(path("measured.csv"), "axial.displacement[m],axial.force[N]\n5e-5,5\n1e-4,12\n");
   ASSERT_EQ(monograin("run small.toml -o measured").code, 0);
-  fs::create_directory(folder() / "mine");
-  write_text(folder() / "mine/notes.txt", "keep me");
+  fs::create_directory(path("mine"));
+  write_text(path("mine/notes.txt"), "keep me");
   const auto with_run = files();
   EXPECT_EQ(monograin("calibrate fit.toml -o mine").code, 2);
   EXPECT_EQ(monograin("calibrate fit.toml -o measured").code, 2) << "a run is no calibration";
@@ -447,7 +392,7 @@ TEST_F(Commands, CalibrateFitsTheReadyExample) {
       monograin("calibrate '" MONOGRAIN_SOURCE_DIR "/scenarios/calibrate/uniaxial.toml' --quiet -o fit");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(outcome.err.empty()) << outcome.err;
-  const auto json = nlohmann::json::parse(read_text(folder() / "fit/calibration.json"));
+  const auto json = nlohmann::json::parse(text("fit/calibration.json"));
   // What the data were made with, 1.2 GPa and 45 MPa, lies in the intervals.
   for (const auto& [k, truth] : {std::pair(0, 1.2e9), std::pair(1, 45e6)}) {
     const auto& interval = json["parameters"][static_cast<std::size_t>(k)]["interval"];
@@ -489,11 +434,11 @@ points = 4
 )";
 
 TEST_F(Commands, RunAPackingWhichHasNeitherParticleNorWalls) {
-  write_text(folder() / "p.toml", k_packing);
+  write_text(path("p.toml"), k_packing);
   EXPECT_EQ(monograin("check p.toml").code, 0);
   const Outcome outcome = monograin("run p.toml --plot");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const Table history = read_csv(folder() / "runs/p/history.csv");
+  const Table history = read_csv(path("runs/p/history.csv"));
   std::vector<std::string> names;
   for (const Column& column : history.columns()) {
     names.push_back(column.unit.empty() ? column.name : column.name + '[' + column.unit + ']');
@@ -503,10 +448,10 @@ TEST_F(Commands, RunAPackingWhichHasNeitherParticleNorWalls) {
                                              "regime"}));
   EXPECT_TRUE(history.header_value("R0").empty());
   EXPECT_FALSE(history.header_value("E").empty());
-  const auto run = nlohmann::json::parse(read_text(folder() / "runs/p/run.json"));
+  const auto run = nlohmann::json::parse(text("runs/p/run.json"));
   EXPECT_TRUE(run.at("classes").empty());
   EXPECT_EQ(run.at("status"), "complete");
-  EXPECT_TRUE(fs::exists(folder() / "runs/p/figure.svg"));
+  EXPECT_TRUE(fs::exists(path("runs/p/figure.svg")));
   EXPECT_EQ(monograin("plot runs/p -o p.pdf").code, 0);
   EXPECT_EQ(monograin("plot runs/p --profile 0.1").code, 2);
   const Outcome models = monograin("models packing --parameters p.toml");
@@ -517,19 +462,19 @@ TEST_F(Commands, RunAPackingWhichHasNeitherParticleNorWalls) {
 }
 
 TEST_F(Commands, EndAPackingWithTheExitCodeOfItsEnd) {
-  write_text(folder() / "p.toml", k_packing);
+  write_text(path("p.toml"), k_packing);
   const Outcome full = monograin("run p.toml --set loading.steps[0].packing_fraction=1.05");
   EXPECT_EQ(full.code, 3);
   EXPECT_NE(full.err.find("no pores are left"), std::string::npos) << full.err;
-  EXPECT_NE(read_text(folder() / "runs/p/history.csv").find("# status: stopped"), std::string::npos);
+  EXPECT_NE(text("runs/p/history.csv").find("# status: stopped"), std::string::npos);
   EXPECT_EQ(monograin("run p.toml --set packing.f_E=0.1").code, 2);
   EXPECT_EQ(monograin("run p.toml --set material.poisson_ratio=0.5").code, 2);
   EXPECT_EQ(monograin("run p.toml --set packing.initial_packing_fraction=0.96").code, 2);  // would unload
 }
 
 TEST_F(Commands, SweepAPacking) {
-  write_text(folder() / "p.toml", k_packing);
-  write_text(folder() / "s.toml",
+  write_text(path("p.toml"), k_packing);
+  write_text(path("s.toml"),
              "scenario = \"p.toml\"\ndesign = \"grid\"\n[vary]\n\"packing.alpha\" = { values = [1, 2.5] }\n"
              "\"loading.steps[0].packing_fraction\" = { from = 0.9, to = 0.95, points = 2 }\n");
   const Outcome outcome = monograin("sweep s.toml");
@@ -541,16 +486,16 @@ TEST_F(Commands, SweepAPacking) {
 constexpr const char* k_bench_scenes = " --scenes '" MONOGRAIN_SOURCE_DIR "/scenarios/bench/scenes.toml'";
 
 TEST_F(Commands, BenchMeasuresNamedScenesAndScenarioFiles) {
-  write_text(folder() / "small.toml", k_small);
+  write_text(path("small.toml"), k_small);
   const Outcome outcome =
       monograin(std::string("bench mdr-die-50 small.toml --integrator auto cvode-bdf --rtol 1e-5 --profile -o out") +
                 k_bench_scenes);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  for (const char* text : {"| mdr-die-50 ", "| small ", "| cvode-bdf ", "## Where the time goes"}) {
-    EXPECT_NE(outcome.out.find(text), std::string::npos) << text;
+  for (const char* words : {"| mdr-die-50 ", "| small ", "| cvode-bdf ", "## Where the time goes"}) {
+    EXPECT_NE(outcome.out.find(words), std::string::npos) << words;
   }
   for (const char* file : {"bench.csv", "bench.md", "bench-mdr-die-50.svg", "bench-small.svg", "bench-summary.svg"}) {
-    EXPECT_TRUE(fs::exists(folder() / "out" / file)) << file;
+    EXPECT_TRUE(fs::exists(path("out") / file)) << file;
   }
 }
 
@@ -562,7 +507,7 @@ TEST_F(Commands, BenchRefusesWhatItDoesNotKnow) {
   const Outcome integrator = monograin(std::string("bench mdr-die-50 --integrator euler -o out") + k_bench_scenes);
   EXPECT_EQ(integrator.code, 2);
   EXPECT_NE(integrator.err.find("'euler'"), std::string::npos) << integrator.err;
-  EXPECT_FALSE(fs::exists(folder() / "out"));
+  EXPECT_FALSE(fs::exists(path("out")));
 }
 
 TEST_F(Commands, BenchHoldsLawsAgainstFiniteElements) {
@@ -570,7 +515,7 @@ TEST_F(Commands, BenchHoldsLawsAgainstFiniteElements) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("| E/Y = 200: semimech"), std::string::npos) << outcome.out;
   for (const char* file : {"laws-fe.svg", "laws-fe.csv", "laws-fe.md"}) {
-    EXPECT_TRUE(fs::exists(folder() / "out" / file)) << file;
+    EXPECT_TRUE(fs::exists(path("out") / file)) << file;
   }
 }
 

@@ -118,7 +118,8 @@ TEST_P(EveryIntegrator, FiresAGuardThatWasZeroAtTheStartWhenItReturns) {
   EXPECT_NEAR(result.time_of("return"), 0.4, 1e-9);  // y = xi is integrated exactly up to tolerance
 }
 
-TEST_P(EveryIntegrator, GivesUpOnChatteringModesAndNamesThem) {
+/// Each mode drives the state into the other one; a transition leaves it just short of going back.
+std::unique_ptr<ToySystem> chattering_toy() {
   auto toy = std::make_unique<ToySystem>();
   ToySystem* self = toy.get();
   toy->initial = {-0.5};
@@ -126,7 +127,6 @@ TEST_P(EveryIntegrator, GivesUpOnChatteringModesAndNamesThem) {
   toy->flow = [self](double start, View from, double xi, std::span<double> y) {
     y[0] = from[0] + (self->mode == 0 ? xi - start : start - xi);
   };
-  // Each mode drives the state into the other one; a transition leaves it just short of going back.
   toy->watched = {{"up", 1, [](double, View y) { return y[0]; },
                    [self](std::span<double> y) {
                      self->mode = 1;
@@ -137,11 +137,24 @@ TEST_P(EveryIntegrator, GivesUpOnChatteringModesAndNamesThem) {
                      self->mode = 0;
                      y[0] = -1e-15;
                    }}};
-  const TestRun result = run_toy(std::move(toy), GetParam());
+  return toy;
+}
+
+TEST_P(EveryIntegrator, GivesUpOnChatteringModesAndNamesThem) {
+  const TestRun result = run_toy(chattering_toy(), GetParam());
   EXPECT_EQ(result.record.status, RunStatus::failed);
   EXPECT_NE(result.record.message.find("without progress"), std::string::npos) << result.record.message;
   EXPECT_NE(result.record.message.find("down of toy, up of toy"), std::string::npos) << result.record.message;
   EXPECT_GE(result.outputs("time").size(), 10u);  // the history up to there
+}
+
+TEST_P(EveryIntegrator, AsksWhetherItsToleranceIsTooFineIfItHasOne) {
+  for (const double rtol : {1e-8, 1e-12}) {
+    const TestRun result = run_toy(chattering_toy(), GetParam(), rtol);
+    ASSERT_EQ(result.record.status, RunStatus::failed);
+    const bool does = result.record.message.find("asks for errors of the size of rounding") != std::string::npos;
+    EXPECT_EQ(does, rtol < 1e-11 && !is_direct()) << result.record.message;
+  }
 }
 
 TEST_P(EveryIntegrator, StopsWhereTheEquationsEndAndKeepsTheHistory) {

@@ -4,13 +4,13 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
+
+#include "support/text_file.hpp"
 
 namespace monograin {
 namespace {
@@ -32,14 +32,9 @@ class Environment {
   std::string before_;
 };
 
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 void write(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path());
-  std::ofstream(file, std::ios::binary) << text;
+  write_text(file, text);
 }
 
 /// Loading, unloading and reloading of one contact, with an undefined pressure.
@@ -107,7 +102,7 @@ TEST_F(Figure, IsWrittenInEachFormat) {
   };
   for (const auto& [name, begins] : {Case{"a.svg", "<?xml"}, Case{"a.pdf", "%PDF"}, Case{"a.png", "\x89PNG"}}) {
     draw_runs({run()}, in_folder(name));
-    EXPECT_TRUE(contents(in_folder(name)).starts_with(begins)) << name;
+    EXPECT_TRUE(read_text(in_folder(name)).starts_with(begins)) << name;
   }
 }
 
@@ -121,16 +116,16 @@ TEST_F(Figure, LeavesScriptAndDataBesideItAndNothingElse) {
 
 TEST_F(Figure, CanBeDrawnAgainFromItsScript) {
   draw_runs({run()}, in_folder("die.svg"));
-  const std::string first = contents(in_folder("die.svg"));
+  const std::string first = read_text(in_folder("die.svg"));
   fs::remove(in_folder("die.svg"));
   const std::string command = "cd '" + in_folder("").string() + "' && gnuplot die.gp 2>&1";
   ASSERT_EQ(std::system(command.c_str()), 0);
-  EXPECT_EQ(contents(in_folder("die.svg")), first);
+  EXPECT_EQ(read_text(in_folder("die.svg")), first);
 }
 
 TEST_F(Figure, TellsLoadingUnloadingAndReloadingApart) {
   draw_runs({run()}, in_folder("die.svg"));
-  const std::string data = contents(in_folder("die.dat"));
+  const std::string data = read_text(in_folder("die.dat"));
   const auto holds = [&](const char* block) { return data.find(block) != std::string::npos; };
   EXPECT_TRUE(holds("# run 1 axial unloading\n0.2 0.01 1.6 0.04 1.01\n0.1 0 0 0 1.01\n")) << data;
   EXPECT_TRUE(holds("# run 1 axial reloading\n0.1 0 0 0 1.01\n0.15 0.005 1 0.01 1.01\n")) << data;
@@ -141,7 +136,7 @@ TEST_F(Figure, TellsLoadingUnloadingAndReloadingApart) {
 
 TEST_F(Figure, MarksEventsOfContactsAndOfTheParticleButNotOfTheProgram) {
   draw_runs({run()}, in_folder("die.svg"));
-  const std::string data = contents(in_folder("die.dat"));
+  const std::string data = read_text(in_folder("die.dat"));
   EXPECT_NE(data.find("# event yield.\n0.1 0.005 1.8 0.01 NaN\n"), std::string::npos) << data;
   EXPECT_NE(data.find("# event growth-on.\n0.1 NaN NaN NaN 1\n"), std::string::npos) << data;
   EXPECT_EQ(data.find("step-end"), std::string::npos) << data;
@@ -150,13 +145,13 @@ TEST_F(Figure, MarksEventsOfContactsAndOfTheParticleButNotOfTheProgram) {
 TEST_F(Figure, NeedsNoEvents) {
   fs::remove(run() / "events.csv");
   EXPECT_EQ(fault_of({run()}, in_folder("die.svg")), "no fault");
-  EXPECT_EQ(contents(in_folder("die.gp")).find("Events"), std::string::npos);
+  EXPECT_EQ(read_text(in_folder("die.gp")).find("Events"), std::string::npos);
 }
 
 TEST_F(Figure, LeavesOutWhatARunDoesNotHave) {
   write(in_folder("hertz/history.csv"), k_hertz_history);
   EXPECT_EQ(fault_of({in_folder("hertz")}, in_folder("hertz.svg")), "no fault");
-  const std::string script = contents(in_folder("hertz.gp"));
+  const std::string script = read_text(in_folder("hertz.gp"));
   EXPECT_EQ(script.find("Apparent radius"), std::string::npos);
   EXPECT_EQ(script.find("'run 1 lateral loading' using 1:3"), std::string::npos) << "pressure of an open contact";
   EXPECT_NE(script.find("'run 1 lateral loading' using 1:2"), std::string::npos) << "force of an open contact";
@@ -171,7 +166,7 @@ TEST_F(Figure, CanShowARunInWhichNothingHappens) {
 TEST_F(Figure, OverlaysRunsUnderNamesThatDiffer) {
   write(in_folder("other/it's_a_run/history.csv"), k_mdr_history);
   EXPECT_EQ(fault_of({run(), in_folder("other/it's_a_run/history.csv")}, in_folder("both.svg")), "no fault");
-  const std::string script = contents(in_folder("both.gp"));
+  const std::string script = read_text(in_folder("both.gp"));
   EXPECT_NE(script.find("runs/it''s_a_run'"), std::string::npos) << script;
   EXPECT_NE(script.find("other/it''s_a_run/history.csv'"), std::string::npos) << script;
 }
@@ -181,7 +176,7 @@ TEST_F(Figure, StaysInUnitsWhereARunHasNoScales) {
   bare.erase(0, bare.find("time[s]"));
   write(in_folder("bare/history.csv"), bare);
   EXPECT_EQ(fault_of({run(), in_folder("bare")}, in_folder("bare.svg")), "no fault");
-  EXPECT_NE(contents(in_folder("bare.gp")).find("Force {/:Italic F} [N]"), std::string::npos);
+  EXPECT_NE(read_text(in_folder("bare.gp")).find("Force {/:Italic F} [N]"), std::string::npos);
 }
 
 TEST_F(Figure, RefusesAnUnknownFormatAndListsTheKnown) {
@@ -213,7 +208,7 @@ TEST_F(Figure, NamesTheScriptWhenGnuplotFailsAndKeepsTheOldFigure) {
   const std::string fault = fault_of({run()}, in_folder("a.svg"));
   EXPECT_NE(fault.find(in_folder("a.gp").string()), std::string::npos) << fault;
   EXPECT_NE(fault.find("no such terminal"), std::string::npos) << fault;
-  EXPECT_EQ(contents(in_folder("a.svg")), "old");
+  EXPECT_EQ(read_text(in_folder("a.svg")), "old");
 }
 
 TEST_F(Figure, PutsTheHandlerOfSigpipeBack) {
@@ -246,16 +241,16 @@ TEST_F(Figure, OfAModelWithoutWallsShowsItsOwnColumns) {
     write(in_folder(name) / "events.csv", k_packing_events);
   }
   draw_runs({in_folder("first")}, in_folder("p.svg"));
-  const std::string data = contents(in_folder("p.dat"));
+  const std::string data = read_text(in_folder("p.dat"));
   EXPECT_NE(data.find("0.9 0.06"), std::string::npos) << data;  // stress over modulus
   EXPECT_NE(data.find("0.8 0.001"), std::string::npos) << data;
-  const std::string script = contents(in_folder("p.gp"));
+  const std::string script = read_text(in_folder("p.gp"));
   EXPECT_NE(script.find("Coordination number"), std::string::npos);
   EXPECT_NE(script.find("jamming"), std::string::npos);
   EXPECT_EQ(script.find("step-end"), std::string::npos);
   EXPECT_EQ(script.find("first"), std::string::npos);  // one run needs no name
   draw_runs({in_folder("first"), in_folder("second") / "history.csv"}, in_folder("q.svg"));
-  EXPECT_NE(contents(in_folder("q.gp")).find("second"), std::string::npos);
+  EXPECT_NE(read_text(in_folder("q.gp")).find("second"), std::string::npos);
 }
 
 // Tension is positive in the file; a compression is drawn as the loading it is.
@@ -265,15 +260,15 @@ TEST_F(Figure, OfAMaterialPointGrowsTheWayItsProgramBegins) {
   write(in_folder("pressed") / "history.csv",
         head + "0,1,0,0,0,0,0,0.7\n1,1,0,-0.25,-4e6,-3e6,1e6,0.8\n2,2,0,-0.125,-1e6,-1e6,5e5,0.8\n");
   draw_runs({in_folder("pressed")}, in_folder("p.svg"));
-  const std::string pressed = contents(in_folder("p.dat"));
+  const std::string pressed = read_text(in_folder("p.dat"));
   EXPECT_NE(pressed.find("0.25 4\n"), std::string::npos) << pressed;
   EXPECT_NE(pressed.find("0.25 1\n"), std::string::npos) << "q has no sign";
-  EXPECT_NE(contents(in_folder("p.gp")).find("compression positive"), std::string::npos);
-  EXPECT_EQ(contents(in_folder("p.gp")).find("reloading"), std::string::npos);
+  EXPECT_NE(read_text(in_folder("p.gp")).find("compression positive"), std::string::npos);
+  EXPECT_EQ(read_text(in_folder("p.gp")).find("reloading"), std::string::npos);
   write(in_folder("pulled") / "history.csv", head + "0,1,0,0,0,0,0,0.7\n1,1,0,0.25,4e6,3e6,1e6,0.7\n");
   draw_runs({in_folder("pulled")}, in_folder("q.svg"));
-  EXPECT_NE(contents(in_folder("q.dat")).find("0.25 4\n"), std::string::npos);
-  EXPECT_NE(contents(in_folder("q.gp")).find("tension positive"), std::string::npos);
+  EXPECT_NE(read_text(in_folder("q.dat")).find("0.25 4\n"), std::string::npos);
+  EXPECT_NE(read_text(in_folder("q.gp")).find("tension positive"), std::string::npos);
 }
 
 TEST_F(Figure, DoesNotMixModelsWithAndWithoutWalls) {

@@ -12,6 +12,7 @@
 #include "scenario/json.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/support.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "scenario/scenario.hpp"
 #include "scenario/support.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin {
 namespace {

@@ -7,6 +7,7 @@
 #include "catalogue.hpp"
 #include "scenario/json.hpp"
 #include "scenario/support.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin {
 namespace {

@@ -1,8 +1,6 @@
 #include "scenario/support.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "scenario/scenario.hpp"
@@ -41,11 +39,6 @@ std::vector<std::filesystem::path> toml_files(std::string_view folder) {
   }
   std::ranges::sort(files);
   return files;
-}
-
-std::string read_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 }  // namespace monograin

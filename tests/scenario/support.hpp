@@ -39,6 +39,4 @@ inline constexpr std::string_view k_good_scenario =
 /// The TOML files of a folder of the source tree, sorted.
 [[nodiscard]] std::vector<std::filesystem::path> toml_files(std::string_view folder);
 
-[[nodiscard]] std::string read_text(const std::filesystem::path& file);
-
 }  // namespace monograin

@@ -9,9 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "history/table.hpp"
 #include "models/accuracy.hpp"
-#include "support/reference_case.hpp"
+#include "models/mdr/reference_windows.hpp"
 
 namespace monograin {
 namespace {
@@ -20,25 +19,11 @@ using mdr::AdhesionValidity;
 
 const std::vector<double> k_displacements{0.1, 0.2, 0.3, 0.4, 0.5};
 
-struct ReferenceWindow {
-  const char* name;
-  const char* file;
-  Control control;
-};
-
-class AdhesionMapReference : public ::testing::TestWithParam<ReferenceWindow> {};
+class AdhesionMapReference : public ::testing::TestWithParam<Control> {};
 
 TEST_P(AdhesionMapReference, HasTheSameContactsAndWindows) {
-  const Table table = read_csv(test_file(std::string("models/mdr/reference/") + GetParam().file));
-  const auto modulus_over_yield = table.column("E_over_Y");
-  const auto displacement = table.column("delta_o_max_over_R0");
-  const auto yielded = table.column("yielded");
-  const auto radius = table.column("R_over_R0");
-  const auto contact_radius = table.column("a_max_over_R0");
-  const auto height = table.column("A_over_R0");
-  const auto peak_radius = table.column("r_peak_over_R0");
-  const auto least = table.column("dg_min_over_ER0");
-  const auto greatest = table.column("dg_max_over_ER0");
+  const auto [modulus_over_yield, displacement, yielded, radius, contact_radius, height, peak_radius, least, greatest] =
+      mdr::reference_windows(GetParam());
   ASSERT_EQ(radius.size() % k_displacements.size(), 0u);
   for (std::size_t i = 0; i < radius.size(); i += k_displacements.size()) {
     const double ratio = modulus_over_yield[i];
@@ -56,19 +41,18 @@ TEST_P(AdhesionMapReference, HasTheSameContactsAndWindows) {
           << where;
       EXPECT_LE(relative_error(c.peak_radius, peak_radius[i + d]), 1e-12) << where;
       const double composite_modulus = 1.0 / (1.0 - 0.09);
-      const auto window =
-          mdr::adhesion_window(c.indenter, composite_modulus, 1.0 / ratio, c.peak_radius, GetParam().control);
+      const auto window = mdr::adhesion_window(c.indenter, composite_modulus, 1.0 / ratio, c.peak_radius, GetParam());
       EXPECT_LE(relative_error(window.least, least[i + d]), 1e-10) << where;
       EXPECT_LE(relative_error(window.greatest, greatest[i + d]), 1e-10) << where;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Study, AdhesionMapReference,
-    ::testing::Values(ReferenceWindow{"DisplacementControl", "adhesion_validity_nu03_xi1.csv", Control::displacement},
-                      ReferenceWindow{"ForceControl", "adhesion_validity_nu03_xi3.csv", Control::force}),
-    [](const auto& instance) { return std::string(instance.param.name); });
+INSTANTIATE_TEST_SUITE_P(Study, AdhesionMapReference, ::testing::Values(Control::displacement, Control::force),
+                         [](const auto& instance) {
+                           return std::string(instance.param == Control::force ? "ForceControl"
+                                                                               : "DisplacementControl");
+                         });
 
 /// Of a coarse map that has points of the reference's E/Y: on a diagonal E*/Y is 50/(1 - nu^2).
 AdhesionMapSettings coarse(Control control) {

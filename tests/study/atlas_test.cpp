@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "plastic/compression.hpp"
 #include "scenario/scenario.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin {
 namespace {
@@ -71,10 +71,6 @@ class Atlas : public ::testing::Test {
   }
 
   [[nodiscard]] const fs::path& definitions() const { return folder_.path(); }
-  [[nodiscard]] std::string contents(const fs::path& file) const {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
 
  private:
   TemporaryFolder folder_;
@@ -530,8 +526,8 @@ row = [{ label = "elastic", curve = {}, points = { file = "points.csv", x = "x",
   for (const auto& entry : fs::directory_iterator(out)) names.push_back(entry.path().filename().string());
   std::ranges::sort(names);
   EXPECT_EQ(names, (std::vector<std::string>{"small.csv", "small.dat", "small.gp", "small.md", "small.svg"}));
-  EXPECT_TRUE(contents(out / "small.svg").starts_with("<?xml"));
-  EXPECT_NE(contents(out / "small.dat").find("# A small one; nobody"), std::string::npos);
+  EXPECT_TRUE(read_text(out / "small.svg").starts_with("<?xml"));
+  EXPECT_NE(read_text(out / "small.dat").find("# A small one; nobody"), std::string::npos);
 
   const Table table = read_csv(out / "small.csv");
   ASSERT_EQ(table.row_count(), 1U);
@@ -540,7 +536,7 @@ row = [{ label = "elastic", curve = {}, points = { file = "points.csv", x = "x",
   EXPECT_DOUBLE_EQ(table.at(0, *table.find("reversal")), 0.01);
   EXPECT_NEAR(table.at(0, *table.find("peak_error")), std::abs(4.0 / 3.0 * 1e-3 - 1.4e-3) / 1.4e-3, 1e-12);
   EXPECT_NEAR(table.at(0, *table.find("residual")), 0.0, 1e-12);
-  EXPECT_NE(contents(out / "small.md").find("| elastic |"), std::string::npos);
+  EXPECT_NE(read_text(out / "small.md").find("| elastic |"), std::string::npos);
 }
 
 TEST_F(Atlas, SaysWhichRunsDidNotEnd) {

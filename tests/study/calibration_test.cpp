@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <string>
@@ -17,6 +16,7 @@
 #include "history/run.hpp"
 #include "history/table.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin {
 namespace {
@@ -95,13 +95,8 @@ class CalibrationTest : public ::testing::Test {
     write("d.csv", k_data);
   }
 
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder() / name, std::ios::binary) << text;
-  }
-  [[nodiscard]] std::string text_of(const fs::path& file) const {
-    std::ifstream in(folder() / file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  void write(const std::string& name, const std::string& text) const { write_text(folder() / name, text); }
+  [[nodiscard]] std::string text_of(const fs::path& file) const { return read_text(folder() / file); }
 
   [[nodiscard]] Calibration read() const { return read_calibration(folder() / "c.toml"); }
 

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string>
 
@@ -16,6 +14,7 @@
 #include "study/stress_scene.hpp"
 #include "study/stress_shrink.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin {
 namespace {
@@ -30,11 +29,6 @@ class StressScenes : public ::testing::Test {
  private:
   TemporaryFolder folder_;
 };
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 TEST_F(StressScenes, AreTheSameForTheSameSeedAndOthersForAnother) {
   for (const std::uint64_t index : {0U, 7U, 91U}) {
@@ -178,7 +172,7 @@ TEST(StressTestRuns, GiveTheSameReportWhateverTheNumberOfThreads) {
     const fs::path target = folder.path() / std::to_string(threads);
     const StressReport found =
         run_stress({.seed = 32, .seconds = 300.0, .scenes = 40, .threads = threads, .folder = target, .progress = {}});
-    EXPECT_EQ(found.text(), text_of(target / "report.txt"));
+    EXPECT_EQ(found.text(), read_text(target / "report.txt"));
     return found.text();
   };
   EXPECT_EQ(report(1), report(3));

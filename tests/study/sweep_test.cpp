@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include "history/run.hpp"
 #include "history/table.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin {
 namespace {
@@ -37,18 +36,11 @@ constexpr const char* k_grid = R"toml(scenario = "small.toml"
 "loading.configuration" = { values = ["simple", "die", "hydrostatic"] }
 )toml";
 
-std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 class SweepFiles : public ::testing::Test {
  protected:
   SweepFiles() { write("small.toml", k_scenario); }
 
-  void write(const std::string& file, const std::string& text) const {
-    std::ofstream(path(file), std::ios::binary) << text;
-  }
+  void write(const std::string& file, const std::string& text) const { write_text(path(file), text); }
   [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
 
   [[nodiscard]] Sweep read(const std::string& text) const {

@@ -1,6 +1,7 @@
 #include "support/test_run.hpp"
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -218,6 +219,19 @@ double difference(const TestRun& actual, const TestRun& expected) {
     for (std::size_t c = 0; c < a.size(); ++c) take(difference(a[c], b[c]));
   }
   return worst;
+}
+
+std::vector<std::size_t> regime_changes(const TestRun& run, const std::string& contact_class) {
+  const auto row = run.column("row");
+  const auto regime = run.column(contact_class + ".regime");
+  std::vector<std::size_t> changes;
+  for (std::size_t k = 1; k < row.size(); ++k) {
+    if (regime[k] == regime[k - 1]) continue;
+    changes.push_back(k);
+    EXPECT_EQ(row[k - 1], static_cast<double>(RowSide::before)) << contact_class << ", row " << k - 1;
+    EXPECT_EQ(row[k], static_cast<double>(RowSide::after)) << contact_class << ", row " << k;
+  }
+  return changes;
 }
 
 double least_dissipation(const TestRun& run) {

@@ -85,6 +85,10 @@ struct TestRun {
 /// and energies over the largest work. Names of classes may differ; they are taken in order.
 [[nodiscard]] double difference(const TestRun& actual, const TestRun& expected);
 
+/// The rows that come just after a change of a contact's regime. Expects each of them, and the row before it, to be
+/// marked as the two sides of an event.
+[[nodiscard]] std::vector<std::size_t> regime_changes(const TestRun& run, const std::string& contact_class);
+
 /// Least dissipation over the largest work; and the sum of its decreases over the largest work.
 [[nodiscard]] double least_dissipation(const TestRun& run);
 [[nodiscard]] double lost_dissipation(const TestRun& run);

@@ -7,14 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin::compressible {
 namespace {
@@ -53,8 +52,7 @@ TEST_P(StoredFit, IsNotMissedByEitherProcedure) {
   compare("joint", joint, joint_data.header);
   EXPECT_LE(joint.errors.area, nested->errors.area);
   // The figure that shows this fit has its numbers.
-  std::ifstream definition(MONOGRAIN_SOURCE_DIR "/plots/compressible-12-fits.toml");
-  const std::string text{std::istreambuf_iterator<char>(definition), {}};
+  const std::string text = read_text(MONOGRAIN_SOURCE_DIR "/plots/compressible-12-fits.toml");
   for (const char* key : {"k", "delta_t", "a"}) {
     const std::string words = " " + joint_data.header + " ";
     const std::size_t begin = words.find(std::string(" ") + key + "=") + 1;

@@ -16,6 +16,7 @@
 #include "elastic/nonlocal_contacts.hpp"
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
+#include "support/refusal.hpp"
 #include "walls.hpp"
 
 namespace monograin::nonlocal {
@@ -114,18 +115,5 @@ inline std::vector<double> state_under(Contacts& contacts, std::span<const doubl
   contacts.solve(held(displacements), 1.0, y);
   return y;
 }
-
-/// The message of the exception that a call throws; empty if it throws none, or another.
-template <class Exception, class Call>
-std::string refusal(const Call& call) {
-  try {
-    static_cast<void>(call());
-  } catch (const Exception& exception) {
-    return exception.what();
-  }
-  return {};
-}
-
-inline bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
 
 }  // namespace monograin::nonlocal

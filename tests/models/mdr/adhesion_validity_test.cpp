@@ -10,6 +10,7 @@
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
 #include "models/mdr/grains.hpp"
+#include "models/mdr/reference_windows.hpp"
 #include "support/reference_case.hpp"
 
 namespace monograin::mdr {
@@ -130,25 +131,11 @@ TEST(MdrAdhesionWindow, IsOpenWithoutARingAndWithoutYield) {
   EXPECT_EQ(adhesion_window(indenter, 1.1, 0.08, 1.0, Control::force).least, k_infinity);
 }
 
-struct ReferenceWindow {
-  const char* name;
-  const char* file;
-  Control control;
-};
-
-class MdrAdhesionReference : public ::testing::TestWithParam<ReferenceWindow> {};
+class MdrAdhesionReference : public ::testing::TestWithParam<Control> {};
 
 TEST_P(MdrAdhesionReference, HasTheSamePeaksAndWindows) {
-  const Table table = read_csv(test_file(std::string("models/mdr/reference/") + GetParam().file));
-  const auto modulus_over_yield = table.column("E_over_Y");
-  const auto displacement = table.column("delta_o_max_over_R0");
-  const auto yielded = table.column("yielded");
-  const auto radius = table.column("R_over_R0");
-  const auto contact_radius = table.column("a_max_over_R0");
-  const auto height = table.column("A_over_R0");
-  const auto peak_radius = table.column("r_peak_over_R0");
-  const auto least = table.column("dg_min_over_ER0");
-  const auto greatest = table.column("dg_max_over_ER0");
+  const auto [modulus_over_yield, displacement, yielded, radius, contact_radius, height, peak_radius, least, greatest] =
+      reference_windows(GetParam());
   for (std::size_t i = 0; i < radius.size(); ++i) {
     const Material material = Grain{modulus_over_yield[i]}.material();
     const double peak = peak_radius_over_initial_radius(displacement[i], material.yield_overlap_ratio);
@@ -156,8 +143,7 @@ TEST_P(MdrAdhesionReference, HasTheSamePeaksAndWindows) {
     EXPECT_LE(relative_error(peak, peak_radius[i]), 1e-14) << where;
     const Indenter indenter = yielded[i] > 0.0 ? Indenter{ElasticProfile::ellipse, height[i], contact_radius[i]}
                                                : elastic_indenter(ElasticProfile::ellipse, radius[i]);
-    const auto window =
-        adhesion_window(indenter, material.composite_modulus, material.yield_stress, peak, GetParam().control);
+    const auto window = adhesion_window(indenter, material.composite_modulus, material.yield_stress, peak, GetParam());
     EXPECT_LE(relative_error(window.least, least[i]), 1e-12) << where;
     EXPECT_LE(relative_error(window.greatest, greatest[i]), 1e-12) << where;
     // Both fits of the peak's radius agree in the rigid-plastic limit, once it is fully formed.
@@ -170,11 +156,11 @@ TEST_P(MdrAdhesionReference, HasTheSamePeaksAndWindows) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Mdr, MdrAdhesionReference,
-    ::testing::Values(ReferenceWindow{"DisplacementControl", "adhesion_validity_nu03_xi1.csv", Control::displacement},
-                      ReferenceWindow{"ForceControl", "adhesion_validity_nu03_xi3.csv", Control::force}),
-    [](const auto& instance) { return std::string(instance.param.name); });
+INSTANTIATE_TEST_SUITE_P(Mdr, MdrAdhesionReference, ::testing::Values(Control::displacement, Control::force),
+                         [](const auto& instance) {
+                           return std::string(instance.param == Control::force ? "ForceControl"
+                                                                               : "DisplacementControl");
+                         });
 
 }  // namespace
 }  // namespace monograin::mdr

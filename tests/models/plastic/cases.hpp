@@ -15,18 +15,14 @@
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
 #include "plastic/compression.hpp"
+#include "support/refusal.hpp"
 
 namespace monograin::plastic {
 
-constexpr std::array k_configurations{Configuration::simple, Configuration::die, Configuration::hydrostatic};
+inline constexpr std::array k_configurations{Configuration::simple, Configuration::die, Configuration::hydrostatic};
 
 inline std::ostream& operator<<(std::ostream& out, Configuration configuration) { return out << name(configuration); }
 inline std::ostream& operator<<(std::ostream& out, Regime regime) { return out << name(regime); }
-
-inline Configuration configuration_named(std::string_view word) {
-  return *std::find_if(k_configurations.begin(), k_configurations.end(),
-                       [&](Configuration configuration) { return name(configuration) == word; });
-}
 
 inline Table reference(const std::string& file) {
   return read_csv(MONOGRAIN_SOURCE_DIR "/tests/models/plastic/reference/" + file + ".csv");
@@ -54,19 +50,6 @@ inline double number(const Table& table, std::size_t row, std::string_view colum
 inline double scaled_error(double actual, double expected, double scale) {
   return actual == expected ? 0.0 : std::abs(actual - expected) / (std::abs(expected) + scale);
 }
-
-/// The message of the exception that a call throws; empty if it throws none, or another.
-template <class Exception, class Call>
-std::string refusal(const Call& call) {
-  try {
-    static_cast<void>(call());
-  } catch (const Exception& exception) {
-    return exception.what();
-  }
-  return {};
-}
-
-inline bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
 
 /// A regime of a law between its neighbouring boundaries.
 struct Stretch {

@@ -1,0 +1,116 @@
+// Cost of one evaluation of the contact law of a compressible particle, and of the parts of its material point. The
+// label of each is the cost floor: what a prototype with everything of the material worked out beforehand took on one
+// core (g++ -O3, best of several runs).
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <vector>
+
+#include "compressible/contact_law.hpp"
+#include "compressible/material_point.hpp"
+#include "compressible/yield_surface.hpp"
+#include "law_timing.hpp"
+
+namespace monograin::compressible {
+namespace {
+
+// --- contact
+
+/// The source's base case.
+struct Granule {
+  LoadingLaw law = make_loading_law(3.9, 0.1, 3.0);
+  double hertz = hertz_stiffness(100.0, 0.3);
+  UnloadingCurve curve = unloading_from(law, hertz, UnloadingRule(), 0.4);
+};
+
+/// Force and slope.
+void loading(benchmark::State& state, const char* floor) {
+  const Granule granule;
+  time_law(state, floor, granule.law.transition, k_largest_displacement, [&](double d) {
+    return std::array{force_in(granule.law, Part::exponential, d), slope_in(granule.law, Part::exponential, d)};
+  });
+}
+
+/// Force and slope.
+void unloading(benchmark::State& state, const char* floor) {
+  const Granule granule;
+  time_law(state, floor, granule.curve.separation(), granule.curve.largest, [&](double d) {
+    return std::array{unloading_force(granule.curve, d), unloading_slope(granule.curve, d)};
+  });
+}
+
+void loading_under_force(benchmark::State& state, const char* floor) {
+  const Granule granule;
+  time_law(state, floor, loading_force(granule.law, granule.law.transition),
+           loading_force(granule.law, k_largest_displacement),
+           [&](double force) { return displacement_under(granule.law, force); });
+}
+
+void unloading_under_force(benchmark::State& state, const char* floor) {
+  const Granule granule;
+  time_law(state, floor, 0.0, granule.curve.force,
+           [&](double force) { return unloading_displacement(granule.curve, force); });
+}
+
+void turning_back(benchmark::State& state, const char* floor) {
+  const Granule granule;
+  const UnloadingRule rule;
+  time_law(state, floor, granule.law.transition, k_largest_displacement,
+           [&](double largest) { return unloading_from(granule.law, granule.hertz, rule, largest); });
+}
+
+BENCHMARK_CAPTURE(loading, exponential, "floor 5 ns");
+BENCHMARK_CAPTURE(unloading, hertz, "floor 12 ns");
+BENCHMARK_CAPTURE(loading_under_force, exponential, "floor 4 ns");
+BENCHMARK_CAPTURE(unloading_under_force, hertz, "floor 11 ns");
+BENCHMARK_CAPTURE(turning_back, hertz, "floor 9 ns");
+
+// --- material point
+
+Parameters material(YieldModel model) {
+  return {.model = model, .eta = 10.0, .xi = 7.5, .zeta = 10.0, .omega = 10.0, .xi1 = 0.4, .xi2 = 1.5};
+}
+
+void properties(benchmark::State& state, const char* floor) {
+  const Parameters parameters = material(YieldModel::vmdc);
+  time_law(state, floor, 0.0, 0.2, [&](double phi) { return properties_at(parameters, phi); });
+}
+
+/// Yield function and potential with their derivatives, at given properties.
+void yield(benchmark::State& state, YieldModel model, Segment segment, double least_pressure, const char* floor) {
+  const Parameters parameters = material(model);
+  const Properties at = properties_at(parameters, 0.1);
+  time_law(state, floor, least_pressure, 0.0,
+           [&](double p) { return yield_on(parameters, at, {.segment = segment}, p, -0.5); });
+}
+
+/// Right-hand side of a material point that yields in a die.
+void plastic_rates(benchmark::State& state, YieldModel model, const char* floor) {
+  MaterialPoint point({.parameters = material(model), .yield_pressure = 1e6});
+  std::vector<double> y(point.unknowns().size());
+  std::vector<double> dy(y.size());
+  std::vector<Event> log;
+  const std::array ramps{Ramp{0.0, -0.2, Control::strain}, Ramp{0.0, 0.0, Control::strain}};
+  point.start(y);
+  point.begin_step(ramps, y, log);
+  std::array<double, 1> yielding{};
+  point.guard_values(0.0, y, yielding);
+  const double xi = -yielding[0];
+  static_cast<void>(point.fire(std::array<std::size_t, 1>{0}, xi, y, log));
+  // A stretch over which the state is still near to the surface.
+  time_law(state, floor, xi, xi + 1e-4, [&](double at) {
+    point.rates(at, y, dy);
+    return dy[0];
+  });
+}
+
+BENCHMARK_CAPTURE(properties, vmdc, "floor 35 ns");
+BENCHMARK_CAPTURE(yield, vm_shear, YieldModel::vm, Segment::shear, -1.0, "floor 2 ns");
+BENCHMARK_CAPTURE(yield, vmdc_cap, YieldModel::vmdc, Segment::cap, -2.0, "floor 11 ns");
+BENCHMARK_CAPTURE(yield, dpc_shear, YieldModel::dpc, Segment::shear, -1.0, "floor 7 ns");
+BENCHMARK_CAPTURE(yield, dpc_cap, YieldModel::dpc, Segment::cap, -2.0, "floor 7 ns");
+BENCHMARK_CAPTURE(plastic_rates, vmdc, YieldModel::vmdc, "floor 28 ns");
+BENCHMARK_CAPTURE(plastic_rates, dpc, YieldModel::dpc, "");
+
+}  // namespace
+}  // namespace monograin::compressible

@@ -1,0 +1,121 @@
+// Cost of one evaluation of the laws for plastic particles: force, contact radius and pressure with their slopes. The
+// label of each is the cost floor: what a prototype with everything of the material worked out beforehand took on one
+// core (g++ -O3, best of several runs).
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+
+#include "law_timing.hpp"
+#include "plastic/hardening.hpp"
+#include "plastic/semimech.hpp"
+#include "plastic/similarity.hpp"
+
+namespace monograin::plastic {
+namespace {
+
+constexpr double k_exponent = 0.35;
+/// How far off the x is with which the inversion of a force begins: about that between two output points.
+constexpr double k_guess = 0.99;
+
+const SimilarityLaw& similarity() {
+  static const SimilarityLaw k_law = make_similarity(k_exponent);
+  return k_law;
+}
+const SemimechLaw& semimech() {
+  static const SemimechLaw k_law = make_semimech(make_semimech_material(1000.0, 0.3, 1.0), Configuration::die);
+  return k_law;
+}
+const HardeningLaw& hardening() {
+  static const HardeningLaw k_law = make_hardening(k_exponent, Configuration::die);
+  return k_law;
+}
+
+// --- similarity
+
+void similarity_state(benchmark::State& state, const char* floor) {
+  time_law(state, floor, 0.0, k_similarity_calibrated_end, [](double x) { return contact_of(similarity(), x); });
+}
+
+void similarity_corrected_radius(benchmark::State& state, const char* floor) {
+  const SimilarityLaw law = make_similarity(k_exponent, SimilarityRadius::corrected);
+  time_law(state, floor, 0.0, k_similarity_calibrated_end, [&](double x) { return contact_of(law, x); });
+}
+
+void similarity_under_force(benchmark::State& state, const char* floor) {
+  const double greatest = contact_of(similarity(), k_similarity_calibrated_end).force;
+  time_law(state, floor, 0.0, greatest, [](double force) { return approach_under(similarity(), force); });
+}
+
+void similarity_work(benchmark::State& state, const char* floor) {
+  time_law(state, floor, 0.0, k_similarity_calibrated_end, [](double x) { return work_per_wall(similarity(), x); });
+}
+
+// --- the laws with regimes
+
+/// The stretch of x over which a law has a regime.
+struct Stretch {
+  double begin = 0.0;
+  double end = 0.0;
+};
+
+template <class Law>
+Stretch stretch_of(const Law& law, Regime regime) {
+  Stretch stretch;
+  for (const Boundary& boundary : boundaries(law)) {
+    stretch.end = boundary.approach;
+    if (regime_at(law, stretch.end) == regime) return stretch;
+    stretch.begin = boundary.approach;
+  }
+  stretch.end = law.calibrated_end;
+  return stretch;
+}
+
+template <class Law>
+void state_of(benchmark::State& state, const Law& law, Regime regime, const char* floor) {
+  const Stretch stretch = stretch_of(law, regime);
+  time_law(state, floor, stretch.begin, stretch.end, [&](double x) { return state_in(law, regime, x); });
+}
+
+template <class Law>
+void under_force(benchmark::State& state, const Law& law, Regime regime, const char* floor) {
+  const Stretch stretch = stretch_of(law, regime);
+  time_law(state, floor, stretch.begin, stretch.end, [&](double x) {
+    // The force itself costs one evaluation more.
+    const double force = state_in(law, regime, x).force;
+    return approach_under(law, force, std::max(k_guess * x, stretch.begin));
+  });
+}
+
+template <class Law>
+void work_of(benchmark::State& state, const Law& law, Regime regime, const char* floor) {
+  const Stretch stretch = stretch_of(law, regime);
+  time_law(state, floor, stretch.begin, stretch.end, [&](double x) { return work_in(law, regime, x); });
+}
+
+void semimech_lateral(benchmark::State& state, const char* floor) {
+  const LateralLaw lateral = make_lateral(semimech());
+  time_law(state, floor, lateral.yield_approach, LateralLaw::small_range_end,
+           [&](double x) { return lateral_state_in(semimech(), lateral, Regime::elastic_plastic, x); });
+}
+
+BENCHMARK_CAPTURE(similarity_state, parabolic, "floor 6 ns");
+BENCHMARK_CAPTURE(similarity_corrected_radius, corrected, "floor 11 ns");
+BENCHMARK_CAPTURE(similarity_under_force, parabolic, "floor 5 ns");
+BENCHMARK_CAPTURE(similarity_work, parabolic, "floor 5 ns");
+
+BENCHMARK_CAPTURE(state_of, semimech_elastic, semimech(), Regime::elastic, "floor 7 ns");
+BENCHMARK_CAPTURE(state_of, semimech_elastic_plastic, semimech(), Regime::elastic_plastic, "floor 36 ns");
+BENCHMARK_CAPTURE(state_of, semimech_fully_plastic, semimech(), Regime::fully_plastic, "floor 41 ns");
+BENCHMARK_CAPTURE(state_of, semimech_low_compressibility, semimech(), Regime::low_compressibility, "floor 16 ns");
+BENCHMARK_CAPTURE(state_of, semimech_elastic_volumetric, semimech(), Regime::elastic_volumetric, "floor 4 ns");
+BENCHMARK_CAPTURE(semimech_lateral, elastic_plastic, "floor 22 ns");
+BENCHMARK_CAPTURE(under_force, semimech_fully_plastic, semimech(), Regime::fully_plastic, "floor 120 ns, 3 states");
+BENCHMARK_CAPTURE(work_of, semimech_fully_plastic, semimech(), Regime::fully_plastic, "floor 1200 ns, 30 states");
+
+BENCHMARK_CAPTURE(state_of, hardening_fully_plastic, hardening(), Regime::fully_plastic, "floor 47 ns");
+BENCHMARK_CAPTURE(state_of, hardening_low_compressibility, hardening(), Regime::low_compressibility, "floor 30 ns");
+BENCHMARK_CAPTURE(under_force, hardening_fully_plastic, hardening(), Regime::fully_plastic, "floor 140 ns, 3 states");
+BENCHMARK_CAPTURE(work_of, hardening_fully_plastic, hardening(), Regime::fully_plastic, "floor 1400 ns, 30 states");
+
+}  // namespace
+}  // namespace monograin::plastic
