@@ -118,7 +118,7 @@ KeyAnswer key_at(std::string_view path, const toml::table& root, std::string_vie
   if (!parts) {
     return {{}, fmt::format("'{}' is not the path of a key; expected for example material.yield_stress", shown(path))};
   }
-  const Language language = language_of(model);
+  const Language& language = language_of(model);
   return KeyFinder(path, *parts, language).find(root);
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <mutex>
 #include <numbers>
 #include <utility>
 
@@ -522,14 +524,16 @@ void add_material_and_options(Language& language, const ModelInfo& model) {
 
 }  // namespace
 
-Language language_of(string_view model) {
+namespace {
+
+/// @param info  null: of a model that is not known
+Language make_language(const ModelInfo* info) {
   Language language;
   language.root = root_keys();
   language.particle = particle_keys();
   language.output = output_keys();
   language.numerics = numerics_keys();
-  add_model_tables(language, model);
-  const ModelInfo* info = find_model(model);
+  add_model_tables(language, info != nullptr ? info->name : string_view());
   if (info != nullptr) add_material_and_options(language, *info);
   if (info != nullptr && !info->has_walls()) {
     language.particle.clear();
@@ -538,6 +542,18 @@ Language language_of(string_view model) {
   }
   add_loading(language, info != nullptr ? *info : k_any_model);
   return language;
+}
+
+}  // namespace
+
+const Language& language_of(string_view model) {
+  // A sweep reads a scenario for each of its runs: what they are read by is made once.
+  static std::mutex mutex;
+  static std::map<const ModelInfo*, Language> languages;
+  const ModelInfo* info = find_model(model);
+  const std::lock_guard lock(mutex);
+  const auto known = languages.find(info);
+  return known != languages.end() ? known->second : languages.emplace(info, make_language(info)).first->second;
 }
 
 KeySpec quantity_key(const QuantityKey& key) {

@@ -96,8 +96,9 @@ struct Language {
   std::vector<ForeignKey> foreign_until_keys;
 };
 
+/// The same object for each call.
 /// @param model  name as written in the file; any text
-[[nodiscard]] Language language_of(std::string_view model);
+[[nodiscard]] const Language& language_of(std::string_view model);
 
 /// The spec of that name, or nullptr.
 [[nodiscard]] const KeySpec* find_key(std::span<const KeySpec> keys, std::string_view name) noexcept;

@@ -22,7 +22,7 @@ void append_quantities(std::vector<NumberKey>& numbers, std::string_view table, 
 }  // namespace
 
 std::vector<NumberKey> number_keys(const Scenario& scenario) {
-  const Language language = language_of(scenario.model);
+  const Language& language = language_of(scenario.model);
   std::vector<NumberKey> numbers;
   append_quantities(numbers, "material", language.material);
   append_quantities(numbers, scenario.model, language.options);

@@ -160,7 +160,7 @@ void read_numerics(Reading& reading, const Section& root, const Language& langua
 }  // namespace
 
 Scenario read_tree(const toml::table& tree, const std::string& origin, FaultList& faults) {
-  const Language language = language_of(model_to_check_against(tree));
+  const Language& language = language_of(model_to_check_against(tree));
   Reading reading{faults};
   const Section root(reading, {&tree, {origin}, "the scenario"}, language.root, language.foreign_tables);
 

@@ -168,7 +168,7 @@ class ModelSchema {
     return schema;
   }
 
-  Language language_;
+  const Language& language_;
   std::string name_;
 };
 
