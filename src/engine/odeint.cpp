@@ -57,34 +57,34 @@ double controlled_step(double xi, double& step, long& rejections, Try&& attempt)
   throw SolverError("try_step", "no step passes the error test", xi, step, {});
 }
 
-/// Fehlberg's own error estimate does not see quadratures: it is zero for rates that depend on xi alone. For those the
-/// method is the Newton-Cotes rule with nodes 0, 1/6 ... 1, and the rule of order 6 with five of them stands beside it.
+/// Fehlberg's own error estimate is zero for rates that depend on xi alone, and blind where they depend on little else,
+/// as from first touch on. For those the method is the Newton-Cotes rule with nodes 0, 1/6 ... 1, and the rule of order
+/// 6 with five of them stands beside it.
 template <class State>
-class QuadratureErrors {
+class RuleErrors {
  public:
-  QuadratureErrors(const ScaledForm& form, const Tolerances& tolerances)
-      : rtol_(local_rtol(tolerances)), atol_(local_atol(tolerances)), sums_(zeros<State>(form.size())) {
-    for (std::size_t k = 0; k < form.size(); ++k) {
-      if (form.is_quadrature(k)) places_.push_back(k);
-    }
-  }
+  RuleErrors(const ScaledForm& form, const Tolerances& tolerances)
+      : size_(form.size()),
+        rtol_(local_rtol(tolerances)),
+        atol_(local_atol(tolerances)),
+        sums_(zeros<State>(form.size())) {}
 
   /// @param stage  whose rates come first: 1 where those at the step's beginning are known
   void begin(std::size_t stage) noexcept {
     stage_ = stage;
-    for (const std::size_t k : places_) sums_[k] = 0.0;
+    for (std::size_t k = 0; k < size_; ++k) sums_[k] = 0.0;
   }
   /// Rates of the method's stages, in their order.
   void see(const State& rates) noexcept {
     const double weight = k_differences[stage_];
     if (stage_ + 1 < k_differences.size()) ++stage_;
     if (weight == 0.0) return;
-    for (const std::size_t k : places_) sums_[k] += weight * rates[k];
+    for (std::size_t k = 0; k < size_; ++k) sums_[k] += weight * rates[k];
   }
   /// Over what is tolerated.
   [[nodiscard]] double largest(const State& begin, double step) const noexcept {
     double largest = 0.0;
-    for (const std::size_t k : places_) {
+    for (std::size_t k = 0; k < size_; ++k) {
       largest = std::max(largest, std::abs(step * sums_[k]) / (atol_ + rtol_ * std::abs(begin[k])));
     }
     return largest;
@@ -97,8 +97,8 @@ class QuadratureErrors {
   static constexpr std::array<double, 13> k_differences{
       0.0,         0.0,         0.0, 0.0,   0.0,  34.0 / 105.0 - 11.0 / 30.0, k_sixth, k_sixth,
       9.0 / 280.0, 9.0 / 280.0, 0.0, k_end, k_end};
+  std::size_t size_;
   double rtol_, atol_;
-  std::vector<std::size_t> places_;
   State sums_;
   std::size_t stage_ = 0;
 };
@@ -111,18 +111,18 @@ class FehlbergErrorChecker
  public:
   using Base = odeint::default_error_checker<double, typename odeint::runge_kutta_fehlberg78<State>::algebra_type,
                                              odeint::default_operations>;
-  FehlbergErrorChecker(const Tolerances& tolerances, const QuadratureErrors<State>& quadratures)
-      : Base(local_atol(tolerances), local_rtol(tolerances), 1.0, 0.0), quadratures_(&quadratures) {}
+  FehlbergErrorChecker(const Tolerances& tolerances, const RuleErrors<State>& rule_errors)
+      : Base(local_atol(tolerances), local_rtol(tolerances), 1.0, 0.0), rule_errors_(&rule_errors) {}
 
   template <class Old, class Rates, class Error, class Time>
   double error(typename Base::algebra_type& algebra, const Old& old, const Rates& rates, Error& error,
                Time step) const {
     return std::max(static_cast<double>(Base::error(algebra, old, rates, error, step)),
-                    quadratures_->largest(old, step));
+                    rule_errors_->largest(old, step));
   }
 
  private:
-  const QuadratureErrors<State>* quadratures_;
+  const RuleErrors<State>* rule_errors_;
 };
 
 template <class State>
@@ -136,13 +136,13 @@ class ExplicitStepper final : public Stepper {
   static constexpr bool has_interpolation =
       std::is_same_v<Controlled, odeint::controlled_runge_kutta<odeint::runge_kutta_dopri5<State>>>;
 
-  /// @param make  the controlled method, of the errors of its quadratures
+  /// @param make  the controlled method, of its errors as a quadrature
   template <class Make>
   ExplicitStepper(ScaledForm& form, const Tolerances& tolerances, int method_order, Make&& make)
       : form_(form),
-        quadratures_(form, tolerances),
-        controlled_(make(quadratures_)),
-        reaching_(FehlbergErrorChecker<State>(tolerances, quadratures_)) {
+        rule_errors_(form, tolerances),
+        controlled_(make(rule_errors_)),
+        reaching_(FehlbergErrorChecker<State>(tolerances, rule_errors_)) {
     order = method_order;
     for (State* state : {&old_, &old_rates_, &now_, &now_rates_, &between_}) *state = zeros<State>(form.size());
   }
@@ -164,7 +164,7 @@ class ExplicitStepper final : public Stepper {
       if constexpr (has_interpolation) {
         return controlled_.try_step(system(), old_, old_rates_, end, now_, now_rates_, step);
       } else {
-        quadratures_.begin(1);
+        rule_errors_.begin(1);
         const auto result = controlled_.try_step(system(), old_, old_rates_, end, now_, step);
         // A step that ends where the equations do not hold is none, however small its error.
         if (result == odeint::success) rates(now_, now_rates_, end);
@@ -194,7 +194,7 @@ class ExplicitStepper final : public Stepper {
       for (int tries = 0; xi - at > k_smallest_step * least_progress(at); ++tries) {
         if (tries == k_most_tries) throw SolverError("try_step", "a state in a step is not reached", at, step, {});
         step = std::min(step, xi - at);
-        quadratures_.begin(0);
+        rule_errors_.begin(0);
         static_cast<void>(reaching_.try_step(system(), between_, at, step));
       }
     }
@@ -208,12 +208,12 @@ class ExplicitStepper final : public Stepper {
   auto system() {
     return [this](const State& z, State& dz, double xi) {
       rates(z, dz, xi);
-      quadratures_.see(dz);
+      rule_errors_.see(dz);
     };
   }
 
   ScaledForm& form_;
-  QuadratureErrors<State> quadratures_;
+  RuleErrors<State> rule_errors_;
   Controlled controlled_;
   Fehlberg<State> reaching_;
   State old_, old_rates_, now_, now_rates_, between_;
@@ -305,8 +305,8 @@ std::unique_ptr<Stepper> make_explicit(OdeintMethod method, ScaledForm& form, co
     }
     case OdeintMethod::fehlberg78:
       return std::make_unique<ExplicitStepper<State, Fehlberg<State>>>(
-          form, tolerances, 8, [&](const QuadratureErrors<State>& quadratures) {
-            return Fehlberg<State>(FehlbergErrorChecker<State>(tolerances, quadratures));
+          form, tolerances, 8, [&](const RuleErrors<State>& rule_errors) {
+            return Fehlberg<State>(FehlbergErrorChecker<State>(tolerances, rule_errors));
           });
     case OdeintMethod::bulirsch_stoer: {
       using Controlled = odeint::bulirsch_stoer<State>;

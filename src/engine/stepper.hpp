@@ -15,9 +15,6 @@ class ScaledForm {
   explicit ScaledForm(HybridSystem& system) : form_(system), y_(form_.size()), dy_(form_.size()) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return form_.size(); }
-  [[nodiscard]] bool is_quadrature(std::size_t k) const noexcept {
-    return form_.unknown(k).kind == Unknown::Kind::quadrature;
-  }
   [[nodiscard]] long evaluations() const noexcept { return evaluations_; }
 
   /// Takes up a segment's complete state; z is the integrated one.
