@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -20,6 +21,9 @@ enum Kind : int { k_made, k_transition, k_reload, k_lost, k_limit };
 
 // Guards this share beyond the end of a ramp are watched too, and a wall this near to a place stands there.
 constexpr double k_same_place = 1e-12;
+
+// Share of a displacement that is rounding.
+constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 constexpr const char* k_beyond = "the law ends where the source's data do, at a displacement of half the radius";
 
@@ -71,8 +75,9 @@ void ContactSystem::begin_step(std::span<const Ramp> ramps, std::span<double> y,
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     const bool takes_force = ramps[i].control == Control::force;
     const double unit = takes_force ? std::numbers::pi * radius * radius * settings_.yield_pressure : radius;
+    const double stood = classes_[i].takes_force ? displacement_at(i, y[places_[i]]) : 0.0;
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
-    double d = displacement(i, 0.0, y);
+    double d = takes_force ? stood : ramps_[i].start;
     settle(i, d, log);
     if (!touches(i)) memory_[i].resting = d;
     if (takes_force && touches(i)) d = std::max(d, opening(i));
@@ -133,18 +138,28 @@ double ContactSystem::opening(std::size_t i) const noexcept {
   return memory_[i].has_unloaded ? memory_[i].curve.separation() : 0.0;
 }
 
+/// Force that u is counted in.
+double ContactSystem::unit_force(std::size_t i) const noexcept {
+  return memory_[i].regime == Regime::unloading ? memory_[i].curve.force
+                                                : force_in(settings_.law, Part::linear, settings_.law.transition);
+}
+
+/// Whether u is proportional to the force; otherwise it is the displacement.
+bool ContactSystem::counts_force(std::size_t i) const noexcept {
+  return is_loaded(i) && (memory_[i].regime == Regime::unloading || memory_[i].regime == Regime::exponential);
+}
+
 double ContactSystem::coordinate(std::size_t i, double d) const noexcept {
-  const Memory& memory = memory_[i];
-  if (memory.regime != Regime::unloading) return d;
-  return unknowns_[places_[i]].scale * unloading_force(memory.curve, d) / memory.curve.force;
+  return counts_force(i) ? unknowns_[places_[i]].scale * force_at(i, d) / unit_force(i) : d;
+}
+
+/// Displacement that a coordinate stands for.
+double ContactSystem::displacement_at(std::size_t i, double u) const noexcept {
+  return counts_force(i) ? displacement_under_force(i, unit_force(i) * u / unknowns_[places_[i]].scale) : u;
 }
 
 double ContactSystem::displacement(std::size_t i, double xi, std::span<const double> y) const noexcept {
-  if (!is_loaded(i)) return told(i, xi);
-  const Memory& memory = memory_[i];
-  const double u = y[places_[i]];
-  if (memory.regime != Regime::unloading) return u;
-  return unloading_displacement(memory.curve, memory.curve.force * u / unknowns_[places_[i]].scale);
+  return is_loaded(i) ? displacement_at(i, y[places_[i]]) : told(i, xi);
 }
 
 double ContactSystem::displacement_under_force(std::size_t i, double force) const noexcept {
@@ -178,7 +193,13 @@ double ContactSystem::force_at(std::size_t i, double d) const noexcept {
 }
 
 double ContactSystem::force_of(std::size_t i, double xi, std::span<const double> y) const noexcept {
-  return is_loaded(i) && touches(i) ? state(i, y[places_[i]]).force : force_at(i, displacement(i, xi, y));
+  if (is_loaded(i) && touches(i)) return state(i, y[places_[i]]).force;
+  const double d = displacement(i, xi, y);
+  const Memory& memory = memory_[i];
+  // On a steep curve the rounding of a displacement shows: a wall that stands where it parts from the particle has.
+  const bool is_parting = memory.regime == Regime::unloading &&
+                          std::abs(d - memory.curve.separation()) <= k_rounding * memory.curve.largest;
+  return is_parting ? 0.0 : force_at(i, d);
 }
 
 ContactSystem::State ContactSystem::state(std::size_t i, double u) const noexcept {
@@ -189,11 +210,11 @@ ContactSystem::State ContactSystem::state(std::size_t i, double u) const noexcep
     case Regime::linear:
       return {force_at(i, u), settings_.law.stiffness, u};
     case Regime::exponential: {
-      const double force = force_at(i, u);
-      return {force, settings_.law.exponent * force, 1.0 / settings_.law.exponent};
+      const double by_coordinate = unit_force(i) / unknowns_[places_[i]].scale;
+      return {by_coordinate * u, by_coordinate, 1.0 / settings_.law.exponent};
     }
     case Regime::unloading: {
-      const double by_coordinate = memory.curve.force / unknowns_[places_[i]].scale;
+      const double by_coordinate = unit_force(i) / unknowns_[places_[i]].scale;
       const double distance = unloading_displacement(memory.curve, by_coordinate * u) - memory.curve.separation();
       return {by_coordinate * u, by_coordinate, distance / memory.curve.exponent};
     }
@@ -213,7 +234,7 @@ void ContactSystem::complete(double xi, std::span<double> y) {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (!classes_[i].takes_force) continue;
     if (!is_loaded(i))
-      y[places_[i]] = coordinate(i, told(i, xi));
+      y[places_[i]] = told(i, xi);
     else if (!touches(i))
       y[places_[i]] = memory_[i].resting;
   }
@@ -233,14 +254,10 @@ void ContactSystem::rates(double xi, std::span<const double> y, std::span<double
     if (!classes_[i].takes_force) continue;
     const double speed = ramps_[i].end - ramps_[i].start;
     double& rate = dy[places_[i]];
-    if (is_loaded(i)) {
+    if (is_loaded(i))
       rate = touches(i) ? speed / state(i, y[places_[i]]).by_coordinate : 0.0;
-    } else if (memory_[i].regime == Regime::unloading) {
-      const UnloadingCurve& curve = memory_[i].curve;
-      rate = unknowns_[places_[i]].scale * unloading_slope(curve, told(i, xi)) / curve.force * speed;
-    } else {
+    else
       rate = speed;
-    }
   }
   dy[work_place_] = sum;
 }
@@ -256,7 +273,7 @@ void ContactSystem::residual(double xi, std::span<const double> y, std::span<con
       const State now = state(i, u);
       res[places_[i]] = (now.force - told(i, xi)) / now.by_coordinate;
     } else {
-      res[places_[i]] = u - (is_loaded(i) ? memory_[i].resting : coordinate(i, told(i, xi)));
+      res[places_[i]] = u - (is_loaded(i) ? memory_[i].resting : told(i, xi));
     }
   }
   res[work_place_] = dy[work_place_] - sum;
@@ -351,10 +368,10 @@ void ContactSystem::watch() {
 void ContactSystem::guard_values(double xi, std::span<const double> /*y*/, std::span<double> values) {
   for (std::size_t g = 0; g < guards_.size(); ++g) {
     const auto i = static_cast<std::size_t>(guards_[g].index);
-    const double place = guard_places_[g];
     // The law is in closed form: where it is under a force follows from that force, free of an integrator's error.
-    values[g] = is_loaded(i) ? (told(i, xi) - force_at(i, place)) / std::max(std::abs(ramps_[i].start), ramps_[i].end)
-                             : told(i, xi) - place;
+    const double place = is_loaded(i) ? force_at(i, guard_places_[g]) : guard_places_[g];
+    // Ramps are as short as contacts are shallow.
+    values[g] = (told(i, xi) - place) / std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
   }
 }
 

@@ -2,9 +2,11 @@
 /// wall, and knows nothing of the others. Lengths in R0, forces in pi R0^2 sigma_y0.
 ///
 /// Unknowns: for every wall whose force is prescribed at some time a coordinate u of its displacement, and the work of
-/// the walls. On the loading law u is the displacement itself; on an unloading curve it is proportional to the force,
-/// so that nothing is singular where the contact opens with an infinite compliance. Under a prescribed force F the
-/// explicit form is u' = F'/(df/du), the implicit one f(u) = F, and the direct one inverts the law.
+/// the walls. u is the displacement itself, but on the exponential part and on an unloading curve under a prescribed
+/// force it is proportional to the force: nothing is then singular where the contact opens with an infinite compliance,
+/// and a part with a small exponent, along which the force hardly says where the wall is, asks for no more digits than
+/// a force has. Under a prescribed force F the explicit form is u' = F'/(df/du), the implicit one f(u) = F, and the
+/// direct one inverts the law.
 #pragma once
 
 #include <vector>
@@ -79,7 +81,10 @@ class ContactSystem final : public HybridSystem {
   [[nodiscard]] int direction(std::size_t i) const noexcept;
   [[nodiscard]] double told(std::size_t i, double xi) const noexcept;
   [[nodiscard]] double opening(std::size_t i) const noexcept;
+  [[nodiscard]] double unit_force(std::size_t i) const noexcept;
+  [[nodiscard]] bool counts_force(std::size_t i) const noexcept;
   [[nodiscard]] double coordinate(std::size_t i, double d) const noexcept;
+  [[nodiscard]] double displacement_at(std::size_t i, double u) const noexcept;
   [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const noexcept;
   [[nodiscard]] double displacement_under_force(std::size_t i, double force) const noexcept;
   [[nodiscard]] double force_at(std::size_t i, double d) const noexcept;

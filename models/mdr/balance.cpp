@@ -154,6 +154,8 @@ void System::move_centre(double xi, std::span<double> y) {
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     const double error = sums_.force.norm();
     if (error == 0.0) return;
+    // Overlaps are rounded, and the stiffest contact's force with its own; below that there is nothing to damp.
+    const double noise = k_round_off * sums_.stiffness.cwiseAbs().maxCoeff();
     Small step = balance_step(sums_.force);
     if (step.norm() == 0.0) throw std::domain_error("no contact holds the free centre of the particle");
     if (step.norm() >= 0.5 * step_size && step.norm() < 1e-12) return;
@@ -164,7 +166,7 @@ void System::move_centre(double xi, std::span<double> y) {
       for (int k = 0; k < free_count_; ++k) y[centre_place(k)] = before[k] + step[k];
       try {
         look(xi, y);
-        if (sums_.force.norm() < error || step.norm() < k_round_off) break;
+        if (sums_.force.norm() < std::max(error, noise) || step.norm() < k_round_off) break;
       } catch (const std::domain_error&) {
         // A trial may lead out of a branch; a state that is nearer lies in it, or there is none.
         if (step.norm() < k_round_off || halving + 1 == k_most_halvings) throw;
@@ -174,6 +176,25 @@ void System::move_centre(double xi, std::span<double> y) {
     if (step.norm() < 2.0 * k_round_off) return;
   }
   throw std::domain_error("the balance of forces on the free centre was not found");
+}
+
+/// Moves the centre towards the balance of forces, as far as the present branches of the contacts lead.
+/// @return false where they do not lead anywhere
+bool System::approach_balance(double xi, std::span<double> y) {
+  look(xi, y);
+  Small step = balance_step(sums_.force);
+  Small before = Small::Zero();
+  for (int k = 0; k < free_count_; ++k) before[k] = y[centre_place(k)];
+  for (; step.norm() > k_round_off; step *= 0.5) {
+    for (int k = 0; k < free_count_; ++k) y[centre_place(k)] = before[k] + step[k];
+    try {
+      look(xi, y);
+      return true;
+    } catch (const std::domain_error&) {
+      continue;
+    }
+  }
+  return false;
 }
 
 /// Directions in which no touching contact holds the centre: there it stays where it is.

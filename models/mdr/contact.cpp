@@ -311,12 +311,16 @@ double plastic_overlap(const Material& material, double radius, double force, do
   throw std::domain_error("the force is above the largest that a plastic contact bears");
 }
 
-double unloading_overlap(const UnloadingShape& shape, double force) {
+double recompressed_share(const UnloadingShape& shape, double force) {
   const double a = shape.contact_radius_max;
   const double value = force / (2.0 * shape.pressure * a * a);
   if (value > 2.5) throw std::domain_error("overlap beyond the end of the unloading branch");
   const double sine = value > 0.0 ? std::sin(0.5 * inverse_phi(value)) : 0.0;
-  return shape.overlap_max - shape.recovery * (1.0 - 2.0 * sine * sine);
+  return 2.0 * sine * sine;
+}
+
+double unloading_overlap(const UnloadingShape& shape, double force) {
+  return shape.overlap_max - shape.recovery * (1.0 - recompressed_share(shape, force));
 }
 
 double elastic_energy(ElasticProfile profile, double composite_modulus, double radius, double overlap) {

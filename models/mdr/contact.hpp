@@ -126,6 +126,10 @@ struct UnloadingShape {
 /// bears the force
 [[nodiscard]] double plastic_overlap(const Material& material, double radius, double force, double area_constant,
                                      double guess);
+/// Distance from the overlap at which the contact opens, over the recovery: 0 there, 1 at the largest overlap. Has its
+/// digits also where the recovery is a small share of the overlap.
+/// @throws std::domain_error as unloading_overlap
+[[nodiscard]] double recompressed_share(const UnloadingShape& shape, double force);
 /// Forces above that of the largest overlap continue the branch analytically, up to half a recovery above.
 /// @throws std::domain_error beyond that
 [[nodiscard]] double unloading_overlap(const UnloadingShape& shape, double force);

@@ -36,6 +36,18 @@ void System::look_once(double xi, std::span<const double> y) {
   if (!is_seen) look(xi, y);
 }
 
+/// An elastic contact. Where the centre is free, a trial that opens it would find a particle that nothing holds there,
+/// at rest wherever it is; a force odd in the overlap leads back to where the contact just touches.
+Contact System::touching_contact(double radius, double overlap) const {
+  Contact contact = elastic_contact(settings_.elastic_profile, material_.composite_modulus, radius,
+                                    free_count_ > 0 ? std::abs(overlap) : overlap);
+  if (overlap < 0.0) {
+    contact.force = -contact.force;
+    contact.by_radius = -contact.by_radius;
+  }
+  return contact;
+}
+
 void System::look_at(std::size_t i, double displacement, double r) {
   const double radius = 1.0 + r;
   Instant& now = now_[i];
@@ -55,7 +67,7 @@ void System::look_at(std::size_t i, double displacement, double r) {
         now.contact = {};
         break;
       case Regime::elastic:
-        now.contact = elastic_contact(settings_.elastic_profile, material_.composite_modulus, radius, now.overlap);
+        now.contact = touching_contact(radius, now.overlap);
         break;
       case Regime::fully_plastic:
         now.contact = plastic_contact(material_, radius, now.overlap, memory.area_constant);

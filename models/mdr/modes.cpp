@@ -38,6 +38,8 @@ constexpr double k_at_rest = 1e-8;
 // With a free centre, contacts along its directions open and close together; their guards agree to the integration
 // error only.
 constexpr double k_together = 1e-6;
+// A free centre that has gone this far (over R0) within an instant has sprung.
+constexpr double k_spring = 1e-9;
 // Growth ends where the free surface is used up to this share.
 constexpr double k_least_slope = 1e-3;
 // The volume's square root ends at 1 - 4w = 0; stop before an implicit code's difference quotients reach over that
@@ -45,6 +47,9 @@ constexpr double k_least_slope = 1e-3;
 constexpr double k_least_volume = 1e-6;
 // A wall this near to the centre of the particle (over R0) has reached it.
 constexpr double k_least_distance = 1e-3;
+
+constexpr const char* k_unsettled =
+    "there is no mode in which every contact's branch agrees with its motion: the regimes do not settle";
 
 }  // namespace
 
@@ -264,6 +269,50 @@ void System::check_support() const {
   }
 }
 
+/// Centre and walls where they belong in the present mode. Where a contact has pulled off, a free centre springs to
+/// another equilibrium, and the other contacts go there along their own branches: back from their largest overlap, on
+/// beyond it, their edges stretched or pressed.
+void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& log, std::vector<Event>& made) {
+  if (free_count_ == 0 || !adheres()) {
+    complete(xi, y);
+    return;
+  }
+  look(xi, y);
+  for (std::size_t i = 0; i < now_.size(); ++i) overlaps_before_[i] = now_[i].overlap;
+  for (std::size_t round = 0;; ++round) {
+    if (round == most_rounds()) throw std::domain_error(k_unsettled);
+    std::ranges::copy(y, trial_.begin());
+    bool has_arrived = true;
+    try {
+      complete(xi, y);
+    } catch (const std::domain_error&) {
+      // Its present branch does not lead a contact so far: as far as it does, and on from there.
+      std::ranges::copy(trial_, y.begin());
+      if (!approach_balance(xi, y)) throw;
+      has_arrived = false;
+    }
+    look(xi, y);
+    const double r = y[k_radius];
+    bool has_changed = false;
+    for (std::size_t i = 0; i < memory_.size(); ++i) {
+      const double gone = now_[i].overlap - overlaps_before_[i];
+      if (is_loaded(i) || std::abs(gone) <= k_spring) continue;
+      // What turns back turns where it came from.
+      const bool turns = gone < 0.0 && touches(memory_[i].regime) && memory_[i].edge == Edge::following;
+      if (turns) look_at(i, overlaps_before_[i] - r, r);
+      now_[i].rate_by_time = gone;
+      now_[i].rate_by_growth = 0.0;
+      // A dent may be touched and passed at once: looked at in between it would have no force.
+      for (std::size_t change = 0; settle_contact(i, xi, y, Motion{}, log, made); ++change) {
+        if (change == most_rounds()) throw std::domain_error(k_unsettled);
+        has_changed = true;
+      }
+    }
+    if (!has_changed && !has_arrived) throw std::domain_error(k_unsettled);
+    if (!has_changed) return;
+  }
+}
+
 /// Decides the mode: branch of every contact and growth depend on each other, so assume, look, correct, and repeat.
 /// @param growth  what a growth guard has just decided; none: the sign of the demand decides
 /// @param has_jumped  the force of a contact has jumped, and its wall has not given way yet: the balance is frozen as
@@ -273,14 +322,10 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
                     bool has_jumped) {
   const bool was_growing = is_growing_;
   std::vector<Event> made;
-  if (!has_jumped) complete(xi, y);
+  if (!has_jumped) balance_anew(xi, y, log, made);
   held_radius_ = y[k_radius];
-  const std::size_t most_rounds = 4 * memory_.size() + 8;
   for (std::size_t round = 0;; ++round) {
-    if (round == most_rounds) {
-      throw std::domain_error(
-          "there is no mode in which every contact's branch agrees with its motion: the regimes do not settle");
-    }
+    if (round == most_rounds()) throw std::domain_error(k_unsettled);
     is_growing_ = growth ? *growth : wants_growth(xi, y);
     look(xi, y);
     const Motion now = motion(is_growing_);
@@ -291,7 +336,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
     }
     if (!has_changed) break;
     // Where a contact has pulled off, the others have to balance anew.
-    if (!has_jumped && adheres()) complete(xi, y);
+    if (!has_jumped && adheres()) balance_anew(xi, y, log, made);
     if (!has_jumped && !adheres()) move_walls(xi, y);
     // A contact that has just been made carries no force yet and leaves the growth guard's decision standing.
     if (log.size() > events_before) growth.reset();

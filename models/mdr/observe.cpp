@@ -75,7 +75,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   *out++ = stored * energy_unit;
   *out++ = (work - stored) * energy_unit;
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    const Contact& c = now_[i].contact;
+    const Contact c = visible_contact(i);
     *out++ = now_[i].displacement * length;
     *out++ = now_[i].overlap * length;
     *out++ = c.force * force_unit;
@@ -92,21 +92,29 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   }
 }
 
+/// A contact without what touching_contact() adds for trials.
+Contact System::visible_contact(std::size_t i) const noexcept {
+  const bool is_apart =
+      memory_[i].regime == Regime::elastic && memory_[i].edge == Edge::following && now_[i].overlap < 0.0;
+  return is_apart ? Contact{} : now_[i].contact;
+}
+
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
   look_once(xi, y);
-  const Instant& now = now_[static_cast<std::size_t>(contact_class)];
+  const auto i = static_cast<std::size_t>(contact_class);
+  const Contact contact = visible_contact(i);
   const double length = settings_.initial_radius;
   switch (quantity) {
     case Quantity::force:
-      return now.contact.force * stress_unit_ * length * length;
+      return contact.force * stress_unit_ * length * length;
     case Quantity::displacement:
-      return now.displacement * length;
+      return now_[i].displacement * length;
     case Quantity::pressure: {
-      const double a = now.contact.contact_radius;
-      return a > 0.0 ? now.contact.force / (pi * a * a) * stress_unit_ : 0.0;
+      const double a = contact.contact_radius;
+      return a > 0.0 ? contact.force / (pi * a * a) * stress_unit_ : 0.0;
     }
     case Quantity::contact_radius:
-      return now.contact.contact_radius * length;
+      return contact.contact_radius * length;
     case Quantity::apparent_radius:
       return (1.0 + y[k_radius]) * length;
     default:

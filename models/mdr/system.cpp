@@ -40,6 +40,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   shapes_.resize(count);
   pull_offs_.resize(count);
   edges_before_.resize(count);
+  overlaps_before_.resize(count);
   ramps_.resize(count);
   wall_places_.resize(count);
 

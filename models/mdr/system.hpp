@@ -199,6 +199,8 @@ class System final : public HybridSystem {
   void look(double xi, std::span<const double> y);
   void look_once(double xi, std::span<const double> y);
   void forget_look() noexcept { seen_xi_ = k_nan; }
+  [[nodiscard]] Contact touching_contact(double radius, double overlap) const;
+  [[nodiscard]] Contact visible_contact(std::size_t i) const noexcept;
   void look_at(std::size_t i, double displacement, double r);
   [[nodiscard]] double force_work(std::span<const double> y);
   void sum_up(double xi, double r);
@@ -207,11 +209,15 @@ class System final : public HybridSystem {
   [[nodiscard]] Motion motion(bool growing) const;
   [[nodiscard]] Motion growing_motion() const;
   void move_centre(double xi, std::span<double> y);
+  bool approach_balance(double xi, std::span<double> y);
   void grow(double xi, std::span<double> y);
 
   // Modes (modes.cpp) and transitions (transitions.cpp).
   void settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log,
               bool has_jumped = false);
+  void balance_anew(double xi, std::span<double> y, std::vector<Event>& log, std::vector<Event>& made);
+  /// After which a mode is taken to have none that agrees with it.
+  [[nodiscard]] std::size_t most_rounds() const noexcept { return 4 * memory_.size() + 8; }
   [[nodiscard]] bool wants_growth(double xi, std::span<double> y);
   [[nodiscard]] double growth_drive(const Motion& now) const noexcept;
   void hold_centre(std::span<const double> y);
@@ -287,6 +293,7 @@ class System final : public HybridSystem {
   std::vector<UnloadingShape> shapes_;
   std::vector<PullOff> pull_offs_;
   std::vector<Edge> edges_before_;
+  std::vector<double> overlaps_before_;
   Sums sums_;
   EnergyWatch energies_;
   std::optional<Finding> validity_;  ///< of the first adhesive contact to unload for which the model is not valid

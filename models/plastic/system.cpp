@@ -29,6 +29,8 @@ constexpr double k_nearest_opening = 1e-7;
 // Guards a rounding error beyond the end of a ramp are watched too.
 constexpr double k_reach_margin = 1e-9;
 constexpr double k_opening_power = 1.5;
+// Share of a ramp that takes no time: integrators do not step so far.
+constexpr double k_instant = 1e-13;
 // Share of a prescribed value that is rounding.
 constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 // Depth over R0 below which a contact is rounding.
@@ -120,9 +122,10 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   const double length = settings_.initial_radius;
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     const double unit = ramps[i].control == Control::force ? settings_.strength * length * length : length;
+    const double stood = classes_[i].takes_force ? displacement_at(i, y[places_[i]]) : 0.0;
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
     if (is_lateral(i)) continue;
-    const double x = displacement(i, 0.0, y);
+    const double x = is_loaded(i) ? stood : ramps_[i].start;
     if (touches(memory_[i].regime)) {
       // A wall that has only touched leaves no dent.
       const bool has_pressed = x > (is_loaded(i) ? 0.0 : k_least_depth);
@@ -133,12 +136,12 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
         lose_contact(i);
         log.push_back({"contact-lost", static_cast<int>(i)});
       }
-      if (direction(i) > 0 && !memory_[i].is_virgin && x >= memory_[i].largest) {
-        resume_loading(i);
-        log.push_back({"reload", static_cast<int>(i)});
-      }
     } else {
       meet_walls(i, x, log);
+    }
+    if (touches(memory_[i].regime) && is_reloaded(i, x)) {
+      resume_loading(i);
+      log.push_back({"reload", static_cast<int>(i)});
     }
     const double now = touches(memory_[i].regime) ? std::max(x, origin(i)) : x;
     if (classes_[i].takes_force) y[places_[i]] = coordinate(i, is_loaded(i) ? now : x);
@@ -155,6 +158,12 @@ int System::direction(std::size_t i) const noexcept {
   return way > 0.0 ? 1 : -1;
 }
 
+/// Whether a contact that comes in is at its largest displacement, or nearer to it than a ramp can tell.
+bool System::is_reloaded(std::size_t i, double x) const noexcept {
+  const double least = is_loaded(i) ? 0.0 : k_instant * (ramps_[i].end - ramps_[i].start);
+  return direction(i) > 0 && !memory_[i].is_virgin && x >= memory_[i].largest - least;
+}
+
 /// Displacement or force as the program says.
 double System::told(std::size_t i, double xi) const noexcept { return std::lerp(ramps_[i].start, ramps_[i].end, xi); }
 
@@ -169,25 +178,30 @@ double System::origin(std::size_t i) const noexcept {
 
 /// How the coordinate of a wall goes with the distance from there.
 System::Chart System::chart(std::size_t i) const noexcept {
-  if (!is_on_indenter(i)) return {1.0, 1.0, first_power(settings_.law)};
-  return {memory_[i].indenter.recovery, unknowns_[places_[i]].scale, k_opening_power};
+  if (!is_loaded(i)) return {};
+  if (!is_on_indenter(i)) return {.power = first_power(settings_.law)};
+  return {origin(i), memory_[i].indenter.recovery, unknowns_[places_[i]].scale, k_opening_power};
 }
 
 /// du/dx at a distance from the origin.
 double System::stretch(std::size_t i, double distance) const noexcept {
-  const auto [length, unit, power] = chart(i);
+  const auto [origin, length, unit, power] = chart(i);
   return unit * power * std::pow(distance / length, power - 1.0) / length;
 }
 
 double System::coordinate(std::size_t i, double x) const noexcept {
-  const auto [length, unit, power] = chart(i);
-  return unit * signed_power((x - origin(i)) / length, power);
+  const auto [origin, length, unit, power] = chart(i);
+  return unit * signed_power((x - origin) / length, power);
+}
+
+/// Displacement that a coordinate stands for.
+double System::displacement_at(std::size_t i, double u) const noexcept {
+  const auto [origin, length, unit, power] = chart(i);
+  return origin + length * signed_power(u / unit, 1.0 / power);
 }
 
 double System::displacement(std::size_t i, double xi, std::span<const double> y) const noexcept {
-  if (!is_loaded(i)) return told(i, xi);
-  const auto [length, unit, power] = chart(i);
-  return origin(i) + length * signed_power(y[places_[i]] / unit, 1.0 / power);
+  return is_loaded(i) ? displacement_at(i, y[places_[i]]) : told(i, xi);
 }
 
 double System::displacement_under_force(std::size_t i, double force, double near) const {
@@ -239,39 +253,48 @@ System::Contact System::lateral_contact(std::size_t i, double x) const {
 /// Force and its derivatives at a coordinate of a touching contact; odd in u, so that a trial step below zero stays
 /// smooth.
 System::Slope System::slope(std::size_t i, double u) const {
-  const auto [length, unit, power] = chart(i);
+  const auto [origin, length, unit, power] = chart(i);
   const double nearest = is_on_indenter(i) ? k_nearest_opening : k_nearest_touch;
   const double distance = std::pow(std::abs(u) / unit, 1.0 / power);  // over the length
   const double by_displacement = stretch(i, length * distance);       // du/dx
   if (distance <= nearest) {
-    const double by_coordinate = contact(i, origin(i) + length * nearest).force / (unit * std::pow(nearest, power));
+    const double by_coordinate = contact(i, origin + length * nearest).force / (unit * std::pow(nearest, power));
     return {by_coordinate * u, by_coordinate, by_coordinate * by_displacement};
   }
-  const Contact c = contact(i, origin(i) + length * distance);
+  const Contact c = contact(i, origin + length * distance);
   return {std::copysign(c.force, u), c.stiffness / by_displacement, c.stiffness};
 }
 
-/// Coordinate of a wall whose place needs no integration: it is prescribed, rests, or follows from the force in closed
-/// form.
-std::optional<double> System::known_coordinate(std::size_t i, double xi) const {
-  if (!is_loaded(i)) return coordinate(i, told(i, xi));
-  const bool is_known = is_on_indenter(i) || !touches(memory_[i].regime);
-  return is_known ? std::optional(coordinate(i, displacement_under_force(i, told(i, xi)))) : std::nullopt;
+/// Whether the place of a wall needs no integration: it is prescribed, rests, or follows from the force, in closed form
+/// or, next to where its pressure becomes infinite, where an integrator's error would lead beyond.
+bool System::is_known(std::size_t i) const noexcept {
+  const Regime regime = memory_[i].regime;
+  return !is_loaded(i) || is_on_indenter(i) || !touches(regime) || regime == Regime::low_compressibility;
+}
+
+/// Coordinate of such a wall.
+double System::known_coordinate(std::size_t i, double xi, std::span<const double> y) const {
+  const double control = told(i, xi);
+  if (!is_loaded(i)) return control;
+  if (memory_[i].regime != Regime::unloading) {
+    return coordinate(i, displacement_under_force(i, control, displacement(i, xi, y)));
+  }
+  const Chart own = chart(i);
+  return own.unit * std::pow(mdr::recompressed_share(memory_[i].indenter, std::max(control, 0.0)), own.power);
 }
 
 void System::complete(double xi, std::span<double> y) {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (!classes_[i].takes_force) continue;
-    if (const auto known = known_coordinate(i, xi)) y[places_[i]] = *known;
+    if (is_known(i)) y[places_[i]] = known_coordinate(i, xi, y);
   }
 }
 
 void System::solve(double xi, std::span<double> y) {
-  complete(xi, y);
   for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (!is_loaded(i)) continue;
-    const double near = displacement(i, xi, y);
-    y[places_[i]] = coordinate(i, displacement_under_force(i, told(i, xi), near));
+    if (!classes_[i].takes_force) continue;
+    const double now = displacement(i, xi, y);
+    y[places_[i]] = coordinate(i, is_loaded(i) ? displacement_under_force(i, told(i, xi), now) : now);
   }
 }
 
@@ -285,7 +308,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
       dy[places_[i]] = now.by_coordinate > 0.0 ? speed / now.by_coordinate : 0.0;
       power += power_under_force(i, xi, now);
     } else {
-      if (classes_[i].takes_force) dy[places_[i]] = stretch(i, std::abs(told(i, xi) - origin(i))) * speed;
+      if (classes_[i].takes_force) dy[places_[i]] = speed;
       power += classes_[i].multiplicity() * contact(i, told(i, xi)).force * speed;
     }
   }
@@ -304,15 +327,15 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_lateral(i)) continue;
     const bool presses = is_loaded(i) && touches(memory_[i].regime);
-    const Slope now = presses ? slope(i, y[places_[i]]) : Slope{};
+    const double u = classes_[i].takes_force ? y[places_[i]] : 0.0;
+    const double place = classes_[i].takes_force && is_known(i) ? known_coordinate(i, xi, y) : u;
+    const Slope now = presses ? slope(i, place) : Slope{};
     power += is_loaded(i)
                  ? power_under_force(i, xi, now)
                  : classes_[i].multiplicity() * contact(i, told(i, xi)).force * (ramps_[i].end - ramps_[i].start);
     if (!classes_[i].takes_force) continue;
-    const double u = y[places_[i]];
     // In units of u, as the integrator weighs it.
-    const auto known = known_coordinate(i, xi);
-    res[places_[i]] = known ? u - *known : (now.force - told(i, xi)) / now.by_coordinate;
+    res[places_[i]] = is_known(i) ? u - place : (now.force - told(i, xi)) / now.by_coordinate;
   }
   res[work_place_] = dy[work_place_] - power;
 }
@@ -466,8 +489,16 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
   for (std::size_t g = 0; g < guards_.size(); ++g) {
     const auto own = static_cast<std::size_t>(guards_[g].index);
     const std::size_t i = is_lateral(own) ? first_primary_ : own;
-    values[g] = guards_[g].kind == k_lost && is_loaded(i) ? told(i, xi) / ramps_[i].start
-                                                          : displacement(i, xi, y) - guard_places_[g];
+    if (guards_[g].kind == k_lost && is_loaded(i)) {
+      values[g] = told(i, xi) / ramps_[i].start;
+      continue;
+    }
+    // Ramps are as short as contacts are shallow.
+    const double scale = is_loaded(i) ? guard_places_[g] : std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
+    // To the last digit what a force gives: it may end where it was before.
+    const double near = displacement(i, xi, y);
+    const double x = is_loaded(i) && is_known(i) ? displacement_under_force(i, told(i, xi), near) : near;
+    values[g] = (x - guard_places_[g]) / scale;
   }
 }
 
@@ -488,6 +519,10 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         break;
       case k_touched:
         memory.regime = Regime::unloading;
+        if (is_reloaded(i, x)) {
+          resume_loading(i);
+          log.push_back({"reload", guard.index});
+        }
         break;
       case k_boundary:
         if (boundaries_[memory.next].beyond == Regime::undefined) {

@@ -5,7 +5,8 @@
 ///
 /// Unknowns: for every wall whose force is prescribed at some time a coordinate u of its displacement in which the
 /// force begins linearly, so that nothing is singular at first touch: x^n with P ~ x^n for small x, or, on an unloading
-/// branch, the power 3/2 of the distance from its opening; and the work of the walls. Under a prescribed force F the
+/// branch, the power 3/2 of the distance from its opening, and the displacement itself while that is what is
+/// prescribed; and the work of the walls. Under a prescribed force F the
 /// explicit form is u' = F'/(dP/du), the implicit one P(u) = F, and the direct one inverts the law.
 ///
 /// Unloading: the source has no law. `mdr` gives every yielded contact the elastic indenter that model mdr would leave
@@ -85,6 +86,7 @@ class System final : public HybridSystem {
 
   /// u = unit ((x - origin)/length)^power of the present branch.
   struct Chart {
+    double origin = 0.0;
     double length = 1.0;
     double unit = 1.0;
     double power = 1.0;
@@ -101,14 +103,17 @@ class System final : public HybridSystem {
   [[nodiscard]] bool is_lateral(std::size_t i) const noexcept { return is_lateral_[i]; }
   [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return ramps_[i].control == Control::force; }
   [[nodiscard]] int direction(std::size_t i) const noexcept;
+  [[nodiscard]] bool is_reloaded(std::size_t i, double x) const noexcept;
   [[nodiscard]] double told(std::size_t i, double xi) const noexcept;
   [[nodiscard]] bool is_on_indenter(std::size_t i) const noexcept;
   [[nodiscard]] double origin(std::size_t i) const noexcept;
   [[nodiscard]] Chart chart(std::size_t i) const noexcept;
   [[nodiscard]] double stretch(std::size_t i, double distance) const noexcept;
   [[nodiscard]] double coordinate(std::size_t i, double x) const noexcept;
+  [[nodiscard]] double displacement_at(std::size_t i, double u) const noexcept;
   [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const noexcept;
-  [[nodiscard]] std::optional<double> known_coordinate(std::size_t i, double xi) const;
+  [[nodiscard]] bool is_known(std::size_t i) const noexcept;
+  [[nodiscard]] double known_coordinate(std::size_t i, double xi, std::span<const double> y) const;
   [[nodiscard]] double displacement_under_force(std::size_t i, double force, double near = 0.0) const;
   [[nodiscard]] Contact seen(std::size_t i, double xi, std::span<const double> y) const;
   [[nodiscard]] Contact contact(std::size_t i, double x) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 namespace monograin {
@@ -147,7 +148,17 @@ void EventLocator::locate_event() {
       --place;
     }
     std::size_t first = 0;
-    const double root = first_root(before, after, first);
+    double root = 0.0;
+    try {
+      root = first_root(before, after, first);
+    } catch (const std::domain_error&) {
+      // Between two states there may be none, where the second is another one than the first leads to.
+      const double nearer = std::midpoint(before.xi, after.xi);
+      if (nearer - begin_ < least_progress(begin_)) throw;
+      look_count_ = place;
+      move_end(nearer);
+      continue;
+    }
     const bool is_shorter = root < end_ - least_progress(begin_);
     look_count_ = place;
     if (root < end_) move_end(root);

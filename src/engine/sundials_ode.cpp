@@ -46,6 +46,7 @@ struct CvodeLibrary {
   static constexpr auto error_weights = CVodeGetErrWeights;
   static constexpr auto local_errors = CVodeGetEstLocalErrors;
   static constexpr auto flag_name = CVodeGetReturnFlagName;
+  static constexpr bool remembers_roots = false;
 
   static int reinit(void* memory, OdeMethod, CVRhsFn, realtype xi, N_Vector y) { return CVodeReInit(memory, xi, y); }
   static long rhs_evaluations(void* memory) {
@@ -91,6 +92,9 @@ struct ArkodeLibrary {
   static constexpr auto error_weights = ARKStepGetErrWeights;
   static constexpr auto local_errors = ARKStepGetEstLocalErrors;
   static constexpr auto flag_name = ARKStepGetReturnFlagName;
+  /// ARKStepReInit does not forget that the last call ended at a root (6.4.1): where a guard is exactly zero, a later
+  /// one then takes that for the same root, and gives up.
+  static constexpr bool remembers_roots = true;
   static constexpr int order = 5;  // the highest with which its interpolation keeps up
 
   static int reinit(void* memory, OdeMethod method, ARKRhsFn rates, realtype xi, N_Vector y) {
@@ -118,18 +122,11 @@ class SundialsOde final : public Integrator {
     for (std::size_t k = 0; k < form_.size(); ++k) {
       view(atol_.get())[k] = local_atol(tolerances) * form_.unknown(k).scale;
     }
-    create();
-    check("SetErrHandlerFn", Library::set_error_handler(memory_.get(), keep_message, &message_));
-    check("SetUserData", Library::set_user_data(memory_.get(), this));
-    check("SVtolerances", Library::set_tolerances(memory_.get(), local_rtol(tolerances), atol_.get()));
-    check("SetMaxNumSteps", Library::set_most_steps(memory_.get(), k_most_internal_steps));
     if (method_ == OdeMethod::cvode_bdf || method_ == OdeMethod::arkode_dirk) {
       matrix_.reset(SUNDenseMatrix(size, size, context_));
       linear_ = make_dense_solver(y_.get(), matrix_.get(), context_);
-      check("SetLinearSolver", Library::set_linear_solver(memory_.get(), linear_.get(), matrix_.get()));
-      // With one from a singular start Newton's corrections are far too small, and taken for convergence.
-      check("SetJacEvalFrequency", Library::set_jacobian_frequency(memory_.get(), 1));
     }
+    set_up();
   }
 
   void begin(double xi, std::span<const double> y) override {
@@ -142,13 +139,23 @@ class SundialsOde final : public Integrator {
     roots_.fired.clear();
     const double begin = end_;
     N_VScale(1.0, y_.get(), begin_state_.get());
-    const int flag = step_within_domain(
-        pending_, begin, [this] { return evolve(); },
-        [this](double* step) { return Library::current_step(memory_.get(), step); },
-        [&](double step) {
-          N_VScale(1.0, begin_state_.get(), y_.get());
-          start(begin, step);
-        });
+    const auto restart = [&](double step) {
+      N_VScale(1.0, begin_state_.get(), y_.get());
+      start(begin, step);
+    };
+    const auto step_once = [&] {
+      return step_within_domain(
+          pending_, begin, [this] { return evolve(); },
+          [this](double* step) { return Library::current_step(memory_.get(), step); }, restart);
+    };
+    int flag = step_once();
+    if (flag < 0 && Library::remembers_roots && follows_root_) {
+      past_ = statistics();
+      set_up();
+      follows_root_ = false;
+      restart(0.0);
+      flag = step_once();
+    }
     check(Library::name, flag);
     // Ever smaller steps towards the end of the equations would never get there.
     if (!pending_.domain_end().empty() && end_ - begin < least_progress(begin)) {
@@ -198,10 +205,23 @@ class SundialsOde final : public Integrator {
 
   void create();
 
+  void set_up() {
+    create();
+    check("SetErrHandlerFn", Library::set_error_handler(memory_.get(), keep_message, &message_));
+    check("SetUserData", Library::set_user_data(memory_.get(), this));
+    check("SVtolerances", Library::set_tolerances(memory_.get(), local_rtol(tolerances_), atol_.get()));
+    check("SetMaxNumSteps", Library::set_most_steps(memory_.get(), k_most_internal_steps));
+    if (!linear_) return;
+    check("SetLinearSolver", Library::set_linear_solver(memory_.get(), linear_.get(), matrix_.get()));
+    // With one from a singular start Newton's corrections are far too small, and taken for convergence.
+    check("SetJacEvalFrequency", Library::set_jacobian_frequency(memory_.get(), 1));
+  }
+
   /// Begins at xi with the state in y_. @param step  the first to be tried; 0: the library's choice
   void start(double xi, double step) {
     past_ = statistics();  // counters are reset with the state
     end_ = xi;
+    follows_root_ = follows_root_ || !roots_.fired.empty();
     check("ReInit", Library::reinit(memory_.get(), method_, right_hand_side, xi, y_.get()));
     check("SetInitStep", Library::set_first_step(memory_.get(), step));
     check("SetStopTime", Library::set_stop_time(memory_.get(), 1.0));
@@ -262,6 +282,7 @@ class SundialsOde final : public Integrator {
   std::string message_;
   Pending pending_;
   RootList roots_;
+  bool follows_root_ = false;  ///< an earlier call ended at one, since memory_ is new
   double end_ = 0.0;
   Statistics past_;
 

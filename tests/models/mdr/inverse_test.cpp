@@ -165,6 +165,17 @@ TEST(MdrUnloadingOverlap, IsTheOpeningWithoutForce) {
   }
 }
 
+TEST(MdrRecompressedShare, HasItsDigitsHoweverSmallTheRecoveryIs) {
+  for (const Dent& dent : dents()) {
+    const UnloadingShape shape = dent.shape();
+    const double unit = 2.0 * shape.pressure * shape.contact_radius_max * shape.contact_radius_max;
+    for (const double share : {1e-12, 1e-6, 0.1, 0.5, 1.0}) {
+      const double force = unit * phi(2.0 * std::asin(std::sqrt(0.5 * share)));
+      EXPECT_LE(relative_error(recompressed_share(shape, force), share), k_rounding) << dent << ", share = " << share;
+    }
+  }
+}
+
 TEST(MdrUnloadingOverlap, EndsHalfARecoveryAboveTheLargestOverlap) {
   for (const Dent& dent : dents()) {
     const UnloadingShape shape = dent.shape();
