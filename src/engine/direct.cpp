@@ -28,6 +28,11 @@ constexpr double k_most_shrinkage = 0.2;
 constexpr double k_safety = 0.85;
 // Share of the work that is round-off in it.
 constexpr double k_quadrature_accuracy = 1e-16;
+// An event within this share of a piece may have all nodes beyond it. What the work up to it may be wrong by, as the
+// rates there and at the beginning show it; and how far beyond it the piece ends that is covered again.
+constexpr double k_deep_inside = 0.5;
+constexpr double k_event_accuracy = 1e-13;
+constexpr double k_just_beyond = 1.001;
 // Quadrature pieces are not refined below this; what is left is below round-off of the whole.
 constexpr double k_smallest_quadrature = 1e-6;
 
@@ -147,11 +152,8 @@ class Direct final : public EventLocator {
     }
     move_end(piece_end_);
     locate_event();
-    // All that the nodes have seen lies beyond an event before the first: continuations of the mode, where the rate
-    // need not be that of the mode.
-    const double share = (end_ - begin_) / (piece_end_ - begin_);
-    if (!is_closed_ && 2.0 * share < 1.0 + nodes_->places[0] && end_ - begin_ > least_progress(begin_)) {
-      factor = 2.0 * share;
+    if (!is_closed_ && end_ - begin_ < k_deep_inside * (piece_end_ - begin_) && !holds_up_to_end()) {
+      factor = k_just_beyond * (end_ - begin_) / (piece_end_ - begin_);
       return false;
     }
     if (quadrature_) end_state_[*quadrature_] = quadrature_at(end_, end_state_);
@@ -179,6 +181,18 @@ class Direct final : public EventLocator {
       }
       trial_[k] = begin_state_[k] + gain;
     }
+  }
+
+  /// Whether the series of the work is that of this mode up to the event that has ended the piece: a mode need not go
+  /// on smoothly beyond it (a contact that opens has no force), and all nodes may lie there.
+  [[nodiscard]] bool holds_up_to_end() {
+    system_.rates(end_, end_state_, rates_);
+    const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
+    const auto is_same = [&](double xi, std::span<const double> rates) {
+      const double error = std::abs(work_.value(place(xi)) - rates[*quadrature_]);
+      return (end_ - begin_) * error <= k_event_accuracy * scale;
+    };
+    return is_same(begin_, begin_rates_) && is_same(end_, rates_);
   }
 
   [[nodiscard]] double quadrature_at(double xi, std::span<const double> y) {
