@@ -193,6 +193,9 @@ class HybridSystem {
   /// Whether the walls of a class do not touch the particle.
   [[nodiscard]] virtual bool is_open(int /*contact_class*/) const noexcept { return false; }
 
+  /// What makes the equations hard where an integrator has given up, and what to do; empty where nothing is known.
+  [[nodiscard]] virtual std::string_view difficulty(double /*xi*/, std::span<const double> /*y*/) { return {}; }
+
   /// What the user should know about this run, collected so far.
   [[nodiscard]] virtual std::vector<Finding> warnings() const = 0;
 };

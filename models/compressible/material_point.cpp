@@ -38,8 +38,13 @@ constexpr double k_arrived = 1e-9;
 // Share of its usual size that the stiffness along the flow has to keep. Under prescribed strains it goes to zero like
 // the root of the way that is left; under prescribed stresses in proportion to it.
 constexpr double k_least_stiffness = 1e-6;
+// Plastic strain over a step of the program. Towards a stress that is borne only with unbounded strain, which grows
+// like the logarithm of the way that is left, rates go like the reciprocal of that; faster ones are made of rounding.
+constexpr double k_fastest = 1e7;
 // Distance of Poisson's ratio from 1/2, where the bulk modulus is infinite, at which a run ends.
 constexpr double k_least_compressibility = 1e-6;
+// Bulk modulus over the yield pressure from which on integrators may fail.
+constexpr double k_stiff = 1e5;
 // Newton's method on f = 0: strain correction below which the next one is round-off, and how many there may be.
 constexpr double k_last_correction = 1e-11;
 constexpr int k_most_corrections = 60;
@@ -133,8 +138,15 @@ MaterialPoint::Response MaterialPoint::response(double xi, std::span<const doubl
     now.axial_strain = axial;
     now.lateral_strain = lateral;
   }
-  now.p = bulk * (now.axial_strain + 2.0 * now.lateral_strain - swelling);
   now.s = 2.0 * shear * (now.axial_strain - now.lateral_strain) - 3.0 * shear * flow;
+  // A stress that is prescribed leaves p no rounding of its own, which grows with the bulk modulus towards nu = 1/2.
+  if (is_stress(k_lateral)) {
+    now.p = lateral + now.s / 3.0;
+  } else if (is_stress(k_axial)) {
+    now.p = axial - 2.0 * now.s / 3.0;
+  } else {
+    now.p = bulk * (now.axial_strain + 2.0 * now.lateral_strain - swelling);
+  }
   return now;
 }
 
@@ -440,8 +452,12 @@ double MaterialPoint::margin(Limit limit, const Response& now) const {
   const Flow flow_now = flow(now);
   const Yield& y = flow_now.yield;
   if (is_stress(k_axial) && is_stress(k_lateral)) {  // nothing but hardening resists
-    const double hardening = std::abs(y.f_phi) * std::hypot(flow_now.phi, flow_now.deviatoric);
-    return hardening > 0.0 ? flow_now.stiffness / hardening - k_least_stiffness : 0.0;
+    const double length = std::hypot(flow_now.phi, flow_now.deviatoric);
+    const double hardening = std::abs(y.f_phi) * length;
+    if (!(hardening > 0.0)) return 0.0;
+    const double share = flow_now.stiffness / hardening - k_least_stiffness;
+    if (!(flow_now.loading > 0.0)) return share;
+    return std::min(share, flow_now.stiffness / (flow_now.loading * length) - 1.0 / k_fastest);
   }
   const double bulk = is_compressible(settings_.parameters.model) ? now.at.bulk_modulus.value : 0.0;
   const double elastic_stiffness = bulk * y.f_p * y.g_p + 3.0 * now.at.shear_modulus.value * y.f_s * y.g_s;
@@ -549,6 +565,14 @@ void MaterialPoint::observe(double xi, std::span<const double> y, std::span<doub
       static_cast<double>(is_plastic_ ? regime_of(branch_.segment) : elastic),
   };
   std::ranges::copy(all, values.begin());
+}
+
+std::string_view MaterialPoint::difficulty(double xi, std::span<const double> y) {
+  const Properties at = response(xi, y).at;
+  if (at.bulk_modulus.value < k_stiff * at.yield_pressure.value) return {};
+  return "the bulk modulus is above 1e5 yield pressures, and stresses are what rounding leaves of the strains; "
+         "expected "
+         "integrator = \"cvode-bdf\"";
 }
 
 std::vector<Finding> MaterialPoint::warnings() const {

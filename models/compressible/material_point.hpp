@@ -61,6 +61,7 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] double quantity(Quantity quantity, int channel, double xi, std::span<const double> y) override;
   [[nodiscard]] double controlled(Control control, int channel, double xi, std::span<const double> y) override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
+  [[nodiscard]] std::string_view difficulty(double xi, std::span<const double> y) override;
 
  private:
   enum GuardKind { yielding, end_of_segment, apex, domain_end_guard };

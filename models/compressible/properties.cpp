@@ -10,7 +10,7 @@ Properties properties_at(const Parameters& m, double phi) noexcept {
   const bool densifies = is_compressible(m.model);
   // The growth by itself: the digits of a small phi would be lost in the density, and the exponents multiply the rest.
   const double growth = densifies ? m.relative_density * std::expm1(phi) : 0.0;
-  at.relative_density = m.relative_density + growth;
+  at.relative_density = densifies ? m.relative_density * std::exp(phi) : m.relative_density;
   const double x = densifies ? (m.relative_density - m.reference_density) + growth : phi;
   const double dx = densifies ? at.relative_density : 1.0;
   const auto exponential = [&](double initial, double rate) {

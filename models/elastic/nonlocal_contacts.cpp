@@ -16,6 +16,8 @@ constexpr double k_round_off = std::numeric_limits<double>::epsilon();
 constexpr int k_newton_limit = 100;    // contraction by half reaches rounding in 52
 constexpr double k_contraction = 0.5;  // of Newton's corrections; less is a guess too far away
 constexpr int k_first_touch_steps = 20;
+// Contacts shallower than this, over where the walls go, say nothing of which will bear the centre.
+constexpr double k_unloaded = 1e-6;
 constexpr double k_stagnation = 1e-9;   // rounding grows with 1/margin near the limit
 constexpr double k_balance = 1e-9;      // net force over the sum of forces
 constexpr double k_least_step = 1e-13;  // of the way to a state that is not found at once
@@ -213,9 +215,17 @@ void Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> c
 bool Contacts::newton(std::span<double> y, double imbalance) {
   const std::size_t n = class_count();
   // From first touch a free centre has to find out which contacts bear it, in as many steps as that takes.
+  // On the way in steps nobody asks for balance, and the contacts are those of the state before.
+  const bool is_to_balance = imbalance == 0.0;
+  double farthest = 0.0;
+  for (const Target& goal : targets_) {
+    if (is_to_balance && !goal.is_force) farthest = std::max(farthest, std::abs(goal.value));
+  }
   const bool is_first_touch = free_count() > 0 && std::none_of(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n),
-                                                               [](double s) { return s > 0.0; });
-  const int free_steps = is_first_touch ? k_first_touch_steps : 1;
+                                                               [&](double s) { return s > k_unloaded * farthest; });
+  // Later, a wall that nothing opposes takes it along: the force s^(3/2) that the first step gives that wall is undone
+  // by steps of 2/3, 2/9 ... of it.
+  const int free_steps = is_first_touch ? k_first_touch_steps : free_count() > 0 && is_to_balance ? 2 : 1;
   double last = 0.0;
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     for (std::size_t j = 0; j < n; ++j) {
@@ -445,6 +455,24 @@ double Contacts::least_pivot(std::span<const double> y, double shift) {
     }
   }
   return least;
+}
+
+bool Contacts::is_held_softly(std::span<const double> y, double s) {
+  look(y);
+  const Eigen::Index count = directions_.cols();
+  Eigen::MatrixXd reach = Eigen::MatrixXd::Zero(count, count);
+  Eigen::MatrixXd hold = reach;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    if (y[j] < -s) continue;
+    const Eigen::MatrixXd along = weights_[j] * arms_.row(at(j)).transpose() * arms_.row(at(j));
+    reach += along;
+    if (y[j] > s) hold += along;
+  }
+  const auto rank = [](const Eigen::MatrixXd& matrix) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix, Eigen::EigenvaluesOnly);
+    return (solver.eigenvalues().array() > k_same_surroundings).count();
+  };
+  return rank(hold) < rank(reach);
 }
 
 void Contacts::contacts(std::span<const double> y, std::span<ContactState> states) {

@@ -103,6 +103,9 @@ class Contacts {
   /// goes smoothly through zero with it, and costs a tenth.
   [[nodiscard]] double least_pivot(std::span<const double> y, double shift = 0.0);
 
+  /// Whether a free centre moves in a direction in which touching contacts shallower than s hold it alone.
+  [[nodiscard]] bool is_held_softly(std::span<const double> y, double s);
+
   /// All contacts, one per class.
   void contacts(std::span<const double> y, std::span<ContactState> states);
   /// Contact radius in the deformed configuration a' (eq. 6 for a wall, which is a mirror: with the full instead of

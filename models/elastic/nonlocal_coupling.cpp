@@ -59,10 +59,13 @@ struct SphereModes {
 constexpr double k_last_decay = 40.0;  // exp(-2 y) is far below rounding there
 
 void require_inside(double x) {
-  if (x < 1.0) return;
+  if (x <= k_widest) return;
   throw std::domain_error("contact radius of R or more: a/R = " + std::to_string(x) +
                           " is beyond the formulas of the deformed contact radius");
 }
+
+/// sqrt(1 - x^2), which ends at x = 1 but for rounding.
+double depth_of_edge(double x) noexcept { return std::sqrt(std::max(0.0, (1.0 - x) * (1.0 + x))); }
 
 /// Quotient in eq. 11.
 double first_order(double nu, double theta) noexcept {
@@ -73,7 +76,7 @@ double first_order(double nu, double theta) noexcept {
 
 /// Mean over the contact's edge of the displacement away from its middle (eq. 8).
 double edge_influence(bool is_projected, double nu, double theta, double x) {
-  const double cap = std::asin(x);
+  const double cap = std::asin(std::min(x, 1.0));
   const double sine = std::sin(theta);
   const double cosine = std::cos(theta);
   const double nearest_half_sine = std::sin(0.5 * (theta - cap));
@@ -89,8 +92,7 @@ double edge_influence(bool is_projected, double nu, double theta, double x) {
     const double axial = -(edge.axial - middle.axial) * sine * across;
     if (is_projected) {
       const double along = std::sin(phi);
-      const double edge_arm =
-          -cosine * across * (sine * std::sqrt(1.0 - x * x) - x * cosine * across) + x * along * along;
+      const double edge_arm = -cosine * across * (sine * depth_of_edge(x) - x * cosine * across) + x * along * along;
       return axial + edge.radial_over_sine * edge_arm + middle.radial_over_sine * sine * cosine * across;
     }
     // The edge may pass the point opposite to the force.
@@ -147,7 +149,7 @@ double sphere_self_influence(double poisson_ratio) {
 
 double local_radius_influence(double poisson_ratio, double x) {
   require_inside(x);
-  const double q = std::sqrt((1.0 - x) * (1.0 + x));
+  const double q = depth_of_edge(x);
   const double k = std::sqrt(0.5 * (1.0 + q));
   return unit_compliance(poisson_ratio) *
          (k - 2.0 * (1.0 - 2.0 * poisson_ratio) * (1.0 - x / std::sqrt(2.0 * (1.0 + q))) / x);
@@ -155,7 +157,7 @@ double local_radius_influence(double poisson_ratio, double x) {
 
 double pole_radius_influence(double poisson_ratio, double x) {
   require_inside(x);
-  const double q = std::sqrt((1.0 - x) * (1.0 + x));
+  const double q = depth_of_edge(x);
   const double k = std::sqrt(0.5 * (1.0 + q));
   return unit_compliance(poisson_ratio) *
          (x / std::sqrt(2.0 * (1.0 + q)) - (1.0 - 2.0 * poisson_ratio) * x / ((1.0 + q) * (1.0 + k)));

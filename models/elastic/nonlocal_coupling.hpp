@@ -35,26 +35,29 @@ enum class Influence { half_space, sphere };
 /// length of that direction's projection for its component), or not at all.
 enum class RadiusRule { closed, integral, projected, none };
 
-/// Growth of the contact's radius per unit of its own force (eq. 7), for x in (0, 1). Unbounded as x -> 0, where its
+/// Contact radius over R up to which there is one in the deformed configuration: 1 and its rounding.
+constexpr double k_widest = 1.0 + 1e-12;
+
+/// Growth of the contact's radius per unit of its own force (eq. 7), for x in (0, 1]. Unbounded as x -> 0, where its
 /// product with the force goes to zero like x^2.
-/// @throws std::domain_error for x >= 1
+/// @throws std::domain_error for x above k_widest
 [[nodiscard]] double local_radius_influence(double poisson_ratio, double x);
 
-/// Growth of the contact's radius per unit force of the opposite contact (eq. 13, without cancellation), x in [0, 1).
-/// @throws std::domain_error for x >= 1
+/// Growth of the contact's radius per unit force of the opposite contact (eq. 13, without cancellation), x in [0, 1].
+/// @throws std::domain_error for x above k_widest
 [[nodiscard]] double pole_radius_influence(double poisson_ratio, double x);
 
-/// Growth of the contact's radius per unit force of a contact at an angle theta (eqs. 8, 14), x in [0, 1). The
+/// Growth of the contact's radius per unit force of a contact at an angle theta (eqs. 8, 14), x in [0, 1]. The
 /// integrals are singular at theta = asin(x), where the other contact's middle is on this contact's edge: exact to
 /// rounding ten degrees from there, to 1e-12 a tenth of a degree from there. The closed form has 3/4 of the integral's
 /// value at theta = pi/2, x = 1/2, and half of it at x = 3/4.
-/// @throws std::domain_error for x >= 1
+/// @throws std::domain_error for x above k_widest
 [[nodiscard]] double radius_influence(RadiusRule rule, double poisson_ratio, double theta, double x);
 
 /// The same of one contact for many others: what does not depend on their angles is computed once.
 class RadiusInfluence {
  public:
-  /// @throws std::domain_error for x >= 1
+  /// @throws std::domain_error for x above k_widest
   RadiusInfluence(RadiusRule rule, double poisson_ratio, double x);
   [[nodiscard]] double operator()(double theta) const;
 

@@ -40,8 +40,11 @@ double integral(const auto& f, double end) {
 }  // namespace
 
 LocalLaw::LocalLaw(Terms terms) noexcept
-    : terms_(terms), end_(terms == Terms::all ? 1.0 : std::numeric_limits<double>::infinity()) {
-  if (terms == Terms::all) return;
+    : terms_(terms), end_(terms == Terms::all ? 1.0 : std::numeric_limits<double>::infinity()), greatest_force_(end_) {
+  if (terms == Terms::all) {
+    greatest_force_ = at(std::nextafter(end_, 0.0)).force;
+    return;
+  }
   const auto count = static_cast<std::size_t>(terms);
   for (std::size_t i = 0; i < count; ++i) {
     const double n = static_cast<double>(i + 1);
@@ -106,8 +109,13 @@ double LocalLaw::signed_square(double approach) const {
 double LocalLaw::signed_square_under(double force) const {
   if (!(force >= 0.0)) throw std::domain_error("a wall cannot pull: force over E* R^2 of " + std::to_string(force));
   if (force == 0.0) return 0.0;
+  if (force > greatest_force_) {
+    throw std::domain_error("contact radius of R or more under a force over E* R^2 of " + std::to_string(force));
+  }
   double bound = std::cbrt(0.75 * force);  // Hertz's contact radius; all further terms are positive
-  if (terms_ == Terms::all) bound = std::min(bound, std::tanh(1.0 + force));  // artanh(a) - 1 < F
+  if (terms_ == Terms::all) {
+    bound = std::min({bound, std::tanh(1.0 + force), std::nextafter(end_, 0.0)});  // artanh(a) - 1 < F
+  }
   const double a = descend(bound, [&](double radius) {
     const LocalContact contact = at(radius * radius);
     return (contact.force - force) / (4.0 * radius * radius * contact.approach_slope);

@@ -29,6 +29,9 @@ class LocalLaw {
 
   /// s has to stay below: 1 for `all` terms (the contact is as wide as the sphere), infinity otherwise.
   [[nodiscard]] double end() const noexcept { return end_; }
+  /// Largest force over E* R^2 under which s is below its end in double precision: above 17 for `all` terms, infinite
+  /// otherwise.
+  [[nodiscard]] double greatest_force() const noexcept { return greatest_force_; }
 
   /// Eqs. 25, 27, 29, 31, 33, 35. For s <= 0: g = s without force. Once continuously differentiable in s.
   /// @throws std::domain_error unless s is below end()
@@ -57,6 +60,7 @@ class LocalLaw {
 
   Terms terms_;
   double end_;
+  double greatest_force_;
   std::array<double, 4> approach_{};  ///< coefficients of g/s in s
   std::array<double, 4> slope_{};     ///< of dg/ds
   std::array<double, 4> force_{};     ///< of F/a^3

@@ -27,9 +27,13 @@ constexpr double k_opposite = 1e-9;
 // Angles that are the same but for rounding.
 constexpr double k_same_angle = 1e-9;
 // How far ahead the side of a wall is read that just touches; ten times further where it still does.
-constexpr double k_ahead = 1e-6;
+constexpr double k_ahead = 1e-9;
 // Distance over the program's reach that a surface moves by rounding alone: less is neither touch nor gap.
 constexpr double k_touch = 1e-13;
+// The same over the deepest contact where forces balance: s goes like their rounding to the power 2/3.
+constexpr double k_touch_of_free_centre = 1e-9;
+// Contacts shallower than this, over the deepest, hold a free centre too softly for an integrator.
+constexpr double k_idle = 1e-6;
 constexpr double k_force_power = 1.5;
 // How fast an integrated state is drawn back to the equations, over a step of the program: an error that it has
 // gathered would grow with 1/margin towards the limit of applicability.
@@ -47,10 +51,15 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   double reach = settings_.largest_displacement / length;
   if (settings_.largest_force > 0.0) {
     const double force = settings_.largest_force / (settings_.youngs_modulus * length * length);
-    reach = std::max(reach, contacts_.law().signed_square_under(force / contacts_.composite_modulus()));
+    const double bearable = std::min(force / contacts_.composite_modulus(), contacts_.law().greatest_force());
+    reach = std::max(reach, contacts_.law().signed_square_under(bearable));
   }
+  for (const ContactClass& c : classes_) reach = std::max(reach, c.gap / length);
   if (!(reach > 0.0)) reach = 1.0;
-  touch_ = k_touch * reach;
+  // A program that a condition ends may ask for any displacement.
+  const double depth = std::min(reach, 1.0);
+  touch_ = settings.centre == Centre::free ? k_touch_of_free_centre * depth : k_touch * reach;
+  idle_ = k_idle * depth;
   for (const ContactClass& c : classes_) {
     unknowns_.push_back(
         {c.name, Unknown::Kind::differential, c.takes_force ? std::pow(reach, k_force_power) : reach, true});
@@ -127,6 +136,47 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   settle(0.0, log);
   has_begun_ = true;
   watch();
+  if (const auto end = limit_at_start(y)) throw CannotBegin(*end);
+}
+
+/// The limit at which the step that has begun stands already, if it leads beyond: its guard would not cross zero.
+std::optional<DomainEnd> System::limit_at_start(std::span<const double> y) {
+  for (const Guard& guard : guards_) {
+    if (guard.kind < k_radius) continue;
+    look_closely(0.0, y);
+    const double now = limit_value(guard, 0.0);
+    if (now > 0.0) continue;
+    std::vector<double> ahead(y.begin(), y.end());
+    try {
+      solve(k_ahead, ahead);
+    } catch (const std::domain_error&) {
+      return end_at(guard, 0.0, y);
+    }
+    look_closely(k_ahead, ahead);
+    if (limit_value(guard, k_ahead) < now) return end_at(guard, 0.0, y);
+  }
+  return std::nullopt;
+}
+
+/// How far the state that look_closely() found is from a limit; negative beyond it.
+double System::limit_value(const Guard& guard, double xi) {
+  const auto index = static_cast<std::size_t>(std::max(0, guard.index));
+  if (guard.kind == k_radius) return 1.0 - now_[index].contact_radius;
+  if (guard.kind == k_centre) return 1.0 - depth(index, xi);
+  return contacts_.least_pivot(state_) - k_least_pivot;
+}
+
+/// What a limit's guard says.
+DomainEnd System::end_at(const Guard& guard, double xi, std::span<const double> y) {
+  const Event event{guard.name, guard.index};
+  if (guard.kind == k_radius) return {event, {"a contact is as wide as the particle", "contact radius/R0", 1.0}};
+  if (guard.kind == k_centre) return {event, {"a wall has reached the centre of the particle", "displacement/R0", 1.0}};
+  look_closely(xi, y);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < classes_.size(); ++i) largest = std::max(largest, depth(i, xi));
+  return {event,
+          {"limit of applicability: the stiffness becomes infinite and the path would turn back",
+           "largest displacement/R0", largest}};
 }
 
 double System::told(std::size_t i, double xi) const noexcept { return std::lerp(ramps_[i].start, ramps_[i].end, xi); }
@@ -158,8 +208,15 @@ void System::note(std::span<double> y) const {
 }
 
 void System::complete(double xi, std::span<double> y) {
+  const bool bears_nothing = std::ranges::all_of(regimes_, [](Regime regime) { return regime == Regime::open; });
   for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (is_loaded(i)) y[i] = std::pow(square_under_force(i, xi), k_force_power);
+    if (is_loaded(i)) {
+      y[i] = std::pow(square_under_force(i, xi), k_force_power);
+    } else if (bears_nothing) {
+      // The gap itself: errors of it would close walls that only touch.
+      const double approach = told(i, xi) + shift(i, y);
+      if (approach <= 0.0) y[i] = approach;
+    }
   }
 }
 
@@ -289,9 +346,14 @@ void System::watch() {
 
 /// How far a wall has come towards the centre, wherever that is.
 double System::depth(std::size_t i, double xi) {
-  double sum = is_loaded(i) ? now_[i].displacement : told(i, xi);
+  return (is_loaded(i) ? now_[i].displacement : told(i, xi)) + shift(i, state_);
+}
+
+/// What the displacement of the centre adds to that.
+double System::shift(std::size_t i, std::span<const double> y) const noexcept {
+  double sum = 0.0;
   for (std::size_t k = 0; k < contacts_.free_count(); ++k) {
-    sum += arms_[i][static_cast<Eigen::Index>(k)] * state_[classes_.size() + k];
+    sum += arms_[i][static_cast<Eigen::Index>(k)] * y[classes_.size() + k];
   }
   return sum;
 }
@@ -326,14 +388,8 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
       case k_stiffening:
         values[g] = contacts_.least_pivot(state_, k_stiff_margin);  // zero where the margin is that
         break;
-      case k_radius:
-        values[g] = 1.0 - now_[index].contact_radius;
-        break;
-      case k_centre:
-        values[g] = 1.0 - depth(index, xi);
-        break;
       default:
-        values[g] = contacts_.least_pivot(state_) - k_least_pivot;
+        values[g] = limit_value(guards_[g], xi);
         break;
     }
   }
@@ -364,20 +420,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
       case k_stiffening:
         has_stiffened_ = true;
         break;
-      case k_radius:
-        end = DomainEnd{event, {"a contact is as wide as the particle", "contact radius/R0", 1.0}};
-        break;
-      case k_centre:
-        end = DomainEnd{event, {"a wall has reached the centre of the particle", "displacement/R0", 1.0}};
-        break;
       default:
-        end = DomainEnd{event,
-                        {"limit of applicability: the stiffness becomes infinite and the path would turn back",
-                         "largest displacement/R0", [&] {
-                           double largest = 0.0;
-                           for (std::size_t i = 0; i < classes_.size(); ++i) largest = std::max(largest, depth(i, xi));
-                           return largest;
-                         }()}};
+        end = end_at(guard, xi, y);
         break;
     }
     log.push_back(event);
@@ -410,7 +454,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
     *out++ = a * length;
     *out++ = a > 0.0 ? c.force / (pi * a * a) * settings_.youngs_modulus : 0.0;
     *out++ = static_cast<double>(regimes_[i]);
-    *out++ = a < 1.0 || settings_.radius_rule == RadiusRule::none
+    *out++ = a <= k_widest || settings_.radius_rule == RadiusRule::none
                  ? contacts_.deformed_radius(settings_.radius_rule, i, state_) * length
                  : std::nan("");
   }
@@ -472,6 +516,12 @@ std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::spa
 
 bool System::is_open(int contact_class) const noexcept {
   return regimes_[static_cast<std::size_t>(contact_class)] == Regime::open;
+}
+
+std::string_view System::difficulty(double xi, std::span<const double> y) {
+  if (contacts_.free_count() == 0 || !contacts_.is_held_softly(look(xi, y), idle_)) return {};
+  return "the balance of the free centre is singular, because contacts that only touch keep it from moving; expected "
+         "integrator = \"direct\"";
 }
 
 std::vector<Finding> System::warnings() const {

@@ -10,6 +10,8 @@
 /// R0^2. Source: 003_97bacd62ecebe201.txt.
 #pragma once
 
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "elastic/nonlocal_contacts.hpp"
@@ -55,6 +57,7 @@ class System final : public HybridSystem {
   [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
+  [[nodiscard]] std::string_view difficulty(double xi, std::span<const double> y) override;
 
  private:
   enum class Regime { open, elastic };
@@ -73,6 +76,10 @@ class System final : public HybridSystem {
   void look_closely(double xi, std::span<const double> y);
   void note(std::span<double> y) const;
   [[nodiscard]] double depth(std::size_t i, double xi);
+  [[nodiscard]] double shift(std::size_t i, std::span<const double> y) const noexcept;
+  [[nodiscard]] std::optional<DomainEnd> limit_at_start(std::span<const double> y);
+  [[nodiscard]] double limit_value(const Guard& guard, double xi);
+  [[nodiscard]] DomainEnd end_at(const Guard& guard, double xi, std::span<const double> y);
   [[nodiscard]] double edge_angle(const Pair& pair, double xi);
   [[nodiscard]] double square_ahead(std::size_t i, double xi);
   void settle(double xi, std::vector<Event>& log);
@@ -91,6 +98,7 @@ class System final : public HybridSystem {
   std::vector<Ramp> ramps_;  ///< displacements over R0, forces over E R0^2
   std::vector<Regime> regimes_;
   double touch_ = 0.0;  ///< least |s| that puts a contact on a side
+  double idle_ = 0.0;   ///< least s that lets a contact hold a free centre
   bool has_begun_ = false;
   bool has_stiffened_ = false;
   double least_margin_ = 1.0;

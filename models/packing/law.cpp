@@ -197,8 +197,12 @@ State state(const Law& law, double phi) {
 
 double total_stress(const Law& law, double phi, double stress_elastic) noexcept {
   if (!law.given.plasticity) return stress_elastic;
-  const double share = plastic_fraction(law, phi);
-  return stress_elastic * (1.0 - share * (1.0 - law.hardening_share)) + share * law.given.plasticity->yield_stress;
+  return stress_elastic * total_stress_slope(law, phi) +
+         plastic_fraction(law, phi) * law.given.plasticity->yield_stress;
+}
+
+double total_stress_slope(const Law& law, double phi) noexcept {
+  return 1.0 - plastic_fraction(law, phi) * (1.0 - law.hardening_share);
 }
 
 Slopes slopes(const Law& law, double phi, double strain) {
@@ -218,8 +222,9 @@ Slopes slopes(const Law& law, double phi, double strain) {
   const double growth = law.given.plasticity && share < 1.0 ? law.given.plastic_growth / phi : 0.0;
   const double yield_stress = law.given.plasticity ? law.given.plasticity->yield_stress : 0.0;
   const double by_growth = growth * (yield_stress - softness * m.value * strain);
-  result.stress = result.stress_elastic * (1.0 - share * softness) + by_growth;
-  result.at_given_particles = without_particles * (1.0 - share * softness) + by_growth;
+  const double by_elastic = total_stress_slope(law, phi);
+  result.stress = result.stress_elastic * by_elastic + by_growth;
+  result.at_given_particles = without_particles * by_elastic + by_growth;
   return result;
 }
 

@@ -100,6 +100,9 @@ struct State {
 /// sigma for a given sigma_e (eq. 10) [Pa].
 [[nodiscard]] double total_stress(const Law& law, double packing_fraction, double stress_elastic) noexcept;
 
+/// d sigma/d sigma_e at a given packing fraction.
+[[nodiscard]] double total_stress_slope(const Law& law, double packing_fraction) noexcept;
+
 /// Derivatives with respect to Phi of a jammed packing.
 struct Slopes {
   double strain = 0.0;

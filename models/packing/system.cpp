@@ -16,8 +16,15 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr int k_iterations = 60;
 constexpr double k_resolution = 1e-14;  // of the last step but one of an iteration that doubles its digits
 constexpr double k_noise = 1e-11;       // steps below it may be rounding
-constexpr double k_start = 1e-6;        // share of Phi up to which the start is closed
-constexpr double k_margin = 1e-6;       // share of what is prescribed by which a run ends before the branch does
+// The start is closed over this share of Phi, and of the first half of what is prescribed: of more, where that has its
+// least value there, about which Phi goes like the root of an error.
+constexpr double k_start = 1e-6;
+constexpr double k_start_of_fold = 1e-3;
+constexpr double k_margin = 1e-6;  // share of what is prescribed by which a run ends before the branch does
+// Distance of Phi from a pole at which every branch ends: nearer to it strains and rates are made of rounding.
+constexpr double k_margin_of_pole = 1e-7;
+// Share of what is prescribed that is rounding.
+constexpr double k_same = 1e-12;
 
 // Places of the unknowns.
 constexpr std::size_t k_particles = 0;
@@ -48,9 +55,16 @@ double particle_strain(const Law& law, double packing_fraction) {
 double typical_particle_strain(const Law& law) { return particle_strain(law, std::midpoint(law.jamming, law.end)); }
 
 Branch branch_of(const Law& law, Control control) {
-  if (control == Control::strain) return growing_branch(law, Measure::strain);
-  if (control == Control::stress) return growing_branch(law, Measure::stress);
-  return {.measure = Measure::strain, .begin = law.jamming, .end = law.end, .least = law.jamming, .greatest = law.end};
+  const double last = law.end < 1.0 ? std::max(law.jamming, law.end - k_margin_of_pole) : 1.0;
+  if (control == Control::packing_fraction) {
+    return {.measure = Measure::strain, .begin = law.jamming, .end = last, .least = law.jamming, .greatest = last};
+  }
+  Branch branch = growing_branch(law, control == Control::strain ? Measure::strain : Measure::stress);
+  if (branch.end > last) {
+    branch.end = std::max(branch.begin, last);
+    branch.greatest = measured(law, branch.measure, branch.end);
+  }
+  return branch;
 }
 
 }  // namespace
@@ -61,7 +75,7 @@ System::System(const Law& law, double initial_packing_fraction)
       at_jamming_(state(law, law.jamming)),
       softening_(softening(law)),
       unknowns_{Unknown{"particle_strain", Unknown::Kind::differential, typical_particle_strain(law), false, false},
-                Unknown{"packing_fraction", Unknown::Kind::algebraic, 1.0, true, false}},
+                Unknown{"packing_fraction", Unknown::Kind::differential, 1.0, true, false}},
       observables_{{"packing_fraction", "-", {}},
                    {"strain", "-", {}},
                    {"stress", "Pa", {}},
@@ -71,9 +85,9 @@ System::System(const Law& law, double initial_packing_fraction)
                    {"regime", "", regime_words()}} {}
 
 void System::start(std::span<double> y) {
-  mode_ = Mode::unjammed;
   at_rest_ = initial_;
   is_jammed_ = initial_ > law_.jamming;
+  mode_ = is_jammed_ ? Mode::jammed : Mode::unjammed;
   is_softer_ = is_jammed_ && initial_ >= softening_;
   is_fully_plastic_ = std::max(initial_, law_.jamming) >= full_plasticity(law_);
   y[k_fraction] = initial_;
@@ -97,7 +111,10 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   ramp_ = ramps[0];
   if (is_other) take_branch();
   if (law_.given.plasticity && direction() < 0) {
-    throw std::domain_error("a packing of plastic particles is unloaded, for which there is no law");
+    if (ramp_.start - ramp_.end > k_same * ramp_.start) {
+      throw std::domain_error("a packing of plastic particles is unloaded, for which there is no law");
+    }
+    ramp_.end = ramp_.start;
   }
   if (is_jammed_ && direction() > 0 && y[k_fraction] >= 1.0) throw std::domain_error("no pores are left");
   // Another control may find the packing where what it prescribes falls as the packing is compacted.
@@ -107,17 +124,42 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   if (!is_jammed_) at_rest_ = y[k_fraction];
   const Mode before = mode_;
   settle(0.0, log);
+  if (is_at_limit(0.0)) throw CannotBegin(limit());
   // An integrated state goes on; elsewhere the law says what it is: a packing that jams beyond its closed start, too.
   if (mode_ == before)
     complete(0.0, y);
   else
     solve(0.0, y);
   watch(0.0);
+  resting_ = y[k_fraction];
 }
 
 void System::take_branch() {
   branch_ = branch_of(law_, ramp_.control);
   start_end_ = std::max(law_.jamming, branch_.begin) * (1.0 + k_start);
+  if (ramp_.control == Control::packing_fraction) return;
+  const double share = branch_.begin > law_.jamming ? k_start_of_fold : k_start;
+  const double half = prescribed_at(std::midpoint(branch_.begin, branch_.end));
+  const double end = std::clamp(std::lerp(branch_.least, half, share), branch_.least, branch_.greatest);
+  start_end_ = std::max(start_end_, packing_fraction_at(law_, branch_, end));
+}
+
+/// What is prescribed where a run ends before a branch does that ends before the packing is full: at the end itself the
+/// rates are infinite.
+double System::last_place() const noexcept { return branch_.greatest - k_margin * (branch_.greatest - branch_.least); }
+
+/// Whether a program that goes on is there already.
+bool System::is_at_limit(double xi) const noexcept {
+  return is_jammed_ && branch_.end < 1.0 && direction() > 0 && told(xi) >= last_place();
+}
+
+DomainEnd System::limit() const {
+  return {{"limit"}, {end_of_branch(ramp_.control), "greatest value", branch_.greatest}};
+}
+
+/// Beyond a greatest strain or stress there is no state, but rates of neighbouring ones that look as if there were.
+void System::require_state(double xi) const {
+  if (branch_.end < 1.0 && told(xi) > branch_.greatest) throw std::domain_error(end_of_branch(ramp_.control));
 }
 
 /// Mode at the start of a step.
@@ -179,8 +221,8 @@ System::Seen System::seen(double xi, std::span<const double> y) const {
   return {phi, stress_elastic, strain, total_stress(law_, phi, stress_elastic)};
 }
 
-/// How far a jammed packing is from what is prescribed. A trial may go beyond the stress that the branch ends with,
-/// where a guard ends it.
+/// How far a jammed packing is from what is prescribed. A trial may go beyond the stress of a full packing, where a
+/// guard ends it.
 double System::excess(double xi, std::span<const double> y) const {
   const double phi = y[k_fraction];
   if (ramp_.control == Control::packing_fraction) return phi - told(xi);
@@ -191,6 +233,7 @@ double System::excess(double xi, std::span<const double> y) const {
 
 void System::complete(double xi, std::span<double> y) {
   if (mode_ != Mode::jammed) return solve(xi, y);
+  require_state(xi);
   if (ramp_.control == Control::packing_fraction) {
     y[k_fraction] = told(xi);
     return;
@@ -199,27 +242,28 @@ void System::complete(double xi, std::span<double> y) {
     y[k_fraction] = law_.zero_stress * std::exp(told(xi) + law_.sign * y[k_particles]);
     return;
   }
-  // Newton's method from the present value, between bounds: the stress has a kink where the plastic fraction reaches 1.
+  // By the shortest way: where the particles give way with the packing (consistent coupling), the packing fraction at a
+  // given strain of theirs has a greatest stress before the packing has.
   const double guess = y[k_fraction];
-  double lower = law_.jamming * (1.0 + 0.5 * k_start);
-  double upper = branch_.end + k_margin;
-  double trial = std::clamp(guess, lower, upper);
-  double last = upper - lower;
+  const double scale = unknowns_[k_particles].scale;
+  const double least = law_.jamming * (1.0 + 0.5 * k_start);
+  double last = 1.0;
   for (int k = 0; k < k_iterations; ++k) {
-    y[k_fraction] = trial;
-    const double slope = slopes(law_, trial, strain_of(y)).at_given_particles / law_.given.youngs_modulus;
-    const double value = excess(xi, y);
-    (value > 0.0 ? upper : lower) = trial;
-    double next = trial - value / slope;
-    if (!(next >= lower && next <= upper)) next = std::midpoint(lower, upper);
-    const double step = std::abs(next - trial);
-    trial = next;
+    const bool is_least = y[k_fraction] <= least;  // the closed start lies below
+    if (is_least) y[k_fraction] = least;
+    const double phi = y[k_fraction];
+    const double by_fraction =
+        is_least ? 0.0 : slopes(law_, phi, strain_of(y)).at_given_particles / law_.given.youngs_modulus;
+    const double by_particles =
+        -law_.sign * total_stress_slope(law_, phi) * effective_modulus(law_, phi) / law_.given.youngs_modulus * scale;
+    const double share = -excess(xi, y) / (by_fraction * by_fraction + by_particles * by_particles);
+    y[k_fraction] += share * by_fraction;
+    y[k_particles] += share * by_particles * scale;
+    const double step = std::abs(share) * std::hypot(by_fraction, by_particles);
     // Corrections that no longer shrink are rounding.
     const bool is_rounding = step < k_noise && step > 0.5 * last;
     last = step;
-    if (step > k_resolution && !is_rounding) continue;
-    y[k_fraction] = trial;
-    return;
+    if (step <= k_resolution || is_rounding) return;
   }
   y[k_fraction] = guess;  // the next trial begins there
   throw std::domain_error("no packing fraction bears the stress");
@@ -231,9 +275,10 @@ void System::solve(double xi, std::span<double> y) {
   y[k_particles] = mode_ == Mode::unjammed ? 0.0 : particle_strain(law_, now.packing_fraction);
 }
 
-void System::all_rates(double /*xi*/, std::span<const double> y, std::span<double> dy) {
+void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
   dy[k_particles] = dy[k_fraction] = 0.0;
   if (mode_ != Mode::jammed || direction() == 0) return;
+  require_state(xi);
   const double phi = y[k_fraction];
   const Slopes s = slopes(law_, phi, strain_of(y));
   const double growth = ramp_.control == Control::strain ? s.strain : ramp_.control == Control::stress ? s.stress : 1.0;
@@ -242,20 +287,14 @@ void System::all_rates(double /*xi*/, std::span<const double> y, std::span<doubl
   dy[k_particles] = law_.sign * (1.0 / phi - s.strain) * dy[k_fraction];
 }
 
-void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
-  std::array<double, 2> all{};
-  all_rates(xi, y, all);
-  dy[k_particles] = all[k_particles];
-}
-
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
   res[k_particles] = dy[k_particles];
   if (mode_ != Mode::jammed) {
-    res[k_fraction] = y[k_fraction] - by_law(xi).packing_fraction;
+    res[k_fraction] = y[k_fraction] - resting_;
     return;
   }
   std::array<double, 2> all{};
-  all_rates(xi, y, all);
+  rates(xi, y, all);
   res[k_particles] -= all[k_particles];
   res[k_fraction] = excess(xi, y);
 }
@@ -309,8 +348,7 @@ void System::watch(double xi) {
   if (branch_.end == 1.0) {
     if (value < branch_.greatest) watch_place(k_full, "full", branch_.greatest);
   } else {
-    // The rates are infinite at the end itself.
-    watch_place(k_limit, "limit", branch_.greatest - k_margin * (branch_.greatest - branch_.least));
+    watch_place(k_limit, "limit", last_place());
   }
 }
 
@@ -353,11 +391,16 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         if (ramp_.end > places_[g]) end = DomainEnd{event, {"no pores are left", "packing fraction", 1.0}};
         break;
       default:
-        end = DomainEnd{event, {end_of_branch(ramp_.control), "greatest value", branch_.greatest}};
+        end = limit();
         break;
     }
   }
+  if (!end && is_at_limit(xi)) {  // it jams there
+    end = limit();
+    log.push_back(end->event);
+  }
   if (!end) watch(xi);
+  resting_ = y[k_fraction];
   return end;
 }
 

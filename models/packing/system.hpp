@@ -8,7 +8,8 @@
 ///   v' = s (1/Phi - d e/d Phi) Phi'     with e = ln Phi + c2 - s v; singular where the packing jams
 ///   0  = Phi, e or sigma less what is prescribed    gives Phi
 ///
-/// from a millionth of Phi_J above the singular point, where eq. 22 starts them. Under a prescribed stress the packing
+/// from a millionth of Phi_J above the singular point, where eq. 22 starts them; until there the integrated unknowns
+/// rest, and what is seen is the closed form. Under a prescribed stress the packing
 /// stays at jamming until that stress is reached with which its branch begins.
 ///
 /// A prescribed strain or stress that the packing cannot reach, or a packing fraction beyond its equations, ends the
@@ -39,7 +40,7 @@ class System final : public HybridSystem {
   void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override;
   void complete(double xi, std::span<double> y) override;
   void rates(double xi, std::span<const double> y, std::span<double> dy) override;
-  void all_rates(double xi, std::span<const double> y, std::span<double> dy) override;
+  void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
   void solve(double xi, std::span<double> y) override;
   [[nodiscard]] std::optional<double> closed_quadrature(double /*xi*/, std::span<const double> /*y*/) override {
@@ -82,6 +83,10 @@ class System final : public HybridSystem {
   [[nodiscard]] Regime regime() const noexcept;
 
   void take_branch();
+  [[nodiscard]] double last_place() const noexcept;
+  [[nodiscard]] bool is_at_limit(double xi) const noexcept;
+  [[nodiscard]] DomainEnd limit() const;
+  void require_state(double xi) const;
   void settle(double xi, std::vector<Event>& log);
   void set_mode(Mode mode, double xi, std::span<double> y);
   void watch(double xi);
@@ -98,6 +103,7 @@ class System final : public HybridSystem {
   Branch branch_;           ///< of what is prescribed
   double start_end_ = 0.0;  ///< Phi up to which the start is closed
   Mode mode_ = Mode::unjammed;
+  double resting_ = 0.0;  ///< integrated Phi outside of the mode in which it is integrated
   double at_rest_ = 0.0;  ///< Phi of an unjammed packing under no stress
   bool is_jammed_ = false;
   bool is_softer_ = false;

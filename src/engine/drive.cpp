@@ -110,6 +110,9 @@ class Drive {
     } catch (const SolverError& error) {
       result.status = RunStatus::failed;
       result.message = where(error.xi()) + error.what();
+      if (const std::string_view difficulty = difficulty_here(); !difficulty.empty()) {
+        result.message += fmt::format("; {}", difficulty);
+      }
       if (rtol_ && *rtol_ < k_surest_rtol) {
         result.message += fmt::format("; rtol = {:.3g} asks for errors of the size of rounding, expected {:g} or more",
                                       *rtol_, k_surest_rtol);
@@ -147,6 +150,14 @@ class Drive {
     }
     --step_;
     close_instant(step_start_, xi_, log);
+  }
+
+  [[nodiscard]] std::string_view difficulty_here() {
+    try {
+      return system_.difficulty(xi_, y_);
+    } catch (const std::domain_error&) {
+      return {};
+    }
   }
 
   [[nodiscard]] double time(double xi) const { return step_start_ + xi * plan_.duration; }

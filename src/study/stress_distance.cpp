@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace monograin {
@@ -70,6 +71,15 @@ double largest_of_kind(const Table& table, std::string_view kind) {
   return largest;
 }
 
+double deepest_overlap(const Table& table) {
+  double deepest = -std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    if (kind_of(table.columns()[c]) != "overlap") continue;
+    for (std::size_t row = 0; row < table.row_count(); ++row) deepest = std::max(deepest, table.at(row, c));
+  }
+  return deepest;
+}
+
 std::vector<std::size_t> output_rows(const Table& table) {
   std::vector<std::size_t> rows;
   const auto side = *table.find("row");
@@ -88,14 +98,16 @@ Distance distance_at(const Table& first, const Table& second,
     const double factor = factor_of(first.columns()[c].unit, larger);
     const double scale = std::max(scale_of(first, c), scale_of(second, c) / factor);
     if (scale == 0.0) continue;
-    const bool is_root = kind_of(first.columns()[c]).starts_with("contact_radius");
+    // The area of a contact is smooth at first touch, its root is not; nor is the margin, which is 1 less such roots.
+    const bool is_margin = first.columns()[c].name == "margin";
+    const bool is_root = is_margin || kind_of(first.columns()[c]).starts_with("contact_radius");
+    const double origin = is_margin ? 1.0 : 0.0;
     const double floor = nothing.share * factor_of(first.columns()[c].unit, nothing.unit);
     for (const auto& [a, b] : rows) {
-      const double x = first.at(a, c);
-      const double y = second.at(b, c) / factor;
+      const double x = first.at(a, c) - origin;
+      const double y = second.at(b, c) / factor - origin;
       if (std::isnan(x) && std::isnan(y)) continue;
       if (std::isnan(x - y)) return {x - y, first.columns()[c].name, first.at(a, 0)};
-      // The area of a contact is smooth at first touch, its root is not.
       const double value =
           is_root ? std::abs(x * x - y * y) / (scale * scale) : std::max(0.0, std::abs(x - y) - floor) / scale;
       if (value > worst.value) worst = {value, first.columns()[c].name, first.at(a, 0)};
@@ -105,12 +117,12 @@ Distance distance_at(const Table& first, const Table& second,
 }
 
 Distance distance_between(const Table& first, const Table& second, const Negligible& nothing,
-                          const Magnification& larger) {
+                          const Magnification& larger, double last) {
   const std::vector<std::size_t> a = output_rows(first);
   const std::vector<std::size_t> b = output_rows(second);
   const auto step = *first.find("step");
   std::vector<std::pair<std::size_t, std::size_t>> rows;
-  for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+  for (std::size_t i = 0, j = 0; i < a.size() && j < b.size() && first.at(a[i], 0) <= last;) {
     // A step that a condition ends may have a row more or less.
     const double of_a = first.at(a[i], step);
     const double of_b = second.at(b[j], step);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,6 +32,9 @@ struct Distance {
 /// Over all columns of that kind.
 [[nodiscard]] double largest_of_kind(const Table& table, std::string_view kind);
 
+/// Of all contacts; below zero, a gap, where none closes.
+[[nodiscard]] double deepest_overlap(const Table& table);
+
 /// Rows at output points of a history.
 [[nodiscard]] std::vector<std::size_t> output_rows(const Table& table);
 
@@ -47,8 +51,9 @@ struct Negligible {
                                    const std::vector<std::pair<std::size_t, std::size_t>>& rows,
                                    const Negligible& nothing = {}, const Magnification& larger = {});
 
-/// At the output points that both have.
+/// At the output points that both have, up to a time.
 [[nodiscard]] Distance distance_between(const Table& first, const Table& second, const Negligible& nothing = {},
-                                        const Magnification& larger = {});
+                                        const Magnification& larger = {},
+                                        double last = std::numeric_limits<double>::infinity());
 
 }  // namespace monograin

@@ -34,6 +34,8 @@ constexpr double k_tolerated_loss = 1e-6;
 constexpr std::size_t k_most_events_per_step = 200;
 constexpr std::string_view k_endless = "endless events";
 constexpr std::string_view k_chattering = "chattering";
+constexpr std::string_view k_stiff_material = "the bulk modulus is above 1e5 yield pressures";
+constexpr std::string_view k_singular_balance = "the balance of the free centre is singular";
 
 /// A limit of a model, as its messages name it.
 struct StatedLimit {
@@ -274,12 +276,6 @@ bool may_go_on(const Run& run) {
   return run.scenario.loading.centre_is_free && material(run.scenario, "surface_energy") > 0.0;
 }
 
-/// Whether a run by an integrator has not come away from where walls first touch a free centre.
-bool is_at_singular_touch(const Run& run) {
-  if (run.scenario.model != "nonlocal" || !run.scenario.loading.centre_is_free) return false;
-  return run.integrator.used != "direct" && largest_of_kind(run.record.history, "contact_radius") == 0.0;
-}
-
 void check_events(const Run& run, Violations& found) {
   std::map<double, std::size_t> counts;
   const Table& events = run.record.events;
@@ -405,7 +401,8 @@ double own_tolerance(const Run& run) {
   const Loading& loading = run.scenario.loading;
   std::size_t steps = loading.steps.size();
   for (const WallSpec& wall : loading.walls) steps = std::max(steps, wall.steps.size());
-  return std::max(k_rtol_multiple, k_rtol_multiple_of_step * static_cast<double>(steps)) * run.scenario.numerics.rtol;
+  return std::max(k_rtol_multiple, k_rtol_multiple_of_step * static_cast<double>(steps)) *
+         std::max(run.scenario.numerics.rtol, k_finest_rtol);
 }
 
 std::vector<Violation> check_run(const Run& run) {
@@ -425,18 +422,18 @@ std::vector<Violation> check_run(const Run& run) {
 
 std::string stated_end(const Run& run) {
   if (run.record.status == RunStatus::complete) return "complete";
+  const auto says = [&run](std::string_view words) { return run.record.message.find(words) != std::string::npos; };
   if (run.record.status == RunStatus::failed) {
-    const bool is_finest = run.record.message.find("errors of the size of rounding") != std::string::npos;
-    if (is_finest) return "tolerance of the size of rounding";
-    const bool is_stiff =
-        run.scenario.model == "material-point" && run.record.message.find("too much work") != std::string::npos;
-    if (is_stiff) return "too much work";
+    if (says("errors of the size of rounding")) return "tolerance of the size of rounding";
+    if (says(k_singular_balance)) return std::string(k_singular_balance);
+    if (run.scenario.model == "material-point" && says("too much work")) return "too much work";
+    if (says(k_stiff_material)) return std::string(k_stiff_material);
     for (const std::string_view words : {k_endless, k_chattering}) {
-      if (may_go_on(run) && run.record.message.find(words) != std::string::npos) return std::string(words);
+      if (may_go_on(run) && says(words)) return std::string(words);
     }
-    return is_at_singular_touch(run) ? "singular balance" : "";
+    return "";
   }
-  const auto names_it = [&](const StatedLimit& l) { return run.record.message.find(l.words) != std::string::npos; };
+  const auto names_it = [&](const StatedLimit& l) { return says(l.words); };
   const auto found = std::ranges::find_if(k_stated_limits, names_it);
   return found == std::end(k_stated_limits) ? std::string() : std::string(found->end);
 }

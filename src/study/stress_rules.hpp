@@ -10,6 +10,10 @@
 
 namespace monograin {
 
+/// Finer tolerances of an integrator are not kept: rounding of a scene's own equations may be larger (README,
+/// "Limits").
+inline constexpr double k_finest_rtol = 1e-11;
+
 /// A rule that is broken, with the numbers that show it.
 struct Violation {
   std::string check;

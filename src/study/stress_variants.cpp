@@ -207,8 +207,8 @@ std::optional<Scenario> forth_and_back(Scenario scenario) {
 
 Scenario changed(Scenario scenario, double share, std::uint64_t sample) {
   // In pairs to both sides: one side alone may be the harmless one.
-  const std::uint64_t pair = (sample + 1) / 2;
-  const double side = sample % 2 == 0 ? -share : share;
+  const std::uint64_t pair = sample / 2;
+  const double side = sample % 2 == 0 ? share : -share;
   Dice dice(pair);
   for (auto& [key, value] : scenario.material) {
     // Down, where there is an upper end of what is admissible.
@@ -218,7 +218,7 @@ Scenario changed(Scenario scenario, double share, std::uint64_t sample) {
   const double radius = scenario.radius;
   // Walls of one class stay so: what symmetry puts together rounding does not take apart. But a free centre is as
   // steady as the walls hold it on all sides, and errors know of no symmetry.
-  const bool is_skewed = scenario.loading.centre_is_free && sample % 2 == 0;
+  const bool is_skewed = scenario.loading.centre_is_free && sample % 4 < 2;
   for (WallSpec& wall : scenario.loading.walls) {
     wall.gap *= 1.0 + share;
     if (is_skewed) wall.gap += share * radius * dice.uniform(0.0, 1.0);

@@ -216,7 +216,9 @@ TEST(NonlocalRadius, IsContinuousByTheClosedForm) {
 TEST(NonlocalRadius, IsLeftAloneWithoutARule) { EXPECT_EQ(radius_influence(RadiusRule::none, 0.3, 1.0, 0.5), 0.0); }
 
 TEST(NonlocalRadius, EndsWhereTheContactIsAsWideAsTheSphere) {
-  for (const double x : {1.0, 1.2, std::nan("")}) {
+  EXPECT_NEAR(radius_influence(RadiusRule::closed, 0.3, 2.0, 1.0),
+              radius_influence(RadiusRule::closed, 0.3, 2.0, 1.0 - 1e-12), 1e-6);
+  for (const double x : {1.0 + 1e-9, 1.2, std::nan("")}) {
     for (const RadiusRule rule : {RadiusRule::closed, RadiusRule::integral, RadiusRule::projected, RadiusRule::none}) {
       EXPECT_TRUE(
           contains(refusal<std::domain_error>([&] { return radius_influence(rule, 0.3, 2.0, x); }), std::to_string(x)));
