@@ -197,14 +197,10 @@ bool System::approach_balance(double xi, std::span<double> y) {
   return false;
 }
 
-/// Directions in which no touching contact holds the centre: there it stays where it is.
-void System::hold_centre(std::span<const double> y) {
-  if (free_count_ == 0) return;
-  unheld_.setZero();
-  for (int k = 0; k < free_count_; ++k) {
-    held_centre_[k] = y[centre_place(k)];
-    unheld_(k, k) = 1.0;
-  }
+/// Projector on the directions in which no touching contact holds the centre.
+System::SmallMatrix System::unheld_directions() const {
+  SmallMatrix unheld = SmallMatrix::Zero();
+  for (int k = 0; k < free_count_; ++k) unheld(k, k) = 1.0;
   SmallMatrix reach = SmallMatrix::Zero();
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (touches(memory_[i].regime) && !is_loaded(i)) reach += directions_[i] * directions_[i].transpose();
@@ -213,8 +209,16 @@ void System::hold_centre(std::span<const double> y) {
   for (int k = 0; k < 3; ++k) {
     if (solver.eigenvalues()[k] <= 1e-12) continue;
     const Small direction = solver.eigenvectors().col(k);
-    unheld_ -= direction * direction.transpose();
+    unheld -= direction * direction.transpose();
   }
+  return unheld;
+}
+
+/// Where nothing holds the centre it stays where it is.
+void System::hold_centre(std::span<const double> y) {
+  if (free_count_ == 0) return;
+  for (int k = 0; k < free_count_; ++k) held_centre_[k] = y[centre_place(k)];
+  unheld_ = unheld_directions();
 }
 
 double System::balance_residual(double xi, std::span<const double> y) {

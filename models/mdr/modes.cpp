@@ -38,6 +38,8 @@ constexpr double k_at_rest = 1e-8;
 // With a free centre, contacts along its directions open and close together; their guards agree to the integration
 // error only.
 constexpr double k_together = 1e-6;
+// Share of the forces on a free centre that is rounding in their balance.
+constexpr double k_no_force = 1e-9;
 // A free centre that has gone this far (over R0) within an instant has sprung.
 constexpr double k_spring = 1e-9;
 // Growth ends where the free surface is used up to this share.
@@ -256,7 +258,8 @@ bool System::is_backed(std::size_t i) const {
   return false;
 }
 
-/// A wall that pushes a particle which nothing holds from the other side has no equilibrium.
+/// A wall that pushes a particle which nothing holds from the other side has no equilibrium, nor have forces that do
+/// not balance where no wall stands against them.
 /// @throws std::domain_error there
 void System::check_support() const {
   if (free_count_ == 0 || adheres()) return;
@@ -266,6 +269,21 @@ void System::check_support() const {
     if (pushes && directions_[i].norm() > k_no_direction && !is_backed(i)) {
       throw std::domain_error("no contact holds the free centre of the particle against a wall that pushes it");
     }
+  }
+  Small at_start = Small::Zero();
+  Small at_end = Small::Zero();
+  double largest = 0.0;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    if (!is_loaded(i) || !touches(memory_[i].regime)) continue;
+    const double count = classes_[i].multiplicity();
+    at_start += count * ramps_[i].start * directions_[i];
+    at_end += count * ramps_[i].end * directions_[i];
+    largest = std::max({largest, count * std::abs(ramps_[i].start), count * std::abs(ramps_[i].end)});
+  }
+  if (largest == 0.0) return;
+  const SmallMatrix unheld = unheld_directions();
+  if (std::max((unheld * at_start).norm(), (unheld * at_end).norm()) > k_no_force * largest) {
+    throw std::domain_error("no contact holds the free centre of the particle against the forces on it");
   }
 }
 

@@ -220,6 +220,7 @@ class System final : public HybridSystem {
   [[nodiscard]] std::size_t most_rounds() const noexcept { return 4 * memory_.size() + 8; }
   [[nodiscard]] bool wants_growth(double xi, std::span<double> y);
   [[nodiscard]] double growth_drive(const Motion& now) const noexcept;
+  [[nodiscard]] SmallMatrix unheld_directions() const;
   void hold_centre(std::span<const double> y);
   bool settle_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log,
                       std::vector<Event>& made);

@@ -200,6 +200,11 @@ std::vector<Objection> objections(const Given& given) {
     const Law law = make_law(parameters);
     const double initial = value("initial_packing_fraction").value_or(law.jamming);
     static_cast<void>(state(law, std::max(initial, law.jamming)));
+    if (initial >= law.end) {
+      found.push_back({"initial_packing_fraction", "the stress of the packing is infinite from packing fraction " +
+                                                       std::to_string(law.end) + " on; expected less"});
+      return found;
+    }
     if (parameters.plasticity) check_only_compaction(law, initial, given, found);
   } catch (const std::invalid_argument& error) {
     found.push_back({culprit(parameters), error.what()});

@@ -94,6 +94,13 @@ TEST(PackingRules, RefuseParametersThatMakeNoLaw) {
                    "them"}));
   EXPECT_EQ(faults("", "coupling = \"consistent\"\nc1 = 0.005").size(), 1U);
   EXPECT_TRUE(faults("", "continuous_jamming = true").empty());
+  // M_eff = c1 K Z Phi from jamming on.
+  EXPECT_EQ(faults("poisson_ratio = 0.3",
+                   "coupling = \"consistent\"\nalpha = 0.05\nc1 = 0.264253488151714\nc2 = 0.06939334461471039\n"
+                   "f_E = 0.5203164594300329\nf_G = 0.36755509385008156\njamming_fraction = 0.9485912087261479\n"
+                   "initial_packing_fraction = 0.958"),
+            (Lines{"die.toml:12:28: the stress of the packing is infinite from packing fraction 0.948591 on; expected "
+                   "less"}));
 }
 
 TEST(PackingRules, RefuseToUnloadPlasticParticles) {
