@@ -245,7 +245,8 @@ double most_fall_at_yield(const Scenario& scenario) {
                          material(scenario, "yield_stress"), pressure_curve_of(scenario));
   const double d = law.yield_overlap_ratio;
   double count = 0.0;
-  for (const ContactClass& c : make_scene(scenario).system->classes()) count += c.takes_force ? c.multiplicity() : 0;
+  const Scene scene = make_scene(scenario);
+  for (const ContactClass& c : scene.system->classes()) count += c.takes_force ? c.multiplicity() : 0;
   if (count == 0.0 || !std::isfinite(d)) return 0.0;
   const mdr::Contact before = mdr::elastic_contact(mdr::ElasticProfile::ellipse, law.composite_modulus, 1.0, d);
   const mdr::Contact after = mdr::plastic_contact(law, 1.0, d, mdr::yield_area_constant(d, 1.0));
