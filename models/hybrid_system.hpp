@@ -46,6 +46,8 @@ struct Guard {
   std::string_view name;  ///< of the event it stands for
   /// Changes the form of the equations and nothing that is seen: leaves no rows in the history.
   bool is_silent = false;
+  /// Depends on what the program tells alone: no error of an integrator moves it.
+  bool is_told = false;
 };
 
 /// A regime transition or other located instant.

@@ -320,7 +320,8 @@ void ContactSystem::turn_back(std::size_t i, double d, std::vector<Event>& log) 
 }
 
 void ContactSystem::add_guard(int kind, std::size_t i, int direction, std::string_view name, double place) {
-  guards_.push_back({kind, static_cast<int>(i), direction, name});
+  guards_.push_back(
+      {.kind = kind, .index = static_cast<int>(i), .direction = direction, .name = name, .is_told = !is_loaded(i)});
   guard_places_.push_back(place);
 }
 

@@ -421,7 +421,11 @@ void System::settle_lateral() {
 }
 
 void System::add_guard(int kind, std::size_t i, int direction, std::string_view name, double place) {
-  guards_.push_back({kind, static_cast<int>(i), direction, name});
+  guards_.push_back({.kind = kind,
+                     .index = static_cast<int>(i),
+                     .direction = direction,
+                     .name = name,
+                     .is_told = !is_loaded(is_lateral(i) ? first_primary_ : i)});
   guard_places_.push_back(place);
 }
 

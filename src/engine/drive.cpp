@@ -311,7 +311,9 @@ class Drive {
       if (std::ranges::find(fired, g) != fired.end()) continue;
       const double side = before[g] < 0.0 ? 1.0 : -1.0;
       const bool counts = watch_.directions()[g] == 0 || watch_.directions()[g] == static_cast<int>(side);
-      const bool has_arrived = side * now[g] >= -integrator_->guard_tolerance() && side * now[g] > side * before[g];
+      const bool is_told = g < watch_.system_guards() && system_.guards()[g].is_told;
+      const double tolerance = is_told ? k_round_off : integrator_->guard_tolerance();
+      const bool has_arrived = side * now[g] >= -tolerance && side * now[g] > side * before[g];
       if (counts && before[g] != 0.0 && has_arrived) fired.push_back(g);
     }
     std::ranges::sort(fired);
