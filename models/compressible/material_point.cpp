@@ -571,8 +571,7 @@ std::string_view MaterialPoint::difficulty(double xi, std::span<const double> y)
   const Properties at = response(xi, y).at;
   if (at.bulk_modulus.value < k_stiff * at.yield_pressure.value) return {};
   return "the bulk modulus is above 1e5 yield pressures, and stresses are what rounding leaves of the strains; "
-         "expected "
-         "integrator = \"cvode-bdf\"";
+         "expected integrator = \"cvode-bdf\"";
 }
 
 std::vector<Finding> MaterialPoint::warnings() const {

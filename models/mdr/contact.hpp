@@ -78,7 +78,8 @@ struct PlasticPressure {
 [[nodiscard]] double yield_area_constant(double yield_overlap_ratio, double radius) noexcept;
 
 /// Fully plastic contact at its largest overlap (eqs. 16, 21, 28, 36): F = pi p_Y (2 delta R - delta^2 + c), in
-/// trials also below zero, where there is no area. @param area_constant  c of yield_area_constant
+/// trials also below zero, where there is no area.
+/// @param area_constant  c of yield_area_constant
 /// @throws std::domain_error beyond the end of the material's own curve
 [[nodiscard]] Contact plastic_contact(const Material& material, double radius, double overlap, double area_constant);
 

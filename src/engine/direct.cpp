@@ -205,14 +205,14 @@ class Direct final : public EventLocator {
   double primitive_offset_ = 0.0;
   bool has_slaves_ = false;
   double segment_begin_ = 0.0;
-  int refusals_ = 0;            ///< of tiny pieces in this segment
-  double length_ = k_longest;   ///< of the next piece
-  double piece_end_ = 0.0;      ///< where the piece would end without an event
-  LegendreSeries work_;         ///< rate of the quadrature
-  std::size_t integrated_ = 0;  ///< unknowns that rates() knows: the first ones
-  std::vector<LegendreSamples> gains_,
-      slopes_;                          ///< at the nodes: what the unknowns have gained since the beginning, rates
-  std::vector<LegendreSeries> series_;  ///< of the gains
+  int refusals_ = 0;                     ///< of tiny pieces in this segment
+  double length_ = k_longest;            ///< of the next piece
+  double piece_end_ = 0.0;               ///< where the piece would end without an event
+  LegendreSeries work_;                  ///< rate of the quadrature
+  std::size_t integrated_ = 0;           ///< unknowns that rates() knows: the first ones
+  std::vector<LegendreSamples> gains_;   ///< at the nodes: what the unknowns have gained since the beginning
+  std::vector<LegendreSamples> slopes_;  ///< and the rates of the integrated ones
+  std::vector<LegendreSeries> series_;   ///< of the gains
   std::vector<double> trial_, rates_, begin_rates_;
   const LegendreNodes* nodes_ = nullptr;  ///< of the segment's pieces
 };

@@ -135,6 +135,7 @@ class ExplicitStepper final : public Stepper {
  public:
   static constexpr bool has_interpolation =
       std::is_same_v<Controlled, odeint::controlled_runge_kutta<odeint::runge_kutta_dopri5<State>>>;
+  static constexpr bool has_rule_errors = std::is_same_v<Controlled, Fehlberg<State>>;
 
   /// @param make  the controlled method, of its errors as a quadrature
   template <class Make>
@@ -162,10 +163,10 @@ class ExplicitStepper final : public Stepper {
     begin_ = end_;
     end_ = controlled_step(begin_, step_, rejections, [&](double& end, double& step) {
       if constexpr (has_interpolation) {
-        return controlled_.try_step(system(), old_, old_rates_, end, now_, now_rates_, step);
+        return controlled_.try_step(system<false>(), old_, old_rates_, end, now_, now_rates_, step);
       } else {
         rule_errors_.begin(1);
-        const auto result = controlled_.try_step(system(), old_, old_rates_, end, now_, step);
+        const auto result = controlled_.try_step(system<has_rule_errors>(), old_, old_rates_, end, now_, step);
         // A step that ends where the equations do not hold is none, however small its error.
         if (result == odeint::success) rates(now_, now_rates_, end);
         return result;
@@ -195,7 +196,7 @@ class ExplicitStepper final : public Stepper {
         if (tries == k_most_tries) throw SolverError("try_step", "a state in a step is not reached", at, step, {});
         step = std::min(step, xi - at);
         rule_errors_.begin(0);
-        static_cast<void>(reaching_.try_step(system(), between_, at, step));
+        static_cast<void>(reaching_.try_step(system<true>(), between_, at, step));
       }
     }
     std::copy_n(between_.begin(), z.size(), z.begin());
@@ -205,10 +206,11 @@ class ExplicitStepper final : public Stepper {
     form_.rates(xi, {z.data(), form_.size()}, {dz.data(), form_.size()});
     std::fill(dz.begin() + static_cast<std::ptrdiff_t>(form_.size()), dz.end(), 0.0);
   }
+  template <bool sees_rates>
   auto system() {
     return [this](const State& z, State& dz, double xi) {
       rates(z, dz, xi);
-      rule_errors_.see(dz);
+      if constexpr (sees_rates) rule_errors_.see(dz);
     };
   }
 
