@@ -192,17 +192,20 @@ template <class State>
 template <class State>
 [[nodiscard]] std::optional<double> approach_near(const State& state, double lower, double upper, double force,
                                                   double guess) {
-  if (!(guess > lower)) return std::nullopt;
-  double x = std::min(guess, upper);
-  for (int iteration = 0; iteration < 4; ++iteration) {
+  if (!(guess > 0.0)) return std::nullopt;
+  // A guess across a bound is as good as the bound: an event there is looked for from both sides.
+  double x = std::clamp(guess, lower, upper);
+  double last = 1.0;
+  for (int iteration = 0; x > 0.0 && iteration < 6; ++iteration) {
     const ContactState s = state(x);
     if (!(s.force > 0.0 && s.force_by_approach > 0.0)) return std::nullopt;
-    // Newton's method on the logarithms, of which the next step is round-off below 1e-8.
+    // Newton's method on the logarithms: the next step is that over the last one's square, times its own square.
     const double step = std::log(force / s.force) * s.force / (x * s.force_by_approach);
-    if (!(std::abs(step) < 0.5)) return std::nullopt;
-    x = std::min(x * std::exp(step), upper);
-    if (!(x > lower)) return std::nullopt;
-    if (std::abs(step) < 1e-8) return x;
+    if (!(std::abs(step) < 2.0)) return std::nullopt;
+    x = std::clamp(x * std::exp(step), lower, upper);
+    const double quadratic = std::max(1.0, std::abs(step) / (last * last));
+    if (quadratic * step * step < 1e-16) return x;
+    last = std::abs(step);
   }
   return std::nullopt;
 }

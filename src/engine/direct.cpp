@@ -26,8 +26,11 @@ constexpr int k_most_refusals = 200;
 constexpr double k_most_growth = 2.0;
 constexpr double k_most_shrinkage = 0.2;
 constexpr double k_safety = 0.85;
-// Share of the work that is round-off in it.
-constexpr double k_quadrature_accuracy = 1e-16;
+// What the series of a piece's work may leave out, over the work: the square of the tolerance, but no less than
+// rounding. Where the work has a singularity, as at a first touch, its error is up to a hundred times that.
+constexpr double k_rounding = 1e-16;
+// From which of that on few nodes are enough for it.
+constexpr double k_few_nodes_accuracy = 1e-7;
 // An event within this share of a piece may have all nodes beyond it. What the work up to it may be wrong by, as the
 // rates there and at the beginning show it; and how far beyond it the piece ends that is covered again.
 constexpr double k_deep_inside = 0.5;
@@ -38,7 +41,8 @@ constexpr double k_smallest_quadrature = 1e-6;
 
 class Direct final : public EventLocator {
  public:
-  Direct(HybridSystem& system, Watch& watch) : EventLocator(system, watch) {
+  Direct(HybridSystem& system, double rtol, Watch& watch)
+      : EventLocator(system, watch, k_most_nodes), work_accuracy_(std::max(k_rounding, rtol * rtol)) {
     const auto unknowns = system.unknowns();
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
     if (found != unknowns.end()) quadrature_ = static_cast<std::size_t>(found - unknowns.begin());
@@ -62,7 +66,7 @@ class Direct final : public EventLocator {
       is_closed_ = true;
       primitive_offset_ = y[*quadrature_] - *primitive;
     }
-    nodes_ = is_closed_ ? &LegendreNodes::few() : &LegendreNodes::many();
+    nodes_ = is_closed_ || work_accuracy_ >= k_few_nodes_accuracy ? &LegendreNodes::few() : &LegendreNodes::many();
     begin_segment(xi, y);
   }
 
@@ -146,7 +150,7 @@ class Direct final : public EventLocator {
       work_.fit(*nodes_, slopes_[*quadrature_]);
       const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
       const double length = piece_end_ - begin_;
-      const double reach = work_.reach(2.0 * k_quadrature_accuracy * scale / length);
+      const double reach = work_.reach(2.0 * work_accuracy_ * scale / length);
       factor = std::clamp(k_safety * reach, k_most_shrinkage, k_most_growth);
       if (reach < 1.0 && length > k_smallest_quadrature) return false;
     }
@@ -190,7 +194,7 @@ class Direct final : public EventLocator {
     const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
     const auto is_same = [&](double xi, std::span<const double> rates) {
       const double error = std::abs(work_.value(place(xi)) - rates[*quadrature_]);
-      return (end_ - begin_) * error <= k_event_accuracy * scale;
+      return (end_ - begin_) * error <= std::max(k_event_accuracy, work_accuracy_) * scale;
     };
     return is_same(begin_, begin_rates_) && is_same(end_, rates_);
   }
@@ -200,6 +204,7 @@ class Direct final : public EventLocator {
     return begin_state_[*quadrature_] + 0.5 * (piece_end_ - begin_) * work_.integral(place(xi));
   }
 
+  double work_accuracy_;
   std::optional<std::size_t> quadrature_;
   bool is_closed_ = false;
   double primitive_offset_ = 0.0;
@@ -219,8 +224,8 @@ class Direct final : public EventLocator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_direct(HybridSystem& system, Watch& watch) {
-  return std::make_unique<Direct>(system, watch);
+std::unique_ptr<Integrator> make_direct(HybridSystem& system, double rtol, Watch& watch) {
+  return std::make_unique<Direct>(system, rtol, watch);
 }
 
 }  // namespace monograin

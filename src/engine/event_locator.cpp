@@ -28,7 +28,8 @@ bool crosses(int direction, double before, double after) noexcept {
 
 }  // namespace
 
-EventLocator::EventLocator(HybridSystem& system, Watch& watch) : system_(system), watch_(watch) {
+EventLocator::EventLocator(HybridSystem& system, Watch& watch, std::size_t looks)
+    : system_(system), watch_(watch), looks_(looks) {
   for (auto* state : {&begin_state_, &end_state_, &guess_}) state->resize(system.unknowns().size());
 }
 

@@ -17,7 +17,8 @@ class EventLocator : public Integrator {
   [[nodiscard]] Statistics statistics() const override { return statistics_; }
 
  protected:
-  EventLocator(HybridSystem& system, Watch& watch);
+  /// @param looks  inside of a piece, that there is room for without an allocation
+  EventLocator(HybridSystem& system, Watch& watch, std::size_t looks = 0);
 
   /// Shorter pieces are not looked into: guards near zero are rounding there.
   static constexpr double k_smallest_looked_into = 1e-6;

@@ -63,7 +63,7 @@ std::span<const std::string_view> integrator_names() noexcept {
 std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
                                             const Tolerances& asked) {
   if (name == "direct" && !system.is_solvable()) throw std::logic_error("the system has no direct form");
-  if (name == "direct") return make_direct(system, watch);
+  if (name == "direct") return make_direct(system, asked.rtol, watch);
   if (name == "explicit") return make_fixed_step(system, watch, asked);
   const double gain = system.error_gain();
   const double rtol = asked.rtol / gain;

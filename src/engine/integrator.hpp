@@ -106,7 +106,7 @@ struct IntegratorChoice {
 [[nodiscard]] std::string sundials_version();
 
 // One adapter per library.
-[[nodiscard]] std::unique_ptr<Integrator> make_direct(HybridSystem& system, Watch& watch);
+[[nodiscard]] std::unique_ptr<Integrator> make_direct(HybridSystem& system, double rtol, Watch& watch);
 enum class OdeMethod { cvode_adams, cvode_bdf, arkode_erk, arkode_dirk };
 [[nodiscard]] std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, HybridSystem& system, Watch& watch,
                                                             const Tolerances& tolerances);

@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double k_tightest = 1e-13;  ///< of references
 constexpr std::size_t k_most_repeats = 200;
-constexpr std::size_t k_least_repeats = 3;
+constexpr int k_rounds = 5;         ///< in which the runs are made
 constexpr double k_too_long = 1.0;  ///< a run after which tighter tolerances are left out [s]
 constexpr int k_evaluations = 16;   ///< of the law at each output point, to time them
 
@@ -49,7 +49,7 @@ RunRecord run_once(const Scenario& scenario, const std::string& integrator, doub
 bool is_state(const Column& column) {
   return column.name.ends_with(".force") || column.name.ends_with(".displacement") ||
          column.name.starts_with("stress") || column.name.starts_with("strain") || column.name == "apparent_radius" ||
-         column.name == "packing_fraction";
+         column.name == "packing_fraction" || column.name == "work";
 }
 
 /// The output points of a history, by step of the program: rows around events stand elsewhere in another run.
@@ -151,7 +151,7 @@ class EvaluationTimer final : public HistorySink {
 
 double time_evaluation(const Scenario& scenario, const std::string& integrator) {
   double best = k_nan;
-  for (std::size_t i = 0; i < k_least_repeats; ++i) {
+  for (int i = 0; i < k_rounds; ++i) {
     Scene scene = make_scene(scenario);
     EvaluationTimer timer(*scene.system);
     const Tolerances tolerances{scenario.numerics.rtol, scenario.numerics.atol};
@@ -161,22 +161,50 @@ double time_evaluation(const Scenario& scenario, const std::string& integrator) 
   return best;
 }
 
+/// Runs of one thing, as long as they take together.
 struct Timing {
   double fastest = 0.0;
   double median = 0.0;
 };
 
-/// @param run  one run, and how long it took
-Timing repeat(double least_time, const std::function<double()>& run) {
-  std::vector<double> times{run()};
-  double total = times.front();
-  const std::size_t least = times.front() < least_time ? k_least_repeats : 1;
-  while (times.size() < k_most_repeats && (total < least_time || times.size() < least)) {
-    times.push_back(run());
-    total += times.back();
+/// What is timed, and how long its runs have taken.
+class Stopwatch {
+ public:
+  /// @param run  one run, and how long it took
+  explicit Stopwatch(std::function<double()> run) : run_(std::move(run)) {}
+
+  /// Runs it until its runs have taken so long together, or are enough, and at least once.
+  void run_for(double least_time) {
+    const std::size_t least = times_.empty() ? 1 : 0;
+    for (std::size_t i = 0; i < least || (times_.size() < k_most_repeats && total_ < least_time); ++i) {
+      times_.push_back(run_());
+      total_ += times_.back();
+    }
   }
-  std::ranges::sort(times);
-  return {times.front(), times[times.size() / 2]};
+
+  [[nodiscard]] Timing timing() const {
+    std::vector<double> times = times_;
+    std::ranges::sort(times);
+    return {times.front(), times[times.size() / 2]};
+  }
+
+ private:
+  std::function<double()> run_;
+  std::vector<double> times_;
+  double total_ = 0.0;
+};
+
+/// Things that are to be compared, all in turn: a machine that is slower for a while is so for all of them.
+void time_in_turn(std::vector<Stopwatch>& watches, double least_time) {
+  for (int round = 1; round <= k_rounds; ++round) {
+    for (Stopwatch& watch : watches) watch.run_for(least_time * round / k_rounds);
+  }
+}
+
+Timing time_alone(double least_time, std::function<double()> run) {
+  Stopwatch watch(std::move(run));
+  watch.run_for(least_time);
+  return watch.timing();
 }
 
 // --- a scene
@@ -196,18 +224,12 @@ std::pair<Standard, Standard> standards_of(const Scenario& scenario) {
   return {{first, run_once(scenario, first, k_tightest)}, {second, run_once(scenario, second, k_tightest)}};
 }
 
+/// All of a point but its times.
 BenchPoint measure_point(const Scenario& scenario, const std::string& name, const std::string& integrator, double rtol,
-                         const Standard& standard, const BenchSettings& settings) {
+                         const Standard& standard) {
   BenchPoint point{.integrator = name, .rtol = rtol, .statistics = {}, .fault = {}};
-  const RunRecord record = run_once(scenario, integrator, rtol);
+  const RunRecord record = run_once(scenario, integrator, rtol, &point.fastest);
   point.statistics = record.statistics;
-  const Timing timing = repeat(settings.least_time, [&] {
-    double seconds = 0.0;
-    static_cast<void>(run_once(scenario, integrator, rtol, &seconds));
-    return seconds;
-  });
-  point.fastest = timing.fastest;
-  point.median = timing.median;
   point.curve_error = point.end_error = point.event_error = k_nan;
   if (record.status != standard.record.status) {
     point.fault = record.message.empty() ? "does not end where the reference does" : record.message;
@@ -298,23 +320,34 @@ BenchScene measure_scene(const Scenario& scenario, const BenchSettings& settings
                     .points = {}};
   result.agreement = curve_error(first.record.history, second.record.history).whole;
   result.rows = first.record.history.row_count();
-  result.setup = repeat(settings.least_time, [&] {
+  result.setup = time_alone(settings.least_time, [&] {
                    const auto start = Clock::now();
                    static_cast<void>(make_scene(scenario));
                    return seconds_since(start);
                  }).fastest;
   const Scene scene = make_scene(scenario);
+  std::vector<Stopwatch> watches;
   for (const std::string& name : names) {
     for (const double rtol : tolerances) {
       const IntegratorChoice choice = choose_integrator(name, *scene.system);
       if (name == "auto") result.chosen = choice.used;
       if (choice.used == "direct" && !scene.system->is_solvable()) break;
       const Standard& standard = choice.used == first.integrator ? second : first;
-      result.points.push_back(measure_point(scenario, name, choice.used, rtol, standard, settings));
+      result.points.push_back(measure_point(scenario, name, choice.used, rtol, standard));
+      watches.emplace_back([&scenario, used = choice.used, rtol] {
+        double seconds = 0.0;
+        static_cast<void>(run_once(scenario, used, rtol, &seconds));
+        return seconds;
+      });
       if (shown) shown();
-      // Whatever the tolerance, it would be the same run.
-      if (choice.used == "direct" || result.points.back().fastest > k_too_long) break;
+      if (result.points.back().fastest > k_too_long) break;
     }
+  }
+  time_in_turn(watches, settings.least_time);
+  for (std::size_t i = 0; i < watches.size(); ++i) {
+    const Timing timing = watches[i].timing();
+    result.points[i].fastest = timing.fastest;
+    result.points[i].median = timing.median;
   }
   result.evaluation = time_evaluation(scenario, first.integrator);
   return result;
@@ -323,7 +356,7 @@ BenchScene measure_scene(const Scenario& scenario, const BenchSettings& settings
 BenchProfile profile_scene(const Scenario& scenario, const std::string& name) {
   const std::string integrator = choose_integrator(name, *make_scene(scenario).system).used;
   BenchProfile profile{.scene = scenario.name, .integrator = integrator};
-  profile.total = repeat(0.02, [&] {
+  profile.total = time_alone(0.02, [&] {
                     double seconds = 0.0;
                     static_cast<void>(run_once(scenario, integrator, scenario.numerics.rtol, &seconds));
                     return seconds;
@@ -365,7 +398,7 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings) {
     };
     double seconds = 0.0;
     RunRecord record = once(&seconds);
-    const Timing timing = repeat(settings.least_time, [&] {
+    const Timing timing = time_alone(settings.least_time, [&] {
       static_cast<void>(once(&seconds));
       return seconds;
     });

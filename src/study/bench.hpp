@@ -22,7 +22,8 @@ struct BenchSettings {
 struct BenchPoint {
   std::string integrator;
   double rtol = 0.0;
-  /// Forces, stresses and apparent radius, each over its largest value: the worst at any output point, and at the last.
+  /// Forces, stresses, apparent radius and work, each over its largest value: the worst at any output point, and at the
+  /// last.
   double curve_error = 0.0;
   double end_error = 0.0;
   double event_error = 0.0;  ///< of the events' times, over the whole time; nan where there are other events
