@@ -78,7 +78,15 @@ Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Ce
       influence(at(i), at(k)) = model.influence == Influence::sphere ? sphere_influence(poisson_ratio_, angle)
                                                                      : half_space_influence(poisson_ratio_, angle);
       if (influence(at(i), at(k)) < 0.0) has_modes_of_walls_ = true;
-      if (is_first) neighbours_[class_of[i]].push_back({class_of[k], angle});
+      if (!is_first) continue;
+      std::vector<Neighbour>& neighbours = neighbours_[class_of[i]];
+      const auto alike = std::ranges::find_if(neighbours, [&](const Neighbour& other) {
+        return other.contact_class == class_of[k] && std::abs(other.angle - angle) < k_same_surroundings;
+      });
+      if (alike != neighbours.end())
+        ++alike->count;
+      else
+        neighbours.push_back({class_of[k], angle, 1});
     }
   }
 
@@ -119,6 +127,7 @@ Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Ce
   for (auto* state : {&trial_, &state_, &unit_rates_}) state->resize(unknown_count());
   unit_ramps_.resize(n);
   modes_ = mode_coupling_;
+  stiffness_roots_.resize(n);
   eigenvalues_.compute(modes_, Eigen::EigenvaluesOnly);
 }
 
@@ -427,31 +436,38 @@ void Contacts::jacobian(std::span<const Ramp> ramps, std::span<const double> y, 
   }
 }
 
+/// I less shift, less the coupling between square roots of stiffnesses: its lower half. Its eigenvalues and pivots are
+/// those of the problem's own, unsymmetric matrix.
+void Contacts::set_modes(double shift) {
+  for (std::size_t j = 0; j < class_count(); ++j) stiffness_roots_[j] = std::sqrt(stiffness_[j]);
+  for (Eigen::Index k = 0; k < modes_.cols(); ++k) {
+    const double root = stiffness_roots_[mode_class_[in(k)]];
+    for (Eigen::Index i = k; i < modes_.rows(); ++i) {
+      modes_(i, k) = -mode_coupling_(i, k) * root * stiffness_roots_[mode_class_[in(i)]];
+    }
+    modes_(k, k) += 1.0 - shift;
+  }
+}
+
 double Contacts::margin(std::span<const double> y) {
   look(y);
-  for (Eigen::Index i = 0; i < modes_.rows(); ++i) {
-    for (Eigen::Index k = 0; k <= i; ++k) {
-      modes_(i, k) = -mode_coupling_(i, k) * std::sqrt(stiffness_[mode_class_[in(i)]] * stiffness_[mode_class_[in(k)]]);
-    }
-    modes_(i, i) += 1.0;
-  }
+  set_modes(0.0);
   return eigenvalues_.compute(modes_, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
 
 double Contacts::least_pivot(std::span<const double> y, double shift) {
   look(y);
+  set_modes(shift);
   const Eigen::Index count = modes_.rows();
-  for (Eigen::Index k = 0; k < count; ++k) {
-    modes_.col(k) = -stiffness_[mode_class_[in(k)]] * mode_coupling_.col(k);
-    modes_(k, k) += 1.0 - shift;
-  }
   double least = modes_(0, 0);
   for (Eigen::Index p = 0; p < count; ++p) {
-    least = std::min(least, modes_(p, p));
+    const double pivot = modes_(p, p);
+    least = std::min(least, pivot);
     if (!(least > 0.0)) break;
+    const double inverse = 1.0 / pivot;
     for (Eigen::Index c = p + 1; c < count; ++c) {
-      const double factor = modes_(p, c) / modes_(p, p);
-      for (Eigen::Index i = p + 1; i < count; ++i) modes_(i, c) -= factor * modes_(i, p);
+      const double factor = modes_(c, p) * inverse;
+      for (Eigen::Index i = c; i < count; ++i) modes_(i, c) -= factor * modes_(i, p);
     }
   }
   return least;
@@ -495,7 +511,7 @@ double Contacts::deformed_radius(RadiusRule rule, std::size_t index, std::span<c
   const RadiusInfluence influence(rule, poisson_ratio_, a);
   for (const Neighbour& neighbour : neighbours_[index]) {
     const double force = forces_[neighbour.contact_class];
-    if (force > 0.0) sum += force * influence(neighbour.angle);
+    if (force > 0.0) sum += neighbour.count * force * influence(neighbour.angle);
   }
   return sum;
 }

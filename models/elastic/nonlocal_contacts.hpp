@@ -130,6 +130,7 @@ class Contacts {
   [[nodiscard]] double lift(std::size_t index, std::span<const double> y) const noexcept;
   [[nodiscard]] double net_force(std::size_t direction) const noexcept;
   [[nodiscard]] bool eliminate() noexcept;
+  void set_modes(double shift);
   void regularise_first_touch(const auto& is_touching);
   void move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
   [[nodiscard]] bool newton(std::span<double> y, double imbalance);
@@ -151,6 +152,7 @@ class Contacts {
   struct Neighbour {
     std::size_t contact_class;
     double angle;
+    int count;  ///< of walls alike in both
   };
   std::vector<std::vector<Neighbour>> neighbours_;  ///< of the first wall of each class
 
@@ -170,6 +172,7 @@ class Contacts {
   std::vector<Ramp> unit_ramps_;
   Eigen::Vector3d imbalance_ = Eigen::Vector3d::Zero();
   Eigen::MatrixXd modes_;
+  std::vector<double> stiffness_roots_;
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigenvalues_;
 };
 

@@ -192,9 +192,6 @@ double radius_influence(RadiusRule rule, double poisson_ratio, double theta, dou
   return RadiusInfluence(rule, poisson_ratio, x)(theta);
 }
 
-double angle_between_edges(double theta, double radius, double displacement, double other_radius,
-                           double other_displacement) noexcept {
-  return theta - std::atan2(radius, 1.0 - displacement) - std::atan2(other_radius, 1.0 - other_displacement);
-}
+double edge_angle(double radius, double displacement) noexcept { return std::atan2(radius, 1.0 - displacement); }
 
 }  // namespace monograin::nonlocal

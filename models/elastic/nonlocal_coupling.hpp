@@ -71,10 +71,10 @@ class RadiusInfluence {
   double at_critical_angle_ = 0.0;
 };
 
-/// Angle left between the edges of two contacts (eq. 37); they impinge where it is zero.
+/// Angle at the centre between the middle of a contact and its edge. Two contacts impinge where theirs add up to the
+/// angle between their walls (eq. 37).
 /// @param radius        contact radius in the deformed configuration, over R
 /// @param displacement  of the wall towards the centre, over R, < 1
-[[nodiscard]] double angle_between_edges(double theta, double radius, double displacement, double other_radius,
-                                         double other_displacement) noexcept;
+[[nodiscard]] double edge_angle(double radius, double displacement) noexcept;
 
 }  // namespace monograin::nonlocal

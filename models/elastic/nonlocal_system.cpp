@@ -78,7 +78,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   rates_.resize(contacts_.unknown_count());
   all_rates_.resize(unknowns_.size());
   now_.resize(count);
-  deformed_radii_.resize(count);
+  edge_angles_.resize(count);
   for (const ContactClass& c : classes_) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& normal : c.normals) mean += normal / c.multiplicity();
@@ -358,21 +358,22 @@ double System::shift(std::size_t i, std::span<const double> y) const noexcept {
   return sum;
 }
 
-double System::edge_angle(const Pair& pair, double xi) {
+/// What is left of the angle between two walls outside of their contacts.
+double System::angle_between_edges(const Pair& pair, double xi) {
   // Each belongs to many pairs.
-  const auto radius = [&](std::size_t i) {
-    if (std::isnan(deformed_radii_[i])) {
-      deformed_radii_[i] = contacts_.deformed_radius(settings_.radius_rule, i, state_);
+  const auto edge = [&](std::size_t i) {
+    if (std::isnan(edge_angles_[i])) {
+      const double radius = contacts_.deformed_radius(settings_.radius_rule, i, state_);
+      edge_angles_[i] = edge_angle(radius, depth(i, xi));
     }
-    return deformed_radii_[i];
+    return edge_angles_[i];
   };
-  return angle_between_edges(pair.angle, radius(pair.first), depth(pair.first, xi), radius(pair.second),
-                             depth(pair.second, xi));
+  return pair.angle - edge(pair.first) - edge(pair.second);
 }
 
 void System::guard_values(double xi, std::span<const double> y, std::span<double> values) {
   look_closely(xi, y);
-  deformed_radii_.assign(classes_.size(), k_nan);
+  edge_angles_.assign(classes_.size(), k_nan);
   for (std::size_t g = 0; g < guards_.size(); ++g) {
     const auto index = static_cast<std::size_t>(std::max(0, guards_[g].index));
     switch (guards_[g].kind) {
@@ -383,7 +384,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = state_[index] + touch_;
         break;
       case k_impingement:
-        values[g] = edge_angle(pairs_[index], xi);
+        values[g] = angle_between_edges(pairs_[index], xi);
         break;
       case k_stiffening:
         values[g] = contacts_.least_pivot(state_, k_stiff_margin);  // zero where the margin is that

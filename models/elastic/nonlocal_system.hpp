@@ -80,7 +80,7 @@ class System final : public HybridSystem {
   [[nodiscard]] std::optional<DomainEnd> limit_at_start(std::span<const double> y);
   [[nodiscard]] double limit_value(const Guard& guard, double xi);
   [[nodiscard]] DomainEnd end_at(const Guard& guard, double xi, std::span<const double> y);
-  [[nodiscard]] double edge_angle(const Pair& pair, double xi);
+  [[nodiscard]] double angle_between_edges(const Pair& pair, double xi);
   [[nodiscard]] double square_ahead(std::size_t i, double xi);
   void settle(double xi, std::vector<Event>& log);
   void watch();
@@ -107,7 +107,7 @@ class System final : public HybridSystem {
   std::vector<double> state_, rates_;  ///< unknowns of contacts_
   std::vector<double> all_rates_;
   std::vector<ContactState> now_;
-  std::vector<double> deformed_radii_;  ///< as far as the guards have asked for them; nan: not yet
+  std::vector<double> edge_angles_;  ///< as far as the guards have asked for them; nan: not yet
   std::vector<Ramp> drawn_ramps_;
 };
 

@@ -230,9 +230,9 @@ TEST(NonlocalRadius, EndsWhereTheContactIsAsWideAsTheSphere) {
 
 TEST(NonlocalEdges, MeetWhereTheAnglesOfTheContactsAddUp) {
   // Two walls of a cube around the particle, with contacts up to the cube's edges.
-  EXPECT_NEAR(angle_between_edges(0.5 * pi, 0.8, 0.2, 0.8, 0.2), 0.0, 2 * k_epsilon);
-  EXPECT_GT(angle_between_edges(0.5 * pi, 0.79, 0.2, 0.8, 0.2), 0.0);
-  EXPECT_EQ(angle_between_edges(1.0, 0.0, 0.3, 0.0, -0.1), 1.0);
+  EXPECT_NEAR(edge_angle(0.8, 0.2), 0.25 * pi, k_epsilon);
+  EXPECT_LT(edge_angle(0.79, 0.2), 0.25 * pi);
+  EXPECT_EQ(edge_angle(0.0, 0.3), 0.0);
 }
 
 }  // namespace

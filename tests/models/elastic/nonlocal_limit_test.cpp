@@ -225,8 +225,10 @@ TEST(NonlocalEvents, AreThoseOfThirtyDigits) {
     const double angle = std::stod(word(row, "angle[deg]")) * k_degree;
     const double found = event_at(contacts, 0.01, upper, [&](const auto& y) {
       const auto states = states_of(contacts, y);
-      return angle_between_edges(angle, contacts.deformed_radius(rule, first, y), states[first].displacement,
-                                 contacts.deformed_radius(rule, second, y), states[second].displacement);
+      const auto edge = [&](std::size_t i) {
+        return edge_angle(contacts.deformed_radius(rule, i, y), states[i].displacement);
+      };
+      return angle - edge(first) - edge(second);
     });
     // Largest errors found: 5e-16, with eq. 8 2.5e-15.
     EXPECT_NEAR(found, expected[row], 1e-14) << configuration << ", " << pair << ", " << rule_name;
