@@ -24,6 +24,9 @@ constexpr double k_least_step = 1e-13;  // of the way to a state that is not fou
 constexpr int k_most_steps = 1000;      // on that way, tried ones included
 constexpr double k_same_surroundings = 1e-9;
 
+constexpr const char* k_nothing_holds =
+    "no contact holds the centre of the particle where the forces of the others drive it";
+
 std::size_t in(Eigen::Index index) noexcept { return static_cast<std::size_t>(index); }
 Eigen::Index at(std::size_t index) noexcept { return static_cast<Eigen::Index>(index); }
 
@@ -195,7 +198,8 @@ void Contacts::regularise_first_touch(const auto& is_touching) {
 
 /// Displaces the centre so that a net force vanishes to first order, and lets the approaches follow. Directions that no
 /// contact holds stay.
-void Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> centre) {
+/// @return what is left of the net force
+double Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> centre) {
   const std::size_t n = class_count();
   Eigen::Matrix3d hold = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < free_count(); ++k) {
@@ -208,15 +212,20 @@ void Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> c
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hold);
   const double least = 1e-12 * solver.eigenvalues().cwiseAbs().maxCoeff();
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
+  double left = 0.0;
   for (int k = 0; k < 3; ++k) {
-    if (std::abs(solver.eigenvalues()[k]) <= least) continue;
     const Eigen::Vector3d direction = solver.eigenvectors().col(k);
-    step -= direction * (direction.dot(net_force) / solver.eigenvalues()[k]);
+    const double along = direction.dot(net_force);
+    if (std::abs(solver.eigenvalues()[k]) <= least)
+      left = std::max(left, std::abs(along));
+    else
+      step -= direction * (along / solver.eigenvalues()[k]);
   }
   for (std::size_t k = 0; k < free_count(); ++k) {
     centre[k] += step[at(k)];
     for (std::size_t j = 0; j < n; ++j) entry(j, n) += entry(j, n + 1 + k) * step[at(k)];
   }
+  return left;
 }
 
 /// Newton's method towards the targets, with a part of the imbalance left. Gives up where its corrections do not
@@ -354,7 +363,7 @@ void Contacts::approach_in_steps(std::span<double> y) {
     // Short steps that succeed now and then do not arrive either.
     if (step > k_least_step && steps < k_most_steps) continue;
     if (is_on_branch) {
-      throw std::domain_error("no contact holds the centre of the particle where the forces of the others drive it");
+      throw std::domain_error(k_nothing_holds);
     }
     look(state_);
     const auto widest = std::max_element(
@@ -395,7 +404,18 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
         net[at(k)] += weights_[j] * arms_(at(j), at(k)) * (is_force(j) ? slope(j) : stiffness_[j] * entry(j, n));
       }
     }
-    move_centre(net, dy.subspan(n));
+    const double left = move_centre(net, dy.subspan(n));
+    double pressing = 0.0;
+    double widest = 0.0;
+    for (std::size_t j = 0; j < n; ++j) {
+      if (is_force(j)) pressing += weights_[j] * std::abs(slope(j));
+      widest = std::max(widest, std::abs(y[j]));
+    }
+    bool may_hold = false;  // walls that just touch do at once
+    for (std::size_t j = 0; j < n; ++j) {
+      may_hold = may_hold || (!is_force(j) && y[j] <= 0.0 && y[j] > -k_unloaded * widest);
+    }
+    if (left > k_balance * pressing && !may_hold) throw std::domain_error(k_nothing_holds);
   }
   for (std::size_t j = 0; j < n; ++j) {
     dy[j] = entry(j, n) / now_[j].approach_slope;
@@ -473,7 +493,7 @@ double Contacts::least_pivot(std::span<const double> y, double shift) {
   return least;
 }
 
-bool Contacts::is_held_softly(std::span<const double> y, double s) {
+bool Contacts::is_held_softly(std::span<const Ramp> ramps, std::span<const double> y, double s) {
   look(y);
   const Eigen::Index count = directions_.cols();
   Eigen::MatrixXd reach = Eigen::MatrixXd::Zero(count, count);
@@ -482,7 +502,8 @@ bool Contacts::is_held_softly(std::span<const double> y, double s) {
     if (y[j] < -s) continue;
     const Eigen::MatrixXd along = weights_[j] * arms_.row(at(j)).transpose() * arms_.row(at(j));
     reach += along;
-    if (y[j] > s) hold += along;
+    // A wall under a force follows the centre.
+    if (y[j] > s && ramps[j].control == Control::displacement) hold += along;
   }
   const auto rank = [](const Eigen::MatrixXd& matrix) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix, Eigen::EigenvaluesOnly);

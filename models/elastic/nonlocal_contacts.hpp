@@ -87,7 +87,8 @@ class Contacts {
   /// dy/dxi along a solution. Regular from the unloaded state on, but for a class under force control at s = 0, where
   /// its own s has an infinite rate; the other rates do not depend on that. A free centre leaves the unloaded state as
   /// if the contacts were equally stiff, which is exact where they will be.
-  /// @throws std::domain_error at and beyond the limit of applicability
+  /// @throws std::domain_error at and beyond the limit of applicability, and where nothing holds a free centre against
+  /// prescribed forces
   void rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy);
 
   /// What is left of the equations, one per unknown: that of the approach under displacement control, s_j - s(F_j)
@@ -103,8 +104,8 @@ class Contacts {
   /// goes smoothly through zero with it, and costs a tenth.
   [[nodiscard]] double least_pivot(std::span<const double> y, double shift = 0.0);
 
-  /// Whether a free centre moves in a direction in which touching contacts shallower than s hold it alone.
-  [[nodiscard]] bool is_held_softly(std::span<const double> y, double s);
+  /// Whether a free centre moves in a direction in which touching contacts shallower than s hold it alone, or none.
+  [[nodiscard]] bool is_held_softly(std::span<const Ramp> ramps, std::span<const double> y, double s);
 
   /// All contacts, one per class.
   void contacts(std::span<const double> y, std::span<ContactState> states);
@@ -132,7 +133,7 @@ class Contacts {
   [[nodiscard]] bool eliminate() noexcept;
   void set_modes(double shift);
   void regularise_first_touch(const auto& is_touching);
-  void move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
+  double move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
   [[nodiscard]] bool newton(std::span<double> y, double imbalance);
   [[nodiscard]] bool has_left_branch(std::span<const double> y);
   [[nodiscard]] bool is_balanced(std::span<const double> y);

@@ -520,9 +520,9 @@ bool System::is_open(int contact_class) const noexcept {
 }
 
 std::string_view System::difficulty(double xi, std::span<const double> y) {
-  if (contacts_.free_count() == 0 || !contacts_.is_held_softly(look(xi, y), idle_)) return {};
-  return "the balance of the free centre is singular, because contacts that only touch keep it from moving; expected "
-         "integrator = \"direct\"";
+  if (contacts_.free_count() == 0 || !contacts_.is_held_softly(ramps_, look(xi, y), idle_)) return {};
+  return "the balance of the free centre is singular, because nothing but contacts that only touch keeps it from "
+         "moving; expected integrator = \"direct\"";
 }
 
 std::vector<Finding> System::warnings() const {

@@ -60,6 +60,7 @@ System::System(Settings settings, std::vector<ContactClass> classes)
   const std::size_t count = classes_.size();
   memory_.resize(count);
   ramps_.resize(count);
+  directions_.resize(count);
   places_.resize(count);
   for (const ContactClass& c : classes_) is_lateral_.push_back(is_die(law) && std::abs(c.normals.front().z()) < 0.5);
   first_primary_ = static_cast<std::size_t>(std::ranges::find(is_lateral_, false) - is_lateral_.begin());
@@ -113,6 +114,7 @@ void System::start(std::span<double> y) {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const double gap = classes_[i].gap / settings_.initial_radius;
     ramps_[i] = {-gap, -gap, Control::displacement};
+    directions_[i] = 0;
     memory_[i].resting = -gap;
     if (classes_[i].takes_force) y[places_[i]] = coordinate(i, -gap);
   }
@@ -126,12 +128,13 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
     if (is_lateral(i)) continue;
     const double x = is_loaded(i) ? stood : ramps_[i].start;
+    directions_[i] = direction_of_ramp(i, x);
     if (touches(memory_[i].regime)) {
       // A wall that has only touched leaves no dent.
       const bool has_pressed = x > (is_loaded(i) ? 0.0 : k_least_depth);
       if (direction(i) < 0 && memory_[i].is_virgin && has_pressed) turn_back(i, x, log);
       // From there, and from where a force has ended at nothing.
-      const bool is_left = memory_[i].is_virgin ? !has_pressed : !is_loaded(i) && x <= origin(i);
+      const bool is_left = memory_[i].is_virgin ? !has_pressed : is_loaded(i) ? ramps_[i].start <= 0.0 : x <= origin(i);
       if (direction(i) < 0 && is_left) {
         lose_contact(i);
         log.push_back({"contact-lost", static_cast<int>(i)});
@@ -139,10 +142,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     } else {
       meet_walls(i, x, log);
     }
-    if (touches(memory_[i].regime) && is_reloaded(i, x)) {
-      resume_loading(i);
-      log.push_back({"reload", static_cast<int>(i)});
-    }
+    if (touches(memory_[i].regime) && is_reloaded(i, x)) resume_loading(i, x, log);
     const double now = touches(memory_[i].regime) ? std::max(x, origin(i)) : x;
     if (classes_[i].takes_force) y[places_[i]] = coordinate(i, is_loaded(i) ? now : x);
   }
@@ -151,17 +151,22 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   watch(0.0, y);
 }
 
-/// A ramp that rounding has left between two equal values goes nowhere.
-int System::direction(std::size_t i) const noexcept {
+/// A ramp that rounding has left between two equal values goes nowhere. A force under which a wall stands has the
+/// rounding of its place, too.
+int System::direction_of_ramp(std::size_t i, double x) const {
   const double way = ramps_[i].end - ramps_[i].start;
-  if (std::abs(way) <= k_rounding * std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end))) return 0;
+  double size = std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
+  if (is_loaded(i)) size = std::max(size, contact(i, x).stiffness * x);
+  if (std::abs(way) <= k_rounding * size) return 0;
   return way > 0.0 ? 1 : -1;
 }
 
 /// Whether a contact that comes in is at its largest displacement, or nearer to it than a ramp can tell.
-bool System::is_reloaded(std::size_t i, double x) const noexcept {
-  const double least = is_loaded(i) ? 0.0 : k_instant * (ramps_[i].end - ramps_[i].start);
-  return direction(i) > 0 && !memory_[i].is_virgin && x >= memory_[i].largest - least;
+bool System::is_reloaded(std::size_t i, double x) const {
+  const Memory& memory = memory_[i];
+  if (direction(i) <= 0 || memory.is_virgin) return false;
+  if (is_loaded(i)) return x >= memory.largest || told(i, k_instant) >= contact(i, memory.largest).force;
+  return x >= memory.largest - k_instant * (ramps_[i].end - ramps_[i].start);
 }
 
 /// Displacement or force as the program says.
@@ -392,10 +397,28 @@ void System::lose_contact(std::size_t i) {
   memory.regime = memory.regime == Regime::unloading ? Regime::separated : Regime::open;
 }
 
-void System::resume_loading(std::size_t i) {
+/// Loading goes on from the largest displacement - at x, a rounding error later, which may lie beyond what comes next.
+void System::resume_loading(std::size_t i, double x, std::vector<Event>& log) {
+  const auto pass = [&](const Boundaries& ends, std::size_t of_class) {
+    for (std::size_t& next = memory_[of_class].next; next < ends.size(); ++next) {
+      // The last end of a law is for its guard.
+      const bool is_last = &ends == &boundaries_ && ends[next].beyond == Regime::undefined;
+      if (is_last || x < ends[next].approach) return;
+      if (!ends[next].event.empty()) log.push_back({ends[next].event, static_cast<int>(of_class)});
+    }
+  };
   Memory& memory = memory_[i];
   memory.is_virgin = true;
+  log.push_back({"reload", static_cast<int>(i)});
+  pass(boundaries_, i);
   memory.regime = memory.next == 0 ? first_regime(settings_.law) : boundaries_[memory.next - 1].beyond;
+  if (impingement_ && !memory.has_impinged && x >= *impingement_) {
+    memory.has_impinged = true;
+    log.push_back({"impingement", static_cast<int>(i)});
+  }
+  for (std::size_t lateral = 0; i == first_primary_ && lateral < memory_.size(); ++lateral) {
+    if (is_lateral(lateral)) pass(lateral_boundaries_, lateral);
+  }
 }
 
 /// Elastic indenter that the contact would leave if it were unloaded from this displacement.
@@ -516,17 +539,14 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     double x = displacement(is_lateral(i) ? first_primary_ : i, xi, y);
     if (!is_lateral(i)) farthest_ = std::max(farthest_, x);
     const Event event{guard.name, guard.index};
-    if (!guard.name.empty()) log.push_back(event);
+    if (!guard.name.empty() && guard.kind != k_reload) log.push_back(event);
     switch (guard.kind) {
       case k_made:
         memory.regime = first_regime(settings_.law);
         break;
       case k_touched:
         memory.regime = Regime::unloading;
-        if (is_reloaded(i, x)) {
-          resume_loading(i);
-          log.push_back({"reload", guard.index});
-        }
+        if (is_reloaded(i, x)) resume_loading(i, x, log);
         break;
       case k_boundary:
         if (boundaries_[memory.next].beyond == Regime::undefined) {
@@ -542,7 +562,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         memory.has_impinged = true;
         break;
       case k_reload:
-        resume_loading(i);
+        resume_loading(i, x, log);
         break;
       case k_lost:
         x = origin(i);

@@ -102,8 +102,10 @@ class System final : public HybridSystem {
   /// Whether a class is that of the fixed walls of a die, whose contacts follow from the axial ones.
   [[nodiscard]] bool is_lateral(std::size_t i) const noexcept { return is_lateral_[i]; }
   [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return ramps_[i].control == Control::force; }
-  [[nodiscard]] int direction(std::size_t i) const noexcept;
-  [[nodiscard]] bool is_reloaded(std::size_t i, double x) const noexcept;
+  /// Of the present ramp: 1 inwards, -1 back, 0 nowhere.
+  [[nodiscard]] int direction(std::size_t i) const noexcept { return directions_[i]; }
+  [[nodiscard]] int direction_of_ramp(std::size_t i, double x) const;
+  [[nodiscard]] bool is_reloaded(std::size_t i, double x) const;
   [[nodiscard]] double told(std::size_t i, double xi) const noexcept;
   [[nodiscard]] bool is_on_indenter(std::size_t i) const noexcept;
   [[nodiscard]] double origin(std::size_t i) const noexcept;
@@ -126,7 +128,7 @@ class System final : public HybridSystem {
   void meet_walls(std::size_t i, double x, std::vector<Event>& log);
   void turn_back(std::size_t i, double x, std::vector<Event>& log);
   void lose_contact(std::size_t i);
-  void resume_loading(std::size_t i);
+  void resume_loading(std::size_t i, double x, std::vector<Event>& log);
   void settle_lateral();
   void watch(double xi, std::span<const double> y);
   void watch_primary(std::size_t i, double x, double target);
@@ -147,6 +149,7 @@ class System final : public HybridSystem {
   std::size_t work_place_ = 0;
 
   std::vector<Ramp> ramps_;  ///< displacements over R0, forces over S R0^2
+  std::vector<int> directions_;
   bool has_begun_ = false;
   std::vector<Memory> memory_;
   std::vector<Guard> guards_;

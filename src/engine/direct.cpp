@@ -16,9 +16,12 @@ namespace {
 constexpr double k_longest = 0.25;
 // What is left of a step is not split off where it is no more than this share of a piece.
 constexpr double k_rest = 0.25;
-// The first piece where there are slaved unknowns, and how fast pieces grow from there.
+// The first piece where there are slaved unknowns, and how fast pieces grow from there; the same of looks before a
+// step's first node, where a guard is not zero by rounding, but so near that it may cross and come back before that.
 constexpr double k_first = 1e-9;
 constexpr double k_grading = 30.0;
+constexpr double k_rounding_of_guards = 1e-13;
+constexpr double k_near_zero = 1e-3;
 // Tiny pieces of a segment in which the equations may end: more of them are rounding that gets nowhere.
 constexpr double k_tiny = 1e-10;
 constexpr int k_most_refusals = 200;
@@ -28,7 +31,7 @@ constexpr double k_most_shrinkage = 0.2;
 constexpr double k_safety = 0.85;
 // What the series of a piece's work may leave out, over the work: the square of the tolerance, but no less than
 // rounding. Where the work has a singularity, as at a first touch, its error is up to a hundred times that.
-constexpr double k_rounding = 1e-16;
+constexpr double k_rounding_of_work = 1e-16;
 // From which of that on few nodes are enough for it.
 constexpr double k_few_nodes_accuracy = 1e-7;
 // An event within this share of a piece may have all nodes beyond it. What the work up to it may be wrong by, as the
@@ -42,7 +45,7 @@ constexpr double k_smallest_quadrature = 1e-6;
 class Direct final : public EventLocator {
  public:
   Direct(HybridSystem& system, double rtol, Watch& watch)
-      : EventLocator(system, watch, k_most_nodes), work_accuracy_(std::max(k_rounding, rtol * rtol)) {
+      : EventLocator(system, watch, k_most_nodes), work_accuracy_(std::max(k_rounding_of_work, rtol * rtol)) {
     const auto unknowns = system.unknowns();
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
     if (found != unknowns.end()) quadrature_ = static_cast<std::size_t>(found - unknowns.begin());
@@ -132,6 +135,7 @@ class Direct final : public EventLocator {
   bool cover_piece(double& factor) {
     forget_looks();
     if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
+    if (begin_ == segment_begin_ && begin_ < k_first) look_early();
     for (std::size_t j = 0; j < nodes_->count; ++j) {
       const double xi = begin_ + 0.5 * (piece_end_ - begin_) * (1.0 + nodes_->places[j]);
       guess_ahead(j);
@@ -162,6 +166,25 @@ class Direct final : public EventLocator {
     }
     if (quadrature_) end_state_[*quadrature_] = quadrature_at(end_, end_state_);
     return true;
+  }
+
+  /// A step may begin with a singularity, as from first touch on: smooth in one guard, and not in another.
+  void look_early() {
+    const auto is_near = [](double value) {
+      return std::abs(value) > k_rounding_of_guards && std::abs(value) < k_near_zero;
+    };
+    if (has_slaves_ || std::ranges::none_of(begin_values_, is_near)) return;
+    const double first_node = 0.5 * (piece_end_ - begin_) * (1.0 + nodes_->places[0]);
+    try {
+      for (double distance = k_first; k_grading * distance <= first_node; distance *= k_grading) {
+        std::ranges::copy(begin_state_, trial_.begin());
+        ++statistics_.rhs_evaluations;
+        system_.solve(begin_ + distance, trial_);
+        look_inside(begin_ + distance, trial_);
+      }
+    } catch (const std::domain_error&) {
+      return;  // the nodes will find out how far there is a solution
+    }
   }
 
   /// From what is known at the beginning of the piece and the nodes so far. One after another: the guess is then never

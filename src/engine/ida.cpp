@@ -5,6 +5,8 @@
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "engine/sundials.hpp"
@@ -21,6 +23,7 @@ using IdaMemory = std::unique_ptr<void, IdaDeleter>;
 
 constexpr double k_slave_tolerance = 1e-4;  // loose, but small enough for difference quotients
 constexpr int k_most_failures = 50;         // of one step
+constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();  // of the step coordinate
 
 class Ida final : public Integrator {
  public:
@@ -28,7 +31,7 @@ class Ida final : public Integrator {
       : system_(system), watch_(watch), tolerances_(tolerances), quadratures_(system.unknowns()) {
     const auto unknowns = system.unknowns();
     const auto size = static_cast<sunindextype>(unknowns.size());
-    for (NVector* vector : {&y_, &dy_, &begin_state_, &begin_rates_, &id_, &atol_, &weights_, &errors_}) {
+    for (NVector* vector : {&y_, &dy_, &begin_state_, &begin_rates_, &id_, &least_atol_, &atol_, &weights_, &errors_}) {
       vector->reset(N_VNew_Serial(size, context_));
     }
     complete_.resize(unknowns.size());
@@ -38,14 +41,14 @@ class Ida final : public Integrator {
       // A slaved unknown has no error of its own: hardly weighted, and completed wherever it is used.
       const double absolute = unknowns[k].is_slaved ? k_slave_tolerance : local_atol(tolerances);
       has_slaves_ = has_slaves_ || unknowns[k].is_slaved;
-      view(atol_.get())[k] = absolute * unknowns[k].scale;
+      view(least_atol_.get())[k] = absolute * unknowns[k].scale;
       view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
     }
     memory_.reset(IDACreate(context_));
     check("IDASetErrHandlerFn", IDASetErrHandlerFn(memory_.get(), keep_message, &message_));
     check("IDAInit", IDAInit(memory_.get(), residual, 0.0, y_.get(), dy_.get()));
     check("IDASetUserData", IDASetUserData(memory_.get(), this));
-    check("IDASVtolerances", IDASVtolerances(memory_.get(), local_rtol(tolerances), atol_.get()));
+    set_tolerances();
     check("IDASetMaxNumSteps", IDASetMaxNumSteps(memory_.get(), k_most_internal_steps));
     // From where a force is zero, the first steps are smaller than IDA's guess by many orders.
     check("IDASetMaxErrTestFails", IDASetMaxErrTestFails(memory_.get(), k_most_failures));
@@ -60,6 +63,7 @@ class Ida final : public Integrator {
     std::ranges::copy(y, view(y_.get()).begin());
     quadratures_.begin(view(y_.get()));
     system_.all_rates(xi, y, view(dy_.get()));
+    set_tolerances();
     start(xi, 0.0);
     ++past_.segments;
     // The system's own rates are consistent; IDACalcIC brings the rest within the tolerance. Where it cannot, because
@@ -128,6 +132,17 @@ class Ida final : public Integrator {
   }
 
  private:
+  /// Nothing is told more exactly than the step coordinate: what goes through zero on a long way would be.
+  void set_tolerances() {
+    const auto least = view(least_atol_.get());
+    const auto rates = view(dy_.get());
+    for (std::size_t k = 0; k < least.size(); ++k) {
+      const double rounding = k_rounding * std::abs(rates[k]);
+      view(atol_.get())[k] = std::isfinite(rounding) ? std::max(least[k], rounding) : least[k];
+    }
+    check("IDASVtolerances", IDASVtolerances(memory_.get(), local_rtol(tolerances_), atol_.get()));
+  }
+
   /// Begins at xi with the state in y_ and dy_. @param step  the first to be tried; 0: the library's choice
   void start(double xi, double step) {
     past_ = statistics();  // counters are reset with the state
@@ -198,7 +213,7 @@ class Ida final : public Integrator {
   Statistics past_;
 
   sundials::Context context_;  // first in, last out
-  NVector y_, dy_, begin_state_, begin_rates_, id_, atol_, weights_, errors_;
+  NVector y_, dy_, begin_state_, begin_rates_, id_, least_atol_, atol_, weights_, errors_;
   Matrix matrix_;
   LinearSolver linear_;
   IdaMemory memory_;

@@ -64,7 +64,7 @@ plastic::Settings plastic_settings(const Scenario& scenario, const Reach& reach)
   const bool is_semimech = scenario.model == "semimech";
   Settings settings{.law = plastic_law_of(scenario),
                     .initial_radius = scenario.radius,
-                    .strength = scenario.material.at(is_semimech ? "yield_stress" : "strength"),
+                    .strength = plastic_strength_of(scenario),
                     .largest_displacement = reach.displacement,
                     .largest_force = reach.force};
   settings.unloading = choice<Unloading>(scenario, "unloading", {{"none", Unloading::none}, {"mdr", Unloading::mdr}});
@@ -130,7 +130,7 @@ std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<C
   if (scenario.model == "mdr") {
     return std::make_unique<mdr::System>(mdr_settings(scenario, reach), std::move(classes));
   }
-  if (scenario.model == "similarity" || scenario.model == "semimech" || scenario.model == "hardening") {
+  if (is_plastic(scenario.model)) {
     return std::make_unique<plastic::System>(plastic_settings(scenario, reach), std::move(classes));
   }
   if (scenario.model == "nonlocal") {

@@ -1,7 +1,32 @@
 #include "scene/plastic_law.hpp"
 
+#include <limits>
+#include <variant>
+
 namespace monograin {
 namespace {
+
+// Where the search for a condition's value begins, over the limit, at which pressures may be infinite; and where it
+// ends, over R0: shallower contacts are rounding, and steps of an integrator so short would be, too.
+constexpr double k_deepest = 0.9;
+constexpr double k_shallowest = 1e-12;
+
+/// What a condition looks at, in SI.
+double value_of(const Scenario& scenario, double strength, double x, const plastic::ContactState& contact,
+                Until::Quantity quantity) {
+  switch (quantity) {
+    case Until::Quantity::displacement:
+      return x * scenario.radius;
+    case Until::Quantity::force:
+      return contact.force * strength * scenario.radius * scenario.radius;
+    case Until::Quantity::pressure:
+      return contact.pressure * strength;
+    case Until::Quantity::contact_radius:
+      return contact.contact_radius * scenario.radius;
+    default:
+      return 0.0;
+  }
+}
 
 /// Walls of other sets are each for themselves, in the one law that allows them.
 plastic::Configuration configuration_of(const Scenario& scenario) {
@@ -16,6 +41,14 @@ plastic::Configuration configuration_of(const Scenario& scenario) {
 }
 
 }  // namespace
+
+bool is_plastic(std::string_view model) noexcept {
+  return model == "similarity" || model == "semimech" || model == "hardening";
+}
+
+double plastic_strength_of(const Scenario& scenario) {
+  return scenario.material.at(scenario.model == "semimech" ? "yield_stress" : "strength");
+}
 
 plastic::Law plastic_law_of(const Scenario& scenario) {
   const auto& material = scenario.material;
@@ -34,6 +67,21 @@ plastic::Law plastic_law_of(const Scenario& scenario) {
   const bool is_corrected = std::get<bool>(scenario.options.at("curvature_correction"));
   return plastic::make_similarity(
       exponent, is_corrected ? plastic::SimilarityRadius::corrected : plastic::SimilarityRadius::parabolic);
+}
+
+Reach plastic_reach(const Scenario& scenario, const Until& until) {
+  const plastic::Law law = plastic_law_of(scenario);
+  const double strength = plastic_strength_of(scenario);
+  Reach reach{.displacement = std::numeric_limits<double>::infinity(),
+              .force = std::numeric_limits<double>::infinity()};
+  for (double x = k_deepest * plastic::limit(law); x > k_shallowest; x *= 0.5) {
+    const plastic::ContactState contact = std::visit([x](const auto& any) { return state_at(any, x); }, law);
+    // Pressures fall again further in.
+    if (value_of(scenario, strength, x, contact, until.quantity) < until.value) continue;
+    reach = {.displacement = x * scenario.radius,
+             .force = contact.force * strength * scenario.radius * scenario.radius};
+  }
+  return reach;
 }
 
 }  // namespace monograin

@@ -1,11 +1,23 @@
 /// The law of a scenario of model `similarity`, `semimech` or `hardening`.
 #pragma once
 
+#include <string_view>
+
 #include "plastic/law.hpp"
 #include "scenario/scenario.hpp"
+#include "scene/scene.hpp"
 
 namespace monograin {
 
+/// Whether a model is one of these.
+[[nodiscard]] bool is_plastic(std::string_view model) noexcept;
+
 [[nodiscard]] plastic::Law plastic_law_of(const Scenario& scenario);
+/// The strength [Pa] that stresses of its law are counted in.
+[[nodiscard]] double plastic_strength_of(const Scenario& scenario);
+
+/// How far a contact is pressed that reaches a condition's value for the first time, to within a factor 2; infinity
+/// where it never does.
+[[nodiscard]] Reach plastic_reach(const Scenario& scenario, const Until& until);
 
 }  // namespace monograin

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "catalogue.hpp"
+#include "scene/plastic_law.hpp"
 
 namespace monograin {
 namespace {
@@ -68,14 +70,29 @@ std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::
 /// the order of what the particle bears there.
 constexpr double k_share_of_withdrawal = 1e-4;
 
+/// How far a condition lets a ramp go that leads on to its target; infinity where the model has to be run to say so.
+Reach end_of(const Scenario& scenario, const Until& until) {
+  Reach end{.displacement = std::numeric_limits<double>::infinity(), .force = std::numeric_limits<double>::infinity()};
+  if (!(until.value > 0.0)) return end;
+  if (is_plastic(scenario.model)) return plastic_reach(scenario, until);
+  if (until.quantity == Until::Quantity::displacement) end.displacement = until.value;
+  if (until.quantity == Until::Quantity::force) end.force = until.value;
+  return end;
+}
+
 /// Largest displacement or force of the programs.
-double largest_target(const std::vector<Channel>& channels, Step::Kind kind) {
+double largest_target(const Scenario& scenario, const std::vector<Channel>& channels, Step::Kind kind) {
   double largest = 0.0;
   for (const Channel& channel : channels) {
     for (const Step& step : channel.program) {
       if (step.kind != kind) continue;
-      const bool withdraws = kind == Step::Kind::displacement && step.target < 0.0;
-      largest = std::max(largest, (withdraws ? k_share_of_withdrawal : 1.0) * std::abs(step.target));
+      const bool is_displacement = kind == Step::Kind::displacement;
+      double reach = (is_displacement && step.target < 0.0 ? k_share_of_withdrawal : 1.0) * std::abs(step.target);
+      for (const Until& until : step.until) {
+        const Reach end = end_of(scenario, until);
+        reach = std::min(reach, is_displacement ? end.displacement : end.force);
+      }
+      largest = std::max(largest, reach);
     }
   }
   return largest;
@@ -144,8 +161,8 @@ Scene make_scene(const Scenario& scenario, bool merges_walls) {
   else
     scene.channels = channels_without_walls(scenario);
   scene.system = bind_model(scenario, scene.classes,
-                            {.displacement = largest_target(scene.channels, Step::Kind::displacement),
-                             .force = largest_target(scene.channels, Step::Kind::force)});
+                            {.displacement = largest_target(scenario, scene.channels, Step::Kind::displacement),
+                             .force = largest_target(scenario, scene.channels, Step::Kind::force)});
 
   const auto unknowns = scene.system->unknowns();
   const auto is_algebraic = [](const Unknown& u) { return u.kind == Unknown::Kind::algebraic; };

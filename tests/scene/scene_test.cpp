@@ -2,9 +2,11 @@
 
 #include "scene/scene.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 
 #include "support/test_run.hpp"
 
@@ -82,6 +84,37 @@ TEST(Scene, LetsWallsWithoutStepsFollowTheLoading) {
   const std::vector<Wall> walls = make_walls(scenario);
   EXPECT_EQ(walls[0].steps.size(), 1u);
   EXPECT_TRUE(walls[1].steps.empty());
+}
+
+/// Typical magnitude of the work in a scene of one step.
+double work_of(const std::string& head, const std::string& step) {
+  const Scene scene = make_scene(parse_scenario(head + "[loading]\nconfiguration = \"hydrostatic\"\nsteps = [{ " +
+                                                    step + ", duration = 1 }]\n[particle]\nradius = 2\n",
+                                                "test.toml"));
+  const auto unknowns = scene.system->unknowns();
+  return std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind)->scale;
+}
+
+TEST(Scene, CountsTolerancesByWhereConditionsEndItsRamps) {
+  const std::string semimech =
+      "model = \"semimech\"\nmaterial = { youngs_modulus = 50, poisson_ratio = 0.3, yield_stress = 1 }\n";
+  // The contact yields, under 1.1 times the yield stress, at 0.0022 R.
+  for (const char* condition : {"pressure = 1.1", "displacement = 0.0045", "contact_radius = 0.14", "force = 0.07"}) {
+    const double ended = work_of(semimech, fmt::format("displacement = 0.8, until = {{ {} }}", condition));
+    EXPECT_GT(ended, work_of(semimech, "displacement = 0.002")) << condition;
+    EXPECT_LT(ended, work_of(semimech, "displacement = 0.01")) << condition;
+    const double beyond = work_of(semimech, fmt::format("displacement = 0.003, until = {{ {} }}", condition));
+    EXPECT_EQ(beyond, work_of(semimech, "displacement = 0.003")) << condition;
+  }
+  // What is never met ends nothing, nor does what is not asked of loading.
+  for (const char* condition : {"pressure = 1e9", "force = 0"}) {
+    EXPECT_EQ(work_of(semimech, fmt::format("displacement = 0.8, until = {{ {} }}", condition)),
+              work_of(semimech, "displacement = 0.8"))
+        << condition;
+  }
+  const std::string hertz = "model = \"hertz\"\nmaterial = { youngs_modulus = 1, poisson_ratio = 0.3 }\n";
+  EXPECT_EQ(work_of(hertz, "displacement = 0.8, until = { displacement = 0.01 }"),
+            work_of(hertz, "displacement = 0.01"));
 }
 
 TEST(Scene, SaysWhatItSkips) {

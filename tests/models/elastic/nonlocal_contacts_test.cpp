@@ -416,6 +416,21 @@ TEST(NonlocalRates, LetAFreeCentreFollowFromFirstTouch) {
   EXPECT_EQ(rates, (std::vector{-0.1, 0.0, 0.0}));
 }
 
+TEST(NonlocalRates, EndWhereAForceDrivesAFreeCentreThatNothingHolds) {
+  Contacts contacts({k_rubber, Terms::four}, single_walls(simple()), Centre::free);
+  std::vector<double> rates(3);
+  const std::vector<Ramp> ramps{{0.0, 0.1, Control::force}, {-0.01, 0.2, Control::displacement}};
+  EXPECT_TRUE(contains(refusal<std::domain_error>([&] {
+                         contacts.rates(ramps, std::vector{0.0, -0.01, 0.0}, rates);
+                         return 0;
+                       }),
+                       "no contact holds the centre"));
+  // The other wall does once it touches, and a force that stays drives nothing.
+  EXPECT_NO_THROW(contacts.rates(ramps, std::vector{0.0, 0.0, 0.0}, rates));
+  const std::vector<Ramp> constant{{0.1, 0.1, Control::force}, {-0.01, 0.2, Control::displacement}};
+  EXPECT_NO_THROW(contacts.rates(constant, std::vector{0.01, -0.01, 0.0}, rates));
+}
+
 TEST(NonlocalRates, EndAtTheLimit) {
   Contacts contacts({k_rubber, Terms::four}, hydrostatic(), Centre::fixed);
   std::vector<double> rates(1);
