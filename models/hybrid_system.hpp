@@ -48,6 +48,8 @@ struct Guard {
   bool is_silent = false;
   /// Depends on what the program tells alone: no error of an integrator moves it.
   bool is_told = false;
+  /// Rates grow without bound towards it: just before it other guards may cross and come back within no time.
+  bool is_branch_end = false;
 };
 
 /// A regime transition or other located instant.

@@ -147,6 +147,14 @@ double System::inward_rate(std::size_t i, const Motion& motion) const noexcept {
   return now_[i].rate_by_time + now_[i].rate_by_growth * motion.growth + carried;
 }
 
+/// What is left of forces on the centre that balance: contacts that only touch it are too soft to bear that without
+/// going to and fro.
+double System::rounding_of_forces() const noexcept {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < now_.size(); ++i) sum += classes_[i].multiplicity() * std::abs(now_[i].contact.force);
+  return 4.0 * k_round_off * sum;
+}
+
 /// Newton on the balance of forces at a given radius; the force grows with the overlap, so damping is all it needs.
 void System::move_centre(double xi, std::span<double> y) {
   look(xi, y);
@@ -158,7 +166,7 @@ void System::move_centre(double xi, std::span<double> y) {
     const double noise = k_round_off * sums_.stiffness.cwiseAbs().maxCoeff();
     Small step = balance_step(sums_.force);
     if (step.norm() == 0.0) throw std::domain_error("no contact holds the free centre of the particle");
-    if (step.norm() >= 0.5 * step_size && step.norm() < 1e-12) return;
+    if (step.norm() >= 0.5 * step_size && (step.norm() < 1e-12 || error <= rounding_of_forces())) return;
     step_size = step.norm();
     Small before = Small::Zero();
     for (int k = 0; k < free_count_; ++k) before[k] = y[centre_place(k)];

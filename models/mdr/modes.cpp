@@ -38,10 +38,16 @@ constexpr double k_at_rest = 1e-8;
 // With a free centre, contacts along its directions open and close together; their guards agree to the integration
 // error only.
 constexpr double k_together = 1e-6;
+// Overlaps over R0 that are rounding of lengths of the order of R0.
+constexpr double k_shallow = 1e-12;
 // Share of the forces on a free centre that is rounding in their balance.
 constexpr double k_no_force = 1e-9;
 // A free centre that has gone this far (over R0) within an instant has sprung.
 constexpr double k_spring = 1e-9;
+// Where several contacts hold a free centre between them, their equilibrium turns back where they hold it no more; the
+// root of a guard that is zero there would lie within the rounding of states that are found no more. What is left of
+// the way is the square of this.
+constexpr double k_least_firmness = 1e-5;
 // Growth ends where the free surface is used up to this share.
 constexpr double k_least_slope = 1e-3;
 // The volume's square root ends at 1 - 4w = 0; stop before an implicit code's difference quotients reach over that
@@ -69,6 +75,14 @@ void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Ev
       lose_contact(j);
     log.push_back({is_made ? (is_dent ? "dent-touched" : "contact-made") : "contact-lost", static_cast<int>(j)});
   }
+}
+
+/// Whether a first touch is all that a wall has of a free centre: nothing presses the particle against it, and it takes
+/// the centre along. Its overlap and the rate of that are rounding; what is that shallow remembers nothing, and is lost
+/// when it has been left by more.
+bool System::rides(std::size_t i) const noexcept {
+  return free_count_ > 0 && !is_loaded(i) && memory_[i].regime == Regime::elastic && memory_[i].is_virgin &&
+         now_[i].overlap < k_shallow && directions_[i].norm() > k_no_direction;
 }
 
 // --- deciding a mode
@@ -167,6 +181,18 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
       log.push_back(event("dent-touched"));
       return true;
     case Regime::elastic:
+      if (rides(i)) {
+        if (!opens || !is_past(k_lost, -1.0)) return false;
+        lose_contact(i);
+        log.push_back(event("contact-lost"));
+        return true;
+      }
+      // Where its force is about to pull before a contact has borne any, there is no edge that could stick.
+      if (memory.is_virgin && retreats && is_loaded(i) && !is_pressed && overlap < k_shallow) {
+        lose_contact(i);
+        log.push_back(event("contact-lost"));
+        return true;
+      }
       if (memory.is_virgin && retreats) {
         start_unloading(i, r, why, log);
         return true;
@@ -258,13 +284,13 @@ bool System::is_backed(std::size_t i) const {
   return false;
 }
 
-/// A wall that pushes a particle which nothing holds from the other side has no equilibrium, nor have forces that do
-/// not balance where no wall stands against them.
+/// A wall that pushes a particle which nothing holds from the other side has no equilibrium, unless others adhere; nor
+/// have forces that do not balance where no wall stands against them.
 /// @throws std::domain_error there
 void System::check_support() const {
-  if (free_count_ == 0 || adheres()) return;
+  if (free_count_ == 0) return;
   const double least = k_touch * speed_scale();
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
+  for (std::size_t i = 0; !adheres() && i < memory_.size(); ++i) {
     const bool pushes = touches(memory_[i].regime) && !is_loaded(i) && ramps_[i].end - ramps_[i].start > least;
     if (pushes && directions_[i].norm() > k_no_direction && !is_backed(i)) {
       throw std::domain_error("no contact holds the free centre of the particle against a wall that pushes it");
@@ -384,7 +410,7 @@ double System::contact_guard(int kind, std::size_t i, double xi, double overlap,
     case k_reload:
       return overlap - largest_overlap(memory_[i], r) - k_same_overlap;
     case k_lost:
-      if (memory_[i].regime == Regime::elastic) return overlap;
+      if (memory_[i].regime == Regime::elastic) return rides(i) ? overlap + k_shallow : overlap;
       return 1.0 - unloading_fraction(shape(i, r), overlap);
     case k_dent_touched:
       return 1.0 - unloading_fraction(shape(i, r), overlap);
@@ -427,7 +453,9 @@ void System::watch(double xi, std::span<const double> y) {
   const double r = y[k_radius];
   const Motion now = motion(is_growing_);
   for (std::size_t i = 0; i < memory_.size(); ++i) watch_contact(i, r, now);
-  if (free_count_ > 0 && weakest_contact()) guards_.push_back({k_unstable, -1, -1, "pull-off"});
+  if (free_count_ > 0 && weakest_contact()) {
+    guards_.push_back({.kind = k_unstable, .index = -1, .direction = -1, .name = "pull-off", .is_branch_end = true});
+  }
 
   if (is_growing_) {
     guards_.push_back({k_growth_off, -1, -1, "growth-off"});
@@ -490,6 +518,7 @@ void System::watch_contact(std::size_t i, double r, const Motion& now) {
     const bool is_shifted = settings_.delta_max_rule == DeltaMaxRule::shifted;
     const bool may_retreat = is_free || (may_turn && (is_loaded(i) || (wall_rate(i, now) < 0.0 && !is_shifted)));
     if (may_retreat) guards_.push_back({k_retreat, index, -1, "retreat"});
+    if (is_free && memory.regime == Regime::elastic) guards_.push_back({k_lost, index, -1, "contact-lost"});
     return;
   }
   if (may_come_in) add(k_reload, 1, "reload");
@@ -514,7 +543,10 @@ void System::watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_o
       break;
     }
     case Edge::peeling:
-      if (may_go_out) guards_.push_back({k_pull_off, index, -1, "pull-off"});
+      if (may_go_out) {
+        guards_.push_back(
+            {.kind = k_pull_off, .index = index, .direction = -1, .name = "pull-off", .is_branch_end = true});
+      }
       if (may_turn) guards_.push_back({k_turn, index, 1, "stick"});
       break;
   }
@@ -532,7 +564,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = growth_drive(now);
         break;
       case k_unstable:
-        values[g] = least_stiffness();
+        values[g] = least_firmness() - k_least_firmness;
         break;
       case k_singular:
         values[g] = now.slope / ((1.0 + r) * (1.0 + r)) - k_least_slope;
@@ -548,6 +580,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         break;
       case k_retreat:
         values[g] = settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate(i, now) : overlap_rate(i, now);
+        if (rides(i)) values[g] = 1.0;
         break;
       case k_turn:
         values[g] = edge_rate(i, r, now);

@@ -173,8 +173,10 @@ std::vector<Finding> System::warnings() const {
                       radius_at_caps_});
   }
   if (validity_) result.push_back(*validity_);
-  if (const auto made =
-          energies_.finding("the growing apparent radius creates energy; radius_rule = \"yielded\" avoids it")) {
+  const bool has_other_rule = settings_.radius_rule != RadiusRule::yielded;
+  if (const auto made = energies_.finding(
+          has_other_rule ? "the growing apparent radius creates energy; radius_rule = \"yielded\" avoids it"
+                         : "the growing apparent radius creates energy, as it may where elastic strains are large")) {
     result.push_back(*made);
   }
   return result;

@@ -107,9 +107,10 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   }
 }
 
-/// How far the program goes, over R0; 1 where it does not say.
+/// How far the program goes, over R0; 1 where it does not say. It may ask for any displacement, but a contact ends
+/// where its wall has reached the centre.
 double System::largest_overlap_expected() const {
-  double reach = settings_.largest_displacement / settings_.initial_radius;
+  double reach = std::min(1.0, settings_.largest_displacement / settings_.initial_radius);
   const double force = settings_.largest_force / (stress_unit_ * settings_.initial_radius * settings_.initial_radius);
   if (force > 0.0) {
     const double elastic = elastic_overlap(ElasticProfile::parabola, material_.composite_modulus, 1.0, force);

@@ -208,6 +208,7 @@ class System final : public HybridSystem {
   [[nodiscard]] Small balance_step(const Small& force) const;
   [[nodiscard]] Motion motion(bool growing) const;
   [[nodiscard]] Motion growing_motion() const;
+  [[nodiscard]] double rounding_of_forces() const noexcept;
   void move_centre(double xi, std::span<double> y);
   bool approach_balance(double xi, std::span<double> y);
   void grow(double xi, std::span<double> y);
@@ -233,11 +234,12 @@ class System final : public HybridSystem {
   [[nodiscard]] double edge_rate(std::size_t i, double r, const Motion& now);
   [[nodiscard]] double loaded_rate(double loading, double by_radius, double growth) const noexcept;
   [[nodiscard]] bool is_backed(std::size_t i) const;
+  [[nodiscard]] bool rides(std::size_t i) const noexcept;
   void check_support() const;
   void start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log);
   void stick(std::size_t i, std::vector<Event>& log);
   [[nodiscard]] std::optional<std::size_t> weakest_contact() const noexcept;
-  [[nodiscard]] double least_stiffness() const;
+  [[nodiscard]] double least_firmness() const;
   void check_adhesion(std::size_t i, double r);
   void start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);
   void separate(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);

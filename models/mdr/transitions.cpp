@@ -134,16 +134,22 @@ std::optional<std::size_t> System::weakest_contact() const noexcept {
   return weakest;
 }
 
-/// Least stiffness with which the contacts hold a free centre, in the directions in which any of them does.
-double System::least_stiffness() const {
-  double scale = 0.0;
+/// How firmly the contacts hold a free centre in the direction in which they do so least: their stiffness over what it
+/// would be if no edge peeled. Zero where the equilibrium turns back.
+double System::least_firmness() const {
+  SmallMatrix magnitudes = unheld_;
+  SmallMatrix stiffness = unheld_;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (!touches(memory_[i].regime) || is_loaded(i)) continue;
-    scale += classes_[i].multiplicity() * material_.composite_modulus * now_[i].contact.contact_radius;
+    const SmallMatrix along = directions_[i] * directions_[i].transpose();
+    const double count = classes_[i].multiplicity() / material_.composite_modulus;
+    stiffness += count * now_[i].contact.by_overlap * along;
+    magnitudes += count * std::abs(now_[i].contact.by_overlap) * along;
   }
-  SmallMatrix stiffness = sums_.stiffness / scale + unheld_;
-  for (int k = free_count_; k < 3; ++k) stiffness(k, k) = 1.0;
-  return Eigen::SelfAdjointEigenSolver<SmallMatrix>(stiffness).eigenvalues().minCoeff();
+  for (int k = free_count_; k < 3; ++k) stiffness(k, k) = magnitudes(k, k) = 1.0;
+  const Small weakest = Eigen::SelfAdjointEigenSolver<SmallMatrix>(stiffness).eigenvectors().col(0);
+  const double magnitude = weakest.dot(magnitudes * weakest);
+  return magnitude > 0.0 ? weakest.dot(stiffness * weakest) / magnitude : 1.0;
 }
 
 void System::resume_loading(std::size_t i) {

@@ -17,6 +17,9 @@ constexpr double k_smallest_hidden = 1e-6;
 constexpr double k_near = 0.5;
 // What a guard at zero is by rounding. Errors of an integrator are no such thing: a short regime lies within them.
 constexpr double k_rounding = 1e-13;
+// Looks before the end of a branch: each so many times nearer than the one before, and how many.
+constexpr double k_nearer = 0.25;
+constexpr int k_looks_before_end = 12;
 // How far ahead the side of a guard that begins at zero is read.
 constexpr double k_ahead = 1e-9;
 
@@ -135,6 +138,7 @@ double EventLocator::hidden_extremum(std::size_t place) const {
 /// Moves the end of the piece to the first root in it, if there is one.
 void EventLocator::locate_event() {
   fired_.clear();
+  bool has_approached = false;
   for (std::size_t place = 0; place <= look_count_;) {
     const View before = seen(place);
     View after = seen(place + 1);
@@ -162,7 +166,13 @@ void EventLocator::locate_event() {
     }
     const bool is_shorter = root < end_ - least_progress(begin_);
     look_count_ = place;
+    const double last_look = before.xi;
     if (root < end_) move_end(root);
+    if (is_branch_end(first) && !has_approached) {
+      has_approached = true;
+      look_up_to(root, last_look);
+      continue;
+    }
     fired_.clear();
     bool has_earlier = false;
     const auto directions = watch_.directions();
@@ -180,6 +190,21 @@ void EventLocator::locate_event() {
     // A root that these looks did not show is looked for again in what is left of them.
     if (!has_earlier) return;
     fired_.clear();
+  }
+}
+
+bool EventLocator::is_branch_end(std::size_t guard) const {
+  return guard < watch_.system_guards() && system_.guards()[guard].is_branch_end;
+}
+
+/// Looks between the last one and a root, ever nearer to it.
+void EventLocator::look_up_to(double root, double last) {
+  double distance = root - last;
+  for (int look = 0; look < k_looks_before_end; ++look) {
+    distance *= k_nearer;
+    if (distance < least_progress(root)) return;
+    state_at(root - distance, guess_);
+    look_inside(root - distance, guess_);
   }
 }
 

@@ -10,7 +10,7 @@ namespace monograin {
 
 /// The integrator looks at the guards at the ends of a piece and wherever it wants in between, not farther apart than
 /// about 1/50 of a step of the program. Guards cross once between two looks; one that crosses and comes back is looked
-/// for at the extremum of the parabola through three values.
+/// for at the extremum of the parabola through three values, and ever nearer to the end of a branch.
 class EventLocator : public Integrator {
  public:
   [[nodiscard]] std::span<const std::size_t> fired() const noexcept override { return fired_; }
@@ -67,6 +67,8 @@ class EventLocator : public Integrator {
   [[nodiscard]] bool any_crosses(const View& before, const View& after) const;
   [[nodiscard]] double hidden_extremum(std::size_t place) const;
   [[nodiscard]] double first_root(const View& before, const View& after, std::size_t& guard);
+  [[nodiscard]] bool is_branch_end(std::size_t guard) const;
+  void look_up_to(double root, double last);
   [[nodiscard]] double polish(std::size_t guard, const View& before, const View& after);
 
   std::vector<Look> looks_;  ///< room for more than there are

@@ -54,7 +54,10 @@ class SegmentQuadratures {
 class ExplicitForm {
  public:
   explicit ExplicitForm(HybridSystem& system)
-      : system_(system), quadratures_(system.unknowns()), complete_(system.unknowns().size()) {
+      : system_(system),
+        quadratures_(system.unknowns()),
+        complete_(system.unknowns().size()),
+        trial_(system.unknowns().size()) {
     size_ = static_cast<std::size_t>(std::ranges::count_if(
         system.unknowns(), [](const Unknown& unknown) { return unknown.kind != Unknown::Kind::algebraic; }));
   }
@@ -63,6 +66,11 @@ class ExplicitForm {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] const Unknown& unknown(std::size_t k) const noexcept { return system_.unknowns()[k]; }
 
+  /// Whether there are unknowns that may be singular where a segment begins, and rates with them.
+  [[nodiscard]] bool has_slaves() const noexcept {
+    return std::ranges::any_of(system_.unknowns(), &Unknown::is_slaved);
+  }
+
   /// Takes up a segment's first complete state; the integrated part of it goes to `integrated`.
   void begin(std::span<const double> complete, std::span<double> integrated) {
     std::ranges::copy(complete, complete_.begin());
@@ -70,11 +78,11 @@ class ExplicitForm {
     quadratures_.begin(integrated);
   }
 
-  /// The complete state of an integrated one; valid until the next call of this object.
+  /// The complete state of an integrated one; valid until the next call of this object. Where there is none, the last
+  /// one stays the first guess: what a failed search has left behind would lead astray from a smaller step too.
   [[nodiscard]] std::span<const double> complete(double xi, std::span<const double> integrated) {
-    std::ranges::copy(integrated, complete_.begin());
-    quadratures_.add_to(complete_);
-    system_.complete(xi, complete_);
+    complete(xi, integrated, trial_);
+    std::swap(complete_, trial_);
     return complete_;
   }
 
@@ -95,7 +103,7 @@ class ExplicitForm {
  private:
   HybridSystem& system_;
   SegmentQuadratures quadratures_;
-  std::vector<double> complete_;
+  std::vector<double> complete_, trial_;
   std::size_t size_ = 0;
 };
 

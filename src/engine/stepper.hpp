@@ -15,6 +15,7 @@ class ScaledForm {
   explicit ScaledForm(HybridSystem& system) : form_(system), y_(form_.size()), dy_(form_.size()) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return form_.size(); }
+  [[nodiscard]] bool has_slaves() const noexcept { return form_.has_slaves(); }
   [[nodiscard]] long evaluations() const noexcept { return evaluations_; }
 
   /// Takes up a segment's complete state; z is the integrated one.
