@@ -110,14 +110,7 @@ void ContactSystem::settle(std::size_t i, double d, std::vector<Event>& log) {
     }
   } else if (direction(i) > 0) {
     // A boundary at which the last step ended is passed now.
-    if (memory.regime == Regime::unloading && reaches(d, memory.curve.largest)) {
-      go_on_loading(i, memory.curve.largest);
-      tell("reload");
-    }
-    if (memory.regime == Regime::linear && reaches(d, settings_.law.transition)) {
-      memory.regime = Regime::exponential;
-      tell("transition");
-    }
+    pass_boundaries(i, d, log);
     if (memory.regime != Regime::unloading && reaches(d, k_largest_displacement) &&
         goes_beyond(i, k_largest_displacement))
       throw std::domain_error(k_beyond);
@@ -151,6 +144,10 @@ bool ContactSystem::counts_force(std::size_t i) const noexcept {
 
 double ContactSystem::coordinate(std::size_t i, double d) const noexcept {
   return counts_force(i) ? unknowns_[places_[i]].scale * force_at(i, d) / unit_force(i) : d;
+}
+
+double ContactSystem::coordinate_under(std::size_t i, double force) const noexcept {
+  return counts_force(i) ? unknowns_[places_[i]].scale * force / unit_force(i) : displacement_under_force(i, force);
 }
 
 /// Displacement that a coordinate stands for.
@@ -233,17 +230,9 @@ double ContactSystem::power(std::size_t i, double xi, std::span<const double> y)
 void ContactSystem::complete(double xi, std::span<double> y) {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (!classes_[i].takes_force) continue;
-    if (!is_loaded(i))
-      y[places_[i]] = told(i, xi);
-    else if (!touches(i))
-      y[places_[i]] = memory_[i].resting;
-  }
-}
-
-void ContactSystem::solve(double xi, std::span<double> y) {
-  complete(xi, y);
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (is_loaded(i)) y[places_[i]] = coordinate(i, displacement_under_force(i, told(i, xi)));
+    // What a wall bears is told as well as where it stands: the least error of a force that ends at nothing would be a
+    // way to go, where the curve ends like a power.
+    y[places_[i]] = is_loaded(i) ? coordinate_under(i, told(i, xi)) : told(i, xi);
   }
 }
 
@@ -297,6 +286,19 @@ std::optional<double> ContactSystem::closed_quadrature(double xi, std::span<cons
 void ContactSystem::make_contact(std::size_t i) {
   memory_[i].regime = memory_[i].has_unloaded ? Regime::unloading : Regime::linear;
   memory_[i].has_been_loaded = true;
+}
+
+/// Moves on from the ends of regimes that a rising wall has reached.
+void ContactSystem::pass_boundaries(std::size_t i, double d, std::vector<Event>& log) {
+  Memory& memory = memory_[i];
+  if (memory.regime == Regime::unloading && reaches(d, memory.curve.largest)) {
+    go_on_loading(i, memory.curve.largest);
+    log.push_back({"reload", static_cast<int>(i)});
+  }
+  if (memory.regime == Regime::linear && reaches(d, settings_.law.transition)) {
+    memory.regime = Regime::exponential;
+    log.push_back({"transition", static_cast<int>(i)});
+  }
 }
 
 /// Back on the loading law at the largest displacement so far.
@@ -376,9 +378,10 @@ void ContactSystem::guard_values(double xi, std::span<const double> /*y*/, std::
   }
 }
 
-std::optional<DomainEnd> ContactSystem::fire(std::span<const std::size_t> fired, double /*xi*/, std::span<double> y,
+std::optional<DomainEnd> ContactSystem::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                              std::vector<Event>& log) {
   std::optional<DomainEnd> end;
+  const auto end_at = [&](double place) { end = DomainEnd{log.back(), {k_beyond, "displacement over R0", place}}; };
   for (const std::size_t g : fired) {
     const Guard guard = guards_[g];
     const double place = guard_places_[g];
@@ -388,19 +391,25 @@ std::optional<DomainEnd> ContactSystem::fire(std::span<const std::size_t> fired,
     switch (guard.kind) {
       case k_made:
         make_contact(i);
+        // A dent may be shallower than rounding of the place where the wall meets it.
+        pass_boundaries(i, told(i, xi), log);
         break;
       case k_transition:
         memory.regime = Regime::exponential;
         break;
       case k_reload:
         go_on_loading(i, place);
+        if (reaches(place, k_largest_displacement) && goes_beyond(i, k_largest_displacement)) {
+          log.push_back({"limit", guard.index});
+          end_at(place);
+        }
         break;
       case k_lost:
         memory.regime = Regime::open;
         memory.resting = place;
         break;
       default:
-        end = DomainEnd{log.back(), {k_beyond, "displacement over R0", place}};
+        end_at(place);
         break;
     }
     if (classes_[i].takes_force) y[places_[i]] = coordinate(i, place);

@@ -43,7 +43,7 @@ class ContactSystem final : public HybridSystem {
   void rates(double xi, std::span<const double> y, std::span<double> dy) override;
   void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
-  void solve(double xi, std::span<double> y) override;
+  void solve(double xi, std::span<double> y) override { complete(xi, y); }
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override;
   [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
   void guard_values(double xi, std::span<const double> y, std::span<double> values) override;
@@ -84,6 +84,7 @@ class ContactSystem final : public HybridSystem {
   [[nodiscard]] double unit_force(std::size_t i) const noexcept;
   [[nodiscard]] bool counts_force(std::size_t i) const noexcept;
   [[nodiscard]] double coordinate(std::size_t i, double d) const noexcept;
+  [[nodiscard]] double coordinate_under(std::size_t i, double force) const noexcept;
   [[nodiscard]] double displacement_at(std::size_t i, double u) const noexcept;
   [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const noexcept;
   [[nodiscard]] double displacement_under_force(std::size_t i, double force) const noexcept;
@@ -96,6 +97,7 @@ class ContactSystem final : public HybridSystem {
 
   void make_contact(std::size_t i);
   void go_on_loading(std::size_t i, double d);
+  void pass_boundaries(std::size_t i, double d, std::vector<Event>& log);
   void turn_back(std::size_t i, double d, std::vector<Event>& log);
   void settle(std::size_t i, double d, std::vector<Event>& log);
   void watch();

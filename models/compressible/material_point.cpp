@@ -38,6 +38,9 @@ constexpr double k_arrived = 1e-9;
 // Share of its usual size that the stiffness along the flow has to keep. Under prescribed strains it goes to zero like
 // the root of the way that is left; under prescribed stresses in proportion to it.
 constexpr double k_least_stiffness = 1e-6;
+// The same share from which on rounding of the stress, that much larger in the plastic strain, may keep integrators
+// from going on.
+constexpr double k_hardly_unique = 1e-3;
 // Plastic strain over a step of the program. Towards a stress that is borne only with unbounded strain, which grows
 // like the logarithm of the way that is left, rates go like the reciprocal of that; faster ones are made of rounding.
 constexpr double k_fastest = 1e7;
@@ -45,6 +48,8 @@ constexpr double k_fastest = 1e7;
 constexpr double k_least_compressibility = 1e-6;
 // Bulk modulus over the yield pressure from which on integrators may fail.
 constexpr double k_stiff = 1e5;
+// Moduli over the yield pressure at which a run ends: the rounding of strains is there a millionth of the strength.
+constexpr double k_stiffest = 1e10;
 // Newton's method on f = 0: strain correction below which the next one is round-off, and how many there may be.
 constexpr double k_last_correction = 1e-11;
 constexpr int k_most_corrections = 60;
@@ -68,6 +73,10 @@ Regime regime_of(Segment segment) {
       return plastic_cap;
   }
   return elastic;
+}
+
+double stiffness_over_strength(const Properties& at) {
+  return std::max(at.bulk_modulus.value, 3.0 * at.shear_modulus.value) / at.yield_pressure.value;
 }
 
 }  // namespace
@@ -203,12 +212,16 @@ double MaterialPoint::cosine(const Flow& flow) noexcept {
   return length > 0.0 ? flow.loading / length : 0.0;
 }
 
+void MaterialPoint::require_unique(const Flow& flow) {
+  if (!(flow.stiffness > 0.0)) throw std::domain_error("the strain that follows from the program is not unique");
+}
+
 void MaterialPoint::rates(double xi, std::span<const double> y, std::span<double> dy) {
   std::ranges::fill(dy, 0.0);
   if (!is_plastic_) return;
   const Flow now = flow(response(xi, y));
   if (now.loading == 0.0) return;
-  if (!(now.stiffness > 0.0)) throw std::domain_error("the strain that follows from the program is not unique");
+  require_unique(now);
   dy[k_multiplier] = now.loading / now.stiffness;
   dy[k_phi] = dy[k_multiplier] * now.phi;
   dy[k_deviatoric] = dy[k_multiplier] * now.deviatoric;
@@ -220,6 +233,7 @@ void MaterialPoint::residual(double xi, std::span<const double> y, std::span<con
     return;
   }
   const Flow now = flow(response(xi, y));
+  require_unique(now);
   res[k_phi] = dy[k_phi] - dy[k_multiplier] * now.phi;
   res[k_deviatoric] = dy[k_deviatoric] - dy[k_multiplier] * now.deviatoric;
   res[k_multiplier] = now.yield.f;
@@ -404,6 +418,7 @@ void MaterialPoint::watch_plastic(const Response& now) {
   const bool is_frozen = parameters.model == YieldModel::vmdc && branch_.segment == Segment::shear;
   if (is_frozen) return;
   if (parameters.xi1 != 0.0) watch(Limit::poisson, "poisson-half");
+  if (parameters.xi != 0.0 || parameters.xi1 != 0.0) watch(Limit::stiffness, "limit");
   if (!is_compressible(parameters.model)) return;
   watch(Limit::density, "density-limit");
   watch(Limit::cap_centre, "cap-centre-tensile");
@@ -446,6 +461,8 @@ double MaterialPoint::margin(Limit limit, const Response& now) const {
       return now.at.axis_ratio.value;
     case Limit::poisson:
       return 0.5 - now.at.poisson_ratio.value - k_least_compressibility;
+    case Limit::stiffness:
+      return 1.0 - stiffness_over_strength(now.at) / k_stiffest;
     case Limit::uniqueness:
       break;
   }
@@ -480,6 +497,10 @@ DomainEnd MaterialPoint::domain_end(Limit limit, const Response& now) const {
       return {{"poisson-half"},
               {"the linear law of Poisson's ratio ends: the material cannot be compressed elastically",
                "Poisson's ratio", now.at.poisson_ratio.value}};
+    case Limit::stiffness:
+      return {{"limit"},
+              {"the material has become too stiff for its strength: stresses are what rounding leaves of the strains",
+               "modulus over the yield pressure", stiffness_over_strength(now.at)}};
     case Limit::uniqueness:
       break;
   }
@@ -568,8 +589,12 @@ void MaterialPoint::observe(double xi, std::span<const double> y, std::span<doub
 }
 
 std::string_view MaterialPoint::difficulty(double xi, std::span<const double> y) {
-  const Properties at = response(xi, y).at;
-  if (at.bulk_modulus.value < k_stiff * at.yield_pressure.value) return {};
+  const Response now = response(xi, y);
+  if (is_plastic_ && margin(Limit::uniqueness, now) < k_hardly_unique) {
+    return "the program hardly determines the plastic strain any more, and rounding shows in it; expected integrator = "
+           "\"cvode-bdf\"";
+  }
+  if (now.at.bulk_modulus.value < k_stiff * now.at.yield_pressure.value) return {};
   return "the bulk modulus is above 1e5 yield pressures, and stresses are what rounding leaves of the strains; "
          "expected integrator = \"cvode-bdf\"";
 }

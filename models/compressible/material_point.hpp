@@ -65,7 +65,7 @@ class MaterialPoint final : public HybridSystem {
 
  private:
   enum GuardKind { yielding, end_of_segment, apex, domain_end_guard };
-  enum class Limit { density, cap_centre, cap_axis, poisson, uniqueness };
+  enum class Limit { density, cap_centre, cap_axis, poisson, stiffness, uniqueness };
 
   /// Stress and strain that belong to an instant and the plastic state.
   struct Response {
@@ -104,6 +104,7 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] Increment elastic_rate(const Properties& at) const;
   [[nodiscard]] Flow flow(const Response& now) const;
   [[nodiscard]] static double cosine(const Flow& flow) noexcept;
+  static void require_unique(const Flow& flow);
   [[nodiscard]] double pressure_rate_at_end(const Response& now, bool towards_compression) const;
   [[nodiscard]] bool is_isochoric_end(Segment segment, bool towards_compression) const noexcept;
 

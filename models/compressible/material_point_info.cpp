@@ -134,11 +134,13 @@ constexpr std::array k_events{
     Term{"limit", "another end of the equations; the message says which"},
 };
 
-constexpr std::array<string_view, 8> k_domain{
+constexpr std::array<string_view, 9> k_domain{
     "tension is positive; strains are logarithmic, along fixed principal axes",
     "rate independent: the same curve whatever the durations",
     "vmdc, dpc: axis ratio eps, cap centre pi3 above zero, relative density below 1, Poisson's ratio below 1/2; events "
     "where a run reaches one of these, a fault where it starts beyond",
+    "moduli up to 1e10 yield pressures: a run ends where they grow beyond (xi, xi1), because stresses are then what "
+    "rounding leaves of the strains",
     "dpc: an arc (transition_width) that ends above the axis of pressure",
     "plastic loading ends at corners of the program only",
     "warned: dpc flow that is not associated does negative plastic work at low pressure",

@@ -117,7 +117,8 @@ constexpr std::array<string_view, 7> k_domain{
     "the strain has its greatest value before Phi = 1 (published: 0.2028 at Phi = 0.9918), the stress may; strain or "
     "stress control ends there",
     "plastic particles: compaction only; just above jamming the plastic packing is stiffer than the elastic one",
-    "consistent coupling: stress and strain fall by less than a millionth just above Phi_c before they grow",
+    "consistent coupling: stress and strain fall by less than a millionth just above Phi_c before they grow; under "
+    "strain or stress control a packing that stands there gives way to where they grow",
     "coordination law: Z_c, Z_1 and Phi_1 are assumed (isostatic frictionless discs, 6 contacts at Phi = 1)",
 };
 

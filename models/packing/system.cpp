@@ -125,8 +125,10 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   const Mode before = mode_;
   settle(0.0, log);
   if (is_at_limit(0.0)) throw CannotBegin(limit());
-  // An integrated state goes on; elsewhere the law says what it is: a packing that jams beyond its closed start, too.
-  if (mode_ == before)
+  // An integrated state goes on; elsewhere the law says what it is: a packing that jams beyond its closed start, too,
+  // and one that stands where what is prescribed falls at first, which gives way to where it grows.
+  const bool goes_on = mode_ == before && !(mode_ == Mode::jammed && y[k_fraction] < branch_.begin);
+  if (goes_on)
     complete(0.0, y);
   else
     solve(0.0, y);
@@ -136,7 +138,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
 
 void System::take_branch() {
   branch_ = branch_of(law_, ramp_.control);
-  start_end_ = std::max(law_.jamming, branch_.begin) * (1.0 + k_start);
+  start_end_ = std::min(std::max(law_.jamming, branch_.begin) * (1.0 + k_start), branch_.end);
   if (ramp_.control == Control::packing_fraction) return;
   const double share = branch_.begin > law_.jamming ? k_start_of_fold : k_start;
   const double half = prescribed_at(std::midpoint(branch_.begin, branch_.end));
@@ -231,6 +233,17 @@ double System::excess(double xi, std::span<const double> y) const {
   return (stress - std::min(told(xi), branch_.greatest)) / law_.given.youngs_modulus;
 }
 
+/// Its derivative by the packing fraction, at given particles.
+double System::excess_slope(std::span<const double> y) const {
+  const double phi = y[k_fraction];
+  if (ramp_.control == Control::packing_fraction) return 1.0;
+  if (ramp_.control == Control::strain) return 1.0 / phi;
+  return slopes(law_, phi, strain_of(y)).at_given_particles / law_.given.youngs_modulus;
+}
+
+/// Of an integrated state: the closed start lies below.
+double System::least_fraction() const noexcept { return law_.jamming * (1.0 + 0.5 * k_start); }
+
 void System::complete(double xi, std::span<double> y) {
   if (mode_ != Mode::jammed) return solve(xi, y);
   require_state(xi);
@@ -246,14 +259,15 @@ void System::complete(double xi, std::span<double> y) {
   // given strain of theirs has a greatest stress before the packing has.
   const double guess = y[k_fraction];
   const double scale = unknowns_[k_particles].scale;
-  const double least = law_.jamming * (1.0 + 0.5 * k_start);
+  const double least = least_fraction();
+  // Next to a full packing of nearly incompressible particles a guess within an integrator's tolerance may be beyond.
+  y[k_fraction] = std::min(guess, branch_.end);
   double last = 1.0;
   for (int k = 0; k < k_iterations; ++k) {
-    const bool is_least = y[k_fraction] <= least;  // the closed start lies below
+    const bool is_least = y[k_fraction] <= least;
     if (is_least) y[k_fraction] = least;
     const double phi = y[k_fraction];
-    const double by_fraction =
-        is_least ? 0.0 : slopes(law_, phi, strain_of(y)).at_given_particles / law_.given.youngs_modulus;
+    const double by_fraction = is_least ? 0.0 : excess_slope(y);
     const double by_particles =
         -law_.sign * total_stress_slope(law_, phi) * effective_modulus(law_, phi) / law_.given.youngs_modulus * scale;
     const double share = -excess(xi, y) / (by_fraction * by_fraction + by_particles * by_particles);
@@ -293,10 +307,15 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
     res[k_fraction] = y[k_fraction] - resting_;
     return;
   }
+  // What an integrator tolerates may reach down to the closed start, and below jamming: from the least packing fraction
+  // on everything goes on along its tangent.
+  std::array<double, 2> inside{y[k_particles], std::max(y[k_fraction], least_fraction())};
   std::array<double, 2> all{};
-  rates(xi, y, all);
+  rates(xi, inside, all);
   res[k_particles] -= all[k_particles];
-  res[k_fraction] = excess(xi, y);
+  res[k_fraction] = excess(xi, inside);
+  const double outside = y[k_fraction] - inside[k_fraction];
+  if (outside < 0.0) res[k_fraction] += outside * excess_slope(inside);
 }
 
 // --- events

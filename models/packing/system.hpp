@@ -80,6 +80,8 @@ class System final : public HybridSystem {
   [[nodiscard]] double prescribed_at(double packing_fraction) const;
   [[nodiscard]] double strain_of(std::span<const double> y) const noexcept;
   [[nodiscard]] double excess(double xi, std::span<const double> y) const;
+  [[nodiscard]] double excess_slope(std::span<const double> y) const;
+  [[nodiscard]] double least_fraction() const noexcept;
   [[nodiscard]] Regime regime() const noexcept;
 
   void take_branch();

@@ -128,7 +128,7 @@ class GslStepper final : public Stepper {
     const std::size_t size = stepper.form_.size();
     ++stepper.jacobian_evaluations;
     return answer(stepper.pending_.guard([&] {
-      stepper.jacobian_.at(xi, {z, size}, {by_z, size * size}, {by_xi, size});
+      stepper.jacobian_.at(xi, {z, size}, stepper.step_, {by_z, size * size}, {by_xi, size});
       return true;
     }));
   }

@@ -254,6 +254,7 @@ class RosenbrockStepper final : public Stepper {
     begin_ = end_;
     method_.begin_step();
     end_ = controlled_step(begin_, step_, rejections, [&](double& end, double& step) {
+      length_ = step;
       if (!method_.try_step(end, step)) return odeint::fail;
       // A step that ends where the equations do not hold is none, however small its error.
       form_.rates(end, {method_.end_state(), size_}, end_rates_);
@@ -280,7 +281,7 @@ class RosenbrockStepper final : public Stepper {
     auto& stepper = *static_cast<RosenbrockStepper*>(self);
     const std::size_t size = stepper.size_;
     ++stepper.jacobian_evaluations;
-    stepper.jacobian_.at(z[size], {z, size}, stepper.by_z_, stepper.by_xi_);
+    stepper.jacobian_.at(z[size], {z, size}, stepper.length_, stepper.by_z_, stepper.by_xi_);
     std::fill_n(by_time, size + 1, 0.0);
     for (std::size_t i = 0; i < size; ++i) {
       double* const row = std::copy_n(stepper.by_z_.data() + i * size, size, matrix + i * (size + 1));
@@ -295,6 +296,7 @@ class RosenbrockStepper final : public Stepper {
   Rosenbrock4 method_;
   std::vector<double> start_, by_z_, by_xi_, end_rates_;
   double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
+  double length_ = k_first_step;  ///< of the step that is tried
 };
 
 template <class State>

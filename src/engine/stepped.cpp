@@ -112,6 +112,9 @@ class Stepped final : public EventLocator {
 // Difference quotients: what a step is made shorter by that leaves the domain, and how often.
 constexpr double k_nearer = 1e-2;
 constexpr int k_most_nearer = 8;
+// Those along xi: shorter than the step that they are for, and well above the rounding of xi.
+constexpr double k_share_of_step = 1e-4;
+constexpr double k_resolution = 1e-14;
 
 /// Forward Euler with a fixed step, as explicit codes of the discrete-element kind go: transitions take effect at the
 /// first step's end that finds them past.
@@ -212,7 +215,8 @@ double DifferenceJacobian::differ(double step, Shift&& shift) {
   }
 }
 
-void DifferenceJacobian::at(double xi, std::span<const double> z, std::span<double> jacobian, std::span<double> by_xi) {
+void DifferenceJacobian::at(double xi, std::span<const double> z, double length, std::span<double> jacobian,
+                            std::span<double> by_xi) {
   static const double k_root = std::sqrt(std::numeric_limits<double>::epsilon());
   const std::size_t n = z.size();
   std::ranges::copy(z, point_.begin());
@@ -225,8 +229,9 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, std::span<doub
     for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted_[i] - base_[i]) / step;
     point_[j] = z[j];
   }
+  const double onward = std::max(std::min(k_root, k_share_of_step * length), k_resolution * xi);
   // Backwards: beyond 1 the program goes on differently.
-  const double step = differ(xi > 0.5 ? -k_root : k_root, [&](double by) { form_.rates(xi + by, point_, shifted_); });
+  const double step = differ(xi > 0.5 ? -onward : onward, [&](double by) { form_.rates(xi + by, point_, shifted_); });
   for (std::size_t i = 0; i < n; ++i) by_xi[i] = (shifted_[i] - base_[i]) / step;
 }
 

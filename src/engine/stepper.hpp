@@ -74,8 +74,9 @@ class DifferenceJacobian {
   explicit DifferenceJacobian(ScaledForm& form)
       : form_(form), base_(form.size()), shifted_(form.size()), point_(form.size()) {}
 
+  /// @param length    of the step that it is for: a regime may be as short
   /// @param jacobian  row by row
-  void at(double xi, std::span<const double> z, std::span<double> jacobian, std::span<double> by_xi);
+  void at(double xi, std::span<const double> z, double length, std::span<double> jacobian, std::span<double> by_xi);
 
  private:
   template <class Shift>

@@ -11,6 +11,8 @@
 #include <span>
 
 #include "catalogue.hpp"
+#include "compressible/material_point_info.hpp"
+#include "compressible/yield_surface.hpp"
 #include "mdr/contact.hpp"
 #include "scene/pressure_curve.hpp"
 #include "scene/scene.hpp"
@@ -35,6 +37,7 @@ constexpr std::size_t k_most_events_per_step = 200;
 constexpr std::string_view k_endless = "endless events";
 constexpr std::string_view k_chattering = "chattering";
 constexpr std::string_view k_stiff_material = "the bulk modulus is above 1e5 yield pressures";
+constexpr std::string_view k_hardly_unique = "the program hardly determines the plastic strain any more";
 constexpr std::string_view k_singular_balance = "the balance of the free centre is singular";
 
 /// A limit of a model, as its messages name it.
@@ -96,6 +99,7 @@ constexpr StatedLimit k_stated_limits[] = {
     {"the strain that follows from the program is not unique", k_uniqueness},
     {"no plastic strain brings the stress back to the yield surface", k_uniqueness},
     {"Poisson's ratio has passed 1/2", k_poisson},
+    {"the material has become too stiff for its strength", "moduli beyond rounding"},
     {"transition_width is too large", "the arc ends above the axis"},
     // packing
     {"the packing's strain does not grow any further", "greatest strain"},
@@ -347,26 +351,39 @@ void check_material_point(const Run& run, Violations& found) {
   const double tolerance = own_tolerance(run);
   const bool is_compressible = option(scenario, "yield_model") != "vm";
   const double yield_pressure = material(scenario, "yield_pressure");
-  // Stresses are moduli times strains; what is prescribed stands there without their rounding.
-  const auto modulus = *table.find("youngs_modulus");
-  const double stiffest =
-      std::max(largest_magnitude(table, modulus), yield_pressure) / (1.0 - 2.0 * material(scenario, "nu0"));
-  const double largest_strain = std::max(1.0, largest_magnitude(table, *table.find("strain_axial")));
-  const double rounding = k_stress_rounding * stiffest * largest_strain;
+  // Stresses are moduli times strains; what is prescribed stands there without their rounding. Densities and strengths
+  // follow from the plastic strain by itself.
+  const compressible::Parameters law =
+      compressible::parameters_from(scenario.material, option(scenario, "yield_model"));
+  const auto phi = *table.find("phi");
+  const double strain_rounding =
+      k_stress_rounding * std::max(1.0, largest_magnitude(table, *table.find("strain_axial")));
+  const auto at = [&](const Table& t, std::size_t row) { return compressible::properties_at(law, t.at(row, phi)); };
   const auto p = *table.find("p");
   const auto s = *table.find("s");
   const auto axial = *table.find("stress_axial");
   const auto lateral = *table.find("stress_lateral");
   const double scale = std::max(largest_magnitude(table, p), largest_magnitude(table, s));
-  check_rows(run, "stress-invariants", "p and s do not belong to the axial and the lateral stress", found,
-             [&](const Table& t, std::size_t row) {
-               const double of_axial = t.at(row, p) + 2.0 / 3.0 * t.at(row, s) - t.at(row, axial);
-               const double of_lateral = t.at(row, p) - t.at(row, s) / 3.0 - t.at(row, lateral);
-               return std::max(std::abs(of_axial), std::abs(of_lateral)) - tolerance * scale - rounding;
-             });
+  check_rows(
+      run, "stress-invariants", "p and s do not belong to the axial and the lateral stress", found,
+      [&](const Table& t, std::size_t row) {
+        const double of_axial = t.at(row, p) + 2.0 / 3.0 * t.at(row, s) - t.at(row, axial);
+        const double of_lateral = t.at(row, p) - t.at(row, s) / 3.0 - t.at(row, lateral);
+        const compressible::Properties now = at(t, row);
+        const double stiffness = yield_pressure * std::max({now.bulk_modulus.value, now.shear_modulus.value, 1.0});
+        return std::max(std::abs(of_axial), std::abs(of_lateral)) - tolerance * scale - strain_rounding * stiffness;
+      });
   const auto f = *table.find("yield_function");
-  check_rows(run, "yield", "the stress is outside the yield surface", found,
-             [&](const Table& t, std::size_t row) { return t.at(row, f) - tolerance - rounding / yield_pressure; });
+  check_rows(run, "yield", "the stress is outside the yield surface", found, [&](const Table& t, std::size_t row) {
+    const compressible::Properties now = at(t, row);
+    const double of_p = t.at(row, p) / yield_pressure;
+    const double of_s = t.at(row, s) / yield_pressure;
+    const compressible::Yield y =
+        compressible::yield_on(law, now, compressible::branch_at(law, now, of_p, of_s), of_p, of_s);
+    const double by_strain =
+        std::abs(y.f_p) * now.bulk_modulus.value + 3.0 * std::abs(y.f_s) * now.shear_modulus.value + std::abs(y.f_phi);
+    return t.at(row, f) - tolerance - strain_rounding * by_strain;
+  });
   if (!is_compressible) {
     check_growth(run, "phi", tolerance, found);
     return;
@@ -432,7 +449,9 @@ std::string stated_end(const Run& run) {
     if (says("errors of the size of rounding")) return "tolerance of the size of rounding";
     if (says(k_singular_balance)) return std::string(k_singular_balance);
     if (run.scenario.model == "material-point" && says("too much work")) return "too much work";
-    if (says(k_stiff_material)) return std::string(k_stiff_material);
+    for (const std::string_view words : {k_stiff_material, k_hardly_unique}) {
+      if (says(words)) return std::string(words);
+    }
     for (const std::string_view words : {k_endless, k_chattering}) {
       if (may_go_on(run) && says(words)) return std::string(words);
     }

@@ -84,13 +84,23 @@ struct Start {
   std::optional<Target> lateral;
 };
 
-Start start_of(const std::vector<Step>& steps, std::size_t index, const Start& at_rest) {
+/// Whether a condition or a withdrawal may end a step of the program: for all walls, whichever has it.
+bool may_end_early(const Scenario& scenario, std::size_t index) {
+  const auto ends = [index](const std::vector<Step>& steps) {
+    return index < steps.size() && (!steps[index].until.empty() || steps[index].kind == Step::Kind::detach);
+  };
+  return ends(scenario.loading.steps) ||
+         std::ranges::any_of(scenario.loading.walls, [&](const WallSpec& wall) { return ends(wall.steps); });
+}
+
+Start start_of(const Scenario& scenario, const std::vector<Step>& steps, std::size_t index, const Start& at_rest) {
   Start start = at_rest;
   for (std::size_t i = 0; i < index; ++i) {
     const Step& step = steps[i];
-    if (!step.until.empty() || step.kind == Step::Kind::detach) return {};
-    start.first = after(start.first, step.kind, step.target);
-    if (step.lateral) start.lateral = after(start.lateral, step.lateral->kind, step.lateral->target);
+    const bool is_open = may_end_early(scenario, i);
+    start.first = is_open && step.kind != Step::Kind::hold ? std::nullopt : after(start.first, step.kind, step.target);
+    if (!step.lateral) continue;
+    start.lateral = is_open ? std::nullopt : after(start.lateral, step.lateral->kind, step.lateral->target);
   }
   return start;
 }
@@ -116,7 +126,7 @@ std::optional<Step> first_half(const Scenario& scenario, const std::vector<Step>
                                double gap) {
   Step half = steps[index];
   if (!half.until.empty() || half.kind == Step::Kind::detach) return {};
-  const Start start = start_of(steps, index, rest_of(scenario, steps.front(), gap));
+  const Start start = start_of(scenario, steps, index, rest_of(scenario, steps.front(), gap));
   if (control_of(half.kind) && !halve(start.first, half.kind, half.target)) return {};
   if (half.lateral && !halve(start.lateral, half.lateral->kind, half.lateral->target)) return {};
   if (half.duration) *half.duration *= 0.5;

@@ -386,6 +386,23 @@ TEST(MaterialPoint, StopsWhereItsLawsEnd) {
   }
 }
 
+TEST(MaterialPoint, StopsWhereRoundingOfStrainsWouldBeItsStress) {
+  Parameters m = von_mises(3.0);
+  m.xi = 60.0;
+  const Properties start = properties_at(m, 0.0);
+  const double ratio = std::max(start.bulk_modulus.value, 3.0 * start.shear_modulus.value);
+  const double phi = std::log(1e10 / ratio) / (m.xi - m.eta);
+  const Scenario scenario = point(m, Configuration::simple, {strain(-1.0)});
+  // Not ida, for which the material is too stiff before.
+  for (const char* integrator : {"direct", "cvode-adams", "cvode-bdf"}) {
+    const TestRun result = run(scenario, integrator);
+    EXPECT_EQ(result.record.status, RunStatus::stopped) << integrator;
+    EXPECT_NE(result.record.message.find("too stiff for its strength"), std::string::npos) << result.record.message;
+    EXPECT_EQ(result.events().back(), "limit");
+    EXPECT_NEAR(result.last("phi"), phi, 1e-6) << integrator;
+  }
+}
+
 // --- convergence
 
 struct Smooth {
