@@ -20,10 +20,11 @@ struct StressVerdict {
 /// Runs a scene, and others that must agree with it: by the reference form, slower, of a larger and stiffer particle,
 /// with a step cut in two, and for elastic laws forth and back. Never throws for what a run does.
 ///
-/// Agreement. The direct form is exact but for rounding; a controlled integrator is to be within k rtol of it,
-/// k = 100 (README: "the error of a curve stays below 100 rtol"). A scene can magnify errors by itself, next to a fold
-/// or pull-off, on steep unloading branches, where the order of two events decides; what such a scene does with data
-/// changed by rtol (by rounding, where two runs of the same form are compared) is measured, and allowed.
+/// Agreement. The direct form is exact but for rounding, its work to a hundredth of rtol; a controlled integrator is to
+/// be within k rtol of it, k = 100 (README: "the error of a curve stays below 100 rtol"). A scene can magnify errors by
+/// itself, next to a fold or pull-off, on steep unloading branches, where the order of two events decides; what such a
+/// scene does with data changed by rtol (by rounding, where two runs of the same form are compared) is measured, and
+/// allowed.
 [[nodiscard]] StressVerdict check_scene(const Scenario& scenario);
 
 }  // namespace monograin

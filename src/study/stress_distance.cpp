@@ -102,7 +102,8 @@ Distance distance_at(const Table& first, const Table& second,
     const bool is_margin = first.columns()[c].name == "margin";
     const bool is_root = is_margin || kind_of(first.columns()[c]).starts_with("contact_radius");
     const double origin = is_margin ? 1.0 : 0.0;
-    const double floor = nothing.share * factor_of(first.columns()[c].unit, nothing.unit);
+    const double floor = nothing.share * factor_of(first.columns()[c].unit, nothing.unit) +
+                         (is_energy(first.columns()[c]) ? nothing.energy_share * scale : 0.0);
     for (const auto& [a, b] : rows) {
       const double x = first.at(a, c) - origin;
       const double y = second.at(b, c) / factor - origin;

@@ -42,6 +42,7 @@ struct Distance {
 struct Negligible {
   Magnification unit;
   double share = 0.0;
+  double energy_share = 0.0;  ///< of the largest energy: the tolerance of the direct form's work
 };
 
 /// At pairs of rows, without the pressure (a force over an area, both of which are compared; where both vanish their

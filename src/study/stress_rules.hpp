@@ -31,6 +31,9 @@ inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::
 /// How a run has ended: "complete", or the limit of the model that its message states; empty: neither.
 [[nodiscard]] std::string stated_end(const Run& run);
 
+/// What the work of a run of the direct form may be wrong by, over the largest energy; 0 for other runs.
+[[nodiscard]] double direct_work_tolerance(const Run& run);
+
 /// Error of a run's own that its rules have to grant, over the largest values.
 [[nodiscard]] double own_tolerance(const Run& run);
 

@@ -141,8 +141,9 @@ Scenario with_integrator(Scenario scenario, std::string integrator) {
 }
 
 Scenario as_reference(Scenario scenario) {
-  if (make_scene(scenario).system->is_solvable()) return with_integrator(std::move(scenario), "direct");
-  scenario.numerics = {.integrator = "cvode-bdf", .rtol = k_reference_rtol, .atol = 1e-4 * k_reference_rtol};
+  const bool is_solvable = make_scene(scenario).system->is_solvable();
+  scenario.numerics = {
+      .integrator = is_solvable ? "direct" : "cvode-bdf", .rtol = k_reference_rtol, .atol = 1e-4 * k_reference_rtol};
   return scenario;
 }
 
