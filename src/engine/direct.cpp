@@ -20,7 +20,6 @@ constexpr double k_rest = 0.25;
 // step's first node, where a guard is not zero by rounding, but so near that it may cross and come back before that.
 constexpr double k_first = 1e-9;
 constexpr double k_grading = 30.0;
-constexpr double k_rounding_of_guards = 1e-13;
 constexpr double k_near_zero = 1e-3;
 // Tiny pieces of a segment in which the equations may end: more of them are rounding that gets nowhere.
 constexpr double k_tiny = 1e-10;
@@ -170,9 +169,7 @@ class Direct final : public EventLocator {
 
   /// A step may begin with a singularity, as from first touch on: smooth in one guard, and not in another.
   void look_early() {
-    const auto is_near = [](double value) {
-      return std::abs(value) > k_rounding_of_guards && std::abs(value) < k_near_zero;
-    };
+    const auto is_near = [](double value) { return std::abs(value) > k_zero_guard && std::abs(value) < k_near_zero; };
     if (has_slaves_ || std::ranges::none_of(begin_values_, is_near)) return;
     const double first_node = 0.5 * (piece_end_ - begin_) * (1.0 + nodes_->places[0]);
     try {

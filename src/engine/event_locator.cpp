@@ -15,8 +15,6 @@ namespace {
 constexpr double k_smallest_hidden = 1e-6;
 // An extremum this near to zero, over the guard where it was last seen, is looked at.
 constexpr double k_near = 0.5;
-// What a guard at zero is by rounding. Errors of an integrator are no such thing: a short regime lies within them.
-constexpr double k_rounding = 1e-13;
 // Looks before the end of a branch: each so many times nearer than the one before, and how many.
 constexpr double k_nearer = 0.25;
 constexpr int k_looks_before_end = 12;
@@ -63,7 +61,7 @@ void EventLocator::look_inside(double xi, std::span<const double> y) {
   // A guard that is zero but for rounding is on the side where it was.
   const View last = seen(look_count_);
   for (std::size_t g = 0; g < next.values.size(); ++g) {
-    if (std::abs(next.values[g]) <= k_rounding) next.values[g] = last.values[g];
+    if (std::abs(next.values[g]) <= k_zero_guard) next.values[g] = last.values[g];
   }
   ++look_count_;
 }

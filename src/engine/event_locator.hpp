@@ -22,6 +22,8 @@ class EventLocator : public Integrator {
 
   /// Shorter pieces are not looked into: guards near zero are rounding there.
   static constexpr double k_smallest_looked_into = 1e-6;
+  /// What a guard at zero is by rounding. Errors of an integrator are no such thing: a short regime lies within them.
+  static constexpr double k_zero_guard = 1e-13;
 
   /// Takes up a segment: state, guards, and their sides.
   void begin_segment(double xi, std::span<const double> y);

@@ -23,7 +23,7 @@ using IdaMemory = std::unique_ptr<void, IdaDeleter>;
 
 constexpr double k_slave_tolerance = 1e-4;  // loose, but small enough for difference quotients
 constexpr int k_most_failures = 50;         // of one step
-constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();  // of the step coordinate
+constexpr double k_rounding_of_xi = 4.0 * std::numeric_limits<double>::epsilon();  // of the step coordinate
 
 class Ida final : public Integrator {
  public:
@@ -136,7 +136,7 @@ class Ida final : public Integrator {
     const auto least = view(least_atol_.get());
     const auto rates = view(dy_.get());
     for (std::size_t k = 0; k < least.size(); ++k) {
-      const double rounding = k_rounding * std::abs(rates[k]);
+      const double rounding = k_rounding_of_xi * std::abs(rates[k]);
       view(atol_.get())[k] = std::isfinite(rounding) ? std::max(least[k], rounding) : least[k];
     }
     check("IDASVtolerances", IDASVtolerances(memory_.get(), local_rtol(tolerances_), atol_.get()));
