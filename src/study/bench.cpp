@@ -382,34 +382,36 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings) {
     return parse_scenario(default_scenario_text(), "die.toml", overrides);
   };
   struct Measured {
-    Timing timing;
+    std::function<double()> run;
     RunRecord record;
   };
   using Alter = std::function<Scene(const Scenario&)>;
   const Alter as_it_is = [](const Scenario& scenario) { return make_scene(scenario); };
-  const auto measure = [&](const Scenario& scenario, const std::string& integrator, const Alter& made) {
-    const auto once = [&](double* seconds) {
+  const auto measure = [](const Scenario& scenario, const std::string& integrator, const Alter& made) {
+    const auto once = [scenario, integrator, made](double& seconds) {
       Scene scene = made(scenario);
       const auto start = Clock::now();
       RunRecord record =
           record_run(scene, integrator, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
-      *seconds = seconds_since(start);
+      seconds = seconds_since(start);
       return record;
     };
-    double seconds = 0.0;
-    RunRecord record = once(&seconds);
-    const Timing timing = time_alone(settings.least_time, [&] {
-      static_cast<void>(once(&seconds));
+    const auto timed = [once] {
+      double seconds = 0.0;
+      static_cast<void>(once(seconds));
       return seconds;
-    });
-    return Measured{timing, std::move(record)};
+    };
+    double seconds = 0.0;
+    return Measured{timed, once(seconds)};
   };
   std::vector<BenchSaving> savings;
   const auto add = [&](std::string what, std::string scene, const Measured& saved, const Measured& undone) {
+    std::vector<Stopwatch> watches{Stopwatch(saved.run), Stopwatch(undone.run)};
+    time_in_turn(watches, settings.least_time);
     savings.push_back({.what = std::move(what),
                        .scene = std::move(scene),
-                       .time = saved.timing.fastest,
-                       .undone = undone.timing.fastest,
+                       .time = watches[0].timing().fastest,
+                       .undone = watches[1].timing().fastest,
                        .difference = curve_error(saved.record.history, undone.record.history).whole});
   };
 

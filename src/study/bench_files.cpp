@@ -338,7 +338,8 @@ std::string bench_text(const std::vector<BenchScene>& scenes, const std::vector<
   std::string text = fmt::format(
       "# Run time against error\n\n{}\n\nTimes are the fastest of repeated runs of one history on one core, recording "
       "included, set-up of the scene\nnot. Errors are the largest difference of any force, stress, displacement, "
-      "strain or apparent radius at any\noutput point over its largest value. \"Time at 1e-08\": of the fastest run "
+      "strain, apparent radius or work at\nany output point over its largest value. \"Time at 1e-08\": of the fastest "
+      "run "
       "with no larger error.\n",
       machine_text());
   const bool has_auto = std::ranges::any_of(scenes, [](const BenchScene& scene) { return !scene.chosen.empty(); });
