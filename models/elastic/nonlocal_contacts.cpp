@@ -13,8 +13,9 @@ namespace monograin::nonlocal {
 namespace {
 
 constexpr double k_round_off = std::numeric_limits<double>::epsilon();
-constexpr int k_newton_limit = 100;    // contraction by half reaches rounding in 52
-constexpr double k_contraction = 0.5;  // of Newton's corrections; less is a guess too far away
+constexpr double k_resolved = 4.0 * k_round_off;  // of the largest signed square: what Newton's method leaves open
+constexpr int k_newton_limit = 100;               // contraction by half reaches rounding in 52
+constexpr double k_contraction = 0.5;             // of Newton's corrections; less is a guess too far away
 constexpr int k_first_touch_steps = 20;
 // Contacts shallower than this, over where the walls go, say nothing of which will bear the centre.
 constexpr double k_unloaded = 1e-6;
@@ -285,7 +286,7 @@ bool Contacts::newton(std::span<double> y, double imbalance) {
     }
     // What is left is at most a further contraction of this correction.
     const double contraction = iteration > 0 ? std::min(correction / last, 1.0) : 1.0;
-    if (correction * contraction <= 4.0 * k_round_off * scale) return true;
+    if (correction * contraction <= k_resolved * scale) return true;
     if (iteration >= free_steps && contraction > k_contraction) return correction <= k_stagnation * scale;
     last = correction;
   }
@@ -363,7 +364,20 @@ void Contacts::approach_in_steps(std::span<double> y) {
     // Short steps that succeed now and then do not arrive either.
     if (step > k_least_step && steps < k_most_steps) continue;
     if (is_on_branch) {
-      throw std::domain_error(k_nothing_holds);
+      // Contacts of a centre that only goes along are no deeper than rounding: their forces need not balance.
+      look(trial_);
+      double widest = 0.0;
+      for (std::size_t j = 0; j < n; ++j) widest = std::max(widest, std::abs(trial_[j]));
+      const double rounding = k_resolved * widest;
+      double unresolved = 0.0;
+      for (std::size_t j = 0; j < n; ++j) {
+        unresolved += weights_[j] * (modulus_ * law_.at(rounding).force + stiffness_[j] * rounding);
+      }
+      for (std::size_t k = 0; k < free_count(); ++k) {
+        if (std::abs(net_force(k)) > unresolved) throw std::domain_error(k_nothing_holds);
+      }
+      std::copy(trial_.begin(), trial_.end(), state_.begin());
+      break;
     }
     look(state_);
     const auto widest = std::max_element(
@@ -404,13 +418,14 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
         net[at(k)] += weights_[j] * arms_(at(j), at(k)) * (is_force(j) ? slope(j) : stiffness_[j] * entry(j, n));
       }
     }
-    const double left = move_centre(net, dy.subspan(n));
     double pressing = 0.0;
     double widest = 0.0;
     for (std::size_t j = 0; j < n; ++j) {
-      if (is_force(j)) pressing += weights_[j] * std::abs(slope(j));
+      // What walls under displacements leave is rounding of all that they would change.
+      pressing += weights_[j] * std::abs(is_force(j) ? slope(j) : stiffness_[j] * entry(j, n));
       widest = std::max(widest, std::abs(y[j]));
     }
+    const double left = move_centre(net, dy.subspan(n));
     bool may_hold = false;  // walls that just touch do at once
     for (std::size_t j = 0; j < n; ++j) {
       may_hold = may_hold || (!is_force(j) && y[j] <= 0.0 && y[j] > -k_unloaded * widest);

@@ -273,7 +273,8 @@ class RosenbrockStepper final : public Stepper {
  private:
   static void rates(void* self, double, const double* z, double* dz) {
     auto& stepper = *static_cast<RosenbrockStepper*>(self);
-    stepper.form_.rates(z[stepper.size_], {z, stepper.size_}, {dz, stepper.size_});
+    // As an unknown, xi passes the end of the program's step by rounding, where a force may already have to pull.
+    stepper.form_.rates(std::min(z[stepper.size_], 1.0), {z, stepper.size_}, {dz, stepper.size_});
     dz[stepper.size_] = 1.0;
   }
 
