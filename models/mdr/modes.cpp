@@ -38,8 +38,6 @@ constexpr double k_at_rest = 1e-8;
 // With a free centre, contacts along its directions open and close together; their guards agree to the integration
 // error only.
 constexpr double k_together = 1e-6;
-// Overlaps over R0 that are rounding of lengths of the order of R0.
-constexpr double k_shallow = 1e-12;
 // Share of the forces on a free centre that is rounding in their balance.
 constexpr double k_no_force = 1e-9;
 // A free centre that has gone this far (over R0) within an instant has sprung.

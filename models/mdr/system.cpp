@@ -167,6 +167,13 @@ bool System::is_open(int contact_class) const noexcept {
   return !touches(memory_[static_cast<std::size_t>(contact_class)].regime);
 }
 
+/// Of the whole program: every contact is as shallow when it is made.
+std::string_view System::difficulty(double /*xi*/, std::span<const double> /*y*/) {
+  if (largest_overlap_expected() > k_shallow) return {};
+  return "the program closes no contact by more than 1e-12 of the particle's radius, which is rounding; expected a "
+         "deeper one, or integrator = \"direct\"";
+}
+
 double System::largest_overlap(const Memory& memory, double r) const noexcept {
   return settings_.delta_max_rule == DeltaMaxRule::shifted ? memory.largest + r : memory.largest;
 }

@@ -88,6 +88,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
+  [[nodiscard]] std::string_view difficulty(double xi, std::span<const double> y) override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
 
   /// Volume balance V_geo,Q - V_Q - C over 4 pi R0^3, the drift of an integrated solution; 0 while the radius is held.
@@ -103,6 +104,8 @@ class System final : public HybridSystem {
   }
   /// Below this a class of walls does not act along any free direction of the centre.
   static constexpr double k_no_direction = 1e-10;
+  /// Overlaps over R0 that are rounding of lengths of the order of R0.
+  static constexpr double k_shallow = 1e-12;
 
   /// Vectors and matrices along the free directions of the centre; entries beyond their number are zero.
   using Small = Eigen::Vector3d;

@@ -41,6 +41,7 @@ constexpr std::string_view k_chattering = "chattering";
 constexpr std::string_view k_stiff_material = "the bulk modulus is above 1e5 yield pressures";
 constexpr std::string_view k_hardly_unique = "the program hardly determines the plastic strain any more";
 constexpr std::string_view k_singular_balance = "the balance of the free centre is singular";
+constexpr std::string_view k_no_depth = "the program closes no contact by more than 1e-12";
 
 /// A limit of a model, as its messages name it.
 struct StatedLimit {
@@ -454,6 +455,7 @@ std::string stated_end(const Run& run) {
   if (run.record.status == RunStatus::failed) {
     if (says("errors of the size of rounding")) return "tolerance of the size of rounding";
     if (says(k_singular_balance)) return std::string(k_singular_balance);
+    if (says(k_no_depth)) return "no contact above rounding";
     if (run.scenario.model == "material-point" && says("too much work")) return "too much work";
     for (const std::string_view words : {k_stiff_material, k_hardly_unique}) {
       if (says(words)) return std::string(words);

@@ -11,6 +11,7 @@
 #include "scenario/scenario.hpp"
 #include "study/stress_checks.hpp"
 #include "support/test_run.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin {
 namespace {
@@ -40,6 +41,11 @@ INSTANTIATE_TEST_SUITE_P(Each, StressFinding, ::testing::ValuesIn(findings()), [
   std::ranges::replace(name, '-', '_');
   return name;
 });
+
+TEST(StressFindings, AreListed) {
+  const std::string list = read_text(MONOGRAIN_SOURCE_DIR "/tests/study/findings/README.md");
+  for (const std::string& name : findings()) EXPECT_NE(list.find("| `" + name + "` |"), std::string::npos) << name;
+}
 
 TEST(StressLimits, AToleranceOfTheSizeOfRoundingIsNamed) {
   // The particle's free surface is nearly used up: the radius follows from a volume balance that hardly depends on it.
