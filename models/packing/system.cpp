@@ -124,14 +124,12 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   if (!is_jammed_) at_rest_ = y[k_fraction];
   const Mode before = mode_;
   settle(0.0, log);
-  if (is_at_limit(0.0)) throw CannotBegin(limit());
   // An integrated state goes on; elsewhere the law says what it is: a packing that jams beyond its closed start, too,
   // and one that stands where what is prescribed falls at first, which gives way to where it grows.
   const bool goes_on = mode_ == before && !(mode_ == Mode::jammed && y[k_fraction] < branch_.begin);
-  if (goes_on)
-    complete(0.0, y);
-  else
-    solve(0.0, y);
+  if (!goes_on) solve(0.0, y);
+  if (is_at_limit(0.0)) throw CannotBegin(limit());
+  if (goes_on) complete(0.0, y);
   watch(0.0);
   resting_ = y[k_fraction];
 }

@@ -199,7 +199,13 @@ class ExplicitStepper final : public Stepper {
         if (tries == k_most_tries) throw SolverError("try_step", "a state in a step is not reached", at, step, {});
         step = std::min(step, xi - at);
         rule_errors_.begin(0);
-        static_cast<void>(reaching_.try_step(system<true>(), between_, at, step));
+        try {
+          static_cast<void>(reaching_.try_step(system<true>(), between_, at, step));
+        } catch (const std::domain_error&) {
+          // Stages may lie where the equations do not hold, though all of the step does not.
+          step *= 0.25;
+          if (step < least_progress(at)) throw;
+        }
       }
     }
     std::copy_n(between_.begin(), z.size(), z.begin());

@@ -67,7 +67,7 @@ std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::
 }
 
 /// How far a wall that is withdrawn so far is taken to reach into the particle: its contacts would have tolerances of
-/// the order of what the particle bears there.
+/// the order of what the particle bears there. So is one that is pulled where nothing adheres.
 constexpr double k_share_of_withdrawal = 1e-4;
 
 /// How far a condition lets a ramp go that leads on to its target; infinity where the model has to be run to say so.
@@ -83,11 +83,14 @@ Reach end_of(const Scenario& scenario, const Until& until) {
 /// Largest displacement or force of the programs.
 double largest_target(const Scenario& scenario, const std::vector<Channel>& channels, Step::Kind kind) {
   double largest = 0.0;
+  const auto energy = scenario.material.find("surface_energy");
+  const bool adheres = energy != scenario.material.end() && energy->second > 0.0;
+  const bool is_displacement = kind == Step::Kind::displacement;
   for (const Channel& channel : channels) {
     for (const Step& step : channel.program) {
       if (step.kind != kind) continue;
-      const bool is_displacement = kind == Step::Kind::displacement;
-      double reach = (is_displacement && step.target < 0.0 ? k_share_of_withdrawal : 1.0) * std::abs(step.target);
+      const bool is_withdrawal = step.target < 0.0 && (is_displacement || !adheres);
+      double reach = (is_withdrawal ? k_share_of_withdrawal : 1.0) * std::abs(step.target);
       for (const Until& until : step.until) {
         const Reach end = end_of(scenario, until);
         reach = std::min(reach, is_displacement ? end.displacement : end.force);

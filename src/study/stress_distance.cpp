@@ -36,7 +36,7 @@ double scale_of(const Table& table, std::size_t column) {
 /// Not what says where a row is, nor what has rules of its own.
 bool is_compared(const Column& column) {
   return !column.holds_words() && column.name != "time" && column.name != "step" && column.name != "row" &&
-         column.name != "yield_function" && kind_of(column) != "pressure";
+         column.name != "yield_function" && column.name != "coordination_number" && kind_of(column) != "pressure";
 }
 
 double factor_of(const std::string& unit, const Magnification& larger) {

@@ -46,7 +46,7 @@ struct Negligible {
 };
 
 /// At pairs of rows, without the pressure (a force over an area, both of which are compared; where both vanish their
-/// quotient has no digits).
+/// quotient has no digits) and the coordination number (a root of the packing fraction).
 /// @param larger  the second by the first
 [[nodiscard]] Distance distance_at(const Table& first, const Table& second,
                                    const std::vector<std::pair<std::size_t, std::size_t>>& rows,

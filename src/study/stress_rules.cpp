@@ -14,6 +14,8 @@
 #include "compressible/material_point_info.hpp"
 #include "compressible/yield_surface.hpp"
 #include "mdr/contact.hpp"
+#include "packing/law.hpp"
+#include "scene/packing_law.hpp"
 #include "scene/pressure_curve.hpp"
 #include "scene/scene.hpp"
 #include "study/stress_distance.hpp"
@@ -340,6 +342,15 @@ void check_packing(const Run& run, Violations& found) {
   const double scale = largest_magnitude(table, stress);
   check_rows(run, "tension", "the packing pulls", found,
              [&](const Table& t, std::size_t row) { return -t.at(row, stress) - tolerance * scale; });
+  // It grows like a root from jamming on, and is compared by what it follows from.
+  const auto coordination = *table.find("coordination_number");
+  check_rows(run, "coordination", "the coordination number does not belong to the packing fraction", found,
+             [&, law = packing_law_of(run.scenario)](const Table& t, std::size_t row) {
+               const double number = t.at(row, coordination);
+               if (std::isnan(number)) return -1.0;
+               return std::abs(number / packing::coordination_number(law, t.at(row, fraction)) - 1.0) -
+                      k_stress_rounding;
+             });
   const auto plastic = *table.find("plastic_fraction");
   check_rows(run, "plastic-fraction", "the plastic fraction is not within 0 and 1", found,
              [&](const Table& t, std::size_t row) {
