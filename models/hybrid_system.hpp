@@ -16,6 +16,7 @@
 /// std::domain_error where they end for good; the caller then comes nearer with smaller steps.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -128,6 +129,9 @@ class HybridSystem {
   virtual ~HybridSystem() = default;
 
   [[nodiscard]] virtual std::span<const Unknown> unknowns() const noexcept = 0;
+
+  /// Whether there are unknowns that may be singular where a segment begins, and rates with them.
+  [[nodiscard]] bool has_slaves() const noexcept { return std::ranges::any_of(unknowns(), &Unknown::is_slaved); }
   /// Empty where the model knows no walls.
   [[nodiscard]] virtual std::span<const ContactClass> classes() const noexcept { return {}; }
 

@@ -48,7 +48,7 @@ class Direct final : public EventLocator {
     const auto unknowns = system.unknowns();
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
     if (found != unknowns.end()) quadrature_ = static_cast<std::size_t>(found - unknowns.begin());
-    has_slaves_ = std::ranges::any_of(unknowns, &Unknown::is_slaved);
+    has_slaves_ = system.has_slaves();
     trial_.resize(unknowns.size());
     rates_.resize(unknowns.size());
     begin_rates_.resize(unknowns.size());

@@ -266,7 +266,12 @@ class Drive {
       if (is_detached()) return false;
     }
     // An event may leave a rest of the step that is rounding, but not beside a contact that is as shallow.
-    if (plan_.duration > 0.0 && xi_ < 1.0) system_.is_solvable() ? system_.solve(1.0, y_) : system_.complete(1.0, y_);
+    if (plan_.duration > 0.0 && xi_ < 1.0) {
+      if (system_.is_solvable())
+        system_.solve(1.0, y_);
+      else
+        system_.complete(1.0, y_);
+    }
     xi_ = 1.0;
     return false;
   }

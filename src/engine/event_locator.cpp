@@ -16,8 +16,8 @@ constexpr double k_smallest_hidden = 1e-6;
 // An extremum this near to zero, over the guard where it was last seen, is looked at.
 constexpr double k_near = 0.5;
 // Looks before the end of a branch: each so many times nearer than the one before, and how many.
-constexpr double k_nearer = 0.25;
-constexpr int k_looks_before_end = 12;
+constexpr double k_approach = 0.25;
+constexpr std::size_t k_looks_before_end = 12;
 // How far ahead the side of a guard that begins at zero is read.
 constexpr double k_ahead = 1e-9;
 
@@ -30,7 +30,7 @@ bool crosses(int direction, double before, double after) noexcept {
 }  // namespace
 
 EventLocator::EventLocator(HybridSystem& system, Watch& watch, std::size_t looks)
-    : system_(system), watch_(watch), looks_(looks) {
+    : system_(system), watch_(watch), looks_(looks + k_looks_before_end) {
   for (auto* state : {&begin_state_, &end_state_, &guess_}) state->resize(system.unknowns().size());
 }
 
@@ -198,8 +198,8 @@ bool EventLocator::is_branch_end(std::size_t guard) const {
 /// Looks between the last one and a root, ever nearer to it.
 void EventLocator::look_up_to(double root, double last) {
   double distance = root - last;
-  for (int look = 0; look < k_looks_before_end; ++look) {
-    distance *= k_nearer;
+  for (std::size_t look = 0; look < k_looks_before_end; ++look) {
+    distance *= k_approach;
     if (distance < least_progress(root)) return;
     state_at(root - distance, guess_);
     look_inside(root - distance, guess_);

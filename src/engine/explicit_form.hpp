@@ -66,10 +66,7 @@ class ExplicitForm {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] const Unknown& unknown(std::size_t k) const noexcept { return system_.unknowns()[k]; }
 
-  /// Whether there are unknowns that may be singular where a segment begins, and rates with them.
-  [[nodiscard]] bool has_slaves() const noexcept {
-    return std::ranges::any_of(system_.unknowns(), &Unknown::is_slaved);
-  }
+  [[nodiscard]] bool has_slaves() const noexcept { return system_.has_slaves(); }
 
   /// Takes up a segment's first complete state; the integrated part of it goes to `integrated`.
   void begin(std::span<const double> complete, std::span<double> integrated) {

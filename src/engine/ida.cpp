@@ -40,7 +40,6 @@ class Ida final : public Integrator {
     for (std::size_t k = 0; k < unknowns.size(); ++k) {
       // A slaved unknown has no error of its own: hardly weighted, and completed wherever it is used.
       const double absolute = unknowns[k].is_slaved ? k_slave_tolerance : local_atol(tolerances);
-      has_slaves_ = has_slaves_ || unknowns[k].is_slaved;
       view(least_atol_.get())[k] = absolute * unknowns[k].scale;
       view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
     }
@@ -48,7 +47,6 @@ class Ida final : public Integrator {
     check("IDASetErrHandlerFn", IDASetErrHandlerFn(memory_.get(), keep_message, &message_));
     check("IDAInit", IDAInit(memory_.get(), residual, 0.0, y_.get(), dy_.get()));
     check("IDASetUserData", IDASetUserData(memory_.get(), this));
-    set_tolerances();
     check("IDASetMaxNumSteps", IDASetMaxNumSteps(memory_.get(), k_most_internal_steps));
     // From where a force is zero, the first steps are smaller than IDA's guess by many orders.
     check("IDASetMaxErrTestFails", IDASetMaxErrTestFails(memory_.get(), k_most_failures));
@@ -240,7 +238,7 @@ class Ida final : public Integrator {
   Watch& watch_;
   Tolerances tolerances_;
   SegmentQuadratures quadratures_;
-  bool has_slaves_ = false;
+  const bool has_slaves_ = system_.has_slaves();
   std::vector<double> complete_;
   std::string message_;
   Pending pending_;

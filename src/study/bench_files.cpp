@@ -339,8 +339,7 @@ std::string bench_text(const std::vector<BenchScene>& scenes, const std::vector<
       "# Run time against error\n\n{}\n\nTimes are the fastest of repeated runs of one history on one core, recording "
       "included, set-up of the scene\nnot. Errors are the largest difference of any force, stress, displacement, "
       "strain, apparent radius or work at\nany output point over its largest value. \"Time at 1e-08\": of the fastest "
-      "run "
-      "with no larger error.\n",
+      "run with no larger error.\n",
       machine_text());
   const bool has_auto = std::ranges::any_of(scenes, [](const BenchScene& scene) { return !scene.chosen.empty(); });
   if (has_auto) append_auto(scenes, text);
