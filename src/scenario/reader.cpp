@@ -162,7 +162,8 @@ void read_numerics(Reading& reading, const Section& root, const Language& langua
 Scenario read_tree(const toml::table& tree, const std::string& origin, FaultList& faults) {
   const Language& language = language_of(model_to_check_against(tree));
   Reading reading{faults};
-  const Section root(reading, {&tree, {origin}, "the scenario"}, language.root, language.foreign_tables);
+  const SourceLocation top{origin};
+  const Section root(reading, {&tree, top, "the scenario"}, language.root, language.foreign_tables);
 
   Scenario scenario;
   scenario.title = root.text("title");

@@ -35,7 +35,7 @@ std::string escaped(std::string_view symbol) {
 
 std::string units_pattern(const DimensionInfo& info, bool with_relative) {
   std::string pattern;
-  for (const Unit& unit : info.units) pattern += (pattern.empty() ? "" : "|") + escaped(unit.symbol);
+  for (const Unit& unit : info.units) pattern += fmt::format("{}{}", pattern.empty() ? "" : "|", escaped(unit.symbol));
   if (with_relative) pattern += fmt::format("|{}", info.relative);
   return pattern;
 }

@@ -60,7 +60,8 @@ class CalibrationReader {
     const toml::table tree = parse_document(made_.text, made_.file);
     const bool scenario_is_table = tree["scenario"].is_table();
     const Keys keys = root_keys(scenario_is_table, tree["data"].is_array());
-    const Section root(reading_, {&tree, {made_.file}, "the calibration"}, keys);
+    const SourceLocation top{made_.file};
+    const Section root(reading_, {&tree, top, "the calibration"}, keys);
     made_.title = root.text("title");
     has_scenario_ = read_own_scenario(root, scenario_is_table);
     read_fit(root);

@@ -92,7 +92,8 @@ class SweepReader {
     digested_ = text;
     const toml::table tree = parse_document(text, file_.string());
     const std::vector<KeySpec> keys = root_keys(tree["scenario"].is_table());
-    const Section root(reading_, {&tree, {file_.string()}, "the sweep"}, keys);
+    const SourceLocation top{file_.string()};
+    const Section root(reading_, {&tree, top, "the sweep"}, keys);
     design_ = root.text("design");
     check_keys_of_design(root, keys);
     read_scenario_of(root, tree, text);
