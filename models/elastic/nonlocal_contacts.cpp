@@ -24,6 +24,8 @@ constexpr double k_balance = 1e-9;      // net force over the sum of forces
 constexpr double k_least_step = 1e-13;  // of the way to a state that is not found at once
 constexpr int k_most_steps = 1000;      // on that way, tried ones included
 constexpr double k_same_surroundings = 1e-9;
+constexpr double k_margin_tolerance = 1e-14;
+constexpr int k_most_quotients = 6;  // each cubes the error of the mode; two are usual
 
 constexpr const char* k_nothing_holds =
     "no contact holds the centre of the particle where the forces of the others drive it";
@@ -90,7 +92,7 @@ Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Ce
       if (alike != neighbours.end())
         ++alike->count;
       else
-        neighbours.push_back({class_of[k], angle, 1});
+        neighbours.push_back({class_of[k], angle, radius_quotient(poisson_ratio_, angle), 1});
     }
   }
 
@@ -126,13 +128,16 @@ Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Ce
   now_.resize(n);
   forces_.resize(n);
   stiffness_.resize(n);
+  seen_.resize(n);
+  forget();
   matrix_.resize(n * stride_);
   for (auto* targets : {&targets_, &first_targets_, &last_targets_}) targets->resize(n);
   for (auto* state : {&trial_, &state_, &unit_rates_}) state->resize(unknown_count());
   unit_ramps_.resize(n);
   modes_ = mode_coupling_;
   stiffness_roots_.resize(n);
-  eigenvalues_.compute(modes_, Eigen::EigenvaluesOnly);
+  eigenvalues_.compute(modes_);
+  critical_mode_ = eigenvalues_.eigenvectors().col(0);
 }
 
 Contacts::Target Contacts::target(bool is_force, double value) const {
@@ -142,12 +147,19 @@ Contacts::Target Contacts::target(bool is_force, double value) const {
 
 /// Contacts, forces and stiffnesses of a state.
 void Contacts::look(std::span<const double> y) {
+  const auto squares = y.first(class_count());
+  if (std::ranges::equal(squares, seen_)) return;
+  forget();
   for (std::size_t j = 0; j < class_count(); ++j) {
     now_[j] = law_.at(y[j]);
     forces_[j] = modulus_ * now_[j].force;
     stiffness_[j] = 2.0 * modulus_ * now_[j].contact_radius;
   }
+  std::ranges::copy(squares, seen_.begin());
 }
+
+/// What was looked at is about to be changed.
+void Contacts::forget() noexcept { seen_[0] = std::numeric_limits<double>::quiet_NaN(); }
 
 /// What the displacement of the centre and the forces on other walls add to the approach of a wall.
 double Contacts::lift(std::size_t index, std::span<const double> y) const noexcept {
@@ -246,6 +258,7 @@ bool Contacts::newton(std::span<double> y, double imbalance) {
   // by steps of 2/3, 2/9 ... of it.
   const int free_steps = is_first_touch ? k_first_touch_steps : free_count() > 0 && is_to_balance ? 2 : 1;
   double last = 0.0;
+  forget();
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     for (std::size_t j = 0; j < n; ++j) {
       const Target& goal = targets_[j];
@@ -396,6 +409,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
   look(y);
   const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
   const auto slope = [&](std::size_t j) { return ramps[j].end - ramps[j].start; };
+  forget();
   for (std::size_t j = 0; j < n; ++j) {
     if (is_force(j)) stiffness_[j] = 0.0;
   }
@@ -484,28 +498,76 @@ void Contacts::set_modes(double shift) {
   }
 }
 
+/// L D L^T of the modes in place: pivots on the diagonal, below it the columns of L times their pivots.
+/// @return the least pivot; the first that is not positive, with the rest left undone, unless asked to go to the end
+double Contacts::eliminate_modes(bool to_the_end) noexcept {
+  const Eigen::Index count = modes_.rows();
+  double least = std::numeric_limits<double>::infinity();
+  for (Eigen::Index p = 0; p < count; ++p) {
+    double* const pivot = &modes_(p, p);
+    least = std::min(least, *pivot);
+    if (!(least > 0.0)) {
+      if (!to_the_end) break;
+      if (*pivot == 0.0) *pivot = std::numeric_limits<double>::min();
+    }
+    const double inverse = 1.0 / *pivot;
+    const Eigen::Index rest = count - p;
+    for (Eigen::Index c = 1; c < rest; ++c) {
+      const double factor = pivot[c] * inverse;
+      double* const column = pivot + c * count;
+      for (Eigen::Index i = c; i < rest; ++i) column[i] -= factor * pivot[i];
+    }
+  }
+  return least;
+}
+
+/// Solves with eliminated modes, in place.
+void Contacts::solve_modes(Eigen::VectorXd& x) const noexcept {
+  const Eigen::Index count = modes_.rows();
+  for (Eigen::Index p = 0; p < count; ++p) {
+    x[p] /= modes_(p, p);
+    for (Eigen::Index i = p + 1; i < count; ++i) x[i] -= modes_(i, p) * x[p];
+  }
+  for (Eigen::Index p = count - 1; p >= 0; --p) {
+    double sum = 0.0;
+    for (Eigen::Index i = p + 1; i < count; ++i) sum += modes_(i, p) * x[i];
+    x[p] -= sum / modes_(p, p);
+  }
+}
+
+/// Rayleigh quotient of the modes in the direction of the critical one.
+double Contacts::quotient_of_modes() const noexcept {
+  double sum = 0.0;
+  for (Eigen::Index k = 0; k < modes_.cols(); ++k) {
+    double below = 0.0;
+    for (Eigen::Index i = k + 1; i < modes_.rows(); ++i) below += modes_(i, k) * critical_mode_[i];
+    sum += critical_mode_[k] * (modes_(k, k) * critical_mode_[k] + 2.0 * below);
+  }
+  return sum;
+}
+
 double Contacts::margin(std::span<const double> y) {
   look(y);
+  // The mode changes little from one state to the next. No eigenvalue is above a quotient of Rayleigh's without another
+  // below it, and with positive pivots none is below the shift.
+  for (int step = 0; step < k_most_quotients; ++step) {
+    set_modes(0.0);
+    const double quotient = quotient_of_modes();
+    modes_.diagonal().array() -= quotient - k_margin_tolerance;
+    if (eliminate_modes(true) > 0.0) return quotient;
+    solve_modes(critical_mode_);
+    critical_mode_ /= critical_mode_.norm();
+  }
   set_modes(0.0);
-  return eigenvalues_.compute(modes_, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  eigenvalues_.compute(modes_);
+  critical_mode_ = eigenvalues_.eigenvectors().col(0);
+  return eigenvalues_.eigenvalues()[0];
 }
 
 double Contacts::least_pivot(std::span<const double> y, double shift) {
   look(y);
   set_modes(shift);
-  const Eigen::Index count = modes_.rows();
-  double least = modes_(0, 0);
-  for (Eigen::Index p = 0; p < count; ++p) {
-    const double pivot = modes_(p, p);
-    least = std::min(least, pivot);
-    if (!(least > 0.0)) break;
-    const double inverse = 1.0 / pivot;
-    for (Eigen::Index c = p + 1; c < count; ++c) {
-      const double factor = modes_(c, p) * inverse;
-      for (Eigen::Index i = c; i < count; ++i) modes_(i, c) -= factor * modes_(i, p);
-    }
-  }
-  return least;
+  return eliminate_modes(false);
 }
 
 bool Contacts::is_held_softly(std::span<const Ramp> ramps, std::span<const double> y, double s) {
@@ -547,7 +609,7 @@ double Contacts::deformed_radius(RadiusRule rule, std::size_t index, std::span<c
   const RadiusInfluence influence(rule, poisson_ratio_, a);
   for (const Neighbour& neighbour : neighbours_[index]) {
     const double force = forces_[neighbour.contact_class];
-    if (force > 0.0) sum += neighbour.count * force * influence(neighbour.angle);
+    if (force > 0.0) sum += neighbour.count * force * influence(neighbour.angle, neighbour.quotient);
   }
   return sum;
 }

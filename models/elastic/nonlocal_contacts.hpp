@@ -128,10 +128,14 @@ class Contacts {
 
   [[nodiscard]] Target target(bool is_force, double value) const;
   void look(std::span<const double> y);
+  void forget() noexcept;
   [[nodiscard]] double lift(std::size_t index, std::span<const double> y) const noexcept;
   [[nodiscard]] double net_force(std::size_t direction) const noexcept;
   [[nodiscard]] bool eliminate() noexcept;
   void set_modes(double shift);
+  double eliminate_modes(bool to_the_end) noexcept;
+  void solve_modes(Eigen::VectorXd& x) const noexcept;
+  [[nodiscard]] double quotient_of_modes() const noexcept;
   void regularise_first_touch(const auto& is_touching);
   double move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
   [[nodiscard]] bool newton(std::span<double> y, double imbalance);
@@ -153,7 +157,8 @@ class Contacts {
   struct Neighbour {
     std::size_t contact_class;
     double angle;
-    int count;  ///< of walls alike in both
+    double quotient;  ///< radius_quotient() of it
+    int count;        ///< of walls alike in both
   };
   std::vector<std::vector<Neighbour>> neighbours_;  ///< of the first wall of each class
 
@@ -167,6 +172,7 @@ class Contacts {
   std::vector<LocalContact> now_;
   std::vector<double> forces_;
   std::vector<double> stiffness_;  ///< dF/dg; 0 under force control
+  std::vector<double> seen_;       ///< signed squares that these are of
   std::vector<double> matrix_;     ///< a row per class: 1 - G dF/dg, right-hand side, arms
   std::vector<Target> targets_, first_targets_, last_targets_;
   std::vector<double> trial_, state_, unit_rates_;
@@ -174,6 +180,7 @@ class Contacts {
   Eigen::Vector3d imbalance_ = Eigen::Vector3d::Zero();
   Eigen::MatrixXd modes_;
   std::vector<double> stiffness_roots_;
+  Eigen::VectorXd critical_mode_;  ///< of the least eigenvalue, as it was found last
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigenvalues_;
 };
 

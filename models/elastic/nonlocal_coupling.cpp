@@ -67,13 +67,6 @@ void require_inside(double x) {
 /// sqrt(1 - x^2), which ends at x = 1 but for rounding.
 double depth_of_edge(double x) noexcept { return std::sqrt(std::max(0.0, (1.0 - x) * (1.0 + x))); }
 
-/// Quotient in eq. 11.
-double first_order(double nu, double theta) noexcept {
-  const double half_cosine = std::cos(0.5 * theta);
-  const double square = half_cosine * half_cosine;
-  return square * (4.0 * nu - 2.0 - 2.0 * square) / std::sin(0.5 * theta);
-}
-
 /// Mean over the contact's edge of the displacement away from its middle (eq. 8).
 double edge_influence(bool is_projected, double nu, double theta, double x) {
   const double cap = std::asin(std::min(x, 1.0));
@@ -147,6 +140,12 @@ double sphere_self_influence(double poisson_ratio) {
   return -sum / (4.0 * pi);
 }
 
+double radius_quotient(double poisson_ratio, double theta) noexcept {
+  const double half_cosine = std::cos(0.5 * theta);
+  const double square = half_cosine * half_cosine;
+  return square * (4.0 * poisson_ratio - 2.0 - 2.0 * square) / std::sin(0.5 * theta);
+}
+
 double local_radius_influence(double poisson_ratio, double x) {
   require_inside(x);
   const double q = depth_of_edge(x);
@@ -170,14 +169,14 @@ RadiusInfluence::RadiusInfluence(RadiusRule rule, double poisson_ratio, double x
   pole_ = pole_radius_influence(poisson_ratio, x);
   slope_ = 0.25 * unit_compliance(poisson_ratio) * (1.0 + 2.0 * poisson_ratio);
   critical_angle_ = pi - pole_ / slope_;
-  at_critical_angle_ = first_order(poisson_ratio, critical_angle_);
+  at_critical_angle_ = radius_quotient(poisson_ratio, critical_angle_);
 }
 
-double RadiusInfluence::operator()(double theta) const {
+double RadiusInfluence::operator()(double theta, double quotient) const {
   switch (rule_) {
     case RadiusRule::closed:  // eqs. 14, 15
       if (theta > critical_angle_) return pole_ - slope_ * (pi - theta);
-      return 0.25 * unit_compliance(poisson_ratio_) * x_ * (first_order(poisson_ratio_, theta) - at_critical_angle_);
+      return 0.25 * unit_compliance(poisson_ratio_) * x_ * (quotient - at_critical_angle_);
     case RadiusRule::integral:
       return edge_influence(false, poisson_ratio_, theta, x_);
     case RadiusRule::projected:
@@ -189,7 +188,7 @@ double RadiusInfluence::operator()(double theta) const {
 }
 
 double radius_influence(RadiusRule rule, double poisson_ratio, double theta, double x) {
-  return RadiusInfluence(rule, poisson_ratio, x)(theta);
+  return RadiusInfluence(rule, poisson_ratio, x)(theta, radius_quotient(poisson_ratio, theta));
 }
 
 double edge_angle(double radius, double displacement) noexcept { return std::atan2(radius, 1.0 - displacement); }

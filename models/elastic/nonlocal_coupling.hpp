@@ -54,12 +54,16 @@ constexpr double k_widest = 1.0 + 1e-12;
 /// @throws std::domain_error for x above k_widest
 [[nodiscard]] double radius_influence(RadiusRule rule, double poisson_ratio, double theta, double x);
 
-/// The same of one contact for many others: what does not depend on their angles is computed once.
+/// Quotient in eq. 11 for a contact at an angle theta, of which the closed form is made.
+[[nodiscard]] double radius_quotient(double poisson_ratio, double theta) noexcept;
+
+/// The same of one contact for many others: what does not depend on their angles is computed once, and what depends on
+/// nothing else, `quotient` = radius_quotient(), is given.
 class RadiusInfluence {
  public:
   /// @throws std::domain_error for x above k_widest
   RadiusInfluence(RadiusRule rule, double poisson_ratio, double x);
-  [[nodiscard]] double operator()(double theta) const;
+  [[nodiscard]] double operator()(double theta, double quotient) const;
 
  private:
   RadiusRule rule_;
