@@ -30,7 +30,7 @@ bool crosses(int direction, double before, double after) noexcept {
 }  // namespace
 
 EventLocator::EventLocator(HybridSystem& system, Watch& watch, std::size_t looks)
-    : system_(system), watch_(watch), looks_(looks + k_looks_before_end) {
+    : system_(system), watch_(watch), most_looks_(looks + k_looks_before_end) {
   for (auto* state : {&begin_state_, &end_state_, &guess_}) state->resize(system.unknowns().size());
 }
 
@@ -39,7 +39,8 @@ void EventLocator::begin_segment(double xi, std::span<const double> y) {
   begin_ = end_ = xi;
   std::ranges::copy(y, end_state_.begin());
   for (auto* values : {&values_, &extremum_values_, &begin_values_, &end_values_}) values->resize(watch_.size());
-  for (Look& one : looks_) one.values.resize(watch_.size());
+  looks_.reserve(most_looks_);
+  look_values_.reserve(most_looks_ * watch_.size());
   fired_.reserve(watch_.size());
   look(end_, end_state_, end_values_);
   read_sides();
@@ -54,16 +55,15 @@ void EventLocator::begin_piece() {
 }
 
 void EventLocator::look_inside(double xi, std::span<const double> y) {
-  if (look_count_ == looks_.size()) looks_.push_back({.values = std::vector<double>(watch_.size())});
-  Look& next = looks_[look_count_];
-  next.xi = xi;
-  look(xi, y, next.values);
+  look_values_.resize((looks_.size() + 1) * watch_.size());
+  const auto values = std::span(look_values_).last(watch_.size());
+  look(xi, y, values);
   // A guard that is zero but for rounding is on the side where it was.
-  const View last = seen(look_count_);
-  for (std::size_t g = 0; g < next.values.size(); ++g) {
-    if (std::abs(next.values[g]) <= k_zero_guard) next.values[g] = last.values[g];
+  const View last = seen(looks_.size());
+  for (std::size_t g = 0; g < values.size(); ++g) {
+    if (std::abs(values[g]) <= k_zero_guard) values[g] = last.values[g];
   }
-  ++look_count_;
+  looks_.push_back(xi);
 }
 
 void EventLocator::look(double xi, std::span<const double> y, std::span<double> values) {
@@ -95,8 +95,8 @@ void EventLocator::read_sides() {
 /// The guards at the beginning, inside, and at the end of the piece, in this order.
 EventLocator::View EventLocator::seen(std::size_t place) const {
   if (place == 0) return {begin_, begin_values_};
-  if (place > look_count_) return {end_, end_values_};
-  return {looks_[place - 1].xi, looks_[place - 1].values};
+  if (place > looks_.size()) return {end_, end_values_};
+  return {looks_[place - 1], std::span(look_values_).subspan((place - 1) * watch_.size(), watch_.size())};
 }
 
 bool EventLocator::any_crosses(const View& before, const View& after) const {
@@ -112,17 +112,20 @@ bool EventLocator::any_crosses(const View& before, const View& after) const {
 double EventLocator::hidden_extremum(std::size_t place) const {
   const View a = seen(place);
   const View b = seen(place + 1);
-  if (b.xi - a.xi < k_smallest_hidden || look_count_ == 0) return b.xi;
-  const View third = seen(place < look_count_ ? place + 2 : place - 1);
+  if (b.xi - a.xi < k_smallest_hidden || looks_.empty()) return b.xi;
+  const View third = seen(place < looks_.size() ? place + 2 : place - 1);
   const auto directions = watch_.directions();
+  const double per_length = 1.0 / (b.xi - a.xi);
+  const double per_third = 1.0 / (third.xi - b.xi);
+  const double per_both = 1.0 / (third.xi - a.xi);
   double extremum = b.xi;
   for (std::size_t g = 0; g < directions.size(); ++g) {
     const double at_a = a.values[g];
     const double at_b = b.values[g];
     const double sign = at_a < 0.0 ? 1.0 : -1.0;  // towards zero
     if (at_a == 0.0 || (directions[g] != 0 && directions[g] != static_cast<int>(sign))) continue;
-    const double slope = (at_b - at_a) / (b.xi - a.xi);
-    const double curvature = ((third.values[g] - at_b) / (third.xi - b.xi) - slope) / (third.xi - a.xi);
+    const double slope = (at_b - at_a) * per_length;
+    const double curvature = ((third.values[g] - at_b) * per_third - slope) * per_both;
     if (!(sign * curvature < 0.0)) continue;
     const double place_of_extremum = 0.5 * (a.xi + b.xi - slope / curvature);
     if (!(place_of_extremum > a.xi && place_of_extremum < b.xi)) continue;
@@ -137,7 +140,7 @@ double EventLocator::hidden_extremum(std::size_t place) const {
 void EventLocator::locate_event() {
   fired_.clear();
   bool has_approached = false;
-  for (std::size_t place = 0; place <= look_count_;) {
+  for (std::size_t place = 0; place <= looks_.size();) {
     const View before = seen(place);
     View after = seen(place + 1);
     if (!any_crosses(before, after)) {
@@ -158,12 +161,12 @@ void EventLocator::locate_event() {
       // Between two states there may be none, where the second is another one than the first leads to.
       const double nearer = std::midpoint(before.xi, after.xi);
       if (nearer - begin_ < least_progress(begin_)) throw;
-      look_count_ = place;
+      looks_.resize(place);
       move_end(nearer);
       continue;
     }
     const bool is_shorter = root < end_ - least_progress(begin_);
-    look_count_ = place;
+    looks_.resize(place);
     const double last_look = before.xi;
     if (root < end_) move_end(root);
     if (is_branch_end(first) && !has_approached) {

@@ -32,7 +32,7 @@ class EventLocator : public Integrator {
   /// Looks at the guards inside of the piece that has begun, beyond the last such look.
   void look_inside(double xi, std::span<const double> y);
   /// Forgets the looks inside of the piece.
-  void forget_looks() noexcept { look_count_ = 0; }
+  void forget_looks() noexcept { looks_.clear(); }
   /// Moves the end of the piece to the first root in it, if there is one.
   void locate_event();
   void look(double xi, std::span<const double> y, std::span<double> values);
@@ -48,10 +48,6 @@ class EventLocator : public Integrator {
 
  private:
   /// The guards at one place of the piece.
-  struct Look {
-    double xi = 0.0;
-    std::vector<double> values;
-  };
   struct View {
     double xi = 0.0;
     std::span<const double> values;
@@ -73,8 +69,9 @@ class EventLocator : public Integrator {
   void look_up_to(double root, double last);
   [[nodiscard]] double polish(std::size_t guard, const View& before, const View& after);
 
-  std::vector<Look> looks_;  ///< room for more than there are
-  std::size_t look_count_ = 0;
+  std::size_t most_looks_;           ///< that are usual
+  std::vector<double> looks_;        ///< places of the looks inside of the piece
+  std::vector<double> look_values_;  ///< a row for each
   std::vector<double> guess_;
   std::vector<double> values_, extremum_values_;
 };

@@ -21,10 +21,25 @@ constexpr double k_noise_of_nothing = 1e4;
 // How many times as long the interval could be where there is nothing to tell it from.
 constexpr double k_farthest = 2.0;
 
-/// The next of the Legendre polynomials, from (P_(k-1), P_k) to (P_k, P_(k+1)).
+// Divisions by what depends on the degree only would be most of what a polynomial costs.
+struct ByDegree {
+  LegendreSamples growth{};     // k/(k + 1)
+  LegendreSamples per_width{};  // 1/(2k + 1)
+
+  constexpr ByDegree() {
+    for (std::size_t k = 0; k < k_most_nodes; ++k) {
+      const auto n = static_cast<double>(k);
+      growth[k] = n / (n + 1.0);
+      per_width[k] = 1.0 / (2.0 * n + 1.0);
+    }
+  }
+};
+constexpr ByDegree k_by_degree;
+
+/// The next of the Legendre polynomials, from (P_(k-1), P_k) to (P_k, P_(k+1)): exact at -1 and 1.
 void next_legendre(std::size_t k, double x, double& previous, double& legendre) noexcept {
-  const auto n = static_cast<double>(k);
-  const double after = ((2.0 * n + 1.0) * x * legendre - n * previous) / (n + 1.0);
+  const double turned = x * legendre;
+  const double after = turned + k_by_degree.growth[k] * (turned - previous);
   previous = legendre;
   legendre = after;
 }
@@ -111,7 +126,7 @@ double LegendreSeries::integral(double t) const noexcept {
   for (std::size_t k = 1; k < count_; ++k) {
     const double before = previous;
     next_legendre(k, t, previous, legendre);
-    sum += coefficients_[k] * (legendre - before) / (2.0 * static_cast<double>(k) + 1.0);
+    sum += coefficients_[k] * (legendre - before) * k_by_degree.per_width[k];
   }
   return sum;
 }
