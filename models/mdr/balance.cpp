@@ -12,7 +12,10 @@
 namespace monograin::mdr {
 namespace {
 
-using std::numbers::pi;
+// Divisions by these would be a good part of what summing up takes.
+constexpr double k_per_solid_angle = 0.25 * std::numbers::inv_pi;
+constexpr double k_third = 1.0 / 3.0;
+constexpr double k_twelfth = 1.0 / 12.0;
 
 constexpr double k_round_off = std::numeric_limits<double>::epsilon();
 constexpr int k_newton_limit = 60;
@@ -41,13 +44,13 @@ void System::sum_up(double xi, double r) {
     virial_of_all += one;
     if (is_member(memory_[i])) virial += one;
   }
-  const double scale = 3.0 * material_.bulk_compliance / (4.0 * pi);
+  const double scale = 3.0 * k_per_solid_angle * material_.bulk_compliance;
   sums_.relative_compression = scale * virial_of_all;
   const double w = scale * virial;
   const double under_root = 1.0 - 4.0 * w;
   if (!(under_root > 0.0)) throw std::domain_error("elastic compression to less than half the volume");
   const double root = std::sqrt(under_root);
-  const double weight = material_.bulk_compliance / root / (4.0 * pi);
+  const double weight = k_per_solid_angle * material_.bulk_compliance / root;
 
   double caps = 0.0;
   double overlaps = 0.0;
@@ -77,7 +80,7 @@ void System::sum_up(double xi, double r) {
     }
     if (!is_member(memory_[i])) continue;
     const double distance = 1.0 - now.displacement;
-    caps += count * now.overlap * now.overlap * (3.0 * radius - now.overlap) / 12.0;
+    caps += count * now.overlap * now.overlap * (3.0 * radius - now.overlap);
     overlaps += count * now.overlap;
     const double cap_rate = 0.25 * now.overlap * (2.0 * radius - now.overlap);
     const double volume_rate = weight * (c.by_overlap * distance - c.force);
@@ -87,7 +90,7 @@ void System::sum_up(double xi, double r) {
     sums_.by_radius += count * weight * (c.by_overlap + c.by_radius) * distance + by_displacement * now.rate_by_growth;
     if (free_count_ > 0 && !is_loaded(i)) sums_.by_centre += by_displacement * directions_[i];
   }
-  sums_.balance = r * (1.0 + r * (1.0 + r / 3.0)) - caps + 2.0 * w / (3.0 * (1.0 + root));
+  sums_.balance = r * (1.0 + r * (1.0 + k_third * r)) - k_twelfth * caps + 2.0 * k_third * w / (1.0 + root);
   sums_.by_radius += radius * radius - 0.5 * radius * overlaps;
   if (free_count_ > 0) regularise_first_touch();
 }
@@ -122,6 +125,12 @@ System::Small System::balance_step(const Small& force) const {
 }
 
 System::Motion System::motion(bool growing) const {
+  if (free_count_ == 0) {
+    return {.demand = -sums_.by_time,
+            .slope = sums_.by_radius,
+            .growth = growing ? -sums_.by_time / sums_.by_radius : 0.0,
+            .centre = Small::Zero()};
+  }
   const Small by_time = balance_step(sums_.force_by_time);
   const Small by_radius = balance_step(sums_.force_by_radius);
   Motion result{.demand = -sums_.by_time - sums_.by_centre.dot(by_time),
@@ -240,14 +249,20 @@ void System::grow(double xi, std::span<double> y) {
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     move_walls(xi, y);
     look(xi, y);
-    const Small to_balance = balance_step(sums_.force);
-    const Small by_radius = balance_step(sums_.force_by_radius);
-    const double slope = sums_.by_radius + sums_.by_centre.dot(by_radius);
+    double slope = sums_.by_radius;
+    double defect = sums_.balance - frozen_balance_;
+    Small to_balance = Small::Zero();
+    Small by_radius = Small::Zero();
+    if (free_count_ > 0) {
+      to_balance = balance_step(sums_.force);
+      by_radius = balance_step(sums_.force_by_radius);
+      slope += sums_.by_centre.dot(by_radius);
+      defect += sums_.by_centre.dot(to_balance);
+    }
     if (!(slope > 0.0)) throw std::domain_error("singular growth of the apparent radius");
-    const double defect = sums_.balance - frozen_balance_ + sums_.by_centre.dot(to_balance);
     const double step = std::clamp(-defect / slope, -0.1, 0.1);
-    const Small centre_step = to_balance + step * by_radius;
     y[k_radius] += step;
+    const Small centre_step = to_balance + step * by_radius;
     for (int k = 0; k < free_count_; ++k) y[centre_place(k)] += centre_step[k];
     // Quadratic convergence: below 1e-10 the next step is round-off, unless the centre's square-root forces are still
     // settling.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -16,6 +17,8 @@ using std::numbers::pi;
 // Regime words of a contact whose edge does not follow, after those of Regime.
 constexpr double k_adhering_word = 5.0;
 constexpr double k_peeling_word = 6.0;
+// Of what an overlap is computed from.
+constexpr double k_roundings = 4.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -92,11 +95,17 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   }
 }
 
-/// A contact without what touching_contact() adds for trials.
+/// A contact without what touching_contact() adds for trials. One that is shallower than its overlap is rounded is
+/// none: the radius, a root of that, would be a hundred million times as large.
 Contact System::visible_contact(std::size_t i) const noexcept {
-  const bool is_apart =
-      memory_[i].regime == Regime::elastic && memory_[i].edge == Edge::following && now_[i].overlap < 0.0;
-  return is_apart ? Contact{} : now_[i].contact;
+  const Memory& memory = memory_[i];
+  const Instant& now = now_[i];
+  const bool is_unloading = memory.regime == Regime::unloading;
+  if (memory.edge != Edge::following || (memory.regime != Regime::elastic && !is_unloading)) return now.contact;
+  const double touching = is_unloading ? shapes_[i].overlap_max - shapes_[i].recovery : 0.0;
+  // The overlap is the displacement of the wall and the growth of the radius.
+  const double rounding = k_roundings * (2.0 * std::abs(now.displacement) + std::abs(now.overlap) + touching);
+  return now.overlap - touching < rounding ? Contact{} : now.contact;
 }
 
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
