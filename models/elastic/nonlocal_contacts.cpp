@@ -25,6 +25,7 @@ constexpr double k_least_step = 1e-13;  // of the way to a state that is not fou
 constexpr int k_most_steps = 1000;      // on that way, tried ones included
 constexpr double k_same_surroundings = 1e-9;
 constexpr double k_margin_tolerance = 1e-14;
+constexpr double k_rounding = std::numeric_limits<double>::epsilon();  // of modes, which are of order one
 constexpr int k_most_quotients = 6;  // each cubes the error of the mode; two are usual
 
 constexpr const char* k_nothing_holds =
@@ -508,7 +509,7 @@ double Contacts::eliminate_modes(bool to_the_end) noexcept {
     least = std::min(least, *pivot);
     if (!(least > 0.0)) {
       if (!to_the_end) break;
-      if (*pivot == 0.0) *pivot = std::numeric_limits<double>::min();
+      if (std::abs(*pivot) < k_rounding) *pivot = k_rounding;
     }
     const double inverse = 1.0 / *pivot;
     const Eigen::Index rest = count - p;
