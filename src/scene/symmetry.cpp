@@ -87,7 +87,7 @@ class Matcher {
   [[nodiscard]] bool is_symmetry() const {
     const Eigen::Matrix3Xd basis = normals_(Eigen::all, basis_);
     const Eigen::Matrix3Xd images = normals_(Eigen::all, images_);
-    const Eigen::MatrixXd coordinates = basis.completeOrthogonalDecomposition().solve(normals_);
+    const Eigen::MatrixXd coordinates = Eigen::ColPivHouseholderQR<Eigen::Matrix3Xd>(basis).solve(normals_);
     const Eigen::Matrix3Xd mapped = images * coordinates;
     for (Eigen::Index i = 0; i < mapped.cols(); ++i) {
       bool lands_on_wall = false;
