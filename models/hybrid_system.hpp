@@ -17,6 +17,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -206,6 +207,12 @@ class HybridSystem {
 
   /// What the user should know about this run, collected so far.
   [[nodiscard]] virtual std::vector<Finding> warnings() const = 0;
+
+  /// How far ahead of a state solve() may be asked for another one and still show all that happens between the two,
+  /// where equations have several solutions, of which one may end and others go on; infinite where they have not.
+  [[nodiscard]] virtual double branch_reach(std::span<const double> /*y*/) const {
+    return std::numeric_limits<double>::infinity();
+  }
 };
 
 }  // namespace monograin

@@ -50,8 +50,12 @@ constexpr double k_least_compressibility = 1e-6;
 constexpr double k_stiff = 1e5;
 // Moduli over the yield pressure at which a run ends: the rounding of strains is there a millionth of the strength.
 constexpr double k_stiffest = 1e10;
-// Newton's method on f = 0: strain correction below which the next one is round-off, and how many there may be.
+// Newton's method on f = 0: strain correction and f before it, below both of which the next one is round-off (where a
+// cap is narrow and the material hardly compressible, f is curved within 1e-11 of strain); such small corrections after
+// which f is made of rounding; and how many there may be at all.
 constexpr double k_last_correction = 1e-11;
+constexpr double k_last_excess = 1e-9;
+constexpr int k_most_small_corrections = 12;
 constexpr int k_most_corrections = 60;
 
 // Share of the strength below which a negative work of the flow is round-off.
@@ -244,17 +248,30 @@ void MaterialPoint::residual(double xi, std::span<const double> y, std::span<con
 void MaterialPoint::complete(double xi, std::span<double> y) {
   if (!is_plastic_) return;
   const bool follows_gradient = is_stress(k_axial) && is_stress(k_lateral) && !is_solvable();
-  for (int i = 0; i < k_most_corrections; ++i) {
-    const Flow now = flow(response(xi, y));
-    const double by_phi = follows_gradient ? now.f_by_phi : now.phi;
-    const double by_deviatoric = follows_gradient ? now.f_by_deviatoric : now.deviatoric;
-    const double step = -now.yield.f / (now.f_by_phi * by_phi + now.f_by_deviatoric * by_deviatoric);
-    const double phi = step * by_phi;
-    const double deviatoric = step * by_deviatoric;
-    if (!std::isfinite(step)) break;
-    y[k_phi] += phi;
-    y[k_deviatoric] += deviatoric;
-    if (std::hypot(phi, deviatoric) < k_last_correction) return;
+  const double guess = y[k_phi];
+  double elastic_strain = 0.0;
+  int small_corrections = 0;
+  const bool has_caps = is_compressible(settings_.parameters.model);
+  try {
+    for (int i = 0; i < k_most_corrections; ++i) {
+      const Response here = response(xi, y);
+      const Flow now = flow(here);
+      elastic_strain = 1.0 / stiffness_over_strength(here.at);
+      const double by_phi = follows_gradient ? now.f_by_phi : now.phi;
+      const double by_deviatoric = follows_gradient ? now.f_by_deviatoric : now.deviatoric;
+      const double step = -now.yield.f / (now.f_by_phi * by_phi + now.f_by_deviatoric * by_deviatoric);
+      const double phi = step * by_phi;
+      const double deviatoric = step * by_deviatoric;
+      if (!std::isfinite(step)) break;
+      y[k_phi] += phi;
+      y[k_deviatoric] += deviatoric;
+      if (std::hypot(phi, deviatoric) >= k_last_correction) continue;
+      const bool is_found = !has_caps || std::abs(now.yield.f) < k_last_excess;
+      if (is_found || ++small_corrections == k_most_small_corrections) return;
+    }
+  } catch (const std::domain_error&) {
+    // Far corrections that lead to where the law has no surface at all have found nothing, either.
+    if (std::abs(y[k_phi] - guess) <= elastic_strain) throw;
   }
   throw std::domain_error("no plastic strain brings the stress back to the yield surface");
 }

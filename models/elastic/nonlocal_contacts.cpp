@@ -23,10 +23,14 @@ constexpr double k_stagnation = 1e-9;   // rounding grows with 1/margin near the
 constexpr double k_balance = 1e-9;      // net force over the sum of forces
 constexpr double k_least_step = 1e-13;  // of the way to a state that is not found at once
 constexpr int k_most_steps = 1000;      // on that way, tried ones included
+constexpr int k_most_roundings = 20;    // times that its end is found with forces of rounding left over
 constexpr double k_same_surroundings = 1e-9;
 constexpr double k_margin_tolerance = 1e-14;
 constexpr double k_rounding = std::numeric_limits<double>::epsilon();  // of modes, which are of order one
 constexpr int k_most_quotients = 6;  // each cubes the error of the mode; two are usual
+// Of where walls begin to push each other off, and of how deep contacts are: what the branch is followed by at once.
+constexpr double k_share_of_rivalry = 0.25;
+constexpr double k_share_of_depth = 0.5;
 
 constexpr const char* k_nothing_holds =
     "no contact holds the centre of the particle where the forces of the others drive it";
@@ -109,6 +113,13 @@ Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Ce
                                   "' do not share a history: forces around them differ by " +
                                   std::to_string(difference) + " in their effect");
     }
+  }
+
+  rivalry_.assign(n, std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < wall_count; ++i) {
+    const double lifting = -influence.row(at(i)).cwiseMin(0.0).sum();
+    const double radius = 1.0 / (2.0 * modulus_ * lifting);
+    if (radius < 1.0) rivalry_[class_of[i]] = std::min(rivalry_[class_of[i]], radius * radius);
   }
 
   directions_ = centre == Centre::free ? basis_of(mean_normals) : Eigen::Matrix3Xd(3, 0);
@@ -326,6 +337,23 @@ bool Contacts::is_balanced(std::span<const double> y) {
   return true;
 }
 
+/// Contacts of a centre that only goes along are no deeper than rounding: what the resolved displacement makes of their
+/// forces need not balance.
+bool Contacts::is_balanced_but_for_rounding(std::span<const double> y) {
+  look(y);
+  double widest = 0.0;
+  for (std::size_t j = 0; j < class_count(); ++j) widest = std::max(widest, std::abs(y[j]));
+  const double rounding = k_resolved * widest;
+  double unresolved = 0.0;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    unresolved += weights_[j] * (modulus_ * law_.at(rounding).force + stiffness_[j] * rounding);
+  }
+  for (std::size_t k = 0; k < free_count(); ++k) {
+    if (std::abs(net_force(k)) > unresolved) return false;
+  }
+  return true;
+}
+
 void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y) {
   for (std::size_t j = 0; j < class_count(); ++j) {
     targets_[j] = target(ramps[j].control == Control::force, std::lerp(ramps[j].start, ramps[j].end, xi));
@@ -358,6 +386,7 @@ void Contacts::approach_in_steps(std::span<double> y) {
 
   double done = 0.0;
   double step = 0.5;
+  int roundings = 0;
   for (int steps = 1; done < 1.0; ++steps) {
     const double next = std::min(1.0, done + step);
     for (std::size_t j = 0; j < n; ++j) {
@@ -376,23 +405,13 @@ void Contacts::approach_in_steps(std::span<double> y) {
     }
     step *= 0.5;
     // Short steps that succeed now and then do not arrive either.
-    if (step > k_least_step && steps < k_most_steps) continue;
-    if (is_on_branch) {
-      // Contacts of a centre that only goes along are no deeper than rounding: their forces need not balance.
-      look(trial_);
-      double widest = 0.0;
-      for (std::size_t j = 0; j < n; ++j) widest = std::max(widest, std::abs(trial_[j]));
-      const double rounding = k_resolved * widest;
-      double unresolved = 0.0;
-      for (std::size_t j = 0; j < n; ++j) {
-        unresolved += weights_[j] * (modulus_ * law_.at(rounding).force + stiffness_[j] * rounding);
-      }
-      for (std::size_t k = 0; k < free_count(); ++k) {
-        if (std::abs(net_force(k)) > unresolved) throw std::domain_error(k_nothing_holds);
-      }
+    const bool may_go_on = step > k_least_step && steps < k_most_steps;
+    if (is_on_branch && is_balanced_but_for_rounding(trial_) && (++roundings == k_most_roundings || !may_go_on)) {
       std::copy(trial_.begin(), trial_.end(), state_.begin());
       break;
     }
+    if (may_go_on) continue;
+    if (is_on_branch) throw std::domain_error(k_nothing_holds);
     look(state_);
     const auto widest = std::max_element(
         now_.begin(), now_.end(), [](const auto& a, const auto& b) { return a.contact_radius < b.contact_radius; });
@@ -569,6 +588,14 @@ double Contacts::least_pivot(std::span<const double> y, double shift) {
   look(y);
   set_modes(shift);
   return eliminate_modes(false);
+}
+
+double Contacts::branch_reach(std::span<const double> y) const noexcept {
+  double reach = std::numeric_limits<double>::infinity();
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    reach = std::min(reach, std::max(k_share_of_rivalry * rivalry_[j], k_share_of_depth * std::abs(y[j])));
+  }
+  return reach;
 }
 
 bool Contacts::is_held_softly(std::span<const Ramp> ramps, std::span<const double> y, double s) {

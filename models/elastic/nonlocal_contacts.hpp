@@ -104,6 +104,11 @@ class Contacts {
   /// goes smoothly through zero with it, and costs a tenth.
   [[nodiscard]] double least_pivot(std::span<const double> y, double shift = 0.0);
 
+  /// How far, in signed squares and displacements, the branch may be followed at once. A wall under which others lift
+  /// the surface may be pushed off by them, or they by it, from where 2 E* a times their coupling is 1; that is over
+  /// where contacts have grown several times. Infinite where no contact narrower than the particle does that.
+  [[nodiscard]] double branch_reach(std::span<const double> y) const noexcept;
+
   /// Whether a free centre moves in a direction in which touching contacts shallower than s hold it alone, or none.
   [[nodiscard]] bool is_held_softly(std::span<const Ramp> ramps, std::span<const double> y, double s);
 
@@ -141,6 +146,7 @@ class Contacts {
   [[nodiscard]] bool newton(std::span<double> y, double imbalance);
   [[nodiscard]] bool has_left_branch(std::span<const double> y);
   [[nodiscard]] bool is_balanced(std::span<const double> y);
+  [[nodiscard]] bool is_balanced_but_for_rounding(std::span<const double> y);
   void approach_in_steps(std::span<double> y);
 
   [[nodiscard]] double& entry(std::size_t row, std::size_t column) noexcept { return matrix_[row * stride_ + column]; }
@@ -166,6 +172,7 @@ class Contacts {
   Eigen::MatrixXd mode_coupling_;  ///< symmetric
   std::vector<std::size_t> mode_class_;
   bool has_modes_of_walls_ = false;
+  std::vector<double> rivalry_;  ///< s of each class from where walls push each other off; infinite where they do not
 
   // Working memory.
   std::size_t stride_;

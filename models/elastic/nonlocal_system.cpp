@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -20,6 +21,8 @@ enum Kind : int { k_made, k_lost, k_impingement, k_stiffening, k_radius, k_centr
 
 // The last pivot goes like the root of the distance from the limit: this is 1e-10 of R0 before it.
 constexpr double k_least_pivot = 1e-5;
+// The last pivot below which an integrator may find no more steps.
+constexpr double k_hard_pivot = 1e-3;
 // The margin from which on the source's formulation is seen to stiffen.
 constexpr double k_stiff_margin = 0.25;
 // Walls this near to opposite never meet on the surface.
@@ -35,6 +38,9 @@ constexpr double k_touch_of_free_centre = 1e-9;
 // Contacts shallower than this, over the deepest, hold a free centre too softly for an integrator.
 constexpr double k_idle = 1e-6;
 constexpr double k_force_power = 1.5;
+// Of a sum of displacements, over them; and walls that a centre is moved away from one after the other.
+constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
+constexpr int k_release_sweeps = 20;
 // How fast an integrated state is drawn back to the equations, over a step of the program: an error that it has
 // gathered would grow with 1/margin towards the limit of applicability.
 constexpr double k_pull = 20.0;
@@ -56,20 +62,20 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   }
   for (const ContactClass& c : classes_) reach = std::max(reach, c.gap / length);
   if (!(reach > 0.0)) reach = 1.0;
-  // A program that a condition ends may ask for any displacement.
+  // A program may ask for any displacement: a wall comes to the centre, a contact is as wide as the particle before.
   const double depth = std::min(reach, 1.0);
   touch_ = settings.centre == Centre::free ? k_touch_of_free_centre * depth : k_touch * reach;
   idle_ = k_idle * depth;
   for (const ContactClass& c : classes_) {
     unknowns_.push_back(
-        {c.name, Unknown::Kind::differential, c.takes_force ? std::pow(reach, k_force_power) : reach, true});
+        {c.name, Unknown::Kind::differential, c.takes_force ? std::pow(depth, k_force_power) : depth, true});
   }
   constexpr std::array<std::string_view, 3> centre_names{"centre displacement 1", "centre displacement 2",
                                                          "centre displacement 3"};
   for (std::size_t k = 0; k < contacts_.free_count(); ++k) {
-    unknowns_.push_back({centre_names[k], Unknown::Kind::differential, reach, true});
+    unknowns_.push_back({centre_names[k], Unknown::Kind::differential, depth, true});
   }
-  unknowns_.push_back({"work", Unknown::Kind::quadrature, reach * reach * std::sqrt(reach), false});
+  unknowns_.push_back({"work", Unknown::Kind::quadrature, depth * depth * std::sqrt(depth), false});
 
   ramps_.resize(count);
   drawn_ramps_.resize(count);
@@ -209,15 +215,52 @@ void System::note(std::span<double> y) const {
 
 void System::complete(double xi, std::span<double> y) {
   const bool bears_nothing = std::ranges::all_of(regimes_, [](Regime regime) { return regime == Regime::open; });
+  if (bears_nothing && contacts_.free_count() > 0) release_centre(xi, y);
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_loaded(i)) {
       y[i] = std::pow(square_under_force(i, xi), k_force_power);
     } else if (bears_nothing) {
       // The gap itself: errors of it would close walls that only touch.
       const double approach = told(i, xi) + shift(i, y);
-      if (approach <= 0.0) y[i] = approach;
+      if (approach <= k_rounding * std::abs(told(i, xi))) y[i] = std::min(approach, 0.0);
     }
   }
+}
+
+/// Moves a centre that no contact holds to where no wall is beyond the surface; where walls leave it no such place it
+/// stays.
+void System::release_centre(double xi, std::span<double> y) const {
+  const std::span<double> centre = y.subspan(classes_.size(), contacts_.free_count());
+  std::array<double, 3> before{};
+  std::ranges::copy(centre, before.begin());
+  for (int sweep = 0; sweep < k_release_sweeps; ++sweep) {
+    bool is_beyond = false;
+    for (std::size_t i = 0; i < classes_.size(); ++i) {
+      if (is_loaded(i)) continue;
+      const double approach = told(i, xi) + shift(i, y);
+      if (!(approach > k_rounding * std::abs(told(i, xi)))) continue;
+      is_beyond = true;
+      for (std::size_t k = 0; k < centre.size(); ++k) {
+        centre[k] -= approach * arms_[i][static_cast<Eigen::Index>(k)] / std::max(arms_[i].squaredNorm(), k_same_angle);
+      }
+    }
+    if (!is_beyond) return;
+  }
+  std::ranges::copy_n(before.begin(), static_cast<std::ptrdiff_t>(centre.size()), centre.begin());
+}
+
+double System::branch_reach(std::span<const double> y) const {
+  const double reach = contacts_.branch_reach(y);
+  double way = 0.0;
+  for (const Ramp& ramp : ramps_) {
+    const auto place = [&](double value) {
+      return ramp.control == Control::displacement
+                 ? value
+                 : contacts_.law().signed_square_under(std::max(value, 0.0) / contacts_.composite_modulus());
+    };
+    way = std::max(way, std::abs(place(ramp.end) - place(ramp.start)));
+  }
+  return way > 0.0 ? reach / way : reach;
 }
 
 void System::solve(double xi, std::span<double> y) {
@@ -428,8 +471,28 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     log.push_back(event);
   }
   if (end) return end;
+  try {
+    solve(xi, y);
+    settle_others(fired, log);
+  } catch (const std::domain_error&) {
+    // Where there is no state, whoever goes on from here is told.
+  }
   watch();
   return std::nullopt;
+}
+
+/// Contacts that the exact state has on another side than an integrator had, whose guards would not cross any more.
+void System::settle_others(std::span<const std::size_t> fired, std::vector<Event>& log) {
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const bool was_open = regimes_[i] == Regime::open;
+    const bool is_elsewhere = was_open ? state_[i] > touch_ : state_[i] < -touch_;
+    const auto is_own = [&](std::size_t g) {
+      return guards_[g].kind <= k_lost && guards_[g].index == static_cast<int>(i);
+    };
+    if (is_loaded(i) || !is_elsewhere || std::ranges::any_of(fired, is_own)) continue;
+    regimes_[i] = was_open ? Regime::elastic : Regime::open;
+    log.push_back({was_open ? "contact-made" : "contact-lost", static_cast<int>(i)});
+  }
 }
 
 // --- what is seen
@@ -520,6 +583,10 @@ bool System::is_open(int contact_class) const noexcept {
 }
 
 std::string_view System::difficulty(double xi, std::span<const double> y) {
+  if (contacts_.least_pivot(look(xi, y)) < k_hard_pivot) {
+    return "the limit of applicability is so near that the stiffness magnifies the errors that are tolerated; "
+           "expected a larger rtol, or integrator = \"direct\"";
+  }
   if (contacts_.free_count() == 0 || !contacts_.is_held_softly(ramps_, look(xi, y), idle_)) return {};
   return "the balance of the free centre is singular, because nothing but contacts that only touch keeps it from "
          "moving; expected integrator = \"direct\"";

@@ -45,6 +45,7 @@ class System final : public HybridSystem {
   void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
   void solve(double xi, std::span<double> y) override;
+  [[nodiscard]] double branch_reach(std::span<const double> y) const override;
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override;
   [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
   void guard_values(double xi, std::span<const double> y, std::span<double> values) override;
@@ -73,6 +74,8 @@ class System final : public HybridSystem {
   [[nodiscard]] double told(std::size_t i, double xi) const noexcept;
   [[nodiscard]] double square_under_force(std::size_t i, double xi) const;
   std::span<double> look(double xi, std::span<const double> y);
+  void release_centre(double xi, std::span<double> y) const;
+  void settle_others(std::span<const std::size_t> fired, std::vector<Event>& log);
   void look_closely(double xi, std::span<const double> y);
   void note(std::span<double> y) const;
   [[nodiscard]] double depth(std::size_t i, double xi);

@@ -33,6 +33,7 @@ void System::sum_up(double xi, double r) {
     sums_.force_by_time.setZero();
     sums_.force_by_radius.setZero();
     sums_.stiffness.setZero();
+    sums_.firmness.setZero();
   }
   sums_.power = 0.0;
   sums_.force_work = 0.0;
@@ -71,11 +72,14 @@ void System::sum_up(double xi, double r) {
       sums_.power += count * c.force * speed;
     }
     if (free_count_ > 0) {
+      const double firm = firmness(i);
       sums_.force += count * c.force * directions_[i];
-      sums_.force_by_time += count * (is_loaded(i) ? speed : c.by_overlap * speed) * directions_[i];
+      sums_.force_by_time += count * (is_loaded(i) ? speed : firm * speed) * directions_[i];
       if (!is_loaded(i)) {
-        sums_.force_by_radius += count * (c.by_overlap + c.by_radius) * directions_[i];
-        sums_.stiffness += count * c.by_overlap * directions_[i] * directions_[i].transpose();
+        const SmallMatrix along = directions_[i] * directions_[i].transpose();
+        sums_.force_by_radius += count * (firm + c.by_radius) * directions_[i];
+        sums_.stiffness += count * c.by_overlap * along;
+        sums_.firmness += count * firm * along;
       }
     }
     if (!is_member(memory_[i])) continue;
@@ -92,28 +96,25 @@ void System::sum_up(double xi, double r) {
   }
   sums_.balance = r * (1.0 + r * (1.0 + k_third * r)) - k_twelfth * caps + 2.0 * k_third * w / (1.0 + root);
   sums_.by_radius += radius * radius - 0.5 * radius * overlaps;
-  if (free_count_ > 0) regularise_first_touch();
+  // At first touch all stiffnesses vanish together.
+  if (free_count_ > 0 && sums_.stiffness.trace() == 0.0) sums_.stiffness = sums_.firmness / least_firm();
 }
 
-/// At first touch all stiffnesses vanish together; equal ones give the right motion for contacts of one law.
-void System::regularise_first_touch() {
-  if (sums_.stiffness.trace() != 0.0) return;
-  for (std::size_t i = 0; i < now_.size(); ++i) {
-    if (!touches(memory_[i].regime) || is_loaded(i)) continue;
-    const double count = classes_[i].multiplicity();
-    sums_.stiffness += count * directions_[i] * directions_[i].transpose();
-    sums_.force_by_time += count * (ramps_[i].end - ramps_[i].start) * directions_[i];
-    sums_.force_by_radius += count * directions_[i];
-  }
+/// Stiffness by which a contact takes part in the motion of a free centre: that of contacts which only touch would be
+/// one of rounding, and zero at some of them; equal ones give the right motion for contacts of one law.
+double System::firmness(std::size_t i) const noexcept {
+  const double stiffness = now_[i].contact.by_overlap;
+  const bool is_soft_at_first = memory_[i].regime != Regime::fully_plastic && memory_[i].edge != Edge::peeling;
+  return is_soft_at_first ? std::max(stiffness, least_firm()) : stiffness;
 }
 
 /// Displacement of the centre that changes the net force by `-force`; none along directions that no contact holds.
-System::Small System::balance_step(const Small& force) const {
+System::Small System::balance_step(const SmallMatrix& stiffness, const Small& force) const {
   Small step = Small::Zero();
   if (free_count_ == 1) {
-    if (sums_.stiffness(0, 0) != 0.0) step[0] = -force[0] / sums_.stiffness(0, 0);
+    if (stiffness(0, 0) != 0.0) step[0] = -force[0] / stiffness(0, 0);
   } else if (free_count_ > 1) {
-    const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(sums_.stiffness);
+    const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(stiffness);
     const double threshold = 1e-12 * solver.eigenvalues().cwiseAbs().maxCoeff();
     for (int k = 0; k < 3; ++k) {
       if (std::abs(solver.eigenvalues()[k]) <= threshold) continue;
@@ -131,8 +132,8 @@ System::Motion System::motion(bool growing) const {
             .growth = growing ? -sums_.by_time / sums_.by_radius : 0.0,
             .centre = Small::Zero()};
   }
-  const Small by_time = balance_step(sums_.force_by_time);
-  const Small by_radius = balance_step(sums_.force_by_radius);
+  const Small by_time = balance_step(sums_.firmness, sums_.force_by_time);
+  const Small by_radius = balance_step(sums_.firmness, sums_.force_by_radius);
   Motion result{.demand = -sums_.by_time - sums_.by_centre.dot(by_time),
                 .slope = sums_.by_radius + sums_.by_centre.dot(by_radius),
                 .growth = 0.0,
@@ -146,7 +147,7 @@ System::Motion System::motion(bool growing) const {
 
 System::Motion System::growing_motion() const {
   Motion result = motion(true);
-  if (!(result.slope > 0.0)) throw std::domain_error("singular growth of the apparent radius");
+  if (!(result.slope > 0.0)) throw std::domain_error(k_singular_growth);
   return result;
 }
 
@@ -173,7 +174,7 @@ void System::move_centre(double xi, std::span<double> y) {
     if (error == 0.0) return;
     // Overlaps are rounded, and the stiffest contact's force with its own; below that there is nothing to damp.
     const double noise = k_round_off * sums_.stiffness.cwiseAbs().maxCoeff();
-    Small step = balance_step(sums_.force);
+    Small step = balance_step(sums_.stiffness, sums_.force);
     if (step.norm() == 0.0) throw std::domain_error("no contact holds the free centre of the particle");
     if (step.norm() >= 0.5 * step_size && (step.norm() < 1e-12 || error <= rounding_of_forces())) return;
     step_size = step.norm();
@@ -199,7 +200,7 @@ void System::move_centre(double xi, std::span<double> y) {
 /// @return false where they do not lead anywhere
 bool System::approach_balance(double xi, std::span<double> y) {
   look(xi, y);
-  Small step = balance_step(sums_.force);
+  Small step = balance_step(sums_.stiffness, sums_.force);
   Small before = Small::Zero();
   for (int k = 0; k < free_count_; ++k) before[k] = y[centre_place(k)];
   for (; step.norm() > k_round_off; step *= 0.5) {
@@ -254,12 +255,12 @@ void System::grow(double xi, std::span<double> y) {
     Small to_balance = Small::Zero();
     Small by_radius = Small::Zero();
     if (free_count_ > 0) {
-      to_balance = balance_step(sums_.force);
-      by_radius = balance_step(sums_.force_by_radius);
+      to_balance = balance_step(sums_.stiffness, sums_.force);
+      by_radius = balance_step(sums_.firmness, sums_.force_by_radius);
       slope += sums_.by_centre.dot(by_radius);
       defect += sums_.by_centre.dot(to_balance);
     }
-    if (!(slope > 0.0)) throw std::domain_error("singular growth of the apparent radius");
+    if (!(slope > 0.0)) throw std::domain_error(k_singular_growth);
     const double step = std::clamp(-defect / slope, -0.1, 0.1);
     y[k_radius] += step;
     const Small centre_step = to_balance + step * by_radius;

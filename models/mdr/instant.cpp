@@ -6,6 +6,13 @@
 #include "mdr/system.hpp"
 
 namespace monograin::mdr {
+namespace {
+
+// Over its contact radius there, a contact under force that is this near to pull-off has reached it: the square of
+// this is below the rounding of forces.
+constexpr double k_at_pull_off = 1e-9;
+
+}  // namespace
 
 const UnloadingShape& System::shape(std::size_t i, double r) {
   const double radius = 1.0 + r;
@@ -197,6 +204,15 @@ void System::set_rates(std::size_t i, double r) {
   now.rate_by_growth = 0.0;
   if (!is_loaded(i)) return;
   const Contact& c = now.contact;
+  if (memory_[i].edge == Edge::peeling) {
+    // Where it pulls off, a force holds it no longer: whatever the radius, the overlap is about that.
+    const double critical = pull_off(i, frame(i, now.overlap, r).indenter).by_force.contact_radius;
+    if (c.contact_radius <= (1.0 + k_at_pull_off) * critical) {
+      now.rate_by_time = 0.0;
+      now.rate_by_growth = -1.0;
+      return;
+    }
+  }
   if (touches(memory_[i].regime) && c.by_overlap > 0.0) {
     now.rate_by_time = speed / c.by_overlap;
     now.rate_by_growth = -1.0 - c.by_radius / c.by_overlap;

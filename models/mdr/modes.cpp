@@ -38,6 +38,8 @@ constexpr double k_at_rest = 1e-8;
 // With a free centre, contacts along its directions open and close together; their guards agree to the integration
 // error only.
 constexpr double k_together = 1e-6;
+// Share of an unloading branch that is left when it counts as loaded to its end together with another event.
+constexpr double k_passed = 1e-2;
 // Share of the forces on a free centre that is rounding in their balance.
 constexpr double k_no_force = 1e-9;
 // A free centre that has gone this far (over R0) within an instant has sprung.
@@ -389,6 +391,10 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
 
   look(xi, y);
   frozen_balance_ = is_growing_ ? sums_.balance : 0.0;
+  // Past already, its guard would not be met.
+  if (is_growing_ && free_surface(motion(true), y[k_radius]) < k_least_slope) {
+    throw std::domain_error(k_singular_growth);
+  }
   hold_centre(y);
   watch(xi, y);
   forget_look();
@@ -460,6 +466,8 @@ void System::watch(double xi, std::span<const double> y) {
     guards_.push_back({k_singular, -1, -1, "singular-growth"});
   } else if (settings_.radius_rule != RadiusRule::fixed && gate_is_open(now)) {
     guards_.push_back({k_growth_on, -1, 1, "growth-on"});
+    // The share of a contact in the demand for growth may change sign just before it is lost.
+    for (Guard& guard : guards_) guard.is_branch_end = guard.is_branch_end || guard.kind == k_lost;
   }
   for (std::size_t p = 0; p < cap_pairs_.size(); ++p) {
     const auto first = static_cast<std::size_t>(cap_pairs_[p].first);
@@ -565,7 +573,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = least_firmness() - k_least_firmness;
         break;
       case k_singular:
-        values[g] = now.slope / ((1.0 + r) * (1.0 + r)) - k_least_slope;
+        values[g] = free_surface(now, r) - k_least_slope;
         break;
       case k_volume:
         values[g] = 1.0 - 4.0 * sums_.relative_compression - k_least_volume;
@@ -583,8 +591,16 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
       case k_turn:
         values[g] = edge_rate(i, r, now);
         break;
-      case k_peel:
+      case k_lost:
+        values[g] = contact_guard(k_lost, i, xi, now_[i].overlap, r);
+        // What only touches is always near to that, and not lost together with others.
+        if (memory_[i].is_virgin) values[g] /= k_shallow;
+        break;
       case k_follow:
+        // An edge that has just come to stick leaves with the square of the way; rounding does not bring it back.
+        values[g] = edge_guard(k_follow, i, xi, now_[i].overlap - k_same_overlap, r);
+        break;
+      case k_peel:
       case k_pull_off:
         values[g] = edge_guard(guards_[g].kind, i, xi, now_[i].overlap, r);
         break;
@@ -616,6 +632,9 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     // Another guard of the same edge has changed it at this instant.
     const bool is_of_edge = guard.kind == k_peel || guard.kind == k_follow || guard.kind == k_turn;
     if (is_of_edge && (!touches(memory_[i].regime) || edges_before_[i] != memory_[i].edge)) continue;
+    // Nor is a branch at its end that is as short as what counts as zero.
+    const bool is_of_dent = guard.kind == k_reload && memory_[i].regime == Regime::unloading;
+    if (is_of_dent && unloading_fraction(shape(i, r), now_[i].overlap) > k_passed) continue;
     if (guard.kind == k_peel && edge_rate(i, r, now) >= -k_at_rest) continue;
     if (guard.kind == k_follow && edge_rate(i, r, now) <= k_at_rest) continue;
     switch (guard.kind) {

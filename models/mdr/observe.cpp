@@ -69,8 +69,9 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
 
   auto out = values.begin();
   if (settings_.radius_rule != RadiusRule::fixed) {
-    const double w = sums_.relative_compression;
-    const double volume = w < 0.25 ? 1.0 - 2.0 * w / (1.0 + std::sqrt(1.0 - 4.0 * w)) : std::nan("");
+    // There is no smaller volume; fixed steps end beyond it.
+    const double w = std::min(sums_.relative_compression, 0.25);
+    const double volume = 1.0 - 2.0 * w / (1.0 + std::sqrt(1.0 - 4.0 * w));
     *out++ = (1.0 + r) * length;
     *out++ = 4.0 * pi / 3.0 * length * length * length * volume;
   }

@@ -104,6 +104,7 @@ class System final : public HybridSystem {
   }
   /// Below this a class of walls does not act along any free direction of the centre.
   static constexpr double k_no_direction = 1e-10;
+  static constexpr const char* k_singular_growth = "singular growth of the apparent radius";
   /// Overlaps over R0 that are rounding of lengths of the order of R0.
   static constexpr double k_shallow = 1e-12;
 
@@ -152,6 +153,7 @@ class System final : public HybridSystem {
     Small force_by_time = Small::Zero();
     Small force_by_radius = Small::Zero();
     SmallMatrix stiffness = SmallMatrix::Zero();
+    SmallMatrix firmness = SmallMatrix::Zero();
     double time_scale = 0.0;  ///< sum of the magnitudes in by_time
   };
 
@@ -207,10 +209,16 @@ class System final : public HybridSystem {
   void look_at(std::size_t i, double displacement, double r);
   [[nodiscard]] double force_work(std::span<const double> y);
   void sum_up(double xi, double r);
-  void regularise_first_touch();
-  [[nodiscard]] Small balance_step(const Small& force) const;
+  /// Stiffness of a contact as deep as rounding.
+  [[nodiscard]] double least_firm() const noexcept { return 2.0 * material_.composite_modulus * std::sqrt(k_shallow); }
+  [[nodiscard]] double firmness(std::size_t i) const noexcept;
+  [[nodiscard]] Small balance_step(const SmallMatrix& stiffness, const Small& force) const;
   [[nodiscard]] Motion motion(bool growing) const;
   [[nodiscard]] Motion growing_motion() const;
+  /// Share of the particle's surface that growth has for itself.
+  [[nodiscard]] static double free_surface(const Motion& motion, double r) noexcept {
+    return motion.slope / ((1.0 + r) * (1.0 + r));
+  }
   [[nodiscard]] double rounding_of_forces() const noexcept;
   void move_centre(double xi, std::span<double> y);
   bool approach_balance(double xi, std::span<double> y);

@@ -38,6 +38,11 @@ constexpr double k_few_nodes_accuracy = 1e-7;
 constexpr double k_deep_inside = 0.5;
 constexpr double k_event_accuracy = 1e-13;
 constexpr double k_just_beyond = 1.001;
+// Where there are several solutions, what the last terms of a piece's series are at most, over the largest: the way
+// from one solution to another is a jump, or goes like a root, and no piece on one of them does.
+constexpr double k_unresolved = 1e-2;
+// Terms over the unknown's scale, and pieces over those that may be long enough, of which nothing is asked: rounding.
+constexpr double k_rounding_of_branch = 1e-8;
 // Quadrature pieces are not refined below this; what is left is below round-off of the whole.
 constexpr double k_smallest_quadrature = 1e-6;
 
@@ -75,6 +80,8 @@ class Direct final : public EventLocator {
   Advance advance() override {
     ++statistics_.steps;
     begin_piece();
+    branch_reach_ = system_.branch_reach(begin_state_);
+    length_ = std::min(length_, branch_reach_);
     // Slaved unknowns may start with a singularity, over which guards cross and come back within no time.
     if (has_slaves_) length_ = std::min(length_, std::max(k_first, k_grading * (begin_ - segment_begin_)));
     double rest = k_rest;
@@ -159,11 +166,27 @@ class Direct final : public EventLocator {
     }
     move_end(piece_end_);
     locate_event();
+    if (std::isfinite(branch_reach_) && !is_resolved()) {
+      factor = std::min(0.5, k_just_beyond * (end_ - begin_) / (piece_end_ - begin_));
+      return false;
+    }
     if (!is_closed_ && end_ - begin_ < k_deep_inside * (piece_end_ - begin_) && !holds_up_to_end()) {
       factor = k_just_beyond * (end_ - begin_) / (piece_end_ - begin_);
       return false;
     }
     if (quadrature_) end_state_[*quadrature_] = quadrature_at(end_, end_state_);
+    return true;
+  }
+
+  /// Whether the state up to the end of the piece is one branch of solutions: nodes show it, and series go through
+  /// them.
+  [[nodiscard]] bool is_resolved() const {
+    const double length = piece_end_ - begin_;
+    if (end_ - begin_ <= std::max(least_progress(begin_), k_rounding_of_branch * branch_reach_)) return true;
+    if (end_ - begin_ < k_deep_inside * length) return false;
+    for (std::size_t k = 0; k < series_.size(); ++k) {
+      if (series_[k].rest(k_rounding_of_branch * system_.unknowns()[k].scale) > k_unresolved) return false;
+    }
     return true;
   }
 
@@ -229,6 +252,7 @@ class Direct final : public EventLocator {
   bool is_closed_ = false;
   double primitive_offset_ = 0.0;
   bool has_slaves_ = false;
+  double branch_reach_ = 0.0;  ///< of the system where the piece begins
   double segment_begin_ = 0.0;
   int refusals_ = 0;                     ///< of tiny pieces in this segment
   double length_ = k_longest;            ///< of the next piece

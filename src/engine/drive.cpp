@@ -20,6 +20,8 @@ namespace {
 constexpr double k_round_off = 1e-13;
 // Events in a row without progress after which two modes are chattering.
 constexpr int k_most_idle_events = 50;
+// Steps in a row that do not move the step coordinate after which none will.
+constexpr int k_most_idle_steps = 1000;
 // Events of one step of the program after which they are taken to go on without end.
 constexpr int k_most_events = 1000;
 // Finer tolerances may be below the rounding of a scene's own equations.
@@ -239,6 +241,7 @@ class Drive {
     int idle_events = 0;
     int events = 0;
     long steps = 0;
+    int idle_steps = 0;
     while (plan_.duration > 0.0 && 1.0 - xi_ > k_round_off) {
       const double segment_start = xi_;
       integrator_->begin(xi_, y_);
@@ -249,6 +252,8 @@ class Drive {
         if (++steps > integrator_->most_steps()) throw too_much_work(steps - 1);
         advance = integrator_->advance();
         xi_ = advance.xi;
+        idle_steps = xi_ > last ? 0 : idle_steps + 1;
+        if (idle_steps > k_most_idle_steps) throw stalled(idle_steps);
         emit_outputs_before(last, xi_);
         integrator_->dense_output(xi_, y_);
       } while (!advance.hit_guard && xi_ < 1.0);
@@ -333,6 +338,11 @@ class Drive {
         fmt::format("{} internal steps have not brought this step of the program to its end; where the equations are "
                     "stiff, expected cvode-bdf or ida",
                     steps)};
+  }
+
+  [[nodiscard]] SolverError stalled(int steps) const {
+    return {"integration", "no progress", xi_, integrator_->statistics().last_step,
+            fmt::format("{} internal steps in a row are shorter than the rounding of the step coordinate", steps)};
   }
 
   [[nodiscard]] SolverError chattering() const {

@@ -131,6 +131,16 @@ double LegendreSeries::integral(double t) const noexcept {
   return sum;
 }
 
+double LegendreSeries::rest(double negligible) const noexcept {
+  double largest = 0.0;
+  double last = 0.0;
+  for (std::size_t n = 0; n < count_; ++n) {
+    largest = std::max(largest, std::abs(coefficients_[n]));
+    if (n + 2 >= count_) last = std::max(last, std::abs(coefficients_[n]));
+  }
+  return last > negligible ? last / largest : 0.0;
+}
+
 double LegendreSeries::reach(double negligible) const noexcept {
   const auto largest_of = [this](std::size_t begin, std::size_t end) {
     double largest = 0.0;

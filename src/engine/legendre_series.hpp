@@ -57,6 +57,9 @@ class LegendreSeries {
   /// @param negligible  error of the integral over [-1, 1] that does not count, however large a share of it that is
   [[nodiscard]] double reach(double negligible) const noexcept;
 
+  /// Its last two terms over the largest one: how far it is from having converged. Nothing where they are negligible.
+  [[nodiscard]] double rest(double negligible) const noexcept;
+
  private:
   LegendreSamples coefficients_{};
   std::size_t count_ = 0;

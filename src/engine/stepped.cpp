@@ -39,6 +39,7 @@ class Stepped final : public EventLocator {
   Advance advance() override {
     begin_piece();
     if (begin_ >= step_end_) {
+      form_.begin_step(begin_, begin_state_);
       step_end_ = stepper_->step();
       ++statistics_.steps;
       statistics_.last_step = step_end_ - begin_;

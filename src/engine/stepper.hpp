@@ -12,7 +12,12 @@ namespace monograin {
 /// The explicit form with every unknown over its own scale, so that one absolute tolerance serves all.
 class ScaledForm {
  public:
-  explicit ScaledForm(HybridSystem& system) : form_(system), y_(form_.size()), dy_(form_.size()) {}
+  explicit ScaledForm(HybridSystem& system)
+      : form_(system),
+        y_(form_.size()),
+        dy_(form_.size()),
+        begin_(system.unknowns().size()),
+        seen_(system.unknowns().size()) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return form_.size(); }
   [[nodiscard]] bool has_slaves() const noexcept { return form_.has_slaves(); }
@@ -21,18 +26,33 @@ class ScaledForm {
   /// Takes up a segment's complete state; z is the integrated one.
   void begin(std::span<const double> complete, std::span<double> z) {
     form_.begin(complete, y_);
+    begin_step(0.0, complete);
     for (std::size_t k = 0; k < size(); ++k) z[k] = y_[k] / form_.unknown(k).scale;
   }
 
+  /// Where a step begins, and the state there.
+  void begin_step(double xi, std::span<const double> complete) {
+    std::ranges::copy(complete, begin_.begin());
+    std::ranges::copy(complete, seen_.begin());
+    seen_xi_ = last_xi_ = xi;
+  }
+
+  /// A state on the curve.
   void complete(double xi, std::span<const double> z, std::span<double> complete) {
     scale_back(z);
+    guess_on_curve(xi);
     form_.complete(xi, y_, complete);
+    std::ranges::copy(complete, seen_.begin());
+    seen_xi_ = xi;
   }
 
   /// @throws std::domain_error where the equations end, or have no finite rates
   void rates(double xi, std::span<const double> z, std::span<double> dz) {
     ++evaluations_;
     scale_back(z);
+    // Back from a stage, or from a step that came to nothing.
+    if (xi < last_xi_) guess_on_curve(xi);
+    last_xi_ = xi;
     form_.rates(xi, y_, dy_);
     if (!all_finite(dy_)) throw std::domain_error("the rates of the equations are not finite");
     for (std::size_t k = 0; k < size(); ++k) dz[k] = dy_[k] / form_.unknown(k).scale;
@@ -43,8 +63,15 @@ class ScaledForm {
     for (std::size_t k = 0; k < size(); ++k) y_[k] = z[k] * form_.unknown(k).scale;
   }
 
+  /// Stages may lie far from the curve, where the equations have other solutions; of its own states the next one before
+  /// xi is the first guess.
+  void guess_on_curve(double xi) { form_.guess(xi < seen_xi_ ? begin_ : seen_); }
+
   ExplicitForm form_;
   std::vector<double> y_, dy_;
+  std::vector<double> begin_, seen_;  ///< complete states: at the beginning of the step, and the last one on the curve
+  double seen_xi_ = 0.0;
+  double last_xi_ = 0.0;  ///< where rates were last asked for
   long evaluations_ = 0;
 };
 

@@ -1,6 +1,9 @@
 #include "scene/plastic_law.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <variant>
 
 namespace monograin {
@@ -10,6 +13,8 @@ namespace {
 // ends, over R0: shallower contacts are rounding, and steps of an integrator so short would be, too.
 constexpr double k_deepest = 0.9;
 constexpr double k_shallowest = 1e-12;
+// Share of a displacement by which a wall that holds its place may seem to go back.
+constexpr double k_same_place = 1e-9;
 
 /// What a condition looks at, in SI.
 double value_of(const Scenario& scenario, double strength, double x, const plastic::ContactState& contact,
@@ -82,6 +87,28 @@ Reach plastic_reach(const Scenario& scenario, const Until& until) {
              .force = contact.force * strength * scenario.radius * scenario.radius};
   }
   return reach;
+}
+
+std::size_t first_without_branch(const Scenario& scenario, std::span<const Step> program) {
+  const bool may_go_back =
+      !is_plastic(scenario.model) || std::get<std::string>(scenario.options.at("unloading")) != "none";
+  if (program.size() < 2 || may_go_back) return program.size();
+  const plastic::Law law = plastic_law_of(scenario);
+  const double force_unit = plastic_strength_of(scenario) * scenario.radius * scenario.radius;
+  double deepest = 0.0;  // at least
+  for (std::size_t k = 0; k < program.size(); ++k) {
+    const Step& step = program[k];
+    double x = step.kind == Step::Kind::detach ? 0.0 : deepest;
+    try {
+      if (step.kind == Step::Kind::displacement) x = step.target / scenario.radius;
+      if (step.kind == Step::Kind::force) x = plastic::approach_under(law, std::max(step.target, 0.0) / force_unit);
+    } catch (const std::domain_error&) {
+      continue;  // ends at a limit of the law
+    }
+    if (deepest > k_shallowest && x < (1.0 - k_same_place) * deepest) return k;
+    if (step.until.empty()) deepest = std::max(deepest, x);
+  }
+  return program.size();
 }
 
 }  // namespace monograin

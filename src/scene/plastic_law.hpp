@@ -1,6 +1,7 @@
 /// The law of a scenario of model `similarity`, `semimech` or `hardening`.
 #pragma once
 
+#include <span>
 #include <string_view>
 
 #include "plastic/law.hpp"
@@ -19,5 +20,9 @@ namespace monograin {
 /// How far a contact is pressed that reaches a condition's value for the first time, to within a factor 2; infinity
 /// where it never does.
 [[nodiscard]] Reach plastic_reach(const Scenario& scenario, const Until& until);
+
+/// Index of the first step of a program that leads a contact back, where the law has no branch for that and the run
+/// ends; the number of steps where none does. What a condition makes of a step is not foreseen.
+[[nodiscard]] std::size_t first_without_branch(const Scenario& scenario, std::span<const Step> program);
 
 }  // namespace monograin

@@ -106,7 +106,8 @@ class SceneCheck {
     tolerance_ = std::max(own_tolerance(*run), own_tolerance(*reference));
     nothing_ = {.unit = {.length = scenario_.radius, .stress = softest(scenario_)},
                 .share = is_direct ? k_stress_rounding : scenario_.numerics.atol,
-                .energy_share = direct_work_tolerance(*run)};
+                .energy_share = direct_work_tolerance(*run),
+                .step_share = tolerance_};
     if (!is_direct) compare("agreement", *reference, *run);
     check_rate(*run);
     if (const auto other = try_run(magnified(scenario_, k_magnification), "larger and softer")) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace monograin {
@@ -37,6 +38,26 @@ double scale_of(const Table& table, std::size_t column) {
 bool is_compared(const Column& column) {
   return !column.holds_words() && column.name != "time" && column.name != "step" && column.name != "row" &&
          column.name != "yield_function" && column.name != "coordination_number" && kind_of(column) != "pressure";
+}
+
+/// Where a column is empty on one side of an event, its value on the other side of the one that a row lies beside.
+std::optional<double> beyond_event(const Table& table, std::size_t row, std::size_t column, double step_share) {
+  const auto step = *table.find("step");
+  const auto is_empty = [&](std::size_t r) { return std::isnan(table.at(r, column)); };
+  const auto is_in_step = [&](std::size_t r) { return table.at(r, step) == table.at(row, step); };
+  std::size_t first = row;
+  std::size_t last = row;
+  while (first > 0 && is_in_step(first - 1)) --first;
+  while (last + 1 < table.row_count() && is_in_step(last + 1)) ++last;
+  const double farthest = step_share * (table.at(last, 0) - table.at(first, 0));
+  const auto is_near = [&](std::size_t r) { return std::abs(table.at(r, 0) - table.at(row, 0)) <= farthest; };
+  for (std::size_t r = row; r <= last && is_near(r); ++r) {
+    if (is_empty(r) != is_empty(row)) return table.at(r, column);
+  }
+  for (std::size_t r = row; r-- > first && is_near(r);) {
+    if (is_empty(r) != is_empty(row)) return table.at(r, column);
+  }
+  return std::nullopt;
 }
 
 double factor_of(const std::string& unit, const Magnification& larger) {
@@ -105,8 +126,14 @@ Distance distance_at(const Table& first, const Table& second,
     const double floor = nothing.share * factor_of(first.columns()[c].unit, nothing.unit) +
                          (is_energy(first.columns()[c]) ? nothing.energy_share * scale : 0.0);
     for (const auto& [a, b] : rows) {
-      const double x = first.at(a, c) - origin;
-      const double y = second.at(b, c) / factor - origin;
+      double x = first.at(a, c) - origin;
+      double y = second.at(b, c) / factor - origin;
+      if (std::isnan(x) != std::isnan(y)) {
+        if (const auto other = beyond_event(first, a, c, nothing.step_share))
+          x = *other - origin;
+        else if (const auto of_second = beyond_event(second, b, c, nothing.step_share))
+          y = *of_second / factor - origin;
+      }
       if (std::isnan(x) && std::isnan(y)) continue;
       if (std::isnan(x - y)) return {x - y, first.columns()[c].name, first.at(a, 0)};
       const double value =

@@ -43,10 +43,12 @@ struct Negligible {
   Magnification unit;
   double share = 0.0;
   double energy_share = 0.0;  ///< of the largest energy: the tolerance of the direct form's work
+  double step_share = 0.0;    ///< of a step: how far an event may be from where it belongs
 };
 
 /// At pairs of rows, without the pressure (a force over an area, both of which are compared; where both vanish their
-/// quotient has no digits) and the coordination number (a root of the packing fraction).
+/// quotient has no digits) and the coordination number (a root of the packing fraction). Where a column is empty in one
+/// regime, a row beside an event may lie on either side of it.
 /// @param larger  the second by the first
 [[nodiscard]] Distance distance_at(const Table& first, const Table& second,
                                    const std::vector<std::pair<std::size_t, std::size_t>>& rows,

@@ -40,9 +40,11 @@ constexpr double k_tolerated_loss = 1e-6;
 constexpr std::size_t k_most_events_per_step = 200;
 constexpr std::string_view k_endless = "endless events";
 constexpr std::string_view k_chattering = "chattering";
+constexpr std::string_view k_too_much_work = "too much work";
 constexpr std::string_view k_stiff_material = "the bulk modulus is above 1e5 yield pressures";
 constexpr std::string_view k_hardly_unique = "the program hardly determines the plastic strain any more";
 constexpr std::string_view k_singular_balance = "the balance of the free centre is singular";
+constexpr std::string_view k_near_applicability = "the limit of applicability is so near";
 constexpr std::string_view k_no_depth = "the program closes no contact by more than 1e-12";
 
 /// A limit of a model, as its messages name it.
@@ -466,8 +468,10 @@ std::string stated_end(const Run& run) {
   if (run.record.status == RunStatus::failed) {
     if (says("errors of the size of rounding")) return "tolerance of the size of rounding";
     if (says(k_singular_balance)) return std::string(k_singular_balance);
-    if (says(k_no_depth)) return "no contact above rounding";
-    if (run.scenario.model == "material-point" && says("too much work")) return "too much work";
+    if (says(k_near_applicability)) return "tolerance next to the limit of applicability";
+    const bool gave_up_on_a_step = !says(k_too_much_work) && !says(k_endless) && !says(k_chattering);
+    if (gave_up_on_a_step && says(k_no_depth)) return "no contact above rounding";
+    if (run.scenario.model == "material-point" && says(k_too_much_work)) return std::string(k_too_much_work);
     for (const std::string_view words : {k_stiff_material, k_hardly_unique}) {
       if (says(words)) return std::string(words);
     }

@@ -98,7 +98,10 @@ Start start_of(const Scenario& scenario, const std::vector<Step>& steps, std::si
   for (std::size_t i = 0; i < index; ++i) {
     const Step& step = steps[i];
     const bool is_open = may_end_early(scenario, i);
-    start.first = is_open && step.kind != Step::Kind::hold ? std::nullopt : after(start.first, step.kind, step.target);
+    // A wall that does not bear its pull goes on from no force.
+    const bool is_pull = step.kind == Step::Kind::force && step.target < 0.0;
+    const bool is_unknown = (is_open && step.kind != Step::Kind::hold) || is_pull;
+    start.first = is_unknown ? std::nullopt : after(start.first, step.kind, step.target);
     if (!step.lateral) continue;
     start.lateral = is_open ? std::nullopt : after(start.lateral, step.lateral->kind, step.lateral->target);
   }

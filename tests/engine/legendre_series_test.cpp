@@ -180,6 +180,18 @@ TEST(LegendreReach, IsFarOfWhatIsExactOrRounding) {
   EXPECT_GE(series_of([](double t) { return (1e6 + 0.3 * t) - 1e6; }).reach(0.0), 2.0);
 }
 
+TEST(LegendreRest, TellsJumpsAndRootsFromSmoothFunctions) {
+  const LegendreNodes& nodes = LegendreNodes::few();
+  EXPECT_EQ(series_of([](double) { return 0.0; }, nodes).rest(0.0), 0.0);
+  EXPECT_LT(series_of([](double t) { return std::exp(0.5 * t); }, nodes).rest(0.0), 1e-3);
+  EXPECT_LT(series_of([](double t) { return std::pow(1.0 + t, 1.5); }, nodes).rest(0.0), 1e-2);
+  EXPECT_EQ(series_of([](double t) { return t > 0.0 ? 1e-9 : 0.0; }, nodes).rest(1e-8), 0.0);
+  for (const double place : {-0.6, 0.0, 0.6}) {
+    EXPECT_GT(series_of([=](double t) { return t > place ? 1.0 : 0.0; }, nodes).rest(0.0), 0.1) << place;
+    EXPECT_GT(series_of([=](double t) { return std::sqrt(std::max(place - t, 0.0)); }, nodes).rest(0.0), 0.03) << place;
+  }
+}
+
 TEST(LegendreReach, DoesNotDependOnTheFunctionsSize) {
   const double reach = exponential_over(15.0).reach(0.0);
   for (const double size : {1e-12, 1e12}) {

@@ -100,6 +100,13 @@ TEST_F(BrokenHistory, IsFoundWhereARunEndsWithoutReason) {
   EXPECT_TRUE(breaks(check_run(run_), "unstated-limit"));
   run_.record.message = "step 1, t = 1 s: a wall has reached the centre of the particle (distance/R0 = 0)";
   EXPECT_TRUE(check_run(run_).empty());
+  // Rounding makes an integrator give up on a step; other ends do not follow from it.
+  run_.record.status = RunStatus::failed;
+  const std::string of_rounding = "; the program closes no contact by more than 1e-12 of the particle's radius";
+  run_.record.message = "try_step failed with no step passes the error test" + of_rounding;
+  EXPECT_TRUE(check_run(run_).empty());
+  run_.record.message = "event location failed with chattering" + of_rounding;
+  EXPECT_TRUE(breaks(check_run(run_), "solver"));
 }
 
 TEST_F(BrokenHistory, IsFarFromTheWholeOne) {
