@@ -57,6 +57,9 @@ constexpr double k_last_correction = 1e-11;
 constexpr double k_last_excess = 1e-9;
 constexpr int k_most_small_corrections = 12;
 constexpr int k_most_corrections = 60;
+// Plastic strain by which no guess of an integrator is wrong at any tolerance. A state that is farther away from its
+// guess than that and the elastic strain lies on another branch, behind a loss of uniqueness.
+constexpr double k_nearby = 1e-2;
 
 // Share of the strength below which a negative work of the flow is round-off.
 constexpr double k_negligible_work = 1e-9;
@@ -249,6 +252,7 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
   if (!is_plastic_) return;
   const bool follows_gradient = is_stress(k_axial) && is_stress(k_lateral) && !is_solvable();
   const double guess = y[k_phi];
+  const double guessed_deviatoric = y[k_deviatoric];
   double elastic_strain = 0.0;
   int small_corrections = 0;
   const bool has_caps = is_compressible(settings_.parameters.model);
@@ -267,7 +271,10 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
       y[k_deviatoric] += deviatoric;
       if (std::hypot(phi, deviatoric) >= k_last_correction) continue;
       const bool is_found = !has_caps || std::abs(now.yield.f) < k_last_excess;
-      if (is_found || ++small_corrections == k_most_small_corrections) return;
+      if (!is_found && ++small_corrections < k_most_small_corrections) continue;
+      const double distance = std::hypot(y[k_phi] - guess, y[k_deviatoric] - guessed_deviatoric);
+      if (is_solvable() || distance <= std::max(elastic_strain, k_nearby)) return;
+      break;
     }
   } catch (const std::domain_error&) {
     // Far corrections that lead to where the law has no surface at all have found nothing, either.

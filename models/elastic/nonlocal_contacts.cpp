@@ -23,6 +23,7 @@ constexpr double k_stagnation = 1e-9;   // rounding grows with 1/margin near the
 constexpr double k_balance = 1e-9;      // net force over the sum of forces
 constexpr double k_least_step = 1e-13;  // of the way to a state that is not found at once
 constexpr int k_most_steps = 1000;      // on that way, tried ones included
+constexpr int k_refinements = 2;        // of a place clear of all walls
 constexpr int k_most_roundings = 20;    // times that its end is found with forces of rounding left over
 constexpr double k_same_surroundings = 1e-9;
 constexpr double k_margin_tolerance = 1e-14;
@@ -361,9 +362,63 @@ void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y
   std::copy(y.begin(), y.end(), trial_.begin());
   if (newton(trial_, 0.0) && !has_left_branch(trial_) && is_balanced(trial_)) {
     std::copy(trial_.begin(), trial_.end(), y.begin());
-  } else {
+  } else if (!has_let_go(ramps, xi, y)) {
     approach_in_steps(y);
   }
+}
+
+/// Puts y where no wall bears anything, if the targets leave the centre such a place. No other state balances then: its
+/// forces would do no work on a way there, sum_j F_j d_j <= 0, but sum_j F_j g_j > sum_jh F_j G_jh F_h wherever M is
+/// positive definite.
+bool Contacts::has_let_go(std::span<const Ramp> ramps, double xi, std::span<double> y) const {
+  const std::size_t n = class_count();
+  if (free_count() == 0) return false;
+  if (std::any_of(targets_.begin(), targets_.end(), [](const Target& t) { return t.is_force && t.value != 0.0; })) {
+    return false;
+  }
+  if (!release_centre(ramps, xi, y.subspan(n))) return false;
+  for (std::size_t j = 0; j < n; ++j) {
+    double approach = targets_[j].is_force ? 0.0 : targets_[j].value;
+    for (std::size_t k = 0; k < free_count() && !targets_[j].is_force; ++k) approach += arms_(at(j), at(k)) * y[n + k];
+    y[j] = std::min(approach, 0.0);
+  }
+  return true;
+}
+
+bool Contacts::release_centre(std::span<const Ramp> ramps, double xi, std::span<double> centre) const {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  std::copy(centre.begin(), centre.end(), place.begin());
+  const auto clear = [&] { return clear_walls(ramps, xi, class_count(), Eigen::Matrix3d::Identity(), place); };
+  if (!clear()) return false;
+  // What rounding has left beyond the surface on a long way is little, and so is the way from there.
+  for (int refinement = 0; refinement < k_refinements; ++refinement) {
+    if (!clear()) break;
+  }
+  std::copy_n(place.begin(), centre.size(), centre.begin());
+  return true;
+}
+
+/// Moves the centre in a subspace, whose projector is given, to the nearest place clear of the first walls. One that
+/// the nearest place clear of those before it is not clear of touches the surface in the end.
+bool Contacts::clear_walls(std::span<const Ramp> ramps, double xi, std::size_t count, const Eigen::Matrix3d& projector,
+                           Eigen::Vector3d& place) const {
+  const auto free = static_cast<Eigen::Index>(free_count());
+  Eigen::Vector3d now = place;
+  for (std::size_t j = 0; j < count; ++j) {
+    if (ramps[j].control == Control::force) continue;
+    Eigen::Vector3d arm = Eigen::Vector3d::Zero();
+    arm.head(free) = arms_.row(at(j)).transpose();
+    const double displacement = std::lerp(ramps[j].start, ramps[j].end, xi);
+    const double rounding = k_resolved * (std::abs(displacement) + arm.cwiseProduct(now).cwiseAbs().sum());
+    if (displacement + arm.dot(now) <= rounding) continue;
+    const Eigen::Vector3d along = projector * arm;
+    const double share = along.squaredNorm();
+    if (!(share > k_same_surroundings * k_same_surroundings)) return false;
+    now = place - along * ((displacement + arm.dot(place)) / share);
+    if (!clear_walls(ramps, xi, j, projector - along * along.transpose() / share, now)) return false;
+  }
+  place = now;
+  return true;
 }
 
 /// From a state, which is the solution for some displacements, forces and imbalance, along a straight line to the

@@ -84,6 +84,10 @@ class Contacts {
   /// centre that nothing holds
   void solve(std::span<const Ramp> ramps, double xi, std::span<double> y);
 
+  /// Moves a centre to the nearest place where no wall under displacement control is beyond the surface.
+  /// @return false, and the centre where it was, if the walls leave no such place
+  bool release_centre(std::span<const Ramp> ramps, double xi, std::span<double> centre) const;
+
   /// dy/dxi along a solution. Regular from the unloaded state on, but for a class under force control at s = 0, where
   /// its own s has an infinite rate; the other rates do not depend on that. A free centre leaves the unloaded state as
   /// if the contacts were equally stiff, which is exact where they will be.
@@ -147,6 +151,9 @@ class Contacts {
   [[nodiscard]] bool has_left_branch(std::span<const double> y);
   [[nodiscard]] bool is_balanced(std::span<const double> y);
   [[nodiscard]] bool is_balanced_but_for_rounding(std::span<const double> y);
+  [[nodiscard]] bool has_let_go(std::span<const Ramp> ramps, double xi, std::span<double> y) const;
+  [[nodiscard]] bool clear_walls(std::span<const Ramp> ramps, double xi, std::size_t count,
+                                 const Eigen::Matrix3d& projector, Eigen::Vector3d& place) const;
   void approach_in_steps(std::span<double> y);
 
   [[nodiscard]] double& entry(std::size_t row, std::size_t column) noexcept { return matrix_[row * stride_ + column]; }

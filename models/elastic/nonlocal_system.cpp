@@ -38,9 +38,8 @@ constexpr double k_touch_of_free_centre = 1e-9;
 // Contacts shallower than this, over the deepest, hold a free centre too softly for an integrator.
 constexpr double k_idle = 1e-6;
 constexpr double k_force_power = 1.5;
-// Of a sum of displacements, over them; and walls that a centre is moved away from one after the other.
+// Of a sum of displacements, over them.
 constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
-constexpr int k_release_sweeps = 20;
 // How fast an integrated state is drawn back to the equations, over a step of the program: an error that it has
 // gathered would grow with 1/margin towards the limit of applicability.
 constexpr double k_pull = 20.0;
@@ -215,7 +214,9 @@ void System::note(std::span<double> y) const {
 
 void System::complete(double xi, std::span<double> y) {
   const bool bears_nothing = std::ranges::all_of(regimes_, [](Regime regime) { return regime == Regime::open; });
-  if (bears_nothing && contacts_.free_count() > 0) release_centre(xi, y);
+  if (bears_nothing && contacts_.free_count() > 0) {
+    contacts_.release_centre(ramps_, xi, y.subspan(classes_.size(), contacts_.free_count()));
+  }
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_loaded(i)) {
       y[i] = std::pow(square_under_force(i, xi), k_force_power);
@@ -225,28 +226,6 @@ void System::complete(double xi, std::span<double> y) {
       if (approach <= k_rounding * std::abs(told(i, xi))) y[i] = std::min(approach, 0.0);
     }
   }
-}
-
-/// Moves a centre that no contact holds to where no wall is beyond the surface; where walls leave it no such place it
-/// stays.
-void System::release_centre(double xi, std::span<double> y) const {
-  const std::span<double> centre = y.subspan(classes_.size(), contacts_.free_count());
-  std::array<double, 3> before{};
-  std::ranges::copy(centre, before.begin());
-  for (int sweep = 0; sweep < k_release_sweeps; ++sweep) {
-    bool is_beyond = false;
-    for (std::size_t i = 0; i < classes_.size(); ++i) {
-      if (is_loaded(i)) continue;
-      const double approach = told(i, xi) + shift(i, y);
-      if (!(approach > k_rounding * std::abs(told(i, xi)))) continue;
-      is_beyond = true;
-      for (std::size_t k = 0; k < centre.size(); ++k) {
-        centre[k] -= approach * arms_[i][static_cast<Eigen::Index>(k)] / std::max(arms_[i].squaredNorm(), k_same_angle);
-      }
-    }
-    if (!is_beyond) return;
-  }
-  std::ranges::copy_n(before.begin(), static_cast<std::ptrdiff_t>(centre.size()), centre.begin());
 }
 
 double System::branch_reach(std::span<const double> y) const {

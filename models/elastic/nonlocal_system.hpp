@@ -74,7 +74,6 @@ class System final : public HybridSystem {
   [[nodiscard]] double told(std::size_t i, double xi) const noexcept;
   [[nodiscard]] double square_under_force(std::size_t i, double xi) const;
   std::span<double> look(double xi, std::span<const double> y);
-  void release_centre(double xi, std::span<double> y) const;
   void settle_others(std::span<const std::size_t> fired, std::vector<Event>& log);
   void look_closely(double xi, std::span<const double> y);
   void note(std::span<double> y) const;

@@ -20,6 +20,9 @@ constexpr double k_twelfth = 1.0 / 12.0;
 constexpr double k_round_off = std::numeric_limits<double>::epsilon();
 constexpr int k_newton_limit = 60;
 constexpr int k_most_halvings = 40;
+// Least stiffness of the contacts that hold a free centre, over the sum of their magnitudes, at which a search for the
+// balance of forces on it has ended at a fold: its force is least there, and not zero.
+constexpr double k_at_fold = 1e-2;
 
 }  // namespace
 
@@ -157,12 +160,12 @@ double System::inward_rate(std::size_t i, const Motion& motion) const noexcept {
   return now_[i].rate_by_time + now_[i].rate_by_growth * motion.growth + carried;
 }
 
-/// What is left of forces on the centre that balance: contacts that only touch it are too soft to bear that without
-/// going to and fro.
+/// What is left of forces on the centre that balance, of their own rounding and of that of overlaps: contacts that only
+/// touch it are too soft to bear that without going to and fro.
 double System::rounding_of_forces() const noexcept {
   double sum = 0.0;
   for (std::size_t i = 0; i < now_.size(); ++i) sum += classes_[i].multiplicity() * std::abs(now_[i].contact.force);
-  return 4.0 * k_round_off * sum;
+  return 4.0 * k_round_off * (sum + sums_.stiffness.cwiseAbs().maxCoeff());
 }
 
 /// Newton on the balance of forces at a given radius; the force grows with the overlap, so damping is all it needs.
@@ -192,6 +195,9 @@ void System::move_centre(double xi, std::span<double> y) {
       step *= 0.5;
     }
     if (step.norm() < 2.0 * k_round_off) return;
+  }
+  if (std::abs(least_firmness()) < k_at_fold) {
+    throw std::domain_error("the contacts hold the free centre no longer: beyond a fold no forces on it balance");
   }
   throw std::domain_error("the balance of forces on the free centre was not found");
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "difficulties.hpp"
 #include "elastic/hertz.hpp"
 
 namespace monograin::mdr {
@@ -169,9 +170,7 @@ bool System::is_open(int contact_class) const noexcept {
 
 /// Of the whole program: every contact is as shallow when it is made.
 std::string_view System::difficulty(double /*xi*/, std::span<const double> /*y*/) {
-  if (largest_overlap_expected() > k_shallow) return {};
-  return "the program closes no contact by more than 1e-12 of the particle's radius, which is rounding; expected a "
-         "deeper one, or integrator = \"direct\"";
+  return largest_overlap_expected() > k_shallow ? std::string_view() : k_closes_nothing;
 }
 
 double System::largest_overlap(const Memory& memory, double r) const noexcept {

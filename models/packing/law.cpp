@@ -14,8 +14,10 @@ namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr double k_least_room = 1e-5;  // between Phi_J and 1
-// Search for the ends of a growing branch: from this far above Phi_J, in equal ratios and then in equal steps.
+// Search for the ends of a growing branch: from this far above Phi_J, in equal ratios and then in equal steps; and this
+// far, over Phi, before the last particles yield.
 constexpr double k_first = 1e-15;
+constexpr double k_before_full_plasticity = 1e-14;
 constexpr int k_ratios = 60;
 constexpr int k_steps = 200;
 
@@ -244,7 +246,7 @@ double measured(const Law& law, Measure measure, double phi) {
 }
 
 Branch growing_branch(const Law& law, Measure measure) {
-  std::array<double, k_ratios + k_steps + 1> places{};
+  std::array<double, k_ratios + k_steps + 2> places{};
   const double room = 1.0 - law.jamming;
   // Ratios end where the equal steps begin.
   for (int k = 0; k <= k_ratios; ++k) {
@@ -255,6 +257,10 @@ Branch growing_branch(const Law& law, Measure measure) {
   for (int k = 1; k <= k_steps; ++k) {
     places[static_cast<std::size_t>(k_ratios + k)] = std::lerp(law.jamming, 1.0, static_cast<double>(k) / k_steps);
   }
+  // Where particles yield the stress falls the fastest just before all of them do, and grows again at once.
+  const double yielding = full_plasticity(law) * (1.0 - k_before_full_plasticity);
+  places.back() = std::clamp(yielding, places.front(), 1.0);
+  std::ranges::sort(places);
   const auto slope = [&](double phi) {
     try {
       return slope_of(law, measure, phi);

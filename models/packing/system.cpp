@@ -172,6 +172,8 @@ void System::settle(double xi, std::vector<Event>& log) {
   } else {
     const double jamming = ramp_.control == Control::strain ? at_jamming_.strain : law_.jamming;
     is_jammed_ = value > jamming || (value == jamming && (d > 0 || (d == 0 && was_jammed)));
+    // Where the strain falls at first, a packing that is not unloaded stays jammed below the strain at jamming.
+    is_jammed_ |= was_jammed && d >= 0 && value >= branch_.least;
   }
   if (is_jammed_ != was_jammed) log.push_back({"jamming"});
   const double end_of_start = prescribed_at(start_end_);

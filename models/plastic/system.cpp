@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "difficulties.hpp"
 #include "undefined.hpp"
 
 namespace monograin::plastic {
@@ -78,6 +79,7 @@ System::System(Settings settings, std::vector<ContactClass> classes)
       reach = limit(law);  // the run will stop there
     }
   }
+  is_shallow_ = reach > 0.0 && reach <= k_least_depth;
   // Far from the limit, where the pressure of an enclosed particle is infinite.
   reach = reach > 0.0 ? std::min(reach, 0.9 * limit(law)) : 0.5 * limit(law);
   for (std::size_t i = 0; i < count; ++i) {
@@ -127,15 +129,21 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     const double stood = classes_[i].takes_force ? displacement_at(i, y[places_[i]]) : 0.0;
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
     if (is_lateral(i)) continue;
-    const double x = is_loaded(i) ? stood : ramps_[i].start;
+    double x = is_loaded(i) ? stood : ramps_[i].start;
     directions_[i] = direction_of_ramp(i, x);
     if (touches(memory_[i].regime)) {
       // A wall that has only touched leaves no dent.
       const bool has_pressed = x > (is_loaded(i) ? 0.0 : k_least_depth);
       if (direction(i) < 0 && memory_[i].is_virgin && has_pressed) turn_back(i, x, log);
-      // From there, and from where a force has ended at nothing.
-      const bool is_left = memory_[i].is_virgin ? !has_pressed : is_loaded(i) ? ramps_[i].start <= 0.0 : x <= origin(i);
+      // From there, and where a force ends at nothing or has so far to go below that it does so at once.
+      const bool is_left = memory_[i].is_virgin ? !has_pressed
+                           : is_loaded(i)       ? told(i, k_instant) <= 0.0
+                                                : x <= origin(i);
       if (direction(i) < 0 && is_left) {
+        if (!memory_[i].is_virgin) {
+          y[work_place_] -= classes_[i].multiplicity() * stored_energy(i, x);
+          if (is_loaded(i)) x = origin(i);
+        }
         lose_contact(i);
         log.push_back({"contact-lost", static_cast<int>(i)});
       }
@@ -649,11 +657,20 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
 
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
   if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
-  return displacement(static_cast<std::size_t>(contact_class), xi, y) * settings_.initial_radius;
+  // A ramp of displacement begins where the force of the last one has taken the wall, without an integrator's error.
+  const auto i = static_cast<std::size_t>(contact_class);
+  const double x = displacement(i, xi, y);
+  const bool follows = is_loaded(i) && touches(memory_[i].regime);
+  return (follows ? displacement_under_force(i, told(i, xi), x) : x) * settings_.initial_radius;
 }
 
 bool System::is_open(int contact_class) const noexcept {
   return !touches(memory_[static_cast<std::size_t>(contact_class)].regime);
+}
+
+/// Of the whole program: every contact is as shallow when it is made.
+std::string_view System::difficulty(double /*xi*/, std::span<const double> /*y*/) {
+  return is_shallow_ ? k_closes_nothing : std::string_view();
 }
 
 std::vector<Finding> System::warnings() const {

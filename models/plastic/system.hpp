@@ -62,6 +62,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
+  [[nodiscard]] std::string_view difficulty(double xi, std::span<const double> y) override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
 
  private:
@@ -135,7 +136,8 @@ class System final : public HybridSystem {
   void add_guard(int kind, std::size_t i, int direction, std::string_view name, double place);
 
   Settings settings_;
-  double modulus_ = 0.0;  ///< E* over S
+  double modulus_ = 0.0;     ///< E* over S
+  bool is_shallow_ = false;  ///< no contact of the program is deeper than rounding
   std::vector<ContactClass> classes_;
   std::vector<bool> is_lateral_;
   std::size_t first_primary_ = 0;

@@ -325,7 +325,9 @@ class Drive {
       const bool counts = watch_.directions()[g] == 0 || watch_.directions()[g] == static_cast<int>(side);
       const bool is_told = g < watch_.system_guards() && system_.guards()[g].is_told;
       const double tolerance = is_told ? k_round_off : integrator_->guard_tolerance();
-      const bool has_arrived = side * now[g] >= -tolerance && side * now[g] > side * before[g];
+      // At its pace it arrives within as long again: a branch may be no longer than what counts as zero.
+      const double way = side * (now[g] - before[g]);
+      const bool has_arrived = way > 0.0 && -side * now[g] <= std::min(tolerance, std::max(k_round_off, way));
       if (counts && before[g] != 0.0 && has_arrived) fired.push_back(g);
     }
     std::ranges::sort(fired);

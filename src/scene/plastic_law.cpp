@@ -79,12 +79,23 @@ Reach plastic_reach(const Scenario& scenario, const Until& until) {
   const double strength = plastic_strength_of(scenario);
   Reach reach{.displacement = std::numeric_limits<double>::infinity(),
               .force = std::numeric_limits<double>::infinity()};
-  for (double x = k_deepest * plastic::limit(law); x > k_shallowest; x *= 0.5) {
+  const auto reach_at = [&](double x, const plastic::ContactState& contact) {
+    return Reach{.displacement = x * scenario.radius,
+                 .force = contact.force * strength * scenario.radius * scenario.radius};
+  };
+  if (until.quantity == Until::Quantity::event) {
+    for (const plastic::Boundary& boundary : plastic::boundaries(law)) {
+      const double x = boundary.approach;
+      if (boundary.event != until.event || boundary.beyond == plastic::Regime::undefined) continue;
+      return reach_at(x, std::visit([x](const auto& any) { return state_at(any, x); }, law));
+    }
+    return reach;
+  }
+  for (double x = k_deepest * plastic::limit(law); x > 0.5 * k_shallowest; x *= 0.5) {
     const plastic::ContactState contact = std::visit([x](const auto& any) { return state_at(any, x); }, law);
     // Pressures fall again further in.
     if (value_of(scenario, strength, x, contact, until.quantity) < until.value) continue;
-    reach = {.displacement = x * scenario.radius,
-             .force = contact.force * strength * scenario.radius * scenario.radius};
+    reach = reach_at(x, contact);
   }
   return reach;
 }

@@ -121,7 +121,7 @@ Reach mdr_reach(const Scenario& scenario, const Until& until) {
 /// How far a condition lets a ramp go that leads on to its target; infinity where the model has to be run to say so.
 Reach end_of(const Scenario& scenario, const Until& until) {
   Reach end{.displacement = std::numeric_limits<double>::infinity(), .force = std::numeric_limits<double>::infinity()};
-  if (!(until.value > 0.0)) return end;
+  if (!(until.value > 0.0) && until.quantity != Until::Quantity::event) return end;
   if (is_plastic(scenario.model)) return plastic_reach(scenario, until);
   if (scenario.model == "mdr" || scenario.model == "hertz") end = mdr_reach(scenario, until);
   // A free centre goes along: its walls go farther than their contacts.
@@ -149,6 +149,8 @@ double largest_target(const Scenario& scenario, const std::vector<Channel>& chan
       const bool is_withdrawal = step.target < 0.0 && (is_displacement || !adheres);
       double reach = (is_withdrawal ? k_share_of_withdrawal : 1.0) * std::abs(step.target);
       for (const Until& until : step.until) {
+        // Later steps may begin beyond an event, which then does not end them.
+        if (until.quantity == Until::Quantity::event && &step != &channel.program.front()) continue;
         const Reach end = end_of(scenario, until);
         reach = std::min(reach, is_displacement ? end.displacement : end.force);
       }

@@ -687,10 +687,12 @@ TEST(NonlocalSymmetry, AFreeCentreIsFoundAmongAnyWalls) {
     Eigen::Vector3d net = Eigen::Vector3d::Zero();
     double sum = 0.0;
     const auto states = states_of(contacts, y);
+    // A particle that escapes between distant walls goes far.
+    const double way = Eigen::Vector3d(y[6], y[7], y[8]).norm();
     for (std::size_t j = 0; j < 6; ++j) {
       net += states[j].force * walls[j].normals[0];
       sum += states[j].force;
-      EXPECT_NEAR(states[j].displacement, displacements[j], 1e-15);
+      EXPECT_NEAR(states[j].displacement, displacements[j], 1e-15 * (1.0 + way));
     }
     if (sum > 0.0) ++held_count;
     EXPECT_LE(net.norm(), 1e-14 * sum) << "scene " << scene;
