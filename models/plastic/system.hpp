@@ -103,6 +103,10 @@ class System final : public HybridSystem {
   /// Whether a class is that of the fixed walls of a die, whose contacts follow from the axial ones.
   [[nodiscard]] bool is_lateral(std::size_t i) const noexcept { return is_lateral_[i]; }
   [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return ramps_[i].control == Control::force; }
+  [[nodiscard]] static bool touches(Regime regime) noexcept {
+    return regime != Regime::open && regime != Regime::separated;
+  }
+  [[nodiscard]] bool presses(std::size_t i) const noexcept { return is_loaded(i) && touches(memory_[i].regime); }
   /// Of the present ramp: 1 inwards, -1 back, 0 nowhere.
   [[nodiscard]] int direction(std::size_t i) const noexcept { return directions_[i]; }
   [[nodiscard]] int direction_of_ramp(std::size_t i, double x) const;
@@ -122,7 +126,7 @@ class System final : public HybridSystem {
   [[nodiscard]] Contact contact(std::size_t i, double x) const;
   [[nodiscard]] Contact lateral_contact(std::size_t i, double x) const;
   [[nodiscard]] Slope slope(std::size_t i, double u) const;
-  [[nodiscard]] double power_under_force(std::size_t i, double xi, const Slope& now) const;
+  [[nodiscard]] double power(std::size_t i, double xi, const Slope& now) const;
   [[nodiscard]] double stored_energy(std::size_t i, double x) const;
   [[nodiscard]] mdr::UnloadingShape indenter_at(std::size_t i, double x) const;
 

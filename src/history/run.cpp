@@ -86,11 +86,12 @@ RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances
   return record;
 }
 
-Run run_scenario(const Scenario& scenario) {
+Run run_scenario(const Scenario& scenario, const SystemWrapper& wrapped) {
   Run run;
   run.scenario = scenario;
   Stopwatch watch;
   Scene scene = make_scene(scenario);
+  if (wrapped) scene.system = wrapped(std::move(scene.system));
   run.integrator = choose_integrator(scenario.numerics.integrator, *scene.system);
   run.timings.setup = watch.lap();
   run.record =

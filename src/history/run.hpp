@@ -1,6 +1,8 @@
 /// From a scenario to a recorded run: the one way every command takes.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +36,9 @@ struct Timings {
   double output = 0.0;
 };
 
+/// Gives back a system with something around it, such as a clock.
+using SystemWrapper = std::function<std::unique_ptr<HybridSystem>(std::unique_ptr<HybridSystem>)>;
+
 struct Run {
   Scenario scenario;
   RunRecord record;
@@ -44,7 +49,8 @@ struct Run {
 };
 
 /// Runs a checked scenario. Histories and events carry the header lines that make their files self-describing.
-[[nodiscard]] Run run_scenario(const Scenario& scenario);
+/// @param wrapped  takes the scene's system before it runs, and returns what is to run in its place
+[[nodiscard]] Run run_scenario(const Scenario& scenario, const SystemWrapper& wrapped = {});
 
 /// Digest of a text, e.g. "xxh128:3f...".
 [[nodiscard]] std::string text_digest(std::string_view text);

@@ -14,10 +14,10 @@
 #include "plastic/system.hpp"
 #include "scene/choice.hpp"
 #include "scene/compressible_law.hpp"
+#include "scene/mdr_law.hpp"
 #include "scene/nonlocal_model.hpp"
 #include "scene/packing_law.hpp"
 #include "scene/plastic_law.hpp"
-#include "scene/pressure_curve.hpp"
 #include "scene/scene.hpp"
 
 namespace monograin {

@@ -12,10 +12,10 @@
 #include "elastic/nonlocal_coupling.hpp"
 #include "mdr/contact.hpp"
 #include "scene/compressible_law.hpp"
+#include "scene/mdr_law.hpp"
 #include "scene/nonlocal_model.hpp"
 #include "scene/packing_law.hpp"
 #include "scene/plastic_law.hpp"
-#include "scene/pressure_curve.hpp"
 
 namespace monograin {
 namespace {
@@ -25,11 +25,8 @@ using List = std::vector<DerivedParameter>;
 void add_mdr(const Scenario& scenario, List& list) {
   const double youngs_modulus = scenario.material.at("youngs_modulus");
   const double poisson_ratio = scenario.material.at("poisson_ratio");
-  const auto found = scenario.material.find("yield_stress");
-  const double yield_stress =
-      found == scenario.material.end() ? std::numeric_limits<double>::infinity() : found->second;
-  const mdr::Material material =
-      mdr::make_material(youngs_modulus, poisson_ratio, yield_stress, pressure_curve_of(scenario));
+  const mdr::Material material = mdr_material_of(scenario);
+  const double yield_stress = material.yield_stress;
   list.push_back({"youngs_modulus", youngs_modulus, "Pa"});
   list.push_back({"poisson_ratio", poisson_ratio, "-"});
   list.push_back({"composite_modulus", material.composite_modulus, "Pa"});

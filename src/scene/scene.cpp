@@ -6,14 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
 
 #include "catalogue.hpp"
-#include "elastic/hertz.hpp"
-#include "mdr/contact.hpp"
+#include "scene/mdr_law.hpp"
 #include "scene/plastic_law.hpp"
-#include "scene/pressure_curve.hpp"
 
 namespace monograin {
 namespace {
@@ -74,49 +71,6 @@ std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::
 /// How far a wall that is withdrawn so far is taken to reach into the particle: its contacts would have tolerances of
 /// the order of what the particle bears there. So is one that is pulled where nothing adheres.
 constexpr double k_share_of_withdrawal = 1e-4;
-
-/// How far a contact of model `mdr` or `hertz` is pressed that reaches a condition's value for the first time, at most:
-/// the softer law goes farther in and bears less; up to a pressure or a contact radius that is the elastic one.
-/// Infinity where the model has to be run to say so.
-Reach mdr_reach(const Scenario& scenario, const Until& until) {
-  constexpr double k_nowhere = std::numeric_limits<double>::infinity();
-  const double radius = scenario.radius;
-  const auto yield_stress = scenario.material.find("yield_stress");
-  const bool yields = yield_stress != scenario.material.end();
-  const mdr::Material law =
-      mdr::make_material(scenario.material.at("youngs_modulus"), scenario.material.at("poisson_ratio"),
-                         yields ? yield_stress->second : k_nowhere, yields ? pressure_curve_of(scenario) : nullptr);
-  const double modulus = law.composite_modulus;
-  const double circumference = 2.0 * std::numbers::pi * radius;
-  const auto up_to_radius = [&](double contact_radius) { return contact_radius * contact_radius / radius; };
-  Reach reach{.displacement = k_nowhere, .force = k_nowhere};
-  switch (until.quantity) {
-    case Until::Quantity::force: {
-      const double plastic = yields ? until.value / (circumference * law.yield_stress) : 0.0;
-      const double elastic = mdr::elastic_overlap(mdr::ElasticProfile::parabola, modulus, radius, until.value);
-      return {.displacement = std::max(elastic, plastic), .force = until.value};
-    }
-    case Until::Quantity::displacement:
-      reach.displacement = until.value;
-      break;
-    case Until::Quantity::contact_radius:
-      reach.displacement = up_to_radius(until.value);
-      break;
-    case Until::Quantity::pressure: {
-      const double elastic = up_to_radius(0.75 * std::numbers::pi * radius * until.value / modulus);
-      if (elastic < law.yield_overlap_ratio * radius) reach.displacement = elastic;
-      break;
-    }
-    default:
-      break;
-  }
-  if (reach.displacement < radius) {
-    const double plastic =
-        yields ? mdr::plastic_pressure(law, 0.0).pressure * circumference * reach.displacement : k_nowhere;
-    reach.force = std::min(hertz_force(modulus, radius, reach.displacement), plastic);
-  }
-  return reach;
-}
 
 /// How far a condition lets a ramp go that leads on to its target; infinity where the model has to be run to say so.
 Reach end_of(const Scenario& scenario, const Until& until) {

@@ -66,7 +66,9 @@ class Wrapped : public HybridSystem {
     return system_->surface(contact_class, xi, y);
   }
   [[nodiscard]] bool is_open(int contact_class) const noexcept override { return system_->is_open(contact_class); }
+  [[nodiscard]] std::string_view difficulty(double xi, View y) override { return system_->difficulty(xi, y); }
   [[nodiscard]] std::vector<Finding> warnings() const override { return system_->warnings(); }
+  [[nodiscard]] double branch_reach(View y) const override { return system_->branch_reach(y); }
 
  private:
   std::unique_ptr<HybridSystem> system_;
@@ -132,6 +134,35 @@ class Profiled final : public Wrapped {
 
   SystemProfile& profile_;
   double clock_cost_;
+};
+
+class Limited final : public Wrapped {
+ public:
+  Limited(std::unique_ptr<HybridSystem> system, Clock::time_point end) : Wrapped(std::move(system)), end_(end) {}
+
+  void rates(double xi, View y, State dy) override {
+    check_time();
+    Wrapped::rates(xi, y, dy);
+  }
+  void residual(double xi, View y, View dy, State res) override {
+    check_time();
+    Wrapped::residual(xi, y, dy, res);
+  }
+  void solve(double xi, State y) override {
+    check_time();
+    Wrapped::solve(xi, y);
+  }
+  void guard_values(double xi, View y, State values) override {
+    check_time();
+    Wrapped::guard_values(xi, y, values);
+  }
+
+ private:
+  void check_time() const {
+    if (Clock::now() > end_) throw OutOfTime();
+  }
+
+  Clock::time_point end_;
 };
 
 class AlwaysObserved final : public Wrapped {
@@ -221,6 +252,10 @@ std::unique_ptr<HybridSystem> profiled(std::unique_ptr<HybridSystem> system, Sys
 
 std::unique_ptr<HybridSystem> always_observed(std::unique_ptr<HybridSystem> system) {
   return std::make_unique<AlwaysObserved>(std::move(system));
+}
+
+std::unique_ptr<HybridSystem> limited(std::unique_ptr<HybridSystem> system, Clock::time_point end) {
+  return std::make_unique<Limited>(std::move(system), end);
 }
 
 std::unique_ptr<HybridSystem> looking_beyond(std::unique_ptr<HybridSystem> system, double factor) {

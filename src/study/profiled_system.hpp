@@ -1,7 +1,9 @@
-/// A system that tells where the time goes, and some that waste it.
+/// A system that tells where the time goes, one that has no more than so much, and some that waste it.
 #pragma once
 
+#include <chrono>
 #include <memory>
+#include <stdexcept>
 
 #include "hybrid_system.hpp"
 
@@ -21,6 +23,16 @@ struct SystemProfile {
 /// The same system, timed.
 /// @param profile  outlives the system
 [[nodiscard]] std::unique_ptr<HybridSystem> profiled(std::unique_ptr<HybridSystem> system, SystemProfile& profile);
+
+/// The time that a system has is up.
+class OutOfTime : public std::runtime_error {
+ public:
+  OutOfTime() : std::runtime_error("out of time") {}
+};
+
+/// The same system, whose equations and guards throw OutOfTime from an instant on.
+[[nodiscard]] std::unique_ptr<HybridSystem> limited(std::unique_ptr<HybridSystem> system,
+                                                    std::chrono::steady_clock::time_point end);
 
 /// The same system, which evaluates its observables wherever it evaluates its equations: what recording at output
 /// points only is measured against.

@@ -29,6 +29,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* k_report = "report.txt";
+constexpr const char* k_generator_rule = "generator";
 // Of the time, where there is something to shrink.
 constexpr double k_share_of_drawing = 0.75;
 
@@ -37,9 +38,9 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 // --- checking scenes
 
 /// The verdict on a scene; nothing where it is not admissible.
-std::optional<StressVerdict> verdict_of(const StressScene& scene, const fs::path& tables) {
+std::optional<StressVerdict> verdict_of(const StressScene& scene, const fs::path& tables, double seconds) {
   try {
-    return check_scene(parse_stress_text(scenario_text(scene), tables));
+    return check_scene(parse_stress_text(scenario_text(scene), tables), std::min(seconds, k_most_seconds_of_scene));
   } catch (const ScenarioError&) {
     return std::nullopt;
   }
@@ -58,7 +59,7 @@ CheckedScene check_drawn(std::uint64_t seed, std::uint64_t index, const fs::path
     checked.scene = draw_stress_scene(seed, index, tables);
     checked.verdict = check_scene(parse_stress_text(scenario_text(checked.scene), tables));
   } catch (const std::exception& error) {  // of the generator: a scene that is not admissible
-    checked.verdict.violations.push_back({"generator", error.what()});
+    checked.verdict.violations.push_back({k_generator_rule, error.what()});
   }
   checked.seconds = seconds_since(start);
   return checked;
@@ -92,6 +93,8 @@ class StressTest {
   }
 
  private:
+  [[nodiscard]] double time_left() const { return options_.seconds - seconds_since(start_); }
+
   [[nodiscard]] bool is_done() {
     const std::lock_guard lock(mutex_);
     const double share = report_.failures.empty() ? 1.0 : k_share_of_drawing;
@@ -136,12 +139,13 @@ class StressTest {
 
   /// The first of each kind are worth the time.
   void make_smaller(StressFailure& failure) {
-    if (failure.check == "generator") return;
+    if (failure.check == k_generator_rule) return;
     StressScene scene = draw_stress_scene(options_.seed, failure.index, tables_);
-    if (seconds_since(start_) < options_.seconds && shrunk_.insert({failure.model, failure.check}).second) {
+    // What takes too long would do so many times.
+    if (failure.check != k_time_rule && time_left() > 0.0 && shrunk_.insert({failure.model, failure.check}).second) {
       scene = shrink(std::move(scene), [&](const StressScene& candidate) {
-        if (seconds_since(start_) > options_.seconds) return false;
-        const auto verdict = verdict_of(candidate, tables_);
+        if (!(time_left() > 0.0)) return false;
+        const auto verdict = verdict_of(candidate, tables_, time_left());
         return verdict && std::ranges::any_of(verdict->violations, [&](const Violation& violation) {
                  return violation.check == failure.check;
                });

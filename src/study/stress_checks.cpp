@@ -3,15 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "catalogue.hpp"
+#include "study/profiled_system.hpp"
 #include "study/stress_distance.hpp"
 #include "study/stress_events.hpp"
 #include "study/stress_variants.hpp"
@@ -19,6 +22,8 @@
 
 namespace monograin {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 // What a scene does with changed data is measured by a few samples of all directions; the worst is a few times worse.
 constexpr double k_sample_multiple = 10.0;
@@ -81,48 +86,62 @@ bool is_below_resolution(const Run& run) {
 
 class SceneCheck {
  public:
-  explicit SceneCheck(const Scenario& scenario) : scenario_(scenario) {}
+  SceneCheck(const Scenario& scenario, double seconds) : scenario_(scenario), seconds_(seconds) {}
 
   StressVerdict verdict() {
+    try {
+      check_all();
+    } catch (const OutOfTime&) {
+      report(k_time_rule, fmt::format("{} runs have not come to an end within {:g} s", verdict_.runs, seconds_));
+    }
+    return std::move(verdict_);
+  }
+
+ private:
+  void check_all() {
     const std::optional<Run> run = try_run(scenario_, "the scene");
-    if (!run) return std::move(verdict_);
+    if (!run) return;
     verdict_.end = stated_end(*run);
     verdict_.violations = check_run(*run);
     // What is broken already would be found again by every comparison.
-    if (!verdict_.violations.empty() || run->record.status == RunStatus::failed) return std::move(verdict_);
+    if (!verdict_.violations.empty() || run->record.status == RunStatus::failed) return;
     // The scheme without error control says nothing of how near it comes; rows at an integrator's own steps have none
     // beside them in other runs.
-    if (run->integrator.used == "explicit" || scenario_.output.points == 0) return std::move(verdict_);
+    if (run->integrator.used == "explicit" || scenario_.output.points == 0) return;
 
-    if (is_below_resolution(*run)) return std::move(verdict_);
+    if (is_below_resolution(*run)) return;
 
     const bool is_direct = run->integrator.used == "direct";
-    const std::optional<Run> reference = is_direct ? run : try_run(as_reference(scenario_), "reference form");
-    if (!reference) return std::move(verdict_);
-    reference_ = &*reference;
-    if (!is_direct) verdict_.violations = check_run(*reference);
-    if (!verdict_.violations.empty()) return std::move(verdict_);
+    reference_ = is_direct ? run : try_run(as_reference(scenario_), "reference form");
+    if (!reference_) return;
+    if (!is_direct) verdict_.violations = check_run(*reference_);
+    if (!verdict_.violations.empty()) return;
     share_ = is_direct ? k_stress_rounding : std::max(scenario_.numerics.rtol, k_finest_rtol);
-    tolerance_ = std::max(own_tolerance(*run), own_tolerance(*reference));
+    tolerance_ = std::max(own_tolerance(*run), own_tolerance(*reference_));
     nothing_ = {.unit = {.length = scenario_.radius, .stress = softest(scenario_)},
                 .share = is_direct ? k_stress_rounding : scenario_.numerics.atol,
                 .energy_share = direct_work_tolerance(*run),
                 .step_share = tolerance_};
-    if (!is_direct) compare("agreement", *reference, *run);
+    if (!is_direct) compare("agreement", *reference_, *run);
     check_rate(*run);
     if (const auto other = try_run(magnified(scenario_, k_magnification), "larger and softer")) {
       compare("scale", *run, *other, k_magnification);
     }
     check_restart(*run);
     check_retrace(*run);
-    return std::move(verdict_);
   }
 
- private:
+  [[nodiscard]] Run run_limited(const Scenario& scenario) const {
+    return run_scenario(scenario,
+                        [this](std::unique_ptr<HybridSystem> system) { return limited(std::move(system), end_); });
+  }
+
   std::optional<Run> try_run(const Scenario& scenario, std::string_view what) {
     ++verdict_.runs;
     try {
-      return run_scenario(scenario);
+      return run_limited(scenario);
+    } catch (const OutOfTime&) {
+      throw;
     } catch (const std::exception& error) {
       verdict_.violations.push_back({"exception", fmt::format("{}: {}", what, error.what())});
       return std::nullopt;
@@ -135,7 +154,9 @@ class SceneCheck {
     for (std::uint64_t sample = 0; sample < k_samples; ++sample) {
       ++verdict_.runs;
       try {
-        runs.push_back(run_scenario(as_reference(changed(scenario, share, sample))));
+        runs.push_back(run_limited(as_reference(changed(scenario, share, sample))));
+      } catch (const OutOfTime&) {
+        throw;
       } catch (const std::exception&) {
         continue;  // changed out of what is admissible
       }
@@ -278,7 +299,10 @@ class SceneCheck {
   }
 
   const Scenario& scenario_;
-  const Run* reference_ = nullptr;
+  double seconds_;
+  Clock::time_point end_ =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds_));
+  std::optional<Run> reference_;
   double tolerance_ = 0.0;
   Negligible nothing_;
   double share_ = 0.0;  ///< of the data, that errors of the runs amount to
@@ -288,6 +312,6 @@ class SceneCheck {
 
 }  // namespace
 
-StressVerdict check_scene(const Scenario& scenario) { return SceneCheck(scenario).verdict(); }
+StressVerdict check_scene(const Scenario& scenario, double seconds) { return SceneCheck(scenario, seconds).verdict(); }
 
 }  // namespace monograin

@@ -9,6 +9,11 @@
 
 namespace monograin {
 
+/// What all runs of one scene may take together; usual are a few hundredths.
+inline constexpr double k_most_seconds_of_scene = 30.0;
+/// The rule of that.
+inline constexpr const char* k_time_rule = "time";
+
 /// All that was found of one scene.
 struct StressVerdict {
   std::string end;  ///< as of stated_end
@@ -25,6 +30,8 @@ struct StressVerdict {
 /// itself, next to a fold or pull-off, on steep unloading branches, where the order of two events decides; what such a
 /// scene does with data changed by rtol (by rounding, where two runs of the same form are compared) is measured, and
 /// allowed.
-[[nodiscard]] StressVerdict check_scene(const Scenario& scenario);
+///
+/// @param seconds  of wall time that all runs have together; a scene that takes longer breaks the rule "time"
+[[nodiscard]] StressVerdict check_scene(const Scenario& scenario, double seconds = k_most_seconds_of_scene);
 
 }  // namespace monograin

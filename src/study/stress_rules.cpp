@@ -15,8 +15,8 @@
 #include "compressible/yield_surface.hpp"
 #include "mdr/contact.hpp"
 #include "packing/law.hpp"
+#include "scene/mdr_law.hpp"
 #include "scene/packing_law.hpp"
-#include "scene/pressure_curve.hpp"
 #include "scene/scene.hpp"
 #include "study/stress_distance.hpp"
 
@@ -256,9 +256,7 @@ void check_energy(const Run& run, Violations& found) {
 /// radius follows. A bound, because the walls give way by less where it does.
 double most_fall_at_yield(const Scenario& scenario) {
   if (option(scenario, "elastic_profile") == "parabola") return 0.0;
-  const mdr::Material law =
-      mdr::make_material(material(scenario, "youngs_modulus"), material(scenario, "poisson_ratio"),
-                         material(scenario, "yield_stress"), pressure_curve_of(scenario));
+  const mdr::Material law = mdr_material_of(scenario);
   const double d = law.yield_overlap_ratio;
   double count = 0.0;
   const Scene scene = make_scene(scenario);

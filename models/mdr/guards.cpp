@@ -1,0 +1,234 @@
+// Which guards of the MDR system are alive, and their values.
+
+#include "mdr/guards.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mdr/system.hpp"
+
+namespace monograin::mdr {
+namespace {
+
+// A program that returns exactly to the old maximum does not pass it, whichever way its overlap is rounded.
+constexpr double k_same_overlap = 2e-15;
+// Where several contacts hold a free centre between them, their equilibrium turns back where they hold it no more; the
+// root of a guard that is zero there would lie within the rounding of states that are found no more. What is left of
+// the way is the square of this.
+constexpr double k_least_firmness = 1e-5;
+// The volume's square root ends at 1 - 4w = 0; stop before an implicit code's difference quotients reach over that
+// edge.
+constexpr double k_least_volume = 1e-6;
+
+}  // namespace
+
+double System::contact_guard(int kind, std::size_t i, double xi, double overlap, double r) {
+  // Under force a contact lasts as long as the force presses; a program that returns exactly to zero does not leave it.
+  if (is_loaded(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost)) {
+    const double scale = std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
+    return scale > 0.0 ? prescribed_force(i, xi) / scale + (kind == k_lost ? k_same_overlap : 0.0) : 0.0;
+  }
+  switch (kind) {
+    case k_yield:
+      return overlap / ((1.0 + r) * material_.yield_overlap_ratio) - 1.0;
+    case k_reload:
+      return overlap - largest_overlap(memory_[i], r) - k_same_overlap;
+    case k_lost:
+      if (memory_[i].regime == Regime::elastic) return rides(i) ? overlap + k_shallow : overlap;
+      return 1.0 - unloading_fraction(shape(i, r), overlap);
+    case k_dent_touched:
+      return 1.0 - unloading_fraction(shape(i, r), overlap);
+    default:
+      return overlap;
+  }
+}
+
+/// Distances from the states in which the edge of an adhesive contact changes, over what tears it.
+double System::edge_guard(int kind, std::size_t i, double xi, double overlap, double r) {
+  const Frame now = frame(i, overlap, r);
+  if (kind == k_pull_off) {
+    const PullOff& limits = pull_off(i, now.indenter);
+    if (is_loaded(i)) return (prescribed_force(i, xi) - limits.by_force.force) / std::abs(limits.by_force.force);
+    const double critical = limits.by_displacement.displacement_1d;
+    return (now.displacement - critical) / std::abs(critical);
+  }
+  const double a = memory_[i].edge_radius;
+  const double w = now.displacement - profile_height(now.indenter, a);
+  const double stretch = critical_stretch(material_.composite_modulus, surface_energy_, a);
+  if (stretch == 0.0) return w;
+  return kind == k_peel ? w / stretch + 1.0 : w / stretch;
+}
+
+double System::cap_guard(const CapPair& pair, double r) const {
+  // How far the cosine of the sum of their half angles is below that of the angle between their normals.
+  const auto cosine = [&](int i) {
+    return std::min(1.0, (1.0 - now_[static_cast<std::size_t>(i)].displacement) / (1.0 + r));
+  };
+  const double first = cosine(pair.first);
+  const double second = cosine(pair.second);
+  const double sines = std::sqrt((1.0 - first) * (1.0 + first) * (1.0 - second) * (1.0 + second));
+  return pair.cosine - (first * second - sines);
+}
+
+/// Lists the guards that can fire before the step ends.
+void System::watch(double xi, std::span<const double> y) {
+  guards_.clear();
+  look(xi, y);
+  const double r = y[k_radius];
+  const Motion now = motion(is_growing_);
+  for (std::size_t i = 0; i < memory_.size(); ++i) watch_contact(i, r, now);
+  if (free_count_ > 0 && weakest_contact()) {
+    guards_.push_back({.kind = k_unstable, .index = -1, .direction = -1, .name = "pull-off", .is_branch_end = true});
+  }
+
+  if (is_growing_) {
+    guards_.push_back({k_growth_off, -1, -1, "growth-off"});
+    guards_.push_back({k_singular, -1, -1, "singular-growth"});
+  } else if (settings_.radius_rule != RadiusRule::fixed && gate_is_open(now)) {
+    guards_.push_back({k_growth_on, -1, 1, "growth-on"});
+    // The share of a contact in the demand for growth may change sign just before it is lost.
+    for (Guard& guard : guards_) guard.is_branch_end = guard.is_branch_end || guard.kind == k_lost;
+  }
+  for (std::size_t p = 0; p < cap_pairs_.size(); ++p) {
+    const auto first = static_cast<std::size_t>(cap_pairs_[p].first);
+    const auto second = static_cast<std::size_t>(cap_pairs_[p].second);
+    const bool both_touch = touches(memory_[first].regime) && touches(memory_[second].regime);
+    // Caps that have just met change no mode; met a rounding error short of zero, they would meet again at once.
+    if (both_touch && cap_guard(cap_pairs_[p], r) < -k_touch) {
+      guards_.push_back({k_caps, static_cast<int>(p), 1, "caps-intersect"});
+    }
+  }
+  if (settings_.radius_rule != RadiusRule::fixed && material_.bulk_compliance > 0.0) {
+    guards_.push_back({k_volume, -1, -1, "volume-limit"});
+  }
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    if (is_loaded(i) || 1.0 - ramps_[i].end < 2.0 * k_least_distance || free_count_ > 0) {
+      guards_.push_back({k_centre_reached, static_cast<int>(i), -1, "limit"});
+    }
+  }
+}
+
+void System::watch_contact(std::size_t i, double r, const Motion& now) {
+  const Memory& memory = memory_[i];
+  const int index = static_cast<int>(i);
+  const bool is_free = !is_loaded(i) && free_count_ > 0 && directions_[i].norm() > k_no_direction;
+  const bool may_turn = is_growing_ || is_free;            // in mid-step
+  const bool is_predictable = !may_turn && !is_loaded(i);  // overlap linear in xi, radius held
+  const double last_overlap = ramps_[i].end + r;
+
+  const auto add = [&](int kind, int direction, std::string_view name) {
+    // What a linear overlap, or a prescribed force, does not reach by the end of the step needs no watching.
+    const bool is_by_force = is_loaded(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost);
+    if ((is_predictable || is_by_force) && direction * contact_guard(kind, i, 1.0, last_overlap, r) < -1e-9) return;
+    guards_.push_back({kind, index, direction, name});
+  };
+  const double rate = overlap_rate(i, now);
+  const bool may_come_in = rate > 0.0 || may_turn;
+  const bool may_go_out = rate < 0.0 || may_turn;
+  switch (memory.regime) {
+    case Regime::open:
+      if (may_come_in) add(k_made, 1, "contact-made");
+      return;
+    case Regime::separated:
+      if (may_come_in) add(k_dent_touched, 1, "dent-touched");
+      return;
+    case Regime::elastic:
+    case Regime::fully_plastic:
+    case Regime::unloading:
+      break;
+  }
+  if (memory.is_virgin) {
+    if (memory.regime == Regime::elastic && may_come_in && std::isfinite(material_.yield_overlap_ratio)) {
+      add(k_yield, 1, "yield");
+    }
+    const bool is_shifted = settings_.delta_max_rule == DeltaMaxRule::shifted;
+    const bool may_retreat = is_free || (may_turn && (is_loaded(i) || (wall_rate(i, now) < 0.0 && !is_shifted)));
+    if (may_retreat) guards_.push_back({k_retreat, index, -1, "retreat"});
+    if (is_free && memory.regime == Regime::elastic) guards_.push_back({k_lost, index, -1, "contact-lost"});
+    return;
+  }
+  if (may_come_in) add(k_reload, 1, "reload");
+  if (adheres())
+    watch_edge(i, r, may_come_in, may_go_out, may_turn);
+  else if (may_go_out)
+    add(k_lost, -1, "contact-lost");
+}
+
+void System::watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_out, bool may_turn) {
+  const Memory& memory = memory_[i];
+  const int index = static_cast<int>(i);
+  switch (memory.edge) {
+    case Edge::following:
+      if (may_turn) guards_.push_back({k_turn, index, -1, "stick"});
+      break;
+    case Edge::sticking: {
+      // An edge that sticks since the largest overlap follows again when that is passed.
+      const double at_largest = edge_guard(k_follow, i, 0.0, largest_overlap(memory, r), r);
+      if (may_come_in && (may_turn || at_largest > 1e-9)) guards_.push_back({k_follow, index, 1, "follow"});
+      if (may_go_out) guards_.push_back({k_peel, index, -1, "peel"});
+      break;
+    }
+    case Edge::peeling:
+      if (may_go_out) {
+        guards_.push_back(
+            {.kind = k_pull_off, .index = index, .direction = -1, .name = "pull-off", .is_branch_end = true});
+      }
+      if (may_turn) guards_.push_back({k_turn, index, 1, "stick"});
+      break;
+  }
+}
+
+void System::guard_values(double xi, std::span<const double> y, std::span<double> values) {
+  look_once(xi, y);
+  const double r = y[k_radius];
+  const Motion now = motion(is_growing_);
+  for (std::size_t g = 0; g < guards_.size(); ++g) {
+    const auto i = static_cast<std::size_t>(std::max(0, guards_[g].index));
+    switch (guards_[g].kind) {
+      case k_growth_on:
+      case k_growth_off:
+        values[g] = growth_drive(now);
+        break;
+      case k_unstable:
+        values[g] = least_firmness() - k_least_firmness;
+        break;
+      case k_singular:
+        values[g] = free_surface(now, r) - k_least_slope;
+        break;
+      case k_volume:
+        values[g] = 1.0 - 4.0 * sums_.relative_compression - k_least_volume;
+        break;
+      case k_caps:
+        values[g] = cap_guard(cap_pairs_[i], r);
+        break;
+      case k_centre_reached:
+        values[g] = 1.0 - now_[i].displacement - k_least_distance;
+        break;
+      case k_retreat:
+        values[g] = settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate(i, now) : overlap_rate(i, now);
+        if (rides(i)) values[g] = 1.0;
+        break;
+      case k_turn:
+        values[g] = edge_rate(i, r, now);
+        break;
+      case k_lost:
+        values[g] = contact_guard(k_lost, i, xi, now_[i].overlap, r);
+        // What only touches is always near to that, and not lost together with others.
+        if (memory_[i].is_virgin) values[g] /= k_shallow;
+        break;
+      case k_follow:
+        // An edge that has just come to stick leaves with the square of the way; rounding does not bring it back.
+        values[g] = edge_guard(k_follow, i, xi, now_[i].overlap - k_same_overlap, r);
+        break;
+      case k_peel:
+      case k_pull_off:
+        values[g] = edge_guard(guards_[g].kind, i, xi, now_[i].overlap, r);
+        break;
+      default:
+        values[g] = contact_guard(guards_[g].kind, i, xi, now_[i].overlap, r);
+        break;
+    }
+  }
+}
+
+}  // namespace monograin::mdr

@@ -1,0 +1,33 @@
+/// Guards of the MDR system: their kinds, and where those are zero that modes are decided by as well.
+#pragma once
+
+namespace monograin::mdr {
+
+enum GuardKind : int {
+  k_yield,
+  k_reload,
+  k_made,
+  k_dent_touched,
+  k_lost,
+  k_retreat,
+  k_turn,
+  k_peel,
+  k_follow,
+  k_pull_off,
+  k_unstable,
+  k_growth_on,
+  k_growth_off,
+  k_caps,
+  k_singular,
+  k_volume,
+  k_centre_reached
+};
+
+/// A guard this near to zero, and moving on, counts as crossed when a mode is decided.
+inline constexpr double k_touch = 1e-13;
+/// Growth ends where the free surface is used up to this share.
+inline constexpr double k_least_slope = 1e-3;
+/// A wall this near to the centre of the particle (over R0) has reached it.
+inline constexpr double k_least_distance = 1e-3;
+
+}  // namespace monograin::mdr
