@@ -43,7 +43,7 @@ struct DriveResult {
 
 /// Integrates a scene; its history, up to where the run ended however it ended, goes to the sink.
 ///
-/// @param integrator  direct, cvode-bdf, cvode-adams or ida
+/// @param integrator  one of integrator_names(), or as choose_integrator() has chosen it
 /// @param output      output points of every step, or instants of the whole run
 /// Never throws for what the model or the solver cannot do: that is the result's status.
 [[nodiscard]] DriveResult drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances,
