@@ -246,11 +246,12 @@ void MaterialPoint::residual(double xi, std::span<const double> y, std::span<con
   res[k_multiplier] = now.yield.f;
 }
 
-/// Brings the plastic strains to f = 0 along the flow. Where stresses are prescribed, f does not depend on g^p, and
-/// near a critical state the flow hardly changes phi: there along the gradient.
+/// Brings the plastic strains to f = 0: by the shortest way, since both may carry an integrator's errors. Along the
+/// flow there may be no such state: near a critical state it hardly changes phi, and near a loss of uniqueness not f.
+/// Only where the flow keeps its direction, the solution lies along it.
 void MaterialPoint::complete(double xi, std::span<double> y) {
   if (!is_plastic_) return;
-  const bool follows_gradient = is_stress(k_axial) && is_stress(k_lateral) && !is_solvable();
+  const bool follows_gradient = !is_solvable();
   const double guess = y[k_phi];
   const double guessed_deviatoric = y[k_deviatoric];
   double elastic_strain = 0.0;
