@@ -37,19 +37,36 @@ class Pending {
     }
   }
 
+  /// Within guard(): a state beside a trial's, as difference quotients take them. That the equations end there says
+  /// why a step has failed, but does not stand in the way of one that has not.
+  template <class Function>
+  void beside(Function&& function) {
+    try {
+      function();
+    } catch (const std::domain_error& error) {
+      end_beside_ = error.what();
+      throw;
+    }
+  }
+
   void forget() noexcept {
     exception_ = nullptr;
     domain_end_.clear();
+    end_beside_.clear();
   }
   void rethrow() {
     if (exception_) std::rethrow_exception(std::exchange(exception_, nullptr));
   }
   /// Why the equations ended at some trial since the last forget(); empty if they did not.
   [[nodiscard]] const std::string& domain_end() const noexcept { return domain_end_; }
+  /// The same, of a trial or beside one.
+  [[nodiscard]] const std::string& nearest_domain_end() const noexcept {
+    return domain_end_.empty() ? end_beside_ : domain_end_;
+  }
 
  private:
   std::exception_ptr exception_;
-  std::string domain_end_;
+  std::string domain_end_, end_beside_;
 };
 
 }  // namespace monograin

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,24 @@ namespace monograin {
 
 [[nodiscard]] inline bool all_finite(std::span<const double> values) noexcept {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+/// A difference quotient's increment: made smaller until `shift` finds the equations there. Where they end nearer than
+/// it reaches, a regime is as short, and its own scale so much smaller.
+/// @return the increment that was taken
+/// @throws std::domain_error where the equations have no state as near as that
+template <class Shift>
+double shift_within_domain(double increment, Shift&& shift) {
+  constexpr double k_nearer = 1e-2;
+  constexpr int k_most_nearer = 8;
+  for (int nearer = 0;; ++nearer, increment *= k_nearer) {
+    try {
+      shift(increment);
+      return increment;
+    } catch (const std::domain_error&) {
+      if (nearer == k_most_nearer) throw;
+    }
+  }
 }
 
 /// Quadratures counted anew from every segment's start: their relative tolerance then refers to the segment's own

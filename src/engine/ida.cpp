@@ -64,6 +64,7 @@ class Ida final : public Integrator {
     system_.all_rates(xi, y, view(dy_.get()));
     set_tolerances();
     start(xi, 0.0);
+    last_length_ = 0.0;
     ++past_.segments;
     // The system's own rates are consistent; IDACalcIC brings the rest within the tolerance. Where it cannot, because
     // the balance is singular (first touch), the first step shows whether they were.
@@ -88,10 +89,10 @@ class Ida final : public Integrator {
           start(begin, step);
         });
     check("IDASolve", flag);
-    // Ever smaller steps towards the end of the equations would never get there.
-    if (!pending_.domain_end().empty() && end_ - begin < least_progress(begin)) {
-      throw std::domain_error(pending_.domain_end());
+    if (is_stuck_at_end(pending_, begin, end_, last_length_)) {
+      throw std::domain_error(pending_.nearest_domain_end());
     }
+    last_length_ = end_ - begin;
     if (flag == IDA_ROOT_RETURN) {
       check("IDAGetRootInfo", IDAGetRootInfo(memory_.get(), roots_.found.data()));
       roots_.collect();
@@ -190,12 +191,17 @@ class Ida final : public Integrator {
       const double rate = rates[j];
       const double tolerated = std::min(1.0 / view(ida.weights_.get())[j], k_root * unknowns[j].scale);
       const double size = std::max(k_root * std::max(std::abs(value), std::abs(step * rate)), tolerated);
-      // As it stands in the sum.
-      const double increment = (value + std::copysign(size, step * rate)) - value;
-      values[j] += increment;
-      rates[j] += cj * increment;
-      ++ida.for_jacobian_;
-      const int flag = residual(xi, y, dy, shifted, self);
+      double increment = 0.0;
+      const int flag = ida.pending_.guard([&] {
+        shift_within_domain(std::copysign(size, step * rate), [&](double by) {
+          values[j] = value + by;
+          increment = values[j] - value;  // as it stands in the sum
+          rates[j] = rate + cj * increment;
+          ++ida.for_jacobian_;
+          ida.pending_.beside([&] { ida.system_.residual(xi, values, rates, view(shifted)); });
+        });
+        return all_finite(view(shifted));
+      });
       values[j] = value;
       rates[j] = rate;
       if (flag != 0) return flag;
@@ -244,6 +250,7 @@ class Ida final : public Integrator {
   Pending pending_;
   RootList roots_;
   double end_ = 0.0;
+  double last_length_ = 0.0;  ///< of a step of this segment
   Statistics past_;
   long for_jacobian_ = 0;  ///< residuals
 

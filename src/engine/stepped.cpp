@@ -110,10 +110,7 @@ class Stepped final : public EventLocator {
   double step_end_ = 0.0;
 };
 
-// Difference quotients: what a step is made shorter by that leaves the domain, and how often.
-constexpr double k_nearer = 1e-2;
-constexpr int k_most_nearer = 8;
-// Those along xi: shorter than the step that they are for, and well above the rounding of xi.
+// Difference quotients along xi: shorter than the step that they are for, and well above the rounding of xi.
 constexpr double k_share_of_step = 1e-4;
 constexpr double k_resolution = 1e-14;
 
@@ -202,20 +199,6 @@ class FixedStep final : public Integrator {
 
 }  // namespace
 
-/// Where the equations end nearer than a step, a regime is as short, and its own scale so much smaller.
-/// @return the step that was taken
-template <class Shift>
-double DifferenceJacobian::differ(double step, Shift&& shift) {
-  for (int nearer = 0;; ++nearer, step *= k_nearer) {
-    try {
-      shift(step);
-      return step;
-    } catch (const std::domain_error&) {
-      if (nearer == k_most_nearer) throw;
-    }
-  }
-}
-
 void DifferenceJacobian::at(double xi, std::span<const double> z, double length, std::span<double> jacobian,
                             std::span<double> by_xi) {
   static const double k_root = std::sqrt(std::numeric_limits<double>::epsilon());
@@ -223,7 +206,7 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
   std::ranges::copy(z, point_.begin());
   form_.rates(xi, point_, base_);
   for (std::size_t j = 0; j < n; ++j) {
-    const double step = differ(k_root * std::max(std::abs(z[j]), 1e-2), [&](double by) {
+    const double step = shift_within_domain(k_root * std::max(std::abs(z[j]), 1e-2), [&](double by) {
       point_[j] = z[j] + by;
       form_.rates(xi, point_, shifted_);
     });
@@ -232,7 +215,8 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
   }
   const double onward = std::max(std::min(k_root, k_share_of_step * length), k_resolution * xi);
   // Backwards: beyond 1 the program goes on differently.
-  const double step = differ(xi > 0.5 ? -onward : onward, [&](double by) { form_.rates(xi + by, point_, shifted_); });
+  const double step =
+      shift_within_domain(xi > 0.5 ? -onward : onward, [&](double by) { form_.rates(xi + by, point_, shifted_); });
   for (std::size_t i = 0; i < n; ++i) by_xi[i] = (shifted_[i] - base_[i]) / step;
 }
 

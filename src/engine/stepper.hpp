@@ -106,9 +106,6 @@ class DifferenceJacobian {
   void at(double xi, std::span<const double> z, double length, std::span<double> jacobian, std::span<double> by_xi);
 
  private:
-  template <class Shift>
-  double differ(double step, Shift&& shift);
-
   ScaledForm& form_;
   std::vector<double> base_, shifted_, point_;
 };

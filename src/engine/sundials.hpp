@@ -70,14 +70,22 @@ template <class Evolve, class CurrentStep, class Restart>
 int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentStep&& current_step, Restart&& restart) {
   pending.forget();
   int flag = evolve();
-  for (double step = 0.0; flag < 0 && !pending.domain_end().empty(); flag = evolve()) {
+  for (double step = 0.0; flag < 0 && !pending.nearest_domain_end().empty(); flag = evolve()) {
     // Before its first step the library has none.
     if (step == 0.0 && (current_step(&step) != 0 || !(step > 0.0))) step = 1.0;
     step = k_retreat * std::min(step, 1.0 - begin);
-    if (!(step > least_progress(begin))) throw std::domain_error(pending.domain_end());
+    if (!(step > least_progress(begin))) throw std::domain_error(pending.nearest_domain_end());
     restart(step);
   }
   return flag;
+}
+
+/// Whether a step shows that ever smaller ones would never get to the end of the equations. Where only difference
+/// quotients have met that end, steps have to become smaller: the first one of a segment may be as short by itself.
+/// @param previous  length of the step before; 0 for a segment's first one
+[[nodiscard]] inline bool is_stuck_at_end(const Pending& pending, double begin, double end, double previous) {
+  if (end - begin >= least_progress(begin)) return false;
+  return !pending.domain_end().empty() || (!pending.nearest_domain_end().empty() && end - begin < previous);
 }
 
 /// The unknowns with the largest weighted local errors, worst first, as "name (weighted error)".

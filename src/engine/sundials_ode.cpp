@@ -6,6 +6,8 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "engine/sundials.hpp"
@@ -31,6 +33,7 @@ struct CvodeLibrary {
   static constexpr auto set_tolerances = CVodeSVtolerances;
   static constexpr auto set_most_steps = CVodeSetMaxNumSteps;
   static constexpr auto set_linear_solver = CVodeSetLinearSolver;
+  static constexpr auto set_jacobian = CVodeSetJacFn;
   static constexpr auto set_jacobian_frequency = CVodeSetJacEvalFrequency;
   static constexpr auto set_stop_time = CVodeSetStopTime;
   static constexpr auto set_first_step = CVodeSetInitStep;
@@ -41,12 +44,12 @@ struct CvodeLibrary {
   static constexpr auto root_info = CVodeGetRootInfo;
   static constexpr auto derivative = CVodeGetDky;
   static constexpr auto steps = CVodeGetNumSteps;
-  static constexpr auto linear_rhs_evaluations = CVodeGetNumLinRhsEvals;
   static constexpr auto jacobian_evaluations = CVodeGetNumJacEvals;
   static constexpr auto error_test_failures = CVodeGetNumErrTestFails;
   static constexpr auto convergence_failures = CVodeGetNumNonlinSolvConvFails;
   static constexpr auto last_step = CVodeGetLastStep;
   static constexpr auto current_step = CVodeGetCurrentStep;
+  static constexpr auto current_gamma = CVodeGetCurrentGamma;
   static constexpr auto error_weights = CVodeGetErrWeights;
   static constexpr auto local_errors = CVodeGetEstLocalErrors;
   static constexpr auto flag_name = CVodeGetReturnFlagName;
@@ -77,6 +80,7 @@ struct ArkodeLibrary {
   static constexpr auto set_tolerances = ARKStepSVtolerances;
   static constexpr auto set_most_steps = ARKStepSetMaxNumSteps;
   static constexpr auto set_linear_solver = ARKStepSetLinearSolver;
+  static constexpr auto set_jacobian = ARKStepSetJacFn;
   static constexpr auto set_jacobian_frequency = ARKStepSetJacEvalFrequency;
   static constexpr auto set_stop_time = ARKStepSetStopTime;
   static constexpr auto set_first_step = ARKStepSetInitStep;
@@ -87,12 +91,12 @@ struct ArkodeLibrary {
   static constexpr auto root_info = ARKStepGetRootInfo;
   static constexpr auto derivative = ARKStepGetDky;
   static constexpr auto steps = ARKStepGetNumSteps;
-  static constexpr auto linear_rhs_evaluations = ARKStepGetNumLinRhsEvals;
   static constexpr auto jacobian_evaluations = ARKStepGetNumJacEvals;
   static constexpr auto error_test_failures = ARKStepGetNumErrTestFails;
   static constexpr auto convergence_failures = ARKStepGetNumNonlinSolvConvFails;
   static constexpr auto last_step = ARKStepGetLastStep;
   static constexpr auto current_step = ARKStepGetCurrentStep;
+  static constexpr auto current_gamma = ARKStepGetCurrentGamma;
   static constexpr auto error_weights = ARKStepGetErrWeights;
   static constexpr auto local_errors = ARKStepGetEstLocalErrors;
   static constexpr auto flag_name = ARKStepGetReturnFlagName;
@@ -136,6 +140,7 @@ class SundialsOde final : public Integrator {
   void begin(double xi, std::span<const double> y) override {
     form_.begin(y, view(y_.get()));
     start(xi, 0.0);
+    last_length_ = 0.0;
     ++past_.segments;
   }
 
@@ -155,16 +160,17 @@ class SundialsOde final : public Integrator {
     int flag = step_once();
     if (flag < 0 && Library::remembers_roots && follows_root_) {
       past_ = statistics();
+      for_jacobian_ = 0;
       set_up();
       follows_root_ = false;
       restart(0.0);
       flag = step_once();
     }
     check(Library::name, flag);
-    // Ever smaller steps towards the end of the equations would never get there.
-    if (!pending_.domain_end().empty() && end_ - begin < least_progress(begin)) {
-      throw std::domain_error(pending_.domain_end());
+    if (is_stuck_at_end(pending_, begin, end_, last_length_)) {
+      throw std::domain_error(pending_.nearest_domain_end());
     }
+    last_length_ = end_ - begin;
     if (flag == Library::root_return) {
       check("GetRootInfo", Library::root_info(memory_.get(), roots_.found.data()));
       roots_.collect();
@@ -186,13 +192,9 @@ class SundialsOde final : public Integrator {
   [[nodiscard]] Statistics statistics() const override {
     if (past_.segments == 0) return past_;
     Statistics now;
-    long for_jacobian = 0;
     Library::steps(memory_.get(), &now.steps);
-    if (linear_) {
-      Library::linear_rhs_evaluations(memory_.get(), &for_jacobian);
-      Library::jacobian_evaluations(memory_.get(), &now.jacobian_evaluations);
-    }
-    now.rhs_evaluations = Library::rhs_evaluations(memory_.get()) + for_jacobian;
+    if (linear_) Library::jacobian_evaluations(memory_.get(), &now.jacobian_evaluations);
+    now.rhs_evaluations = Library::rhs_evaluations(memory_.get()) + for_jacobian_;
     Library::error_test_failures(memory_.get(), &now.error_test_failures);
     Library::convergence_failures(memory_.get(), &now.convergence_failures);
     now.last_order = Library::last_order(memory_.get());
@@ -217,6 +219,7 @@ class SundialsOde final : public Integrator {
     check("SetMaxNumSteps", Library::set_most_steps(memory_.get(), k_most_internal_steps));
     if (!linear_) return;
     check("SetLinearSolver", Library::set_linear_solver(memory_.get(), linear_.get(), matrix_.get()));
+    check("SetJacFn", Library::set_jacobian(memory_.get(), jacobian));
     // With one from a singular start Newton's corrections are far too small, and taken for convergence.
     check("SetJacEvalFrequency", Library::set_jacobian_frequency(memory_.get(), 1));
   }
@@ -224,6 +227,7 @@ class SundialsOde final : public Integrator {
   /// Begins at xi with the state in y_. @param step  the first to be tried; 0: the library's choice
   void start(double xi, double step) {
     past_ = statistics();  // counters are reset with the state
+    for_jacobian_ = 0;
     end_ = xi;
     follows_root_ = follows_root_ || !roots_.fired.empty();
     check("ReInit", Library::reinit(memory_.get(), method_, right_hand_side, xi, y_.get()));
@@ -251,6 +255,42 @@ class SundialsOde final : public Integrator {
       ode.form_.rates(xi, view(y), view(dy));
       return all_finite(view(dy));
     });
+  }
+
+  /// d(rates)/dy by difference quotients, as the library's own, but for increments that leave the domain.
+  static int jacobian(realtype xi, N_Vector y, N_Vector dy, SUNMatrix matrix, void* self, N_Vector shifted, N_Vector,
+                      N_Vector) noexcept {
+    constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
+    static const double k_root = std::sqrt(k_epsilon);
+    constexpr double k_above_rounding = 1e3;
+    auto& ode = *static_cast<SundialsOde*>(self);
+    double step = 0.0;
+    if (Library::current_gamma(ode.memory_.get(), &step) != 0 ||
+        Library::error_weights(ode.memory_.get(), ode.weights_.get()) != 0) {
+      return -1;
+    }
+    const auto values = view(y);
+    const auto before = view(dy);
+    const double norm = N_VWrmsNorm(dy, ode.weights_.get());
+    const double rounding = k_above_rounding * k_epsilon * static_cast<double>(values.size()) * std::abs(step) * norm;
+    const double least = norm > 0.0 ? rounding : 1.0;
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      const double value = values[j];
+      double increment = std::max(k_root * std::abs(value), least / view(ode.weights_.get())[j]);
+      const int flag = ode.pending_.guard([&] {
+        increment = shift_within_domain(increment, [&](double by) {
+          values[j] = value + by;
+          ++ode.for_jacobian_;
+          ode.pending_.beside([&] { ode.form_.rates(xi, values, view(shifted)); });
+        });
+        return all_finite(view(shifted));
+      });
+      values[j] = value;
+      if (flag != 0) return flag;
+      realtype* const column = SUNDenseMatrix_Column(matrix, static_cast<sunindextype>(j));
+      for (std::size_t i = 0; i < before.size(); ++i) column[i] = (view(shifted)[i] - before[i]) / increment;
+    }
+    return 0;
   }
 
   static int guards(realtype xi, N_Vector y, realtype* values, void* self) noexcept {
@@ -288,7 +328,9 @@ class SundialsOde final : public Integrator {
   RootList roots_;
   bool follows_root_ = false;  ///< an earlier call ended at one, since memory_ is new
   double end_ = 0.0;
+  double last_length_ = 0.0;  ///< of a step of this segment
   Statistics past_;
+  long for_jacobian_ = 0;  ///< evaluations of rates
 
   sundials::Context context_;  // first in, last out
   NVector y_, begin_state_, atol_, weights_, errors_;
