@@ -249,6 +249,10 @@ void MaterialPoint::residual(double xi, std::span<const double> y, std::span<con
 /// Brings the plastic strains to f = 0: by the shortest way, since both may carry an integrator's errors. Along the
 /// flow there may be no such state: near a critical state it hardly changes phi, and near a loss of uniqueness not f.
 /// Only where the flow keeps its direction, the solution lies along it.
+///
+/// A surface much narrower in one direction is a valley of f. A correction that has passed its floor without having
+/// come inside goes back there, and on along the floor, where the slope across stays zero: straight down from slope to
+/// slope it would take many corrections.
 void MaterialPoint::complete(double xi, std::span<double> y) {
   if (!is_plastic_) return;
   const bool follows_gradient = !is_solvable();
@@ -256,17 +260,31 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
   const double guessed_deviatoric = y[k_deviatoric];
   double elastic_strain = 0.0;
   int small_corrections = 0;
+  double phi = 0.0;  // of the last correction
+  double deviatoric = 0.0;
+  Flow last;  // where it began
+  std::optional<std::array<double, 2>> floor;
   const bool has_caps = is_compressible(settings_.parameters.model);
   try {
     for (int i = 0; i < k_most_corrections; ++i) {
       const Response here = response(xi, y);
       const Flow now = flow(here);
       elastic_strain = 1.0 / stiffness_over_strength(here.at);
-      const double by_phi = follows_gradient ? now.f_by_phi : now.phi;
-      const double by_deviatoric = follows_gradient ? now.f_by_deviatoric : now.deviatoric;
+      const double slope = now.f_by_phi * phi + now.f_by_deviatoric * deviatoric;
+      if (last.yield.f > 0.0 && now.yield.f > 0.0 && slope > 0.0) {
+        const double back = slope / (last.yield.f + slope);
+        y[k_phi] -= back * phi;
+        y[k_deviatoric] -= back * deviatoric;
+        floor = {last.f_by_deviatoric - now.f_by_deviatoric, now.f_by_phi - last.f_by_phi};
+        last = {};
+        continue;
+      }
+      last = now;
+      const double by_phi = floor ? (*floor)[0] : follows_gradient ? now.f_by_phi : now.phi;
+      const double by_deviatoric = floor ? (*floor)[1] : follows_gradient ? now.f_by_deviatoric : now.deviatoric;
       const double step = -now.yield.f / (now.f_by_phi * by_phi + now.f_by_deviatoric * by_deviatoric);
-      const double phi = step * by_phi;
-      const double deviatoric = step * by_deviatoric;
+      phi = step * by_phi;
+      deviatoric = step * by_deviatoric;
       if (!std::isfinite(step)) break;
       y[k_phi] += phi;
       y[k_deviatoric] += deviatoric;
