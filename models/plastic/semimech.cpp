@@ -57,12 +57,18 @@ ValueAndSlope elastic_pressure(const SemimechLaw& law, double x) noexcept {  // 
   return {.value = factor * root, .slope = 0.5 * factor / root};
 }
 
+/// Beyond the greatest pressure it goes on as the nearest whole power would: where the exponent is near 1, its mirror
+/// image would have a kink there.
 ValueAndSlope elastic_plastic_pressure(const SemimechLaw& law, double x) noexcept {  // eqs. 2.18, 2.21
   const double ratio = logarithm_to_greatest(law, x) / law.yield_logarithm;
   const double rise = law.fall.greatest - k_yield_pressure;
   const double power = std::pow(std::abs(ratio), law.logarithm_exponent - 1.0);
   const double slope = rise * law.logarithm_exponent * power / (law.yield_logarithm * x);
-  return {.value = law.fall.greatest - rise * std::abs(ratio) * power, .slope = ratio < 0.0 ? -slope : slope};
+  const bool is_odd = std::lround(law.logarithm_exponent) % 2 != 0;
+  const double drop = rise * std::abs(ratio) * power;
+  if (ratio >= 0.0) return {.value = law.fall.greatest - drop, .slope = slope};
+  return is_odd ? ValueAndSlope{.value = law.fall.greatest + drop, .slope = slope}
+                : ValueAndSlope{.value = law.fall.greatest - drop, .slope = -slope};
 }
 
 ValueAndSlope low_compressibility_pressure(const SemimechLaw& law, double x) {  // eq. 2.41
