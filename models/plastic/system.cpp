@@ -122,6 +122,9 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     const double stood = classes_[i].takes_force ? displacement_at(i, y[places_[i]]) : 0.0;
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
     if (is_lateral(i)) continue;
+    // Where a wall has left its dent, the rounding of its units must not press it in again.
+    const bool stands_at_dent = std::abs(ramps_[i].start - origin(i)) <= k_rounding * origin(i);
+    if (memory_[i].regime == Regime::separated && !is_loaded(i) && stands_at_dent) ramps_[i].start = origin(i);
     double x = is_loaded(i) ? stood : ramps_[i].start;
     directions_[i] = direction_of_ramp(i, x);
     if (touches(memory_[i].regime)) {
