@@ -121,7 +121,8 @@ class SceneCheck {
     nothing_ = {.unit = {.length = scenario_.radius, .stress = softest(scenario_)},
                 .share = is_direct ? k_stress_rounding : scenario_.numerics.atol,
                 .energy_share = direct_work_tolerance(*run),
-                .step_share = tolerance_};
+                .step_share = tolerance_,
+                .length = k_stress_rounding * scenario_.radius};
     if (!is_direct) compare("agreement", *reference_, *run);
     check_rate(*run);
     if (const auto other = try_run(magnified(scenario_, k_magnification), "larger and softer")) {
