@@ -113,6 +113,7 @@ constexpr StatedLimit k_stated_limits[] = {
     {"the packing's strain does not grow any further", "greatest strain"},
     {"the packing's stress does not grow any further", "greatest stress"},
     {"the particles give way as much as the packing", "infinite stress"},
+    {"a packing of plastic particles is unloaded", "no unloading"},
 };
 
 double material(const Scenario& scenario, const char* key) {
