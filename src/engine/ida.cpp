@@ -23,7 +23,6 @@ using IdaMemory = std::unique_ptr<void, IdaDeleter>;
 
 constexpr double k_slave_tolerance = 1e-4;  // loose, but small enough for difference quotients
 constexpr int k_most_failures = 50;         // of one step
-constexpr double k_rounding_of_xi = 4.0 * std::numeric_limits<double>::epsilon();  // of the step coordinate
 
 class Ida final : public Integrator {
  public:

@@ -30,7 +30,7 @@ struct CvodeLibrary {
   static constexpr auto free = CVodeFree;
   static constexpr auto set_error_handler = CVodeSetErrHandlerFn;
   static constexpr auto set_user_data = CVodeSetUserData;
-  static constexpr auto set_tolerances = CVodeSVtolerances;
+  static constexpr auto set_weights = CVodeWFtolerances;
   static constexpr auto set_most_steps = CVodeSetMaxNumSteps;
   static constexpr auto set_linear_solver = CVodeSetLinearSolver;
   static constexpr auto set_jacobian = CVodeSetJacFn;
@@ -77,7 +77,7 @@ struct ArkodeLibrary {
   static constexpr auto free = ARKStepFree;
   static constexpr auto set_error_handler = ARKStepSetErrHandlerFn;
   static constexpr auto set_user_data = ARKStepSetUserData;
-  static constexpr auto set_tolerances = ARKStepSVtolerances;
+  static constexpr auto set_weights = ARKStepWFtolerances;
   static constexpr auto set_most_steps = ARKStepSetMaxNumSteps;
   static constexpr auto set_linear_solver = ARKStepSetLinearSolver;
   static constexpr auto set_jacobian = ARKStepSetJacFn;
@@ -124,9 +124,10 @@ class SundialsOde final : public Integrator {
   SundialsOde(OdeMethod method, HybridSystem& system, Watch& watch, const Tolerances& tolerances)
       : system_(system), watch_(watch), method_(method), tolerances_(tolerances), form_(system) {
     const auto size = static_cast<sunindextype>(form_.size());
-    for (NVector* vector : {&y_, &begin_state_, &atol_, &weights_, &errors_})
+    for (NVector* vector : {&y_, &begin_state_, &rates_, &atol_, &weights_, &errors_})
       vector->reset(N_VNew_Serial(size, context_));
     N_VConst(0.0, y_.get());
+    N_VConst(0.0, rates_.get());
     for (std::size_t k = 0; k < form_.size(); ++k) {
       view(atol_.get())[k] = local_atol(tolerances) * form_.unknown(k).scale;
     }
@@ -215,7 +216,7 @@ class SundialsOde final : public Integrator {
     create();
     check("SetErrHandlerFn", Library::set_error_handler(memory_.get(), keep_message, &message_));
     check("SetUserData", Library::set_user_data(memory_.get(), this));
-    check("SVtolerances", Library::set_tolerances(memory_.get(), local_rtol(tolerances_), atol_.get()));
+    check("WFtolerances", Library::set_weights(memory_.get(), error_weights));
     check("SetMaxNumSteps", Library::set_most_steps(memory_.get(), k_most_internal_steps));
     if (!linear_) return;
     check("SetLinearSolver", Library::set_linear_solver(memory_.get(), linear_.get(), matrix_.get()));
@@ -230,6 +231,7 @@ class SundialsOde final : public Integrator {
     for_jacobian_ = 0;
     end_ = xi;
     follows_root_ = follows_root_ || !roots_.fired.empty();
+    N_VConst(0.0, rates_.get());  // those of another mode say nothing of this one
     check("ReInit", Library::reinit(memory_.get(), method_, right_hand_side, xi, y_.get()));
     check("SetInitStep", Library::set_first_step(memory_.get(), step));
     check("SetStopTime", Library::set_stop_time(memory_.get(), 1.0));
@@ -253,7 +255,9 @@ class SundialsOde final : public Integrator {
     auto& ode = *static_cast<SundialsOde*>(self);
     return ode.pending_.guard([&] {
       ode.form_.rates(xi, view(y), view(dy));
-      return all_finite(view(dy));
+      if (!all_finite(view(dy))) return false;
+      N_VScale(1.0, dy, ode.rates_.get());
+      return true;
     });
   }
 
@@ -289,6 +293,18 @@ class SundialsOde final : public Integrator {
       if (flag != 0) return flag;
       realtype* const column = SUNDenseMatrix_Column(matrix, static_cast<sunindextype>(j));
       for (std::size_t i = 0; i < before.size(); ++i) column[i] = (view(shifted)[i] - before[i]) / increment;
+    }
+    return 0;
+  }
+
+  /// One over what is tolerated. Where a contact lasts hardly longer than the step coordinate is rounded, so are the
+  /// errors of its stages: tolerances finer than that no step would keep.
+  static int error_weights(N_Vector y, N_Vector weights, void* self) noexcept {
+    const auto& ode = *static_cast<SundialsOde*>(self);
+    const double rtol = local_rtol(ode.tolerances_);
+    for (std::size_t k = 0; k < view(y).size(); ++k) {
+      const double tolerated = rtol * std::abs(view(y)[k]) + view(ode.atol_.get())[k];
+      view(weights)[k] = 1.0 / std::max(tolerated, k_rounding_of_xi * std::abs(view(ode.rates_.get())[k]));
     }
     return 0;
   }
@@ -334,6 +350,7 @@ class SundialsOde final : public Integrator {
 
   sundials::Context context_;  // first in, last out
   NVector y_, begin_state_, atol_, weights_, errors_;
+  NVector rates_;  // the last ones that were asked for
   Matrix matrix_;
   LinearSolver linear_;
   NonlinearSolver nonlinear_;
