@@ -161,17 +161,15 @@ void EventLocator::locate_event() {
       // Between two states there may be none, where the second is another one than the first leads to.
       const double nearer = std::midpoint(before.xi, after.xi);
       if (nearer - begin_ < least_progress(begin_)) throw;
-      looks_.resize(place);
-      move_end(nearer);
+      place = shorten(nearer, place);
       continue;
     }
     const bool is_shorter = root < end_ - least_progress(begin_);
-    looks_.resize(place);
-    const double last_look = before.xi;
-    if (root < end_) move_end(root);
+    place = shorten(root, place);
+    const double last_look = seen(place).xi;
     if (is_branch_end(first) && !has_approached) {
       has_approached = true;
-      look_up_to(root, last_look);
+      look_up_to(last_look);
       continue;
     }
     fired_.clear();
@@ -194,18 +192,27 @@ void EventLocator::locate_event() {
   }
 }
 
+/// Ends the piece at xi, or where it has a state before that, and forgets the looks beyond the first ones.
+/// @return how many looks are left
+std::size_t EventLocator::shorten(double xi, std::size_t looks) {
+  looks_.resize(looks);
+  if (xi < end_) move_end(xi);
+  while (!looks_.empty() && looks_.back() >= end_) looks_.pop_back();
+  return looks_.size();
+}
+
 bool EventLocator::is_branch_end(std::size_t guard) const {
   return guard < watch_.system_guards() && system_.guards()[guard].is_branch_end;
 }
 
-/// Looks between the last one and a root, ever nearer to it.
-void EventLocator::look_up_to(double root, double last) {
-  double distance = root - last;
+/// Looks between the last one and the end that a root has given the piece, ever nearer to it.
+void EventLocator::look_up_to(double last) {
+  double distance = end_ - last;
   for (std::size_t look = 0; look < k_looks_before_end; ++look) {
     distance *= k_approach;
-    if (distance < least_progress(root)) return;
-    state_at(root - distance, guess_);
-    look_inside(root - distance, guess_);
+    if (distance < least_progress(end_)) return;
+    state_at(end_ - distance, guess_);
+    look_inside(end_ - distance, guess_);
   }
 }
 
@@ -226,7 +233,8 @@ double EventLocator::first_root(const View& before, const View& after, std::size
 
 /// Root of one guard between two looks.
 double EventLocator::polish(std::size_t guard, const View& before, const View& after) {
-  if (after.values[guard] == 0.0) return after.xi;
+  // Of a piece as short as the rounding of xi both looks are the root.
+  if (after.values[guard] == 0.0 || !(after.xi > before.xi)) return after.xi;
   std::uintmax_t iterations = 100;
   const auto function = [&](double xi) {
     state_at(xi, guess_);

@@ -65,8 +65,9 @@ class EventLocator : public Integrator {
   [[nodiscard]] bool any_crosses(const View& before, const View& after) const;
   [[nodiscard]] double hidden_extremum(std::size_t place) const;
   [[nodiscard]] double first_root(const View& before, const View& after, std::size_t& guard);
+  [[nodiscard]] std::size_t shorten(double xi, std::size_t looks);
   [[nodiscard]] bool is_branch_end(std::size_t guard) const;
-  void look_up_to(double root, double last);
+  void look_up_to(double last);
   [[nodiscard]] double polish(std::size_t guard, const View& before, const View& after);
 
   std::size_t most_looks_;           ///< that are usual
