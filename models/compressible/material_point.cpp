@@ -51,8 +51,8 @@ constexpr double k_stiff = 1e5;
 // Moduli over the yield pressure at which a run ends: the rounding of strains is there a millionth of the strength.
 constexpr double k_stiffest = 1e10;
 // Newton's method on f = 0: strain correction and f before it, below both of which the next one is round-off (where a
-// cap is narrow and the material hardly compressible, f is curved within 1e-11 of strain); such small corrections after
-// which f is made of rounding; and how many there may be at all.
+// cap is narrow or the material very stiff, f is curved within 1e-11 of strain); such small corrections after which f
+// is made of rounding; and how many there may be at all.
 constexpr double k_last_correction = 1e-11;
 constexpr double k_last_excess = 1e-9;
 constexpr int k_most_small_corrections = 12;
@@ -264,7 +264,6 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
   double deviatoric = 0.0;
   Flow last;  // where it began
   std::optional<std::array<double, 2>> floor;
-  const bool has_caps = is_compressible(settings_.parameters.model);
   try {
     for (int i = 0; i < k_most_corrections; ++i) {
       const Response here = response(xi, y);
@@ -289,7 +288,7 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
       y[k_phi] += phi;
       y[k_deviatoric] += deviatoric;
       if (std::hypot(phi, deviatoric) >= k_last_correction) continue;
-      const bool is_found = !has_caps || std::abs(now.yield.f) < k_last_excess;
+      const bool is_found = std::abs(now.yield.f) < k_last_excess;
       if (!is_found && ++small_corrections < k_most_small_corrections) continue;
       const double distance = std::hypot(y[k_phi] - guess, y[k_deviatoric] - guessed_deviatoric);
       if (is_solvable() || distance <= std::max(elastic_strain, k_nearby)) return;
