@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -49,6 +50,9 @@ class SolverError : public std::runtime_error {
 /// A step from xi this short that has met the end of the equations has arrived there (step coordinates). Where a step
 /// of the program begins, shorter ones are still told apart: a contact may be that much shallower than the ramp.
 [[nodiscard]] inline double least_progress(double xi) noexcept { return 1e-13 * std::max(xi, 1e-7); }
+
+/// Of the step coordinate: nothing is told more exactly than that, times its rate.
+inline constexpr double k_rounding_of_xi = 4.0 * std::numeric_limits<double>::epsilon();
 
 /// Internal steps of one step of the program after which it is given up.
 inline constexpr long k_most_internal_steps = 200'000;

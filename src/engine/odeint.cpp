@@ -24,7 +24,7 @@ constexpr double k_first_step = 1e-3;
 // The same of a linearly implicit method where rates may be singular: its difference quotients do not see that, and now
 // and then two errors cancel in its estimate. The error goes with the square of the step.
 constexpr double k_first_step_of_slaves = 1e-9;
-constexpr double k_smallest_step = 1e-2;  // over the least progress
+constexpr double k_smallest_step = 2e-3;  // over the least progress: still above the rounding of xi
 constexpr int k_most_tries = 500;         // of one step
 
 template <class State>
@@ -60,17 +60,43 @@ double controlled_step(double xi, double& step, long& rejections, Try&& attempt)
   throw SolverError("try_step", "no step passes the error test", xi, step, {});
 }
 
+/// What is tolerated of each unknown. Where a contact lasts hardly longer than the step coordinate is rounded, so are
+/// the errors of a step's stages: no less than that is.
+template <class State>
+class Tolerated {
+ public:
+  Tolerated(const ScaledForm& form, const Tolerances& tolerances)
+      : size_(form.size()),
+        rtol_(local_rtol(tolerances)),
+        atol_(local_atol(tolerances)),
+        rates_(zeros<State>(form.size())) {}
+
+  /// Rates of a step's stages; the last ones are those at its end.
+  void see(const State& rates) noexcept { rates_ = rates; }
+  /// The largest error over what is tolerated.
+  template <class Error>
+  [[nodiscard]] double share(const State& begin, Error&& error) const noexcept {
+    double largest = 0.0;
+    for (std::size_t k = 0; k < size_; ++k) {
+      const double tolerated = std::max(atol_ + rtol_ * std::abs(begin[k]), k_rounding_of_xi * std::abs(rates_[k]));
+      largest = std::max(largest, std::abs(error(k)) / tolerated);
+    }
+    return largest;
+  }
+
+ private:
+  std::size_t size_;
+  double rtol_, atol_;
+  State rates_;
+};
+
 /// Fehlberg's own error estimate is zero for rates that depend on xi alone, and blind where they depend on little else,
 /// as from first touch on. For those the method is the Newton-Cotes rule with nodes 0, 1/6 ... 1, and the rule of order
 /// 6 with five of them stands beside it.
 template <class State>
 class RuleErrors {
  public:
-  RuleErrors(const ScaledForm& form, const Tolerances& tolerances)
-      : size_(form.size()),
-        rtol_(local_rtol(tolerances)),
-        atol_(local_atol(tolerances)),
-        sums_(zeros<State>(form.size())) {}
+  explicit RuleErrors(std::size_t size) : size_(size), sums_(zeros<State>(size)) {}
 
   /// @param stage  whose rates come first: 1 where those at the step's beginning are known
   void begin(std::size_t stage) noexcept {
@@ -84,14 +110,8 @@ class RuleErrors {
     if (weight == 0.0) return;
     for (std::size_t k = 0; k < size_; ++k) sums_[k] += weight * rates[k];
   }
-  /// Over what is tolerated.
-  [[nodiscard]] double largest(const State& begin, double step) const noexcept {
-    double largest = 0.0;
-    for (std::size_t k = 0; k < size_; ++k) {
-      largest = std::max(largest, std::abs(step * sums_[k]) / (atol_ + rtol_ * std::abs(begin[k])));
-    }
-    return largest;
-  }
+  /// Over the length of the step.
+  [[nodiscard]] double operator[](std::size_t k) const noexcept { return sums_[k]; }
 
  private:
   // The weights of the two rules, one less the other, by stage.
@@ -101,52 +121,50 @@ class RuleErrors {
       0.0,         0.0,         0.0, 0.0,   0.0,  34.0 / 105.0 - 11.0 / 30.0, k_sixth, k_sixth,
       9.0 / 280.0, 9.0 / 280.0, 0.0, k_end, k_end};
   std::size_t size_;
-  double rtol_, atol_;
   State sums_;
   std::size_t stage_ = 0;
 };
 
 /// What Odeint asks for the error of a step over what is tolerated.
 template <class State>
-class FehlbergErrorChecker
-    : public odeint::default_error_checker<double, typename odeint::runge_kutta_fehlberg78<State>::algebra_type,
-                                           odeint::default_operations> {
+class ErrorChecker {
  public:
-  using Base = odeint::default_error_checker<double, typename odeint::runge_kutta_fehlberg78<State>::algebra_type,
-                                             odeint::default_operations>;
-  FehlbergErrorChecker(const Tolerances& tolerances, const RuleErrors<State>& rule_errors)
-      : Base(local_atol(tolerances), local_rtol(tolerances), 1.0, 0.0), rule_errors_(&rule_errors) {}
+  explicit ErrorChecker(const Tolerated<State>& tolerated, const RuleErrors<State>* rule_errors = nullptr)
+      : tolerated_(&tolerated), rule_errors_(rule_errors) {}
 
-  template <class Old, class Rates, class Error, class Time>
-  double error(typename Base::algebra_type& algebra, const Old& old, const Rates& rates, Error& error,
-               Time step) const {
-    return std::max(static_cast<double>(Base::error(algebra, old, rates, error, step)),
-                    rule_errors_->largest(old, step));
+  template <class Algebra, class Rates, class Time>
+  double error(Algebra& /*algebra*/, const State& old, const Rates& /*rates*/, const State& error, Time step) const {
+    const double own = tolerated_->share(old, [&](std::size_t k) { return error[k]; });
+    if (rule_errors_ == nullptr) return own;
+    return std::max(own, tolerated_->share(old, [&](std::size_t k) { return step * (*rule_errors_)[k]; }));
   }
 
  private:
+  const Tolerated<State>* tolerated_;
   const RuleErrors<State>* rule_errors_;
 };
 
 template <class State>
-using Fehlberg = odeint::controlled_runge_kutta<odeint::runge_kutta_fehlberg78<State>, FehlbergErrorChecker<State>>;
+using DormandPrince = odeint::controlled_runge_kutta<odeint::runge_kutta_dopri5<State>, ErrorChecker<State>>;
+template <class State>
+using Fehlberg = odeint::controlled_runge_kutta<odeint::runge_kutta_fehlberg78<State>, ErrorChecker<State>>;
 
 /// Explicit methods. That of order 5 has an interpolation of its own; in steps of the others a state is found by
 /// integrating to it with the method of order 8.
 template <class State, class Controlled>
 class ExplicitStepper final : public Stepper {
  public:
-  static constexpr bool has_interpolation =
-      std::is_same_v<Controlled, odeint::controlled_runge_kutta<odeint::runge_kutta_dopri5<State>>>;
+  static constexpr bool has_interpolation = std::is_same_v<Controlled, DormandPrince<State>>;
   static constexpr bool has_rule_errors = std::is_same_v<Controlled, Fehlberg<State>>;
 
-  /// @param make  the controlled method, of its errors as a quadrature
+  /// @param make  the controlled method, of what is tolerated and its errors as a quadrature
   template <class Make>
   ExplicitStepper(ScaledForm& form, const Tolerances& tolerances, int method_order, Make&& make)
       : form_(form),
-        rule_errors_(form, tolerances),
-        controlled_(make(rule_errors_)),
-        reaching_(FehlbergErrorChecker<State>(tolerances, rule_errors_)) {
+        tolerated_(form, tolerances),
+        rule_errors_(form.size()),
+        controlled_(make(tolerated_, rule_errors_)),
+        reaching_(ErrorChecker<State>(tolerated_, &rule_errors_)) {
     order = method_order;
     for (State* state : {&old_, &old_rates_, &now_, &now_rates_, &between_}) *state = zeros<State>(form.size());
   }
@@ -219,11 +237,13 @@ class ExplicitStepper final : public Stepper {
   auto system() {
     return [this](const State& z, State& dz, double xi) {
       rates(z, dz, xi);
+      tolerated_.see(dz);
       if constexpr (sees_rates) rule_errors_.see(dz);
     };
   }
 
   ScaledForm& form_;
+  Tolerated<State> tolerated_;
   RuleErrors<State> rule_errors_;
   Controlled controlled_;
   Fehlberg<State> reaching_;
@@ -240,7 +260,7 @@ class RosenbrockStepper final : public Stepper {
       : form_(form),
         jacobian_(form),
         size_(form.size()),
-        method_({size_ + 1, rates, jacobian, this}, local_atol(tolerances), local_rtol(tolerances)),
+        method_({size_ + 1, rates, jacobian, this}, local_atol(tolerances), local_rtol(tolerances), k_rounding_of_xi),
         start_(size_ + 1),
         by_z_(size_ * size_),
         by_xi_(size_),
@@ -311,21 +331,20 @@ std::unique_ptr<Stepper> make_explicit(OdeintMethod method, ScaledForm& form, co
   const double rtol = local_rtol(tolerances);
   const double atol = local_atol(tolerances);
   switch (method) {
-    case OdeintMethod::dopri5: {
-      using Controlled = odeint::controlled_runge_kutta<odeint::runge_kutta_dopri5<State>>;
-      return std::make_unique<ExplicitStepper<State, Controlled>>(form, tolerances, 5, [&](const auto&) {
-        return Controlled(typename Controlled::error_checker_type(atol, rtol, 1.0, 0.0));
-      });
-    }
+    case OdeintMethod::dopri5:
+      return std::make_unique<ExplicitStepper<State, DormandPrince<State>>>(
+          form, tolerances, 5, [](const Tolerated<State>& tolerated, const RuleErrors<State>&) {
+            return DormandPrince<State>(ErrorChecker<State>(tolerated));
+          });
     case OdeintMethod::fehlberg78:
       return std::make_unique<ExplicitStepper<State, Fehlberg<State>>>(
-          form, tolerances, 8, [&](const RuleErrors<State>& rule_errors) {
-            return Fehlberg<State>(FehlbergErrorChecker<State>(tolerances, rule_errors));
+          form, tolerances, 8, [](const Tolerated<State>& tolerated, const RuleErrors<State>& rule_errors) {
+            return Fehlberg<State>(ErrorChecker<State>(tolerated, &rule_errors));
           });
     case OdeintMethod::bulirsch_stoer: {
       using Controlled = odeint::bulirsch_stoer<State>;
       return std::make_unique<ExplicitStepper<State, Controlled>>(
-          form, tolerances, 0, [&](const auto&) { return Controlled(atol, rtol, 1.0, 0.0); });
+          form, tolerances, 0, [&](const auto&, const auto&) { return Controlled(atol, rtol, 1.0, 0.0); });
     }
     case OdeintMethod::rosenbrock4:
       return std::make_unique<RosenbrockStepper>(form, tolerances);

@@ -17,7 +17,8 @@ class Rosenbrock4 {
     void* self = nullptr;
   };
 
-  Rosenbrock4(const Equations& equations, double atol, double rtol);
+  /// @param rounding  of xi
+  Rosenbrock4(const Equations& equations, double atol, double rtol, double rounding);
   ~Rosenbrock4();
   Rosenbrock4(const Rosenbrock4&) = delete;
   Rosenbrock4& operator=(const Rosenbrock4&) = delete;

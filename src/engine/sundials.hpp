@@ -8,7 +8,6 @@
 #include <sundials/sundials_context.hpp>
 
 #include <cstdlib>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -57,9 +56,6 @@ inline void keep_message(int, const char*, const char*, char* message, void* sin
 
 /// A solver of small dense systems; timed where a LinearAlgebraClock runs.
 [[nodiscard]] LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context);
-
-/// Of the step coordinate: nothing is told more exactly than that, times its rate.
-inline constexpr double k_rounding_of_xi = 4.0 * std::numeric_limits<double>::epsilon();
 
 /// What a step is made shorter by that has met the end of the equations.
 inline constexpr double k_retreat = 0.1;
