@@ -56,11 +56,10 @@ double coordination_slope(const Law& law, double phi) noexcept {
   return 0.5 * gain / std::sqrt((p.reference_fraction - p.jamming_fraction) * (phi - p.jamming_fraction));
 }
 
-/// 1 + s m.
+/// s m, without the 1 beside it, of which nearly incompressible particles leave few digits.
 double give(const Law& law, double modulus, double coordination, double phi) {
-  const double m = modulus / (law.given.coupling_factor * law.bulk_modulus * coordination * phi);
-  const double result = 1.0 + law.sign * m;
-  if (!(result > 0.0)) {
+  const double result = law.sign * modulus / (law.given.coupling_factor * law.bulk_modulus * coordination * phi);
+  if (!(1.0 + result > 0.0)) {
     throw std::domain_error(
         "the particles give way as much as the packing, M_eff = c1 K Z Phi: its stress is infinite");
   }
@@ -191,7 +190,9 @@ State state(const Law& law, double phi) {
   if (!(phi >= law.jamming)) throw std::domain_error("the packing is looser than where it jams");
   State result;
   result.modulus = modulus(law, phi).value;
-  result.strain = total_strain(law, phi) / give(law, result.modulus, coordination_number(law, phi), phi);
+  const double given_way = give(law, result.modulus, coordination_number(law, phi), phi);
+  result.strain = total_strain(law, phi) / (1.0 + given_way);
+  result.particle_strain = law.sign * given_way * result.strain;
   result.stress_elastic = result.modulus * result.strain;
   result.stress = total_stress(law, phi, result.stress_elastic);
   return result;
@@ -211,12 +212,13 @@ Slopes slopes(const Law& law, double phi, double strain) {
   if (!(phi >= law.jamming)) throw std::domain_error("the packing is looser than where it jams");
   const Modulus m = modulus(law, phi);
   const double coordination = coordination_number(law, phi);
-  const double divisor = give(law, m.value, coordination, phi);
+  const double given_way = give(law, m.value, coordination, phi);
   // s m' = s m (M'/M - Z'/Z - 1/Phi)
   const double by_modulus = law.sign * m.slope / (law.given.coupling_factor * law.bulk_modulus * coordination * phi);
-  const double give_slope = by_modulus - (divisor - 1.0) * (coordination_slope(law, phi) / coordination + 1.0 / phi);
+  const double give_slope = by_modulus - given_way * (coordination_slope(law, phi) / coordination + 1.0 / phi);
   Slopes result;
-  result.strain = (1.0 / phi - give_slope * strain) / divisor;
+  result.strain = (1.0 / phi - give_slope * strain) / (1.0 + given_way);
+  result.particle_strain = law.sign * (given_way / phi + give_slope * strain) / (1.0 + given_way);
   result.stress_elastic = m.value * result.strain + m.slope * strain;
   const double without_particles = m.value / phi + m.slope * strain;
   const double share = plastic_fraction(law, phi);

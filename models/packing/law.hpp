@@ -81,10 +81,11 @@ struct Law {
 
 /// State of a jammed packing by the closed form.
 struct State {
-  double modulus = 0.0;         ///< M_eff [Pa]
-  double strain = 0.0;          ///< e = sigma_e/M_eff (eq. 5), its limit where both are zero
-  double stress_elastic = 0.0;  ///< sigma_e [Pa]
-  double stress = 0.0;          ///< sigma [Pa]
+  double modulus = 0.0;          ///< M_eff [Pa]
+  double strain = 0.0;           ///< e = sigma_e/M_eff (eq. 5), its limit where both are zero
+  double particle_strain = 0.0;  ///< v = m e
+  double stress_elastic = 0.0;   ///< sigma_e [Pa]
+  double stress = 0.0;           ///< sigma [Pa]
 };
 
 /// @param packing_fraction  Phi >= Phi_J; may be a little above 1
@@ -106,6 +107,7 @@ struct State {
 /// Derivatives with respect to Phi of a jammed packing.
 struct Slopes {
   double strain = 0.0;
+  double particle_strain = 0.0;     ///< v' = 1/Phi - e' but for the sign, in which nothing cancels
   double stress_elastic = 0.0;      ///< [Pa]
   double stress = 0.0;              ///< [Pa]; beyond full plasticity the one-sided value
   double at_given_particles = 0.0;  ///< of the stress, while the particles keep their strain v [Pa]

@@ -46,10 +46,8 @@ const char* end_of_branch(Control control) {
   return "the particles give way as much as the packing, whose stress becomes infinite";
 }
 
-/// v = m e of the closed form.
-double particle_strain(const Law& law, double packing_fraction) {
-  return law.sign * (total_strain(law, packing_fraction) - state(law, packing_fraction).strain);
-}
+/// Of the closed form.
+double particle_strain(const Law& law, double packing_fraction) { return state(law, packing_fraction).particle_strain; }
 
 /// Half way through the compaction.
 double typical_particle_strain(const Law& law) { return particle_strain(law, std::midpoint(law.jamming, law.end)); }
@@ -299,7 +297,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
   const double growth = ramp_.control == Control::strain ? s.strain : ramp_.control == Control::stress ? s.stress : 1.0;
   if (!(growth > 0.0)) throw std::domain_error(end_of_branch(ramp_.control));
   dy[k_fraction] = (ramp_.end - ramp_.start) / growth;
-  dy[k_particles] = law_.sign * (1.0 / phi - s.strain) * dy[k_fraction];
+  dy[k_particles] = s.particle_strain * dy[k_fraction];
 }
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
