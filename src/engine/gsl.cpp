@@ -42,7 +42,10 @@ class GslStepper final : public Stepper {
         reaching_(make_driver(gsl_odeiv2_step_rk8pd, tolerances)),
         old_(form.size()),
         now_(form.size()),
-        between_(form.size()) {}
+        between_(form.size()) {
+    // Without a limit it goes on for ever where the rates jump: its steps become as small as they like.
+    gsl_odeiv2_driver_set_nmax(reaching_.get(), static_cast<unsigned long>(k_most_internal_steps));
+  }
 
   void begin(double xi, std::span<const double> z) override {
     std::ranges::copy(z, now_.begin());
