@@ -235,7 +235,8 @@ double System::branch_reach(std::span<const double> y) const {
     const auto place = [&](double value) {
       return ramp.control == Control::displacement
                  ? value
-                 : contacts_.law().signed_square_under(std::max(value, 0.0) / contacts_.composite_modulus());
+                 : contacts_.law().signed_square_under(
+                       std::clamp(value / contacts_.composite_modulus(), 0.0, contacts_.law().greatest_force()));
     };
     way = std::max(way, std::abs(place(ramp.end) - place(ramp.start)));
   }
