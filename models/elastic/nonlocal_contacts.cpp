@@ -24,7 +24,8 @@ constexpr double k_balance = 1e-9;      // net force over the sum of forces
 constexpr double k_least_step = 1e-13;  // of the way to a state that is not found at once
 constexpr int k_most_steps = 1000;      // on that way, tried ones included
 constexpr int k_refinements = 2;        // of a place clear of all walls
-constexpr int k_most_roundings = 20;    // times that its end is found with forces of rounding left over
+constexpr double k_no_wall = -std::numeric_limits<double>::infinity();  // displacement of one that does not count
+constexpr int k_most_roundings = 20;  // times that its end is found with forces of rounding left over
 constexpr double k_same_surroundings = 1e-9;
 // Of where walls begin to push each other off, and of how deep contacts are: what the branch is followed by at once.
 constexpr double k_share_of_rivalry = 0.25;
@@ -138,6 +139,7 @@ Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Ce
   forces_.resize(n);
   stiffness_.resize(n);
   seen_.resize(n);
+  free_displacements_.resize(n);
   forget();
   matrix_.resize(n * stride_);
   for (auto* targets : {&targets_, &first_targets_, &last_targets_}) targets->resize(n);
@@ -358,60 +360,94 @@ void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y
   std::copy(y.begin(), y.end(), trial_.begin());
   if (newton(trial_, 0.0) && !has_left_branch(trial_) && is_balanced(trial_)) {
     std::copy(trial_.begin(), trial_.end(), y.begin());
-  } else if (!has_let_go(ramps, xi, y)) {
+  } else if (!let_go(ramps, xi, y)) {
     approach_in_steps(y);
   }
 }
 
-/// Puts y where no wall bears anything, if the targets leave the centre such a place. No other state balances then: its
-/// forces would do no work on a way there, sum_j F_j d_j <= 0, but sum_j F_j g_j > sum_jh F_j G_jh F_h wherever M is
-/// positive definite.
-bool Contacts::has_let_go(std::span<const Ramp> ramps, double xi, std::span<double> y) const {
+/// No other state balances then: its forces would do no work on a way there, sum_j F_j d_j <= 0, but sum_j F_j g_j >
+/// sum_jh F_j G_jh F_h wherever M is positive definite.
+bool Contacts::let_go(std::span<const Ramp> ramps, double xi, std::span<double> y) {
   const std::size_t n = class_count();
-  if (free_count() == 0) return false;
-  if (std::any_of(targets_.begin(), targets_.end(), [](const Target& t) { return t.is_force && t.value != 0.0; })) {
-    return false;
-  }
-  if (!release_centre(ramps, xi, y.subspan(n))) return false;
   for (std::size_t j = 0; j < n; ++j) {
-    double approach = targets_[j].is_force ? 0.0 : targets_[j].value;
-    for (std::size_t k = 0; k < free_count() && !targets_[j].is_force; ++k) approach += arms_(at(j), at(k)) * y[n + k];
-    y[j] = std::min(approach, 0.0);
+    const bool is_force = ramps[j].control == Control::force;
+    const double value = std::lerp(ramps[j].start, ramps[j].end, xi);
+    if (is_force && value != 0.0) return false;
+    free_displacements_[j] = is_force ? k_no_wall : value;
   }
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  std::copy(y.begin() + static_cast<std::ptrdiff_t>(n), y.begin() + static_cast<std::ptrdiff_t>(unknown_count()),
+            place.begin());
+  if (!release_centre(place)) return false;
+  for (std::size_t j = 0; j < n; ++j) {
+    y[j] = free_displacements_[j] == k_no_wall ? 0.0 : std::min(free_approach(j, place), 0.0);
+  }
+  std::copy_n(place.begin(), free_count(), y.begin() + static_cast<std::ptrdiff_t>(n));
   return true;
 }
 
-bool Contacts::release_centre(std::span<const Ramp> ramps, double xi, std::span<double> centre) const {
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();
-  std::copy(centre.begin(), centre.end(), place.begin());
-  const auto clear = [&] { return clear_walls(ramps, xi, class_count(), Eigen::Matrix3d::Identity(), place); };
+/// Where nothing bears and nothing begins to, the centre goes out of the way of the walls that touch, and of no other.
+bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy) {
+  const std::size_t n = class_count();
+  if (free_count() == 0) return false;
+  for (std::size_t j = 0; j < n; ++j) {
+    const bool is_force = ramps[j].control == Control::force;
+    const double slope = ramps[j].end - ramps[j].start;
+    if (y[j] > 0.0 || (is_force && slope != 0.0)) return false;
+    free_displacements_[j] = is_force || y[j] < 0.0 ? k_no_wall : slope;
+  }
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  if (!release_centre(velocity)) return false;
+  for (std::size_t j = 0; j < n; ++j) {
+    const bool is_touching = free_displacements_[j] != k_no_wall;
+    free_displacements_[j] = ramps[j].end - ramps[j].start;
+    const double rate = free_approach(j, velocity);
+    dy[j] = ramps[j].control == Control::force ? 0.0 : is_touching ? std::min(rate, 0.0) : rate;
+  }
+  std::copy_n(velocity.begin(), free_count(), dy.begin() + static_cast<std::ptrdiff_t>(n));
+  return true;
+}
+
+/// Approach of a wall where nothing bears; exactly 0 where it touches but for rounding.
+double Contacts::free_approach(std::size_t index, const Eigen::Vector3d& centre) const {
+  const double displacement = free_displacements_[index];
+  double sum = displacement;
+  double size = std::abs(displacement);
+  for (std::size_t k = 0; k < free_count(); ++k) {
+    const double share = arms_(at(index), at(k)) * centre[at(k)];
+    sum += share;
+    size += std::abs(share);
+  }
+  return std::abs(sum) <= k_resolved * size ? 0.0 : sum;
+}
+
+/// Moves a centre to the nearest place where no wall of free_displacements_ is beyond the surface.
+/// @return false, and the centre where it was, if the walls leave no such place
+bool Contacts::release_centre(Eigen::Vector3d& centre) const {
+  const auto clear = [&] { return clear_walls(class_count(), Eigen::Matrix3d::Identity(), centre); };
   if (!clear()) return false;
   // What rounding has left beyond the surface on a long way is little, and so is the way from there.
   for (int refinement = 0; refinement < k_refinements; ++refinement) {
     if (!clear()) break;
   }
-  std::copy_n(place.begin(), centre.size(), centre.begin());
   return true;
 }
 
 /// Moves the centre in a subspace, whose projector is given, to the nearest place clear of the first walls. One that
 /// the nearest place clear of those before it is not clear of touches the surface in the end.
-bool Contacts::clear_walls(std::span<const Ramp> ramps, double xi, std::size_t count, const Eigen::Matrix3d& projector,
-                           Eigen::Vector3d& place) const {
+bool Contacts::clear_walls(std::size_t count, const Eigen::Matrix3d& projector, Eigen::Vector3d& place) const {
   const auto free = static_cast<Eigen::Index>(free_count());
   Eigen::Vector3d now = place;
   for (std::size_t j = 0; j < count; ++j) {
-    if (ramps[j].control == Control::force) continue;
+    const double displacement = free_displacements_[j];
+    if (displacement == k_no_wall || free_approach(j, now) <= 0.0) continue;
     Eigen::Vector3d arm = Eigen::Vector3d::Zero();
     arm.head(free) = arms_.row(at(j)).transpose();
-    const double displacement = std::lerp(ramps[j].start, ramps[j].end, xi);
-    const double rounding = k_resolved * (std::abs(displacement) + arm.cwiseProduct(now).cwiseAbs().sum());
-    if (displacement + arm.dot(now) <= rounding) continue;
     const Eigen::Vector3d along = projector * arm;
     const double share = along.squaredNorm();
     if (!(share > k_same_surroundings * k_same_surroundings)) return false;
     now = place - along * ((displacement + arm.dot(place)) / share);
-    if (!clear_walls(ramps, xi, j, projector - along * along.transpose() / share, now)) return false;
+    if (!clear_walls(j, projector - along * along.transpose() / share, now)) return false;
   }
   place = now;
   return true;
@@ -477,6 +513,7 @@ void Contacts::approach_in_steps(std::span<double> y) {
 
 void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy) {
   const std::size_t n = class_count();
+  if (let_go_on(ramps, y, dy)) return;
   look(y);
   const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
   const auto slope = [&](std::size_t j) { return ramps[j].end - ramps[j].start; };

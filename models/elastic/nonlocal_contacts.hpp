@@ -84,9 +84,10 @@ class Contacts {
   /// centre that nothing holds
   void solve(std::span<const Ramp> ramps, double xi, std::span<double> y);
 
-  /// Moves a centre to the nearest place where no wall under displacement control is beyond the surface.
-  /// @return false, and the centre where it was, if the walls leave no such place
-  bool release_centre(std::span<const Ramp> ramps, double xi, std::span<double> centre) const;
+  /// Moves the centre to the nearest place where no wall under displacement control is beyond the surface, and sets y
+  /// accordingly.
+  /// @return false, and y as it was, if the walls leave no such place, or one is under a force
+  bool let_go(std::span<const Ramp> ramps, double xi, std::span<double> y);
 
   /// dy/dxi along a solution. Regular from the unloaded state on, but for a class under force control at s = 0, where
   /// its own s has an infinite rate; the other rates do not depend on that. A free centre leaves the unloaded state as
@@ -151,9 +152,10 @@ class Contacts {
   [[nodiscard]] bool has_left_branch(std::span<const double> y);
   [[nodiscard]] bool is_balanced(std::span<const double> y);
   [[nodiscard]] bool is_balanced_but_for_rounding(std::span<const double> y);
-  [[nodiscard]] bool has_let_go(std::span<const Ramp> ramps, double xi, std::span<double> y) const;
-  [[nodiscard]] bool clear_walls(std::span<const Ramp> ramps, double xi, std::size_t count,
-                                 const Eigen::Matrix3d& projector, Eigen::Vector3d& place) const;
+  [[nodiscard]] bool let_go_on(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy);
+  [[nodiscard]] double free_approach(std::size_t index, const Eigen::Vector3d& centre) const;
+  [[nodiscard]] bool release_centre(Eigen::Vector3d& centre) const;
+  [[nodiscard]] bool clear_walls(std::size_t count, const Eigen::Matrix3d& projector, Eigen::Vector3d& place) const;
   void approach_in_steps(std::span<double> y);
 
   [[nodiscard]] double& entry(std::size_t row, std::size_t column) noexcept { return matrix_[row * stride_ + column]; }
@@ -185,9 +187,10 @@ class Contacts {
   std::size_t stride_;
   std::vector<LocalContact> now_;
   std::vector<double> forces_;
-  std::vector<double> stiffness_;  ///< dF/dg; 0 under force control
-  std::vector<double> seen_;       ///< signed squares that these are of
-  std::vector<double> matrix_;     ///< a row per class: 1 - G dF/dg, right-hand side, arms
+  std::vector<double> stiffness_;           ///< dF/dg; 0 under force control
+  std::vector<double> seen_;                ///< signed squares that these are of
+  std::vector<double> free_displacements_;  ///< of the walls that a centre goes out of the way of
+  std::vector<double> matrix_;              ///< a row per class: 1 - G dF/dg, right-hand side, arms
   std::vector<Target> targets_, first_targets_, last_targets_;
   std::vector<double> trial_, state_, unit_rates_;
   std::vector<Ramp> unit_ramps_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -38,8 +37,6 @@ constexpr double k_touch_of_free_centre = 1e-9;
 // Contacts shallower than this, over the deepest, hold a free centre too softly for an integrator.
 constexpr double k_idle = 1e-6;
 constexpr double k_force_power = 1.5;
-// Of a sum of displacements, over them.
-constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 // How fast an integrated state is drawn back to the equations, over a step of the program: an error that it has
 // gathered would grow with 1/margin towards the limit of applicability.
 constexpr double k_pull = 20.0;
@@ -213,18 +210,10 @@ void System::note(std::span<double> y) const {
 }
 
 void System::complete(double xi, std::span<double> y) {
-  const bool bears_nothing = std::ranges::all_of(regimes_, [](Regime regime) { return regime == Regime::open; });
-  if (bears_nothing && contacts_.free_count() > 0) {
-    contacts_.release_centre(ramps_, xi, y.subspan(classes_.size(), contacts_.free_count()));
-  }
+  // The gaps themselves, and the place of a free centre: errors of them would close walls that only touch.
+  if (contacts_.let_go(ramps_, xi, y.first(state_.size()))) return;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (is_loaded(i)) {
-      y[i] = std::pow(square_under_force(i, xi), k_force_power);
-    } else if (bears_nothing) {
-      // The gap itself: errors of it would close walls that only touch.
-      const double approach = told(i, xi) + shift(i, y);
-      if (approach <= k_rounding * std::abs(told(i, xi))) y[i] = std::min(approach, 0.0);
-    }
+    if (is_loaded(i)) y[i] = std::pow(square_under_force(i, xi), k_force_power);
   }
 }
 
