@@ -511,7 +511,7 @@ void Contacts::approach_in_steps(std::span<double> y) {
   std::copy(state_.begin(), state_.end(), y.begin());
 }
 
-void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy) {
+void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch) {
   const std::size_t n = class_count();
   if (let_go_on(ramps, y, dy)) return;
   look(y);
@@ -550,7 +550,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     const double left = move_centre(net, dy.subspan(n));
     bool may_hold = false;  // walls that just touch do at once
     for (std::size_t j = 0; j < n; ++j) {
-      may_hold = may_hold || (!is_force(j) && y[j] <= 0.0 && y[j] > -k_unloaded * widest);
+      may_hold = may_hold || (!is_force(j) && y[j] <= 0.0 && y[j] > -std::max(touch, k_unloaded * widest));
     }
     if (left > k_balance * pressing && !may_hold) throw std::domain_error(k_nothing_holds);
   }

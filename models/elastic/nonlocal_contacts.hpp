@@ -92,9 +92,10 @@ class Contacts {
   /// dy/dxi along a solution. Regular from the unloaded state on, but for a class under force control at s = 0, where
   /// its own s has an infinite rate; the other rates do not depend on that. A free centre leaves the unloaded state as
   /// if the contacts were equally stiff, which is exact where they will be.
+  /// @param touch  walls with an s less than this below zero touch: they may hold the centre at once
   /// @throws std::domain_error at and beyond the limit of applicability, and where nothing holds a free centre against
   /// prescribed forces
-  void rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy);
+  void rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch = 0.0);
 
   /// What is left of the equations, one per unknown: that of the approach under displacement control, s_j - s(F_j)
   /// under force control, balance of forces.

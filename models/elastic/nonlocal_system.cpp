@@ -244,7 +244,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
     drawn_ramps_[i] = ramps_[i];
     if (!is_loaded(i)) drawn_ramps_[i].end += k_pull * (told(i, xi) - now_[i].displacement);
   }
-  contacts_.rates(drawn_ramps_, state_, rates_);
+  contacts_.rates(drawn_ramps_, state_, rates_, touch_);
   std::ranges::copy(rates_, dy.begin());
   // dF/dxi of every contact, and with it that of the walls that follow a force.
   const auto force_rate = [&](std::size_t i) {
