@@ -132,6 +132,9 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
     if (was_loaded && !is_loaded(i)) y[i] = std::pow(std::max(y[i], 0.0), 1.0 / k_force_power);
   }
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    if (is_loaded(i) && told(i, k_ahead) < 0.0) throw_pull(i);
+  }
   // A force closes a gap at once; everything else is where it was.
   solve(0.0, y);
   look(0.0, y);
@@ -183,9 +186,13 @@ DomainEnd System::end_at(const Guard& guard, double xi, std::span<const double> 
 
 double System::told(std::size_t i, double xi) const noexcept { return std::lerp(ramps_[i].start, ramps_[i].end, xi); }
 
+void System::throw_pull(std::size_t i) const {
+  throw std::domain_error("a wall of class '" + classes_[i].name + "' would have to pull");
+}
+
 double System::square_under_force(std::size_t i, double xi) const {
   const double force = told(i, xi);
-  if (force < 0.0) throw std::domain_error("a wall of class '" + classes_[i].name + "' would have to pull");
+  if (force < 0.0) throw_pull(i);
   return contacts_.law().signed_square_under(force / contacts_.composite_modulus());
 }
 
