@@ -166,6 +166,7 @@ class Direct final : public EventLocator {
     }
     move_end(piece_end_);
     locate_event();
+    if (is_closed_ && end_ < piece_end_ && end_ - begin_ > least_progress(begin_)) forget_what_follows();
     if (std::isfinite(branch_reach_) && !is_resolved()) {
       factor = std::min(0.5, k_just_beyond * (end_ - begin_) / (piece_end_ - begin_));
       return false;
@@ -188,6 +189,22 @@ class Direct final : public EventLocator {
       if (series_[k].rest(k_rounding_of_branch * system_.unknowns()[k].scale) > k_unresolved) return false;
     }
     return true;
+  }
+
+  /// Nodes beyond an event belong to a mode that is not to be: what nothing determines would keep, before the event,
+  /// what has moved it there.
+  void forget_what_follows() {
+    piece_end_ = end_;
+    for (std::size_t j = 0; j < nodes_->count; ++j) {
+      guess_ahead(j);
+      ++statistics_.rhs_evaluations;
+      system_.solve(begin_ + 0.5 * (piece_end_ - begin_) * (1.0 + nodes_->places[j]), trial_);
+      for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
+    }
+    for (std::size_t k = 0; k < series_.size(); ++k) {
+      if (k != quadrature_) series_[k].fit(*nodes_, gains_[k]);
+    }
+    move_end(end_);
   }
 
   /// A step may begin with a singularity, as from first touch on: smooth in one guard, and not in another.
