@@ -353,16 +353,71 @@ bool Contacts::is_balanced_but_for_rounding(std::span<const double> y) {
   return true;
 }
 
-void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y) {
+void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y, bool is_own_mode) {
   for (std::size_t j = 0; j < class_count(); ++j) {
     targets_[j] = target(ramps[j].control == Control::force, std::lerp(ramps[j].start, ramps[j].end, xi));
   }
+  // Of the places to which others may take a centre along, Newton's method knows no nearest one.
+  if (is_own_mode && is_taken_along(y) && let_others_go(y)) return;
   std::copy(y.begin(), y.end(), trial_.begin());
   if (newton(trial_, 0.0) && !has_left_branch(trial_) && is_balanced(trial_)) {
     std::copy(trial_.begin(), trial_.end(), y.begin());
   } else if (!let_go(ramps, xi, y)) {
     approach_in_steps(y);
   }
+}
+
+/// Whether walls touch a free centre beside contacts so much deeper that they bear nothing themselves.
+bool Contacts::is_taken_along(std::span<const double> y) const {
+  if (free_count() == 0) return false;
+  const auto squares = y.first(class_count());
+  const double deepest = *std::max_element(squares.begin(), squares.end());
+  return std::any_of(squares.begin(), squares.end(), [&](double s) { return std::abs(s) < k_unloaded * deepest; });
+}
+
+/// Where contacts bear a free centre in some directions only, others may take it along in the rest without bearing: as
+/// soft as they are shallow, so that no step towards the targets is short against that. The bearing ones are balanced
+/// by themselves, and the centre goes out of the way of the others where that changes nothing for them. Where M is
+/// positive definite with every contact as deep as in the one or the other state, no other state balances that is no
+/// deeper.
+bool Contacts::let_others_go(std::span<double> y) {
+  const std::size_t n = class_count();
+  const double deepest = *std::max_element(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n));
+  std::copy(targets_.begin(), targets_.end(), last_targets_.begin());
+  const auto free = static_cast<Eigen::Index>(free_count());
+  Eigen::Matrix3d projector = Eigen::Matrix3d::Zero();
+  projector.topLeftCorner(free, free).setIdentity();
+  for (std::size_t j = 0; j < n; ++j) {
+    free_displacements_[j] = targets_[j].is_force ? k_no_wall : targets_[j].value;
+    if (targets_[j].is_force || y[j] < k_unloaded * deepest) {
+      if (!targets_[j].is_force) targets_[j] = target(true, 0.0);
+      continue;
+    }
+    free_displacements_[j] = k_no_wall;
+    Eigen::Vector3d arm = Eigen::Vector3d::Zero();
+    arm.head(free) = arms_.row(at(j)).transpose();
+    const Eigen::Vector3d along = projector * arm;
+    if (along.norm() > k_same_surroundings) projector -= along * along.transpose() / along.squaredNorm();
+  }
+  std::copy(y.begin(), y.end(), trial_.begin());
+  const bool is_found = projector.trace() > 0.5 && newton(trial_, 0.0) && is_balanced(trial_);
+  std::copy(last_targets_.begin(), last_targets_.end(), targets_.begin());
+  if (!is_found) return false;
+
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t h = 0; h < n; ++h) free_displacements_[j] += coupling_(at(j), at(h)) * forces_[h];
+  }
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  std::copy(trial_.begin() + static_cast<std::ptrdiff_t>(n), trial_.end(), place.begin());
+  if (!clear_walls(n, projector, place)) return false;
+  for (std::size_t j = 0; j < n; ++j) {
+    if (free_displacements_[j] != k_no_wall) trial_[j] = std::min(free_approach(j, place), 0.0);
+    state_[j] = std::max(y[j], trial_[j]);
+  }
+  if (!(least_pivot(state_) > 0.0)) return false;
+  std::copy_n(place.begin(), free_count(), trial_.begin() + static_cast<std::ptrdiff_t>(n));
+  std::copy(trial_.begin(), trial_.end(), y.begin());
+  return true;
 }
 
 /// No other state balances then: its forces would do no work on a way there, sum_j F_j d_j <= 0, but sum_j F_j g_j >

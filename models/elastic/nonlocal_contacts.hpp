@@ -82,7 +82,8 @@ class Contacts {
   /// program.
   /// @throws std::domain_error naming the numbers for a state beyond the limit of applicability, a negative force, or a
   /// centre that nothing holds
-  void solve(std::span<const Ramp> ramps, double xi, std::span<double> y);
+  /// @param is_own_mode  the contacts that bear in y do so in the state that is sought, too
+  void solve(std::span<const Ramp> ramps, double xi, std::span<double> y, bool is_own_mode = false);
 
   /// Moves the centre to the nearest place where no wall under displacement control is beyond the surface, and sets y
   /// accordingly.
@@ -150,6 +151,8 @@ class Contacts {
   void regularise_first_touch(const auto& is_touching);
   double move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
   [[nodiscard]] bool newton(std::span<double> y, double imbalance);
+  [[nodiscard]] bool is_taken_along(std::span<const double> y) const;
+  [[nodiscard]] bool let_others_go(std::span<double> y);
   [[nodiscard]] bool has_left_branch(std::span<const double> y);
   [[nodiscard]] bool is_balanced(std::span<const double> y);
   [[nodiscard]] bool is_balanced_but_for_rounding(std::span<const double> y);

@@ -241,7 +241,12 @@ double System::branch_reach(std::span<const double> y) const {
 
 void System::solve(double xi, std::span<double> y) {
   look(xi, y);
-  contacts_.solve(ramps_, xi, state_);
+  // Beyond an event that is still to be found, contacts bear that the places before it know nothing of.
+  bool is_own_mode = true;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    is_own_mode = is_own_mode && (regimes_[i] == Regime::elastic || state_[i] <= touch_);
+  }
+  contacts_.solve(ramps_, xi, state_, is_own_mode);
   note(y);
 }
 
