@@ -5,6 +5,8 @@
 #include <gsl/gsl_odeiv2.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -31,6 +33,63 @@ const gsl_odeiv2_step_type* type_of(GslMethod method) {
   }
   return nullptr;
 }
+
+/// What is tolerated of a step, and how long the next one is: as the library's standard, but where a contact lasts
+/// hardly longer than the step coordinate is rounded. The errors of the stages are then those of rounding, and no less
+/// than that is tolerated.
+class Control {
+ public:
+  [[nodiscard]] static gsl_odeiv2_control* make(double atol, double rtol) {
+    static const gsl_odeiv2_control_type type{"rounding", alloc, init, adjust, level, set_driver, free};
+    gsl_odeiv2_control* control = gsl_odeiv2_control_alloc(&type);
+    if (control != nullptr) gsl_odeiv2_control_init(control, atol, rtol, 1.0, 0.0);
+    return control;
+  }
+
+ private:
+  static void* alloc() { return new (std::nothrow) Control; }
+  static void free(void* self) { delete static_cast<Control*>(self); }
+  static int set_driver(void*, const gsl_odeiv2_driver*) { return GSL_SUCCESS; }
+  static int init(void* self, double atol, double rtol, double, double) {
+    *static_cast<Control*>(self) = Control{atol, rtol};
+    return GSL_SUCCESS;
+  }
+
+  [[nodiscard]] double tolerated(double value, double rate) const noexcept {
+    return std::max(rtol_ * std::abs(value) + atol_, k_rounding_of_xi * std::abs(rate));
+  }
+
+  static int level(void* self, const double value, const double rate, const double, const size_t, double* tolerated) {
+    *tolerated = static_cast<const Control*>(self)->tolerated(value, rate);
+    return GSL_SUCCESS;
+  }
+
+  static int adjust(void* self, size_t size, unsigned order, const double values[], const double errors[],
+                    const double rates[], double* step) {
+    double largest = std::numeric_limits<double>::min();
+    for (size_t k = 0; k < size; ++k) {
+      largest =
+          std::max(largest, std::abs(errors[k]) / static_cast<const Control*>(self)->tolerated(values[k], rates[k]));
+    }
+    if (largest > k_refused) {
+      *step *= std::max(k_safety / std::pow(largest, 1.0 / order), 1.0 / k_most_growth);
+      return GSL_ODEIV_HADJ_DEC;
+    }
+    if (largest >= k_kept) return GSL_ODEIV_HADJ_NIL;
+    *step *= std::clamp(k_safety / std::pow(largest, 1.0 / (order + 1.0)), 1.0, k_most_growth);
+    return GSL_ODEIV_HADJ_INC;
+  }
+
+  // The library's own numbers.
+  static constexpr double k_refused = 1.1;
+  static constexpr double k_kept = 0.5;
+  static constexpr double k_safety = 0.9;
+  static constexpr double k_most_growth = 5.0;
+
+  Control() = default;
+  Control(double atol, double rtol) : atol_(atol), rtol_(rtol) {}
+  double atol_ = 0.0, rtol_ = 0.0;
+};
 
 class GslStepper final : public Stepper {
  public:
@@ -111,6 +170,10 @@ class GslStepper final : public Stepper {
     Driver driver(
         gsl_odeiv2_driver_alloc_y_new(&system_, type, k_first_step, local_atol(tolerances), local_rtol(tolerances)));
     if (!driver) throw std::bad_alloc();
+    gsl_odeiv2_control* control = Control::make(local_atol(tolerances), local_rtol(tolerances));
+    if (control == nullptr) throw std::bad_alloc();
+    gsl_odeiv2_control_free(driver->c);
+    driver->c = control;
     return driver;
   }
 
