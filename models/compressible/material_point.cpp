@@ -51,8 +51,8 @@ constexpr double k_stiff = 1e5;
 // Moduli over the yield pressure at which a run ends: the rounding of strains is there a millionth of the strength.
 constexpr double k_stiffest = 1e10;
 // Newton's method on f = 0: strain correction and f before it, below both of which the next one is round-off (where a
-// cap is narrow or the material very stiff, f is curved within 1e-11 of strain); such small corrections after which f
-// is made of rounding; and how many there may be at all.
+// cap is narrow and the material hardly compressible, f is curved within 1e-11 of strain); such small corrections after
+// which f is made of rounding; and how many there may be at all.
 constexpr double k_last_correction = 1e-11;
 constexpr double k_last_excess = 1e-9;
 constexpr int k_most_small_corrections = 12;
@@ -246,18 +246,36 @@ void MaterialPoint::residual(double xi, std::span<const double> y, std::span<con
   res[k_multiplier] = now.yield.f;
 }
 
-/// Brings the plastic strains to f = 0: by the shortest way, since both may carry an integrator's errors. Along the
-/// flow there may be no such state: near a critical state it hardly changes phi, and near a loss of uniqueness not f.
-/// Only where the flow keeps its direction, the solution lies along it.
-///
-/// A surface much narrower in one direction is a valley of f. A correction that has passed its floor without having
-/// come inside goes back there, and on along the floor, where the slope across stays zero: straight down from slope to
-/// slope it would take many corrections.
+/// Brings the plastic strains to f = 0 along the flow or, where that does not lead there, by the shortest way: both
+/// strains may carry an integrator's errors. Where stresses are prescribed, f does not depend on g^p, and near a
+/// critical state the flow hardly changes phi: there by the shortest way alone.
 void MaterialPoint::complete(double xi, std::span<double> y) {
   if (!is_plastic_) return;
-  const bool follows_gradient = !is_solvable();
+  if (is_solvable() || !(is_stress(k_axial) && is_stress(k_lateral))) {
+    const double phi = y[k_phi];
+    const double deviatoric = y[k_deviatoric];
+    try {
+      if (is_brought_back(xi, y, Way::flow)) return;
+    } catch (const std::domain_error&) {
+      if (is_solvable()) throw;
+    }
+    y[k_phi] = phi;
+    y[k_deviatoric] = deviatoric;
+  }
+  if (is_solvable() || !is_brought_back(xi, y, Way::shortest)) {
+    throw std::domain_error("no plastic strain brings the stress back to the yield surface");
+  }
+}
+
+/// Newton's method on f = 0 in one direction.
+///
+/// A cap much narrower in one direction is a valley of f. A correction that has passed its floor without having
+/// come inside goes back there, and on along the floor, where the slope across stays zero: straight down from slope to
+/// slope it would take many corrections.
+bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
   const double guess = y[k_phi];
   const double guessed_deviatoric = y[k_deviatoric];
+  const bool has_caps = is_compressible(settings_.parameters.model);
   double elastic_strain = 0.0;
   int small_corrections = 0;
   double phi = 0.0;  // of the last correction
@@ -270,7 +288,7 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
       const Flow now = flow(here);
       elastic_strain = 1.0 / stiffness_over_strength(here.at);
       const double slope = now.f_by_phi * phi + now.f_by_deviatoric * deviatoric;
-      if (last.yield.f > 0.0 && now.yield.f > 0.0 && slope > 0.0) {
+      if (has_caps && last.yield.f > 0.0 && now.yield.f > 0.0 && slope > 0.0) {
         const double back = slope / (last.yield.f + slope);
         y[k_phi] -= back * phi;
         y[k_deviatoric] -= back * deviatoric;
@@ -279,26 +297,26 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
         continue;
       }
       last = now;
-      const double by_phi = floor ? (*floor)[0] : follows_gradient ? now.f_by_phi : now.phi;
-      const double by_deviatoric = floor ? (*floor)[1] : follows_gradient ? now.f_by_deviatoric : now.deviatoric;
+      const bool is_along_flow = way == Way::flow;
+      const double by_phi = floor ? (*floor)[0] : is_along_flow ? now.phi : now.f_by_phi;
+      const double by_deviatoric = floor ? (*floor)[1] : is_along_flow ? now.deviatoric : now.f_by_deviatoric;
       const double step = -now.yield.f / (now.f_by_phi * by_phi + now.f_by_deviatoric * by_deviatoric);
       phi = step * by_phi;
       deviatoric = step * by_deviatoric;
-      if (!std::isfinite(step)) break;
+      if (!std::isfinite(step)) return false;
       y[k_phi] += phi;
       y[k_deviatoric] += deviatoric;
       if (std::hypot(phi, deviatoric) >= k_last_correction) continue;
-      const bool is_found = std::abs(now.yield.f) < k_last_excess;
+      const bool is_found = !has_caps || std::abs(now.yield.f) < k_last_excess;
       if (!is_found && ++small_corrections < k_most_small_corrections) continue;
       const double distance = std::hypot(y[k_phi] - guess, y[k_deviatoric] - guessed_deviatoric);
-      if (is_solvable() || distance <= std::max(elastic_strain, k_nearby)) return;
-      break;
+      return is_solvable() || distance <= std::max(elastic_strain, k_nearby);
     }
   } catch (const std::domain_error&) {
     // Far corrections that lead to where the law has no surface at all have found nothing, either.
     if (std::abs(y[k_phi] - guess) <= elastic_strain) throw;
   }
-  throw std::domain_error("no plastic strain brings the stress back to the yield surface");
+  return false;
 }
 
 /// The plastic strains of an elastic phase are those it began with; those of a solvable plastic one lie on a line
