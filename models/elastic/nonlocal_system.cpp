@@ -69,7 +69,11 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   constexpr std::array<std::string_view, 3> centre_names{"centre displacement 1", "centre displacement 2",
                                                          "centre displacement 3"};
   for (std::size_t k = 0; k < contacts_.free_count(); ++k) {
-    unknowns_.push_back({centre_names[k], Unknown::Kind::differential, depth, true});
+    unknowns_.push_back({.name = centre_names[k],
+                         .kind = Unknown::Kind::differential,
+                         .scale = depth,
+                         .is_implicitly_algebraic = true,
+                         .may_rest = true});
   }
   unknowns_.push_back({"work", Unknown::Kind::quadrature, depth * depth * std::sqrt(depth), false});
 

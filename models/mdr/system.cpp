@@ -66,7 +66,12 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   unknowns_ = {{"apparent radius growth (R - R0)/R0", Unknown::Kind::differential, std::min(1.0, reach * reach), true},
                {"work", Unknown::Kind::quadrature, work_scale(reach), false}};
   for (int k = 0; k < free_count_; ++k) {
-    unknowns_.push_back({k_centre_names[static_cast<std::size_t>(k)], Unknown::Kind::algebraic, reach, true, true});
+    unknowns_.push_back({.name = k_centre_names[static_cast<std::size_t>(k)],
+                         .kind = Unknown::Kind::algebraic,
+                         .scale = reach,
+                         .is_implicitly_algebraic = true,
+                         .is_slaved = true,
+                         .may_rest = true});
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (!classes_[i].takes_force) continue;

@@ -54,6 +54,7 @@ class Direct final : public EventLocator {
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
     if (found != unknowns.end()) quadrature_ = static_cast<std::size_t>(found - unknowns.begin());
     has_slaves_ = system.has_slaves();
+    may_rest_ = std::ranges::any_of(unknowns, &Unknown::may_rest);
     trial_.resize(unknowns.size());
     rates_.resize(unknowns.size());
     begin_rates_.resize(unknowns.size());
@@ -166,7 +167,7 @@ class Direct final : public EventLocator {
     }
     move_end(piece_end_);
     locate_event();
-    if (is_closed_ && end_ < piece_end_ && end_ - begin_ > least_progress(begin_)) forget_what_follows();
+    if (may_rest_ && is_closed_ && end_ < piece_end_ && end_ - begin_ > least_progress(begin_)) forget_what_follows();
     if (std::isfinite(branch_reach_) && !is_resolved()) {
       factor = std::min(0.5, k_just_beyond * (end_ - begin_) / (piece_end_ - begin_));
       return false;
@@ -191,8 +192,8 @@ class Direct final : public EventLocator {
     return true;
   }
 
-  /// Nodes beyond an event belong to a mode that is not to be: what nothing determines would keep, before the event,
-  /// what has moved it there.
+  /// Nodes beyond an event belong to a mode that is not to be: what rests would keep, before the event, what has moved
+  /// it there.
   void forget_what_follows() {
     piece_end_ = end_;
     for (std::size_t j = 0; j < nodes_->count; ++j) {
@@ -269,6 +270,7 @@ class Direct final : public EventLocator {
   bool is_closed_ = false;
   double primitive_offset_ = 0.0;
   bool has_slaves_ = false;
+  bool may_rest_ = false;      ///< some unknown
   double branch_reach_ = 0.0;  ///< of the system where the piece begins
   double segment_begin_ = 0.0;
   int refusals_ = 0;                     ///< of tiny pieces in this segment
