@@ -33,8 +33,8 @@ std::vector<std::string> findings() {
 constexpr double k_seconds = 600.0;
 
 TEST_P(StressFinding, IsCured) {
-  const StressVerdict verdict =
-      check_scene(read_scenario(fs::path(MONOGRAIN_SOURCE_DIR "/tests/study/findings") / (GetParam() + ".toml")), k_seconds);
+  const StressVerdict verdict = check_scene(
+      read_scenario(fs::path(MONOGRAIN_SOURCE_DIR "/tests/study/findings") / (GetParam() + ".toml")), k_seconds);
   for (const Violation& violation : verdict.violations) ADD_FAILURE() << violation.check << ": " << violation.detail;
   EXPECT_FALSE(verdict.end.empty());
 }
