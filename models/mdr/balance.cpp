@@ -20,9 +20,6 @@ constexpr double k_twelfth = 1.0 / 12.0;
 constexpr double k_round_off = std::numeric_limits<double>::epsilon();
 constexpr int k_newton_limit = 60;
 constexpr int k_most_halvings = 40;
-// Least stiffness of the contacts that hold a free centre, over the sum of their magnitudes, at which a search for the
-// balance of forces on it has ended at a fold: its force is least there, and not zero.
-constexpr double k_at_fold = 1e-2;
 
 }  // namespace
 

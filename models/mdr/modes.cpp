@@ -412,7 +412,11 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         others_fired = true;
         continue;
       case k_turn:
-        stick(i, log);
+        // Through infinity: what holds the centre gives way, and no edge has turned.
+        if (const auto weakest = weakest_contact(); weakest && free_count_ > 0 && least_firmness() < k_at_fold)
+          separate(*weakest, r, y, log);
+        else
+          stick(i, log);
         others_fired = true;
         continue;
       case k_peel:

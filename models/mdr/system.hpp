@@ -105,6 +105,9 @@ class System final : public HybridSystem {
   /// Below this a class of walls does not act along any free direction of the centre.
   static constexpr double k_no_direction = 1e-10;
   static constexpr const char* k_singular_growth = "singular growth of the apparent radius";
+  /// Firmness by which contacts hold a free centre so little that they are at a fold: a search for the balance of
+  /// forces ends there with a force that is least, and not zero, and rates of the centre change sign through infinity.
+  static constexpr double k_at_fold = 1e-2;
   /// Overlaps over R0 that are rounding of lengths of the order of R0.
   static constexpr double k_shallow = 1e-12;
 
