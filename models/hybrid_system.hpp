@@ -118,6 +118,33 @@ enum class Quantity {
   relative_density
 };
 
+/// The same of a wall and its contact, in SI.
+struct AtWall {
+  double force = 0.0;
+  double displacement = 0.0;
+  double pressure = 0.0;
+  double contact_radius = 0.0;
+  double apparent_radius = 0.0;
+};
+
+/// @throws std::logic_error for a quantity that walls do not have
+[[nodiscard]] inline double quantity_of(const AtWall& wall, Quantity quantity) {
+  switch (quantity) {
+    case Quantity::force:
+      return wall.force;
+    case Quantity::displacement:
+      return wall.displacement;
+    case Quantity::pressure:
+      return wall.pressure;
+    case Quantity::contact_radius:
+      return wall.contact_radius;
+    case Quantity::apparent_radius:
+      return wall.apparent_radius;
+    default:
+      throw std::logic_error("no such quantity at a wall");
+  }
+}
+
 /// The surface of the particle under and around a contact, at a distance from its middle. In SI.
 struct SurfacePoint {
   double radius = 0.0;          ///< distance from the contact's middle [m]

@@ -251,20 +251,20 @@ void MaterialPoint::residual(double xi, std::span<const double> y, std::span<con
 /// critical state the flow hardly changes phi: there by the shortest way alone.
 void MaterialPoint::complete(double xi, std::span<double> y) {
   if (!is_plastic_) return;
-  if (is_solvable() || !(is_stress(k_axial) && is_stress(k_lateral))) {
-    const double phi = y[k_phi];
-    const double deviatoric = y[k_deviatoric];
+  const double phi = y[k_phi];
+  const double deviatoric = y[k_deviatoric];
+  const bool has_flow_alone = is_solvable();
+  if (has_flow_alone || !is_stress(k_axial) || !is_stress(k_lateral)) {
     try {
       if (is_brought_back(xi, y, Way::flow)) return;
     } catch (const std::domain_error&) {
-      if (is_solvable()) throw;
+      if (has_flow_alone) throw;
     }
     y[k_phi] = phi;
     y[k_deviatoric] = deviatoric;
   }
-  if (is_solvable() || !is_brought_back(xi, y, Way::shortest)) {
-    throw std::domain_error("no plastic strain brings the stress back to the yield surface");
-  }
+  if (!has_flow_alone && is_brought_back(xi, y, Way::shortest)) return;
+  throw std::domain_error("no plastic strain brings the stress back to the yield surface");
 }
 
 /// Newton's method on f = 0 in one direction.

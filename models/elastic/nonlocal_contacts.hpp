@@ -23,6 +23,7 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -132,6 +133,13 @@ class Contacts {
   void stiffness(std::span<const double> y, Eigen::MatrixXd& stiffness);
 
  private:
+  /// Of the largest signed square: what Newton's method leaves open.
+  static constexpr double k_resolved = 4.0 * std::numeric_limits<double>::epsilon();
+  /// Contacts shallower than this, over where the walls go, say nothing of which will bear the centre.
+  static constexpr double k_unloaded = 1e-6;
+  static constexpr double k_same_surroundings = 1e-9;
+  [[nodiscard]] static Eigen::Index at(std::size_t index) noexcept { return static_cast<Eigen::Index>(index); }
+
   struct Target {
     bool is_force = false;
     double value = 0.0;          ///< displacement or force
@@ -159,6 +167,7 @@ class Contacts {
   [[nodiscard]] bool let_go_on(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy);
   [[nodiscard]] double free_approach(std::size_t index, const Eigen::Vector3d& centre) const;
   [[nodiscard]] bool release_centre(Eigen::Vector3d& centre) const;
+  [[nodiscard]] Eigen::Vector3d arm_of(std::size_t index) const;
   [[nodiscard]] bool clear_walls(std::size_t count, const Eigen::Matrix3d& projector, Eigen::Vector3d& place) const;
   void approach_in_steps(std::span<double> y);
 

@@ -521,21 +521,13 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
   const auto i = static_cast<std::size_t>(contact_class);
   const ContactState c = now_[i];
   const double length = settings_.initial_radius;
-  switch (quantity) {
-    case Quantity::force:
-      return c.force * settings_.youngs_modulus * length * length;
-    case Quantity::displacement:
-      return (is_loaded(i) ? c.displacement : told(i, xi)) * length;
-    case Quantity::pressure:
-      return c.contact_radius > 0.0 ? c.force / (pi * c.contact_radius * c.contact_radius) * settings_.youngs_modulus
-                                    : 0.0;
-    case Quantity::contact_radius:
-      return c.contact_radius * length;
-    case Quantity::apparent_radius:
-      return length;
-    default:
-      throw std::logic_error("no such quantity at a wall");
-  }
+  const double area = pi * c.contact_radius * c.contact_radius;
+  return quantity_of({.force = c.force * settings_.youngs_modulus * length * length,
+                      .displacement = (is_loaded(i) ? c.displacement : told(i, xi)) * length,
+                      .pressure = area > 0.0 ? c.force / area * settings_.youngs_modulus : 0.0,
+                      .contact_radius = c.contact_radius * length,
+                      .apparent_radius = length},
+                     quantity);
 }
 
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {

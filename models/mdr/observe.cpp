@@ -114,22 +114,13 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
   const auto i = static_cast<std::size_t>(contact_class);
   const Contact contact = visible_contact(i);
   const double length = settings_.initial_radius;
-  switch (quantity) {
-    case Quantity::force:
-      return contact.force * stress_unit_ * length * length;
-    case Quantity::displacement:
-      return now_[i].displacement * length;
-    case Quantity::pressure: {
-      const double a = contact.contact_radius;
-      return a > 0.0 ? contact.force / (pi * a * a) * stress_unit_ : 0.0;
-    }
-    case Quantity::contact_radius:
-      return contact.contact_radius * length;
-    case Quantity::apparent_radius:
-      return (1.0 + y[k_radius]) * length;
-    default:
-      throw std::logic_error("no such quantity at a wall");
-  }
+  const double area = pi * contact.contact_radius * contact.contact_radius;
+  return quantity_of({.force = contact.force * stress_unit_ * length * length,
+                      .displacement = now_[i].displacement * length,
+                      .pressure = area > 0.0 ? contact.force / area * stress_unit_ : 0.0,
+                      .contact_radius = contact.contact_radius * length,
+                      .apparent_radius = (1.0 + y[k_radius]) * length},
+                     quantity);
 }
 
 std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {

@@ -58,20 +58,12 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
   const auto i = static_cast<std::size_t>(contact_class);
   const Contact c = seen(i, xi, y);
   const double length = settings_.initial_radius;
-  switch (quantity) {
-    case Quantity::force:
-      return c.force * settings_.strength * length * length;
-    case Quantity::displacement:
-      return displacement(i, xi, y) * length;
-    case Quantity::pressure:
-      return c.pressure * settings_.strength;
-    case Quantity::contact_radius:
-      return c.contact_radius * length;
-    case Quantity::apparent_radius:
-      return length;
-    default:
-      throw std::logic_error("no such quantity at a wall");
-  }
+  return quantity_of({.force = c.force * settings_.strength * length * length,
+                      .displacement = displacement(i, xi, y) * length,
+                      .pressure = c.pressure * settings_.strength,
+                      .contact_radius = c.contact_radius * length,
+                      .apparent_radius = length},
+                     quantity);
 }
 
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {

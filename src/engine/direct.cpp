@@ -144,7 +144,7 @@ class Direct final : public EventLocator {
     if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
     if (begin_ == segment_begin_ && begin_ < k_first) look_early();
     for (std::size_t j = 0; j < nodes_->count; ++j) {
-      const double xi = begin_ + 0.5 * (piece_end_ - begin_) * (1.0 + nodes_->places[j]);
+      const double xi = node(j);
       guess_ahead(j);
       ++statistics_.rhs_evaluations;
       system_.solve(xi, trial_);
@@ -154,9 +154,7 @@ class Direct final : public EventLocator {
       system_.rates(xi, trial_, rates_);
       for (std::size_t k = 0; k < integrated_; ++k) slopes_[k][j] = rates_[k];
     }
-    for (std::size_t k = 0; k < series_.size(); ++k) {
-      if (k != quadrature_) series_[k].fit(*nodes_, gains_[k]);
-    }
+    fit_gains();
     if (!is_closed_) {
       work_.fit(*nodes_, slopes_[*quadrature_]);
       const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
@@ -199,13 +197,21 @@ class Direct final : public EventLocator {
     for (std::size_t j = 0; j < nodes_->count; ++j) {
       guess_ahead(j);
       ++statistics_.rhs_evaluations;
-      system_.solve(begin_ + 0.5 * (piece_end_ - begin_) * (1.0 + nodes_->places[j]), trial_);
+      system_.solve(node(j), trial_);
       for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
     }
+    fit_gains();
+    move_end(end_);
+  }
+
+  [[nodiscard]] double node(std::size_t j) const noexcept {
+    return begin_ + 0.5 * (piece_end_ - begin_) * (1.0 + nodes_->places[j]);
+  }
+
+  void fit_gains() {
     for (std::size_t k = 0; k < series_.size(); ++k) {
       if (k != quadrature_) series_[k].fit(*nodes_, gains_[k]);
     }
-    move_end(end_);
   }
 
   /// A step may begin with a singularity, as from first touch on: smooth in one guard, and not in another.
