@@ -184,8 +184,10 @@ class SundialsOde final : public Integrator {
   [[nodiscard]] std::span<const std::size_t> fired() const noexcept override { return roots_.fired; }
 
   void dense_output(double xi, std::span<double> y) override {
-    check("GetDky", Library::derivative(memory_.get(), xi, 0, errors_.get()));
-    form_.complete(xi, view(errors_.get()), y);
+    // An interpolation asks for rates beside the curve, which may be where there are none.
+    const bool is_at_end = xi == end_;
+    if (!is_at_end) check("GetDky", Library::derivative(memory_.get(), xi, 0, errors_.get()));
+    form_.complete(xi, view((is_at_end ? y_ : errors_).get()), y);
   }
 
   [[nodiscard]] double guard_tolerance() const noexcept override { return guard_tolerance_of(tolerances_); }
