@@ -1,7 +1,10 @@
 #include "packing/system.hpp"
 
+#include <boost/math/tools/toms748_solve.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -135,6 +138,10 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
 void System::take_branch() {
   branch_ = branch_of(law_, ramp_.control);
   start_end_ = std::min(std::max(law_.jamming, branch_.begin) * (1.0 + k_start), branch_.end);
+  growth_at_end_ = 0.0;
+  if (branch_.end < 1.0 && ramp_.control != Control::packing_fraction) {
+    growth_at_end_ = growth_by_law(packing_fraction_at(law_, branch_, last_place()));
+  }
   if (ramp_.control == Control::packing_fraction) return;
   const double share = branch_.begin > law_.jamming ? k_start_of_fold : k_start;
   const double half = prescribed_at(std::midpoint(branch_.begin, branch_.end));
@@ -145,6 +152,24 @@ void System::take_branch() {
 /// What is prescribed where a run ends before a branch does that ends before the packing is full: at the end itself the
 /// rates are infinite.
 double System::last_place() const noexcept { return branch_.greatest - k_margin * (branch_.greatest - branch_.least); }
+
+/// Of what is prescribed, with the packing fraction.
+double System::growth_of(const Slopes& slopes) const noexcept {
+  if (ramp_.control == Control::packing_fraction) return 1.0;
+  return ramp_.control == Control::strain ? slopes.strain : slopes.stress;
+}
+
+double System::growth_by_law(double packing_fraction) const {
+  return growth_of(slopes(law_, packing_fraction, state(law_, packing_fraction).strain));
+}
+
+/// Whether what is prescribed grows less with an integrated state than the law lets it anywhere, up to its last place:
+/// errors have led past it, and rates without bound would lead on.
+bool System::has_passed_end(double packing_fraction, double growth) const {
+  constexpr double k_doubt = 0.5;
+  return growth < k_doubt * growth_at_end_ &&
+         (packing_fraction >= branch_.end || growth < k_doubt * growth_by_law(packing_fraction));
+}
 
 /// Whether a program that goes on is there already.
 bool System::is_at_limit(double xi) const noexcept {
@@ -231,12 +256,15 @@ double System::excess(double xi, std::span<const double> y) const {
   return (stress - std::min(told(xi), branch_.greatest)) / law_.given.youngs_modulus;
 }
 
-/// Its derivative by the packing fraction, at given particles.
-double System::excess_slope(std::span<const double> y) const {
+/// Its derivatives by the unknowns over their scales.
+std::array<double, 2> System::excess_slopes(std::span<const double> y) const {
   const double phi = y[k_fraction];
-  if (ramp_.control == Control::packing_fraction) return 1.0;
-  if (ramp_.control == Control::strain) return 1.0 / phi;
-  return slopes(law_, phi, strain_of(y)).at_given_particles / law_.given.youngs_modulus;
+  const double scale = law_.sign * unknowns_[k_particles].scale;
+  if (ramp_.control == Control::packing_fraction) return {0.0, 1.0};
+  if (ramp_.control == Control::strain) return {-scale, 1.0 / phi};
+  const double by_strain = total_stress_slope(law_, phi) * effective_modulus(law_, phi);
+  const double by_fraction = slopes(law_, phi, strain_of(y)).at_given_particles;
+  return {-scale * by_strain / law_.given.youngs_modulus, by_fraction / law_.given.youngs_modulus};
 }
 
 /// Of an integrated state: the closed start lies below.
@@ -255,31 +283,54 @@ void System::complete(double xi, std::span<double> y) {
     return;
   }
   // By the shortest way: where the particles give way with the packing (consistent coupling), the packing fraction at a
-  // given strain of theirs has a greatest stress before the packing has.
-  const double guess = y[k_fraction];
+  // given strain of theirs has a greatest stress before the packing has. Where the modulus begins within less of Phi
+  // than is tolerated, no direction leads there; the particles say where.
+  const std::array<double, 2> guess{y[k_particles], y[k_fraction]};
+  if (is_brought_back(xi, y)) return;
+  std::ranges::copy(guess, y.begin());
+  if (is_found_at_given_particles(xi, y)) return;
+  std::ranges::copy(guess, y.begin());  // the next trial begins there
+  throw std::domain_error("no packing fraction bears the stress");
+}
+
+/// Newton's method along the gradient.
+bool System::is_brought_back(double xi, std::span<double> y) const {
   const double scale = unknowns_[k_particles].scale;
-  const double least = least_fraction();
-  // Next to a full packing of nearly incompressible particles a guess within an integrator's tolerance may be beyond.
-  y[k_fraction] = std::min(guess, branch_.end);
   double last = 1.0;
   for (int k = 0; k < k_iterations; ++k) {
-    const bool is_least = y[k_fraction] <= least;
-    if (is_least) y[k_fraction] = least;
-    const double phi = y[k_fraction];
-    const double by_fraction = is_least ? 0.0 : excess_slope(y);
-    const double by_particles =
-        -law_.sign * total_stress_slope(law_, phi) * effective_modulus(law_, phi) / law_.given.youngs_modulus * scale;
-    const double share = -excess(xi, y) / (by_fraction * by_fraction + by_particles * by_particles);
-    y[k_fraction] += share * by_fraction;
-    y[k_particles] += share * by_particles * scale;
-    const double step = std::abs(share) * std::hypot(by_fraction, by_particles);
+    // Next to jamming and to a full packing of nearly incompressible particles what is tolerated may be beyond.
+    const double inside = std::max(std::min(y[k_fraction], branch_.end), least_fraction());
+    const bool is_inside = y[k_fraction] == inside;
+    y[k_fraction] = inside;
+    std::array<double, 2> slope = excess_slopes(y);
+    if (!is_inside) slope[k_fraction] = 0.0;
+    const double steepness = std::hypot(slope[0], slope[1]);
+    const double share = -excess(xi, y) / (steepness * steepness);
+    y[k_fraction] += share * slope[k_fraction];
+    y[k_particles] += share * slope[k_particles] * scale;
+    const double step = std::abs(share) * steepness;
     // Corrections that no longer shrink are rounding.
     const bool is_rounding = step < k_noise && step > 0.5 * last;
     last = step;
-    if (step <= k_resolution || is_rounding) return;
+    if (step <= k_resolution || is_rounding) return true;
   }
-  y[k_fraction] = guess;  // the next trial begins there
-  throw std::domain_error("no packing fraction bears the stress");
+  return false;
+}
+
+bool System::is_found_at_given_particles(double xi, std::span<double> y) const {
+  const auto excess_at = [&](double phi) {
+    y[k_fraction] = phi;
+    return excess(xi, y);
+  };
+  const double least = least_fraction();
+  const double at_least = excess_at(least);
+  const double at_end = excess_at(branch_.end);
+  if (!(at_least < 0.0 && at_end > 0.0)) return false;
+  std::uintmax_t iterations = k_iterations;
+  const auto [below, above] = boost::math::tools::toms748_solve(
+      excess_at, least, branch_.end, at_least, at_end, boost::math::tools::eps_tolerance<double>(), iterations);
+  y[k_fraction] = std::midpoint(below, above);
+  return true;
 }
 
 void System::solve(double xi, std::span<double> y) {
@@ -294,15 +345,15 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
   require_state(xi);
   const double phi = y[k_fraction];
   const Slopes s = slopes(law_, phi, strain_of(y));
-  const double growth = ramp_.control == Control::strain ? s.strain : ramp_.control == Control::stress ? s.stress : 1.0;
-  if (!(growth > 0.0)) throw std::domain_error(end_of_branch(ramp_.control));
+  const double growth = growth_of(s);
+  if (!(growth > 0.0) || has_passed_end(phi, growth)) throw std::domain_error(end_of_branch(ramp_.control));
   dy[k_fraction] = (ramp_.end - ramp_.start) / growth;
   dy[k_particles] = s.particle_strain * dy[k_fraction];
 }
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
-  res[k_particles] = dy[k_particles];
   if (mode_ != Mode::jammed) {
+    res[k_particles] = dy[k_particles];
     res[k_fraction] = y[k_fraction] - resting_;
     return;
   }
@@ -311,10 +362,15 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
   std::array<double, 2> inside{y[k_particles], std::max(y[k_fraction], least_fraction())};
   std::array<double, 2> all{};
   rates(xi, inside, all);
-  res[k_particles] -= all[k_particles];
+  // Rates count along what is prescribed, whichever of the unknowns that leaves free.
+  const std::array<double, 2> slope = excess_slopes(inside);
+  const double scale = unknowns_[k_particles].scale;
+  res[k_particles] = (slope[k_fraction] * (dy[k_particles] - all[k_particles]) -
+                      slope[k_particles] * scale * (dy[k_fraction] - all[k_fraction])) /
+                     std::hypot(slope[0], slope[1]);
   res[k_fraction] = excess(xi, inside);
   const double outside = y[k_fraction] - inside[k_fraction];
-  if (outside < 0.0) res[k_fraction] += outside * excess_slope(inside);
+  if (outside < 0.0) res[k_fraction] += outside * slope[k_fraction];
 }
 
 // --- events

@@ -80,12 +80,17 @@ class System final : public HybridSystem {
   [[nodiscard]] double prescribed_at(double packing_fraction) const;
   [[nodiscard]] double strain_of(std::span<const double> y) const noexcept;
   [[nodiscard]] double excess(double xi, std::span<const double> y) const;
-  [[nodiscard]] double excess_slope(std::span<const double> y) const;
+  [[nodiscard]] std::array<double, 2> excess_slopes(std::span<const double> y) const;
   [[nodiscard]] double least_fraction() const noexcept;
+  [[nodiscard]] bool is_brought_back(double xi, std::span<double> y) const;
+  [[nodiscard]] bool is_found_at_given_particles(double xi, std::span<double> y) const;
   [[nodiscard]] Regime regime() const noexcept;
 
   void take_branch();
   [[nodiscard]] double last_place() const noexcept;
+  [[nodiscard]] double growth_of(const Slopes& slopes) const noexcept;
+  [[nodiscard]] double growth_by_law(double packing_fraction) const;
+  [[nodiscard]] bool has_passed_end(double packing_fraction, double growth) const;
   [[nodiscard]] bool is_at_limit(double xi) const noexcept;
   [[nodiscard]] DomainEnd limit() const;
   void require_state(double xi) const;
@@ -102,8 +107,9 @@ class System final : public HybridSystem {
   std::vector<Observable> observables_;
 
   Ramp ramp_;
-  Branch branch_;           ///< of what is prescribed
-  double start_end_ = 0.0;  ///< Phi up to which the start is closed
+  Branch branch_;               ///< of what is prescribed
+  double growth_at_end_ = 0.0;  ///< of what is prescribed with Phi, where a branch ends before the packing is full
+  double start_end_ = 0.0;      ///< Phi up to which the start is closed
   Mode mode_ = Mode::unjammed;
   double resting_ = 0.0;  ///< integrated Phi outside of the mode in which it is integrated
   double at_rest_ = 0.0;  ///< Phi of an unjammed packing under no stress

@@ -13,15 +13,16 @@
 
 namespace monograin {
 
-/// Relative tolerance of one step for a wanted accuracy of the curve. Work and radius only ever grow, so the errors of
-/// the steps have one sign and add up; a tenth keeps the curve's error within a few rtol over some hundred steps.
-[[nodiscard]] inline double local_rtol(const Tolerances& tolerances) noexcept {
-  return std::max(0.1 * tolerances.rtol, 1e-14);
-}
-/// Absolute tolerance of one step over an unknown's scale; finer than this, round-off keeps a corrector from
-/// converging.
-[[nodiscard]] inline double local_atol(const Tolerances& tolerances) noexcept {
-  return std::max(tolerances.atol, 1e-14);
+/// Share of a curve's tolerance that a step may take. Work and radius only ever grow, so the errors of the steps have
+/// one sign and add up; a tenth keeps the curve's error within a few rtol over some hundred steps.
+inline constexpr double k_usual_share = 0.1;
+/// The same for methods whose orders or estimates let more add up: keeps it within a hundred rtol.
+inline constexpr double k_share_of_many = 0.01;
+
+/// What is tolerated of one step. Finer than that of an rtol of 1e-13, round-off keeps a corrector from converging.
+[[nodiscard]] inline Tolerances of_step(const Tolerances& of_curve, double share = k_usual_share) noexcept {
+  constexpr double k_finest = 1e-13;
+  return {.rtol = share * std::max(of_curve.rtol, k_finest), .atol = std::max(of_curve.atol, share * k_finest)};
 }
 /// How near to zero a guard counts as fired together with another, where both carry an integrator's error.
 [[nodiscard]] inline double guard_tolerance_of(const Tolerances& tolerances) noexcept { return 1e-2 * tolerances.rtol; }

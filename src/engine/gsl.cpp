@@ -167,10 +167,11 @@ class GslStepper final : public Stepper {
 
  private:
   [[nodiscard]] Driver make_driver(const gsl_odeiv2_step_type* type, const Tolerances& tolerances) {
-    Driver driver(
-        gsl_odeiv2_driver_alloc_y_new(&system_, type, k_first_step, local_atol(tolerances), local_rtol(tolerances)));
+    const double share = type == gsl_odeiv2_step_rk8pd ? k_usual_share : k_share_of_many;
+    const auto [rtol, atol] = of_step(tolerances, share);
+    Driver driver(gsl_odeiv2_driver_alloc_y_new(&system_, type, k_first_step, atol, rtol));
     if (!driver) throw std::bad_alloc();
-    gsl_odeiv2_control* control = Control::make(local_atol(tolerances), local_rtol(tolerances));
+    gsl_odeiv2_control* control = Control::make(atol, rtol);
     if (control == nullptr) throw std::bad_alloc();
     gsl_odeiv2_control_free(driver->c);
     driver->c = control;

@@ -38,7 +38,7 @@ class Ida final : public Integrator {
     N_VConst(0.0, dy_.get());
     for (std::size_t k = 0; k < unknowns.size(); ++k) {
       // A slaved unknown has no error of its own: hardly weighted, and completed wherever it is used.
-      const double absolute = unknowns[k].is_slaved ? k_slave_tolerance : local_atol(tolerances);
+      const double absolute = unknowns[k].is_slaved ? k_slave_tolerance : of_step(tolerances).atol;
       view(least_atol_.get())[k] = absolute * unknowns[k].scale;
       view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
     }
@@ -137,7 +137,7 @@ class Ida final : public Integrator {
       const double rounding = k_rounding_of_xi * std::abs(rates[k]);
       view(atol_.get())[k] = std::isfinite(rounding) ? std::max(least[k], rounding) : least[k];
     }
-    check("IDASVtolerances", IDASVtolerances(memory_.get(), local_rtol(tolerances_), atol_.get()));
+    check("IDASVtolerances", IDASVtolerances(memory_.get(), of_step(tolerances_).rtol, atol_.get()));
   }
 
   /// Begins at xi with the state in y_ and dy_. @param step  the first to be tried; 0: the library's choice

@@ -66,10 +66,7 @@ template <class State>
 class Tolerated {
  public:
   Tolerated(const ScaledForm& form, const Tolerances& tolerances)
-      : size_(form.size()),
-        rtol_(local_rtol(tolerances)),
-        atol_(local_atol(tolerances)),
-        rates_(zeros<State>(form.size())) {}
+      : size_(form.size()), of_step_(of_step(tolerances)), rates_(zeros<State>(form.size())) {}
 
   /// Rates of a step's stages; the last ones are those at its end.
   void see(const State& rates) noexcept { rates_ = rates; }
@@ -78,7 +75,8 @@ class Tolerated {
   [[nodiscard]] double share(const State& begin, Error&& error) const noexcept {
     double largest = 0.0;
     for (std::size_t k = 0; k < size_; ++k) {
-      const double tolerated = std::max(atol_ + rtol_ * std::abs(begin[k]), k_rounding_of_xi * std::abs(rates_[k]));
+      const double tolerated =
+          std::max(of_step_.atol + of_step_.rtol * std::abs(begin[k]), k_rounding_of_xi * std::abs(rates_[k]));
       largest = std::max(largest, std::abs(error(k)) / tolerated);
     }
     return largest;
@@ -86,7 +84,7 @@ class Tolerated {
 
  private:
   std::size_t size_;
-  double rtol_, atol_;
+  Tolerances of_step_;
   State rates_;
 };
 
@@ -260,7 +258,8 @@ class RosenbrockStepper final : public Stepper {
       : form_(form),
         jacobian_(form),
         size_(form.size()),
-        method_({size_ + 1, rates, jacobian, this}, local_atol(tolerances), local_rtol(tolerances), k_rounding_of_xi),
+        method_({size_ + 1, rates, jacobian, this}, of_step(tolerances, k_share_of_many).atol,
+                of_step(tolerances, k_share_of_many).rtol, k_rounding_of_xi),
         start_(size_ + 1),
         by_z_(size_ * size_),
         by_xi_(size_),
@@ -328,8 +327,7 @@ class RosenbrockStepper final : public Stepper {
 
 template <class State>
 std::unique_ptr<Stepper> make_explicit(OdeintMethod method, ScaledForm& form, const Tolerances& tolerances) {
-  const double rtol = local_rtol(tolerances);
-  const double atol = local_atol(tolerances);
+  const auto [rtol, atol] = of_step(tolerances);
   switch (method) {
     case OdeintMethod::dopri5:
       return std::make_unique<ExplicitStepper<State, DormandPrince<State>>>(

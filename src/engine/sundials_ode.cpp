@@ -122,14 +122,19 @@ template <class Library>
 class SundialsOde final : public Integrator {
  public:
   SundialsOde(OdeMethod method, HybridSystem& system, Watch& watch, const Tolerances& tolerances)
-      : system_(system), watch_(watch), method_(method), tolerances_(tolerances), form_(system) {
+      : system_(system),
+        watch_(watch),
+        method_(method),
+        tolerances_(tolerances),
+        of_step_(of_step(tolerances, method == OdeMethod::cvode_bdf ? k_share_of_many : k_usual_share)),
+        form_(system) {
     const auto size = static_cast<sunindextype>(form_.size());
     for (NVector* vector : {&y_, &begin_state_, &rates_, &atol_, &weights_, &errors_})
       vector->reset(N_VNew_Serial(size, context_));
     N_VConst(0.0, y_.get());
     N_VConst(0.0, rates_.get());
     for (std::size_t k = 0; k < form_.size(); ++k) {
-      view(atol_.get())[k] = local_atol(tolerances) * form_.unknown(k).scale;
+      view(atol_.get())[k] = of_step_.atol * form_.unknown(k).scale;
     }
     if (method_ == OdeMethod::cvode_bdf || method_ == OdeMethod::arkode_dirk) {
       matrix_.reset(SUNDenseMatrix(size, size, context_));
@@ -303,9 +308,8 @@ class SundialsOde final : public Integrator {
   /// errors of its stages: tolerances finer than that no step would keep.
   static int error_weights(N_Vector y, N_Vector weights, void* self) noexcept {
     const auto& ode = *static_cast<SundialsOde*>(self);
-    const double rtol = local_rtol(ode.tolerances_);
     for (std::size_t k = 0; k < view(y).size(); ++k) {
-      const double tolerated = rtol * std::abs(view(y)[k]) + view(ode.atol_.get())[k];
+      const double tolerated = ode.of_step_.rtol * std::abs(view(y)[k]) + view(ode.atol_.get())[k];
       view(weights)[k] = 1.0 / std::max(tolerated, k_rounding_of_xi * std::abs(view(ode.rates_.get())[k]));
     }
     return 0;
@@ -339,7 +343,7 @@ class SundialsOde final : public Integrator {
   HybridSystem& system_;
   Watch& watch_;
   OdeMethod method_;
-  Tolerances tolerances_;
+  Tolerances tolerances_, of_step_;
   ExplicitForm form_;
   std::string message_;
   Pending pending_;
