@@ -143,8 +143,15 @@ double System::least_firmness() const {
     if (!touches(memory_[i].regime) || is_loaded(i)) continue;
     const SmallMatrix along = directions_[i] * directions_[i].transpose();
     const double count = classes_[i].multiplicity() / material_.composite_modulus;
-    stiffness += count * now_[i].contact.by_overlap * along;
-    magnitudes += count * std::abs(now_[i].contact.by_overlap) * along;
+    const Contact& c = now_[i].contact;
+    // Of two alike that peel the stiffnesses end together, and with them the sum of what they are.
+    double unpeeled = std::abs(c.by_overlap);
+    if (memory_[i].edge == Edge::peeling) {
+      const double opening = memory_[i].regime == Regime::elastic ? 1.0 : 1.0 / (1.0 - shapes_[i].rho);
+      unpeeled = 2.0 * material_.composite_modulus * c.contact_radius * opening;
+    }
+    stiffness += count * c.by_overlap * along;
+    magnitudes += count * unpeeled * along;
   }
   for (int k = free_count_; k < 3; ++k) stiffness(k, k) = magnitudes(k, k) = 1.0;
   const Small weakest = Eigen::SelfAdjointEigenSolver<SmallMatrix>(stiffness).eigenvectors().col(0);
