@@ -55,6 +55,28 @@ Contact System::touching_contact(double radius, double overlap) const {
   return contact;
 }
 
+/// A contact below its largest overlap. Where the centre is free, a trial may lead far off its branch, which is short:
+/// it goes on there with the slope at the largest overlap, and leads back as touching_contact() does.
+Contact System::unloaded_contact(const UnloadingShape& shape, double overlap) const {
+  const double modulus = material_.composite_modulus;
+  const double fraction = unloading_fraction(shape, overlap);
+  if (free_count_ == 0 || std::abs(fraction) <= 1.0) return unloading_contact(shape, modulus, overlap);
+  const bool is_open = fraction > 1.0;
+  const double depth = is_open ? fraction - 1.0 : 1.0 - fraction;
+  const double followed = std::min(depth, is_open ? 1.0 : 2.0);
+  Contact contact = unloading_contact(shape, modulus, shape.overlap_max + (followed - 1.0) * shape.recovery);
+  if (depth > followed) {
+    contact.by_overlap = 2.0 * modulus * shape.contact_radius_max / (1.0 - shape.rho);
+    contact.force += contact.by_overlap * (depth - followed) * shape.recovery;
+  }
+  if (is_open) {
+    contact.force = -contact.force;
+    contact.by_radius = -contact.by_radius;
+    contact.by_overlap_max = -contact.by_overlap_max;
+  }
+  return contact;
+}
+
 void System::look_at(std::size_t i, double displacement, double r) {
   const double radius = 1.0 + r;
   Instant& now = now_[i];
@@ -80,7 +102,7 @@ void System::look_at(std::size_t i, double displacement, double r) {
         now.contact = plastic_contact(material_, radius, now.overlap, memory.area_constant);
         break;
       case Regime::unloading:
-        now.contact = unloading_contact(shape(i, r), material_.composite_modulus, now.overlap);
+        now.contact = unloaded_contact(shape(i, r), now.overlap);
         break;
     }
   }

@@ -208,6 +208,7 @@ class System final : public HybridSystem {
   void look_once(double xi, std::span<const double> y);
   void forget_look() noexcept { seen_xi_ = k_nan; }
   [[nodiscard]] Contact touching_contact(double radius, double overlap) const;
+  [[nodiscard]] Contact unloaded_contact(const UnloadingShape& shape, double overlap) const;
   [[nodiscard]] Contact visible_contact(std::size_t i) const noexcept;
   void look_at(std::size_t i, double displacement, double r);
   [[nodiscard]] double force_work(std::span<const double> y);
