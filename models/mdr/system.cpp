@@ -54,7 +54,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   // The centre can only move in ways that keep the symmetry: along the mean normals of the classes.
   if (settings_.centre_is_free) {
     Eigen::ColPivHouseholderQR<Eigen::Matrix3Xd> qr(means);
-    qr.setThreshold(1e-10);
+    qr.setThreshold(k_no_direction);
     free_count_ = static_cast<int>(qr.rank());
     const Eigen::Matrix3d q = qr.householderQ();
     free_directions_.leftCols(free_count_) = q.leftCols(free_count_);
@@ -149,7 +149,7 @@ void System::start(std::span<double> y) {
     if (classes_[i].takes_force) y[wall_places_[i]] = -gap;
     // A free centre is held by whatever it touches; otherwise resting walls stay open until the particle grows against
     // them.
-    if (gap == 0.0 && directions_[i].norm() > 1e-10) memory_[i].regime = Regime::elastic;
+    if (gap == 0.0 && directions_[i].norm() > k_no_direction) memory_[i].regime = Regime::elastic;
   }
 }
 

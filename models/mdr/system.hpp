@@ -102,8 +102,9 @@ class System final : public HybridSystem {
   [[nodiscard]] static constexpr std::size_t centre_place(int k) noexcept {
     return k_centre + static_cast<std::size_t>(k);
   }
-  /// Below this a class of walls does not act along any free direction of the centre.
-  static constexpr double k_no_direction = 1e-10;
+  /// Below this a class of walls does not act along any free direction of the centre: the stiffness by which it would
+  /// hold it there goes with the square of this, and is rounding beside that of the same contact along its normal.
+  static constexpr double k_no_direction = 1e-6;
   static constexpr const char* k_singular_growth = "singular growth of the apparent radius";
   /// Firmness by which contacts hold a free centre so little that they are at a fold: a search for the balance of
   /// forces ends there with a force that is least, and not zero, and rates of the centre change sign through infinity.
