@@ -168,6 +168,7 @@ double System::rounding_of_forces() const noexcept {
 /// Newton on the balance of forces at a given radius; the force grows with the overlap, so damping is all it needs.
 void System::move_centre(double xi, std::span<double> y) {
   look(xi, y);
+  const bool is_only_one = !weakest_contact();
   double step_size = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     const double error = sums_.force.norm();
@@ -180,11 +181,15 @@ void System::move_centre(double xi, std::span<double> y) {
     step_size = step.norm();
     Small before = Small::Zero();
     for (int k = 0; k < free_count_; ++k) before[k] = y[centre_place(k)];
+    const SmallMatrix stiffness = sums_.stiffness;
     for (int halving = 0; halving < k_most_halvings; ++halving) {
       for (int k = 0; k < free_count_; ++k) y[centre_place(k)] = before[k] + step[k];
       try {
         look(xi, y);
         if (sums_.force.norm() < std::max(error, noise) || step.norm() < k_round_off) break;
+        // Stiff contacts may bear more on a way along which soft ones balance: the way that is left says more. Where an
+        // edge peels there are other equilibria, to which that might lead.
+        if (is_only_one && balance_step(stiffness, sums_.force).norm() < 0.5 * step_size) break;
       } catch (const std::domain_error&) {
         // A trial may lead out of a branch; a state that is nearer lies in it, or there is none.
         if (step.norm() < k_round_off || halving + 1 == k_most_halvings) throw;
