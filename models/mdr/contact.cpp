@@ -204,6 +204,10 @@ Contact elastic_contact(ElasticProfile profile, double composite_modulus, double
 }
 
 PlasticPressure plastic_pressure(const Material& material, double overlap_over_radius) {
+  // A curve of samples begins with the contact.
+  if (material.pressure_curve && overlap_over_radius < 0.0) {
+    return {.pressure = material.yield_stress * material.pressure_curve->at(0.0).value, .decrement = 0.0};
+  }
   const auto [value, slope] = material.pressure_curve ? material.pressure_curve->at(overlap_over_radius)
                                                       : exponential_pressure(overlap_over_radius);
   return {.pressure = material.yield_stress * value, .decrement = -material.yield_stress * slope};

@@ -71,6 +71,7 @@ struct PlasticPressure {
   double pressure = 0.0;   ///< p_Y
   double decrement = 0.0;  ///< -R dp_Y/d(delta)
 };
+/// Below zero, where only trials are, a material's own curve goes on with its first pressure.
 /// @throws std::domain_error beyond the end of the material's own curve
 [[nodiscard]] PlasticPressure plastic_pressure(const Material& material, double overlap_over_radius);
 
