@@ -52,8 +52,10 @@ const char* end_of_branch(Control control) {
 /// Of the closed form.
 double particle_strain(const Law& law, double packing_fraction) { return state(law, packing_fraction).particle_strain; }
 
-/// Half way through the compaction.
-double typical_particle_strain(const Law& law) { return particle_strain(law, std::midpoint(law.jamming, law.end)); }
+/// Half way through the compaction; anything where a packing that jams has come to its end.
+double typical_particle_strain(const Law& law) {
+  return law.end > law.jamming ? particle_strain(law, std::midpoint(law.jamming, law.end)) : 1.0;
+}
 
 Branch branch_of(const Law& law, Control control) {
   const double last = law.end < 1.0 ? std::max(law.jamming, law.end - k_margin_of_pole) : 1.0;
