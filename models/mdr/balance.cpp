@@ -20,6 +20,8 @@ constexpr double k_twelfth = 1.0 / 12.0;
 constexpr double k_round_off = std::numeric_limits<double>::epsilon();
 constexpr int k_newton_limit = 60;
 constexpr int k_most_halvings = 40;
+// How many times as long as the last one a step is at most.
+constexpr double k_most_growth = 64.0;
 
 }  // namespace
 
@@ -169,6 +171,7 @@ double System::rounding_of_forces() const noexcept {
 void System::move_centre(double xi, std::span<double> y) {
   look(xi, y);
   const bool is_only_one = !weakest_contact();
+  double way = std::numeric_limits<double>::infinity();
   double step_size = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     const double error = sums_.force.norm();
@@ -179,6 +182,8 @@ void System::move_centre(double xi, std::span<double> y) {
     if (step.norm() == 0.0) throw std::domain_error("no contact holds the free centre of the particle");
     if (step.norm() >= 0.5 * step_size && (step.norm() < 1e-12 || error <= rounding_of_forces())) return;
     step_size = step.norm();
+    // Where the last step had to be cut short, as next to a fold, there is no need to begin far beyond that again.
+    if (k_most_growth * way < step_size) step *= k_most_growth * way / step_size;
     Small before = Small::Zero();
     for (int k = 0; k < free_count_; ++k) before[k] = y[centre_place(k)];
     const SmallMatrix stiffness = sums_.stiffness;
@@ -196,7 +201,8 @@ void System::move_centre(double xi, std::span<double> y) {
       }
       step *= 0.5;
     }
-    if (step.norm() < 2.0 * k_round_off) return;
+    way = step.norm();
+    if (way < 2.0 * k_round_off) return;
   }
   if (std::abs(least_firmness()) < k_at_fold) {
     throw std::domain_error("the contacts hold the free centre no longer: beyond a fold no forces on it balance");
