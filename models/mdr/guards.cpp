@@ -34,7 +34,8 @@ double System::contact_guard(int kind, std::size_t i, double xi, double overlap,
     case k_reload:
       return overlap - largest_overlap(memory_[i], r) - k_same_overlap;
     case k_lost:
-      if (memory_[i].regime == Regime::elastic) return rides(i) ? overlap + k_shallow : overlap;
+      if (rides(i)) overlap += k_shallow;
+      if (memory_[i].regime == Regime::elastic) return overlap;
       return 1.0 - unloading_fraction(shape(i, r), overlap);
     case k_dent_touched:
       return 1.0 - unloading_fraction(shape(i, r), overlap);

@@ -43,12 +43,16 @@ void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Ev
   }
 }
 
-/// Whether a first touch is all that a wall has of a free centre: nothing presses the particle against it, and it takes
-/// the centre along. Its overlap and the rate of that are rounding; what is that shallow remembers nothing, and is lost
-/// when it has been left by more.
+/// Whether a touch, of the fresh particle or of a dent, is all that a wall has of a free centre: nothing presses the
+/// particle against it, and it takes the centre along. Its overlap and the rate of that are rounding; what is that
+/// shallow remembers nothing, and is lost when it has been left by more.
 bool System::rides(std::size_t i) const noexcept {
-  return free_count_ > 0 && !is_loaded(i) && memory_[i].regime == Regime::elastic && memory_[i].is_virgin &&
-         now_[i].overlap < k_shallow && directions_[i].norm() > k_no_direction;
+  if (free_count_ == 0 || is_loaded(i) || !(directions_[i].norm() > k_no_direction)) return false;
+  const Memory& memory = memory_[i];
+  if (memory.regime == Regime::elastic) return memory.is_virgin && now_[i].overlap < k_shallow;
+  const UnloadingShape& dent = shapes_[i];
+  return memory.regime == Regime::unloading && !adheres() &&
+         now_[i].overlap - (dent.overlap_max - dent.recovery) < k_shallow;
 }
 
 // --- deciding a mode
