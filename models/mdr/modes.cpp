@@ -27,19 +27,32 @@ constexpr const char* k_unsettled =
 
 }  // namespace
 
-/// Where the centre is free, a contact along its directions is carried by others only: they close and open together.
+/// Where the centre is free, a contact along its directions is carried by others only: the nearest ones close with it
+/// until they balance it, and those open with it that the rest does not balance.
 void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log) {
   if (free_count_ == 0 || directions_[i].norm() < k_no_direction || adheres()) return;
-  for (std::size_t j = 0; j < memory_.size(); ++j) {
-    if (j == i || directions_[j].norm() < k_no_direction || touches(memory_[j].regime) == is_made) continue;
-    const bool is_dent = memory_[j].regime == Regime::separated;
-    const int kind = is_made ? (is_dent ? k_dent_touched : k_made) : k_lost;
-    if (is_loaded(j) || std::abs(contact_guard(kind, j, 0.0, now_[j].overlap, r)) > k_together) continue;
+  for (;;) {
+    std::optional<std::size_t> next;
+    double nearest = k_together;
+    bool next_is_dent = false;
+    for (std::size_t j = 0; j < memory_.size(); ++j) {
+      if (j == i || is_loaded(j) || directions_[j].norm() < k_no_direction) continue;
+      if (touches(memory_[j].regime) == is_made || is_backed(is_made ? i : j)) continue;
+      const bool is_dent = memory_[j].regime == Regime::separated;
+      const int kind = is_made ? (is_dent ? k_dent_touched : k_made) : k_lost;
+      const double distance = std::abs(contact_guard(kind, j, 0.0, now_[j].overlap, r));
+      if (distance > nearest) continue;
+      next = j;
+      nearest = distance;
+      next_is_dent = is_dent;
+    }
+    if (!next) return;
     if (is_made)
-      make_contact(j);
+      make_contact(*next);
     else
-      lose_contact(j);
-    log.push_back({is_made ? (is_dent ? "dent-touched" : "contact-made") : "contact-lost", static_cast<int>(j)});
+      lose_contact(*next);
+    log.push_back(
+        {is_made ? (next_is_dent ? "dent-touched" : "contact-made") : "contact-lost", static_cast<int>(*next)});
   }
 }
 

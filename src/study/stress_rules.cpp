@@ -194,6 +194,32 @@ void check_forces(const Run& run, Violations& found) {
   }
 }
 
+/// Rows of a history that break something, the first of each: where `excess` is not below zero.
+template <class Excess>
+void check_rows(const Run& run, const char* check, const char* what, Violations& found, Excess&& excess) {
+  const Table& table = run.record.history;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const double value = excess(table, row);
+    if (value <= 0.0) continue;
+    found.push_back({check, fmt::format("{}, by {:.3g} at t = {:.9g} s", what, value, table.at(row, 0))});
+    return;
+  }
+}
+
+/// Between elastic spheres and walls an overlap without a force is a contact that was missed.
+void check_contacts(const Run& run, Violations& found) {
+  const Table& table = run.record.history;
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    if (kind_of(table.columns()[c]) != "overlap") continue;
+    const std::string& name = table.columns()[c].name;
+    const auto force = *table.find(name.substr(0, name.rfind('.')) + ".force");
+    const std::string what = fmt::format("{} is past the surface, without a force", name);
+    check_rows(run, "missed-contact", what.c_str(), found, [&](const Table& t, std::size_t row) {
+      return t.at(row, force) == 0.0 ? t.at(row, c) / run.scenario.radius - own_tolerance(run) : 0.0;
+    });
+  }
+}
+
 /// Infinity where there is no such event.
 double time_of_first(const Run& run, std::string_view name) {
   const Table& events = run.record.events;
@@ -308,18 +334,6 @@ void check_events(const Run& run, Violations& found) {
     const double now = run.record.history.at(row, time);
     if (now >= before) continue;
     found.push_back({"time", fmt::format("goes back from {} s to {} s", before, now)});
-    return;
-  }
-}
-
-/// Rows of a history that break something, the first of each: where `excess` is not below zero.
-template <class Excess>
-void check_rows(const Run& run, const char* check, const char* what, Violations& found, Excess&& excess) {
-  const Table& table = run.record.history;
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const double value = excess(table, row);
-    if (value <= 0.0) continue;
-    found.push_back({check, fmt::format("{}, by {:.3g} at t = {:.9g} s", what, value, table.at(row, 0))});
     return;
   }
 }
@@ -457,6 +471,7 @@ std::vector<Violation> check_run(const Run& run) {
   check_events(run, found);
   // Fixed steps control no error, and have none of these.
   if (run.integrator.used == "explicit") return found;
+  if (run.scenario.model == "hertz") check_contacts(run, found);
   if (run.scenario.model == "packing") check_packing(run, found);
   if (run.scenario.model == "material-point") check_material_point(run, found);
   return found;
