@@ -17,6 +17,9 @@ constexpr double k_at_rest = 1e-8;
 constexpr double k_together = 1e-6;
 // Share of an unloading branch that is left when it counts as loaded to its end together with another event.
 constexpr double k_passed = 1e-2;
+// Under force a wall would go back by what is missing of its force, over the stiffness of a plastic contact, which is
+// less by many orders.
+constexpr double k_passed_by_force = 1e-6;
 // Share of the forces on a free centre that is rounding in their balance.
 constexpr double k_no_force = 1e-9;
 // A free centre that has gone this far (over R0) within an instant has sprung.
@@ -406,7 +409,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     if (is_of_edge && (!touches(memory_[i].regime) || edges_before_[i] != memory_[i].edge)) continue;
     // Nor is a branch at its end that is as short as what counts as zero.
     const bool is_of_dent = guard.kind == k_reload && memory_[i].regime == Regime::unloading;
-    if (is_of_dent && unloading_fraction(shape(i, r), now_[i].overlap) > k_passed) continue;
+    const double passed = is_loaded(i) ? k_passed_by_force : k_passed;
+    if (is_of_dent && unloading_fraction(shape(i, r), now_[i].overlap) > passed) continue;
     if (guard.kind == k_peel && edge_rate(i, r, now) >= -k_at_rest) continue;
     if (guard.kind == k_follow && edge_rate(i, r, now) <= k_at_rest) continue;
     switch (guard.kind) {
