@@ -127,7 +127,9 @@ struct Way {
     if (a == 0.0) return std::nullopt;
     const double b = x * dx + y * dy;
     const double c = (x - radius) * (x + radius) + y * y;
-    const double discriminant = b * b - a * c;
+    // b^2 - a c without the digits that the two have in common where the way comes from far away.
+    const double across = x * dy - y * dx;
+    const double discriminant = a * radius * radius - across * across;
     if (discriminant < 0.0) return std::nullopt;
     const double root = std::sqrt(discriminant);
     return b > 0.0 ? -c / (b + root) : (root - b) / a;
