@@ -54,6 +54,9 @@ constexpr double k_stiffest = 1e10;
 // cap is narrow and the material hardly compressible, f is curved within 1e-11 of strain); such small corrections after
 // which f is made of rounding; and how many there may be at all.
 constexpr double k_last_correction = 1e-11;
+// The correction after one of d is d^2 over the elastic strain: where that is tiny, d is the last one if the next is
+// below this.
+constexpr double k_strain_rounding = 1e-16;
 constexpr double k_last_excess = 1e-9;
 constexpr int k_most_small_corrections = 12;
 constexpr int k_most_corrections = 60;
@@ -306,7 +309,8 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
       if (!std::isfinite(step)) return false;
       y[k_phi] += phi;
       y[k_deviatoric] += deviatoric;
-      if (std::hypot(phi, deviatoric) >= k_last_correction) continue;
+      const double last_correction = std::min(k_last_correction, std::sqrt(k_strain_rounding * elastic_strain));
+      if (std::hypot(phi, deviatoric) >= last_correction) continue;
       const bool is_found = !has_caps || std::abs(now.yield.f) < k_last_excess;
       if (!is_found && ++small_corrections < k_most_small_corrections) continue;
       const double distance = std::hypot(y[k_phi] - guess, y[k_deviatoric] - guessed_deviatoric);
