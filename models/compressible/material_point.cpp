@@ -270,6 +270,20 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
   throw std::domain_error("no plastic strain brings the stress back to the yield surface");
 }
 
+/// What leads back to f = 0. The shear segment of vm and vmdc is a pair of lines, c^2 = 1 with c = s over the strength,
+/// and a guess that is off by more than the elastic strain lies beside the other one: the distance c - 1 from the line
+/// of this side, with its own slopes, leads to the right one from anywhere.
+MaterialPoint::Flow MaterialPoint::flow_to_surface(const Response& now) const {
+  Flow flow_now = flow(now);
+  const bool is_line = settings_.parameters.model != YieldModel::dpc && branch_.segment == Segment::shear;
+  if (!is_line || branch_.side == 0.0) return flow_now;
+  const double c = branch_.side * now.s / now.at.shear_strength.value;
+  flow_now.yield.f = c - 1.0;
+  for (double* slope : {&flow_now.f_by_phi, &flow_now.f_by_deviatoric, &flow_now.deviatoric}) *slope /= 2.0 * c;
+  flow_now.phi /= 2.0 * std::abs(c);
+  return flow_now;
+}
+
 /// Newton's method on f = 0 in one direction.
 ///
 /// A cap much narrower in one direction is a valley of f. A correction that has passed its floor without having
@@ -288,7 +302,7 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
   try {
     for (int i = 0; i < k_most_corrections; ++i) {
       const Response here = response(xi, y);
-      const Flow now = flow(here);
+      const Flow now = flow_to_surface(here);
       elastic_strain = 1.0 / stiffness_over_strength(here.at);
       const double slope = now.f_by_phi * phi + now.f_by_deviatoric * deviatoric;
       if (has_caps && last.yield.f > 0.0 && now.yield.f > 0.0 && slope > 0.0) {

@@ -105,6 +105,7 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] Flow flow(const Response& now) const;
   [[nodiscard]] static double cosine(const Flow& flow) noexcept;
   static void require_unique(const Flow& flow);
+  [[nodiscard]] Flow flow_to_surface(const Response& now) const;
   enum class Way { flow, shortest };
   [[nodiscard]] bool is_brought_back(double xi, std::span<double> y, Way way);
   [[nodiscard]] double pressure_rate_at_end(const Response& now, bool towards_compression) const;

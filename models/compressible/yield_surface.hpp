@@ -18,7 +18,7 @@ enum class Segment { tension, shear, transition, cap };
 struct Branch {
   Segment segment = Segment::shear;
   /// Of s: q = side s, or 0 for a state that stays on the axis s = 0, where f does not depend on s to first order. Only
-  /// on the shear and transition segments of dpc; elsewhere s stands squared.
+  /// on the shear and transition segments of dpc does f depend on it; elsewhere s stands squared.
   double side = -1.0;
 
   friend bool operator==(const Branch&, const Branch&) = default;
