@@ -176,6 +176,10 @@ class HybridSystem {
   /// differential ones by their own error, to where the exact solution would keep them.
   virtual void complete(double xi, std::span<double> y) = 0;
 
+  /// Whether all that complete() takes from the differential unknowns is error, so that integrators may begin the next
+  /// step where it has moved them: errors that are left there add up.
+  [[nodiscard]] virtual bool has_corrections() const noexcept { return false; }
+
   /// d/dxi of differential unknowns and quadratures; y is complete.
   virtual void rates(double xi, std::span<const double> y, std::span<double> dy) = 0;
 

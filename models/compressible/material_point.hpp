@@ -47,6 +47,7 @@ class MaterialPoint final : public HybridSystem {
   void start(std::span<double> y) override;
   void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override;
   void complete(double xi, std::span<double> y) override;
+  [[nodiscard]] bool has_corrections() const noexcept override { return true; }
   void rates(double xi, std::span<const double> y, std::span<double> dy) override;
   void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;

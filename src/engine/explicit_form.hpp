@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -87,12 +88,26 @@ class ExplicitForm {
   [[nodiscard]] const Unknown& unknown(std::size_t k) const noexcept { return system_.unknowns()[k]; }
 
   [[nodiscard]] bool has_slaves() const noexcept { return system_.has_slaves(); }
+  [[nodiscard]] bool has_corrections() const noexcept { return system_.has_corrections(); }
 
   /// Takes up a segment's first complete state; the integrated part of it goes to `integrated`.
   void begin(std::span<const double> complete, std::span<double> integrated) {
     std::ranges::copy(complete, complete_.begin());
     std::ranges::copy(complete.first(size_), integrated.begin());
     quadratures_.begin(integrated);
+  }
+
+  /// Takes over what completing has moved by more than rounding. @return whether that is anything
+  [[nodiscard]] bool take_correction(std::span<const double> complete, std::span<double> integrated) const {
+    constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
+    bool is_moved = false;
+    for (std::size_t k = 0; k < size_; ++k) {
+      if (unknown(k).kind != Unknown::Kind::differential) continue;
+      if (std::abs(integrated[k] - complete[k]) <= k_rounding * std::abs(complete[k])) continue;
+      integrated[k] = complete[k];
+      is_moved = true;
+    }
+    return is_moved;
   }
 
   /// What the next complete state is sought from.

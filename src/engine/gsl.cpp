@@ -97,6 +97,7 @@ class GslStepper final : public Stepper {
       : form_(form),
         jacobian_(form),
         system_{rates, jacobian, form.size(), this},
+        remembers_steps_(method != GslMethod::rk8pd),
         driver_(make_driver(type_of(method), tolerances)),
         reaching_(make_driver(gsl_odeiv2_step_rk8pd, tolerances)),
         old_(form.size()),
@@ -111,6 +112,10 @@ class GslStepper final : public Stepper {
     begin_ = end_ = xi;
     step_ = std::min(k_first_step, 1.0 - xi);
     gsl_odeiv2_driver_reset(driver_.get());
+  }
+
+  void correct(std::span<const double> z) override {
+    if (!remembers_steps_) std::ranges::copy(z, now_.begin());
   }
 
   double step() override {
@@ -203,6 +208,7 @@ class GslStepper final : public Stepper {
   ScaledForm& form_;
   DifferenceJacobian jacobian_;
   gsl_odeiv2_system system_;
+  bool remembers_steps_;
   Driver driver_;
   Driver reaching_;
   Pending pending_;

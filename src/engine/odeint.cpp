@@ -174,6 +174,8 @@ class ExplicitStepper final : public Stepper {
     has_rates_ = false;
   }
 
+  void correct(std::span<const double> z) override { std::ranges::copy(z, now_.begin()); }
+
   double step() override {
     if (!has_rates_) rates(now_, now_rates_, end_);
     has_rates_ = true;
@@ -273,6 +275,12 @@ class RosenbrockStepper final : public Stepper {
     method_.begin(start_.data());
     begin_ = end_ = xi;
     step_ = std::min(form_.has_slaves() ? k_first_step_of_slaves : k_first_step, 1.0 - xi);
+  }
+
+  void correct(std::span<const double> z) override {
+    std::ranges::copy(z, start_.begin());
+    start_[size_] = end_;
+    method_.begin(start_.data());
   }
 
   double step() override {

@@ -40,6 +40,7 @@ class Stepped final : public EventLocator {
     begin_piece();
     if (begin_ >= step_end_) {
       form_.begin_step(begin_, begin_state_);
+      correct();
       step_end_ = stepper_->step();
       ++statistics_.steps;
       statistics_.last_step = step_end_ - begin_;
@@ -74,6 +75,14 @@ class Stepped final : public EventLocator {
   }
 
  private:
+  /// Goes on from the complete state: errors across the curve would add up from step to step, until that state is no
+  /// longer the one the rates have led to.
+  void correct() {
+    if (!form_.has_corrections()) return;
+    stepper_->state_at(begin_, z_);
+    if (form_.take_correction(begin_state_, z_)) stepper_->correct(z_);
+  }
+
   void state_at(double xi, std::span<double> y) override {
     stepper_->state_at(xi, z_);
     form_.complete(xi, z_, y);

@@ -21,6 +21,7 @@ class ScaledForm {
 
   [[nodiscard]] std::size_t size() const noexcept { return form_.size(); }
   [[nodiscard]] bool has_slaves() const noexcept { return form_.has_slaves(); }
+  [[nodiscard]] bool has_corrections() const noexcept { return form_.has_corrections(); }
   [[nodiscard]] long evaluations() const noexcept { return evaluations_; }
 
   /// Takes up a segment's complete state; z is the integrated one.
@@ -28,6 +29,14 @@ class ScaledForm {
     form_.begin(complete, y_);
     begin_step(0.0, complete);
     for (std::size_t k = 0; k < size(); ++k) z[k] = y_[k] / form_.unknown(k).scale;
+  }
+
+  /// Takes over what completing has moved by more than rounding. @return whether that is anything
+  [[nodiscard]] bool take_correction(std::span<const double> complete, std::span<double> z) {
+    scale_back(z);
+    if (!form_.take_correction(complete, y_)) return false;
+    for (std::size_t k = 0; k < size(); ++k) z[k] = y_[k] / form_.unknown(k).scale;
+    return true;
   }
 
   /// Where a step begins, and the state there.
@@ -81,6 +90,9 @@ class Stepper {
 
   /// Starts a segment. @param z  scaled state
   virtual void begin(double xi, std::span<const double> z) = 0;
+  /// Goes on from this state, which differs from the end of the last step by its errors. A code that remembers steps
+  /// goes on from what it remembers.
+  virtual void correct(std::span<const double> z) = 0;
   /// One accepted step that does not end beyond 1. @return where it ends
   /// @throws std::domain_error where the equations end; SolverError where the code gives up
   virtual double step() = 0;

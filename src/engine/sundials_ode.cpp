@@ -268,6 +268,21 @@ class SundialsOde final : public Integrator {
     });
   }
 
+  /// From a step's end to where completing takes it: there the next step begins.
+  static int corrected(realtype xi, N_Vector y, void* self) noexcept {
+    auto& ode = *static_cast<SundialsOde*>(self);
+    return ode.pending_.guard([&] {
+      static_cast<void>(ode.form_.take_correction(ode.form_.complete(xi, view(y)), view(y)));
+      return true;
+    });
+  }
+  static int projection(realtype xi, N_Vector y, N_Vector way, realtype, N_Vector, void* self) noexcept {
+    N_VScale(1.0, y, way);
+    const int flag = corrected(xi, way, self);
+    N_VLinearSum(1.0, way, -1.0, y, way);
+    return flag;
+  }
+
   /// d(rates)/dy by difference quotients, as the library's own, but for increments that leave the domain.
   static int jacobian(realtype xi, N_Vector y, N_Vector dy, SUNMatrix matrix, void* self, N_Vector shifted, N_Vector,
                       N_Vector) noexcept {
@@ -368,7 +383,13 @@ void SundialsOde<CvodeLibrary>::create() {
   const bool is_adams = method_ == OdeMethod::cvode_adams;
   memory_.reset(CVodeCreate(is_adams ? CV_ADAMS : CV_BDF, context_));
   check("CVodeInit", CVodeInit(memory_.get(), right_hand_side, 0.0, y_.get()));
-  if (!is_adams) return;
+  if (!is_adams) {
+    if (!form_.has_corrections()) return;
+    check("CVodeSetProjFn", CVodeSetProjFn(memory_.get(), projection));
+    // What is taken away of an error is no reason to tolerate more of it.
+    check("CVodeSetProjErrEst", CVodeSetProjErrEst(memory_.get(), 0));
+    return;
+  }
   nonlinear_.reset(SUNNonlinSol_FixedPoint(y_.get(), 0, context_));
   check("CVodeSetNonlinearSolver", CVodeSetNonlinearSolver(memory_.get(), nonlinear_.get()));
 }
@@ -380,6 +401,9 @@ void SundialsOde<ArkodeLibrary>::create() {
                               y_.get(), context_));
   if (!memory_) throw failure("ARKStepCreate", "no memory");
   check("ARKStepSetOrder", ARKStepSetOrder(memory_.get(), ArkodeLibrary::order));
+  if (form_.has_corrections()) {
+    check("ARKStepSetPostprocessStepFn", ARKStepSetPostprocessStepFn(memory_.get(), corrected));
+  }
   if (is_implicit) check("ARKStepSetMaxStep", ARKStepSetMaxStep(memory_.get(), k_longest_implicit_step));
 }
 

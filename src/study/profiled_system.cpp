@@ -42,6 +42,7 @@ class Wrapped : public HybridSystem {
   void all_rates(double xi, View y, State dy) override { system_->all_rates(xi, y, dy); }
   void residual(double xi, View y, View dy, State res) override { system_->residual(xi, y, dy, res); }
   [[nodiscard]] bool is_semi_explicit() const noexcept override { return system_->is_semi_explicit(); }
+  [[nodiscard]] bool has_corrections() const noexcept override { return system_->has_corrections(); }
   [[nodiscard]] double error_gain() const noexcept override { return system_->error_gain(); }
   [[nodiscard]] bool is_solvable() const noexcept override { return system_->is_solvable(); }
   void solve(double xi, State y) override { system_->solve(xi, y); }
