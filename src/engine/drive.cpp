@@ -22,6 +22,9 @@ constexpr double k_round_off = 1e-13;
 constexpr int k_most_idle_events = 50;
 // Steps in a row that do not move the step coordinate after which none will.
 constexpr int k_most_idle_steps = 1000;
+// Evaluations of the equations for each of the internal steps that there may be: some codes take many for one, so that
+// their steps alone would set no end to the work.
+constexpr long k_most_evaluations = 10;
 // Events of one step of the program after which they are taken to go on without end.
 constexpr int k_most_events = 1000;
 // Finer tolerances may be below the rounding of a scene's own equations.
@@ -241,6 +244,7 @@ class Drive {
     int idle_events = 0;
     int events = 0;
     long steps = 0;
+    const long first_evaluation = evaluations();
     int idle_steps = 0;
     while (plan_.duration > 0.0 && 1.0 - xi_ > k_round_off) {
       const double segment_start = xi_;
@@ -249,7 +253,10 @@ class Drive {
       double last = xi_;
       do {
         last = xi_;
-        if (++steps > integrator_->most_steps()) throw too_much_work(steps - 1);
+        const long of_equations = evaluations() - first_evaluation;
+        const long most = integrator_->most_steps();
+        if (steps == most || of_equations > k_most_evaluations * most) throw too_much_work(steps, of_equations);
+        ++steps;
         advance = integrator_->advance();
         xi_ = advance.xi;
         idle_steps = xi_ > last ? 0 : idle_steps + 1;
@@ -334,12 +341,14 @@ class Drive {
     return fired;
   }
 
-  [[nodiscard]] SolverError too_much_work(long steps) const {
-    return {
-        "integration", "too much work", xi_, integrator_->statistics().last_step,
-        fmt::format("{} internal steps have not brought this step of the program to its end; where the equations are "
-                    "stiff, expected cvode-bdf or ida",
-                    steps)};
+  [[nodiscard]] long evaluations() const { return integrator_->statistics().rhs_evaluations; }
+
+  [[nodiscard]] SolverError too_much_work(long steps, long of_equations) const {
+    return {"integration", "too much work", xi_, integrator_->statistics().last_step,
+            fmt::format(
+                "{} internal steps and {} evaluations of the equations have not brought this step of the program to "
+                "its end; where the equations are stiff, expected cvode-bdf or ida",
+                steps, of_equations)};
   }
 
   [[nodiscard]] SolverError stalled(int steps) const {
