@@ -258,12 +258,11 @@ double unloading_fraction(const UnloadingShape& shape, double overlap) noexcept 
   return (shape.overlap_max - overlap) / shape.recovery;
 }
 
-Contact unloading_contact(const UnloadingShape& shape, double composite_modulus, double overlap) {
-  // Beyond that, where only trials are, the force stays what it is there.
-  const double u = std::max(unloading_fraction(shape, overlap), -1.0);
-  if (u >= 1.0) return {};
-  const double theta = unloading_angle(u);
-  const double sine = std::sqrt((1.0 - u) * (1.0 + u));
+namespace {
+
+/// At u = 1 - share, of which theta is the angle and `sine` its sine.
+Contact on_unloading_branch(const UnloadingShape& shape, double composite_modulus, double u, double theta,
+                            double sine) {
   const double phi_theta = phi(theta);
   const double yield_force = 2.0 * shape.pressure * shape.contact_radius_max * shape.contact_radius_max;
   const double a = shape.contact_radius_max * sine;
@@ -278,6 +277,22 @@ Contact unloading_contact(const UnloadingShape& shape, double composite_modulus,
           .by_overlap = 2.0 * composite_modulus * a / (1.0 - shape.rho),
           .by_radius = by(shape.pressure_by_radius, shape.contact_radius_by_radius, shape.rho_by_radius, 0.0),
           .by_overlap_max = by(shape.pressure_by_max, shape.contact_radius_by_max, shape.rho_by_max, 1.0)};
+}
+
+}  // namespace
+
+Contact unloading_contact(const UnloadingShape& shape, double composite_modulus, double overlap) {
+  // Beyond that, where only trials are, the force stays what it is there.
+  const double u = std::max(unloading_fraction(shape, overlap), -1.0);
+  if (u >= 1.0) return {};
+  return on_unloading_branch(shape, composite_modulus, u, unloading_angle(u), std::sqrt((1.0 - u) * (1.0 + u)));
+}
+
+Contact recompressed_contact(const UnloadingShape& shape, double composite_modulus, double share) {
+  if (share <= 0.0) return {};
+  const double within = std::min(share, 2.0);
+  return on_unloading_branch(shape, composite_modulus, 1.0 - within, 2.0 * std::asin(std::sqrt(0.5 * within)),
+                             std::sqrt(within * (2.0 - within)));
 }
 
 double elastic_overlap(ElasticProfile profile, double composite_modulus, double radius, double force) {

@@ -119,6 +119,10 @@ struct UnloadingShape {
 /// up to one recovery above; beyond that the force is constant.
 [[nodiscard]] Contact unloading_contact(const UnloadingShape& shape, double composite_modulus, double overlap);
 
+/// The same from the distance to the overlap at which the contact opens, over the recovery: 0 there, 1 at the largest
+/// overlap. Has its digits also where the recovery is a small share of the overlap.
+[[nodiscard]] Contact recompressed_contact(const UnloadingShape& shape, double composite_modulus, double share);
+
 // The overlap at which a contact bears a force >= 0, on each branch.
 
 /// @throws std::domain_error for a force above that of an overlap of twice the radius (ellipse)
@@ -128,8 +132,7 @@ struct UnloadingShape {
 /// bears the force
 [[nodiscard]] double plastic_overlap(const Material& material, double radius, double force, double area_constant,
                                      double guess);
-/// Distance from the overlap at which the contact opens, over the recovery: 0 there, 1 at the largest overlap. Has its
-/// digits also where the recovery is a small share of the overlap.
+/// The share as recompressed_contact() has it.
 /// @throws std::domain_error as unloading_overlap
 [[nodiscard]] double recompressed_share(const UnloadingShape& shape, double force);
 /// Forces above that of the largest overlap continue the branch analytically, up to half a recovery above.

@@ -236,15 +236,18 @@ System::Contact System::seen(std::size_t i, double xi, std::span<const double> y
   return c;
 }
 
+System::Contact System::seen_on_indenter(const mdr::Contact& c) noexcept {
+  const double area = pi * c.contact_radius * c.contact_radius;
+  return {c.force, c.by_overlap, c.contact_radius, area > 0.0 ? c.force / area : 0.0};
+}
+
 /// A contact at a displacement of its wall.
 System::Contact System::contact(std::size_t i, double x) const {
   const Memory& memory = memory_[i];
   if (is_lateral(i)) return lateral_contact(i, x);
   if (!touches(memory.regime) || x <= origin(i)) return {};
   if (memory.regime == Regime::unloading) {
-    const mdr::Contact c = mdr::unloading_contact(memory.indenter, modulus_, x);
-    const double area = pi * c.contact_radius * c.contact_radius;
-    return {c.force, c.by_overlap, c.contact_radius, area > 0.0 ? c.force / area : 0.0};
+    return seen_on_indenter(mdr::unloading_contact(memory.indenter, modulus_, x));
   }
   const ContactState c = state_in(settings_.law, memory.regime, x);
   return {c.force, c.force_by_approach, c.contact_radius, c.pressure};
@@ -259,6 +262,14 @@ System::Contact System::lateral_contact(std::size_t i, double x) const {
   return {c.force, c.force_by_approach, c.contact_radius, c.pressure};
 }
 
+/// A contact at a distance from where the force of its present branch begins, over the chart's length: where that is a
+/// small share of the displacement, the displacement has not its digits.
+System::Contact System::contact_at_distance(std::size_t i, double distance) const {
+  const Memory& memory = memory_[i];
+  if (memory.regime != Regime::unloading) return contact(i, chart(i).origin + chart(i).length * distance);
+  return seen_on_indenter(mdr::recompressed_contact(memory.indenter, modulus_, distance));
+}
+
 /// Force and its derivatives at a coordinate of a touching contact; odd in u, so that a trial step below zero stays
 /// smooth.
 System::Slope System::slope(std::size_t i, double u) const {
@@ -267,10 +278,10 @@ System::Slope System::slope(std::size_t i, double u) const {
   const double distance = std::pow(std::abs(u) / unit, 1.0 / power);  // over the length
   const double by_displacement = stretch(i, length * distance);       // du/dx
   if (distance <= nearest) {
-    const double by_coordinate = contact(i, origin + length * nearest).force / (unit * std::pow(nearest, power));
+    const double by_coordinate = contact_at_distance(i, nearest).force / (unit * std::pow(nearest, power));
     return {by_coordinate * u, by_coordinate, by_coordinate * by_displacement};
   }
-  const Contact c = contact(i, origin + length * distance);
+  const Contact c = contact_at_distance(i, distance);
   return {std::copysign(c.force, u), c.stiffness / by_displacement, c.stiffness};
 }
 
