@@ -117,7 +117,12 @@ std::size_t first_without_branch(const Scenario& scenario, std::span<const Step>
       continue;  // ends at a limit of the law
     }
     if (deepest > k_shallowest && x < (1.0 - k_same_place) * deepest) return k;
-    if (step.until.empty()) deepest = std::max(deepest, x);
+    for (const Until& until : step.until) {
+      const bool is_foreseen = until.value > 0.0 || until.quantity == Until::Quantity::event;
+      // Where it is met is known to within a factor 2.
+      x = is_foreseen ? std::min(x, 0.5 * plastic_reach(scenario, until).displacement / scenario.radius) : 0.0;
+    }
+    deepest = std::max(deepest, x);
   }
   return program.size();
 }

@@ -22,7 +22,7 @@ namespace monograin {
 [[nodiscard]] Reach plastic_reach(const Scenario& scenario, const Until& until);
 
 /// Index of the first step of a program that leads a contact back, where the law has no branch for that and the run
-/// ends; the number of steps where none does. What a condition makes of a step is not foreseen.
+/// ends; the number of steps where none does.
 [[nodiscard]] std::size_t first_without_branch(const Scenario& scenario, std::span<const Step> program);
 
 }  // namespace monograin
