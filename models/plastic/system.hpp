@@ -127,6 +127,7 @@ class System final : public HybridSystem {
   [[nodiscard]] Contact lateral_contact(std::size_t i, double x) const;
   [[nodiscard]] static Contact seen_on_indenter(const mdr::Contact& c) noexcept;
   [[nodiscard]] Contact contact_at_distance(std::size_t i, double distance) const;
+  [[nodiscard]] std::optional<DomainEnd> end_passed(std::size_t i, double x, std::vector<Event>& log) const;
   [[nodiscard]] Slope slope(std::size_t i, double u) const;
   [[nodiscard]] double power(std::size_t i, double xi, const Slope& now) const;
   [[nodiscard]] double stored_energy(std::size_t i, double x) const;

@@ -15,6 +15,12 @@ enum GuardKind : int { k_made, k_touched, k_boundary, k_lateral_boundary, k_impi
 // Guards a rounding error beyond the end of a ramp are watched too.
 constexpr double k_reach_margin = 1e-9;
 
+DomainEnd filled(const Event& event, double x) {
+  return {event, {"the particle fills its cell, where its pressure would be infinite", "gamma/2R", x}};
+}
+
+DomainEnd met(const Event& event, double x) { return {event, {"the walls meet", "gamma/2R", x}}; }
+
 }  // namespace
 
 /// An open contact at the start of a step: closes where its wall stands at the surface and comes in, or is pressed on.
@@ -76,6 +82,14 @@ void System::resume_loading(std::size_t i, double x, std::vector<Event>& log) {
   for (std::size_t lateral = 0; i == first_primary_ && lateral < memory_.size(); ++lateral) {
     if (is_lateral(lateral)) pass(lateral_boundaries_, lateral);
   }
+}
+
+/// The end of the law, where a contact goes on a rounding error beyond it: no guard would see it cross.
+std::optional<DomainEnd> System::end_passed(std::size_t i, double x, std::vector<Event>& log) const {
+  const bool ends_before = !boundaries_.empty() && boundaries_.back().beyond == Regime::undefined;
+  if (x < (ends_before ? boundaries_.back().approach : limit(settings_.law))) return std::nullopt;
+  log.push_back({ends_before ? boundaries_.back().event : std::string_view("limit"), static_cast<int>(i)});
+  return ends_before ? filled(log.back(), x) : met(log.back(), x);
 }
 
 /// Elastic indenter that the contact would leave if it were unloaded from this displacement.
@@ -203,11 +217,13 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         break;
       case k_touched:
         memory.regime = Regime::unloading;
-        if (is_reloaded(i, x)) resume_loading(i, x, log);
+        if (!is_reloaded(i, x)) break;
+        resume_loading(i, x, log);
+        if (!end) end = end_passed(i, x, log);
         break;
       case k_boundary:
         if (boundaries_[memory.next].beyond == Regime::undefined) {
-          end = DomainEnd{event, {"the particle fills its cell, where its pressure would be infinite", "gamma/2R", x}};
+          end = filled(event, x);
           break;
         }
         memory.regime = boundaries_[memory.next++].beyond;
@@ -220,13 +236,14 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         break;
       case k_reload:
         resume_loading(i, x, log);
+        if (!end) end = end_passed(i, x, log);
         break;
       case k_lost:
         x = origin(i);
         lose_contact(i);
         break;
       default:
-        end = DomainEnd{event, {"the walls meet", "gamma/2R", x}};
+        end = met(event, x);
         break;
     }
     if (classes_[i].takes_force) y[places_[i]] = coordinate(i, x);
