@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "elastic/nonlocal_contacts.hpp"
 
@@ -10,15 +11,65 @@ namespace {
 
 constexpr int k_refinements = 2;                                        // of a place clear of all walls
 constexpr double k_no_wall = -std::numeric_limits<double>::infinity();  // displacement of one that does not count
+// How fast gaps of errors close, over a step of the program.
+constexpr double k_closing = 20.0;
+// Of a way on which walls take a centre along: places that are the same, over how far it leads; and the shortest steps.
+constexpr double k_same_place = 1e-13;
+constexpr double k_shortest = 1e-11;
+constexpr double k_touching = 1e-10;  // gap of walls that begin to bear
+constexpr double k_early = 1e-9;      // of a step: which walls touch in it is seen there
+constexpr int k_most_tries = 300;     // of steps; then what differs is rounding
 
 }  // namespace
 
-/// Whether walls touch a free centre beside contacts so much deeper that they bear nothing themselves.
-bool Contacts::is_taken_along(std::span<const double> y) const {
+/// Finds the walls that only take a free centre along: of those that may bear, no forces balance of which one is on
+/// such a wall. Exactly then the centre has a way on which it leaves that wall and comes nearer to no other.
+/// @return whether there are any
+bool Contacts::find_bystanders() {
+  const std::size_t n = class_count();
+  if (!std::ranges::equal(may_bear_, sorted_)) {
+    std::ranges::copy(may_bear_, sorted_.begin());
+    for (std::size_t j = 0; j < n; ++j) {
+      is_bystander_[j] = false;
+      if (!may_bear_[j] || free_count() == 0) continue;
+      for (std::size_t h = 0; h < n; ++h) free_displacements_[h] = !may_bear_[h] ? k_no_wall : h == j ? 1.0 : 0.0;
+      Eigen::Vector3d way = Eigen::Vector3d::Zero();
+      is_bystander_[j] = clear_walls(n, Eigen::Matrix3d::Identity(), way, k_same_surroundings);
+    }
+  }
+  return std::ranges::any_of(is_bystander_, [](char is) { return is != 0; });
+}
+
+/// Projector on the directions in which a free centre may go without changing contacts that hold it.
+Eigen::Matrix3d Contacts::unheld_directions(const auto& holds) const {
+  const auto free = static_cast<Eigen::Index>(free_count());
+  Eigen::Matrix3d projector = Eigen::Matrix3d::Zero();
+  projector.topLeftCorner(free, free).setIdentity();
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    const Eigen::Vector3d along = projector * arm_of(j);
+    if (holds(j) && along.norm() > k_same_surroundings) projector -= along * along.transpose() / along.squaredNorm();
+  }
+  return projector;
+}
+
+/// Finds the contacts that hold a free centre in a state: not the bystanders, and not those that touch beside contacts
+/// so much deeper that they bear nothing; where nothing bears yet, those that touch but for a gap. @return whether
+/// there are other walls, which may take it along
+bool Contacts::find_holding(std::span<const double> y, double gap) {
   if (free_count() == 0) return false;
   const auto squares = y.first(class_count());
   const double deepest = *std::max_element(squares.begin(), squares.end());
-  return std::any_of(squares.begin(), squares.end(), [&](double s) { return std::abs(s) < k_unloaded * deepest; });
+  const double least = deepest > 0.0 ? k_unloaded * deepest : -gap;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    may_bear_[j] = targets_[j].is_force ? targets_[j].value > 0.0 : y[j] >= -std::abs(least);
+  }
+  static_cast<void>(find_bystanders());
+  bool are_others = false;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    holds_[j] = !targets_[j].is_force && may_bear_[j] && !is_bystander_[j] && y[j] >= least;
+    are_others = are_others || (!targets_[j].is_force && !holds_[j]);
+  }
+  return are_others;
 }
 
 /// Where contacts bear a free centre in some directions only, others may take it along in the rest without bearing: as
@@ -28,31 +79,21 @@ bool Contacts::is_taken_along(std::span<const double> y) const {
 /// deeper.
 bool Contacts::let_others_go(std::span<double> y) {
   const std::size_t n = class_count();
-  const double deepest = *std::max_element(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n));
   std::copy(targets_.begin(), targets_.end(), last_targets_.begin());
-  const auto free = static_cast<Eigen::Index>(free_count());
-  Eigen::Matrix3d projector = Eigen::Matrix3d::Zero();
-  projector.topLeftCorner(free, free).setIdentity();
   for (std::size_t j = 0; j < n; ++j) {
-    free_displacements_[j] = targets_[j].is_force ? k_no_wall : targets_[j].value;
-    if (targets_[j].is_force || y[j] < k_unloaded * deepest) {
-      if (!targets_[j].is_force) targets_[j] = target(true, 0.0);
-      continue;
-    }
-    free_displacements_[j] = k_no_wall;
-    const Eigen::Vector3d along = projector * arm_of(j);
-    if (along.norm() > k_same_surroundings) projector -= along * along.transpose() / along.squaredNorm();
+    if (!holds_[j] && !targets_[j].is_force) targets_[j] = target(true, 0.0);
   }
+  const Eigen::Matrix3d projector = unheld_directions([this](std::size_t j) { return holds_[j]; });
   std::copy(y.begin(), y.end(), trial_.begin());
   const bool is_found = projector.trace() > 0.5 && newton(trial_, 0.0) && is_balanced(trial_);
   std::copy(last_targets_.begin(), last_targets_.end(), targets_.begin());
   if (!is_found) return false;
 
   for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t h = 0; h < n; ++h) free_displacements_[j] += coupling_(at(j), at(h)) * forces_[h];
+    const bool may_go = !holds_[j] && !targets_[j].is_force;
+    free_displacements_[j] = may_go ? targets_[j].value + lift_by_forces(j) : k_no_wall;
   }
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();
-  std::copy(trial_.begin() + static_cast<std::ptrdiff_t>(n), trial_.end(), place.begin());
+  Eigen::Vector3d place = place_of(trial_);
   if (!clear_walls(n, projector, place)) return false;
   for (std::size_t j = 0; j < n; ++j) {
     if (free_displacements_[j] != k_no_wall) trial_[j] = std::min(free_approach(j, place), 0.0);
@@ -64,20 +105,123 @@ bool Contacts::let_others_go(std::span<double> y) {
   return true;
 }
 
+bool Contacts::let_bystanders_go(std::span<const Ramp> ramps, double xi, std::span<const char> is_closed,
+                                 std::span<double> y) {
+  const std::size_t n = class_count();
+  set_targets(ramps, xi);
+  for (std::size_t j = 0; j < n; ++j) {
+    may_bear_[j] = targets_[j].is_force ? targets_[j].value > 0.0 : is_closed[j] || y[j] > 0.0;
+  }
+  if (!find_bystanders()) return false;
+  forget();
+  for (std::size_t j = 0; j < n; ++j) {
+    holds_[j] = may_bear_[j] && !is_bystander_[j] && !targets_[j].is_force;
+    forces_[j] = is_bystander_[j] ? 0.0 : modulus_ * law_.at(y[j]).force;
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    const bool may_go = is_bystander_[j] && !targets_[j].is_force;
+    free_displacements_[j] = may_go ? targets_[j].value + lift_by_forces(j) : k_no_wall;
+  }
+  Eigen::Vector3d place = place_of(y);
+  if (!release_centre(unheld_directions([this](std::size_t j) { return holds_[j]; }), place)) return false;
+  for (std::size_t j = 0; j < n; ++j) {
+    if (free_displacements_[j] != k_no_wall) y[j] = std::min(free_approach(j, place), 0.0);
+  }
+  std::copy_n(place.begin(), free_count(), y.begin() + static_cast<std::ptrdiff_t>(n));
+  return true;
+}
+
+/// Adds to rates the velocity of a centre that touching bystanders take along. Errors leave small gaps, which close
+/// gradually: at once they would open and close in turns.
+void Contacts::take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch, std::span<double> dy) {
+  const std::size_t n = class_count();
+  const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
+  const auto takes_along = [&](std::size_t j) { return is_bystander_[j] && !is_force(j) && y[j] <= 0.0; };
+  const auto closing = [&](std::size_t j) { return -k_closing * y[j]; };
+  for (std::size_t j = 0; j < n; ++j) {
+    free_displacements_[j] = takes_along(j) && y[j] >= -touch ? entry(j, n) - closing(j) : k_no_wall;
+  }
+  const auto holds = [&](std::size_t j) { return may_bear_[j] && !is_bystander_[j] && !is_force(j); };
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  if (!release_centre(unheld_directions(holds), velocity)) return;
+  for (std::size_t j = 0; j < n; ++j) {
+    const bool is_touching = free_displacements_[j] != k_no_wall;
+    entry(j, n) =
+        is_touching ? std::min(free_approach(j, velocity), 0.0) + closing(j) : entry(j, n) + arm_of(j).dot(velocity);
+  }
+  for (std::size_t k = 0; k < free_count(); ++k) dy[n + k] += velocity[at(k)];
+}
+
+/// Takes a state along a straight line to the targets. A wall that comes and goes on that way leaves the centre where
+/// it has taken it: in steps in which the same walls touch, and whose halves lead to the same place.
+/// @return false, and y as it was, where further walls begin to bear on the way
+bool Contacts::take_centre_to_targets(std::span<double> y) {
+  const std::size_t n = class_count();
+  std::copy(targets_.begin(), targets_.end(), way_end_.begin());
+  look(y);
+  double size = place_of(y).norm();
+  for (std::size_t j = 0; j < n; ++j) {
+    const bool is_force = way_end_[j].is_force;
+    way_start_[j] = {is_force, is_force ? forces_[j] : now_[j].approach - lift(j, y), y[j]};
+    if (!is_force) size = std::max({size, std::abs(way_start_[j].value), std::abs(way_end_[j].value)});
+  }
+  std::copy(y.begin(), y.end(), carried_.begin());
+  const auto go_to = [&](double share, std::span<double> state) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const Target& start = way_start_[j];
+      targets_[j] =
+          share == 1.0 ? way_end_[j] : target(start.is_force, std::lerp(start.value, way_end_[j].value, share));
+    }
+    if (let_all_go(state)) return true;
+    static_cast<void>(find_holding(state, k_touching * size));
+    return let_others_go(state);
+  };
+  const auto is_same = [&] {
+    if ((place_of(at_once_) - place_of(by_halves_)).norm() > k_same_place * size) return false;
+    for (std::size_t j = 0; j < n; ++j) {
+      if ((at_once_[j] == 0.0) != (early_[j] == 0.0)) return false;
+    }
+    return true;
+  };
+  bool is_possible = true;
+  double step = 1.0;
+  int tries = 0;
+  for (double done = 0.0; is_possible && done < 1.0;) {
+    const double next = std::min(1.0, done + step);
+    for (auto* state : {&at_once_, &by_halves_, &early_}) std::ranges::copy(carried_, state->begin());
+    is_possible = go_to(next, at_once_) && go_to(std::midpoint(done, next), by_halves_) && go_to(next, by_halves_) &&
+                  go_to(std::lerp(done, next, k_early), early_);
+    if (step > k_shortest && tries < k_most_tries && !(is_possible && is_same())) {
+      is_possible = true;
+      step *= 0.5;
+      ++tries;
+      continue;
+    }
+    if (!is_possible) break;
+    std::ranges::copy(by_halves_, carried_.begin());
+    done = next;
+    step *= 2.0;
+  }
+  std::copy(way_end_.begin(), way_end_.end(), targets_.begin());
+  if (is_possible) std::copy(carried_.begin(), carried_.end(), y.begin());
+  return is_possible;
+}
+
+bool Contacts::let_go(std::span<const Ramp> ramps, double xi, std::span<double> y) {
+  set_targets(ramps, xi);
+  return let_all_go(y);
+}
+
 /// No other state balances then: its forces would do no work on a way there, sum_j F_j d_j <= 0, but sum_j F_j g_j >
 /// sum_jh F_j G_jh F_h wherever M is positive definite.
-bool Contacts::let_go(std::span<const Ramp> ramps, double xi, std::span<double> y) {
+bool Contacts::let_all_go(std::span<double> y) {
   const std::size_t n = class_count();
   for (std::size_t j = 0; j < n; ++j) {
-    const bool is_force = ramps[j].control == Control::force;
-    const double value = std::lerp(ramps[j].start, ramps[j].end, xi);
-    if (is_force && value != 0.0) return false;
-    free_displacements_[j] = is_force ? k_no_wall : value;
+    if (targets_[j].is_force && targets_[j].value != 0.0) return false;
+    free_displacements_[j] = targets_[j].is_force ? k_no_wall : targets_[j].value;
   }
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();
-  std::copy(y.begin() + static_cast<std::ptrdiff_t>(n), y.begin() + static_cast<std::ptrdiff_t>(unknown_count()),
-            place.begin());
-  if (!release_centre(place)) return false;
+  Eigen::Vector3d place = place_of(y);
+  if (!release_centre(Eigen::Matrix3d::Identity(), place)) return false;
   for (std::size_t j = 0; j < n; ++j) {
     y[j] = free_displacements_[j] == k_no_wall ? 0.0 : std::min(free_approach(j, place), 0.0);
   }
@@ -96,7 +240,7 @@ bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y,
     free_displacements_[j] = is_force || y[j] < 0.0 ? k_no_wall : slope;
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-  if (!release_centre(velocity)) return false;
+  if (!release_centre(Eigen::Matrix3d::Identity(), velocity)) return false;
   for (std::size_t j = 0; j < n; ++j) {
     const bool is_touching = free_displacements_[j] != k_no_wall;
     free_displacements_[j] = ramps[j].end - ramps[j].start;
@@ -108,7 +252,7 @@ bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y,
 }
 
 /// Approach of a wall where nothing bears; exactly 0 where it touches but for rounding.
-double Contacts::free_approach(std::size_t index, const Eigen::Vector3d& centre) const {
+double Contacts::free_approach(std::size_t index, const Eigen::Vector3d& centre, double rounding) const {
   const double displacement = free_displacements_[index];
   double sum = displacement;
   double size = std::abs(displacement);
@@ -117,13 +261,14 @@ double Contacts::free_approach(std::size_t index, const Eigen::Vector3d& centre)
     sum += share;
     size += std::abs(share);
   }
-  return std::abs(sum) <= k_resolved * size ? 0.0 : sum;
+  return std::abs(sum) <= rounding * size ? 0.0 : sum;
 }
 
-/// Moves a centre to the nearest place where no wall of free_displacements_ is beyond the surface.
+/// Moves a centre in a subspace, whose projector is given, to the nearest place where no wall of free_displacements_ is
+/// beyond the surface.
 /// @return false, and the centre where it was, if the walls leave no such place
-bool Contacts::release_centre(Eigen::Vector3d& centre) const {
-  const auto clear = [&] { return clear_walls(class_count(), Eigen::Matrix3d::Identity(), centre); };
+bool Contacts::release_centre(const Eigen::Matrix3d& projector, Eigen::Vector3d& centre) const {
+  const auto clear = [&] { return clear_walls(class_count(), projector, centre); };
   if (!clear()) return false;
   // What rounding has left beyond the surface on a long way is little, and so is the way from there.
   for (int refinement = 0; refinement < k_refinements; ++refinement) {
@@ -132,22 +277,37 @@ bool Contacts::release_centre(Eigen::Vector3d& centre) const {
   return true;
 }
 
-/// Moves the centre in a subspace, whose projector is given, to the nearest place clear of the first walls. One that
-/// the nearest place clear of those before it is not clear of touches the surface in the end.
-bool Contacts::clear_walls(std::size_t count, const Eigen::Matrix3d& projector, Eigen::Vector3d& place) const {
+/// The same, clear of the first walls only. One that the nearest place clear of those before it is not clear of touches
+/// the surface in the end.
+bool Contacts::clear_walls(std::size_t count, const Eigen::Matrix3d& projector, Eigen::Vector3d& place,
+                           double rounding) const {
   Eigen::Vector3d now = place;
   for (std::size_t j = 0; j < count; ++j) {
     const double displacement = free_displacements_[j];
-    if (displacement == k_no_wall || free_approach(j, now) <= 0.0) continue;
+    if (displacement == k_no_wall || free_approach(j, now, rounding) <= 0.0) continue;
     const Eigen::Vector3d arm = arm_of(j);
     const Eigen::Vector3d along = projector * arm;
     const double share = along.squaredNorm();
     if (!(share > k_same_surroundings * k_same_surroundings)) return false;
     now = place - along * ((displacement + arm.dot(place)) / share);
-    if (!clear_walls(j, projector - along * along.transpose() / share, now)) return false;
+    if (!clear_walls(j, projector - along * along.transpose() / share, now, rounding)) return false;
   }
   place = now;
   return true;
+}
+
+/// What forces on other walls add to the approach of a wall.
+double Contacts::lift_by_forces(std::size_t index) const noexcept {
+  double sum = 0.0;
+  for (std::size_t h = 0; h < class_count(); ++h) sum += coupling_(at(index), at(h)) * forces_[h];
+  return sum;
+}
+
+/// Displacement of the centre in a state.
+Eigen::Vector3d Contacts::place_of(std::span<const double> y) const {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(class_count()), free_count(), place.begin());
+  return place;
 }
 
 /// Mean normal of a class along the free directions.

@@ -131,10 +131,12 @@ Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Ce
   stiffness_.resize(n);
   seen_.resize(n);
   free_displacements_.resize(n);
+  for (auto* marks : {&may_bear_, &sorted_, &is_bystander_, &holds_}) marks->resize(n);
   forget();
   matrix_.resize(n * stride_);
-  for (auto* targets : {&targets_, &first_targets_, &last_targets_}) targets->resize(n);
-  for (auto* state : {&trial_, &state_, &unit_rates_}) state->resize(unknown_count());
+  for (auto* targets : {&targets_, &first_targets_, &last_targets_, &way_start_, &way_end_}) targets->resize(n);
+  for (auto* state : {&trial_, &state_, &unit_rates_, &carried_, &at_once_, &by_halves_, &early_})
+    state->resize(unknown_count());
   unit_ramps_.resize(n);
   modes_ = mode_coupling_;
   stiffness_roots_.resize(n);
@@ -145,6 +147,13 @@ Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Ce
 Contacts::Target Contacts::target(bool is_force, double value) const {
   if (!std::isfinite(value)) throw std::domain_error("a wall is prescribed a value that is not finite");
   return {is_force, value, is_force ? law_.signed_square_under(value / modulus_) : 0.0};
+}
+
+/// The targets of an instant of a step of the program.
+void Contacts::set_targets(std::span<const Ramp> ramps, double xi) {
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    targets_[j] = target(ramps[j].control == Control::force, std::lerp(ramps[j].start, ramps[j].end, xi));
+  }
 }
 
 /// Contacts, forces and stiffnesses of a state.
@@ -166,8 +175,7 @@ void Contacts::forget() noexcept { seen_[0] = std::numeric_limits<double>::quiet
 /// What the displacement of the centre and the forces on other walls add to the approach of a wall.
 double Contacts::lift(std::size_t index, std::span<const double> y) const noexcept {
   const std::size_t n = class_count();
-  double sum = 0.0;
-  for (std::size_t h = 0; h < n; ++h) sum += coupling_(at(index), at(h)) * forces_[h];
+  double sum = lift_by_forces(index);
   for (std::size_t k = 0; k < free_count(); ++k) sum += arms_(at(index), at(k)) * y[n + k];
   return sum;
 }
@@ -345,11 +353,9 @@ bool Contacts::is_balanced_but_for_rounding(std::span<const double> y) {
 }
 
 void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y, bool is_own_mode) {
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    targets_[j] = target(ramps[j].control == Control::force, std::lerp(ramps[j].start, ramps[j].end, xi));
-  }
+  set_targets(ramps, xi);
   // Of the places to which others may take a centre along, Newton's method knows no nearest one.
-  if (is_own_mode && is_taken_along(y) && let_others_go(y)) return;
+  if (is_own_mode && find_holding(y) && take_centre_to_targets(y)) return;
   std::copy(y.begin(), y.end(), trial_.begin());
   if (newton(trial_, 0.0) && !has_left_branch(trial_) && is_balanced(trial_)) {
     std::copy(trial_.begin(), trial_.end(), y.begin());
@@ -437,7 +443,10 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
                             std::to_string(margin(y)));
   }
   if (free_count() > 0) {
-    regularise_first_touch([&](std::size_t j) { return !is_force(j) && y[j] == 0.0 && entry(j, n) >= 0.0; });
+    for (std::size_t j = 0; j < n; ++j) may_bear_[j] = is_force(j) ? y[j] > 0.0 || slope(j) > 0.0 : y[j] >= -touch;
+    const bool has_bystanders = find_bystanders();
+    regularise_first_touch(
+        [&](std::size_t j) { return !is_force(j) && y[j] == 0.0 && entry(j, n) >= 0.0 && !is_bystander_[j]; });
     Eigen::Vector3d net = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < free_count(); ++k) {
       dy[n + k] = 0.0;
@@ -458,6 +467,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
       may_hold = may_hold || (!is_force(j) && y[j] <= 0.0 && y[j] > -std::max(touch, k_unloaded * widest));
     }
     if (left > k_balance * pressing && !may_hold) throw std::domain_error(k_nothing_holds);
+    if (has_bystanders) take_along(ramps, y, touch, dy);
   }
   for (std::size_t j = 0; j < n; ++j) {
     dy[j] = entry(j, n) / now_[j].approach_slope;

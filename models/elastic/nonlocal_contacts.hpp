@@ -91,6 +91,12 @@ class Contacts {
   /// @return false, and y as it was, if the walls leave no such place, or one is under a force
   bool let_go(std::span<const Ramp> ramps, double xi, std::span<double> y);
 
+  /// Moves the centre, where that changes nothing for contacts that hold it, out of the way of walls that touch but
+  /// cannot bear, and sets them accordingly.
+  /// @param is_closed  classes in contact; others are where their s is above zero
+  /// @return whether there are such walls
+  bool let_bystanders_go(std::span<const Ramp> ramps, double xi, std::span<const char> is_closed, std::span<double> y);
+
   /// dy/dxi along a solution. Regular from the unloaded state on, but for a class under force control at s = 0, where
   /// its own s has an infinite rate; the other rates do not depend on that. A free centre leaves the unloaded state as
   /// if the contacts were equally stiff, which is exact where they will be.
@@ -147,6 +153,7 @@ class Contacts {
   };
 
   [[nodiscard]] Target target(bool is_force, double value) const;
+  void set_targets(std::span<const Ramp> ramps, double xi);
   void look(std::span<const double> y);
   void forget() noexcept;
   [[nodiscard]] double lift(std::size_t index, std::span<const double> y) const noexcept;
@@ -159,16 +166,25 @@ class Contacts {
   void regularise_first_touch(const auto& is_touching);
   double move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
   [[nodiscard]] bool newton(std::span<double> y, double imbalance);
-  [[nodiscard]] bool is_taken_along(std::span<const double> y) const;
+  [[nodiscard]] bool find_bystanders();
+  [[nodiscard]] bool find_holding(std::span<const double> y, double gap = 0.0);
+  [[nodiscard]] Eigen::Matrix3d unheld_directions(const auto& holds) const;
+  void take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch, std::span<double> dy);
+  [[nodiscard]] bool take_centre_to_targets(std::span<double> y);
+  [[nodiscard]] bool let_all_go(std::span<double> y);
   [[nodiscard]] bool let_others_go(std::span<double> y);
   [[nodiscard]] bool has_left_branch(std::span<const double> y);
   [[nodiscard]] bool is_balanced(std::span<const double> y);
   [[nodiscard]] bool is_balanced_but_for_rounding(std::span<const double> y);
   [[nodiscard]] bool let_go_on(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy);
-  [[nodiscard]] double free_approach(std::size_t index, const Eigen::Vector3d& centre) const;
-  [[nodiscard]] bool release_centre(Eigen::Vector3d& centre) const;
+  [[nodiscard]] double free_approach(std::size_t index, const Eigen::Vector3d& centre,
+                                     double rounding = k_resolved) const;
+  [[nodiscard]] bool release_centre(const Eigen::Matrix3d& projector, Eigen::Vector3d& centre) const;
+  [[nodiscard]] bool clear_walls(std::size_t count, const Eigen::Matrix3d& projector, Eigen::Vector3d& place,
+                                 double rounding = k_resolved) const;
+  [[nodiscard]] double lift_by_forces(std::size_t index) const noexcept;
+  [[nodiscard]] Eigen::Vector3d place_of(std::span<const double> y) const;
   [[nodiscard]] Eigen::Vector3d arm_of(std::size_t index) const;
-  [[nodiscard]] bool clear_walls(std::size_t count, const Eigen::Matrix3d& projector, Eigen::Vector3d& place) const;
   void approach_in_steps(std::span<double> y);
 
   [[nodiscard]] double& entry(std::size_t row, std::size_t column) noexcept { return matrix_[row * stride_ + column]; }
@@ -203,9 +219,16 @@ class Contacts {
   std::vector<double> stiffness_;           ///< dF/dg; 0 under force control
   std::vector<double> seen_;                ///< signed squares that these are of
   std::vector<double> free_displacements_;  ///< of the walls that a centre goes out of the way of
-  std::vector<double> matrix_;              ///< a row per class: 1 - G dF/dg, right-hand side, arms
+  std::vector<char> may_bear_;              ///< among which bystanders are sought
+  std::vector<char> sorted_;                ///< that these are of
+  std::vector<char> is_bystander_;
+  std::vector<char> holds_;     ///< bears a free centre under displacement control
+  std::vector<double> matrix_;  ///< a row per class: 1 - G dF/dg, right-hand side, arms
   std::vector<Target> targets_, first_targets_, last_targets_;
   std::vector<double> trial_, state_, unit_rates_;
+  // On a way on which walls take the centre along.
+  std::vector<Target> way_start_, way_end_;
+  std::vector<double> carried_, at_once_, by_halves_, early_;
   std::vector<Ramp> unit_ramps_;
   Eigen::Vector3d imbalance_ = Eigen::Vector3d::Zero();
   Eigen::MatrixXd modes_;

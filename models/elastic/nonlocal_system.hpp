@@ -112,6 +112,7 @@ class System final : public HybridSystem {
   std::vector<ContactState> now_;
   std::vector<double> edge_angles_;  ///< as far as the guards have asked for them; nan: not yet
   std::vector<Ramp> drawn_ramps_;
+  std::vector<char> is_closed_;
 };
 
 }  // namespace monograin::nonlocal

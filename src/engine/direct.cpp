@@ -120,13 +120,21 @@ class Direct final : public EventLocator {
     return piece_end_ > begin_ ? std::clamp(2.0 * (xi - begin_) / (piece_end_ - begin_) - 1.0, -1.0, 1.0) : -1.0;
   }
 
-  /// The series through the nodes of the piece are the first guess.
+  /// The series through the nodes of the piece are the first guess. What may rest has gone the way that it has come,
+  /// which no series knows: from the last node before.
   void state_at(double xi, std::span<double> y) override {
     ++statistics_.rhs_evaluations;
     const double t = place(xi);
-    for (std::size_t k = 0; k < y.size(); ++k) y[k] = begin_state_[k] + series_[k].value(t);
+    std::size_t gone = 0;
+    while (gone < nodes_->count && nodes_->places[gone] <= t) ++gone;
+    for (std::size_t k = 0; k < y.size(); ++k) {
+      const double gain = !goes_from_nodes() ? series_[k].value(t) : gone > 0 ? gains_[k][gone - 1] : 0.0;
+      y[k] = begin_state_[k] + gain;
+    }
     system_.solve(xi, y);
   }
+
+  [[nodiscard]] bool goes_from_nodes() const noexcept { return may_rest_ && is_closed_; }
 
   void state_ahead(double xi, std::span<double> y) override { system_.solve(xi, y); }
 
@@ -165,7 +173,7 @@ class Direct final : public EventLocator {
     }
     move_end(piece_end_);
     locate_event();
-    if (may_rest_ && is_closed_ && end_ < piece_end_ && end_ - begin_ > least_progress(begin_)) forget_what_follows();
+    if (goes_from_nodes() && end_ < piece_end_ && end_ - begin_ > least_progress(begin_)) forget_what_follows();
     if (std::isfinite(branch_reach_) && !is_resolved()) {
       factor = std::min(0.5, k_just_beyond * (end_ - begin_) / (piece_end_ - begin_));
       return false;
