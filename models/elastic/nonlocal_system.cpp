@@ -195,6 +195,13 @@ void System::throw_pull(std::size_t i) const {
   throw std::domain_error("a wall of class '" + classes_[i].name + "' would have to pull");
 }
 
+/// Where a force ends, contacts leave the centre at the same instant: that the wall would have to pull is said of both.
+void System::throw_pull_that_follows(double xi) const {
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    if (is_loaded(i) && ramps_[i].end < 0.0 && square_under_force(i, xi) <= idle_) throw_pull(i);
+  }
+}
+
 double System::square_under_force(std::size_t i, double xi) const {
   const double force = told(i, xi);
   if (force < 0.0) throw_pull(i);
@@ -254,7 +261,12 @@ void System::solve(double xi, std::span<double> y) {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     is_own_mode = is_own_mode && (regimes_[i] == Regime::elastic || state_[i] <= touch_);
   }
-  contacts_.solve(ramps_, xi, state_, is_own_mode);
+  try {
+    contacts_.solve(ramps_, xi, state_, is_own_mode);
+  } catch (const std::domain_error&) {
+    throw_pull_that_follows(xi);
+    throw;
+  }
   note(y);
 }
 
@@ -264,7 +276,12 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
     drawn_ramps_[i] = ramps_[i];
     if (!is_loaded(i)) drawn_ramps_[i].end += k_pull * (told(i, xi) - now_[i].displacement);
   }
-  contacts_.rates(drawn_ramps_, state_, rates_, touch_);
+  try {
+    contacts_.rates(drawn_ramps_, state_, rates_, touch_);
+  } catch (const std::domain_error&) {
+    throw_pull_that_follows(xi);
+    throw;
+  }
   std::ranges::copy(rates_, dy.begin());
   // dF/dxi of every contact, and with it that of the walls that follow a force.
   const auto force_rate = [&](std::size_t i) {
