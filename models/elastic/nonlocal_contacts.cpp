@@ -464,7 +464,8 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     const double left = move_centre(net, dy.subspan(n));
     bool may_hold = false;  // walls that just touch do at once
     for (std::size_t j = 0; j < n; ++j) {
-      may_hold = may_hold || (!is_force(j) && y[j] <= 0.0 && y[j] > -std::max(touch, k_unloaded * widest));
+      may_hold = may_hold ||
+                 (!is_force(j) && !is_bystander_[j] && y[j] <= 0.0 && y[j] > -std::max(touch, k_unloaded * widest));
     }
     if (left > k_balance * pressing && !may_hold) throw std::domain_error(k_nothing_holds);
     if (has_bystanders) take_along(ramps, y, touch, dy);
