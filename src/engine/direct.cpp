@@ -121,16 +121,22 @@ class Direct final : public EventLocator {
   }
 
   /// The series through the nodes of the piece are the first guess. What may rest has gone the way that it has come,
-  /// which no series knows: from the last node before.
+  /// which no series knows: from the last node before, if there is a way from there.
   void state_at(double xi, std::span<double> y) override {
     ++statistics_.rhs_evaluations;
     const double t = place(xi);
-    std::size_t gone = 0;
-    while (gone < nodes_->count && nodes_->places[gone] <= t) ++gone;
-    for (std::size_t k = 0; k < y.size(); ++k) {
-      const double gain = !goes_from_nodes() ? series_[k].value(t) : gone > 0 ? gains_[k][gone - 1] : 0.0;
-      y[k] = begin_state_[k] + gain;
+    if (goes_from_nodes()) {
+      std::size_t gone = 0;
+      while (gone < nodes_->count && nodes_->places[gone] <= t) ++gone;
+      for (std::size_t k = 0; k < y.size(); ++k) y[k] = begin_state_[k] + (gone > 0 ? gains_[k][gone - 1] : 0.0);
+      try {
+        system_.solve(xi, y);
+        return;
+      } catch (const std::domain_error&) {
+        ++statistics_.rhs_evaluations;
+      }
     }
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] = begin_state_[k] + series_[k].value(t);
     system_.solve(xi, y);
   }
 
