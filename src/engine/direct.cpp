@@ -121,11 +121,12 @@ class Direct final : public EventLocator {
   }
 
   /// The series through the nodes of the piece are the first guess. What may rest has gone the way that it has come,
-  /// which no series knows: from the last node before, if there is a way from there.
+  /// which no series knows: from the last node before, if there is a way from there. Slaved unknowns are too steep for
+  /// that.
   void state_at(double xi, std::span<double> y) override {
     ++statistics_.rhs_evaluations;
     const double t = place(xi);
-    if (goes_from_nodes()) {
+    if (goes_from_nodes() && !has_slaves_) {
       std::size_t gone = 0;
       while (gone < nodes_->count && nodes_->places[gone] <= t) ++gone;
       for (std::size_t k = 0; k < y.size(); ++k) y[k] = begin_state_[k] + (gone > 0 ? gains_[k][gone - 1] : 0.0);
