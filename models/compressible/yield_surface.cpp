@@ -130,7 +130,8 @@ struct Way {
     // b^2 - a c without the digits that the two have in common where the way comes from far away.
     const double across = x * dy - y * dx;
     const double discriminant = a * radius * radius - across * across;
-    if (discriminant < 0.0) return std::nullopt;
+    // A way that begins outside by an error, along the tangent, need not meet the ellipse at all.
+    if (discriminant < 0.0) return c > 0.0 ? std::optional(0.0) : std::nullopt;
     const double root = std::sqrt(discriminant);
     return b > 0.0 ? -c / (b + root) : (root - b) / a;
   }
