@@ -142,7 +142,10 @@ void System::take_branch() {
   start_end_ = std::min(std::max(law_.jamming, branch_.begin) * (1.0 + k_start), branch_.end);
   growth_at_end_ = 0.0;
   if (branch_.end < 1.0 && ramp_.control != Control::packing_fraction) {
-    growth_at_end_ = growth_by_law(packing_fraction_at(law_, branch_, last_place()));
+    const double at_end = growth_by_law(packing_fraction_at(law_, branch_, last_place()));
+    // Otherwise it ends at a pole, next to which what an integrator tolerates makes growth any number.
+    const bool is_fold = at_end < growth_by_law(std::midpoint(branch_.begin, branch_.end));
+    if (is_fold) growth_at_end_ = at_end;
   }
   if (ramp_.control == Control::packing_fraction) return;
   const double share = branch_.begin > law_.jamming ? k_start_of_fold : k_start;

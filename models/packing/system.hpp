@@ -108,7 +108,7 @@ class System final : public HybridSystem {
 
   Ramp ramp_;
   Branch branch_;               ///< of what is prescribed
-  double growth_at_end_ = 0.0;  ///< of what is prescribed with Phi, where a branch ends before the packing is full
+  double growth_at_end_ = 0.0;  ///< of what is prescribed with Phi, where a branch ends because that growth does
   double start_end_ = 0.0;      ///< Phi up to which the start is closed
   Mode mode_ = Mode::unjammed;
   double resting_ = 0.0;  ///< integrated Phi outside of the mode in which it is integrated
