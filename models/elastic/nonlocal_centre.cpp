@@ -207,6 +207,22 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
   return is_possible;
 }
 
+/// From a guess with errors: contacts that touch but for such gaps as others are deep may all bear. Those that then do
+/// are balanced by themselves, and the others go.
+bool Contacts::bear_at_once(std::span<double> y) {
+  const auto squares = y.first(class_count());
+  const double deepest = free_count() > 0 ? *std::max_element(squares.begin(), squares.end()) : 0.0;
+  if (!(deepest > 0.0)) return false;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    may_bear_[j] = targets_[j].is_force ? targets_[j].value > 0.0 : y[j] >= -deepest;
+  }
+  static_cast<void>(find_bystanders());
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    holds_[j] = may_bear_[j] && !is_bystander_[j] && !targets_[j].is_force;
+  }
+  return let_others_go(y);
+}
+
 bool Contacts::let_go(std::span<const Ramp> ramps, double xi, std::span<double> y) {
   set_targets(ramps, xi);
   return let_all_go(y);

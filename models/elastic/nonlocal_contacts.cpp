@@ -360,7 +360,12 @@ void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y
   if (newton(trial_, 0.0) && !has_left_branch(trial_) && is_balanced(trial_)) {
     std::copy(trial_.begin(), trial_.end(), y.begin());
   } else if (!let_go(ramps, xi, y)) {
-    approach_in_steps(y);
+    try {
+      approach_in_steps(y);
+    } catch (const std::domain_error&) {
+      std::copy(last_targets_.begin(), last_targets_.end(), targets_.begin());
+      if (!bear_at_once(y)) throw;
+    }
   }
 }
 
