@@ -300,17 +300,21 @@ bool Contacts::newton(std::span<double> y, double imbalance) {
       move_centre(net, y.subspan(n));
     }
     double scale = 0.0;
+    double length = 0.0;
     for (std::size_t j = 0; j < n; ++j) {
       if (targets_[j].is_force) continue;
       const double step = entry(j, n) / now_[j].approach_slope;
       y[j] += step;
       correction = std::max(correction, std::abs(step));
       scale = std::max(scale, std::abs(y[j]));
+      length = std::max({length, std::abs(targets_[j].value), std::abs(lift(j, y))});
     }
     // What is left is at most a further contraction of this correction.
     const double contraction = iteration > 0 ? std::min(correction / last, 1.0) : 1.0;
     if (correction * contraction <= k_resolved * scale) return true;
-    if (iteration >= free_steps && contraction > k_contraction) return correction <= k_stagnation * scale;
+    // Contacts that are shallow against the way of the centre are what rounding of that leaves.
+    if (iteration >= free_steps && contraction > k_contraction)
+      return correction <= std::max(k_stagnation * scale, k_resolved * length);
     last = correction;
   }
   return false;
