@@ -431,6 +431,19 @@ void Contacts::approach_in_steps(std::span<double> y) {
   std::copy(state_.begin(), state_.end(), y.begin());
 }
 
+/// Whether walls within a distance may hold a centre that contacts do not. May change what are bystanders.
+bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> y, double near) {
+  const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    may_bear_[j] = is_force(j) ? y[j] > 0.0 || ramps[j].end > ramps[j].start : y[j] > -near;
+  }
+  static_cast<void>(find_bystanders());
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    if (!is_force(j) && may_bear_[j] && !is_bystander_[j] && y[j] <= 0.0) return true;
+  }
+  return false;
+}
+
 void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch) {
   const std::size_t n = class_count();
   if (let_go_on(ramps, y, dy)) return;
@@ -471,13 +484,10 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
       widest = std::max(widest, std::abs(y[j]));
     }
     const double left = move_centre(net, dy.subspan(n));
-    bool may_hold = false;  // walls that just touch do at once
-    for (std::size_t j = 0; j < n; ++j) {
-      may_hold = may_hold ||
-                 (!is_force(j) && !is_bystander_[j] && y[j] <= 0.0 && y[j] > -std::max(touch, k_unloaded * widest));
-    }
-    if (left > k_balance * pressing && !may_hold) throw std::domain_error(k_nothing_holds);
     if (has_bystanders) take_along(ramps, y, touch, dy);
+    // Walls that just touch hold the centre at once, if they can bear.
+    const double near = std::max(touch, k_unloaded * widest);
+    if (left > k_balance * pressing && !may_be_held(ramps, y, near)) throw std::domain_error(k_nothing_holds);
   }
   for (std::size_t j = 0; j < n; ++j) {
     dy[j] = entry(j, n) / now_[j].approach_slope;

@@ -171,6 +171,7 @@ class Contacts {
   [[nodiscard]] Eigen::Matrix3d unheld_directions(const auto& holds) const;
   void take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch, std::span<double> dy);
   [[nodiscard]] bool take_centre_to_targets(std::span<double> y);
+  [[nodiscard]] bool may_be_held(std::span<const Ramp> ramps, std::span<const double> y, double near);
   [[nodiscard]] bool bear_at_once(std::span<double> y);
   [[nodiscard]] bool let_all_go(std::span<double> y);
   [[nodiscard]] bool let_others_go(std::span<double> y);
