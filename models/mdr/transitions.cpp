@@ -36,9 +36,11 @@ double System::overlap_rate(std::size_t i, const Motion& now) const noexcept {
 double System::edge_rate(std::size_t i, double r, const Motion& now) {
   const Contact& c = now_[i].contact;
   double overlap_speed = inward_rate(i, now) + now.growth;
-  // A contact under force that is just being made moves with the force alone.
-  if (is_loaded(i) && !(c.by_overlap > 0.0)) overlap_speed = ramps_[i].end - ramps_[i].start;
-  if (now.growth == 0.0) return overlap_speed > 0.0 ? 1.0 : overlap_speed < 0.0 ? -1.0 : 0.0;
+  // A contact under force that is just being made moves with the force alone, and without bound: however small the
+  // force is, growth is nothing beside that.
+  const bool is_being_made = is_loaded(i) && !(c.by_overlap > 0.0);
+  if (is_being_made) overlap_speed = ramps_[i].end - ramps_[i].start;
+  if (is_being_made || now.growth == 0.0) return overlap_speed > 0.0 ? 1.0 : overlap_speed < 0.0 ? -1.0 : 0.0;
   const Frame at = frame(i, now_[i].overlap, r);
   Frame::Change change = at.by_radius;
   if (settings_.delta_max_rule == DeltaMaxRule::shifted) {
