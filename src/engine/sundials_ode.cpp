@@ -59,6 +59,7 @@ struct CvodeLibrary {
   static constexpr auto local_errors = CVodeGetEstLocalErrors;
   static constexpr auto flag_name = CVodeGetReturnFlagName;
   static constexpr bool remembers_roots = false;
+  static constexpr bool remembers_steps = true;
 
   static int reinit(void* memory, OdeMethod, CVRhsFn, realtype xi, N_Vector y) { return CVodeReInit(memory, xi, y); }
   static long rhs_evaluations(void* memory) {
@@ -109,6 +110,7 @@ struct ArkodeLibrary {
   /// ARKStepReInit does not forget that the last call ended at a root (6.4.1): where a guard is exactly zero, a later
   /// one then takes that for the same root, and gives up.
   static constexpr bool remembers_roots = true;
+  static constexpr bool remembers_steps = false;
   static constexpr int order = 5;  // the highest with which its interpolation keeps up
 
   static int reinit(void* memory, OdeMethod method, ARKRhsFn rates, realtype xi, N_Vector y) {
@@ -132,7 +134,8 @@ class SundialsOde final : public Integrator {
         watch_(watch),
         method_(method),
         tolerances_(tolerances),
-        of_step_(of_step(tolerances, method == OdeMethod::cvode_bdf ? k_share_of_many : k_usual_share)),
+        share_of_step_(method == OdeMethod::cvode_bdf ? k_share_of_many : k_usual_share),
+        of_step_(of_step(tolerances, share_of_step_)),
         form_(system) {
     const auto size = static_cast<sunindextype>(form_.size());
     for (NVector* vector : {&y_, &begin_state_, &rates_, &atol_, &weights_, &errors_})
@@ -164,6 +167,10 @@ class SundialsOde final : public Integrator {
       N_VScale(1.0, begin_state_.get(), y_.get());
       start(begin, step);
     };
+    if (corrects_begin()) {
+      restart(0.0);
+      last_length_ = 0.0;
+    }
     const auto step_once = [&] {
       return step_within_domain(
           pending_, begin, [this] { return evolve(); },
@@ -283,11 +290,19 @@ class SundialsOde final : public Integrator {
       return true;
     });
   }
-  static int projection(realtype xi, N_Vector y, N_Vector way, realtype, N_Vector, void* self) noexcept {
-    N_VScale(1.0, y, way);
-    const int flag = corrected(xi, way, self);
-    N_VLinearSum(1.0, way, -1.0, y, way);
-    return flag;
+
+  /// A method that remembers its steps goes on from them until the state is off by what is tolerated of the curve: in a
+  /// smaller correction its next steps would see nothing but a jump, and the rounding in it.
+  /// @return whether begin_state_ is a new beginning
+  bool corrects_begin() {
+    if (!Library::remembers_steps || !form_.has_corrections()) return false;
+    N_VScale(1.0, begin_state_.get(), errors_.get());
+    if (corrected(end_, errors_.get(), this) != 0) return false;
+    N_VLinearSum(1.0, errors_.get(), -1.0, begin_state_.get(), errors_.get());
+    static_cast<void>(error_weights(begin_state_.get(), weights_.get(), this));
+    if (N_VWrmsNorm(errors_.get(), weights_.get()) * share_of_step_ <= 1.0) return false;
+    N_VLinearSum(1.0, begin_state_.get(), 1.0, errors_.get(), begin_state_.get());
+    return true;
   }
 
   /// d(rates)/dy by difference quotients, as the library's own, but for increments that leave the domain.
@@ -365,7 +380,9 @@ class SundialsOde final : public Integrator {
   HybridSystem& system_;
   Watch& watch_;
   OdeMethod method_;
-  Tolerances tolerances_, of_step_;
+  Tolerances tolerances_;
+  double share_of_step_;  ///< of what is tolerated of the curve
+  Tolerances of_step_;
   ExplicitForm form_;
   std::string message_;
   Pending pending_;
@@ -390,13 +407,7 @@ void SundialsOde<CvodeLibrary>::create() {
   const bool is_adams = method_ == OdeMethod::cvode_adams;
   memory_.reset(CVodeCreate(is_adams ? CV_ADAMS : CV_BDF, context_));
   check("CVodeInit", CVodeInit(memory_.get(), right_hand_side, 0.0, y_.get()));
-  if (!is_adams) {
-    if (!form_.has_corrections()) return;
-    check("CVodeSetProjFn", CVodeSetProjFn(memory_.get(), projection));
-    // What is taken away of an error is no reason to tolerate more of it.
-    check("CVodeSetProjErrEst", CVodeSetProjErrEst(memory_.get(), 0));
-    return;
-  }
+  if (!is_adams) return;
   nonlinear_.reset(SUNNonlinSol_FixedPoint(y_.get(), 0, context_));
   check("CVodeSetNonlinearSolver", CVodeSetNonlinearSolver(memory_.get(), nonlinear_.get()));
 }
