@@ -147,6 +147,25 @@ using DormandPrince = odeint::controlled_runge_kutta<odeint::runge_kutta_dopri5<
 template <class State>
 using Fehlberg = odeint::controlled_runge_kutta<odeint::runge_kutta_fehlberg78<State>, ErrorChecker<State>>;
 
+/// The same tolerance for the extrapolation, which takes no checker of its own; with the rates at the step's beginning.
+struct RoundedOperations : odeint::default_operations {
+  template <class Value>
+  struct rel_error : odeint::default_operations::rel_error<Value> {
+    using Base = odeint::default_operations::rel_error<Value>;
+    using Base::Base;
+
+    void operator()(double& error, double old, double rate) const {
+      const double tolerated =
+          std::max(this->m_eps_abs + this->m_eps_rel * std::abs(old), k_rounding_of_xi * std::abs(rate));
+      error = std::abs(error) / tolerated;
+    }
+  };
+};
+template <class State>
+using Extrapolation =
+    odeint::bulirsch_stoer<State, double, State, double, typename odeint::algebra_dispatcher<State>::algebra_type,
+                           RoundedOperations>;
+
 /// Explicit methods. That of order 5 has an interpolation of its own; in steps of the others a state is found by
 /// integrating to it with the method of order 8.
 template <class State, class Controlled>
@@ -348,7 +367,7 @@ std::unique_ptr<Stepper> make_explicit(OdeintMethod method, ScaledForm& form, co
             return Fehlberg<State>(ErrorChecker<State>(tolerated, &rule_errors));
           });
     case OdeintMethod::bulirsch_stoer: {
-      using Controlled = odeint::bulirsch_stoer<State>;
+      using Controlled = Extrapolation<State>;
       return std::make_unique<ExplicitStepper<State, Controlled>>(
           form, tolerances, 0, [&](const auto&, const auto&) { return Controlled(atol, rtol, 1.0, 0.0); });
     }
