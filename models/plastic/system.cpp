@@ -119,6 +119,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   const double length = settings_.initial_radius;
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     const double unit = ramps[i].control == Control::force ? settings_.strength * length * length : length;
+    const bool was_loaded = is_loaded(i);
     const double stood = classes_[i].takes_force ? displacement_at(i, y[places_[i]]) : 0.0;
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
     if (is_lateral(i)) continue;
@@ -126,7 +127,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     const bool stands_at_dent = std::abs(ramps_[i].start - origin(i)) <= k_rounding * origin(i);
     if (memory_[i].regime == Regime::separated && !is_loaded(i) && stands_at_dent) ramps_[i].start = origin(i);
     double x = is_loaded(i) ? stood : ramps_[i].start;
-    directions_[i] = direction_of_ramp(i, x);
+    directions_[i] = direction_of_ramp(i, x, was_loaded);
     if (touches(memory_[i].regime)) {
       // A wall that has only touched leaves no dent.
       const bool has_pressed = x > (is_loaded(i) ? 0.0 : k_least_depth);
@@ -156,11 +157,16 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
 }
 
 /// A ramp that rounding has left between two equal values goes nowhere. A force under which a wall stands has the
-/// rounding of its place, too.
-int System::direction_of_ramp(std::size_t i, double x) const {
+/// rounding of its place, too, and a place where a force has left it has that of the force.
+int System::direction_of_ramp(std::size_t i, double x, bool was_loaded) const {
   const double way = ramps_[i].end - ramps_[i].start;
   double size = std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
-  if (is_loaded(i)) size = std::max(size, contact(i, x).stiffness * x);
+  if (is_loaded(i)) {
+    size = std::max(size, contact(i, x).stiffness * x);
+  } else if (was_loaded && touches(memory_[i].regime)) {
+    const Contact now = contact(i, x);
+    if (now.stiffness > 0.0) size += now.force / now.stiffness;
+  }
   if (std::abs(way) <= k_rounding * size) return 0;
   return way > 0.0 ? 1 : -1;
 }
