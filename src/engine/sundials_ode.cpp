@@ -59,7 +59,6 @@ struct CvodeLibrary {
   static constexpr auto local_errors = CVodeGetEstLocalErrors;
   static constexpr auto flag_name = CVodeGetReturnFlagName;
   static constexpr bool remembers_roots = false;
-  static constexpr bool remembers_steps = true;
 
   static int reinit(void* memory, OdeMethod, CVRhsFn, realtype xi, N_Vector y) { return CVodeReInit(memory, xi, y); }
   static long rhs_evaluations(void* memory) {
@@ -110,7 +109,6 @@ struct ArkodeLibrary {
   /// ARKStepReInit does not forget that the last call ended at a root (6.4.1): where a guard is exactly zero, a later
   /// one then takes that for the same root, and gives up.
   static constexpr bool remembers_roots = true;
-  static constexpr bool remembers_steps = false;
   static constexpr int order = 5;  // the highest with which its interpolation keeps up
 
   static int reinit(void* memory, OdeMethod method, ARKRhsFn rates, realtype xi, N_Vector y) {
@@ -134,8 +132,7 @@ class SundialsOde final : public Integrator {
         watch_(watch),
         method_(method),
         tolerances_(tolerances),
-        share_of_step_(method == OdeMethod::cvode_bdf ? k_share_of_many : k_usual_share),
-        of_step_(of_step(tolerances, share_of_step_)),
+        of_step_(of_step(tolerances, method == OdeMethod::cvode_bdf ? k_share_of_many : k_usual_share)),
         form_(system) {
     const auto size = static_cast<sunindextype>(form_.size());
     for (NVector* vector : {&y_, &begin_state_, &rates_, &atol_, &weights_, &errors_})
@@ -292,17 +289,22 @@ class SundialsOde final : public Integrator {
   }
 
   /// A method that remembers its steps goes on from them until the state is off by what is tolerated of the curve: in a
-  /// smaller correction its next steps would see nothing but a jump, and the rounding in it.
+  /// smaller correction its next steps would see nothing but a jump, and the rounding in it. Adams' method gains
+  /// nothing by that where it is slow, at the stiff ends of segments of a yield surface.
   /// @return whether begin_state_ is a new beginning
   bool corrects_begin() {
-    if (!Library::remembers_steps || !form_.has_corrections()) return false;
+    if (method_ != OdeMethod::cvode_bdf || !form_.has_corrections()) return false;
     N_VScale(1.0, begin_state_.get(), errors_.get());
     if (corrected(end_, errors_.get(), this) != 0) return false;
-    N_VLinearSum(1.0, errors_.get(), -1.0, begin_state_.get(), errors_.get());
-    static_cast<void>(error_weights(begin_state_.get(), weights_.get(), this));
-    if (N_VWrmsNorm(errors_.get(), weights_.get()) * share_of_step_ <= 1.0) return false;
-    N_VLinearSum(1.0, begin_state_.get(), 1.0, errors_.get(), begin_state_.get());
-    return true;
+    const auto state = view(begin_state_.get());
+    const auto better = view(errors_.get());
+    bool is_off = false;
+    for (std::size_t k = 0; k < state.size(); ++k) {
+      const double size = std::max(std::abs(state[k]), form_.unknown(k).scale);
+      is_off = is_off || std::abs(better[k] - state[k]) > tolerances_.rtol * size;
+    }
+    if (is_off) std::ranges::copy(better, state.begin());
+    return is_off;
   }
 
   /// d(rates)/dy by difference quotients, as the library's own, but for increments that leave the domain.
@@ -380,9 +382,7 @@ class SundialsOde final : public Integrator {
   HybridSystem& system_;
   Watch& watch_;
   OdeMethod method_;
-  Tolerances tolerances_;
-  double share_of_step_;  ///< of what is tolerated of the curve
-  Tolerances of_step_;
+  Tolerances tolerances_, of_step_;
   ExplicitForm form_;
   std::string message_;
   Pending pending_;
