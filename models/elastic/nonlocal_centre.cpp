@@ -246,14 +246,15 @@ bool Contacts::let_all_go(std::span<double> y) {
 }
 
 /// Where nothing bears and nothing begins to, the centre goes out of the way of the walls that touch, and of no other.
-bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy) {
+/// Gaps of errors close gradually: walls that touch only where there is none would leave the centre in turns.
+bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch) {
   const std::size_t n = class_count();
   if (free_count() == 0) return false;
   for (std::size_t j = 0; j < n; ++j) {
     const bool is_force = ramps[j].control == Control::force;
     const double slope = ramps[j].end - ramps[j].start;
     if (y[j] > 0.0 || (is_force && slope != 0.0)) return false;
-    free_displacements_[j] = is_force || y[j] < 0.0 ? k_no_wall : slope;
+    free_displacements_[j] = is_force || y[j] < -touch ? k_no_wall : slope + k_closing * y[j];
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (!release_centre(Eigen::Matrix3d::Identity(), velocity)) return false;
@@ -261,7 +262,7 @@ bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y,
     const bool is_touching = free_displacements_[j] != k_no_wall;
     free_displacements_[j] = ramps[j].end - ramps[j].start;
     const double rate = free_approach(j, velocity);
-    dy[j] = ramps[j].control == Control::force ? 0.0 : is_touching ? std::min(rate, 0.0) : rate;
+    dy[j] = ramps[j].control == Control::force ? 0.0 : is_touching ? std::min(rate, -k_closing * y[j]) : rate;
   }
   std::copy_n(velocity.begin(), free_count(), dy.begin() + static_cast<std::ptrdiff_t>(n));
   return true;

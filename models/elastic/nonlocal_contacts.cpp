@@ -446,7 +446,7 @@ bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> 
 
 void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch) {
   const std::size_t n = class_count();
-  if (let_go_on(ramps, y, dy)) return;
+  if (let_go_on(ramps, y, dy, touch)) return;
   look(y);
   const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
   const auto slope = [&](std::size_t j) { return ramps[j].end - ramps[j].start; };
