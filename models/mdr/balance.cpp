@@ -22,6 +22,11 @@ constexpr int k_newton_limit = 60;
 constexpr int k_most_halvings = 40;
 // How many times as long as the last one a step is at most.
 constexpr double k_most_growth = 64.0;
+// How far, over R0, an equilibrium that does not hold the centre is from where its contacts begin to; and by how much
+// farther each look on the way lies.
+constexpr double k_nearest_saddle = 1e-9;
+constexpr double k_farthest_saddle = 1e-2;
+constexpr double k_longer = 1.25;
 
 }  // namespace
 
@@ -208,6 +213,38 @@ void System::move_centre(double xi, std::span<double> y) {
     throw std::domain_error("the contacts hold the free centre no longer: beyond a fold no forces on it balance");
   }
   throw std::domain_error("the balance of forces on the free centre was not found");
+}
+
+/// Next to a fold there is, beside the equilibrium that holds the centre, another one that does not, to which a search
+/// from afar may lead. Between them the contacts hold the centre neither way; the equilibrium sought is about as far
+/// beyond that place.
+void System::leave_saddle(double xi, std::span<double> y) {
+  look(xi, y);
+  if (!(least_firmness() < 0.0)) return;
+  const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(sums_.stiffness);
+  const Small weakest = solver.eigenvectors().col(0);
+  Small saddle = Small::Zero();
+  for (int k = 0; k < free_count_; ++k) saddle[k] = y[centre_place(k)];
+  const auto go = [&](double way) {
+    for (int k = 0; k < free_count_; ++k) y[centre_place(k)] = saddle[k] + way * weakest[k];
+    look(xi, y);
+  };
+  for (const double side : {1.0, -1.0}) {
+    try {
+      double way = side * k_nearest_saddle;
+      for (go(way); std::abs(way) < k_farthest_saddle && weakest.dot(sums_.stiffness * weakest) <= 0.0; go(way)) {
+        way *= k_longer;
+      }
+      if (std::abs(way) >= k_farthest_saddle) continue;
+      go(2.0 * way);
+      move_centre(xi, y);
+      look(xi, y);
+      if (least_firmness() > 0.0) return;
+    } catch (const std::domain_error&) {
+      continue;  // no branch leads there
+    }
+  }
+  go(0.0);
 }
 
 /// Moves the centre towards the balance of forces, as far as the present branches of the contacts lead.

@@ -185,6 +185,9 @@ double System::largest_overlap(const Memory& memory, double r) const noexcept {
 void System::complete(double xi, std::span<double> y) {
   if (!is_growing_) y[k_radius] = held_radius_;
   place(xi, y);
+  if (free_count_ == 0 || !weakest_contact()) return;
+  leave_saddle(xi, y);
+  note_walls(xi, y);
 }
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {

@@ -226,6 +226,7 @@ class System final : public HybridSystem {
   }
   [[nodiscard]] double rounding_of_forces() const noexcept;
   void move_centre(double xi, std::span<double> y);
+  void leave_saddle(double xi, std::span<double> y);
   bool approach_balance(double xi, std::span<double> y);
   void grow(double xi, std::span<double> y);
 
