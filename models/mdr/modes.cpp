@@ -28,6 +28,13 @@ constexpr double k_spring = 1e-9;
 constexpr const char* k_unsettled =
     "there is no mode in which every contact's branch agrees with its motion: the regimes do not settle";
 
+/// Takes the events of a contact out again, those from a place on.
+void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
+  const auto first = log.begin() + static_cast<std::ptrdiff_t>(std::min(from, log.size()));
+  const auto is_its = [i](const Event& event) { return event.contact_class == static_cast<int>(i); };
+  log.erase(std::remove_if(first, log.end(), is_its), log.end());
+}
+
 }  // namespace
 
 /// Where the centre is free, a contact along its directions is carried by others only: the nearest ones close with it
@@ -309,6 +316,9 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
   }
   look(xi, y);
   for (std::size_t i = 0; i < now_.size(); ++i) overlaps_before_[i] = now_[i].overlap;
+  memory_before_ = memory_;
+  const std::size_t logged_before = log.size();
+  const std::size_t made_before = made.size();
   for (std::size_t round = 0;; ++round) {
     if (round == most_rounds()) throw std::domain_error(k_unsettled);
     std::ranges::copy(y, trial_.begin());
@@ -326,7 +336,22 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
     bool has_changed = false;
     for (std::size_t i = 0; i < memory_.size(); ++i) {
       const double gone = now_[i].overlap - overlaps_before_[i];
-      if (is_loaded(i) || std::abs(gone) <= k_spring) continue;
+      if (is_loaded(i)) continue;
+      // What was led in on the way there, to touch, to yield or to reload, may be led back again: each time it is seen
+      // anew how far it has come from where it was.
+      const Memory& before = memory_before_[i];
+      const Memory last = memory_[i];
+      const bool has_entered = last.is_virgin && (!before.is_virgin || last.regime != before.regime);
+      if (has_entered) {
+        memory_[i] = before;
+        look_at(i, now_[i].displacement, r);
+        forget_events(i, logged_before, log);
+        forget_events(i, made_before, made);
+      }
+      if (std::abs(gone) <= k_spring) {
+        has_changed = has_changed || has_entered;
+        continue;
+      }
       // What turns back turns where it came from.
       const bool turns = gone < 0.0 && touches(memory_[i].regime) && memory_[i].edge == Edge::following;
       if (turns) look_at(i, overlaps_before_[i] - r, r);
@@ -335,8 +360,10 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
       // A dent may be touched and passed at once: looked at in between it would have no force.
       for (std::size_t change = 0; settle_contact(i, xi, y, Motion{}, log, made); ++change) {
         if (change == most_rounds()) throw std::domain_error(k_unsettled);
-        has_changed = true;
+        has_changed = has_changed || !has_entered;
       }
+      const bool is_as_last = memory_[i].regime == last.regime && memory_[i].is_virgin == last.is_virgin;
+      has_changed = has_changed || (has_entered && !is_as_last);
     }
     if (!has_changed && !has_arrived) throw std::domain_error(k_unsettled);
     if (!has_changed) return;

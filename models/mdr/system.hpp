@@ -314,6 +314,7 @@ class System final : public HybridSystem {
   std::vector<PullOff> pull_offs_;
   std::vector<Edge> edges_before_;
   std::vector<double> overlaps_before_;
+  std::vector<Memory> memory_before_;
   Sums sums_;
   EnergyWatch energies_;
   std::optional<Finding> validity_;  ///< of the first adhesive contact to unload for which the model is not valid
