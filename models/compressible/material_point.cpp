@@ -18,11 +18,10 @@ constexpr std::size_t k_multiplier = 2;
 constexpr std::size_t k_axial = 0;
 constexpr std::size_t k_lateral = 1;
 
-// The multiplier starts from zero in every plastic phase, and phi may in a late one, but they have no more digits than
-// the strains that f is made of.
+// The multiplier starts from zero in every plastic phase, but has no more digits than the strains that f is made of.
 constexpr std::array k_unknowns{
-    Unknown{"phi", Unknown::Kind::differential, 1.0},
-    Unknown{"plastic_strain_deviatoric", Unknown::Kind::differential, 1.0},
+    Unknown{"phi", Unknown::Kind::differential, 0.1},
+    Unknown{"plastic_strain_deviatoric", Unknown::Kind::differential, 0.1},
     Unknown{"plastic_multiplier", Unknown::Kind::quadrature, 1.0},
 };
 // Plastic strains over elastic ones, as they usually are: the stress is made of what is left of the strains.
