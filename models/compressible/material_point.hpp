@@ -65,6 +65,14 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] std::string_view difficulty(double xi, std::span<const double> y) override;
 
  private:
+  // Places in y.
+  static constexpr std::size_t k_phi = 0;
+  static constexpr std::size_t k_deviatoric = 1;
+  static constexpr std::size_t k_multiplier = 2;
+  // Channels.
+  static constexpr std::size_t k_axial = 0;
+  static constexpr std::size_t k_lateral = 1;
+
   enum GuardKind { yielding, end_of_segment, apex, domain_end_guard };
   enum class Limit { density, cap_centre, cap_axis, poisson, stiffness, uniqueness };
 
@@ -102,6 +110,7 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] double stress(std::size_t channel, double xi, const Response& now) const noexcept;
   [[nodiscard]] Response response(double xi, std::span<const double> y) const;
   [[nodiscard]] Increment stress_change(const Properties& at, Increment stiff, double axial, double lateral) const;
+  [[nodiscard]] static double stiffness_over_strength(const Properties& at) noexcept;
   [[nodiscard]] Increment elastic_rate(const Properties& at) const;
   [[nodiscard]] Flow flow(const Response& now) const;
   [[nodiscard]] static double cosine(const Flow& flow) noexcept;

@@ -1,0 +1,119 @@
+// The way of a material point's state back to the yield surface.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <stdexcept>
+
+#include "compressible/material_point.hpp"
+
+namespace monograin::compressible {
+namespace {
+
+// Newton's method on f = 0: strain correction and f before it, below both of which the next one is round-off (where a
+// cap is narrow and the material hardly compressible, f is curved within 1e-11 of strain); such small corrections after
+// which f is made of rounding; and how many there may be at all.
+constexpr double k_last_correction = 1e-11;
+// The correction after one of d is d^2 over the elastic strain: where that is tiny, d is the last one if the next is
+// below this.
+constexpr double k_strain_rounding = 1e-16;
+constexpr double k_last_excess = 1e-9;
+constexpr int k_most_small_corrections = 12;
+constexpr int k_most_corrections = 60;
+// Plastic strain by which no guess of an integrator is wrong at any tolerance. A state that is farther away from its
+// guess than that and the elastic strain lies on another branch, behind a loss of uniqueness.
+constexpr double k_nearby = 1e-2;
+
+}  // namespace
+
+/// Brings the plastic strains to f = 0 along the flow or, where that does not lead there, by the shortest way: both
+/// strains may carry an integrator's errors. Where stresses are prescribed, f does not depend on g^p, and near a
+/// critical state the flow hardly changes phi: there by the shortest way alone.
+void MaterialPoint::complete(double xi, std::span<double> y) {
+  if (!is_plastic_) return;
+  const double phi = y[k_phi];
+  const double deviatoric = y[k_deviatoric];
+  const bool has_flow_alone = is_solvable();
+  if (has_flow_alone || !is_stress(k_axial) || !is_stress(k_lateral)) {
+    try {
+      if (is_brought_back(xi, y, Way::flow)) return;
+    } catch (const std::domain_error&) {
+      if (has_flow_alone) throw;
+    }
+    y[k_phi] = phi;
+    y[k_deviatoric] = deviatoric;
+  }
+  if (!has_flow_alone && is_brought_back(xi, y, Way::shortest)) return;
+  throw std::domain_error("no plastic strain brings the stress back to the yield surface");
+}
+
+/// What leads back to f = 0. The shear segment of vm and vmdc is a pair of lines, c^2 = 1 with c = s over the strength,
+/// and a guess that is off by more than the elastic strain lies beside the other one: the distance c - 1 from the line
+/// of this side, with its own slopes, leads to the right one from anywhere.
+MaterialPoint::Flow MaterialPoint::flow_to_surface(const Response& now) const {
+  Flow flow_now = flow(now);
+  const bool is_line = settings_.parameters.model != YieldModel::dpc && branch_.segment == Segment::shear;
+  if (!is_line || branch_.side == 0.0) return flow_now;
+  const double c = branch_.side * now.s / now.at.shear_strength.value;
+  flow_now.yield.f = c - 1.0;
+  for (double* slope : {&flow_now.f_by_phi, &flow_now.f_by_deviatoric, &flow_now.deviatoric}) *slope /= 2.0 * c;
+  flow_now.phi /= 2.0 * std::abs(c);
+  return flow_now;
+}
+
+/// Newton's method on f = 0 in one direction.
+///
+/// A cap much narrower in one direction is a valley of f. A correction that has passed its floor without having
+/// come inside goes back there, and on along the floor, where the slope across stays zero: straight down from slope to
+/// slope it would take many corrections.
+bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
+  const double guess = y[k_phi];
+  const double guessed_deviatoric = y[k_deviatoric];
+  const bool has_caps = is_compressible(settings_.parameters.model);
+  double elastic_strain = 0.0;
+  int small_corrections = 0;
+  double phi = 0.0;  // of the last correction
+  double deviatoric = 0.0;
+  Flow last;  // where it began
+  std::optional<std::array<double, 2>> floor;
+  try {
+    for (int i = 0; i < k_most_corrections; ++i) {
+      const Response here = response(xi, y);
+      const Flow now = flow_to_surface(here);
+      elastic_strain = 1.0 / stiffness_over_strength(here.at);
+      const double slope = now.f_by_phi * phi + now.f_by_deviatoric * deviatoric;
+      if (has_caps && last.yield.f > 0.0 && now.yield.f > 0.0 && slope > 0.0) {
+        const double back = slope / (last.yield.f + slope);
+        y[k_phi] -= back * phi;
+        y[k_deviatoric] -= back * deviatoric;
+        floor = {last.f_by_deviatoric - now.f_by_deviatoric, now.f_by_phi - last.f_by_phi};
+        last = {};
+        continue;
+      }
+      last = now;
+      const bool is_along_flow = way == Way::flow;
+      const double by_phi = floor ? (*floor)[0] : is_along_flow ? now.phi : now.f_by_phi;
+      const double by_deviatoric = floor ? (*floor)[1] : is_along_flow ? now.deviatoric : now.f_by_deviatoric;
+      const double step = -now.yield.f / (now.f_by_phi * by_phi + now.f_by_deviatoric * by_deviatoric);
+      phi = step * by_phi;
+      deviatoric = step * by_deviatoric;
+      if (!std::isfinite(step)) return false;
+      y[k_phi] += phi;
+      y[k_deviatoric] += deviatoric;
+      const double last_correction = std::min(k_last_correction, std::sqrt(k_strain_rounding * elastic_strain));
+      if (std::hypot(phi, deviatoric) >= last_correction) continue;
+      const bool is_found = !has_caps || std::abs(now.yield.f) < k_last_excess;
+      if (!is_found && ++small_corrections < k_most_small_corrections) continue;
+      const double distance = std::hypot(y[k_phi] - guess, y[k_deviatoric] - guessed_deviatoric);
+      return is_solvable() || distance <= std::max(elastic_strain, k_nearby);
+    }
+  } catch (const std::domain_error&) {
+    // Far corrections that lead to where the law has no surface at all have found nothing, either.
+    if (std::abs(y[k_phi] - guess) <= elastic_strain) throw;
+  }
+  return false;
+}
+
+}  // namespace monograin::compressible
