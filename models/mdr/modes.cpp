@@ -435,9 +435,10 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     const bool is_of_edge = guard.kind == k_peel || guard.kind == k_follow || guard.kind == k_turn;
     if (is_of_edge && (!touches(memory_[i].regime) || edges_before_[i] != memory_[i].edge)) continue;
     // Nor is a branch at its end that is as short as what counts as zero.
-    const bool is_of_dent = guard.kind == k_reload && memory_[i].regime == Regime::unloading;
-    const double passed = is_loaded(i) ? k_passed_by_force : k_passed;
-    if (is_of_dent && unloading_fraction(shape(i, r), now_[i].overlap) > passed) continue;
+    if (guard.kind == k_reload && memory_[i].regime == Regime::unloading) {
+      const double passed = is_loaded(i) ? k_passed_by_force : k_passed;
+      if (unloading_fraction(shape(i, r), now_[i].overlap) > passed) continue;
+    }
     if (guard.kind == k_peel && edge_rate(i, r, now) >= -k_at_rest) continue;
     if (guard.kind == k_follow && edge_rate(i, r, now) <= k_at_rest) continue;
     switch (guard.kind) {
