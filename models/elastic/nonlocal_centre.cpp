@@ -24,30 +24,55 @@ constexpr int k_most_tries = 300;     // of steps; then what differs is rounding
 
 /// Finds the walls that only take a free centre along: of those that may bear, no forces balance of which one is on
 /// such a wall. Exactly then the centre has a way on which it leaves that wall and comes nearer to no other.
-/// @return whether there are any
-bool Contacts::find_bystanders() {
+void Contacts::find_bystanders() {
   const std::size_t n = class_count();
-  if (!std::ranges::equal(may_bear_, sorted_)) {
-    std::ranges::copy(may_bear_, sorted_.begin());
-    for (std::size_t j = 0; j < n; ++j) {
-      is_bystander_[j] = false;
-      if (!may_bear_[j] || free_count() == 0) continue;
-      for (std::size_t h = 0; h < n; ++h) free_displacements_[h] = !may_bear_[h] ? k_no_wall : h == j ? 1.0 : 0.0;
-      Eigen::Vector3d way = Eigen::Vector3d::Zero();
-      is_bystander_[j] = clear_walls(n, Eigen::Matrix3d::Identity(), way, k_same_surroundings);
-    }
+  if (std::ranges::equal(may_bear_, sorted_)) return;
+  std::ranges::copy(may_bear_, sorted_.begin());
+  for (std::size_t j = 0; j < n; ++j) {
+    is_bystander_[j] = false;
+    if (!may_bear_[j] || free_count() == 0) continue;
+    for (std::size_t h = 0; h < n; ++h) free_displacements_[h] = !may_bear_[h] ? k_no_wall : h == j ? 1.0 : 0.0;
+    Eigen::Vector3d way = Eigen::Vector3d::Zero();
+    is_bystander_[j] = clear_walls(n, Eigen::Matrix3d::Identity(), way, k_same_surroundings);
   }
+}
+
+bool Contacts::has_bystanders() const {
   return std::ranges::any_of(is_bystander_, [](char is) { return is != 0; });
 }
 
+/// Sorts those that may bear into the walls that hold a free centre, and bystanders. A force holds it nowhere.
+void Contacts::find_holding_among(const auto& is_force) {
+  find_bystanders();
+  for (std::size_t j = 0; j < class_count(); ++j) holds_[j] = may_bear_[j] && !is_bystander_[j] && !is_force(j);
+}
+
+/// The same of walls that are nearer to a state than that, or whose force grows.
+void Contacts::sort_near(std::span<const Ramp> ramps, std::span<const double> y, double near) {
+  const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    may_bear_[j] = is_force(j) ? y[j] > 0.0 || ramps[j].end > ramps[j].start : y[j] >= -near;
+  }
+  find_holding_among(is_force);
+}
+
+/// Whether walls as near as that may hold a centre that contacts do not. May change what are bystanders.
+bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> y, double near) {
+  sort_near(ramps, y, near);
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    if (holds_[j] && y[j] <= 0.0) return true;
+  }
+  return false;
+}
+
 /// Projector on the directions in which a free centre may go without changing contacts that hold it.
-Eigen::Matrix3d Contacts::unheld_directions(const auto& holds) const {
+Eigen::Matrix3d Contacts::unheld_directions() const {
   const auto free = static_cast<Eigen::Index>(free_count());
   Eigen::Matrix3d projector = Eigen::Matrix3d::Zero();
   projector.topLeftCorner(free, free).setIdentity();
   for (std::size_t j = 0; j < class_count(); ++j) {
     const Eigen::Vector3d along = projector * arm_of(j);
-    if (holds(j) && along.norm() > k_same_surroundings) projector -= along * along.transpose() / along.squaredNorm();
+    if (holds_[j] && along.norm() > k_same_surroundings) projector -= along * along.transpose() / along.squaredNorm();
   }
   return projector;
 }
@@ -63,10 +88,10 @@ bool Contacts::find_holding(std::span<const double> y, double gap) {
   for (std::size_t j = 0; j < class_count(); ++j) {
     may_bear_[j] = targets_[j].is_force ? targets_[j].value > 0.0 : y[j] >= -std::abs(least);
   }
-  static_cast<void>(find_bystanders());
+  find_holding_among([this](std::size_t j) { return targets_[j].is_force; });
   bool are_others = false;
   for (std::size_t j = 0; j < class_count(); ++j) {
-    holds_[j] = !targets_[j].is_force && may_bear_[j] && !is_bystander_[j] && y[j] >= least;
+    holds_[j] = holds_[j] && y[j] >= least;
     are_others = are_others || (!targets_[j].is_force && !holds_[j]);
   }
   return are_others;
@@ -83,7 +108,7 @@ bool Contacts::let_others_go(std::span<double> y) {
   for (std::size_t j = 0; j < n; ++j) {
     if (!holds_[j] && !targets_[j].is_force) targets_[j] = target(true, 0.0);
   }
-  const Eigen::Matrix3d projector = unheld_directions([this](std::size_t j) { return holds_[j]; });
+  const Eigen::Matrix3d projector = unheld_directions();
   std::copy(y.begin(), y.end(), trial_.begin());
   const bool is_found = projector.trace() > 0.5 && newton(trial_, 0.0) && is_balanced(trial_);
   std::copy(last_targets_.begin(), last_targets_.end(), targets_.begin());
@@ -95,39 +120,29 @@ bool Contacts::let_others_go(std::span<double> y) {
   }
   Eigen::Vector3d place = place_of(trial_);
   if (!clear_walls(n, projector, place)) return false;
-  for (std::size_t j = 0; j < n; ++j) {
-    if (free_displacements_[j] != k_no_wall) trial_[j] = std::min(free_approach(j, place), 0.0);
-    state_[j] = std::max(y[j], trial_[j]);
-  }
+  put(place, trial_);
+  for (std::size_t j = 0; j < n; ++j) state_[j] = std::max(y[j], trial_[j]);
   if (!(least_pivot(state_) > 0.0)) return false;
-  std::copy_n(place.begin(), free_count(), trial_.begin() + static_cast<std::ptrdiff_t>(n));
   std::copy(trial_.begin(), trial_.end(), y.begin());
   return true;
 }
 
-bool Contacts::let_bystanders_go(std::span<const Ramp> ramps, double xi, std::span<const char> is_closed,
-                                 std::span<double> y) {
+bool Contacts::let_bystanders_go(std::span<const char> is_closed, std::span<double> y) {
   const std::size_t n = class_count();
-  set_targets(ramps, xi);
   for (std::size_t j = 0; j < n; ++j) {
     may_bear_[j] = targets_[j].is_force ? targets_[j].value > 0.0 : is_closed[j] || y[j] > 0.0;
   }
-  if (!find_bystanders()) return false;
+  find_holding_among([this](std::size_t j) { return targets_[j].is_force; });
+  if (!has_bystanders()) return false;
   forget();
-  for (std::size_t j = 0; j < n; ++j) {
-    holds_[j] = may_bear_[j] && !is_bystander_[j] && !targets_[j].is_force;
-    forces_[j] = is_bystander_[j] ? 0.0 : modulus_ * law_.at(y[j]).force;
-  }
+  for (std::size_t j = 0; j < n; ++j) forces_[j] = is_bystander_[j] ? 0.0 : modulus_ * law_.at(y[j]).force;
   for (std::size_t j = 0; j < n; ++j) {
     const bool may_go = is_bystander_[j] && !targets_[j].is_force;
     free_displacements_[j] = may_go ? targets_[j].value + lift_by_forces(j) : k_no_wall;
   }
   Eigen::Vector3d place = place_of(y);
-  if (!release_centre(unheld_directions([this](std::size_t j) { return holds_[j]; }), place)) return false;
-  for (std::size_t j = 0; j < n; ++j) {
-    if (free_displacements_[j] != k_no_wall) y[j] = std::min(free_approach(j, place), 0.0);
-  }
-  std::copy_n(place.begin(), free_count(), y.begin() + static_cast<std::ptrdiff_t>(n));
+  if (!release_centre(unheld_directions(), place)) return false;
+  put(place, y);
   return true;
 }
 
@@ -141,9 +156,8 @@ void Contacts::take_along(std::span<const Ramp> ramps, std::span<const double> y
   for (std::size_t j = 0; j < n; ++j) {
     free_displacements_[j] = takes_along(j) && y[j] >= -touch ? entry(j, n) - closing(j) : k_no_wall;
   }
-  const auto holds = [&](std::size_t j) { return may_bear_[j] && !is_bystander_[j] && !is_force(j); };
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-  if (!release_centre(unheld_directions(holds), velocity)) return;
+  if (!release_centre(unheld_directions(), velocity)) return;
   for (std::size_t j = 0; j < n; ++j) {
     const bool is_touching = free_displacements_[j] != k_no_wall;
     entry(j, n) =
@@ -158,22 +172,17 @@ void Contacts::take_along(std::span<const Ramp> ramps, std::span<const double> y
 bool Contacts::take_centre_to_targets(std::span<double> y) {
   const std::size_t n = class_count();
   std::copy(targets_.begin(), targets_.end(), way_end_.begin());
-  look(y);
+  find_start(way_end_, y, way_start_);
   double size = place_of(y).norm();
   for (std::size_t j = 0; j < n; ++j) {
-    const bool is_force = way_end_[j].is_force;
-    way_start_[j] = {is_force, is_force ? forces_[j] : now_[j].approach - lift(j, y), y[j]};
-    if (!is_force) size = std::max({size, std::abs(way_start_[j].value), std::abs(way_end_[j].value)});
+    if (way_end_[j].is_force) continue;
+    size = std::max({size, std::abs(way_start_[j].value), std::abs(way_end_[j].value)});
   }
   std::copy(y.begin(), y.end(), carried_.begin());
   const auto go_to = [&](double share, std::span<double> state) {
-    for (std::size_t j = 0; j < n; ++j) {
-      const Target& start = way_start_[j];
-      targets_[j] =
-          share == 1.0 ? way_end_[j] : target(start.is_force, std::lerp(start.value, way_end_[j].value, share));
-    }
+    set_targets_between(way_start_, way_end_, share);
     if (let_all_go(state)) return true;
-    static_cast<void>(find_holding(state, k_touching * size));
+    find_holding(state, k_touching * size);
     return let_others_go(state);
   };
   const auto is_same = [&] {
@@ -216,16 +225,14 @@ bool Contacts::bear_at_once(std::span<double> y) {
   for (std::size_t j = 0; j < class_count(); ++j) {
     may_bear_[j] = targets_[j].is_force ? targets_[j].value > 0.0 : y[j] >= -deepest;
   }
-  static_cast<void>(find_bystanders());
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    holds_[j] = may_bear_[j] && !is_bystander_[j] && !targets_[j].is_force;
-  }
+  find_holding_among([this](std::size_t j) { return targets_[j].is_force; });
   return let_others_go(y);
 }
 
-bool Contacts::let_go(std::span<const Ramp> ramps, double xi, std::span<double> y) {
+void Contacts::clear_centre(std::span<const Ramp> ramps, double xi, std::span<const char> is_closed,
+                            std::span<double> y) {
   set_targets(ramps, xi);
-  return let_all_go(y);
+  if (!let_all_go(y) && free_count() > 0) let_bystanders_go(is_closed, y);
 }
 
 /// No other state balances then: its forces would do no work on a way there, sum_j F_j d_j <= 0, but sum_j F_j g_j >
@@ -238,10 +245,8 @@ bool Contacts::let_all_go(std::span<double> y) {
   }
   Eigen::Vector3d place = place_of(y);
   if (!release_centre(Eigen::Matrix3d::Identity(), place)) return false;
-  for (std::size_t j = 0; j < n; ++j) {
-    y[j] = free_displacements_[j] == k_no_wall ? 0.0 : std::min(free_approach(j, place), 0.0);
-  }
-  std::copy_n(place.begin(), free_count(), y.begin() + static_cast<std::ptrdiff_t>(n));
+  std::fill_n(y.begin(), n, 0.0);
+  put(place, y);
   return true;
 }
 
@@ -318,6 +323,14 @@ double Contacts::lift_by_forces(std::size_t index) const noexcept {
   double sum = 0.0;
   for (std::size_t h = 0; h < class_count(); ++h) sum += coupling_(at(index), at(h)) * forces_[h];
   return sum;
+}
+
+/// Puts the centre of a state there, and the walls of free_displacements_ where they then are.
+void Contacts::put(const Eigen::Vector3d& place, std::span<double> y) const {
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    if (free_displacements_[j] != k_no_wall) y[j] = std::min(free_approach(j, place), 0.0);
+  }
+  std::copy_n(place.begin(), free_count(), y.begin() + static_cast<std::ptrdiff_t>(class_count()));
 }
 
 /// Displacement of the centre in a state.

@@ -156,6 +156,22 @@ void Contacts::set_targets(std::span<const Ramp> ramps, double xi) {
   }
 }
 
+/// Of what the ends prescribe, where a state is.
+void Contacts::find_start(std::span<const Target> ends, std::span<const double> y, std::span<Target> starts) {
+  look(y);
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    const bool is_force = ends[j].is_force;
+    starts[j] = {is_force, is_force ? forces_[j] : now_[j].approach - lift(j, y), y[j]};
+  }
+}
+
+/// On the straight way from the one to the other.
+void Contacts::set_targets_between(std::span<const Target> starts, std::span<const Target> ends, double share) {
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    targets_[j] = share == 1.0 ? ends[j] : target(ends[j].is_force, std::lerp(starts[j].value, ends[j].value, share));
+  }
+}
+
 /// Contacts, forces and stiffnesses of a state.
 void Contacts::look(std::span<const double> y) {
   const auto squares = y.first(class_count());
@@ -363,7 +379,7 @@ void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y
   std::copy(y.begin(), y.end(), trial_.begin());
   if (newton(trial_, 0.0) && !has_left_branch(trial_) && is_balanced(trial_)) {
     std::copy(trial_.begin(), trial_.end(), y.begin());
-  } else if (!let_go(ramps, xi, y)) {
+  } else if (!let_all_go(y)) {
     try {
       approach_in_steps(y);
     } catch (const std::domain_error&) {
@@ -376,7 +392,6 @@ void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y
 /// From a state, which is the solution for some displacements, forces and imbalance, along a straight line to the
 /// targets. Newton's method contracts from one point to the next, if they are near, only on the branch of the first.
 void Contacts::approach_in_steps(std::span<double> y) {
-  const std::size_t n = class_count();
   const double pivot = least_pivot(y);
   if (!(pivot > 0.0)) {
     throw std::domain_error("start beyond the limit of applicability of the nonlocal formulation: pivot of " +
@@ -384,11 +399,7 @@ void Contacts::approach_in_steps(std::span<double> y) {
   }
   std::copy(y.begin(), y.end(), state_.begin());
   std::copy(targets_.begin(), targets_.end(), last_targets_.begin());
-  look(y);
-  for (std::size_t j = 0; j < n; ++j) {
-    const bool is_force = last_targets_[j].is_force;
-    first_targets_[j] = {is_force, is_force ? forces_[j] : now_[j].approach - lift(j, y), y[j]};
-  }
+  find_start(last_targets_, y, first_targets_);
   for (std::size_t k = 0; k < free_count(); ++k) imbalance_[at(k)] = net_force(k);
 
   double done = 0.0;
@@ -396,11 +407,7 @@ void Contacts::approach_in_steps(std::span<double> y) {
   int roundings = 0;
   for (int steps = 1; done < 1.0; ++steps) {
     const double next = std::min(1.0, done + step);
-    for (std::size_t j = 0; j < n; ++j) {
-      targets_[j] = next == 1.0 ? last_targets_[j]
-                                : target(last_targets_[j].is_force,
-                                         std::lerp(first_targets_[j].value, last_targets_[j].value, next));
-    }
+    set_targets_between(first_targets_, last_targets_, next);
     std::copy(state_.begin(), state_.end(), trial_.begin());
     // Only the end has to be in balance.
     const bool is_on_branch = newton(trial_, 1.0 - next) && !has_left_branch(trial_);
@@ -431,19 +438,6 @@ void Contacts::approach_in_steps(std::span<double> y) {
   std::copy(state_.begin(), state_.end(), y.begin());
 }
 
-/// Whether walls within a distance may hold a centre that contacts do not. May change what are bystanders.
-bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> y, double near) {
-  const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    may_bear_[j] = is_force(j) ? y[j] > 0.0 || ramps[j].end > ramps[j].start : y[j] > -near;
-  }
-  static_cast<void>(find_bystanders());
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    if (!is_force(j) && may_bear_[j] && !is_bystander_[j] && y[j] <= 0.0) return true;
-  }
-  return false;
-}
-
 void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch) {
   const std::size_t n = class_count();
   if (let_go_on(ramps, y, dy, touch)) return;
@@ -465,8 +459,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
                             std::to_string(margin(y)));
   }
   if (free_count() > 0) {
-    for (std::size_t j = 0; j < n; ++j) may_bear_[j] = is_force(j) ? y[j] > 0.0 || slope(j) > 0.0 : y[j] >= -touch;
-    const bool has_bystanders = find_bystanders();
+    sort_near(ramps, y, touch);
     regularise_first_touch(
         [&](std::size_t j) { return !is_force(j) && y[j] == 0.0 && entry(j, n) >= 0.0 && !is_bystander_[j]; });
     Eigen::Vector3d net = Eigen::Vector3d::Zero();
@@ -484,7 +477,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
       widest = std::max(widest, std::abs(y[j]));
     }
     const double left = move_centre(net, dy.subspan(n));
-    if (has_bystanders) take_along(ramps, y, touch, dy);
+    if (has_bystanders()) take_along(ramps, y, touch, dy);
     // Walls that just touch hold the centre at once, if they can bear.
     const double near = std::max(touch, k_unloaded * widest);
     if (left > k_balance * pressing && !may_be_held(ramps, y, near)) throw std::domain_error(k_nothing_holds);

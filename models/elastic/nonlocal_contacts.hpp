@@ -87,15 +87,10 @@ class Contacts {
   void solve(std::span<const Ramp> ramps, double xi, std::span<double> y, bool is_own_mode = false);
 
   /// Moves the centre to the nearest place where no wall under displacement control is beyond the surface, and sets y
-  /// accordingly.
-  /// @return false, and y as it was, if the walls leave no such place, or one is under a force
-  bool let_go(std::span<const Ramp> ramps, double xi, std::span<double> y);
-
-  /// Moves the centre, where that changes nothing for contacts that hold it, out of the way of walls that touch but
-  /// cannot bear, and sets them accordingly.
+  /// accordingly. If the walls leave no such place, or one is under a force: out of the way of those that touch but
+  /// cannot bear, where that changes nothing for contacts that hold it.
   /// @param is_closed  classes in contact; others are where their s is above zero
-  /// @return whether there are such walls
-  bool let_bystanders_go(std::span<const Ramp> ramps, double xi, std::span<const char> is_closed, std::span<double> y);
+  void clear_centre(std::span<const Ramp> ramps, double xi, std::span<const char> is_closed, std::span<double> y);
 
   /// dy/dxi along a solution. Regular from the unloaded state on, but for a class under force control at s = 0, where
   /// its own s has an infinite rate; the other rates do not depend on that. A free centre leaves the unloaded state as
@@ -154,6 +149,8 @@ class Contacts {
 
   [[nodiscard]] Target target(bool is_force, double value) const;
   void set_targets(std::span<const Ramp> ramps, double xi);
+  void find_start(std::span<const Target> ends, std::span<const double> y, std::span<Target> starts);
+  void set_targets_between(std::span<const Target> starts, std::span<const Target> ends, double share);
   void look(std::span<const double> y);
   void forget() noexcept;
   [[nodiscard]] double lift(std::size_t index, std::span<const double> y) const noexcept;
@@ -166,15 +163,19 @@ class Contacts {
   void regularise_first_touch(const auto& is_touching);
   double move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
   [[nodiscard]] bool newton(std::span<double> y, double imbalance);
-  [[nodiscard]] bool find_bystanders();
-  [[nodiscard]] bool find_holding(std::span<const double> y, double gap = 0.0);
-  [[nodiscard]] Eigen::Matrix3d unheld_directions(const auto& holds) const;
+  void find_bystanders();
+  [[nodiscard]] bool has_bystanders() const;
+  void find_holding_among(const auto& is_force);
+  bool find_holding(std::span<const double> y, double gap = 0.0);
+  void sort_near(std::span<const Ramp> ramps, std::span<const double> y, double near);
+  [[nodiscard]] Eigen::Matrix3d unheld_directions() const;
   void take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch, std::span<double> dy);
   [[nodiscard]] bool take_centre_to_targets(std::span<double> y);
   [[nodiscard]] bool may_be_held(std::span<const Ramp> ramps, std::span<const double> y, double near);
   [[nodiscard]] bool bear_at_once(std::span<double> y);
   [[nodiscard]] bool let_all_go(std::span<double> y);
   [[nodiscard]] bool let_others_go(std::span<double> y);
+  bool let_bystanders_go(std::span<const char> is_closed, std::span<double> y);
   [[nodiscard]] bool has_left_branch(std::span<const double> y);
   [[nodiscard]] bool is_balanced(std::span<const double> y);
   [[nodiscard]] bool is_balanced_but_for_rounding(std::span<const double> y);
@@ -186,6 +187,7 @@ class Contacts {
   [[nodiscard]] bool clear_walls(std::size_t count, const Eigen::Matrix3d& projector, Eigen::Vector3d& place,
                                  double rounding = k_resolved) const;
   [[nodiscard]] double lift_by_forces(std::size_t index) const noexcept;
+  void put(const Eigen::Vector3d& place, std::span<double> y) const;
   [[nodiscard]] Eigen::Vector3d place_of(std::span<const double> y) const;
   [[nodiscard]] Eigen::Vector3d arm_of(std::size_t index) const;
   void approach_in_steps(std::span<double> y);

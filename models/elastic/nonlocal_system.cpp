@@ -230,13 +230,10 @@ void System::note(std::span<double> y) const {
 
 void System::complete(double xi, std::span<double> y) {
   // The gaps themselves, and the place of a free centre: errors of them would close walls that only touch.
-  if (contacts_.let_go(ramps_, xi, y.first(state_.size()))) return;
   look(xi, y);
   for (std::size_t i = 0; i < classes_.size(); ++i) is_closed_[i] = regimes_[i] == Regime::elastic;
-  if (contacts_.let_bystanders_go(ramps_, xi, is_closed_, state_)) std::ranges::copy(state_, y.begin());
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (is_loaded(i)) y[i] = std::pow(square_under_force(i, xi), k_force_power);
-  }
+  contacts_.clear_centre(ramps_, xi, is_closed_, state_);
+  note(y);
 }
 
 double System::branch_reach(std::span<const double> y) const {

@@ -219,7 +219,7 @@ void System::move_centre(double xi, std::span<double> y) {
 /// from afar may lead. Between them the contacts hold the centre neither way; the equilibrium sought is about as far
 /// beyond that place.
 void System::leave_saddle(double xi, std::span<double> y) {
-  look(xi, y);
+  look_once(xi, y);
   if (!(least_firmness() < 0.0)) return;
   const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(sums_.stiffness);
   const Small weakest = solver.eigenvectors().col(0);

@@ -59,8 +59,9 @@ Contact System::touching_contact(double radius, double overlap) const {
 /// it goes on there with the slope at the largest overlap, and leads back as touching_contact() does.
 Contact System::unloaded_contact(const UnloadingShape& shape, double overlap) const {
   const double modulus = material_.composite_modulus;
+  if (free_count_ == 0) return unloading_contact(shape, modulus, overlap);
   const double fraction = unloading_fraction(shape, overlap);
-  if (free_count_ == 0 || std::abs(fraction) <= 1.0) return unloading_contact(shape, modulus, overlap);
+  if (std::abs(fraction) <= 1.0) return unloading_contact(shape, modulus, overlap);
   const bool is_open = fraction > 1.0;
   const double depth = is_open ? fraction - 1.0 : 1.0 - fraction;
   const double followed = std::min(depth, is_open ? 1.0 : 2.0);

@@ -41,17 +41,17 @@ void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
 /// until they balance it, and those open with it that the rest does not balance.
 void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log) {
   if (free_count_ == 0 || directions_[i].norm() < k_no_direction || adheres()) return;
-  for (;;) {
+  while (!is_made || !is_backed(i)) {
     std::optional<std::size_t> next;
     double nearest = k_together;
     bool next_is_dent = false;
     for (std::size_t j = 0; j < memory_.size(); ++j) {
       if (j == i || is_loaded(j) || directions_[j].norm() < k_no_direction) continue;
-      if (touches(memory_[j].regime) == is_made || is_backed(is_made ? i : j)) continue;
+      if (touches(memory_[j].regime) == is_made) continue;
       const bool is_dent = memory_[j].regime == Regime::separated;
       const int kind = is_made ? (is_dent ? k_dent_touched : k_made) : k_lost;
       const double distance = std::abs(contact_guard(kind, j, 0.0, now_[j].overlap, r));
-      if (distance > nearest) continue;
+      if (distance > nearest || (!is_made && is_backed(j))) continue;
       next = j;
       nearest = distance;
       next_is_dent = is_dent;

@@ -42,6 +42,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   pull_offs_.resize(count);
   edges_before_.resize(count);
   overlaps_before_.resize(count);
+  memory_before_.resize(count);
   ramps_.resize(count);
   wall_places_.resize(count);
 

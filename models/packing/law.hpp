@@ -146,4 +146,9 @@ struct Branch {
 /// @throws std::domain_error where the value is not on the branch
 [[nodiscard]] double packing_fraction_at(const Law& law, const Branch& branch, double value);
 
+/// Phi between two others at which a packing whose particles have a strain v bears a stress, to round-off.
+/// @return none where it bears more at the lower one already, or less at the upper one
+[[nodiscard]] std::optional<double> packing_fraction_under(const Law& law, double stress, double particle_strain,
+                                                           double lower, double upper);
+
 }  // namespace monograin::packing

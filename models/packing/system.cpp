@@ -1,10 +1,7 @@
 #include "packing/system.hpp"
 
-#include <boost/math/tools/toms748_solve.hpp>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -292,10 +289,11 @@ void System::complete(double xi, std::span<double> y) {
   // than is tolerated, no direction leads there; the particles say where.
   const std::array<double, 2> guess{y[k_particles], y[k_fraction]};
   if (is_brought_back(xi, y)) return;
-  std::ranges::copy(guess, y.begin());
-  if (is_found_at_given_particles(xi, y)) return;
   std::ranges::copy(guess, y.begin());  // the next trial begins there
-  throw std::domain_error("no packing fraction bears the stress");
+  const double stress = std::min(told(xi), branch_.greatest);
+  const auto found = packing_fraction_under(law_, stress, y[k_particles], least_fraction(), branch_.end);
+  if (!found) throw std::domain_error("no packing fraction bears the stress");
+  y[k_fraction] = *found;
 }
 
 /// Newton's method along the gradient.
@@ -320,22 +318,6 @@ bool System::is_brought_back(double xi, std::span<double> y) const {
     if (step <= k_resolution || is_rounding) return true;
   }
   return false;
-}
-
-bool System::is_found_at_given_particles(double xi, std::span<double> y) const {
-  const auto excess_at = [&](double phi) {
-    y[k_fraction] = phi;
-    return excess(xi, y);
-  };
-  const double least = least_fraction();
-  const double at_least = excess_at(least);
-  const double at_end = excess_at(branch_.end);
-  if (!(at_least < 0.0 && at_end > 0.0)) return false;
-  std::uintmax_t iterations = k_iterations;
-  const auto [below, above] = boost::math::tools::toms748_solve(
-      excess_at, least, branch_.end, at_least, at_end, boost::math::tools::eps_tolerance<double>(), iterations);
-  y[k_fraction] = std::midpoint(below, above);
-  return true;
 }
 
 void System::solve(double xi, std::span<double> y) {

@@ -83,7 +83,6 @@ class System final : public HybridSystem {
   [[nodiscard]] std::array<double, 2> excess_slopes(std::span<const double> y) const;
   [[nodiscard]] double least_fraction() const noexcept;
   [[nodiscard]] bool is_brought_back(double xi, std::span<double> y) const;
-  [[nodiscard]] bool is_found_at_given_particles(double xi, std::span<double> y) const;
   [[nodiscard]] Regime regime() const noexcept;
 
   void take_branch();

@@ -244,7 +244,7 @@ class Drive {
     int idle_events = 0;
     int events = 0;
     long steps = 0;
-    const long first_evaluation = evaluations();
+    const long first_evaluation = integrator_->rhs_evaluations();
     int idle_steps = 0;
     while (plan_.duration > 0.0 && 1.0 - xi_ > k_round_off) {
       const double segment_start = xi_;
@@ -253,7 +253,7 @@ class Drive {
       double last = xi_;
       do {
         last = xi_;
-        const long of_equations = evaluations() - first_evaluation;
+        const long of_equations = integrator_->rhs_evaluations() - first_evaluation;
         const long most = integrator_->most_steps();
         if (steps == most || of_equations > k_most_evaluations * most) throw too_much_work(steps, of_equations);
         ++steps;
@@ -340,8 +340,6 @@ class Drive {
     std::ranges::sort(fired);
     return fired;
   }
-
-  [[nodiscard]] long evaluations() const { return integrator_->statistics().rhs_evaluations; }
 
   [[nodiscard]] SolverError too_much_work(long steps, long of_equations) const {
     return {"integration", "too much work", xi_, integrator_->statistics().last_step,

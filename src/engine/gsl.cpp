@@ -97,7 +97,6 @@ class GslStepper final : public Stepper {
       : form_(form),
         jacobian_(form),
         system_{rates, jacobian, form.size(), this},
-        remembers_steps_(method != GslMethod::rk8pd),
         driver_(make_driver(type_of(method), tolerances)),
         reaching_(make_driver(gsl_odeiv2_step_rk8pd, tolerances)),
         old_(form.size()),
@@ -115,7 +114,7 @@ class GslStepper final : public Stepper {
   }
 
   void correct(std::span<const double> z) override {
-    if (!remembers_steps_) std::ranges::copy(z, now_.begin());
+    if (driver_->s->type == gsl_odeiv2_step_rk8pd) std::ranges::copy(z, now_.begin());
   }
 
   double step() override {
@@ -208,7 +207,6 @@ class GslStepper final : public Stepper {
   ScaledForm& form_;
   DifferenceJacobian jacobian_;
   gsl_odeiv2_system system_;
-  bool remembers_steps_;
   Driver driver_;
   Driver reaching_;
   Pending pending_;

@@ -116,16 +116,22 @@ class Ida final : public Integrator {
     if (past_.segments == 0) return past_;
     Statistics now;
     IDAGetNumSteps(memory_.get(), &now.steps);
-    IDAGetNumResEvals(memory_.get(), &now.rhs_evaluations);
     IDAGetNumJacEvals(memory_.get(), &now.jacobian_evaluations);
     IDAGetNumErrTestFails(memory_.get(), &now.error_test_failures);
     IDAGetNumNonlinSolvConvFails(memory_.get(), &now.convergence_failures);
     IDAGetLastOrder(memory_.get(), &now.last_order);
     IDAGetLastStep(memory_.get(), &now.last_step);
     now += past_;
-    now.rhs_evaluations += for_jacobian_;
+    now.rhs_evaluations = rhs_evaluations();
     now.guard_evaluations = roots_.evaluations;
     return now;
+  }
+
+  [[nodiscard]] long rhs_evaluations() const override {
+    if (past_.segments == 0) return 0;
+    long of_segment = 0;
+    IDAGetNumResEvals(memory_.get(), &of_segment);
+    return past_.rhs_evaluations + of_segment + for_jacobian_;
   }
 
  private:

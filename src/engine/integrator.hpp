@@ -83,6 +83,8 @@ class Integrator {
   [[nodiscard]] virtual double guard_tolerance() const noexcept = 0;
 
   [[nodiscard]] virtual Statistics statistics() const = 0;
+  /// Of these what limits the work, asked for after every internal step.
+  [[nodiscard]] virtual long rhs_evaluations() const { return statistics().rhs_evaluations; }
 
   /// How many internal steps a step of the program may take.
   [[nodiscard]] virtual long most_steps() const noexcept { return k_most_internal_steps; }

@@ -212,14 +212,19 @@ class SundialsOde final : public Integrator {
     Statistics now;
     Library::steps(memory_.get(), &now.steps);
     if (linear_) Library::jacobian_evaluations(memory_.get(), &now.jacobian_evaluations);
-    now.rhs_evaluations = Library::rhs_evaluations(memory_.get()) + for_jacobian_;
     Library::error_test_failures(memory_.get(), &now.error_test_failures);
     Library::convergence_failures(memory_.get(), &now.convergence_failures);
     now.last_order = Library::last_order(memory_.get());
     Library::last_step(memory_.get(), &now.last_step);
     now += past_;
+    now.rhs_evaluations = rhs_evaluations();
     now.guard_evaluations = roots_.evaluations;
     return now;
+  }
+
+  [[nodiscard]] long rhs_evaluations() const override {
+    if (past_.segments == 0) return 0;
+    return past_.rhs_evaluations + Library::rhs_evaluations(memory_.get()) + for_jacobian_;
   }
 
  private:

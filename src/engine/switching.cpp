@@ -41,6 +41,9 @@ class Switching final : public Integrator {
     if (active_ == implicit_.get()) sum += explicit_->statistics();
     return sum;
   }
+  [[nodiscard]] long rhs_evaluations() const override {
+    return active_->rhs_evaluations() + (active_ == implicit_.get() ? explicit_->rhs_evaluations() : 0);
+  }
 
  private:
   std::unique_ptr<Integrator> explicit_;
