@@ -203,6 +203,11 @@ class HybridSystem {
   /// @throws std::domain_error where there is no solution
   virtual void solve(double xi, std::span<double> y) = 0;
 
+  /// Where rates are infinite in a state, takes it along its solution to where they are not, a rounding of the step
+  /// ahead.
+  /// @return where it then is
+  virtual double leave_singularity(double xi, std::span<double> /*y*/) { return xi; }
+
   /// Primitive of the quadrature along the present mode, up to a constant, where it has a closed form.
   [[nodiscard]] virtual std::optional<double> closed_quadrature(double xi, std::span<const double> y) = 0;
 

@@ -56,7 +56,7 @@ void Contacts::sort_near(std::span<const Ramp> ramps, std::span<const double> y,
   find_holding_among(is_force);
 }
 
-/// Whether walls as near as that may hold a centre that contacts do not. May change what are bystanders.
+/// May change what are bystanders.
 bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> y, double near) {
   sort_near(ramps, y, near);
   for (std::size_t j = 0; j < class_count(); ++j) {

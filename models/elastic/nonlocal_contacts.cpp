@@ -228,10 +228,10 @@ bool Contacts::eliminate() noexcept {
 
 /// At first touch all stiffnesses vanish together; equal ones give the motion of equal contacts. For move_centre()
 /// only.
-void Contacts::regularise_first_touch(const auto& is_touching) {
+void Contacts::regularise_first_touch(double stiffness, const auto& is_touching) {
   if (std::any_of(stiffness_.begin(), stiffness_.end(), [](double value) { return value != 0.0; })) return;
   for (std::size_t j = 0; j < class_count(); ++j) {
-    if (is_touching(j)) stiffness_[j] = 1.0;
+    if (is_touching(j)) stiffness_[j] = stiffness;
   }
 }
 
@@ -275,8 +275,13 @@ bool Contacts::newton(std::span<double> y, double imbalance) {
   // On the way in steps nobody asks for balance, and the contacts are those of the state before.
   const bool is_to_balance = imbalance == 0.0;
   double farthest = 0.0;
+  double stiffness = 1.0;  // of what only touches: that of contacts under the greatest force
+  double deepest = 0.0;
   for (const Target& goal : targets_) {
     if (is_to_balance && !goal.is_force) farthest = std::max(farthest, std::abs(goal.value));
+    if (!goal.is_force || !(goal.signed_square > deepest)) continue;
+    deepest = goal.signed_square;
+    stiffness = goal.value / deepest;
   }
   const bool is_first_touch = free_count() > 0 && std::none_of(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n),
                                                                [&](double s) { return s > k_unloaded * farthest; });
@@ -306,7 +311,9 @@ bool Contacts::newton(std::span<double> y, double imbalance) {
     if (!eliminate()) return false;
     double correction = 0.0;
     if (free_count() > 0) {
-      regularise_first_touch([&](std::size_t j) { return !targets_[j].is_force && y[j] + entry(j, n) >= 0.0; });
+      regularise_first_touch(stiffness, [&](std::size_t j) {
+        return !targets_[j].is_force && targets_[j].value + arm_of(j).dot(place_of(y)) >= -deepest;
+      });
       Eigen::Vector3d net = -imbalance * imbalance_;
       for (std::size_t k = 0; k < free_count(); ++k) {
         net[at(k)] += net_force(k);
@@ -438,7 +445,8 @@ void Contacts::approach_in_steps(std::span<double> y) {
   std::copy(state_.begin(), state_.end(), y.begin());
 }
 
-void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch) {
+void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch,
+                     double pull) {
   const std::size_t n = class_count();
   if (let_go_on(ramps, y, dy, touch)) return;
   look(y);
@@ -461,25 +469,27 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
   if (free_count() > 0) {
     sort_near(ramps, y, touch);
     regularise_first_touch(
-        [&](std::size_t j) { return !is_force(j) && y[j] == 0.0 && entry(j, n) >= 0.0 && !is_bystander_[j]; });
+        1.0, [&](std::size_t j) { return !is_force(j) && y[j] == 0.0 && entry(j, n) >= 0.0 && !is_bystander_[j]; });
+    const auto force_rate = [&](std::size_t j) { return is_force(j) ? slope(j) : stiffness_[j] * entry(j, n); };
     Eigen::Vector3d net = Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < free_count(); ++k) {
-      dy[n + k] = 0.0;
-      for (std::size_t j = 0; j < n; ++j) {
-        net[at(k)] += weights_[j] * arms_(at(j), at(k)) * (is_force(j) ? slope(j) : stiffness_[j] * entry(j, n));
-      }
-    }
     double pressing = 0.0;
-    double widest = 0.0;
+    double near = touch;
+    // Contacts that bear a centre against a force end with it, if no error of that balance is left.
+    bool is_forced = false;
+    for (std::size_t j = 0; j < n; ++j) is_forced = is_forced || (is_force(j) && y[j] > touch);
     for (std::size_t j = 0; j < n; ++j) {
+      // What bystanders bear is error.
+      net += weights_[j] * (force_rate(j) + (is_forced && !is_bystander_[j] ? pull * forces_[j] : 0.0)) * arm_of(j);
       // What walls under displacements leave is rounding of all that they would change.
-      pressing += weights_[j] * std::abs(is_force(j) ? slope(j) : stiffness_[j] * entry(j, n));
-      widest = std::max(widest, std::abs(y[j]));
+      pressing += weights_[j] * std::abs(force_rate(j));
+      near = std::max(near, is_force(j) ? y[j] : k_unloaded * std::abs(y[j]));
     }
-    const double left = move_centre(net, dy.subspan(n));
+    const auto centre = dy.subspan(n);
+    std::ranges::fill(centre, 0.0);
+    const double left = move_centre(net, centre);
     if (has_bystanders()) take_along(ramps, y, touch, dy);
-    // Walls that just touch hold the centre at once, if they can bear.
-    const double near = std::max(touch, k_unloaded * widest);
+    // Walls that just touch hold the centre at once, if they can bear; and those that are as near as a force is deep,
+    // as errors take them off just before it ends.
     if (left > k_balance * pressing && !may_be_held(ramps, y, near)) throw std::domain_error(k_nothing_holds);
   }
   for (std::size_t j = 0; j < n; ++j) {

@@ -92,13 +92,18 @@ class Contacts {
   /// @param is_closed  classes in contact; others are where their s is above zero
   void clear_centre(std::span<const Ramp> ramps, double xi, std::span<const char> is_closed, std::span<double> y);
 
+  /// Whether walls as near as that may hold a centre that contacts do not.
+  [[nodiscard]] bool may_be_held(std::span<const Ramp> ramps, std::span<const double> y, double near);
+
   /// dy/dxi along a solution. Regular from the unloaded state on, but for a class under force control at s = 0, where
   /// its own s has an infinite rate; the other rates do not depend on that. A free centre leaves the unloaded state as
   /// if the contacts were equally stiff, which is exact where they will be.
   /// @param touch  walls with an s less than this below zero touch: they may hold the centre at once
+  /// @param pull  how fast contacts that bear the centre against a force are drawn back to their balance
   /// @throws std::domain_error at and beyond the limit of applicability, and where nothing holds a free centre against
   /// prescribed forces
-  void rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch = 0.0);
+  void rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch = 0.0,
+             double pull = 0.0);
 
   /// What is left of the equations, one per unknown: that of the approach under displacement control, s_j - s(F_j)
   /// under force control, balance of forces.
@@ -160,7 +165,7 @@ class Contacts {
   double eliminate_modes(bool to_the_end) noexcept;
   void solve_modes(Eigen::VectorXd& x) const noexcept;
   [[nodiscard]] double quotient_of_modes() const noexcept;
-  void regularise_first_touch(const auto& is_touching);
+  void regularise_first_touch(double stiffness, const auto& is_touching);
   double move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
   [[nodiscard]] bool newton(std::span<double> y, double imbalance);
   void find_bystanders();
@@ -171,7 +176,6 @@ class Contacts {
   [[nodiscard]] Eigen::Matrix3d unheld_directions() const;
   void take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch, std::span<double> dy);
   [[nodiscard]] bool take_centre_to_targets(std::span<double> y);
-  [[nodiscard]] bool may_be_held(std::span<const Ramp> ramps, std::span<const double> y, double near);
   [[nodiscard]] bool bear_at_once(std::span<double> y);
   [[nodiscard]] bool let_all_go(std::span<double> y);
   [[nodiscard]] bool let_others_go(std::span<double> y);

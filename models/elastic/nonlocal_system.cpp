@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -16,7 +17,7 @@ using std::numbers::pi;
 constexpr std::array<std::string_view, 2> k_regime_words{"open", "elastic"};
 
 // Guards. The index is that of a class, of a pair, or -1.
-enum Kind : int { k_made, k_lost, k_impingement, k_stiffening, k_radius, k_centre, k_limit };
+enum Kind : int { k_made, k_lost, k_impingement, k_stiffening, k_force_ends, k_radius, k_centre, k_limit };
 
 // The last pivot goes like the root of the distance from the limit: this is 1e-10 of R0 before it.
 constexpr double k_least_pivot = 1e-5;
@@ -30,6 +31,8 @@ constexpr double k_opposite = 1e-9;
 constexpr double k_same_angle = 1e-9;
 // How far ahead the side of a wall is read that just touches; ten times further where it still does.
 constexpr double k_ahead = 1e-9;
+// How far from the end of a force that bears a free centre no integrator need go on.
+constexpr double k_end_of_force = 1e-8;
 // Distance over the program's reach that a surface moves by rounding alone: less is neither touch nor gap.
 constexpr double k_touch = 1e-13;
 // The same over the deepest contact where forces balance: s goes like their rounding to the power 2/3.
@@ -37,6 +40,7 @@ constexpr double k_touch_of_free_centre = 1e-9;
 // Contacts shallower than this, over the deepest, hold a free centre too softly for an integrator.
 constexpr double k_idle = 1e-6;
 constexpr double k_force_power = 1.5;
+constexpr double k_nowhere = std::numeric_limits<double>::infinity();
 // How fast an integrated state is drawn back to the equations, over a step of the program: an error that it has
 // gathered would grow with 1/margin towards the limit of applicability.
 constexpr double k_pull = 20.0;
@@ -202,6 +206,12 @@ void System::throw_pull_that_follows(double xi) const {
   }
 }
 
+/// Where in the step a force comes down to nothing; nowhere in it where it does not.
+double System::end_of_force(std::size_t i) const noexcept {
+  const Ramp& ramp = ramps_[i];
+  return ramp.start > 0.0 && ramp.end <= 0.0 ? ramp.start / (ramp.start - ramp.end) : k_nowhere;
+}
+
 double System::square_under_force(std::size_t i, double xi) const {
   const double force = told(i, xi);
   if (force < 0.0) throw_pull(i);
@@ -267,6 +277,31 @@ void System::solve(double xi, std::span<double> y) {
   note(y);
 }
 
+/// Contacts that bear a free centre against a force alone are as deep as its power 2/3, and so is its place: where the
+/// force begins, and where it ends.
+double System::leave_singularity(double xi, std::span<double> y) {
+  if (contacts_.free_count() == 0) return xi;
+  look(xi, y);
+  double later = xi;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (!is_loaded(i)) continue;
+    const double end = end_of_force(i);
+    const bool begins = state_[i] <= touch_ && told(i, std::min(xi + k_ahead, 1.0)) > told(i, xi);
+    if (begins && contacts_.may_be_held(ramps_, state_, touch_)) later = std::min(xi + k_ahead, 1.0);
+    if (end > xi && end - xi < 2.0 * k_end_of_force) later = end;
+  }
+  if (later == xi) return xi;
+  const double energy = contacts_.energy(state_);
+  try {
+    contacts_.solve(ramps_, later, look(later, y));
+  } catch (const std::domain_error&) {
+    return xi;  // whoever goes on from here is told
+  }
+  note(y);
+  y[work_place_] += contacts_.energy(state_) - energy;
+  return later;
+}
+
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
   look_closely(xi, y);
   for (std::size_t i = 0; i < classes_.size(); ++i) {
@@ -274,7 +309,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
     if (!is_loaded(i)) drawn_ramps_[i].end += k_pull * (told(i, xi) - now_[i].displacement);
   }
   try {
-    contacts_.rates(drawn_ramps_, state_, rates_, touch_);
+    contacts_.rates(drawn_ramps_, state_, rates_, touch_, k_pull);
   } catch (const std::domain_error&) {
     throw_pull_that_follows(xi);
     throw;
@@ -379,6 +414,15 @@ void System::watch() {
     const bool both = regimes_[pairs_[p].first] == Regime::elastic && regimes_[pairs_[p].second] == Regime::elastic;
     if (both && !pairs_[p].has_impinged) add_guard(k_impingement, p, -1, "impingement");
   }
+  for (std::size_t i = 0; contacts_.free_count() > 0 && i < classes_.size(); ++i) {
+    if (!is_loaded(i) || end_of_force(i) == k_nowhere) continue;
+    guards_.push_back({.kind = k_force_ends,
+                       .index = static_cast<int>(i),
+                       .direction = -1,
+                       .name = "force-ends",
+                       .is_silent = true,
+                       .is_told = true});
+  }
   if (!has_stiffened_) guards_.push_back({k_stiffening, -1, -1, "stiffening"});
   const bool needs_radius = settings_.radius_rule != RadiusRule::none || settings_.model.terms == Terms::all;
   for (std::size_t i = 0; needs_radius && i < classes_.size(); ++i) {
@@ -435,6 +479,9 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
       case k_stiffening:
         values[g] = contacts_.least_pivot(state_, k_stiff_margin);  // zero where the margin is that
         break;
+      case k_force_ends:
+        values[g] = end_of_force(index) - k_end_of_force - xi;
+        break;
       default:
         values[g] = limit_value(guards_[g], xi);
         break;
@@ -467,6 +514,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
       case k_stiffening:
         has_stiffened_ = true;
         break;
+      case k_force_ends:
+        continue;
       default:
         end = end_at(guard, xi, y);
         break;

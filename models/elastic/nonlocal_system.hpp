@@ -45,6 +45,7 @@ class System final : public HybridSystem {
   void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
   void solve(double xi, std::span<double> y) override;
+  double leave_singularity(double xi, std::span<double> y) override;
   [[nodiscard]] double branch_reach(std::span<const double> y) const override;
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override;
   [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
@@ -74,6 +75,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double told(std::size_t i, double xi) const noexcept;
   [[noreturn]] void throw_pull(std::size_t i) const;
   void throw_pull_that_follows(double xi) const;
+  [[nodiscard]] double end_of_force(std::size_t i) const noexcept;
   [[nodiscard]] double square_under_force(std::size_t i, double xi) const;
   std::span<double> look(double xi, std::span<const double> y);
   void settle_others(std::span<const std::size_t> fired, std::vector<Event>& log);

@@ -248,6 +248,8 @@ class Drive {
     int idle_steps = 0;
     while (plan_.duration > 0.0 && 1.0 - xi_ > k_round_off) {
       const double segment_start = xi_;
+      xi_ = system_.leave_singularity(xi_, y_);
+      if (xi_ == 1.0) break;
       integrator_->begin(xi_, y_);
       Integrator::Advance advance{};
       double last = xi_;

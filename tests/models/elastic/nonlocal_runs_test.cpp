@@ -293,6 +293,27 @@ TEST(NonlocalRuns, ForceAndDisplacementControlAreTheSame) {
   }
 }
 
+TEST(NonlocalRuns, AForcePressesAFreeParticleAgainstAFixedWallAsTwoForcesDo) {
+  const std::vector<Step> press_and_release{force_ramp(0.1), force_ramp(0.0), force_ramp(0.05)};
+  for (const char* influence : {"half-space", "sphere"}) {
+    const TestRun both =
+        run(with(nonlocal_scenario(Configuration::simple, 0.3, press_and_release), "influence", influence));
+    const Scenario walls = between(nonlocal_scenario(Configuration::walls, 0.3, {}),
+                                   {wall("a", {0.6, 0, -0.8}, press_and_release), wall("b", {-0.6, 0, 0.8})});
+    for (const char* integrator : k_integrators) {
+      SCOPED_TRACE(std::string(integrator) + " " + influence);
+      const TestRun now = run(with_free_centre(with(walls, "influence", influence)), integrator);
+      ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
+      EXPECT_LE(difference(now.outputs("b.force"), now.outputs("a.force")), 1e-6);
+      EXPECT_LE(difference(now.outputs("b.contact_radius"), both.outputs("axial.contact_radius")), 1e-5);
+      std::vector<double> twice = both.outputs("axial.displacement");
+      for (double& displacement : twice) displacement *= 2.0;
+      EXPECT_LE(difference(now.outputs("a.displacement"), twice), 1e-6);
+      EXPECT_NEAR(now.last("work"), both.last("work"), 1e-6 * both.last("work"));
+    }
+  }
+}
+
 TEST(NonlocalRuns, OfOneTermWithoutCouplingAreHertzian) {
   // A single driven wall under a fixed centre feels no other.
   Scenario one = between(nonlocal_scenario(Configuration::walls, 0.3, {}),
