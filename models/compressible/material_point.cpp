@@ -191,6 +191,7 @@ MaterialPoint::Flow MaterialPoint::flow(const Response& now) const {
   flow.f_by_phi = y.f_phi + y.f_p * by_phi.p + y.f_s * by_phi.s;
   flow.f_by_deviatoric = y.f_p * by_deviatoric.p + y.f_s * by_deviatoric.s;
   flow.stiffness = -(flow.f_by_phi * flow.phi + flow.f_by_deviatoric * flow.deviatoric);
+  flow.p_by_flow = by_phi.p * flow.phi + by_deviatoric.p * flow.deviatoric;
   return flow;
 }
 
@@ -337,6 +338,18 @@ bool MaterialPoint::is_isochoric_end(Segment segment, bool towards_compression) 
   if (settings_.parameters.model == YieldModel::vmdc) return true;
   const Segment other = neighbour(settings_.parameters, segment, towards_compression);
   return segment == Segment::cap || other == Segment::cap;
+}
+
+/// Whether the flow takes the state out through an end of its segment. Where an arc joins a shear line, the flow is the
+/// same on both, and a state that has just come over may be back by rounding alone.
+bool MaterialPoint::leads_out(bool towards_compression, const Response& now) const {
+  if (is_isochoric_end(branch_.segment, towards_compression)) return true;
+  const Flow flow_now = flow(now);
+  if (!(flow_now.stiffness > 0.0)) return true;
+  const double multiplier = flow_now.loading / flow_now.stiffness;
+  const double of_end = -transition_start_slope(settings_.parameters, now.at) * flow_now.phi;
+  const double away = flow_now.elastic.p + multiplier * (flow_now.p_by_flow - of_end);
+  return towards_compression ? away < 0.0 : away > 0.0;
 }
 
 /// How fast the pressure moves at an isochoric end, where phi stands still and s follows p along the tangent.
@@ -488,6 +501,7 @@ std::optional<DomainEnd> MaterialPoint::fire(std::span<const std::size_t> fired,
   }
   for (const std::size_t g : fired) {
     const Guard& guard = guards_[g];
+    if (guard.kind == end_of_segment && !leads_out(guard.index == 1, now)) continue;
     log.push_back({guard.name});
     switch (static_cast<GuardKind>(guard.kind)) {
       case yielding:

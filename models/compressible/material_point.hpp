@@ -100,6 +100,7 @@ class MaterialPoint final : public HybridSystem {
     double f_by_deviatoric = 0.0;  ///< likewise of g^p
     double loading = 0.0;          ///< N
     double stiffness = 0.0;        ///< D
+    double p_by_flow = 0.0;        ///< dp/dl, by the flow alone
     Increment elastic;             ///< per xi, without flow
   };
 
@@ -118,6 +119,7 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] Flow flow_to_surface(const Response& now) const;
   enum class Way { flow, shortest };
   [[nodiscard]] bool is_brought_back(double xi, std::span<double> y, Way way);
+  [[nodiscard]] bool leads_out(bool towards_compression, const Response& now) const;
   [[nodiscard]] double pressure_rate_at_end(const Response& now, bool towards_compression) const;
   [[nodiscard]] bool is_isochoric_end(Segment segment, bool towards_compression) const noexcept;
 

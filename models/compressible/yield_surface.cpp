@@ -144,6 +144,10 @@ CapConstants cap_constants(const Parameters& parameters, const Properties& prope
   return {cap.slope, cap.cohesion, cap.arc_radius, cap.arc_centre, cap.stretch, cap.start};
 }
 
+double transition_start_slope(const Parameters& parameters, const Properties& properties) {
+  return cap_relations(duals_of(properties), parameters.transition_width).start.derivatives()[2];
+}
+
 Segment segment_at(const Parameters& parameters, const Properties& properties, double p) {
   if (parameters.model == YieldModel::vm) return Segment::shear;
   if (p < -properties.cap_centre.value) return Segment::cap;

@@ -50,6 +50,9 @@ struct CapConstants {
 /// 0)
 [[nodiscard]] CapConstants cap_constants(const Parameters& parameters, const Properties& properties);
 
+/// d(p_i)/d(phi).
+[[nodiscard]] double transition_start_slope(const Parameters& parameters, const Properties& properties);
+
 /// The segment that the surface has at this pressure.
 [[nodiscard]] Segment segment_at(const Parameters& parameters, const Properties& properties, double p);
 
