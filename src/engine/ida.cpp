@@ -79,14 +79,23 @@ class Ida final : public Integrator {
     const double begin = end_;
     N_VScale(1.0, y_.get(), begin_state_.get());
     N_VScale(1.0, dy_.get(), begin_rates_.get());
-    const int flag = step_within_domain(
-        pending_, begin, [this] { return evolve(); },
-        [this](double* step) { return IDAGetCurrentStep(memory_.get(), step); },
-        [&](double step) {
-          N_VScale(1.0, begin_state_.get(), y_.get());
-          N_VScale(1.0, begin_rates_.get(), dy_.get());
-          start(begin, step);
-        });
+    const auto restart = [&](double step) {
+      N_VScale(1.0, begin_state_.get(), y_.get());
+      N_VScale(1.0, begin_rates_.get(), dy_.get());
+      start(begin, step);
+    };
+    const auto step_once = [&] {
+      return step_within_domain(
+          pending_, begin, [this] { return evolve(); },
+          [this](double* step) { return IDAGetCurrentStep(memory_.get(), step); }, restart);
+    };
+    int flag = step_once();
+    if (flag < 0) {
+      correct_begin(begin);
+      restart(0.0);
+      last_length_ = 0.0;
+      flag = step_once();
+    }
     check("IDASolve", flag);
     if (is_stuck_at_end(pending_, begin, end_, last_length_)) {
       throw std::domain_error(pending_.nearest_domain_end());
@@ -144,6 +153,19 @@ class Ida final : public Integrator {
       view(atol_.get())[k] = std::isfinite(rounding) ? std::max(least[k], rounding) : least[k];
     }
     check("IDASVtolerances", IDASVtolerances(memory_.get(), of_step(tolerances_).rtol, atol_.get()));
+  }
+
+  /// Takes the system's own state and rates for where a step begins. Beside a fold or a corner those that steps have
+  /// led to may be off by so much that no corrector comes back from them.
+  void correct_begin(double xi) {
+    const auto state = view(begin_state_.get());
+    std::ranges::copy(state, complete_.begin());
+    quadratures_.add_to(complete_);
+    system_.complete(xi, complete_);
+    system_.all_rates(xi, complete_, view(begin_rates_.get()));
+    for (std::size_t k = 0; k < state.size(); ++k) {
+      if (system_.unknowns()[k].kind != Unknown::Kind::quadrature) state[k] = complete_[k];
+    }
   }
 
   /// Begins at xi with the state in y_ and dy_. @param step  the first to be tried; 0: the library's choice
