@@ -38,7 +38,8 @@ struct Unknown {
   /// Its row of residual() gives it outright as a function of xi and the other unknowns, and so does complete(): it has
   /// no error of its own, and may be singular in xi where those are smooth.
   bool is_slaved = false;
-  bool may_rest = false;  ///< nothing may determine it: then it stays where it was
+  bool may_rest = false;   ///< nothing may determine it: then it stays where it was
+  double sum_scale = 0.0;  ///< typical magnitude of the sums it stands in, whose rounding residual() shows as its own
 };
 
 /// A root function that is alive in the present mode. Scaled to order one.

@@ -10,10 +10,11 @@ namespace {
 
 using std::string_view;
 
-// The multiplier starts from zero in every plastic phase, but has no more digits than the strains that f is made of.
+// The multiplier starts from zero in every plastic phase, but has no more digits than the strains that f is made of. So
+// has phi, which in tension may start from zero beside large strains.
 constexpr std::array k_unknowns{
-    Unknown{"phi", Unknown::Kind::differential, 0.1},
-    Unknown{"plastic_strain_deviatoric", Unknown::Kind::differential, 0.1},
+    Unknown{.name = "phi", .scale = 0.1, .sum_scale = 1.0},
+    Unknown{.name = "plastic_strain_deviatoric", .scale = 0.1, .sum_scale = 1.0},
     Unknown{"plastic_multiplier", Unknown::Kind::quadrature, 1.0},
 };
 // Plastic strains over elastic ones, as they usually are: the stress is made of what is left of the strains.

@@ -23,6 +23,8 @@ using IdaMemory = std::unique_ptr<void, IdaDeleter>;
 
 constexpr double k_slave_tolerance = 1e-4;  // loose, but small enough for difference quotients
 constexpr int k_most_failures = 50;         // of one step
+// A corrector's tolerance over the sums in a residual: above their rounding.
+constexpr double k_above_rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 class Ida final : public Integrator {
  public:
@@ -39,7 +41,7 @@ class Ida final : public Integrator {
     for (std::size_t k = 0; k < unknowns.size(); ++k) {
       // A slaved unknown has no error of its own: hardly weighted, and completed wherever it is used.
       const double absolute = unknowns[k].is_slaved ? k_slave_tolerance : of_step(tolerances).atol;
-      view(least_atol_.get())[k] = absolute * unknowns[k].scale;
+      view(least_atol_.get())[k] = std::max(absolute * unknowns[k].scale, k_above_rounding * unknowns[k].sum_scale);
       view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
     }
     memory_.reset(IDACreate(context_));
