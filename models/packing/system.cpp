@@ -116,7 +116,10 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     }
     ramp_.end = ramp_.start;
   }
-  if (is_jammed_ && direction() > 0 && y[k_fraction] >= 1.0) throw std::domain_error("no pores are left");
+  const auto require_pores = [&] {
+    if (is_jammed_ && direction() > 0 && y[k_fraction] >= 1.0) throw std::domain_error("no pores are left");
+  };
+  require_pores();
   // Another control may find the packing where what it prescribes falls as the packing is compacted.
   if (is_jammed_ && y[k_fraction] > branch_.end * (1.0 + k_margin)) {
     throw std::domain_error(end_of_branch(ramp_.control));
@@ -128,6 +131,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   // and one that stands where what is prescribed falls at first, which gives way to where it grows.
   const bool goes_on = mode_ == before && !(mode_ == Mode::jammed && y[k_fraction] < branch_.begin);
   if (!goes_on) solve(0.0, y);
+  require_pores();  // it may have given way until it is full
   if (is_at_limit(0.0)) throw CannotBegin(limit());
   if (goes_on) complete(0.0, y);
   watch(0.0);
