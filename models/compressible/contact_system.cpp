@@ -196,7 +196,9 @@ double ContactSystem::force_of(std::size_t i, double xi, std::span<const double>
   // On a steep curve the rounding of a displacement shows: a wall that stands where it parts from the particle has.
   const bool is_parting = memory.regime == Regime::unloading &&
                           std::abs(d - memory.curve.separation()) <= k_rounding * memory.curve.largest;
-  return is_parting ? 0.0 : force_at(i, d);
+  // Of walls that meet the particle within rounding of one instant, and so together, one may still be short of it.
+  const bool is_short = memory.regime == Regime::linear && d < 0.0;
+  return is_parting || is_short ? 0.0 : force_at(i, d);
 }
 
 ContactSystem::State ContactSystem::state(std::size_t i, double u) const noexcept {
