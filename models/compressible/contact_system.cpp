@@ -324,8 +324,9 @@ void ContactSystem::turn_back(std::size_t i, double d, std::vector<Event>& log) 
 }
 
 void ContactSystem::add_guard(int kind, std::size_t i, int direction, std::string_view name, double place) {
+  // A force is told as a displacement is.
   guards_.push_back(
-      {.kind = kind, .index = static_cast<int>(i), .direction = direction, .name = name, .is_told = !is_loaded(i)});
+      {.kind = kind, .index = static_cast<int>(i), .direction = direction, .name = name, .is_told = true});
   guard_places_.push_back(place);
 }
 
