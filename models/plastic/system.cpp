@@ -84,7 +84,9 @@ System::System(Settings settings, std::vector<ContactClass> classes)
     unknowns_.push_back({classes_[i].name, Unknown::Kind::differential, std::pow(typical, first_power(law)), true});
   }
   work_place_ = unknowns_.size();
-  unknowns_.push_back({"work", Unknown::Kind::quadrature, work_per_wall(law, reach), false});
+  // Beyond where the law is fitted work grows by orders, and a condition may end a program long before its targets.
+  const double typical_end = std::min(reach, calibrated_end(law));
+  unknowns_.push_back({"work", Unknown::Kind::quadrature, work_per_wall(law, typical_end), false});
 
   observables_.push_back({"work", "J", {}});
   if (settings_.unloading != Unloading::none) {
