@@ -194,6 +194,22 @@ class AlwaysIntegrated final : public Wrapped {
   [[nodiscard]] std::optional<double> closed_quadrature(double, View) override { return std::nullopt; }
 };
 
+class Disturbed final : public Wrapped {
+ public:
+  Disturbed(std::unique_ptr<HybridSystem> system, double share) : Wrapped(std::move(system)), share_(share) {}
+
+  void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
+    for (std::size_t k = 0; k < y.size(); ++k) {
+      const Unknown& unknown = unknowns()[k];
+      if (unknown.kind == Unknown::Kind::differential && !unknown.is_slaved) y[k] *= 1.0 + share_;
+    }
+    Wrapped::begin_step(ramps, y, log);
+  }
+
+ private:
+  double share_;
+};
+
 class LookingBeyond final : public Wrapped {
  public:
   LookingBeyond(std::unique_ptr<HybridSystem> system, double factor)
@@ -261,6 +277,10 @@ std::unique_ptr<HybridSystem> limited(std::unique_ptr<HybridSystem> system, Cloc
 
 std::unique_ptr<HybridSystem> looking_beyond(std::unique_ptr<HybridSystem> system, double factor) {
   return std::make_unique<LookingBeyond>(std::move(system), factor);
+}
+
+std::unique_ptr<HybridSystem> disturbed(std::unique_ptr<HybridSystem> system, double share) {
+  return std::make_unique<Disturbed>(std::move(system), share);
 }
 
 std::unique_ptr<HybridSystem> always_integrated(std::unique_ptr<HybridSystem> system) {
