@@ -201,8 +201,8 @@ class Ida final : public Integrator {
     });
   }
 
-  /// d(residual)/dy + cj d(residual)/dy' by difference quotients, as the library's own, but for their increments: what
-  /// is tolerated, unless for loose tolerances that is more than a law is smooth over.
+  /// d(residual)/dy + cj d(residual)/dy' by difference quotients, as the library's own, but for their increments: those
+  /// are no less than what is tolerated, which for loose tolerances is more than a law is smooth over.
   static int jacobian(realtype xi, realtype cj, N_Vector y, N_Vector dy, N_Vector res, SUNMatrix matrix, void* self,
                       N_Vector shifted, N_Vector, N_Vector) noexcept {
     static const double k_root = std::sqrt(std::numeric_limits<double>::epsilon());
@@ -219,7 +219,7 @@ class Ida final : public Integrator {
       const double value = values[j];
       const double rate = rates[j];
       const double tolerated = std::min(1.0 / view(ida.weights_.get())[j], k_root * unknowns[j].scale);
-      const double size = std::max(k_least_increment * std::max(std::abs(value), std::abs(step * rate)), tolerated);
+      const double size = std::max(k_root * std::max(std::abs(value), std::abs(step * rate)), tolerated);
       double increment = 0.0;
       const int flag = ida.pending_.guard([&] {
         shift_within_domain(std::copysign(size, step * rate), [&](double by) {

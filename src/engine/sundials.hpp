@@ -57,11 +57,6 @@ inline void keep_message(int, const char*, const char*, char* message, void* sin
 /// A solver of small dense systems; timed where a LinearAlgebraClock runs.
 [[nodiscard]] LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context);
 
-/// Least increment of a difference quotient over its unknown: eps^(2/3), well above rounding. The usual eps^(1/2) is
-/// more than a law is smooth over where all of an elastic strain is that small beside a plastic one; what is tolerated
-/// of an unknown is not.
-inline constexpr double k_least_increment = 4e-11;
-
 /// What a step is made shorter by that has met the end of the equations.
 inline constexpr double k_retreat = 0.1;
 

@@ -312,8 +312,7 @@ class SundialsOde final : public Integrator {
     return is_off;
   }
 
-  /// d(rates)/dy by difference quotients, as the library's own, but for increments that leave the domain, or are more
-  /// than what is tolerated.
+  /// d(rates)/dy by difference quotients, as the library's own, but for increments that leave the domain.
   static int jacobian(realtype xi, N_Vector y, N_Vector dy, SUNMatrix matrix, void* self, N_Vector shifted, N_Vector,
                       N_Vector) noexcept {
     constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
@@ -332,9 +331,7 @@ class SundialsOde final : public Integrator {
     const double least = norm > 0.0 ? rounding : 1.0;
     for (std::size_t j = 0; j < values.size(); ++j) {
       const double value = values[j];
-      const double tolerated = 1.0 / view(ode.weights_.get())[j];
-      const double size = std::abs(value);
-      double increment = std::max({std::min(k_root * size, tolerated), k_least_increment * size, least * tolerated});
+      double increment = std::max(k_root * std::abs(value), least / view(ode.weights_.get())[j]);
       const int flag = ode.pending_.guard([&] {
         increment = shift_within_domain(increment, [&](double by) {
           values[j] = value + by;
