@@ -34,7 +34,8 @@ struct Unknown {
   std::string_view name;
   Kind kind = Kind::differential;
   double scale = 1.0;                    ///< typical magnitude; absolute tolerances are relative to it
-  bool is_implicitly_algebraic = false;  ///< its rate does not stand in residual()
+  /// Its rate stands in residual() at most where nothing else determines it.
+  bool is_implicitly_algebraic = false;
   /// Its row of residual() gives it outright as a function of xi and the other unknowns, and so does complete(): it has
   /// no error of its own, and may be singular in xi where those are smooth.
   bool is_slaved = false;

@@ -146,6 +146,25 @@ bool Contacts::let_bystanders_go(std::span<const char> is_closed, std::span<doub
   return true;
 }
 
+void Contacts::let_unheld_centre_go(std::span<const Ramp> ramps, std::span<const char> is_closed,
+                                    const Eigen::Vector3d& missing, std::span<double> balance) {
+  std::copy(is_closed.begin(), is_closed.end(), may_bear_.begin());
+  find_holding_among([&](std::size_t j) { return ramps[j].control == Control::force; });
+  const Eigen::Matrix3d projector = unheld_directions();
+  if (projector.trace() < 0.5) return;
+  // In short steps rates weigh so much more than forces that a row of both would be one of rates.
+  const auto count = static_cast<Eigen::Index>(free_count());
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
+  const Eigen::SelfAdjointEigenSolver<Square> solver(Square(projector.topLeftCorner(count, count)));
+  Eigen::Vector3d net = Eigen::Vector3d::Zero();
+  std::copy(balance.begin(), balance.end(), net.begin());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto direction = solver.eigenvectors().col(k);
+    const Eigen::Vector3d& says = solver.eigenvalues()[k] > 0.5 ? missing : net;
+    balance[static_cast<std::size_t>(k)] = direction.dot(says.head(count));
+  }
+}
+
 /// Adds to rates the velocity of a centre that touching bystanders take along. Errors leave small gaps, which close
 /// gradually: at once they would open and close in turns.
 void Contacts::take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch, std::span<double> dy) {

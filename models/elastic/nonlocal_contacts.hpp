@@ -108,6 +108,13 @@ class Contacts {
   /// What is left of the equations, one per unknown: that of the approach under displacement control, s_j - s(F_j)
   /// under force control, balance of forces.
   void residual(std::span<const Ramp> ramps, double xi, std::span<const double> y, std::span<double> residual);
+  /// Where no contact holds a free centre, the balance of forces does not determine it: puts what is missing to its
+  /// rate in place of that.
+  /// @param is_closed  classes in contact
+  /// @param missing    rate of the centre less that of rates()
+  /// @param balance    rows of residual() for the centre; each is turned to say the one or the other
+  void let_unheld_centre_go(std::span<const Ramp> ramps, std::span<const char> is_closed,
+                            const Eigen::Vector3d& missing, std::span<double> balance);
   /// d(residual)/dy.
   void jacobian(std::span<const Ramp> ramps, std::span<const double> y, Eigen::MatrixXd& jacobian);
 

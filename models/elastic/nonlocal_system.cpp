@@ -230,6 +230,10 @@ std::span<double> System::look(double xi, std::span<const double> y) {
 /// The same, and all contacts in that state in now_.
 void System::look_closely(double xi, std::span<const double> y) { contacts_.contacts(look(xi, y), now_); }
 
+void System::mark_closed() {
+  for (std::size_t i = 0; i < classes_.size(); ++i) is_closed_[i] = regimes_[i] == Regime::elastic;
+}
+
 /// The other way.
 void System::note(std::span<double> y) const {
   std::ranges::copy(state_, y.begin());
@@ -241,7 +245,7 @@ void System::note(std::span<double> y) const {
 void System::complete(double xi, std::span<double> y) {
   // The gaps themselves, and the place of a free centre: errors of them would close walls that only touch.
   look(xi, y);
-  for (std::size_t i = 0; i < classes_.size(); ++i) is_closed_[i] = regimes_[i] == Regime::elastic;
+  mark_closed();
   contacts_.clear_centre(ramps_, xi, is_closed_, state_);
   note(y);
 }
@@ -351,6 +355,14 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
   }
   rates(xi, y, all_rates_);
   res[work_place_] = dy[work_place_] - all_rates_[work_place_];
+  // Forces do not say where a centre goes that no contact holds.
+  const std::size_t count = contacts_.free_count();
+  Eigen::Vector3d missing = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < count; ++k) {
+    missing[static_cast<Eigen::Index>(k)] = dy[classes_.size() + k] - all_rates_[classes_.size() + k];
+  }
+  mark_closed();
+  contacts_.let_unheld_centre_go(ramps_, is_closed_, missing, res.subspan(classes_.size(), count));
 }
 
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {

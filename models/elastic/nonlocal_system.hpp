@@ -80,6 +80,7 @@ class System final : public HybridSystem {
   std::span<double> look(double xi, std::span<const double> y);
   void settle_others(std::span<const std::size_t> fired, std::vector<Event>& log);
   void look_closely(double xi, std::span<const double> y);
+  void mark_closed();
   void note(std::span<double> y) const;
   [[nodiscard]] double depth(std::size_t i, double xi);
   [[nodiscard]] double shift(std::size_t i, std::span<const double> y) const noexcept;
