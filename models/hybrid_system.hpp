@@ -33,7 +33,7 @@ struct Unknown {
   enum class Kind { differential, quadrature, algebraic };
   std::string_view name;
   Kind kind = Kind::differential;
-  double scale = 1.0;                    ///< typical magnitude; absolute tolerances are relative to it
+  double scale = 1.0;  ///< typical magnitude; absolute tolerances are relative to it
   /// Its rate stands in residual() at most where nothing else determines it.
   bool is_implicitly_algebraic = false;
   /// Its row of residual() gives it outright as a function of xi and the other unknowns, and so does complete(): it has

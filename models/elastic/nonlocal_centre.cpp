@@ -47,11 +47,11 @@ void Contacts::find_holding_among(const auto& is_force) {
   for (std::size_t j = 0; j < class_count(); ++j) holds_[j] = may_bear_[j] && !is_bystander_[j] && !is_force(j);
 }
 
-/// The same of walls that are nearer to a state than that, or whose force grows.
+/// The same of walls that are nearer to a state than that, or whose force grows from or falls to nothing there.
 void Contacts::sort_near(std::span<const Ramp> ramps, std::span<const double> y, double near) {
   const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
   for (std::size_t j = 0; j < class_count(); ++j) {
-    may_bear_[j] = is_force(j) ? y[j] > 0.0 || ramps[j].end > ramps[j].start : y[j] >= -near;
+    may_bear_[j] = is_force(j) ? y[j] > 0.0 || ramps[j].end != ramps[j].start : y[j] >= -near;
   }
   find_holding_among(is_force);
 }
