@@ -37,6 +37,9 @@ constexpr double k_end_of_force = 1e-8;
 constexpr double k_touch = 1e-13;
 // The same over the deepest contact where forces balance: s goes like their rounding to the power 2/3.
 constexpr double k_touch_of_free_centre = 1e-9;
+// With all terms, approach and force follow from what a contact lacks to the particle's width, of which its own width
+// keeps fewer and fewer digits: from here on less than eleven of the approach.
+constexpr double k_widest_of_all_terms = 1.0 - 1e-6;
 // Contacts shallower than this, over the deepest, hold a free centre too softly for an integrator.
 constexpr double k_idle = 1e-6;
 constexpr double k_force_power = 1.5;
@@ -66,6 +69,10 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   const double depth = std::min(reach, 1.0);
   touch_ = settings.centre == Centre::free ? k_touch_of_free_centre * depth : k_touch * reach;
   idle_ = k_idle * depth;
+  if (settings.model.terms == Terms::all) {
+    widest_ = k_widest_of_all_terms;
+    greatest_approach_ = contacts_.law().at(widest_ * widest_).approach;
+  }
   for (const ContactClass& c : classes_) {
     unknowns_.push_back(
         {c.name, Unknown::Kind::differential, c.takes_force ? std::pow(depth, k_force_power) : depth, true});
@@ -175,7 +182,9 @@ std::optional<DomainEnd> System::limit_at_start(std::span<const double> y) {
 /// How far the state that look_closely() found is from a limit; negative beyond it.
 double System::limit_value(const Guard& guard, double xi) {
   const auto index = static_cast<std::size_t>(std::max(0, guard.index));
-  if (guard.kind == k_radius) return 1.0 - now_[index].contact_radius;
+  if (guard.kind == k_radius) {
+    return greatest_approach_ ? 1.0 - now_[index].approach / *greatest_approach_ : widest_ - now_[index].contact_radius;
+  }
   if (guard.kind == k_centre) return 1.0 - depth(index, xi);
   return contacts_.least_pivot(state_) - k_least_pivot;
 }
@@ -183,7 +192,7 @@ double System::limit_value(const Guard& guard, double xi) {
 /// What a limit's guard says.
 DomainEnd System::end_at(const Guard& guard, double xi, std::span<const double> y) {
   const Event event{guard.name, guard.index};
-  if (guard.kind == k_radius) return {event, {"a contact is as wide as the particle", "contact radius/R0", 1.0}};
+  if (guard.kind == k_radius) return {event, {"a contact is as wide as the particle", "contact radius/R0", widest_}};
   if (guard.kind == k_centre) return {event, {"a wall has reached the centre of the particle", "displacement/R0", 1.0}};
   look_closely(xi, y);
   double largest = 0.0;
