@@ -56,9 +56,8 @@ constexpr std::array k_events{
 constexpr std::array<string_view, 7> k_domain{
     "up to the limit of applicability, where the margin is 0 (column margin; stop), well before it the source's "
     "formulation stiffens too much",
-    "up to contacts as wide as the particle, with all terms but for 1e-6 (stop; not with contact_radius_rule none and "
-    "1 to "
-    "4 terms)",
+    "up to contacts as wide as the particle, with all terms but for 1e-6 (stop; not with contact_radius_rule none "
+    "and 1 to 4 terms)",
     "walls at least 0.05 rad apart: the influence is that of a point force",
     "works best for nearly incompressible material, where errors of the half-space cancel: under hydrostatic "
     "compression "

@@ -26,6 +26,7 @@ constexpr double k_first_step = 1e-3;
 constexpr double k_first_step_of_slaves = 1e-9;
 constexpr double k_smallest_step = 2e-3;  // over the least progress: still above the rounding of xi
 constexpr int k_most_tries = 500;         // of one step
+constexpr double k_shorter = 0.25;        // what a step is made by that has come to nothing
 
 template <class State>
 State zeros(std::size_t size) {
@@ -49,9 +50,10 @@ double controlled_step(double xi, double& step, long& rejections, Try&& attempt)
         step = std::max(now, is_last ? step : 0.0);
         return is_last ? 1.0 : xi + tried;
       }
-      step = now;
+      // The library tells steps apart by epsilon, and would try one that is hardly longer than that for ever.
+      step = now < tried ? now : k_shorter * tried;
     } catch (const std::domain_error&) {
-      step = 0.25 * std::min(step, 1.0 - xi);
+      step = k_shorter * std::min(step, 1.0 - xi);
       if (step < least_progress(xi)) throw;
     }
     ++rejections;
@@ -240,7 +242,7 @@ class ExplicitStepper final : public Stepper {
           static_cast<void>(reaching_.try_step(system<true>(), between_, at, step));
         } catch (const std::domain_error&) {
           // Stages may lie where the equations do not hold, though all of the step does not.
-          step *= 0.25;
+          step *= k_shorter;
           if (step < least_progress(at)) throw;
         }
       }
