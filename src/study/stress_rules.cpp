@@ -484,8 +484,9 @@ std::string stated_end(const Run& run) {
     if (says("errors of the size of rounding")) return "tolerance of the size of rounding";
     if (says(k_singular_balance)) return std::string(k_singular_balance);
     if (says(k_near_applicability)) return "tolerance next to the limit of applicability";
-    const bool gave_up_on_a_step = !says(k_too_much_work) && !says(k_endless) && !says(k_chattering);
-    if (gave_up_on_a_step && says(k_no_depth)) return "no contact above rounding";
+    // Rounding makes steps ever shorter, until there are none or too many; events do not follow from it.
+    const bool gave_up_on_steps = !says(k_endless) && !says(k_chattering);
+    if (gave_up_on_steps && says(k_no_depth)) return "no contact above rounding";
     if (run.scenario.model == "material-point" && says(k_too_much_work)) return std::string(k_too_much_work);
     for (const std::string_view words : {k_stiff_material, k_hardly_unique}) {
       if (says(words)) return std::string(words);
