@@ -431,6 +431,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     const bool is_losing = guard.kind == k_lost;
     // Closed or opened already, together with the contact it balances.
     if ((is_making && touches(memory_[i].regime)) || (is_losing && !touches(memory_[i].regime))) continue;
+    // What only takes the centre along has nothing to unload from.
+    if (guard.kind == k_retreat && rides(i)) continue;
     // Another guard of the same edge has changed it at this instant.
     const bool is_of_edge = guard.kind == k_peel || guard.kind == k_follow || guard.kind == k_turn;
     if (is_of_edge && (!touches(memory_[i].regime) || edges_before_[i] != memory_[i].edge)) continue;
