@@ -123,11 +123,16 @@ System::Small System::balance_step(const SmallMatrix& stiffness, const Small& fo
   } else if (free_count_ > 1) {
     const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(stiffness);
     const double threshold = 1e-12 * solver.eigenvalues().cwiseAbs().maxCoeff();
+    int held = 0;
     for (int k = 0; k < 3; ++k) {
       if (std::abs(solver.eigenvalues()[k]) <= threshold) continue;
       const Small direction = solver.eigenvectors().col(k);
       step -= direction * (direction.dot(force) / solver.eigenvalues()[k]);
+      ++held;
     }
+    // Between walls that nearly align the line of a step depends on their stiffnesses: off balance it would lead to the
+    // side, each time elsewhere.
+    if (held < free_count_) step -= unheld_directions() * step;
   }
   return step;
 }
