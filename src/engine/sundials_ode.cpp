@@ -151,6 +151,8 @@ class SundialsOde final : public Integrator {
 
   void begin(double xi, std::span<const double> y) override {
     form_.begin(y, view(y_.get()));
+    segment_begin_ = xi;
+    first_state_.assign(y.begin(), y.end());
     start(xi, 0.0);
     last_length_ = 0.0;
     ++past_.segments;
@@ -359,11 +361,15 @@ class SundialsOde final : public Integrator {
     return 0;
   }
 
+  /// A segment begins with the state that it was given: completed anew, from a guess that first trials have left
+  /// farther on, what only touches would be as deep as rounding, and past a condition that is met within that.
   static int guards(realtype xi, N_Vector y, realtype* values, void* self) noexcept {
     auto& ode = *static_cast<SundialsOde*>(self);
     ++ode.roots_.evaluations;
     return ode.pending_.guard([&] {
-      ode.watch_.values(xi, ode.form_.complete(xi, view(y)), {values, ode.watch_.size()});
+      const std::span<const double> state =
+          xi == ode.segment_begin_ ? std::span<const double>(ode.first_state_) : ode.form_.complete(xi, view(y));
+      ode.watch_.values(xi, state, {values, ode.watch_.size()});
       return true;
     });
   }
@@ -394,7 +400,9 @@ class SundialsOde final : public Integrator {
   RootList roots_;
   bool follows_root_ = false;  ///< an earlier call ended at one, since memory_ is new
   double end_ = 0.0;
-  double last_length_ = 0.0;  ///< of a step of this segment
+  double segment_begin_ = 0.0;
+  std::vector<double> first_state_;  ///< of this segment, complete
+  double last_length_ = 0.0;         ///< of a step of this segment
   Statistics past_;
   long for_jacobian_ = 0;  ///< evaluations of rates
 
