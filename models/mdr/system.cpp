@@ -63,8 +63,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   for (Eigen::Index i = 0; i < means.cols(); ++i) directions_.emplace_back(free_directions_.transpose() * means.col(i));
 
   const double reach = largest_overlap_expected();
-  // Displaced volume makes the radius grow with the square of the displacement.
-  unknowns_ = {{"apparent radius growth (R - R0)/R0", Unknown::Kind::differential, std::min(1.0, reach * reach), true},
+  unknowns_ = {{"apparent radius growth (R - R0)/R0", Unknown::Kind::differential, growth_scale(reach), true},
                {"work", Unknown::Kind::quadrature, work_scale(reach), false}};
   for (int k = 0; k < free_count_; ++k) {
     unknowns_.push_back({.name = k_centre_names[static_cast<std::size_t>(k)],
@@ -125,6 +124,15 @@ double System::largest_overlap_expected() const {
     reach = std::max(reach, std::min(1.0, std::max(elastic, plastic)));
   }
   return reach > 0.0 ? reach : 1.0;
+}
+
+/// Growth of the radius up to a displacement. Displaced volume makes it grow with the square of that; by the rule
+/// `seed` so does elastic volume that comes back, which of small displacements is more.
+double System::growth_scale(double displacement) const noexcept {
+  const double displaced = displacement * displacement;
+  if (settings_.radius_rule != RadiusRule::seed) return displaced;
+  const double force = hertz_force(material_.composite_modulus, 1.0, displacement);
+  return std::min(1.0, std::max(displaced, 0.5 * std::numbers::inv_pi * material_.bulk_compliance * force));
 }
 
 /// Work of one wall up to a displacement, whichever is less of an elastic and a fully plastic contact.

@@ -280,6 +280,7 @@ class System final : public HybridSystem {
   [[nodiscard]] bool adheres() const noexcept { return surface_energy_ > 0.0; }
   [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return ramps_[i].control == Control::force; }
   [[nodiscard]] double largest_overlap_expected() const;
+  [[nodiscard]] double growth_scale(double displacement) const noexcept;
   [[nodiscard]] double work_scale(double displacement) const noexcept;
 
   Settings settings_;
