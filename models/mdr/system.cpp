@@ -230,6 +230,8 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
   }
   place(xi, trial_);
   look(xi, trial_);
+  // Beyond where growth would run away there is no balance to be found; the rates end there, too.
+  if (is_growing_) static_cast<void>(growing_motion());
   res[k_radius] = is_growing_ ? sums_.balance - frozen_balance_ : y[k_radius] - held_radius_;
   res[k_work] = dy[k_work] - sums_.power;
   for (std::size_t k = k_centre; k < unknowns_.size(); ++k) res[k] = y[k] - trial_[k];
