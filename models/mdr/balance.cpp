@@ -75,7 +75,7 @@ void System::sum_up(double xi, double r) {
     if (is_loaded(i)) {
       sums_.power -= count * now.position * speed;
       sums_.force_work += count * prescribed_force(i, xi) * now.position;
-    } else {
+    } else if (bears_[i]) {
       sums_.power += count * c.force * speed;
     }
     if (free_count_ > 0) {
@@ -288,11 +288,16 @@ System::SmallMatrix System::unheld_directions() const {
   return unheld;
 }
 
-/// Where nothing holds the centre it stays where it is.
+/// Where nothing holds the centre it stays where it is; and a contact that no others balance bears nothing: what the
+/// search for the balance leaves of its force is another one at every instant, and does no work.
 void System::hold_centre(std::span<const double> y) {
   if (free_count_ == 0) return;
   for (int k = 0; k < free_count_; ++k) held_centre_[k] = y[centre_place(k)];
   unheld_ = unheld_directions();
+  const bool may_pull = std::ranges::any_of(memory_, [](const Memory& m) { return m.edge != Edge::following; });
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    bears_[i] = may_pull || directions_[i].norm() < k_no_direction || is_backed(i);
+  }
 }
 
 double System::balance_residual(double xi, std::span<const double> y) {

@@ -45,6 +45,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   memory_before_.resize(count);
   ramps_.resize(count);
   wall_places_.resize(count);
+  bears_.resize(count, true);
 
   Eigen::Matrix3Xd means(3, static_cast<Eigen::Index>(count));
   for (std::size_t i = 0; i < count; ++i) {

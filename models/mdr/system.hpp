@@ -304,6 +304,7 @@ class System final : public HybridSystem {
   double frozen_balance_ = 0.0;               ///< C while it grows
   Small held_centre_ = Small::Zero();         ///< of a free centre, where the present mode began
   SmallMatrix unheld_ = SmallMatrix::Zero();  ///< projector on the directions in which nothing holds it
+  std::vector<bool> bears_;                   ///< whether a contact can be anything but a touch in the present mode
   std::vector<Guard> guards_;
 
   // Work space, so that nothing is allocated while integrating.
