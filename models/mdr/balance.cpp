@@ -177,6 +177,18 @@ double System::rounding_of_forces() const noexcept {
   return 4.0 * k_round_off * (sum + sums_.stiffness.cwiseAbs().maxCoeff());
 }
 
+/// Overlap of a contact that only touches a free centre: rounding of lengths, and what the rounding of others presses
+/// it in by, which may bear much more and be much stiffer.
+double System::shallow() const noexcept {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    const Contact& c = now_[i].contact;
+    sum += classes_[i].multiplicity() * (std::abs(c.force) + std::abs(c.by_overlap));
+  }
+  const double rounding = 4.0 * k_round_off * sum;
+  return std::max(k_shallow, elastic_overlap(ElasticProfile::parabola, material_.composite_modulus, 1.0, rounding));
+}
+
 /// Newton on the balance of forces at a given radius; the force grows with the overlap, so damping is all it needs.
 void System::move_centre(double xi, std::span<double> y) {
   look(xi, y);

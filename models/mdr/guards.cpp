@@ -34,7 +34,7 @@ double System::contact_guard(int kind, std::size_t i, double xi, double overlap,
     case k_reload:
       return overlap - largest_overlap(memory_[i], r) - k_same_overlap;
     case k_lost:
-      if (rides(i)) overlap += k_shallow;
+      if (rides(i)) overlap += shallow();
       if (memory_[i].regime == Regime::elastic) return overlap;
       return 1.0 - unloading_fraction(shape(i, r), overlap);
     case k_dent_touched:
@@ -62,8 +62,10 @@ double System::edge_guard(int kind, std::size_t i, double xi, double overlap, do
 
 double System::cap_guard(const CapPair& pair, double r) const {
   // How far the cosine of the sum of their half angles is below that of the angle between their normals.
+  // What only touches has no cap: that of its rounding would be a millionth of R0 wide.
   const auto cosine = [&](int i) {
-    return std::min(1.0, (1.0 - now_[static_cast<std::size_t>(i)].displacement) / (1.0 + r));
+    const auto at = static_cast<std::size_t>(i);
+    return rides(at) ? 1.0 : std::min(1.0, (1.0 - now_[at].displacement) / (1.0 + r));
   };
   const double first = cosine(pair.first);
   const double second = cosine(pair.second);

@@ -225,6 +225,7 @@ class System final : public HybridSystem {
     return motion.slope / ((1.0 + r) * (1.0 + r));
   }
   [[nodiscard]] double rounding_of_forces() const noexcept;
+  [[nodiscard]] double shallow() const noexcept;
   void move_centre(double xi, std::span<double> y);
   void leave_saddle(double xi, std::span<double> y);
   bool approach_balance(double xi, std::span<double> y);
