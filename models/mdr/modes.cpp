@@ -26,9 +26,6 @@ constexpr double k_no_force = 1e-9;
 // A free centre that has gone this far (over R0) within an instant has sprung.
 constexpr double k_spring = 1e-9;
 
-constexpr const char* k_unsettled =
-    "there is no mode in which every contact's branch agrees with its motion: the regimes do not settle";
-
 /// Takes the events of a contact out again, those from a place on.
 void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
   const auto first = log.begin() + static_cast<std::ptrdiff_t>(std::min(from, log.size()));
@@ -332,6 +329,13 @@ void System::check_support() const {
   }
 }
 
+/// Of the contacts the row that ends the run shows what they have changed to last, and have not been looked at as yet.
+void System::throw_unsettled() {
+  forget_look();
+  throw std::domain_error(
+      "there is no mode in which every contact's branch agrees with its motion: the regimes do not settle");
+}
+
 /// Centre and walls where they belong in the present mode. Where a contact has pulled off, a free centre springs to
 /// another equilibrium, and the other contacts go there along their own branches: back from their largest overlap, on
 /// beyond it, their edges stretched or pressed.
@@ -346,7 +350,7 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
   const std::size_t logged_before = log.size();
   const std::size_t made_before = made.size();
   for (std::size_t round = 0;; ++round) {
-    if (round == most_rounds()) throw std::domain_error(k_unsettled);
+    if (round == most_rounds()) throw_unsettled();
     std::ranges::copy(y, trial_.begin());
     bool has_arrived = true;
     try {
@@ -385,13 +389,13 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
       now_[i].rate_by_growth = 0.0;
       // A dent may be touched and passed at once: looked at in between it would have no force.
       for (std::size_t change = 0; settle_contact(i, xi, y, Motion{}, log, made); ++change) {
-        if (change == most_rounds()) throw std::domain_error(k_unsettled);
+        if (change == most_rounds()) throw_unsettled();
         has_changed = has_changed || !has_entered;
       }
       const bool is_as_last = memory_[i].regime == last.regime && memory_[i].is_virgin == last.is_virgin;
       has_changed = has_changed || (has_entered && !is_as_last);
     }
-    if (!has_changed && !has_arrived) throw std::domain_error(k_unsettled);
+    if (!has_changed && !has_arrived) throw_unsettled();
     if (!has_changed) return;
   }
 }
@@ -408,7 +412,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
   if (!has_jumped) balance_anew(xi, y, log, made);
   held_radius_ = y[k_radius];
   for (std::size_t round = 0;; ++round) {
-    if (round == most_rounds()) throw std::domain_error(k_unsettled);
+    if (round == most_rounds()) throw_unsettled();
     is_growing_ = growth ? *growth : wants_growth(xi, y);
     look(xi, y);
     const Motion now = motion(is_growing_);

@@ -235,6 +235,7 @@ class System final : public HybridSystem {
   void settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log,
               bool has_jumped = false);
   void balance_anew(double xi, std::span<double> y, std::vector<Event>& log, std::vector<Event>& made);
+  [[noreturn]] void throw_unsettled();
   /// After which a mode is taken to have none that agrees with it.
   [[nodiscard]] std::size_t most_rounds() const noexcept { return 4 * memory_.size() + 8; }
   [[nodiscard]] bool wants_growth(double xi, std::span<double> y);
