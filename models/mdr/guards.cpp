@@ -97,7 +97,7 @@ void System::watch(double xi, std::span<const double> y) {
     const auto second = static_cast<std::size_t>(cap_pairs_[p].second);
     const bool both_touch = touches(memory_[first].regime) && touches(memory_[second].regime);
     // Caps that have just met change no mode; met a rounding error short of zero, they would meet again at once.
-    if (both_touch && cap_guard(cap_pairs_[p], r) < -k_touch) {
+    if (both_touch && !cap_pairs_[p].have_met && cap_guard(cap_pairs_[p], r) < -k_touch) {
       guards_.push_back({k_caps, static_cast<int>(p), 1, "caps-intersect"});
     }
   }

@@ -23,6 +23,8 @@ constexpr double k_passed = 1e-2;
 constexpr double k_passed_by_force = 1e-6;
 // Share of the forces on a free centre that is rounding in their balance.
 constexpr double k_no_force = 1e-9;
+// Caps that have met and are this far from it have parted.
+constexpr double k_parted = 1e-6;
 // A free centre that has gone this far (over R0) within an instant has sprung.
 constexpr double k_spring = 1e-9;
 
@@ -520,18 +522,9 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
       case k_growth_off:
         growth = guard.kind == k_growth_on;
         continue;  // settle() logs it
-      case k_caps: {
-        const CapPair& pair = cap_pairs_[i];
-        if (!caps_have_met_) radius_at_caps_ = 1.0 + r;
-        caps_have_met_ = true;
-        const Event caps{guard.name, pair.first, pair.first == pair.second ? -1 : pair.second};
-        log.push_back(caps);
-        if (settings_.stops_at_cap_intersection) {
-          end = DomainEnd{caps,
-                          {"contact caps intersect, the source's limit of validity (strict = true)", "R/R0", 1.0 + r}};
-        }
+      case k_caps:
+        if (const auto limit = meet_caps(cap_pairs_[i], r, log)) end = limit;
         continue;
-      }
       case k_singular:
         end = DomainEnd{event,
                         {"the free surface of the particle is used up and the apparent radius would run away",
@@ -553,7 +546,35 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     return end;
   }
   settle(xi, y, others_fired ? std::nullopt : growth, log, has_jumped);
-  return std::nullopt;
+  return meet_caps_at_once(xi, y, log);
+}
+
+/// The caps of two contacts intersect: here the source's model ends.
+/// @return the reason to stop, if that was asked for
+std::optional<DomainEnd> System::meet_caps(CapPair& pair, double r, std::vector<Event>& log) {
+  pair.have_met = true;
+  if (!caps_have_met_) radius_at_caps_ = 1.0 + r;
+  caps_have_met_ = true;
+  const Event caps{"caps-intersect", pair.first, pair.first == pair.second ? -1 : pair.second};
+  log.push_back(caps);
+  if (!settings_.stops_at_cap_intersection) return std::nullopt;
+  return DomainEnd{caps, {"contact caps intersect, the source's limit of validity (strict = true)", "R/R0", 1.0 + r}};
+}
+
+/// A contact may be made within the cap of another one, which no guard meets.
+std::optional<DomainEnd> System::meet_caps_at_once(double xi, std::span<const double> y, std::vector<Event>& log) {
+  look_once(xi, y);
+  const double r = y[k_radius];
+  std::optional<DomainEnd> end;
+  for (CapPair& pair : cap_pairs_) {
+    const bool both_touch = touches(memory_[static_cast<std::size_t>(pair.first)].regime) &&
+                            touches(memory_[static_cast<std::size_t>(pair.second)].regime);
+    const double guard = both_touch ? cap_guard(pair, r) : -1.0;
+    if (guard < -k_parted) pair.have_met = false;
+    if (guard < -k_touch || pair.have_met) continue;
+    if (const auto limit = meet_caps(pair, r, log)) end = limit;
+  }
+  return end;
 }
 
 }  // namespace monograin::mdr

@@ -151,6 +151,7 @@ void System::start(std::span<double> y) {
   energies_ = {};
   validity_.reset();
   caps_have_met_ = false;
+  for (CapPair& pair : cap_pairs_) pair.have_met = false;
   has_begun_ = false;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const double gap = classes_[i].gap / settings_.initial_radius;
@@ -177,6 +178,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   has_begun_ = true;
   y[k_work] -= force_work(y);
   settle(0.0, y, std::nullopt, log);
+  if (const auto end = meet_caps_at_once(0.0, y, log)) throw CannotBegin(*end);
 }
 
 bool System::is_open(int contact_class) const noexcept {

@@ -171,7 +171,8 @@ class System final : public HybridSystem {
   struct CapPair {
     int first = 0;
     int second = 0;
-    double cosine = 0.0;  ///< of the smallest angle between two of their normals
+    double cosine = 0.0;    ///< of the smallest angle between two of their normals
+    bool have_met = false;  ///< and not parted since
   };
 
   [[nodiscard]] static bool touches(Regime regime) noexcept {
@@ -272,6 +273,9 @@ class System final : public HybridSystem {
   void watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_out, bool may_turn);
   [[nodiscard]] double contact_guard(int kind, std::size_t i, double xi, double overlap, double r);
   [[nodiscard]] double edge_guard(int kind, std::size_t i, double xi, double overlap, double r);
+  std::optional<DomainEnd> meet_caps(CapPair& pair, double r, std::vector<Event>& log);
+  [[nodiscard]] std::optional<DomainEnd> meet_caps_at_once(double xi, std::span<const double> y,
+                                                           std::vector<Event>& log);
   [[nodiscard]] double cap_guard(const CapPair& pair, double r) const;
 
   /// What counts of a contact at its largest overlap: the energy it would give back, or the work done on it (up to a
