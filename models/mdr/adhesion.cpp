@@ -243,11 +243,12 @@ Contact peeling_contact(const Frame& frame, double composite_modulus, double sur
   const double stretch = critical_stretch(composite_modulus, surface_energy, edge.radius);
   Contact contact = sticking_contact_at(frame, composite_modulus, edge);
   contact.force = state.force;
-  // The edge follows: da = d(delta_1D - g)/(g' - Dl'). At pull-off that is unbounded; it is kept finite here.
-  constexpr double k_least_slope = 1e-12;
+  // The edge follows: da = d(delta_1D - g)/(g' - Dl'). At pull-off that is unbounded; it is kept finite here: the slope
+  // goes with the root of the distance from there, and displacements are rounded.
+  constexpr double k_root_of_rounding = 5e-9;
+  const double least_slope = k_root_of_rounding * indenter.height / indenter.half_width;
   const double cosine = is_parabola(indenter) ? 1.0 : edge.cosine;
-  const double follow = 2.0 * composite_modulus * stretch /
-                        std::max(k_least_slope * stretch / edge.radius, slope(indenter, stretch, 1.0, edge));
+  const double follow = 2.0 * composite_modulus * stretch / std::max(least_slope, slope(indenter, stretch, 1.0, edge));
   const auto followed = [&](const Frame::Change& change) {
     return follow * (change.displacement * cosine - height_change(indenter, change, edge));
   };
