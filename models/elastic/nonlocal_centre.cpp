@@ -17,7 +17,7 @@ constexpr double k_closing = 20.0;
 constexpr double k_same_place = 1e-13;
 constexpr double k_shortest = 1e-11;
 constexpr double k_touching = 1e-10;  // gap of walls that begin to bear
-constexpr double k_early = 1e-9;      // of a step: which walls touch in it is seen there
+constexpr double k_early = 1e-9;      // of a step: which walls touch in it is seen there, and as long before its end
 constexpr int k_most_tries = 300;     // of steps; then what differs is rounding
 
 }  // namespace
@@ -207,7 +207,7 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
   const auto is_same = [&] {
     if ((place_of(at_once_) - place_of(by_halves_)).norm() > k_same_place * size) return false;
     for (std::size_t j = 0; j < n; ++j) {
-      if ((at_once_[j] == 0.0) != (early_[j] == 0.0)) return false;
+      if ((at_once_[j] == 0.0) != (early_[j] == 0.0) || (at_once_[j] == 0.0) != (late_[j] == 0.0)) return false;
     }
     return true;
   };
@@ -216,9 +216,10 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
   int tries = 0;
   for (double done = 0.0; is_possible && done < 1.0;) {
     const double next = std::min(1.0, done + step);
-    for (auto* state : {&at_once_, &by_halves_, &early_}) std::ranges::copy(carried_, state->begin());
+    for (auto* state : {&at_once_, &by_halves_, &early_, &late_}) std::ranges::copy(carried_, state->begin());
     is_possible = go_to(next, at_once_) && go_to(std::midpoint(done, next), by_halves_) && go_to(next, by_halves_) &&
-                  go_to(std::lerp(done, next, k_early), early_);
+                  go_to(std::lerp(done, next, k_early), early_) && go_to(std::lerp(done, next, 1.0 - k_early), late_) &&
+                  go_to(next, late_);
     if (step > k_shortest && tries < k_most_tries && !(is_possible && is_same())) {
       is_possible = true;
       step *= 0.5;

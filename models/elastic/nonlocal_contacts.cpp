@@ -135,7 +135,7 @@ Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Ce
   forget();
   matrix_.resize(n * stride_);
   for (auto* targets : {&targets_, &first_targets_, &last_targets_, &way_start_, &way_end_}) targets->resize(n);
-  for (auto* state : {&trial_, &state_, &unit_rates_, &carried_, &at_once_, &by_halves_, &early_})
+  for (auto* state : {&trial_, &state_, &unit_rates_, &carried_, &at_once_, &by_halves_, &early_, &late_})
     state->resize(unknown_count());
   unit_ramps_.resize(n);
   modes_ = mode_coupling_;

@@ -244,7 +244,7 @@ class Contacts {
   std::vector<double> trial_, state_, unit_rates_;
   // On a way on which walls take the centre along.
   std::vector<Target> way_start_, way_end_;
-  std::vector<double> carried_, at_once_, by_halves_, early_;
+  std::vector<double> carried_, at_once_, by_halves_, early_, late_;
   std::vector<Ramp> unit_ramps_;
   Eigen::Vector3d imbalance_ = Eigen::Vector3d::Zero();
   Eigen::MatrixXd modes_;
