@@ -247,10 +247,11 @@ class HybridSystem {
   /// What the user should know about this run, collected so far.
   [[nodiscard]] virtual std::vector<Finding> warnings() const = 0;
 
-  /// How far ahead of a state solve() may be asked for another one and still show all that happens between the two,
-  /// where equations have several solutions, of which one may end and others go on; infinite where they have not.
-  [[nodiscard]] virtual double branch_reach(std::span<const double> /*y*/) const {
-    return std::numeric_limits<double>::infinity();
+  /// How far each unknown may have gone from a state where solve() is asked for the next one, if the two are to show
+  /// all that happens between them: where equations have several solutions, of which one may end and others go on.
+  /// Infinite where they have not.
+  virtual void branch_reach(std::span<const double> /*y*/, std::span<double> reach) const {
+    std::ranges::fill(reach, std::numeric_limits<double>::infinity());
   }
 };
 

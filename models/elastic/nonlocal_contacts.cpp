@@ -531,12 +531,8 @@ void Contacts::jacobian(std::span<const Ramp> ramps, std::span<const double> y, 
   }
 }
 
-double Contacts::branch_reach(std::span<const double> y) const noexcept {
-  double reach = std::numeric_limits<double>::infinity();
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    reach = std::min(reach, std::max(k_share_of_rivalry * rivalry_[j], k_share_of_depth * std::abs(y[j])));
-  }
-  return reach;
+double Contacts::branch_reach(std::size_t index, double signed_square) const noexcept {
+  return std::max(k_share_of_rivalry * rivalry_[index], k_share_of_depth * std::abs(signed_square));
 }
 
 bool Contacts::is_held_softly(std::span<const Ramp> ramps, std::span<const double> y, double s) {

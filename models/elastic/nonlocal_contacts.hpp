@@ -125,10 +125,10 @@ class Contacts {
   /// goes smoothly through zero with it, and costs a tenth.
   [[nodiscard]] double least_pivot(std::span<const double> y, double shift = 0.0);
 
-  /// How far, in signed squares and displacements, the branch may be followed at once. A wall under which others lift
+  /// How far the signed square of a class may go while the branch is followed at once. A wall under which others lift
   /// the surface may be pushed off by them, or they by it, from where 2 E* a times their coupling is 1; that is over
   /// where contacts have grown several times. Infinite where no contact narrower than the particle does that.
-  [[nodiscard]] double branch_reach(std::span<const double> y) const noexcept;
+  [[nodiscard]] double branch_reach(std::size_t index, double signed_square) const noexcept;
 
   /// Whether a free centre moves in a direction in which touching contacts shallower than s hold it alone, or none.
   [[nodiscard]] bool is_held_softly(std::span<const Ramp> ramps, std::span<const double> y, double s);

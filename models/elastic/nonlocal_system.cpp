@@ -259,19 +259,13 @@ void System::complete(double xi, std::span<double> y) {
   note(y);
 }
 
-double System::branch_reach(std::span<const double> y) const {
-  const double reach = contacts_.branch_reach(y);
-  double way = 0.0;
-  for (const Ramp& ramp : ramps_) {
-    const auto place = [&](double value) {
-      return ramp.control == Control::displacement
-                 ? value
-                 : contacts_.law().signed_square_under(
-                       std::clamp(value / contacts_.composite_modulus(), 0.0, contacts_.law().greatest_force()));
-    };
-    way = std::max(way, std::abs(place(ramp.end) - place(ramp.start)));
+void System::branch_reach(std::span<const double> y, std::span<double> reach) const {
+  std::ranges::fill(reach, std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const double square = is_loaded(i) ? std::pow(std::max(y[i], 0.0), 1.0 / k_force_power) : y[i];
+    reach[i] = contacts_.branch_reach(i, square);
+    if (is_loaded(i)) reach[i] = std::pow(square + reach[i], k_force_power) - y[i];
   }
-  return way > 0.0 ? reach / way : reach;
 }
 
 void System::solve(double xi, std::span<double> y) {

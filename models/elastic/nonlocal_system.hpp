@@ -46,7 +46,7 @@ class System final : public HybridSystem {
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
   void solve(double xi, std::span<double> y) override;
   double leave_singularity(double xi, std::span<double> y) override;
-  [[nodiscard]] double branch_reach(std::span<const double> y) const override;
+  void branch_reach(std::span<const double> y, std::span<double> reach) const override;
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override;
   [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
   void guard_values(double xi, std::span<const double> y, std::span<double> values) override;

@@ -41,7 +41,7 @@ constexpr double k_just_beyond = 1.001;
 // Where there are several solutions, what the last terms of a piece's series are at most, over the largest: the way
 // from one solution to another is a jump, or goes like a root, and no piece on one of them does.
 constexpr double k_unresolved = 1e-2;
-// Terms over the unknown's scale, and pieces over those that may be long enough, of which nothing is asked: rounding.
+// Terms over the unknown's scale of which nothing is asked: rounding.
 constexpr double k_rounding_of_branch = 1e-8;
 // Quadrature pieces are not refined below this; what is left is below round-off of the whole.
 constexpr double k_smallest_quadrature = 1e-6;
@@ -56,6 +56,7 @@ class Direct final : public EventLocator {
     has_slaves_ = system.has_slaves();
     may_rest_ = std::ranges::any_of(unknowns, &Unknown::may_rest);
     trial_.resize(unknowns.size());
+    branch_reach_.resize(unknowns.size());
     rates_.resize(unknowns.size());
     begin_rates_.resize(unknowns.size());
     integrated_ = static_cast<std::size_t>(std::ranges::count_if(
@@ -81,8 +82,8 @@ class Direct final : public EventLocator {
   Advance advance() override {
     ++statistics_.steps;
     begin_piece();
-    branch_reach_ = system_.branch_reach(begin_state_);
-    length_ = std::min(length_, branch_reach_);
+    system_.branch_reach(begin_state_, branch_reach_);
+    has_branches_ = std::ranges::any_of(branch_reach_, [](double reach) { return std::isfinite(reach); });
     // Slaved unknowns may start with a singularity, over which guards cross and come back within no time.
     if (has_slaves_) length_ = std::min(length_, std::max(k_first, k_grading * (begin_ - segment_begin_)));
     double rest = k_rest;
@@ -165,6 +166,10 @@ class Direct final : public EventLocator {
       system_.solve(xi, trial_);
       if (piece_end_ - begin_ > k_smallest_looked_into) look_inside(xi, trial_);
       for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
+      if (const double share = share_of_reach(trial_); share > 1.0 && tried_length() > least_progress(begin_)) {
+        factor = std::clamp(k_safety / share, k_most_shrinkage, 0.5);
+        return false;
+      }
       if (is_closed_) continue;
       system_.rates(xi, trial_, rates_);
       for (std::size_t k = 0; k < integrated_; ++k) slopes_[k][j] = rates_[k];
@@ -181,9 +186,12 @@ class Direct final : public EventLocator {
     move_end(piece_end_);
     locate_event();
     if (goes_from_nodes() && end_ < piece_end_ && end_ - begin_ > least_progress(begin_)) forget_what_follows();
-    if (std::isfinite(branch_reach_) && !is_resolved()) {
-      factor = std::min(0.5, k_just_beyond * (end_ - begin_) / (piece_end_ - begin_));
-      return false;
+    if (has_branches_) {
+      if (!is_resolved()) {
+        factor = std::min(0.5, k_just_beyond * (end_ - begin_) / tried_length());
+        return false;
+      }
+      factor = std::min(factor, std::max(k_safety / share_of_reach(end_state_), k_most_shrinkage));
     }
     if (!is_closed_ && end_ - begin_ < k_deep_inside * (piece_end_ - begin_) && !holds_up_to_end()) {
       factor = k_just_beyond * (end_ - begin_) / (piece_end_ - begin_);
@@ -193,11 +201,22 @@ class Direct final : public EventLocator {
     return true;
   }
 
+  [[nodiscard]] double tried_length() const noexcept { return piece_end_ - begin_; }
+
+  /// How far a state is from the beginning of the piece, over how far it may be; 0 where it may be anywhere.
+  [[nodiscard]] double share_of_reach(std::span<const double> y) const noexcept {
+    double share = 0.0;
+    for (std::size_t k = 0; k < y.size(); ++k) {
+      share = std::max(share, std::abs(y[k] - begin_state_[k]) / branch_reach_[k]);
+    }
+    return share;
+  }
+
   /// Whether the state up to the end of the piece is one branch of solutions: nodes show it, and series go through
   /// them.
   [[nodiscard]] bool is_resolved() const {
-    const double length = piece_end_ - begin_;
-    if (end_ - begin_ <= std::max(least_progress(begin_), k_rounding_of_branch * branch_reach_)) return true;
+    const double length = tried_length();
+    if (end_ - begin_ <= least_progress(begin_)) return true;
     if (end_ - begin_ < k_deep_inside * length) return false;
     for (std::size_t k = 0; k < series_.size(); ++k) {
       if (series_[k].rest(k_rounding_of_branch * system_.unknowns()[k].scale) > k_unresolved) return false;
@@ -291,8 +310,7 @@ class Direct final : public EventLocator {
   bool is_closed_ = false;
   double primitive_offset_ = 0.0;
   bool has_slaves_ = false;
-  bool may_rest_ = false;      ///< some unknown
-  double branch_reach_ = 0.0;  ///< of the system where the piece begins
+  bool may_rest_ = false;  ///< some unknown
   double segment_begin_ = 0.0;
   int refusals_ = 0;                     ///< of tiny pieces in this segment
   double length_ = k_longest;            ///< of the next piece
@@ -303,6 +321,8 @@ class Direct final : public EventLocator {
   std::vector<LegendreSamples> slopes_;  ///< and the rates of the integrated ones
   std::vector<LegendreSeries> series_;   ///< of the gains
   std::vector<double> trial_, rates_, begin_rates_;
+  bool has_branches_ = false;             ///< of solutions, several
+  std::vector<double> branch_reach_;      ///< of the system where the piece begins
   const LegendreNodes* nodes_ = nullptr;  ///< of the segment's pieces
 };
 

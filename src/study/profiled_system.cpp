@@ -69,7 +69,7 @@ class Wrapped : public HybridSystem {
   [[nodiscard]] bool is_open(int contact_class) const noexcept override { return system_->is_open(contact_class); }
   [[nodiscard]] std::string_view difficulty(double xi, View y) override { return system_->difficulty(xi, y); }
   [[nodiscard]] std::vector<Finding> warnings() const override { return system_->warnings(); }
-  [[nodiscard]] double branch_reach(View y) const override { return system_->branch_reach(y); }
+  void branch_reach(View y, State reach) const override { system_->branch_reach(y, reach); }
 
  private:
   std::unique_ptr<HybridSystem> system_;

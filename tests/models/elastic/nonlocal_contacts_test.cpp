@@ -299,11 +299,11 @@ TEST(NonlocalBranch, IsFollowedInPiecesWhereWallsPushEachOtherOff) {
                                               {"second", {Eigen::Vector3d(std::sin(angle), 0.0, std::cos(angle))}}},
                     Centre::fixed);
   // From where either of two equal contacts may open, the mode in which one grows and the other shrinks is free.
-  const double square = 4.0 * contacts.branch_reach(std::vector{0.0, 0.0});
+  const double square = 4.0 * contacts.branch_reach(0, 0.0);
   EXPECT_NEAR(contacts.margin(std::vector{square, square}), 0.0, 1e-12);
-  EXPECT_NEAR(contacts.branch_reach(std::vector{-100.0 * square, 200.0 * square}), 50.0 * square, 1e-12);
+  EXPECT_NEAR(contacts.branch_reach(1, -100.0 * square), 50.0 * square, 1e-12);
   // Walls far from each other lift none.
-  EXPECT_EQ(Contacts({k_rubber, Terms::four}, die(), Centre::fixed).branch_reach(std::vector{0.0, 0.0}),
+  EXPECT_EQ(Contacts({k_rubber, Terms::four}, die(), Centre::fixed).branch_reach(0, 0.0),
             std::numeric_limits<double>::infinity());
 }
 
