@@ -2,10 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -29,9 +31,11 @@ double integral(const auto& f, double begin, double end, double rounding = 0.0) 
 struct SurfaceDisplacement {
   double axial, radial_over_sine;
 
-  SurfaceDisplacement(double nu, double half_sine) noexcept
-      : axial(half_sine + 2.0 * (1.0 - nu) / half_sine),
-        radial_over_sine((1.0 - (1.0 - 2.0 * nu) / (half_sine * (1.0 + half_sine))) / (2.0 * half_sine)) {}
+  SurfaceDisplacement(double nu, double half_sine) noexcept {
+    const double inverse = 1.0 / half_sine;
+    axial = half_sine + 2.0 * (1.0 - nu) * inverse;
+    radial_over_sine = 0.5 * inverse * (1.0 - (1.0 - 2.0 * nu) * inverse / (1.0 + half_sine));
+  }
 };
 
 /// A sphere under a point force: Legendre coefficients of 4 pi times the inward normal displacement,
@@ -67,25 +71,54 @@ void require_inside(double x) {
 /// sqrt(1 - x^2), which ends at x = 1 but for rounding.
 double depth_of_edge(double x) noexcept { return std::sqrt(std::max(0.0, (1.0 - x) * (1.0 + x))); }
 
+/// int_0^pi f(sin^2(phi/2)) dphi for an f that is analytic up to tan(phi/2) = i branch, by the trapezoidal rule on the
+/// circle, once tan(phi/2) is stretched so that this point and infinity are equally far: errors fall by e for every
+/// 1/width of places. None where those would be too many.
+std::optional<double> integral_on_circle(const auto& f, double branch) {
+  constexpr std::size_t k_most = 1024;
+  constexpr double k_rounding = 45.0;  // of the logarithm of the error, with room for the size of f at its branch point
+  static const auto k_squared_sines = [] {
+    std::array<double, k_most / 2 + 1> squares{};
+    for (std::size_t k = 0; k < squares.size(); ++k) {
+      const double sine = std::sin(pi * static_cast<double>(k) / static_cast<double>(k_most));
+      squares[k] = sine * sine;
+    }
+    return squares;
+  }();
+  const double width = 2.0 * std::atanh(std::sqrt(branch));
+  std::size_t count = 8;
+  while (count < k_most && static_cast<double>(count) * width < k_rounding) count *= 2;
+  if (!(static_cast<double>(count) * width >= k_rounding)) return std::nullopt;
+  double sum = 0.0;
+  for (std::size_t k = 0; k <= count / 2; ++k) {
+    const double square = k_squared_sines[k * (k_most / count)];
+    const double per_growth = 1.0 / (1.0 - square + branch * square);
+    const double share = k == 0 || k == count / 2 ? 0.5 : 1.0;  // of a place that stands for itself alone
+    sum += share * f(branch * square * per_growth) * per_growth;
+  }
+  return 2.0 * pi / static_cast<double>(count) * std::sqrt(branch) * sum;
+}
+
 /// Mean over the contact's edge of the displacement away from its middle (eq. 8).
 double edge_influence(bool is_projected, double nu, double theta, double x) {
   const double cap = std::asin(std::min(x, 1.0));
   const double sine = std::sin(theta);
   const double cosine = std::cos(theta);
+  const double depth = depth_of_edge(x);
   const double nearest_half_sine = std::sin(0.5 * (theta - cap));
   const double nearest_half_cosine = std::cos(0.5 * (theta - cap));
   const SurfaceDisplacement middle(nu, std::sin(0.5 * theta));
-  const auto outward = [&](double phi) {
-    const double turn = std::sin(0.5 * phi);
-    const double across = std::cos(phi);
+  // At an angle phi around the contact, of which the square of sin(phi/2) is given.
+  const auto outward = [&](double square) {
+    const double across = 1.0 - 2.0 * square;  // cos(phi)
     // sin^2 and cos^2 of beta/2 (eq. 10), both without cancellation where they are small.
-    const double turned = x * turn * turn * sine;
+    const double turned = x * square * sine;
     const double half_sine = std::sqrt(nearest_half_sine * nearest_half_sine + turned);
     const SurfaceDisplacement edge(nu, half_sine);
     const double axial = -(edge.axial - middle.axial) * sine * across;
     if (is_projected) {
-      const double along = std::sin(phi);
-      const double edge_arm = -cosine * across * (sine * depth_of_edge(x) - x * cosine * across) + x * along * along;
+      const double along_squared = 4.0 * square * (1.0 - square);  // sin^2(phi)
+      const double edge_arm = -cosine * across * (sine * depth - x * cosine * across) + x * along_squared;
       return axial + edge.radial_over_sine * edge_arm + middle.radial_over_sine * sine * cosine * across;
     }
     // The edge may pass the point opposite to the force.
@@ -94,11 +127,20 @@ double edge_influence(bool is_projected, double nu, double theta, double x) {
     const double length = std::sqrt(1.0 - sine * sine * across * across);  // eq. A.10
     return axial + (edge.radial_over_sine * edge_sine - middle.radial_over_sine * sine) * length;
   };
+  if (is_projected) {
+    const double nearest = std::abs(nearest_half_sine);
+    const double branch = nearest / std::hypot(nearest, std::sqrt(x * sine));
+    if (const auto sum = integral_on_circle(outward, branch)) return unit_compliance(nu) / pi * *sum;
+  }
   // The length of eq. A.10 is |sin(phi)| at theta = pi/2: the halves are smooth, the whole is not.
   // Displacements at the edge and in the middle differ by a share of the order of x.
   const double rounding = 64.0 * std::numeric_limits<double>::epsilon() / x;
+  const auto around = [&](double phi) {
+    const double half = std::sin(0.5 * phi);
+    return outward(half * half);
+  };
   return unit_compliance(nu) / pi *
-         (integral(outward, 0.0, 0.5 * pi, rounding) + integral(outward, 0.5 * pi, pi, rounding));
+         (integral(around, 0.0, 0.5 * pi, rounding) + integral(around, 0.5 * pi, pi, rounding));
 }
 
 }  // namespace
