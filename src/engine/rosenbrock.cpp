@@ -54,15 +54,18 @@ struct Rosenbrock4::Implementation {
         old(equations.size, 0.0),
         now(equations.size, 0.0),
         between(equations.size, 0.0),
-        by_z(equations.size * equations.size) {}
+        by_z(equations.size * equations.size),
+        by_xi_of_step(equations.size) {}
 
   /// Rates and their derivatives as the library wants them.
-  auto system() {
+  /// @param is_known  the derivatives are still those at the beginning of the step
+  auto system(bool is_known = false) {
     const auto rates = [this](const State& z, State& dz, double at) {
       equations.rates(equations.self, at, &z[0], &dz[0]);
     };
-    const auto jacobian = [this](const State& z, Matrix& matrix, double at, State& by_xi) {
-      equations.jacobian(equations.self, at, &z[0], by_z.data(), &by_xi[0]);
+    const auto jacobian = [this, is_known](const State& z, Matrix& matrix, double at, State& by_xi) {
+      if (!is_known) equations.jacobian(equations.self, at, &z[0], by_z.data(), by_xi_of_step.data());
+      std::copy(by_xi_of_step.begin(), by_xi_of_step.end(), by_xi.begin());
       for (std::size_t i = 0; i < equations.size; ++i) {
         for (std::size_t j = 0; j < equations.size; ++j) matrix(i, j) = by_z[i * equations.size + j];
       }
@@ -73,7 +76,7 @@ struct Rosenbrock4::Implementation {
   Equations equations;
   Controlled controlled;
   State old, now, between;
-  std::vector<double> by_z;
+  std::vector<double> by_z, by_xi_of_step;
 };
 
 Rosenbrock4::Rosenbrock4(const Equations& equations, double atol, double rtol, double rounding)
@@ -105,7 +108,7 @@ const double* Rosenbrock4::end_state() const noexcept { return &implementation_-
 
 const double* Rosenbrock4::state_at(double xi, double begin) {
   Implementation& own = *implementation_;
-  own.controlled.stepper().do_step(own.system(), own.old, begin, own.between, xi - begin);
+  own.controlled.stepper().do_step(own.system(true), own.old, begin, own.between, xi - begin);
   return &own.between[0];
 }
 
