@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <stdexcept>
 
+#include "elastic/hertz.hpp"
 #include "elastic/nonlocal_limit.hpp"
 #include "scene/choice.hpp"
-#include "scene/scene.hpp"
 
 namespace monograin {
 
@@ -49,6 +51,35 @@ std::optional<double> nonlocal_limit_of(const Scenario& scenario) {
   } catch (const std::domain_error&) {
     return std::nullopt;  // a contact becomes as wide as the particle, or nothing holds the centre
   }
+}
+
+Reach nonlocal_reach(const Scenario& scenario, const Until& until) {
+  constexpr double k_infinity = std::numeric_limits<double>::infinity();
+  const nonlocal::LocalLaw law(nonlocal_model_of(scenario).terms);
+  const double radius = scenario.radius;
+  const double modulus =
+      composite_modulus(scenario.material.at("youngs_modulus"), scenario.material.at("poisson_ratio"));
+  const double force_unit = modulus * radius * radius;
+  double square = k_infinity;  // of the contact radius
+  switch (until.quantity) {
+    case Until::Quantity::force:
+      if (until.value < force_unit * law.greatest_force()) square = law.signed_square_under(until.value / force_unit);
+      break;
+    case Until::Quantity::displacement:
+      if (until.value < radius) square = law.signed_square(until.value / radius);
+      break;
+    case Until::Quantity::contact_radius:
+      square = std::pow(until.value / radius, 2);
+      break;
+    case Until::Quantity::pressure:
+      square = std::pow(0.75 * std::numbers::pi * until.value / modulus, 2);  // with one term; others raise it
+      break;
+    default:
+      break;
+  }
+  if (!(square < 1.0)) return {.displacement = k_infinity, .force = k_infinity};
+  const nonlocal::LocalContact contact = law.at(square);
+  return {.displacement = contact.approach * radius, .force = contact.force * force_unit};
 }
 
 }  // namespace monograin

@@ -10,6 +10,7 @@
 
 #include "catalogue.hpp"
 #include "scene/mdr_law.hpp"
+#include "scene/nonlocal_model.hpp"
 #include "scene/plastic_law.hpp"
 
 namespace monograin {
@@ -78,6 +79,7 @@ Reach end_of(const Scenario& scenario, const Until& until) {
   if (!(until.value > 0.0) && until.quantity != Until::Quantity::event) return end;
   if (is_plastic(scenario.model)) return plastic_reach(scenario, until);
   if (scenario.model == "mdr" || scenario.model == "hertz") end = mdr_reach(scenario, until);
+  if (scenario.model == "nonlocal") end = nonlocal_reach(scenario, until);
   // A free centre goes along: its walls go farther than their contacts.
   if (scenario.loading.centre_is_free) end.displacement = std::numeric_limits<double>::infinity();
   if (until.quantity == Until::Quantity::displacement) end.displacement = until.value;
