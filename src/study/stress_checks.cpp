@@ -54,8 +54,8 @@ double first_end(const std::vector<Run>& runs) {
 }
 
 /// Whether a free centre that nothing holds any more lies elsewhere than at first: walls that bear nothing have taken
-/// it along, and do not take it back.
-bool is_left_elsewhere(const Run& run, double tolerance) {
+/// it along, and do not take it back. By as much as two such places may differ by.
+bool is_left_elsewhere(const Run& run, double tolerance, double negligible) {
   const Table& table = run.record.history;
   const std::size_t last = table.row_count() - 1;
   const double least = tolerance * largest_of_kind(table, "force");
@@ -64,7 +64,8 @@ bool is_left_elsewhere(const Run& run, double tolerance) {
     const Column& column = table.columns()[c];
     if (kind_of(column) == "force" && std::abs(table.at(last, c)) > least) return false;
     if (!column.name.starts_with("centre_")) continue;
-    is_elsewhere |= std::abs(table.at(last, c) - table.at(0, c)) > tolerance * run.scenario.radius;
+    const double way = std::abs(table.at(last, c) - table.at(0, c));
+    is_elsewhere |= way > tolerance * largest_magnitude(table, c) + negligible * run.scenario.radius;
   }
   return is_elsewhere;
 }
@@ -314,7 +315,7 @@ class SceneCheck {
     if (!there || !(is_elastic(scenario_) || stays_elastic(of_scene))) return;
     const std::optional<Run> run = try_run(*there, "forth and back");
     if (!run || run->record.status != RunStatus::complete || is_below_resolution(*run)) return;
-    if (is_left_elsewhere(*run, tolerance_)) return;
+    if (is_left_elsewhere(*run, tolerance_, nothing_.share)) return;
     const Table& table = run->record.history;
     const std::vector<std::size_t> rows = output_rows(table);
     const auto points = static_cast<std::size_t>(scenario_.output.points);
