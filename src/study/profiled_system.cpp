@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <utility>
 
@@ -139,7 +140,7 @@ class Profiled final : public Wrapped {
 
 class Limited final : public Wrapped {
  public:
-  Limited(std::unique_ptr<HybridSystem> system, Clock::time_point end) : Wrapped(std::move(system)), end_(end) {}
+  Limited(std::unique_ptr<HybridSystem> system, double end) : Wrapped(std::move(system)), end_(end) {}
 
   void rates(double xi, View y, State dy) override {
     check_time();
@@ -159,11 +160,17 @@ class Limited final : public Wrapped {
   }
 
  private:
-  void check_time() const {
-    if (Clock::now() > end_) throw OutOfTime();
+  /// A thread has had a processor for no longer than has gone by, which is cheaper to know.
+  void check_time() {
+    const Clock::time_point now = Clock::now();
+    if (now < next_look_) return;
+    const double left = end_ - thread_seconds();
+    if (!(left > 0.0)) throw OutOfTime();
+    next_look_ = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(left));
   }
 
-  Clock::time_point end_;
+  double end_;
+  Clock::time_point next_look_;
 };
 
 class AlwaysObserved final : public Wrapped {
@@ -271,7 +278,13 @@ std::unique_ptr<HybridSystem> always_observed(std::unique_ptr<HybridSystem> syst
   return std::make_unique<AlwaysObserved>(std::move(system));
 }
 
-std::unique_ptr<HybridSystem> limited(std::unique_ptr<HybridSystem> system, Clock::time_point end) {
+double thread_seconds() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::unique_ptr<HybridSystem> limited(std::unique_ptr<HybridSystem> system, double end) {
   return std::make_unique<Limited>(std::move(system), end);
 }
 

@@ -1,7 +1,6 @@
 /// A system that tells where the time goes, one that has no more than so much, and some that waste it.
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <stdexcept>
 
@@ -30,9 +29,12 @@ class OutOfTime : public std::runtime_error {
   OutOfTime() : std::runtime_error("out of time") {}
 };
 
+/// For how long this thread has had a processor [s]; what else the machine does takes none of it.
+[[nodiscard]] double thread_seconds();
+
 /// The same system, whose equations and guards throw OutOfTime from an instant on.
-[[nodiscard]] std::unique_ptr<HybridSystem> limited(std::unique_ptr<HybridSystem> system,
-                                                    std::chrono::steady_clock::time_point end);
+/// @param end  in thread_seconds()
+[[nodiscard]] std::unique_ptr<HybridSystem> limited(std::unique_ptr<HybridSystem> system, double end);
 
 /// The same system, which evaluates its observables wherever it evaluates its equations: what recording at output
 /// points only is measured against.

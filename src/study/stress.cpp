@@ -116,6 +116,7 @@ class StressTest {
     ++report_.scenes;
     report_.runs += checked.verdict.runs;
     report_.ill_conditioned += checked.verdict.is_ill_conditioned ? 1U : 0U;
+    report_.cut_short += checked.verdict.is_cut_short ? 1U : 0U;
     ++report_.by_model_and_integrator[{model, checked.scene.integrator}];
     if (checked.seconds > report_.slowest_seconds) {
       report_.slowest = index;
@@ -166,8 +167,9 @@ class StressTest {
 }  // namespace
 
 std::string StressReport::text() const {
-  std::string text = fmt::format("seed {}: {} scenes, {} runs, {} ill-conditioned, {} failures\n\n", seed, scenes, runs,
-                                 ill_conditioned, failures.size());
+  std::string text =
+      fmt::format("seed {}: {} scenes, {} runs, {} ill-conditioned, {} too slow to compare, {} failures\n\n", seed,
+                  scenes, runs, ill_conditioned, cut_short, failures.size());
   std::set<std::string> integrators;
   for (const auto& [key, count] : by_model_and_integrator) integrators.insert(key.second);
   std::set<std::string> models;

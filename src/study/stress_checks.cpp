@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -22,8 +21,6 @@
 
 namespace monograin {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // What a scene does with changed data is measured by a few samples of all directions; the worst is a few times worse.
 constexpr double k_sample_multiple = 10.0;
@@ -96,9 +93,10 @@ class SceneCheck {
       check_all();
     } catch (const OutOfTime&) {
       // Where the scene itself has taken much of the time, what it would be compared with takes as long.
-      const bool is_slow = seconds_of_run() < k_patience * own_seconds_;
-      if (is_slow) return std::move(verdict_);
-      report(k_time_rule, fmt::format("{} runs have not come to an end within {:g} s", verdict_.runs, seconds_));
+      verdict_.is_cut_short = seconds_of_run() < k_patience * own_seconds_;
+      if (!verdict_.is_cut_short) {
+        report(k_time_rule, fmt::format("{} runs have not come to an end within {:g} s", verdict_.runs, seconds_));
+      }
     }
     return std::move(verdict_);
   }
@@ -140,12 +138,10 @@ class SceneCheck {
     check_retrace(*run);
   }
 
-  [[nodiscard]] double seconds_of_run() const {
-    return std::chrono::duration<double>(Clock::now() - run_begin_).count();
-  }
+  [[nodiscard]] double seconds_of_run() const { return thread_seconds() - run_begin_; }
 
   [[nodiscard]] Run run_limited(const Scenario& scenario, const SystemWrapper& wrap = {}) {
-    run_begin_ = Clock::now();
+    run_begin_ = thread_seconds();
     return run_scenario(scenario, [&](std::unique_ptr<HybridSystem> system) {
       return limited(wrap ? wrap(std::move(system)) : std::move(system), end_);
     });
@@ -336,11 +332,10 @@ class SceneCheck {
 
   const Scenario& scenario_;
   double seconds_;
-  Clock::time_point end_ =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds_));
-  Clock::time_point run_begin_ = Clock::now();  ///< of the last run
-  double own_seconds_ = 0.0;                    ///< that the scene's own run has taken
-  const Run* own_ = nullptr;                    ///< the scene's run, while all is checked
+  double end_ = thread_seconds() + seconds_;
+  double run_begin_ = thread_seconds();  ///< of the last run
+  double own_seconds_ = 0.0;             ///< that the scene's own run has taken
+  const Run* own_ = nullptr;             ///< the scene's run, while all is checked
   std::optional<Run> reference_;
   double tolerance_ = 0.0;
   Negligible nothing_;

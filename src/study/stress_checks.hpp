@@ -20,6 +20,7 @@ struct StressVerdict {
   std::vector<Violation> violations;
   long runs = 0;                    ///< that were made to find it
   bool is_ill_conditioned = false;  ///< rounding of its data, or errors of the size of rtol, change it visibly
+  bool is_cut_short = false;        ///< the scene itself is so slow that not all comparisons were made
 };
 
 /// Runs a scene, and others that must agree with it: by the reference form, slower, of a larger and stiffer particle,
@@ -31,7 +32,7 @@ struct StressVerdict {
 /// scene does with data changed by rtol (by rounding, where two runs of the same form are compared) is measured, and
 /// allowed.
 ///
-/// @param seconds  of wall time that all runs have together; a scene that takes longer breaks the rule "time"
+/// @param seconds  of a processor that all runs have together; a scene that takes longer breaks the rule "time"
 [[nodiscard]] StressVerdict check_scene(const Scenario& scenario, double seconds = k_most_seconds_of_scene);
 
 }  // namespace monograin
