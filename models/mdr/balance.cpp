@@ -170,10 +170,13 @@ double System::inward_rate(std::size_t i, const Motion& motion) const noexcept {
 }
 
 /// What is left of forces on the centre that balance, of their own rounding and of that of overlaps: contacts that only
-/// touch it are too soft to bear that without going to and fro.
+/// touch it are too soft to bear that without going to and fro. Walls under force bear theirs as exactly as they stand.
 double System::rounding_of_forces() const noexcept {
   double sum = 0.0;
-  for (std::size_t i = 0; i < now_.size(); ++i) sum += classes_[i].multiplicity() * std::abs(now_[i].contact.force);
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    const Contact& c = now_[i].contact;
+    sum += classes_[i].multiplicity() * (std::abs(c.force) + (is_loaded(i) ? std::abs(c.by_overlap) : 0.0));
+  }
   return 4.0 * k_round_off * (sum + sums_.stiffness.cwiseAbs().maxCoeff());
 }
 
@@ -201,7 +204,10 @@ void System::move_centre(double xi, std::span<double> y) {
     // Overlaps are rounded, and the stiffest contact's force with its own; below that there is nothing to damp.
     const double noise = k_round_off * sums_.stiffness.cwiseAbs().maxCoeff();
     Small step = balance_step(sums_.stiffness, sums_.force);
-    if (step.norm() == 0.0) throw std::domain_error("no contact holds the free centre of the particle");
+    if (step.norm() == 0.0) {
+      if (error <= rounding_of_forces()) return;
+      throw std::domain_error("no contact holds the free centre of the particle");
+    }
     if (step.norm() >= 0.5 * step_size && (step.norm() < 1e-12 || error <= rounding_of_forces())) return;
     step_size = step.norm();
     // Where the last step had to be cut short, as next to a fold, there is no need to begin far beyond that again.
