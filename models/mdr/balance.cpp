@@ -36,11 +36,9 @@ void System::sum_up(double xi, double r) {
   const double radius = 1.0 + r;
   if (free_count_ > 0) {
     sums_.by_centre.setZero();
-    sums_.force.setZero();
-    sums_.force_by_time.setZero();
-    sums_.force_by_radius.setZero();
-    sums_.stiffness.setZero();
-    sums_.firmness.setZero();
+    for (Line& line : lines_) {
+      line = {.direction = line.direction, .last_stiffness = line.last_stiffness};
+    }
   }
   sums_.power = 0.0;
   sums_.force_work = 0.0;
@@ -80,13 +78,14 @@ void System::sum_up(double xi, double r) {
     }
     if (free_count_ > 0) {
       const double firm = firmness(i);
-      sums_.force += count * c.force * directions_[i];
-      sums_.force_by_time += count * (is_loaded(i) ? speed : firm * speed) * directions_[i];
+      const double along = on_lines_[i].along;
+      Line& line = lines_[on_lines_[i].line];
+      line.force += count * c.force * along;
+      line.force_by_time += count * (is_loaded(i) ? speed : firm * speed) * along;
       if (!is_loaded(i)) {
-        const SmallMatrix along = directions_[i] * directions_[i].transpose();
-        sums_.force_by_radius += count * (firm + c.by_radius) * directions_[i];
-        sums_.stiffness += count * c.by_overlap * along;
-        sums_.firmness += count * firm * along;
+        line.force_by_radius += count * (firm + c.by_radius) * along;
+        line.stiffness += count * c.by_overlap * along * along;
+        line.firmness += count * firm * along * along;
       }
     }
     if (!is_member(memory_[i])) continue;
@@ -103,8 +102,39 @@ void System::sum_up(double xi, double r) {
   }
   sums_.balance = r * (1.0 + r * (1.0 + k_third * r)) - k_twelfth * caps + 2.0 * k_third * w / (1.0 + root);
   sums_.by_radius += radius * radius - 0.5 * radius * overlaps;
+  if (free_count_ == 0) return;
   // At first touch all stiffnesses vanish together.
-  if (free_count_ > 0 && sums_.stiffness.trace() == 0.0) sums_.stiffness = sums_.firmness / least_firm();
+  const bool is_first_touch = std::ranges::all_of(lines_, [](const Line& line) { return line.stiffness == 0.0; });
+  sums_.force.setZero();
+  sums_.stiffness.setZero();
+  for (Line& line : lines_) {
+    if (is_first_touch) line.stiffness = line.firmness / least_firm();
+    sums_.force += line.force * line.direction;
+    sums_.stiffness += line.stiffness * line.direction * line.direction.transpose();
+  }
+}
+
+/// Classes whose mean normals differ by their size, their sign, and rounding only are on one line.
+void System::find_lines() {
+  for (Small& direction : directions_) {
+    const double size = direction.norm();
+    if (!(size > k_no_direction)) {
+      on_lines_.push_back({});
+      continue;
+    }
+    const Small unit = direction / size;
+    std::size_t line = 0;
+    while (line < lines_.size()) {
+      const Small& other = lines_[line].direction;
+      if ((unit - std::copysign(1.0, unit.dot(other)) * other).norm() <= k_no_component) break;
+      ++line;
+    }
+    if (line == lines_.size()) lines_.push_back({.direction = unit});
+    const double along = std::copysign(size, unit.dot(lines_[line].direction));
+    direction = along * lines_[line].direction;
+    on_lines_.push_back({line, along});
+  }
+  if (lines_.empty()) lines_.emplace_back();  // of those that do not act along any
 }
 
 /// Stiffness by which a contact takes part in the motion of a free centre: that of contacts which only touch would be
@@ -116,25 +146,49 @@ double System::firmness(std::size_t i) const noexcept {
 }
 
 /// Displacement of the centre that changes the net force by `-force`; none along directions that no contact holds.
-System::Small System::balance_step(const SmallMatrix& stiffness, const Small& force) const {
-  Small step = Small::Zero();
-  if (free_count_ == 1) {
-    if (stiffness(0, 0) != 0.0) step[0] = -force[0] / stiffness(0, 0);
-  } else if (free_count_ > 1) {
-    const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(stiffness);
-    const double threshold = 1e-12 * solver.eigenvalues().cwiseAbs().maxCoeff();
-    int held = 0;
-    for (int k = 0; k < 3; ++k) {
-      if (std::abs(solver.eigenvalues()[k]) <= threshold) continue;
-      const Small direction = solver.eigenvectors().col(k);
-      step -= direction * (direction.dot(force) / solver.eigenvalues()[k]);
-      ++held;
-    }
-    // Between walls that nearly align the line of a step depends on their stiffnesses: off balance it would lead to the
-    // side, each time elsewhere.
-    if (held < free_count_) step -= unheld_directions() * step;
+System::Small System::balance_step(double Line::*stiffness, double Line::*force) const {
+  if (lines_.size() == 1) {
+    const Line& only = lines_.front();
+    return only.*stiffness == 0.0 ? Small::Zero() : Small(-(only.*force) / only.*stiffness * only.direction);
   }
-  return step;
+  // Along the line that holds the centre most, across it along the one that does so most there, and so on: in these
+  // directions what stiff contacts do is nothing, not rounding, where only soft ones hold it.
+  SmallMatrix basis = SmallMatrix::Zero();
+  for (int k = 0; k < free_count_; ++k) {
+    double most = 0.0;
+    Small next = Small::Zero();
+    for (const Line& line : lines_) {
+      const Small across = line.direction - basis * (basis.transpose() * line.direction);
+      const double hold = std::abs(line.*stiffness) * across.squaredNorm();
+      if (hold <= most || across.norm() <= k_no_direction) continue;
+      most = hold;
+      next = across;
+    }
+    if (most == 0.0) break;
+    next.normalize();
+    basis.col(k) = (next - basis * (basis.transpose() * next)).normalized();
+  }
+
+  SmallMatrix sum = SmallMatrix::Zero();
+  Small push = Small::Zero();
+  Small magnitudes = Small::Zero();
+  for (const Line& line : lines_) {
+    const Small raw = basis.transpose() * line.direction;
+    const Small at = (raw.array().abs() > k_no_component).select(raw, 0.0);
+    sum += line.*stiffness * at * at.transpose();
+    push += line.*force * at;
+    magnitudes += std::abs(line.*stiffness) * at.cwiseAbs2();
+  }
+  const Small scale = (magnitudes.array() > 0.0).select(magnitudes.array().rsqrt(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(scale.asDiagonal() * sum * scale.asDiagonal());
+  const double threshold = 1e-12 * solver.eigenvalues().cwiseAbs().maxCoeff();
+  Small step = Small::Zero();
+  for (int k = 0; k < 3; ++k) {
+    if (std::abs(solver.eigenvalues()[k]) <= threshold) continue;
+    const Small direction = scale.cwiseProduct(solver.eigenvectors().col(k));
+    step -= direction * (direction.dot(push) / solver.eigenvalues()[k]);
+  }
+  return basis * step;
 }
 
 System::Motion System::motion(bool growing) const {
@@ -144,8 +198,8 @@ System::Motion System::motion(bool growing) const {
             .growth = growing ? -sums_.by_time / sums_.by_radius : 0.0,
             .centre = Small::Zero()};
   }
-  const Small by_time = balance_step(sums_.firmness, sums_.force_by_time);
-  const Small by_radius = balance_step(sums_.firmness, sums_.force_by_radius);
+  const Small by_time = balance_step(&Line::firmness, &Line::force_by_time);
+  const Small by_radius = balance_step(&Line::firmness, &Line::force_by_radius);
   Motion result{.demand = -sums_.by_time - sums_.by_centre.dot(by_time),
                 .slope = sums_.by_radius + sums_.by_centre.dot(by_radius),
                 .growth = 0.0,
@@ -203,7 +257,7 @@ void System::move_centre(double xi, std::span<double> y) {
     if (error == 0.0) return;
     // Overlaps are rounded, and the stiffest contact's force with its own; below that there is nothing to damp.
     const double noise = k_round_off * sums_.stiffness.cwiseAbs().maxCoeff();
-    Small step = balance_step(sums_.stiffness, sums_.force);
+    Small step = balance_step(&Line::stiffness, &Line::force);
     if (step.norm() == 0.0) {
       if (error <= rounding_of_forces()) return;
       throw std::domain_error("no contact holds the free centre of the particle");
@@ -214,7 +268,7 @@ void System::move_centre(double xi, std::span<double> y) {
     if (k_most_growth * way < step_size) step *= k_most_growth * way / step_size;
     Small before = Small::Zero();
     for (int k = 0; k < free_count_; ++k) before[k] = y[centre_place(k)];
-    const SmallMatrix stiffness = sums_.stiffness;
+    for (Line& line : lines_) line.last_stiffness = line.stiffness;
     for (int halving = 0; halving < k_most_halvings; ++halving) {
       for (int k = 0; k < free_count_; ++k) y[centre_place(k)] = before[k] + step[k];
       try {
@@ -222,7 +276,7 @@ void System::move_centre(double xi, std::span<double> y) {
         if (sums_.force.norm() < std::max(error, noise) || step.norm() < k_round_off) break;
         // Stiff contacts may bear more on a way along which soft ones balance: the way that is left says more. Where an
         // edge peels there are other equilibria, to which that might lead.
-        if (is_only_one && balance_step(stiffness, sums_.force).norm() < 0.5 * step_size) break;
+        if (is_only_one && balance_step(&Line::last_stiffness, &Line::force).norm() < 0.5 * step_size) break;
       } catch (const std::domain_error&) {
         // A trial may lead out of a branch; a state that is nearer lies in it, or there is none.
         if (step.norm() < k_round_off || halving + 1 == k_most_halvings) throw;
@@ -274,7 +328,7 @@ void System::leave_saddle(double xi, std::span<double> y) {
 /// @return false where they do not lead anywhere
 bool System::approach_balance(double xi, std::span<double> y) {
   look(xi, y);
-  Small step = balance_step(sums_.stiffness, sums_.force);
+  Small step = balance_step(&Line::stiffness, &Line::force);
   Small before = Small::Zero();
   for (int k = 0; k < free_count_; ++k) before[k] = y[centre_place(k)];
   for (; step.norm() > k_round_off; step *= 0.5) {
@@ -334,8 +388,8 @@ void System::grow(double xi, std::span<double> y) {
     Small to_balance = Small::Zero();
     Small by_radius = Small::Zero();
     if (free_count_ > 0) {
-      to_balance = balance_step(sums_.stiffness, sums_.force);
-      by_radius = balance_step(sums_.firmness, sums_.force_by_radius);
+      to_balance = balance_step(&Line::stiffness, &Line::force);
+      by_radius = balance_step(&Line::firmness, &Line::force_by_radius);
       slope += sums_.by_centre.dot(by_radius);
       defect += sums_.by_centre.dot(to_balance);
     }

@@ -62,6 +62,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
     free_directions_.leftCols(free_count_) = q.leftCols(free_count_);
   }
   for (Eigen::Index i = 0; i < means.cols(); ++i) directions_.emplace_back(free_directions_.transpose() * means.col(i));
+  find_lines();
 
   const double reach = largest_overlap_expected();
   unknowns_ = {{"apparent radius growth (R - R0)/R0", Unknown::Kind::differential, growth_scale(reach), true},

@@ -105,6 +105,8 @@ class System final : public HybridSystem {
   /// Below this a class of walls does not act along any free direction of the centre: the stiffness by which it would
   /// hold it there goes with the square of this, and is rounding beside that of the same contact along its normal.
   static constexpr double k_no_direction = 1e-6;
+  /// Components of unit vectors that are rounding.
+  static constexpr double k_no_component = 1e-15;
   static constexpr const char* k_singular_growth = "singular growth of the apparent radius";
   /// Firmness by which contacts hold a free centre so little that they are at a fold: a search for the balance of
   /// forces ends there with a force that is least, and not zero, and rates of the centre change sign through infinity.
@@ -153,12 +155,28 @@ class System final : public HybridSystem {
     Small by_centre = Small::Zero();
     double power = 0.0;           ///< d(work)/dxi, less d(force times displacement) where the force is prescribed
     double force_work = 0.0;      ///< force times displacement of those contacts
-    Small force = Small::Zero();  ///< net force along the free directions, and its partial derivatives
-    Small force_by_time = Small::Zero();
-    Small force_by_radius = Small::Zero();
+    Small force = Small::Zero();  ///< net force along the free directions, and its derivative by the centre
     SmallMatrix stiffness = SmallMatrix::Zero();
-    SmallMatrix firmness = SmallMatrix::Zero();
     double time_scale = 0.0;  ///< sum of the magnitudes in by_time
+  };
+
+  /// Walls that face each other, or the same way, push a free centre along one line. What they do is summed up there
+  /// before it is resolved: the rounding of large forces that nearly cancel would otherwise act across the line, where
+  /// a soft contact may be all that holds the centre.
+  struct Line {
+    Small direction = Small::Zero();
+    double force = 0.0;  ///< net force, and its partial derivatives
+    double force_by_time = 0.0;
+    double force_by_radius = 0.0;
+    double stiffness = 0.0;
+    double firmness = 0.0;
+    double last_stiffness = 0.0;  ///< of the last step towards the balance
+  };
+
+  /// Mean normal of a class as a multiple of the direction of a line.
+  struct OnLine {
+    std::size_t line = 0;
+    double along = 0.0;
   };
 
   struct Motion {
@@ -218,7 +236,8 @@ class System final : public HybridSystem {
   /// Stiffness of a contact as deep as rounding.
   [[nodiscard]] double least_firm() const noexcept { return 2.0 * material_.composite_modulus * std::sqrt(k_shallow); }
   [[nodiscard]] double firmness(std::size_t i) const noexcept;
-  [[nodiscard]] Small balance_step(const SmallMatrix& stiffness, const Small& force) const;
+  void find_lines();
+  [[nodiscard]] Small balance_step(double Line::*stiffness, double Line::*force) const;
   [[nodiscard]] Motion motion(bool growing) const;
   [[nodiscard]] Motion growing_motion() const;
   /// Share of the particle's surface that growth has for itself.
@@ -297,6 +316,8 @@ class System final : public HybridSystem {
   std::vector<Unknown> unknowns_;
   std::vector<Observable> observables_;
   std::vector<Small> directions_;  ///< mean normal of each class along the free directions of the centre
+  std::vector<Line> lines_;        ///< in which they lie
+  std::vector<OnLine> on_lines_;   ///< where each class is
   int free_count_ = 0;             ///< free directions of the centre, 0 to 3
   Eigen::Matrix3d free_directions_ = Eigen::Matrix3d::Zero();  ///< their orthonormal basis, in the first columns
   std::vector<CapPair> cap_pairs_;
