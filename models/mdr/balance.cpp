@@ -27,6 +27,8 @@ constexpr double k_most_growth = 64.0;
 constexpr double k_nearest_saddle = 1e-9;
 constexpr double k_farthest_saddle = 1e-2;
 constexpr double k_longer = 1.25;
+// Components of unit vectors that are rounding.
+constexpr double k_no_component = 1e-15;
 
 }  // namespace
 
@@ -114,7 +116,7 @@ void System::sum_up(double xi, double r) {
   }
 }
 
-/// Classes whose mean normals differ by their size, their sign, and rounding only are on one line.
+/// Walls that align are on one line, and act on the centre along that only.
 void System::find_lines() {
   for (Small& direction : directions_) {
     const double size = direction.norm();
@@ -126,7 +128,7 @@ void System::find_lines() {
     std::size_t line = 0;
     while (line < lines_.size()) {
       const Small& other = lines_[line].direction;
-      if ((unit - std::copysign(1.0, unit.dot(other)) * other).norm() <= k_no_component) break;
+      if ((unit - std::copysign(1.0, unit.dot(other)) * other).norm() <= k_no_direction) break;
       ++line;
     }
     if (line == lines_.size()) lines_.push_back({.direction = unit});

@@ -105,8 +105,6 @@ class System final : public HybridSystem {
   /// Below this a class of walls does not act along any free direction of the centre: the stiffness by which it would
   /// hold it there goes with the square of this, and is rounding beside that of the same contact along its normal.
   static constexpr double k_no_direction = 1e-6;
-  /// Components of unit vectors that are rounding.
-  static constexpr double k_no_component = 1e-15;
   static constexpr const char* k_singular_growth = "singular growth of the apparent radius";
   /// Firmness by which contacts hold a free centre so little that they are at a fold: a search for the balance of
   /// forces ends there with a force that is least, and not zero, and rates of the centre change sign through infinity.
