@@ -79,35 +79,39 @@ Contact System::unloaded_contact(const UnloadingShape& shape, double overlap) co
 }
 
 void System::look_at(std::size_t i, double displacement, double r) {
+  now_[i].displacement = displacement;
+  now_[i].overlap = displacement + r;
+  now_[i].contact = contact_at(i, now_[i].overlap, r);
+}
+
+Contact System::contact_at(std::size_t i, double overlap, double r) {
   const double radius = 1.0 + r;
-  Instant& now = now_[i];
   const Memory& memory = memory_[i];
-  now.displacement = displacement;
-  now.overlap = displacement + r;
+  Contact contact;
   if (memory.edge != Edge::following) {
-    const Frame adhesive = frame(i, now.overlap, r);
-    now.contact = memory.edge == Edge::sticking
-                      ? sticking_contact(adhesive, material_.composite_modulus, memory.edge_radius)
-                      : peeling_contact(adhesive, material_.composite_modulus, surface_energy_,
-                                        pull_off(i, adhesive.indenter).by_displacement.contact_radius);
+    const Frame adhesive = frame(i, overlap, r);
+    contact = memory.edge == Edge::sticking
+                  ? sticking_contact(adhesive, material_.composite_modulus, memory.edge_radius)
+                  : peeling_contact(adhesive, material_.composite_modulus, surface_energy_,
+                                    pull_off(i, adhesive.indenter).by_displacement.contact_radius);
   } else {
     switch (memory.regime) {
       case Regime::open:
       case Regime::separated:
-        now.contact = {};
         break;
       case Regime::elastic:
-        now.contact = touching_contact(radius, now.overlap);
+        contact = touching_contact(radius, overlap);
         break;
       case Regime::fully_plastic:
-        now.contact = plastic_contact(material_, radius, now.overlap, memory.area_constant);
+        contact = plastic_contact(material_, radius, overlap, memory.area_constant);
         break;
       case Regime::unloading:
-        now.contact = unloaded_contact(shape(i, r), now.overlap);
+        contact = unloaded_contact(shape(i, r), overlap);
         break;
     }
   }
-  if (settings_.delta_max_rule == DeltaMaxRule::shifted) now.contact.by_radius += now.contact.by_overlap_max;
+  if (settings_.delta_max_rule == DeltaMaxRule::shifted) contact.by_radius += contact.by_overlap_max;
+  return contact;
 }
 
 /// Force times displacement of the contacts under force.
@@ -219,6 +223,17 @@ void System::note_walls(double xi, std::span<double> y) const noexcept {
   }
 }
 
+/// A contact, or one as deep as rounding where it is shallower: under force it moves without bound as it is made, and
+/// what that does to the others is over before any of them has moved by more than rounding.
+Contact System::firm_contact(std::size_t i, double r) {
+  const Memory& memory = memory_[i];
+  const bool is_dent = memory.regime == Regime::unloading;
+  if (memory.edge != Edge::following || !(is_dent || memory.regime == Regime::elastic)) return now_[i].contact;
+  const double touch = is_dent ? shape(i, r).overlap_max - shape(i, r).recovery : 0.0;
+  if (now_[i].overlap - touch >= k_shallow) return now_[i].contact;
+  return contact_at(i, is_dent ? std::min(touch + k_shallow, shape(i, r).overlap_max) : k_shallow, r);
+}
+
 /// How the displacement of a wall goes with xi and R.
 void System::set_rates(std::size_t i, double r) {
   Instant& now = now_[i];
@@ -226,7 +241,7 @@ void System::set_rates(std::size_t i, double r) {
   now.rate_by_time = is_loaded(i) ? 0.0 : speed;
   now.rate_by_growth = 0.0;
   if (!is_loaded(i)) return;
-  const Contact& c = now.contact;
+  const Contact c = firm_contact(i, r);
   if (memory_[i].edge == Edge::peeling) {
     // Where it pulls off, a force holds it no longer: whatever the radius, the overlap is about that.
     const double critical = pull_off(i, frame(i, now.overlap, r).indenter).by_force.contact_radius;

@@ -229,6 +229,8 @@ class System final : public HybridSystem {
   [[nodiscard]] Contact unloaded_contact(const UnloadingShape& shape, double overlap) const;
   [[nodiscard]] Contact visible_contact(std::size_t i) const noexcept;
   void look_at(std::size_t i, double displacement, double r);
+  [[nodiscard]] Contact contact_at(std::size_t i, double overlap, double r);
+  [[nodiscard]] Contact firm_contact(std::size_t i, double r);
   [[nodiscard]] double force_work(std::span<const double> y);
   void sum_up(double xi, double r);
   /// Stiffness of a contact as deep as rounding.
