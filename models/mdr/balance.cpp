@@ -225,15 +225,18 @@ double System::inward_rate(std::size_t i, const Motion& motion) const noexcept {
   return now_[i].rate_by_time + now_[i].rate_by_growth * motion.growth + carried;
 }
 
+double System::magnitude_of_forces() const noexcept {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < now_.size(); ++i) sum += classes_[i].multiplicity() * std::abs(now_[i].contact.force);
+  return sum;
+}
+
 /// What is left of forces on the centre that balance, of their own rounding and of that of overlaps: contacts that only
 /// touch it are too soft to bear that without going to and fro. Walls under force bear theirs as exactly as they stand.
 double System::rounding_of_forces() const noexcept {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < now_.size(); ++i) {
-    const Contact& c = now_[i].contact;
-    sum += classes_[i].multiplicity() * (std::abs(c.force) + (is_loaded(i) ? std::abs(c.by_overlap) : 0.0));
-  }
-  return 4.0 * k_round_off * (sum + sums_.stiffness.cwiseAbs().maxCoeff());
+  double sum = magnitude_of_forces();
+  for (std::size_t i = 0; i < now_.size(); ++i) sum += classes_[i].multiplicity() * unpeeled_stiffness(i);
+  return 4.0 * k_round_off * sum;
 }
 
 /// Overlap of a contact that only touches a free centre: rounding of lengths, and what the rounding of others presses
@@ -286,8 +289,11 @@ void System::move_centre(double xi, std::span<double> y) {
       step *= 0.5;
     }
     way = step.norm();
-    if (way < 2.0 * k_round_off) return;
+    if (way < 2.0 * k_round_off) break;
   }
+  // Where edges peel, the search may also end beyond a fold, where the force is least.
+  const double rounding = rounding_of_forces() + k_no_force * magnitude_of_forces();
+  if (weakest_contact() ? sums_.force.norm() <= rounding : way < 2.0 * k_round_off) return;
   if (std::abs(least_firmness()) < k_at_fold) {
     throw std::domain_error("the contacts hold the free centre no longer: beyond a fold no forces on it balance");
   }

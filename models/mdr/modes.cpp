@@ -21,8 +21,6 @@ constexpr double k_passed = 1e-2;
 // Under force a wall would go back by what is missing of its force, over the stiffness of a plastic contact, which is
 // less by many orders.
 constexpr double k_passed_by_force = 1e-6;
-// Share of the forces on a free centre that is rounding in their balance.
-constexpr double k_no_force = 1e-9;
 // Caps that have met and are this far from it have parted.
 constexpr double k_parted = 1e-6;
 // A free centre that has gone this far (over R0) within an instant has sprung.

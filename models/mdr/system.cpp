@@ -186,9 +186,14 @@ bool System::is_open(int contact_class) const noexcept {
   return !touches(memory_[static_cast<std::size_t>(contact_class)].regime);
 }
 
-/// Of the whole program: every contact is as shallow when it is made.
-std::string_view System::difficulty(double /*xi*/, std::span<const double> /*y*/) {
-  return largest_overlap_expected() > k_shallow ? std::string_view() : k_closes_nothing;
+std::string_view System::difficulty(double xi, std::span<const double> y) {
+  // Of the whole program: every contact is as shallow when it is made.
+  if (!(largest_overlap_expected() > k_shallow)) return k_closes_nothing;
+  if (free_count_ == 0 || !weakest_contact()) return {};
+  look(xi, y);
+  if (least_firmness() >= k_hardly_firm) return {};
+  return "the contacts hardly hold the free centre any more, and what is tolerated is magnified next to the fold where "
+         "they end to; expected integrator = \"direct\"";
 }
 
 double System::largest_overlap(const Memory& memory, double r) const noexcept {

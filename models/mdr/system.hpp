@@ -109,6 +109,10 @@ class System final : public HybridSystem {
   /// Firmness by which contacts hold a free centre so little that they are at a fold: a search for the balance of
   /// forces ends there with a force that is least, and not zero, and rates of the centre change sign through infinity.
   static constexpr double k_at_fold = 1e-2;
+  /// Firmness below which a fold is so near that errors are magnified.
+  static constexpr double k_hardly_firm = 0.1;
+  /// Share of the forces on a free centre that is rounding in their balance.
+  static constexpr double k_no_force = 1e-9;
   /// Overlaps over R0 that are rounding of lengths of the order of R0.
   static constexpr double k_shallow = 1e-12;
 
@@ -244,6 +248,7 @@ class System final : public HybridSystem {
   [[nodiscard]] static double free_surface(const Motion& motion, double r) noexcept {
     return motion.slope / ((1.0 + r) * (1.0 + r));
   }
+  [[nodiscard]] double magnitude_of_forces() const noexcept;
   [[nodiscard]] double rounding_of_forces() const noexcept;
   [[nodiscard]] double shallow() const noexcept;
   void move_centre(double xi, std::span<double> y);
@@ -278,6 +283,7 @@ class System final : public HybridSystem {
   void start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log);
   void stick(std::size_t i, std::vector<Event>& log);
   [[nodiscard]] std::optional<std::size_t> weakest_contact() const noexcept;
+  [[nodiscard]] double unpeeled_stiffness(std::size_t i) const noexcept;
   [[nodiscard]] double least_firmness() const;
   void check_adhesion(std::size_t i, double r);
   void start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);

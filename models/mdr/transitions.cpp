@@ -136,6 +136,14 @@ std::optional<std::size_t> System::weakest_contact() const noexcept {
   return weakest;
 }
 
+/// Magnitude of the stiffness that a contact has, or would have if its edge did not peel.
+double System::unpeeled_stiffness(std::size_t i) const noexcept {
+  const Contact& c = now_[i].contact;
+  if (memory_[i].edge != Edge::peeling) return std::abs(c.by_overlap);
+  const double opening = memory_[i].regime == Regime::elastic ? 1.0 : 1.0 / (1.0 - shapes_[i].rho);
+  return 2.0 * material_.composite_modulus * c.contact_radius * opening;
+}
+
 /// How firmly the contacts hold a free centre in the direction in which they do so least: their stiffness over what it
 /// would be if no edge peeled. Zero where the equilibrium turns back.
 double System::least_firmness() const {
@@ -145,15 +153,9 @@ double System::least_firmness() const {
     if (!touches(memory_[i].regime) || is_loaded(i)) continue;
     const SmallMatrix along = directions_[i] * directions_[i].transpose();
     const double count = classes_[i].multiplicity() / material_.composite_modulus;
-    const Contact& c = now_[i].contact;
+    stiffness += count * now_[i].contact.by_overlap * along;
     // Of two alike that peel the stiffnesses end together, and with them the sum of what they are.
-    double unpeeled = std::abs(c.by_overlap);
-    if (memory_[i].edge == Edge::peeling) {
-      const double opening = memory_[i].regime == Regime::elastic ? 1.0 : 1.0 / (1.0 - shapes_[i].rho);
-      unpeeled = 2.0 * material_.composite_modulus * c.contact_radius * opening;
-    }
-    stiffness += count * c.by_overlap * along;
-    magnitudes += count * unpeeled * along;
+    magnitudes += count * unpeeled_stiffness(i) * along;
   }
   for (int k = free_count_; k < 3; ++k) stiffness(k, k) = magnitudes(k, k) = 1.0;
   const Small weakest = Eigen::SelfAdjointEigenSolver<SmallMatrix>(stiffness).eigenvectors().col(0);

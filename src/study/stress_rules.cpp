@@ -47,6 +47,7 @@ constexpr std::string_view k_stiff_material = "the bulk modulus is above 1e5 yie
 constexpr std::string_view k_hardly_unique = "the program hardly determines the plastic strain any more";
 constexpr std::string_view k_singular_balance = "the balance of the free centre is singular";
 constexpr std::string_view k_near_applicability = "the limit of applicability is so near";
+constexpr std::string_view k_hardly_held = "the contacts hardly hold the free centre any more";
 constexpr std::string_view k_no_depth = "the program closes no contact by more than 1e-12";
 
 /// A limit of a model, as its messages name it.
@@ -496,6 +497,7 @@ std::string stated_end(const Run& run) {
     // Rounding makes steps ever shorter, until there are none or too many; events do not follow from it.
     const bool gave_up_on_steps = !says(k_endless) && !says(k_chattering);
     if (gave_up_on_steps && says(k_no_depth)) return "no contact above rounding";
+    if (gave_up_on_steps && !says(k_too_much_work) && says(k_hardly_held)) return std::string(k_hardly_held);
     if (run.scenario.model == "material-point" && says(k_too_much_work)) return std::string(k_too_much_work);
     for (const std::string_view words : {k_stiff_material, k_hardly_unique}) {
       if (says(words)) return std::string(words);
