@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "mdr/system.hpp"
 
@@ -27,8 +28,33 @@ constexpr double k_most_growth = 64.0;
 constexpr double k_nearest_saddle = 1e-9;
 constexpr double k_farthest_saddle = 1e-2;
 constexpr double k_longer = 1.25;
+constexpr int k_most_sections = 40;
 // Components of unit vectors that are rounding.
 constexpr double k_no_component = 1e-15;
+
+/// Looks between two places for one where a function is above zero, towards where it is largest, by golden sections.
+/// @param best  in: a place between them where it is larger than at both; out: the best one found
+/// @return the function there
+template <class Function>
+double look_for_hold(double a, double b, double& best, Function&& function) {
+  const double section = 2.0 - std::numbers::phi;
+  double largest = function(best);
+  for (int k = 0; k < k_most_sections && largest <= 0.0; ++k) {
+    const double to = std::abs(b - best) > std::abs(best - a) ? b : a;
+    const double trial = best + section * (to - best);
+    const double there = function(trial);
+    const double worse = there > largest ? best : trial;
+    if (there > largest) {
+      best = trial;
+      largest = there;
+    }
+    ((worse - best) * (b - a) > 0.0 ? b : a) = worse;
+  }
+  return largest;
+}
+
+constexpr const char* k_beyond_fold =
+    "the contacts hold the free centre no longer: beyond a fold no forces on it balance";
 
 }  // namespace
 
@@ -251,6 +277,17 @@ double System::shallow() const noexcept {
   return std::max(k_shallow, elastic_overlap(ElasticProfile::parabola, material_.composite_modulus, 1.0, rounding));
 }
 
+/// A contact whose edge peels and that has been led beyond pull-off: before it comes there, its stiffness falls without
+/// bound, and the centre is held no more.
+std::optional<std::size_t> System::contact_beyond_pull_off(double r) {
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    if (memory_[i].edge != Edge::peeling || is_loaded(i) || directions_[i].norm() < k_no_direction) continue;
+    const Frame at = frame(i, now_[i].overlap, r);
+    if (at.displacement < pull_off(i, at.indenter).by_displacement.displacement_1d) return i;
+  }
+  return std::nullopt;
+}
+
 /// Newton on the balance of forces at a given radius; the force grows with the overlap, so damping is all it needs.
 void System::move_centre(double xi, std::span<double> y) {
   look(xi, y);
@@ -293,43 +330,61 @@ void System::move_centre(double xi, std::span<double> y) {
   }
   // Where edges peel, the search may also end beyond a fold, where the force is least.
   const double rounding = rounding_of_forces() + k_no_force * magnitude_of_forces();
-  if (weakest_contact() ? sums_.force.norm() <= rounding : way < 2.0 * k_round_off) return;
-  if (std::abs(least_firmness()) < k_at_fold) {
-    throw std::domain_error("the contacts hold the free centre no longer: beyond a fold no forces on it balance");
-  }
+  if (is_only_one ? way < 2.0 * k_round_off : sums_.force.norm() <= rounding) return;
+  if (std::abs(least_firmness()) < k_at_fold) throw std::domain_error(k_beyond_fold);
   throw std::domain_error("the balance of forces on the free centre was not found");
 }
 
 /// Next to a fold there is, beside the equilibrium that holds the centre, another one that does not, to which a search
-/// from afar may lead. Between them the contacts hold the centre neither way; the equilibrium sought is about as far
-/// beyond that place.
+/// from afar may lead, and others beyond pull-off. Between them the contacts hold the centre neither way; the
+/// equilibrium sought is about as far beyond that place.
 void System::leave_saddle(double xi, std::span<double> y) {
   look_once(xi, y);
-  if (!(least_firmness() < 0.0)) return;
+  const auto is_sought = [&] { return least_firmness() >= 0.0 && !contact_beyond_pull_off(y[k_radius]); };
+  if (is_sought()) return;
   const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(sums_.stiffness);
-  const Small weakest = solver.eigenvectors().col(0);
+  const std::optional<std::size_t> beyond = contact_beyond_pull_off(y[k_radius]);
+  const Small weakest = beyond ? Small(directions_[*beyond].normalized()) : Small(solver.eigenvectors().col(0));
   Small saddle = Small::Zero();
   for (int k = 0; k < free_count_; ++k) saddle[k] = y[centre_place(k)];
   const auto go = [&](double way) {
     for (int k = 0; k < free_count_; ++k) y[centre_place(k)] = saddle[k] + way * weakest[k];
     look(xi, y);
   };
+  // How firmly the centre is held there, along that direction.
+  const auto hold = [&](double way) {
+    go(way);
+    return contact_beyond_pull_off(y[k_radius]) ? -std::numeric_limits<double>::infinity()
+                                                : weakest.dot(sums_.stiffness * weakest);
+  };
   for (const double side : {1.0, -1.0}) {
     try {
+      double last = 0.0;
       double way = side * k_nearest_saddle;
-      for (go(way); std::abs(way) < k_farthest_saddle && weakest.dot(sums_.stiffness * weakest) <= 0.0; go(way)) {
-        way *= k_longer;
+      double before = hold(last);
+      double now = hold(way);
+      while (now <= 0.0 && std::abs(way) < k_farthest_saddle) {
+        const double next = k_longer * way;
+        const double after = hold(next);
+        // Where the centre is held on a short part of the way only, that may lie between.
+        if (now > before && now > after) now = look_for_hold(last, next, way, hold);
+        if (now > 0.0) break;
+        last = std::exchange(way, next);
+        before = std::exchange(now, after);
       }
-      if (std::abs(way) >= k_farthest_saddle) continue;
-      go(2.0 * way);
-      move_centre(xi, y);
-      look(xi, y);
-      if (least_firmness() > 0.0) return;
+      if (now <= 0.0) continue;
+      for (const double to : {2.0 * way, way}) {
+        go(to);
+        move_centre(xi, y);
+        look(xi, y);
+        if (is_sought()) return;
+      }
     } catch (const std::domain_error&) {
       continue;  // no branch leads there
     }
   }
   go(0.0);
+  if (contact_beyond_pull_off(y[k_radius])) throw std::domain_error(k_beyond_fold);
 }
 
 /// Moves the centre towards the balance of forces, as far as the present branches of the contacts lead.

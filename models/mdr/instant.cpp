@@ -90,10 +90,15 @@ Contact System::contact_at(std::size_t i, double overlap, double r) {
   Contact contact;
   if (memory.edge != Edge::following) {
     const Frame adhesive = frame(i, overlap, r);
-    contact = memory.edge == Edge::sticking
-                  ? sticking_contact(adhesive, material_.composite_modulus, memory.edge_radius)
-                  : peeling_contact(adhesive, material_.composite_modulus, surface_energy_,
-                                    pull_off(i, adhesive.indenter).by_displacement.contact_radius);
+    if (memory.edge == Edge::sticking) {
+      contact = sticking_contact(adhesive, material_.composite_modulus, memory.edge_radius);
+    } else {
+      const PeelState& limit = pull_off(i, adhesive.indenter).by_displacement;
+      // Where the centre is free, a trial may lead beyond pull-off: an edge that sticks there leads back.
+      contact = free_count_ > 0 && adhesive.displacement < limit.displacement_1d
+                    ? sticking_contact(adhesive, material_.composite_modulus, limit.contact_radius)
+                    : peeling_contact(adhesive, material_.composite_modulus, surface_energy_, limit.contact_radius);
+    }
   } else {
     switch (memory.regime) {
       case Regime::open:
