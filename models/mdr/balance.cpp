@@ -357,6 +357,7 @@ void System::leave_saddle(double xi, std::span<double> y) {
     return contact_beyond_pull_off(y[k_radius]) ? -std::numeric_limits<double>::infinity()
                                                 : weakest.dot(sums_.stiffness * weakest);
   };
+  std::optional<double> firmest;
   for (const double side : {1.0, -1.0}) {
     try {
       double last = 0.0;
@@ -367,7 +368,10 @@ void System::leave_saddle(double xi, std::span<double> y) {
         const double next = k_longer * way;
         const double after = hold(next);
         // Where the centre is held on a short part of the way only, that may lie between.
-        if (now > before && now > after) now = look_for_hold(last, next, way, hold);
+        if (now > before && now > after) {
+          now = look_for_hold(last, next, way, hold);
+          if (!firmest) firmest = way;
+        }
         if (now > 0.0) break;
         last = std::exchange(way, next);
         before = std::exchange(now, after);
@@ -383,7 +387,10 @@ void System::leave_saddle(double xi, std::span<double> y) {
       continue;  // no branch leads there
     }
   }
-  go(0.0);
+  // Any balance short of pull-off shows that they hold it no more.
+  go(beyond && firmest ? *firmest : 0.0);
+  if (beyond && firmest) move_centre(xi, y);
+  look(xi, y);
   if (contact_beyond_pull_off(y[k_radius])) throw std::domain_error(k_beyond_fold);
 }
 
