@@ -268,13 +268,8 @@ double System::rounding_of_forces() const noexcept {
 /// Overlap of a contact that only touches a free centre: rounding of lengths, and what the rounding of others presses
 /// it in by, which may bear much more and be much stiffer.
 double System::shallow() const noexcept {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < now_.size(); ++i) {
-    const Contact& c = now_[i].contact;
-    sum += classes_[i].multiplicity() * (std::abs(c.force) + std::abs(c.by_overlap));
-  }
-  const double rounding = 4.0 * k_round_off * sum;
-  return std::max(k_shallow, elastic_overlap(ElasticProfile::parabola, material_.composite_modulus, 1.0, rounding));
+  return std::max(k_shallow,
+                  elastic_overlap(ElasticProfile::parabola, material_.composite_modulus, 1.0, rounding_of_forces()));
 }
 
 /// A contact whose edge peels and that has been led beyond pull-off: before it comes there, its stiffness falls without
