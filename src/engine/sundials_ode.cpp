@@ -314,7 +314,9 @@ class SundialsOde final : public Integrator {
     return is_off;
   }
 
-  /// d(rates)/dy by difference quotients, as the library's own, but for increments that leave the domain.
+  /// d(rates)/dy by difference quotients, as the library's own, but for increments that leave the domain, and those of
+  /// an unknown that begins at zero: rates of the work may rise there like a root, and what is rounding beside the step
+  /// shows no slope that the step could use.
   static int jacobian(realtype xi, N_Vector y, N_Vector dy, SUNMatrix matrix, void* self, N_Vector shifted, N_Vector,
                       N_Vector) noexcept {
     constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
@@ -333,7 +335,9 @@ class SundialsOde final : public Integrator {
     const double least = norm > 0.0 ? rounding : 1.0;
     for (std::size_t j = 0; j < values.size(); ++j) {
       const double value = values[j];
-      double increment = std::max(k_root * std::abs(value), least / view(ode.weights_.get())[j]);
+      const double tolerated = 1.0 / view(ode.weights_.get())[j];
+      const double in_step = std::min(std::abs(step * before[j]), tolerated);
+      double increment = std::max({k_root * std::abs(value), least * tolerated, in_step});
       const int flag = ode.pending_.guard([&] {
         increment = shift_within_domain(increment, [&](double by) {
           values[j] = value + by;
