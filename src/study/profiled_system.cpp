@@ -47,6 +47,7 @@ class Wrapped : public HybridSystem {
   [[nodiscard]] double error_gain() const noexcept override { return system_->error_gain(); }
   [[nodiscard]] bool is_solvable() const noexcept override { return system_->is_solvable(); }
   void solve(double xi, State y) override { system_->solve(xi, y); }
+  double leave_singularity(double xi, State y) override { return system_->leave_singularity(xi, y); }
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
     return system_->closed_quadrature(xi, y);
   }
