@@ -205,9 +205,9 @@ class HybridSystem {
   /// @throws std::domain_error where there is no solution
   virtual void solve(double xi, std::span<double> y) = 0;
 
-  /// Where rates are infinite in a state, takes it along its solution to where they are not, a rounding of the step
-  /// ahead.
-  /// @return where it then is
+  /// Where rates are infinite in a state, or become so before the step coordinate tells a difference, takes it along
+  /// its solution to beyond that.
+  /// @return where it then is: no farther than no integrator need resolve
   virtual double leave_singularity(double xi, std::span<double> /*y*/) { return xi; }
 
   /// Primitive of the quadrature along the present mode, up to a constant, where it has a closed form.

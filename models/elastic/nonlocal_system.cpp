@@ -289,12 +289,13 @@ void System::solve(double xi, std::span<double> y) {
 double System::leave_singularity(double xi, std::span<double> y) {
   if (contacts_.free_count() == 0) return xi;
   look(xi, y);
+  const double ahead = std::min(xi + k_ahead, 1.0);
   double later = xi;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (!is_loaded(i)) continue;
     const double end = end_of_force(i);
-    const bool begins = state_[i] <= touch_ && told(i, std::min(xi + k_ahead, 1.0)) > told(i, xi);
-    if (begins && contacts_.may_be_held(ramps_, state_, touch_)) later = std::min(xi + k_ahead, 1.0);
+    const bool begins = state_[i] <= touch_ && told(i, ahead) > told(i, xi);
+    if (begins && contacts_.may_be_held(ramps_, state_, touch_)) later = ahead;
     if (end > xi && end - xi < 2.0 * k_end_of_force) later = end;
   }
   if (later == xi) return xi;
@@ -360,6 +361,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
   res[work_place_] = dy[work_place_] - all_rates_[work_place_];
   // Forces do not say where a centre goes that no contact holds.
   const std::size_t count = contacts_.free_count();
+  if (count == 0) return;
   Eigen::Vector3d missing = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < count; ++k) {
     missing[static_cast<Eigen::Index>(k)] = dy[classes_.size() + k] - all_rates_[classes_.size() + k];

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "elastic/hertz.hpp"
 #include "mdr/system.hpp"
 
 namespace monograin::mdr {
@@ -270,6 +271,11 @@ double System::rounding_of_forces() const noexcept {
 double System::shallow() const noexcept {
   return std::max(k_shallow,
                   elastic_overlap(ElasticProfile::parabola, material_.composite_modulus, 1.0, rounding_of_forces()));
+}
+
+/// The same asked of an overlap, without finding that one.
+bool System::is_shallow(double overlap) const noexcept {
+  return overlap < k_shallow || hertz_force(material_.composite_modulus, 1.0, overlap) < rounding_of_forces();
 }
 
 /// A contact whose edge peels and that has been led beyond pull-off: before it comes there, its stiffness falls without

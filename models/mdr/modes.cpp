@@ -70,10 +70,10 @@ void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Ev
 bool System::rides(std::size_t i) const noexcept {
   if (free_count_ == 0 || is_loaded(i) || !(directions_[i].norm() > k_no_direction)) return false;
   const Memory& memory = memory_[i];
-  if (memory.regime == Regime::elastic) return memory.is_virgin && now_[i].overlap < shallow();
+  if (memory.regime == Regime::elastic) return memory.is_virgin && is_shallow(now_[i].overlap);
   const UnloadingShape& dent = shapes_[i];
   return memory.regime == Regime::unloading && !adheres() &&
-         now_[i].overlap - (dent.overlap_max - dent.recovery) < shallow();
+         is_shallow(now_[i].overlap - (dent.overlap_max - dent.recovery));
 }
 
 // --- deciding a mode

@@ -252,6 +252,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double magnitude_of_forces() const noexcept;
   [[nodiscard]] double rounding_of_forces() const noexcept;
   [[nodiscard]] double shallow() const noexcept;
+  [[nodiscard]] bool is_shallow(double overlap) const noexcept;
   [[nodiscard]] std::optional<std::size_t> contact_beyond_pull_off(double r);
   void move_centre(double xi, std::span<double> y);
   void leave_saddle(double xi, std::span<double> y);

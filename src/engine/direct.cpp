@@ -89,7 +89,7 @@ class Direct final : public EventLocator {
     double rest = k_rest;
     for (bool is_covered = false; !is_covered; rest = 0.0) {
       piece_end_ = 1.0 - begin_ <= (1.0 + rest) * length_ ? 1.0 : begin_ + length_;
-      const double tried = piece_end_ - begin_;
+      const double tried = piece_length();
       double factor = k_most_growth;
       try {
         is_covered = cover_piece(factor);
@@ -118,7 +118,7 @@ class Direct final : public EventLocator {
  private:
   /// Place in the piece, from -1 to 1.
   [[nodiscard]] double place(double xi) const noexcept {
-    return piece_end_ > begin_ ? std::clamp(2.0 * (xi - begin_) / (piece_end_ - begin_) - 1.0, -1.0, 1.0) : -1.0;
+    return piece_end_ > begin_ ? std::clamp(2.0 * (xi - begin_) / piece_length() - 1.0, -1.0, 1.0) : -1.0;
   }
 
   /// The series through the nodes of the piece are the first guess. What may rest has gone the way that it has come,
@@ -164,11 +164,13 @@ class Direct final : public EventLocator {
       guess_ahead(j);
       ++statistics_.rhs_evaluations;
       system_.solve(xi, trial_);
-      if (piece_end_ - begin_ > k_smallest_looked_into) look_inside(xi, trial_);
+      if (piece_length() > k_smallest_looked_into) look_inside(xi, trial_);
       for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
-      if (const double share = share_of_reach(trial_); share > 1.0 && tried_length() > least_progress(begin_)) {
-        factor = std::clamp(k_safety / share, k_most_shrinkage, 0.5);
-        return false;
+      if (has_branches_ && piece_length() > least_progress(begin_)) {
+        if (const double share = share_of_reach(trial_); share > 1.0) {
+          factor = std::clamp(k_safety / share, k_most_shrinkage, 0.5);
+          return false;
+        }
       }
       if (is_closed_) continue;
       system_.rates(xi, trial_, rates_);
@@ -178,7 +180,7 @@ class Direct final : public EventLocator {
     if (!is_closed_) {
       work_.fit(*nodes_, slopes_[*quadrature_]);
       const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
-      const double length = piece_end_ - begin_;
+      const double length = piece_length();
       const double reach = work_.reach(2.0 * work_accuracy_ * scale / length);
       factor = std::clamp(k_safety * reach, k_most_shrinkage, k_most_growth);
       if (reach < 1.0 && length > k_smallest_quadrature) return false;
@@ -188,20 +190,20 @@ class Direct final : public EventLocator {
     if (goes_from_nodes() && end_ < piece_end_ && end_ - begin_ > least_progress(begin_)) forget_what_follows();
     if (has_branches_) {
       if (!is_resolved()) {
-        factor = std::min(0.5, k_just_beyond * (end_ - begin_) / tried_length());
+        factor = std::min(0.5, k_just_beyond * (end_ - begin_) / piece_length());
         return false;
       }
       factor = std::min(factor, std::max(k_safety / share_of_reach(end_state_), k_most_shrinkage));
     }
-    if (!is_closed_ && end_ - begin_ < k_deep_inside * (piece_end_ - begin_) && !holds_up_to_end()) {
-      factor = k_just_beyond * (end_ - begin_) / (piece_end_ - begin_);
+    if (!is_closed_ && end_ - begin_ < k_deep_inside * piece_length() && !holds_up_to_end()) {
+      factor = k_just_beyond * (end_ - begin_) / piece_length();
       return false;
     }
     if (quadrature_) end_state_[*quadrature_] = quadrature_at(end_, end_state_);
     return true;
   }
 
-  [[nodiscard]] double tried_length() const noexcept { return piece_end_ - begin_; }
+  [[nodiscard]] double piece_length() const noexcept { return piece_end_ - begin_; }
 
   /// How far a state is from the beginning of the piece, over how far it may be; 0 where it may be anywhere.
   [[nodiscard]] double share_of_reach(std::span<const double> y) const noexcept {
@@ -215,7 +217,7 @@ class Direct final : public EventLocator {
   /// Whether the state up to the end of the piece is one branch of solutions: nodes show it, and series go through
   /// them.
   [[nodiscard]] bool is_resolved() const {
-    const double length = tried_length();
+    const double length = piece_length();
     if (end_ - begin_ <= least_progress(begin_)) return true;
     if (end_ - begin_ < k_deep_inside * length) return false;
     for (std::size_t k = 0; k < series_.size(); ++k) {
@@ -239,7 +241,7 @@ class Direct final : public EventLocator {
   }
 
   [[nodiscard]] double node(std::size_t j) const noexcept {
-    return begin_ + 0.5 * (piece_end_ - begin_) * (1.0 + nodes_->places[j]);
+    return begin_ + 0.5 * piece_length() * (1.0 + nodes_->places[j]);
   }
 
   void fit_gains() {
@@ -252,7 +254,7 @@ class Direct final : public EventLocator {
   void look_early() {
     const auto is_near = [](double value) { return std::abs(value) > k_zero_guard && std::abs(value) < k_near_zero; };
     if (has_slaves_ || std::ranges::none_of(begin_values_, is_near)) return;
-    const double first_node = 0.5 * (piece_end_ - begin_) * (1.0 + nodes_->places[0]);
+    const double first_node = 0.5 * piece_length() * (1.0 + nodes_->places[0]);
     try {
       for (double distance = k_first; k_grading * distance <= first_node; distance *= k_grading) {
         std::ranges::copy(begin_state_, trial_.begin());
@@ -271,7 +273,7 @@ class Direct final : public EventLocator {
   /// exactly what it is.
   void guess_ahead(std::size_t j) {
     const LegendreNodes::Ahead& ahead = nodes_->ahead[j];
-    const double half = 0.5 * (piece_end_ - begin_);
+    const double half = 0.5 * piece_length();
     for (std::size_t k = 0; k < trial_.size(); ++k) {
       const auto gone = [&](std::size_t i) { return j > i ? gains_[k][j - 1 - i] : 0.0; };
       double gain = 0.0;
@@ -302,7 +304,7 @@ class Direct final : public EventLocator {
 
   [[nodiscard]] double quadrature_at(double xi, std::span<const double> y) {
     if (is_closed_) return primitive_offset_ + *system_.closed_quadrature(xi, y);
-    return begin_state_[*quadrature_] + 0.5 * (piece_end_ - begin_) * work_.integral(place(xi));
+    return begin_state_[*quadrature_] + 0.5 * piece_length() * work_.integral(place(xi));
   }
 
   double work_accuracy_;

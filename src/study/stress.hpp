@@ -40,7 +40,7 @@ struct StressReport {
   std::size_t scenes = 0;
   long runs = 0;
   std::size_t ill_conditioned = 0;
-  std::size_t cut_short = 0;
+  std::size_t cut_short = 0;  ///< scenes so slow that not all comparisons were made
   std::map<std::pair<std::string, std::string>, std::size_t> by_model_and_integrator;  ///< scenes
   std::map<std::pair<std::string, std::string>, std::size_t> ends;                     ///< by model and how they ended
   std::vector<StressFailure> failures;                                                 ///< in the order of the scenes

@@ -246,8 +246,8 @@ class SceneCheck {
     // Where changed data have met a limit already, a state is not determined.
     const Distance known =
         distance_between(expected.record.history, actual.record.history, nothing_, larger, first_end(neighbours()));
-    bool is_apart = !(known.value <= tolerance_ + k_sample_multiple * widest);
-    if (is_apart) is_apart = !(known.value <= tolerance_ + k_sample_multiple * spread_of_states());
+    const auto is_beyond = [&](double spread) { return !(known.value <= tolerance_ + k_sample_multiple * spread); };
+    const bool is_apart = is_beyond(widest) && is_beyond(spread_of_states());
     // Where a decision is as near as errors are large, either way is right.
     const bool is_toss = events != expected_events && !all_share(sorted_events);
     if (is_apart && !std::isnan(widest) && !is_toss) {

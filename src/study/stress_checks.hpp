@@ -32,7 +32,9 @@ struct StressVerdict {
 /// scene does with data changed by rtol (by rounding, where two runs of the same form are compared) is measured, and
 /// allowed.
 ///
-/// @param seconds  of a processor that all runs have together; a scene that takes longer breaks the rule "time"
+/// @param seconds  of a processor that all runs have together; a scene that takes longer breaks the rule "time", unless
+/// its
+///   own run is so slow that the runs it would be compared with are no slower
 [[nodiscard]] StressVerdict check_scene(const Scenario& scenario, double seconds = k_most_seconds_of_scene);
 
 }  // namespace monograin
