@@ -29,12 +29,24 @@ std::vector<std::string> findings() {
   return names;
 }
 
-// The sanitizers are slow.
-constexpr double k_seconds = 600.0;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool k_is_sanitized = true;
+#else
+constexpr bool k_is_sanitized = false;
+#endif
 
 TEST_P(StressFinding, IsCured) {
-  const StressVerdict verdict = check_scene(
-      read_scenario(fs::path(MONOGRAIN_SOURCE_DIR "/tests/study/findings") / (GetParam() + ".toml")), k_seconds);
+  const Scenario scenario =
+      read_scenario(fs::path(MONOGRAIN_SOURCE_DIR "/tests/study/findings") / (GetParam() + ".toml"));
+  StressVerdict verdict;
+  if (k_is_sanitized) {
+    // What the runs of a scene have to do with each other is no question of memory, and ten times as slow here.
+    const monograin::Run run = run_scenario(scenario);
+    verdict = {.end = stated_end(run), .violations = check_run(run)};
+  } else {
+    // Others may share the machine.
+    verdict = check_scene(scenario, 4.0 * k_most_seconds_of_scene);
+  }
   for (const Violation& violation : verdict.violations) ADD_FAILURE() << violation.check << ": " << violation.detail;
   EXPECT_FALSE(verdict.end.empty());
 }
