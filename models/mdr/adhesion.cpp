@@ -12,24 +12,13 @@ using std::numbers::pi;
 
 constexpr int k_newton_limit = 100;  // a double root at pull-off only halves the error each time
 
-/// An edge at the radius a, on the ellipse as an angle: a = b sin(theta).
+/// An edge at the radius a = b sin(theta) of the ellipse, or a of the parabola.
 struct Edge {
   double radius = 0.0;
-  double theta = 0.0;
-  double sine = 0.0;
-  double cosine = 0.0;
+  double share = 0.0;   ///< of the half width: sin(theta)
+  double cosine = 0.0;  ///< of theta; 1 on the parabola
+  double rise = 0.0;    ///< of the profile, over half the indenter's height: 1 - cos(theta), or (a/b)^2/2
 };
-
-Edge edge_at_angle(const Indenter& indenter, double theta) noexcept {
-  const double sine = std::sin(theta);
-  return {indenter.half_width * sine, theta, sine, std::max(0.0, std::cos(theta))};
-}
-
-Edge edge_at(const Indenter& indenter, double a) noexcept {
-  const double sine = std::min(1.0, a / indenter.half_width);
-  const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
-  return {a, std::atan2(sine, cosine), sine, cosine};
-}
 
 /// Of the parabola A x^2/(4 b^2), which is also the tip of the ellipse.
 double tip_curvature(const Indenter& indenter) noexcept {
@@ -38,23 +27,31 @@ double tip_curvature(const Indenter& indenter) noexcept {
 
 bool is_parabola(const Indenter& indenter) noexcept { return indenter.profile == ElasticProfile::parabola; }
 
-double height_at(const Indenter& indenter, const Edge& edge) noexcept {
-  if (is_parabola(indenter)) return tip_curvature(indenter) * edge.radius * edge.radius;
-  return 0.5 * indenter.height * edge.sine * edge.sine / (1.0 + edge.cosine);
+Edge edge_at(const Indenter& indenter, double a) noexcept {
+  const double share = a / indenter.half_width;
+  if (is_parabola(indenter)) return {a, share, 1.0, 0.5 * share * share};
+  const double sine = std::min(1.0, share);
+  const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
+  return {a, sine, cosine, sine * sine / (1.0 + cosine)};
 }
 
-/// int_0^a g dx
-double area_below(const Indenter& indenter, const Edge& edge) noexcept {
-  if (is_parabola(indenter)) return tip_curvature(indenter) * edge.radius * edge.radius * edge.radius / 3.0;
-  // sin - (theta + sin cos)/2 without cancellation
-  return 0.5 * indenter.height * indenter.half_width * (0.5 * phi(edge.theta) - 2.0 * phi(0.5 * edge.theta));
+Edge edge_at_rise(const Indenter& indenter, double rise) noexcept {
+  const bool by_parabola = is_parabola(indenter);
+  const double share = std::sqrt(rise * (by_parabola ? 2.0 : 2.0 - rise));
+  return {indenter.half_width * share, share, by_parabola ? 1.0 : 1.0 - rise, rise};
 }
+
+/// theta on the ellipse
+double angle_of(const Edge& edge) noexcept { return std::atan2(edge.share, edge.cosine); }
+
+double height_at(const Indenter& indenter, const Edge& edge) noexcept { return 0.5 * indenter.height * edge.rise; }
 
 double free_force_at(const Indenter& indenter, double composite_modulus, const Edge& edge) noexcept {
   if (is_parabola(indenter)) {
     return 4.0 / 3.0 * composite_modulus * tip_curvature(indenter) * edge.radius * edge.radius * edge.radius;
   }
-  return 0.5 * composite_modulus * indenter.height * indenter.half_width * phi(edge.theta);
+  return 0.5 * composite_modulus * indenter.height * indenter.half_width *
+         phi_at(angle_of(edge), edge.share, edge.cosine);
 }
 
 PeelState peel_state_at(const Indenter& indenter, double composite_modulus, double surface_energy,
@@ -67,55 +64,83 @@ PeelState peel_state_at(const Indenter& indenter, double composite_modulus, doub
 
 /// Slope of an edge's equilibrium, (g' - xi Dl') with g' and Dl' over the cosine on the ellipse, where g' is unbounded.
 double slope(const Indenter& indenter, double stretch, double xi, const Edge& edge) noexcept {
-  const double stretch_slope = xi * stretch / (2.0 * edge.radius);
-  if (is_parabola(indenter)) return 2.0 * tip_curvature(indenter) * edge.radius - stretch_slope;
-  return 0.5 * indenter.height / indenter.half_width * edge.sine - stretch_slope * edge.cosine;
+  const double by_height = 0.5 * indenter.height / indenter.half_width * edge.share;
+  return by_height - xi * stretch / (2.0 * edge.radius) * edge.cosine;
 }
 
-/// Newton's method from above on a convex increasing function of the edge, so that it comes down to the root without
+/// Newton's method from above on a convex increasing function of the rise, so that it comes down to the root without
 /// passing it.
-/// @param step  edge -> Newton step of the radius (parabola) or of the angle (ellipse)
-template <class Step>
-Edge descend(const Indenter& indenter, double from, double down_to, Step&& step) noexcept {
-  const bool by_radius = is_parabola(indenter);
-  const auto edge = [&](double x) { return by_radius ? edge_at(indenter, x) : edge_at_angle(indenter, x); };
-  const double most = by_radius ? std::numeric_limits<double>::infinity() : 0.5 * pi;
-  const double least = by_radius ? down_to : edge_at(indenter, down_to).theta;
-  double x = by_radius ? from : edge_at(indenter, std::min(from, indenter.half_width)).theta;
+/// @param xi      1: of displacements, 3: of forces, over 2 E a
+/// @param excess  edge, stretch -> what is to be zero
+template <class Excess>
+Edge descend(const Indenter& indenter, double composite_modulus, double surface_energy, double from, double down_to,
+             double xi, Excess&& excess) noexcept {
+  const double unit_stretch = critical_stretch(composite_modulus, surface_energy, indenter.half_width);
+  const double most = is_parabola(indenter) ? std::numeric_limits<double>::infinity() : 1.0;
+  const double least = edge_at(indenter, down_to).rise;
+  Edge edge = edge_at_rise(indenter, std::min(edge_at(indenter, from).rise, most));
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
-    const double next = std::clamp(x + step(edge(x)), least, most);
+    const double stretch = unit_stretch * std::sqrt(edge.share);
+    const double by_rise = 0.5 * indenter.height - 0.5 * xi * stretch * edge.cosine / (edge.share * edge.share);
+    if (!(by_rise > 0.0)) break;
+    const double next = std::clamp(edge.rise - excess(edge, stretch) / by_rise, least, most);
     // Near pull-off, a double root, round-off over a tiny slope would throw it back up.
-    if (!(x - next > 1e-15 * x)) break;
-    x = next;
+    if (!(edge.rise - next > 1e-15 * edge.rise)) break;
+    edge = edge_at_rise(indenter, next);
   }
-  return edge(x);
+  return edge;
 }
 
 /// How the relaxed profile at a fixed place changes with the indenter; on the ellipse times the cosine there.
 double height_change(const Indenter& indenter, const Frame::Change& change, const Edge& edge) noexcept {
   const double height = height_at(indenter, edge);
   if (is_parabola(indenter)) return height * (change.height - 2.0 * change.half_width);
-  return change.height * height * edge.cosine - 0.5 * indenter.height * change.half_width * edge.sine * edge.sine;
+  return change.height * height * edge.cosine - 0.5 * indenter.height * change.half_width * edge.share * edge.share;
 }
 
-double sticking_force_change(const Indenter& indenter, double composite_modulus, const Frame::Change& change,
-                             const Edge& edge) noexcept {
-  const double below = area_below(indenter, edge);
-  const double by_width =
-      is_parabola(indenter) ? 2.0 * below : 0.25 * indenter.height * indenter.half_width * phi(edge.theta);
-  return 2.0 * composite_modulus *
-         (change.displacement * edge.radius - change.height * below + change.half_width * by_width);
+/// Integrals of the profile up to an edge.
+struct Below {
+  double area = 0.0;      ///< int_0^a g dx
+  double by_width = 0.0;  ///< what it loses with the relative half width, the edge where it is
+};
+
+Below below(const Indenter& indenter, const Edge& edge) noexcept {
+  if (is_parabola(indenter)) {
+    const double area = tip_curvature(indenter) * edge.radius * edge.radius * edge.radius / 3.0;
+    return {area, 2.0 * area};
+  }
+  const double theta = angle_of(edge);
+  const double segment = phi_at(theta, edge.share, edge.cosine);
+  const double unit = 0.5 * indenter.height * indenter.half_width;
+  // sin - (theta + sin cos)/2 without cancellation
+  return {unit * (0.5 * segment - 2.0 * phi(0.5 * theta)), 0.5 * unit * segment};
 }
 
-Contact sticking_contact_at(const Frame& frame, double composite_modulus, const Edge& edge) noexcept {
-  const Indenter& indenter = frame.indenter;
+/// @param force  of the edge's equilibrium or, where it sticks, of the springs below it
+Contact contact_below(const Frame& frame, double composite_modulus, const Edge& edge, double force) noexcept {
   const double a = edge.radius;
+  const Below springs = below(frame.indenter, edge);
+  const auto changed = [&](const Frame::Change& change) {
+    return 2.0 * composite_modulus *
+           (change.displacement * a - change.height * springs.area + change.half_width * springs.by_width);
+  };
   return {.contact_radius = a,
-          .force = free_force_at(indenter, composite_modulus, edge) +
-                   2.0 * composite_modulus * a * (frame.displacement - height_at(indenter, edge)),
+          .force = force,
           .by_overlap = 2.0 * composite_modulus * a * frame.by_overlap,
-          .by_radius = sticking_force_change(indenter, composite_modulus, frame.by_radius, edge),
-          .by_overlap_max = sticking_force_change(indenter, composite_modulus, frame.by_overlap_max, edge)};
+          .by_radius = changed(frame.by_radius),
+          .by_overlap_max = changed(frame.by_overlap_max)};
+}
+
+/// Edge in equilibrium at a displacement above the critical one.
+Edge peeling_edge(const Indenter& indenter, double composite_modulus, double surface_energy, double critical_radius,
+                  double displacement_1d) noexcept {
+  // Beyond this radius half of the tip's parabola alone exceeds the stretch, and the other half delta_1D.
+  const double curvature = tip_curvature(indenter);
+  const double stretch = critical_stretch(composite_modulus, surface_energy, 1.0);
+  const double from = std::max(std::cbrt(4.0 * stretch * stretch / (curvature * curvature)),
+                               std::sqrt(2.0 * std::max(0.0, displacement_1d) / curvature));
+  return descend(indenter, composite_modulus, surface_energy, from, critical_radius, 1.0,
+                 [&](const Edge& e, double s) { return height_at(indenter, e) - s - displacement_1d; });
 }
 
 }  // namespace
@@ -168,19 +193,8 @@ PeelState peel_at_displacement(const Indenter& indenter, double composite_modulu
                                double critical_radius, double displacement_1d) {
   const PeelState critical = peel_state(indenter, composite_modulus, surface_energy, critical_radius);
   if (displacement_1d <= critical.displacement_1d) return critical;
-  // Beyond this radius half of the tip's parabola alone exceeds the stretch, and the other half delta_1D.
-  const double curvature = tip_curvature(indenter);
-  const double stretch = critical_stretch(composite_modulus, surface_energy, 1.0);
-  const double from = std::max(std::cbrt(4.0 * stretch * stretch / (curvature * curvature)),
-                               std::sqrt(2.0 * std::max(0.0, displacement_1d) / curvature));
-  const Edge edge = descend(indenter, from, critical_radius, [&](const Edge& e) {
-    const double s = critical_stretch(composite_modulus, surface_energy, e.radius);
-    const double excess = height_at(indenter, e) - s - displacement_1d;
-    // d/da, or d/d(theta) = b cos(theta) d/da
-    const double by = slope(indenter, s, 1.0, e) * (is_parabola(indenter) ? 1.0 : indenter.half_width);
-    return by > 0.0 ? -excess / by : 0.0;
-  });
-  return peel_state_at(indenter, composite_modulus, surface_energy, edge);
+  return peel_state_at(indenter, composite_modulus, surface_energy,
+                       peeling_edge(indenter, composite_modulus, surface_energy, critical_radius, displacement_1d));
 }
 
 PeelState peel_at_force(const Indenter& indenter, double composite_modulus, double surface_energy,
@@ -191,14 +205,10 @@ PeelState peel_at_force(const Indenter& indenter, double composite_modulus, doub
   const double stretch = 2.0 * composite_modulus * critical_stretch(composite_modulus, surface_energy, 1.0);
   const double from =
       std::max(std::cbrt(4.0 * stretch * stretch / (cubic * cubic)), std::cbrt(2.0 * std::max(0.0, force) / cubic));
-  const Edge edge = descend(indenter, from, critical_radius, [&](const Edge& e) {
-    const double s = critical_stretch(composite_modulus, surface_energy, e.radius);
-    const double excess =
-        free_force_at(indenter, composite_modulus, e) - 2.0 * composite_modulus * e.radius * s - force;
-    const double by = 2.0 * composite_modulus * e.radius * slope(indenter, s, 3.0, e) *
-                      (is_parabola(indenter) ? 1.0 : indenter.half_width);
-    return by > 0.0 ? -excess / by : 0.0;
-  });
+  const Edge edge =
+      descend(indenter, composite_modulus, surface_energy, from, critical_radius, 3.0, [&](const Edge& e, double s) {
+        return (free_force_at(indenter, composite_modulus, e) - force) / (2.0 * composite_modulus * e.radius) - s;
+      });
   return peel_state_at(indenter, composite_modulus, surface_energy, edge);
 }
 
@@ -232,27 +242,34 @@ double overlap_at(const UnloadingShape& shape, double displacement_1d) noexcept 
 }
 
 Contact sticking_contact(const Frame& frame, double composite_modulus, double a) noexcept {
-  return sticking_contact_at(frame, composite_modulus, edge_at(frame.indenter, a));
+  const Indenter& indenter = frame.indenter;
+  const Edge edge = edge_at(indenter, a);
+  return contact_below(frame, composite_modulus, edge,
+                       free_force_at(indenter, composite_modulus, edge) +
+                           2.0 * composite_modulus * a * (frame.displacement - height_at(indenter, edge)));
 }
 
 Contact peeling_contact(const Frame& frame, double composite_modulus, double surface_energy, double critical_radius) {
   const Indenter& indenter = frame.indenter;
-  const PeelState state =
-      peel_at_displacement(indenter, composite_modulus, surface_energy, critical_radius, frame.displacement);
-  const Edge edge = edge_at(indenter, state.contact_radius);
+  Edge edge = edge_at(indenter, critical_radius);
+  const double critical_displacement =
+      height_at(indenter, edge) - critical_stretch(composite_modulus, surface_energy, critical_radius);
+  if (frame.displacement > critical_displacement) {
+    edge = peeling_edge(indenter, composite_modulus, surface_energy, critical_radius, frame.displacement);
+  }
   const double stretch = critical_stretch(composite_modulus, surface_energy, edge.radius);
-  Contact contact = sticking_contact_at(frame, composite_modulus, edge);
-  contact.force = state.force;
+  Contact contact =
+      contact_below(frame, composite_modulus, edge,
+                    free_force_at(indenter, composite_modulus, edge) - 2.0 * composite_modulus * edge.radius * stretch);
   // The edge follows: da = d(delta_1D - g)/(g' - Dl'). At pull-off that is unbounded; it is kept finite here: the slope
   // goes with the root of the distance from there, and displacements are rounded.
   constexpr double k_root_of_rounding = 5e-9;
   const double least_slope = k_root_of_rounding * indenter.height / indenter.half_width;
-  const double cosine = is_parabola(indenter) ? 1.0 : edge.cosine;
   const double follow = 2.0 * composite_modulus * stretch / std::max(least_slope, slope(indenter, stretch, 1.0, edge));
   const auto followed = [&](const Frame::Change& change) {
-    return follow * (change.displacement * cosine - height_change(indenter, change, edge));
+    return follow * (change.displacement * edge.cosine - height_change(indenter, change, edge));
   };
-  contact.by_overlap -= follow * cosine * frame.by_overlap;
+  contact.by_overlap -= follow * edge.cosine * frame.by_overlap;
   contact.by_radius -= followed(frame.by_radius);
   contact.by_overlap_max -= followed(frame.by_overlap_max);
   return contact;
@@ -260,9 +277,8 @@ Contact peeling_contact(const Frame& frame, double composite_modulus, double sur
 
 EdgePress edge_press(const Frame& frame, const Frame::Change& by_radius, double a) noexcept {
   const Edge edge = edge_at(frame.indenter, a);
-  const double cosine = is_parabola(frame.indenter) ? 1.0 : edge.cosine;
-  return {.by_overlap = frame.by_overlap * cosine,
-          .by_radius = by_radius.displacement * cosine - height_change(frame.indenter, by_radius, edge)};
+  return {.by_overlap = frame.by_overlap * edge.cosine,
+          .by_radius = by_radius.displacement * edge.cosine - height_change(frame.indenter, by_radius, edge)};
 }
 
 double adhesive_energy(const Frame& frame, double composite_modulus, double surface_energy, double a) noexcept {
@@ -274,7 +290,7 @@ double adhesive_energy(const Frame& frame, double composite_modulus, double surf
   const double free_energy =
       is_parabola(indenter)
           ? 8.0 / 15.0 * composite_modulus * curvature * curvature * a * a * a * a * a
-          : 0.25 * composite_modulus * indenter.height * indenter.height * indenter.half_width * psi(edge.theta);
+          : 0.25 * composite_modulus * indenter.height * indenter.height * indenter.half_width * psi(angle_of(edge));
   const double springs =
       free_energy + w * (free_force_at(indenter, composite_modulus, edge) + composite_modulus * a * w);
   return (springs - pi * a * a * surface_energy) / frame.by_overlap;

@@ -16,6 +16,9 @@ namespace {
 
 using std::numbers::pi;
 
+// From which on phi(theta) has lost no digits as a difference.
+constexpr double k_large_angle = 0.5;
+
 // psi(theta) = sum_(k>=2) (-1)^k (3 - 4n + 3^(n-1)) theta^n / (4 n!), n = 2k + 1.
 constexpr int k_psi_terms = 12;
 constexpr auto k_psi_coefficients = [] {
@@ -144,7 +147,7 @@ double yield_overlap_ratio(double modulus_over_yield, const PressureCurve& press
 }
 
 double phi(double theta) noexcept {
-  if (theta >= 0.5) return theta - std::sin(theta) * std::cos(theta);
+  if (theta >= k_large_angle) return theta - std::sin(theta) * std::cos(theta);
   // (t - sin t)/2 with t = 2 theta as a nested Taylor series; the last term kept is below 1e-17 of the sum at t = 1.
   const double t = 2.0 * theta;
   const double s = t * t;
@@ -152,6 +155,10 @@ double phi(double theta) noexcept {
   for (const double denominator : {342.0, 272.0, 210.0, 156.0, 110.0, 72.0, 42.0, 20.0})
     sum = 1.0 - s / denominator * sum;
   return t * s / 12.0 * sum;
+}
+
+double phi_at(double theta, double sine, double cosine) noexcept {
+  return theta >= k_large_angle ? theta - sine * cosine : phi(theta);
 }
 
 double inverse_phi(double value) noexcept {
@@ -183,8 +190,8 @@ Contact elastic_contact(ElasticProfile profile, double composite_modulus, double
     case ElasticProfile::ellipse: {
       const double y = elastic_versine(radius, overlap);
       const double theta = angle_from_versine(y);
-      const double sine = std::sin(theta);
-      const double phi_theta = phi(theta);
+      const double sine = std::sqrt(y * (2.0 - y));
+      const double phi_theta = phi_at(theta, sine, 1.0 - y);
       const double a = radius * sine;
       return {.contact_radius = a,
               .force = 2.0 * composite_modulus * radius * radius * phi_theta,
@@ -263,7 +270,7 @@ namespace {
 /// At u = 1 - share, of which theta is the angle and `sine` its sine.
 Contact on_unloading_branch(const UnloadingShape& shape, double composite_modulus, double u, double theta,
                             double sine) {
-  const double phi_theta = phi(theta);
+  const double phi_theta = phi_at(theta, sine, u);
   const double yield_force = 2.0 * shape.pressure * shape.contact_radius_max * shape.contact_radius_max;
   const double a = shape.contact_radius_max * sine;
 

@@ -44,6 +44,8 @@ struct Material {
 
 /// phi(theta) = theta - sin(theta) cos(theta), for theta in [0, pi/2], to full relative accuracy.
 [[nodiscard]] double phi(double theta) noexcept;
+/// The same where sine and cosine are known.
+[[nodiscard]] double phi_at(double theta, double sine, double cosine) noexcept;
 
 /// The angle with phi(theta) = value, for value in [0, 2.5], to full relative accuracy.
 [[nodiscard]] double inverse_phi(double value) noexcept;
