@@ -68,6 +68,21 @@ double event_time_difference(const Table& stored, const Table& now) {
   return a.empty() || a.back() == 0.0 ? largest : largest / a.back();
 }
 
+/// A history with the squares of contact radii: they begin like a root, of which an overlap that is wrong by 1e-12
+/// makes a millionth where an event has just been reached.
+Table with_smooth_columns(const Table& history) {
+  Table smooth(history.columns());
+  std::vector<double> row;
+  for (std::size_t i = 0; i < history.row_count(); ++i) {
+    row.assign(history.row(i).begin(), history.row(i).end());
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (history.columns()[c].name.find(".contact_radius") != std::string::npos) row[c] *= row[c];
+    }
+    smooth.append(row);
+  }
+  return smooth;
+}
+
 void compare_with_stored(const Run& run, const fs::path& curves, RegressionResult& result) {
   const fs::path curve = curves / (run.scenario.name + ".csv");
   if (!fs::exists(curve)) {
@@ -86,8 +101,9 @@ void compare_with_stored(const Run& run, const fs::path& curves, RegressionResul
   if (!result.fault.empty()) return;
   result.event_time = event_time_difference(events, run.record.events);
   // Some columns are blank in parts where a law says nothing.
-  const auto of_stored = compare_tables(history, history, "time", "");
-  const auto differences = compare_tables(history, run.record.history, "time", "");
+  const Table expected = with_smooth_columns(history);
+  const auto of_stored = compare_tables(expected, expected, "time", "");
+  const auto differences = compare_tables(expected, with_smooth_columns(run.record.history), "time", "");
   for (std::size_t i = 0; i < differences.size(); ++i) {
     const CurveDifference& difference = differences[i];
     if (difference.coverage < k_whole * of_stored[i].coverage) {

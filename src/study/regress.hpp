@@ -11,7 +11,7 @@ namespace monograin {
 struct RegressionResult {
   std::string scenario;
   std::string integrator;
-  double difference = 0.0;  ///< largest difference of any column, over the column's largest magnitude
+  double difference = 0.0;  ///< largest of any column over its largest magnitude; of contact radii, of their squares
   std::string column;       ///< where that is
   double event_time = 0.0;  ///< largest difference of an event's time, over the run's length
   double tolerance = 0.0;   ///< that both were held against
