@@ -106,13 +106,15 @@ void LegendreSeries::fit(const LegendreNodes& nodes, const LegendreSamples& samp
     coefficients_[k] = 0.0;
     for (std::size_t j = 0; j < count_; ++j) coefficients_[k] += nodes.to_coefficients[k][j] * samples[j];
   }
+  terms_ = count_;
+  while (terms_ > 0 && coefficients_[terms_ - 1] == 0.0) --terms_;
 }
 
 double LegendreSeries::value(double t) const noexcept {
   double sum = 0.0;
   double previous = 0.0;
   double legendre = 1.0;
-  for (std::size_t k = 0; k < count_; ++k) {
+  for (std::size_t k = 0; k < terms_; ++k) {
     sum += coefficients_[k] * legendre;
     next_legendre(k, t, previous, legendre);
   }

@@ -63,6 +63,7 @@ class LegendreSeries {
  private:
   LegendreSamples coefficients_{};
   std::size_t count_ = 0;
+  std::size_t terms_ = 0;  ///< up to the last that is not zero: none of what stays as it is
 };
 
 }  // namespace monograin
