@@ -1,10 +1,10 @@
 // Modes of the MDR system: what transitions change, and how a mode is decided.
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "backing.hpp"
 #include "mdr/guards.hpp"
 #include "mdr/system.hpp"
 
@@ -253,51 +253,14 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
   return false;
 }
 
-/// Whether the other touching contacts can balance a push of one of them on the free centre: non-negative least squares
-/// by active sets (Lawson and Hanson), which end with nothing left over if they can.
+/// Whether the other touching contacts can balance a push of one of them on the free centre.
 bool System::is_backed(std::size_t i) const {
-  constexpr double k_nothing = 1e-6;   // of the push
-  constexpr double k_no_help = 1e-13;  // nor does a contact help which only rounding leaves along what is left over
   std::vector<Small> others;
   for (std::size_t j = 0; j < memory_.size(); ++j) {
     if (j == i || !touches(memory_[j].regime) || directions_[j].norm() < k_no_direction) continue;
     others.push_back(directions_[j].normalized());
   }
-  const Small push = directions_[i].normalized();
-  Small left_over = push;
-  std::vector<Small> bearing;
-  std::vector<double> shares;
-  for (std::size_t round = 0; round <= 4 * others.size(); ++round) {
-    if (left_over.norm() < k_nothing) return true;
-    const auto help = [&](const Small& direction) { return -direction.dot(left_over); };
-    const auto best = std::ranges::max_element(others, {}, help);
-    if (best == others.end() || help(*best) <= k_no_help) return false;
-    bearing.push_back(*best);
-    shares.push_back(0.0);
-    for (double way = 0.0; way < 1.0 && !bearing.empty();) {
-      Eigen::Matrix3Xd directions(3, static_cast<Eigen::Index>(bearing.size()));
-      for (std::size_t k = 0; k < bearing.size(); ++k) directions.col(static_cast<Eigen::Index>(k)) = bearing[k];
-      const Eigen::VectorXd wanted = directions.colPivHouseholderQr().solve(-push);
-      // Towards what is wanted, up to where the first of them would have to pull, which goes.
-      way = 1.0;
-      std::size_t first = bearing.size();
-      for (std::size_t k = 0; k < bearing.size(); ++k) {
-        const double to = wanted[static_cast<Eigen::Index>(k)];
-        if (to >= 0.0 || shares[k] / (shares[k] - to) >= way) continue;
-        way = shares[k] / (shares[k] - to);
-        first = k;
-      }
-      for (std::size_t k = 0; k < bearing.size(); ++k) {
-        shares[k] += way * (wanted[static_cast<Eigen::Index>(k)] - shares[k]);
-      }
-      if (first == bearing.size()) break;
-      bearing.erase(bearing.begin() + static_cast<std::ptrdiff_t>(first));
-      shares.erase(shares.begin() + static_cast<std::ptrdiff_t>(first));
-    }
-    left_over = push;
-    for (std::size_t k = 0; k < bearing.size(); ++k) left_over += shares[k] * bearing[k];
-  }
-  return false;
+  return can_back(directions_[i], others);
 }
 
 /// A wall that pushes a particle which nothing holds from the other side has no equilibrium, unless others adhere; nor

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 
+#include "backing.hpp"
 #include "catalogue.hpp"
 #include "compressible/material_point_info.hpp"
 #include "compressible/yield_surface.hpp"
@@ -60,6 +61,15 @@ constexpr std::string_view k_used_up = "the free surface of the particle is used
 constexpr std::string_view k_applicability = "limit of applicability";
 constexpr std::string_view k_fills = "the particle fills its cell";
 constexpr std::string_view k_free_centre = "no contact holds the free centre of the particle";
+
+/// Of these, what speaks of forces on the centre.
+constexpr std::string_view k_driven_away[] = {
+    "no contact holds the free centre of the particle against the forces on it",
+    "no contact holds the centre of the particle where the forces of the others drive it"};
+// Resultant of unit normals below which a class of walls does not act on the centre.
+constexpr double k_no_direction = 1e-6;
+// Gaps over R0 at which a wall touches.
+constexpr double k_touch = 1e-9;
 
 constexpr std::string_view k_full = "no pores are left";
 constexpr std::string_view k_poisson = "Poisson's ratio at 1/2";
@@ -221,6 +231,53 @@ void check_contacts(const Run& run, Violations& found) {
       return t.at(row, force) == 0.0 ? t.at(row, c) / run.scenario.radius - own_tolerance(run) : 0.0;
     });
   }
+}
+
+/// What the walls of a class are to press with at the end of a step, counted from 0; nothing where a displacement is
+/// prescribed.
+std::optional<double> prescribed_force(const Channel& channel, std::size_t step) {
+  std::optional<double> force;
+  for (std::size_t k = 0; k <= step && k < channel.program.size(); ++k) {
+    const Step& told = channel.program[k];
+    if (told.kind == Step::Kind::force)
+      force = told.target;
+    else if (told.kind != Step::Kind::hold)
+      force.reset();
+  }
+  return force;
+}
+
+/// That forces drive the centre away holds only where no contacts that touch could balance them.
+void check_hold(const Run& run, Violations& found) {
+  const auto is_said = [&run](std::string_view words) { return run.record.message.find(words) != std::string::npos; };
+  if (std::ranges::none_of(k_driven_away, is_said) || material(run.scenario, "surface_energy") > 0.0) return;
+  const Table& table = run.record.history;
+  const std::size_t last = table.row_count() - 1;
+  const auto step = static_cast<std::size_t>(table.at(last, *table.find("step"))) - 1;
+  const Scene scene = make_scene(run.scenario);
+  Eigen::Vector3d push = Eigen::Vector3d::Zero();
+  Eigen::Vector3d push_ahead = Eigen::Vector3d::Zero();  // of forces that have yet to begin
+  std::vector<Eigen::Vector3d> others;
+  for (std::size_t c = 0; c < scene.classes.size(); ++c) {
+    const ContactClass& contact_class = scene.classes[c];
+    Eigen::Vector3d normals = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& normal : contact_class.normals) normals += normal;
+    if (normals.norm() < k_no_direction) continue;
+    const auto at_end = [&](const char* column) {
+      return table.at(last, *table.find(fmt::format("{}.{}", contact_class.name, column)));
+    };
+    const std::string_view regime = table.word(last, *table.find(contact_class.name + ".regime"));
+    if (const auto force = prescribed_force(scene.channels[c], step)) {
+      push += at_end("force") * normals;
+      push_ahead += *force * normals;
+    } else if (at_end("overlap") >= -k_touch * run.scenario.radius && regime != "separated") {
+      others.push_back(normals.normalized());
+    }
+  }
+  if (push.isZero()) push = push_ahead;
+  if (push.isZero() || !can_back(push, others)) return;
+  found.push_back(
+      {"held-centre", fmt::format("contacts that touch could balance the forces of '{}'", run.record.message)});
 }
 
 /// Infinity where there is no such event.
@@ -476,6 +533,7 @@ std::vector<Violation> check_run(const Run& run) {
   check_end(run, found);
   check_numbers(run, found);
   check_forces(run, found);
+  check_hold(run, found);
   check_energy(run, found);
   check_ratchet(run, found);
   check_events(run, found);

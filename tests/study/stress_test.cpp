@@ -1,11 +1,13 @@
 #include "study/stress.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "history/run.hpp"
 #include "study/stress_checks.hpp"
@@ -107,6 +109,38 @@ TEST_F(BrokenHistory, IsFoundWhereARunEndsWithoutReason) {
   EXPECT_TRUE(check_run(run_).empty());
   run_.record.message = "event location failed with chattering" + of_rounding;
   EXPECT_TRUE(breaks(check_run(run_), "solver"));
+}
+
+TEST(BrokenEnd, IsFoundWhereAWallThatTouchesHoldsTheCentre) {
+  const auto pressed_against = [](std::string_view other) {
+    return run_scenario(parse_scenario(fmt::format(R"(model = "hertz"
+particle = {{ radius = 1 }}
+material = {{ youngs_modulus = 1e9, poisson_ratio = 0.3 }}
+[loading]
+configuration = "walls"
+centre = "equilibrium"
+[[loading.wall]]
+name = "top"
+normal = [0, 0, 1]
+steps = [{{ force = 1e4, duration = 1 }}]
+[[loading.wall]]
+name = "other"
+{}
+fixed = true
+)",
+                                                   other),
+                                       "pressed.toml"));
+  };
+  monograin::Run held = pressed_against("normal = [0, 0, -1]");
+  ASSERT_EQ(held.record.status, RunStatus::complete) << held.record.message;
+  held.record.status = RunStatus::stopped;
+  held.record.message = "no contact holds the free centre of the particle against the forces on it";
+  EXPECT_TRUE(breaks(check_run(held), "held-centre"));
+  for (const char* other : {"normal = [1, 0, 0]", "normal = [0, 0, -1]\ngap = 1e-3"}) {
+    const monograin::Run driven = pressed_against(other);
+    EXPECT_EQ(stated_end(driven), "no contact holds the free centre of the particle") << driven.record.message;
+    EXPECT_TRUE(check_run(driven).empty()) << other;
+  }
 }
 
 TEST_F(BrokenHistory, IsFarFromTheWholeOne) {

@@ -1,0 +1,53 @@
+#include "backing.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <vector>
+
+namespace monograin {
+namespace {
+
+constexpr double k_nothing = 1e-6;   // of the push
+constexpr double k_no_help = 1e-13;  // nor does a direction help which only rounding leaves along what is left over
+
+}  // namespace
+
+bool can_back(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> directions) {
+  const Eigen::Vector3d unit = push.normalized();
+  Eigen::Vector3d left_over = unit;
+  std::vector<Eigen::Vector3d> bearing;
+  std::vector<double> shares;
+  for (std::size_t round = 0; round <= 4 * directions.size(); ++round) {
+    if (left_over.norm() < k_nothing) return true;
+    const auto help = [&](const Eigen::Vector3d& direction) { return -direction.dot(left_over); };
+    const auto best = std::ranges::max_element(directions, {}, help);
+    if (best == directions.end() || help(*best) <= k_no_help) return false;
+    bearing.push_back(*best);
+    shares.push_back(0.0);
+    for (double way = 0.0; way < 1.0 && !bearing.empty();) {
+      Eigen::Matrix3Xd together(3, static_cast<Eigen::Index>(bearing.size()));
+      for (std::size_t k = 0; k < bearing.size(); ++k) together.col(static_cast<Eigen::Index>(k)) = bearing[k];
+      const Eigen::VectorXd wanted = together.colPivHouseholderQr().solve(-unit);
+      // Towards what is wanted, up to where the first of them would have to pull, which goes.
+      way = 1.0;
+      std::size_t first = bearing.size();
+      for (std::size_t k = 0; k < bearing.size(); ++k) {
+        const double to = wanted[static_cast<Eigen::Index>(k)];
+        if (to >= 0.0 || shares[k] / (shares[k] - to) >= way) continue;
+        way = shares[k] / (shares[k] - to);
+        first = k;
+      }
+      for (std::size_t k = 0; k < bearing.size(); ++k) {
+        shares[k] += way * (wanted[static_cast<Eigen::Index>(k)] - shares[k]);
+      }
+      if (first == bearing.size()) break;
+      bearing.erase(bearing.begin() + static_cast<std::ptrdiff_t>(first));
+      shares.erase(shares.begin() + static_cast<std::ptrdiff_t>(first));
+    }
+    left_over = unit;
+    for (std::size_t k = 0; k < bearing.size(); ++k) left_over += shares[k] * bearing[k];
+  }
+  return false;
+}
+
+}  // namespace monograin

@@ -1,0 +1,54 @@
+#include "backing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace monograin {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(Backing, IsThereWhereThePushGoesIntoTheWallsAndNotBesideThem) {
+  const std::vector<Vector3d> wedge{Vector3d(1, 0, -1).normalized(), Vector3d(-1, 0, -1).normalized()};
+  EXPECT_TRUE(can_back({0, 0, 1}, wedge));
+  EXPECT_TRUE(can_back({0.9, 0, 1}, wedge));
+  EXPECT_FALSE(can_back({1.1, 0, 1}, wedge));
+  EXPECT_FALSE(can_back({0, 0, -1}, wedge));
+  EXPECT_FALSE(can_back({0, 1e-3, 1}, wedge));
+  EXPECT_FALSE(can_back({0, 0, 1}, {}));
+}
+
+TEST(Backing, IsFoundForAnyPushThatPressingForcesMake) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> share;
+  for (int sample = 0; sample < 2000; ++sample) {
+    std::vector<Vector3d> directions;
+    Vector3d sum = Vector3d::Zero();
+    for (int k = 0; k < 1 + sample % 6; ++k) {
+      directions.push_back(Vector3d(normal(random), normal(random), normal(random)).normalized());
+      sum += share(random) * directions.back();
+    }
+    EXPECT_TRUE(can_back(-1e3 * sum, directions)) << sample;
+  }
+}
+
+TEST(Backing, IsNotThereBeyondAPlaneThatNoDirectionCrosses) {
+  std::mt19937 random(8);
+  std::normal_distribution<double> normal;
+  for (int sample = 0; sample < 2000; ++sample) {
+    std::vector<Vector3d> directions;
+    for (int k = 0; k < 1 + sample % 6; ++k) {
+      Vector3d direction(normal(random), normal(random), normal(random));
+      direction.z() = -std::abs(direction.z());
+      directions.push_back(direction.normalized());
+    }
+    EXPECT_FALSE(can_back({normal(random), normal(random), -0.1}, directions)) << sample;
+  }
+}
+
+}  // namespace
+}  // namespace monograin
