@@ -176,9 +176,11 @@ double total_strain(const Law& law, double phi) noexcept {
   return std::log1p((phi - law.zero_stress) / law.zero_stress);
 }
 
-double plastic_fraction(const Law& law, double phi) noexcept {
+double plastic_fraction(const Law& law, double phi, Piece piece) noexcept {
   if (!law.given.plasticity) return 0.0;
-  return std::clamp(law.given.plastic_growth * std::log(phi / law.given.jamming_fraction), 0.0, 1.0);
+  if (piece == Piece::full) return 1.0;
+  const double growing = std::max(law.given.plastic_growth * std::log(phi / law.given.jamming_fraction), 0.0);
+  return piece == Piece::growing ? growing : std::min(growing, 1.0);
 }
 
 double full_plasticity(const Law& law) noexcept {
@@ -198,17 +200,17 @@ State state(const Law& law, double phi) {
   return result;
 }
 
-double total_stress(const Law& law, double phi, double stress_elastic) noexcept {
+double total_stress(const Law& law, double phi, double stress_elastic, Piece piece) noexcept {
   if (!law.given.plasticity) return stress_elastic;
-  return stress_elastic * total_stress_slope(law, phi) +
-         plastic_fraction(law, phi) * law.given.plasticity->yield_stress;
+  return stress_elastic * total_stress_slope(law, phi, piece) +
+         plastic_fraction(law, phi, piece) * law.given.plasticity->yield_stress;
 }
 
-double total_stress_slope(const Law& law, double phi) noexcept {
-  return 1.0 - plastic_fraction(law, phi) * (1.0 - law.hardening_share);
+double total_stress_slope(const Law& law, double phi, Piece piece) noexcept {
+  return 1.0 - plastic_fraction(law, phi, piece) * (1.0 - law.hardening_share);
 }
 
-Slopes slopes(const Law& law, double phi, double strain) {
+Slopes slopes(const Law& law, double phi, double strain, Piece piece) {
   if (!(phi >= law.jamming)) throw std::domain_error("the packing is looser than where it jams");
   const Modulus m = modulus(law, phi);
   const double coordination = coordination_number(law, phi);
@@ -221,12 +223,12 @@ Slopes slopes(const Law& law, double phi, double strain) {
   result.particle_strain = law.sign * (given_way / phi + give_slope * strain) / (1.0 + given_way);
   result.stress_elastic = m.value * result.strain + m.slope * strain;
   const double without_particles = m.value / phi + m.slope * strain;
-  const double share = plastic_fraction(law, phi);
+  const bool is_growing = piece == Piece::growing || (piece == Piece::either && plastic_fraction(law, phi) < 1.0);
   const double softness = 1.0 - law.hardening_share;
-  const double growth = law.given.plasticity && share < 1.0 ? law.given.plastic_growth / phi : 0.0;
+  const double growth = law.given.plasticity && is_growing ? law.given.plastic_growth / phi : 0.0;
   const double yield_stress = law.given.plasticity ? law.given.plasticity->yield_stress : 0.0;
   const double by_growth = growth * (yield_stress - softness * m.value * strain);
-  const double by_elastic = total_stress_slope(law, phi);
+  const double by_elastic = total_stress_slope(law, phi, piece);
   result.stress = result.stress_elastic * by_elastic + by_growth;
   result.at_given_particles = without_particles * by_elastic + by_growth;
   return result;
@@ -320,10 +322,10 @@ double packing_fraction_at(const Law& law, const Branch& branch, double value) {
 }
 
 std::optional<double> packing_fraction_under(const Law& law, double stress, double particle_strain, double lower,
-                                             double upper) {
+                                             double upper, Piece piece) {
   const auto excess = [&](double phi) {
     const double strain = total_strain(law, phi) - law.sign * particle_strain;
-    return total_stress(law, phi, strain * effective_modulus(law, phi)) - stress;
+    return total_stress(law, phi, strain * effective_modulus(law, phi), piece) - stress;
   };
   const double at_lower = excess(lower);
   const double at_upper = excess(upper);

@@ -73,8 +73,11 @@ struct Law {
 /// Z(Phi), eq. 17. @throws std::domain_error below Phi_c
 [[nodiscard]] double coordination_number(const Law& law, double packing_fraction);
 
+/// Pieces of eq. 11, where f_p is clipped at 1. By itself each goes on smoothly beyond where they meet.
+enum class Piece { either, growing, full };
+
 /// f_p(Phi), eq. 11, between 0 and 1; 0 for an elastic packing.
-[[nodiscard]] double plastic_fraction(const Law& law, double packing_fraction) noexcept;
+[[nodiscard]] double plastic_fraction(const Law& law, double packing_fraction, Piece piece = Piece::either) noexcept;
 
 /// Phi at which f_p reaches 1; may lie beyond 1, or below Phi_J. Infinite for an elastic packing.
 [[nodiscard]] double full_plasticity(const Law& law) noexcept;
@@ -99,10 +102,11 @@ struct State {
 [[nodiscard]] double effective_modulus(const Law& law, double packing_fraction);
 
 /// sigma for a given sigma_e (eq. 10) [Pa].
-[[nodiscard]] double total_stress(const Law& law, double packing_fraction, double stress_elastic) noexcept;
+[[nodiscard]] double total_stress(const Law& law, double packing_fraction, double stress_elastic,
+                                  Piece piece = Piece::either) noexcept;
 
 /// d sigma/d sigma_e at a given packing fraction.
-[[nodiscard]] double total_stress_slope(const Law& law, double packing_fraction) noexcept;
+[[nodiscard]] double total_stress_slope(const Law& law, double packing_fraction, Piece piece = Piece::either) noexcept;
 
 /// Derivatives with respect to Phi of a jammed packing.
 struct Slopes {
@@ -119,7 +123,7 @@ struct Slopes {
 /// Its solutions come together as m grows; those for sigma_e part with M, which may grow by many orders from jamming
 /// on. Infinite at Phi_c, and where M_eff begins.
 /// @throws std::domain_error as state()
-[[nodiscard]] Slopes slopes(const Law& law, double packing_fraction, double strain);
+[[nodiscard]] Slopes slopes(const Law& law, double packing_fraction, double strain, Piece piece = Piece::either);
 
 /// What can be prescribed instead of Phi.
 enum class Measure { strain, stress_elastic, stress };
@@ -149,6 +153,6 @@ struct Branch {
 /// Phi between two others at which a packing whose particles have a strain v bears a stress, to round-off.
 /// @return none where it bears more at the lower one already, or less at the upper one
 [[nodiscard]] std::optional<double> packing_fraction_under(const Law& law, double stress, double particle_strain,
-                                                           double lower, double upper);
+                                                           double lower, double upper, Piece piece = Piece::either);
 
 }  // namespace monograin::packing

@@ -133,6 +133,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   if (!goes_on) solve(0.0, y);
   require_pores();  // it may have given way until it is full
   if (is_at_limit(0.0)) throw CannotBegin(limit());
+  take_piece(0.0);
   if (goes_on) complete(0.0, y);
   watch(0.0);
   resting_ = y[k_fraction];
@@ -249,7 +250,7 @@ System::Seen System::seen(double xi, std::span<const double> y) const {
   const double phi = y[k_fraction];
   const double strain = strain_of(y);
   const double stress_elastic = strain * effective_modulus(law_, phi);
-  return {phi, stress_elastic, strain, total_stress(law_, phi, stress_elastic)};
+  return {phi, stress_elastic, strain, total_stress(law_, phi, stress_elastic, piece_)};
 }
 
 /// How far a jammed packing is from what is prescribed. A trial may go beyond the stress of a full packing, where a
@@ -258,7 +259,7 @@ double System::excess(double xi, std::span<const double> y) const {
   const double phi = y[k_fraction];
   if (ramp_.control == Control::packing_fraction) return phi - told(xi);
   if (ramp_.control == Control::strain) return strain_of(y) - told(xi);
-  const double stress = total_stress(law_, phi, strain_of(y) * effective_modulus(law_, phi));
+  const double stress = total_stress(law_, phi, strain_of(y) * effective_modulus(law_, phi), piece_);
   return (stress - std::min(told(xi), branch_.greatest)) / law_.given.youngs_modulus;
 }
 
@@ -268,8 +269,8 @@ std::array<double, 2> System::excess_slopes(std::span<const double> y) const {
   const double scale = law_.sign * unknowns_[k_particles].scale;
   if (ramp_.control == Control::packing_fraction) return {0.0, 1.0};
   if (ramp_.control == Control::strain) return {-scale, 1.0 / phi};
-  const double by_strain = total_stress_slope(law_, phi) * effective_modulus(law_, phi);
-  const double by_fraction = slopes(law_, phi, strain_of(y)).at_given_particles;
+  const double by_strain = total_stress_slope(law_, phi, piece_) * effective_modulus(law_, phi);
+  const double by_fraction = slopes(law_, phi, strain_of(y), piece_).at_given_particles;
   return {-scale * by_strain / law_.given.youngs_modulus, by_fraction / law_.given.youngs_modulus};
 }
 
@@ -295,7 +296,7 @@ void System::complete(double xi, std::span<double> y) {
   if (is_brought_back(xi, y)) return;
   std::ranges::copy(guess, y.begin());  // the next trial begins there
   const double stress = std::min(told(xi), branch_.greatest);
-  const auto found = packing_fraction_under(law_, stress, y[k_particles], least_fraction(), branch_.end);
+  const auto found = packing_fraction_under(law_, stress, y[k_particles], least_fraction(), branch_.end, piece_);
   if (!found) throw std::domain_error("no packing fraction bears the stress");
   y[k_fraction] = *found;
 }
@@ -324,6 +325,12 @@ bool System::is_brought_back(double xi, std::span<double> y) const {
   return false;
 }
 
+/// By the law: an integrated state may have errors that lead past where the pieces meet.
+void System::take_piece(double xi) {
+  const bool is_full = is_fully_plastic_ || (is_jammed_ && by_law(xi).packing_fraction > full_plasticity(law_));
+  piece_ = is_full ? Piece::full : Piece::growing;
+}
+
 void System::solve(double xi, std::span<double> y) {
   const Seen now = by_law(xi);
   y[k_fraction] = now.packing_fraction;
@@ -335,7 +342,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
   if (mode_ != Mode::jammed || direction() == 0) return;
   require_state(xi);
   const double phi = y[k_fraction];
-  const Slopes s = slopes(law_, phi, strain_of(y));
+  const Slopes s = slopes(law_, phi, strain_of(y), piece_);
   const double growth = growth_of(s);
   if (!(growth > 0.0) || has_passed_end(phi, growth)) throw std::domain_error(end_of_branch(ramp_.control));
   dy[k_fraction] = (ramp_.end - ramp_.start) / growth;
@@ -464,7 +471,10 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     end = limit();
     log.push_back(end->event);
   }
-  if (!end) watch(xi);
+  if (!end) {
+    take_piece(xi);
+    watch(xi);
+  }
   resting_ = y[k_fraction];
   return end;
 }

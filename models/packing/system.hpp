@@ -85,6 +85,7 @@ class System final : public HybridSystem {
   [[nodiscard]] bool is_brought_back(double xi, std::span<double> y) const;
   [[nodiscard]] Regime regime() const noexcept;
 
+  void take_piece(double xi);
   void take_branch();
   [[nodiscard]] double last_place() const noexcept;
   [[nodiscard]] double growth_of(const Slopes& slopes) const noexcept;
@@ -115,6 +116,7 @@ class System final : public HybridSystem {
   bool is_jammed_ = false;
   bool is_softer_ = false;
   bool is_fully_plastic_ = false;
+  Piece piece_ = Piece::growing;  ///< of the plastic fraction, along which an integrated state goes
   std::vector<Guard> guards_;
   std::vector<double> places_;  ///< of the guards, in what is prescribed
 };
