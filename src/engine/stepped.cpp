@@ -119,8 +119,8 @@ class Stepped final : public EventLocator {
   double step_end_ = 0.0;
 };
 
-// Difference quotients along xi: shorter than the step that they are for, and well above the rounding of xi.
-constexpr double k_share_of_step = 1e-4;
+// Difference quotients along xi: well within the step that they are for, and well above the rounding of xi.
+constexpr double k_share_of_step = 0.1;
 constexpr double k_resolution = 1e-14;
 
 /// Forward Euler with a fixed step, as explicit codes of the discrete-element kind go: transitions take effect at the
@@ -211,6 +211,7 @@ class FixedStep final : public Integrator {
 void DifferenceJacobian::at(double xi, std::span<const double> z, double length, std::span<double> jacobian,
                             std::span<double> by_xi) {
   static const double k_root = std::sqrt(std::numeric_limits<double>::epsilon());
+  static const double k_cubic_root = std::cbrt(std::numeric_limits<double>::epsilon());
   const std::size_t n = z.size();
   std::ranges::copy(z, point_.begin());
   form_.rates(xi, point_, base_);
@@ -222,11 +223,17 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
     for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted_[i] - base_[i]) / step;
     point_[j] = z[j];
   }
-  const double onward = std::max(std::min(k_root, k_share_of_step * length), k_resolution * xi);
-  // Backwards: beyond 1 the program goes on differently.
-  const double step =
-      shift_within_domain(xi > 0.5 ? -onward : onward, [&](double by) { form_.rates(xi + by, point_, shifted_); });
-  for (std::size_t i = 0; i < n; ++i) by_xi[i] = (shifted_[i] - base_[i]) / step;
+  // Of second order: next to a pole the rounding of xi leaves few digits of quotients over much less than the step, and
+  // those of first order over all of it are wrong by a share of their own.
+  const double onward = std::max(std::min(k_cubic_root, k_share_of_step * length), k_resolution * xi);
+  // Beyond 1 the program goes on differently.
+  const double step = shift_within_domain(xi + 2.0 * onward > 1.0 ? -onward : onward, [&](double by) {
+    form_.rates(xi + by, point_, shifted_);
+    form_.rates(xi + 2.0 * by, point_, beyond_);
+  });
+  for (std::size_t i = 0; i < n; ++i) {
+    by_xi[i] = (4.0 * (shifted_[i] - base_[i]) - (beyond_[i] - base_[i])) / (2.0 * step);
+  }
 }
 
 std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, Watch& watch,

@@ -111,7 +111,7 @@ class Stepper {
 class DifferenceJacobian {
  public:
   explicit DifferenceJacobian(ScaledForm& form)
-      : form_(form), base_(form.size()), shifted_(form.size()), point_(form.size()) {}
+      : form_(form), base_(form.size()), shifted_(form.size()), beyond_(form.size()), point_(form.size()) {}
 
   /// @param length    of the step that it is for: a regime may be as short
   /// @param jacobian  row by row
@@ -119,7 +119,7 @@ class DifferenceJacobian {
 
  private:
   ScaledForm& form_;
-  std::vector<double> base_, shifted_, point_;
+  std::vector<double> base_, shifted_, beyond_, point_;
 };
 
 }  // namespace monograin
