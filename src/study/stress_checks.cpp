@@ -67,6 +67,9 @@ bool is_left_elsewhere(const Run& run, double tolerance, double negligible) {
   return is_elsewhere;
 }
 
+/// Whether an integrator has given up at a stated limit, which says nothing of how the scene goes on.
+bool has_given_up(const Run& run) { return run.record.status == RunStatus::failed && !stated_end(run).empty(); }
+
 /// The softest of a material's moduli and strengths.
 double softest(const Scenario& scenario) {
   double least = std::numeric_limits<double>::infinity();
@@ -231,13 +234,11 @@ class SceneCheck {
   }
 
   void compare(const char* check, const Run& expected, const Run& actual, const Magnification& larger = {}) {
-    // An integrator that gives up at a stated limit says nothing of how the scene goes on.
-    const bool has_given_up = (actual.record.status == RunStatus::failed && !stated_end(actual).empty()) ||
-                              (expected.record.status == RunStatus::failed && !stated_end(expected).empty());
-    const bool has_same_end = has_given_up || stated_end(actual) == stated_end(expected);
+    const bool is_cut_short = has_given_up(actual) || has_given_up(expected);
+    const bool has_same_end = is_cut_short || stated_end(actual) == stated_end(expected);
     const Distance apart = between(expected, actual, larger);
-    const EventNames expected_events = has_given_up ? EventNames{} : sorted_events(expected);
-    const EventNames events = has_given_up ? EventNames{} : sorted_events(actual);
+    const EventNames expected_events = is_cut_short ? EventNames{} : sorted_events(expected);
+    const EventNames events = is_cut_short ? EventNames{} : sorted_events(actual);
     if (has_same_end && events == expected_events && apart.value <= tolerance_) return;
 
     // A spread that is no number is without bounds: an empty column, or data that cannot be changed.
@@ -291,7 +292,7 @@ class SceneCheck {
     const std::optional<Scenario> halves = halved(scenario_, cut);
     if (!halves || run.record.status != RunStatus::complete) return;
     const std::optional<Run> other = try_run(*halves, "cut in two");
-    if (!other) return;
+    if (!other || has_given_up(*other)) return;
     const Distance apart = between_ends(run, *other);
     if (apart.value <= tolerance_) return;
     const double widest =
