@@ -133,7 +133,11 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     if (touches(memory_[i].regime)) {
       // A wall that has only touched leaves no dent.
       const bool has_pressed = x > (is_loaded(i) ? 0.0 : k_least_depth);
-      if (direction(i) < 0 && memory_[i].is_virgin && has_pressed) turn_back(i, x, log);
+      if (direction(i) < 0 && memory_[i].is_virgin && has_pressed) {
+        // By the law: with an integrator's error in it, the force that it had would not bring the wall back to there.
+        if (is_loaded(i)) x = displacement_under_force(i, ramps_[i].start, x);
+        turn_back(i, x, log);
+      }
       // From there, and where a force ends at nothing or has so far to go below that it does so at once.
       const bool is_left = memory_[i].is_virgin ? !has_pressed
                            : is_loaded(i)       ? told(i, k_instant) <= 0.0
@@ -177,7 +181,7 @@ int System::direction_of_ramp(std::size_t i, double x, bool was_loaded) const {
 bool System::is_reloaded(std::size_t i, double x) const {
   const Memory& memory = memory_[i];
   if (direction(i) <= 0 || memory.is_virgin) return false;
-  if (is_loaded(i)) return x >= memory.largest || told(i, k_instant) >= contact(i, memory.largest).force;
+  if (is_loaded(i)) return x >= memory.largest || told(i, k_instant) >= memory.largest_force;
   return x >= memory.largest - k_instant * (ramps_[i].end - ramps_[i].start);
 }
 

@@ -71,6 +71,7 @@ class System final : public HybridSystem {
     Regime regime = Regime::open;
     bool is_virgin = true;           ///< at its largest displacement
     double largest = 0.0;            ///< largest displacement, while not virgin
+    double largest_force = 0.0;      ///< there
     double resting = 0.0;            ///< displacement at which an open wall without load was left
     std::size_t next = 0;            ///< boundary ahead of a virgin contact
     bool has_impinged = false;       ///< has met its neighbours

@@ -37,6 +37,7 @@ void System::meet_walls(std::size_t i, double x, std::vector<Event>& log) {
 
 void System::turn_back(std::size_t i, double x, std::vector<Event>& log) {
   Memory& memory = memory_[i];
+  memory.largest_force = is_loaded(i) ? ramps_[i].start : contact(i, x).force;
   if (settings_.unloading == Unloading::none) {
     throw std::domain_error("the walls of class '" + classes_[i].name + "' would go back at gamma/2R = " + text(x) +
                             ", for which the law has no branch; unloading = \"mdr\" adds one");
@@ -119,7 +120,7 @@ void System::add_guard(int kind, std::size_t i, int direction, std::string_view 
                      .index = static_cast<int>(i),
                      .direction = direction,
                      .name = name,
-                     .is_told = !is_loaded(is_lateral(i) ? first_primary_ : i)});
+                     .is_told = kind == k_reload || !is_loaded(is_lateral(i) ? first_primary_ : i)});
   guard_places_.push_back(place);
 }
 
@@ -191,9 +192,14 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
       values[g] = told(i, xi) / ramps_[i].start;
       continue;
     }
+    // To the last digit: a force may end where it was before.
+    if (guards_[g].kind == k_reload && is_loaded(i)) {
+      values[g] = told(i, xi) / memory_[i].largest_force - 1.0;
+      continue;
+    }
     // Ramps are as short as contacts are shallow.
     const double scale = is_loaded(i) ? guard_places_[g] : std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
-    // To the last digit what a force gives: it may end where it was before.
+    // A place that follows from the force has no error of its own.
     const double near = displacement(i, xi, y);
     const double x = is_loaded(i) && is_known(i) ? displacement_under_force(i, told(i, xi), near) : near;
     values[g] = (x - guard_places_[g]) / scale;
