@@ -73,23 +73,35 @@ std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::
 /// the order of what the particle bears there. So is one that is pulled where nothing adheres.
 constexpr double k_share_of_withdrawal = 1e-4;
 
+/// Whether a free centre may leave its place: classes of walls that push it to no side keep it there.
+bool may_move_centre(const Scenario& scenario, const std::vector<ContactClass>& classes) {
+  constexpr double k_no_push = 1e-6;  // of unit normals
+  return scenario.loading.centre_is_free && std::ranges::any_of(classes, [](const ContactClass& c) {
+           Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+           for (const Eigen::Vector3d& normal : c.normals) sum += normal;
+           return sum.norm() > k_no_push * c.multiplicity();
+         });
+}
+
 /// How far a condition lets a ramp go that leads on to its target; infinity where the model has to be run to say so.
-Reach end_of(const Scenario& scenario, const Until& until) {
+Reach end_of(const Scenario& scenario, bool centre_moves, const Until& until) {
   Reach end{.displacement = std::numeric_limits<double>::infinity(), .force = std::numeric_limits<double>::infinity()};
   if (!(until.value > 0.0) && until.quantity != Until::Quantity::event) return end;
   if (is_plastic(scenario.model)) return plastic_reach(scenario, until);
   if (scenario.model == "mdr" || scenario.model == "hertz") end = mdr_reach(scenario, until);
   if (scenario.model == "nonlocal") end = nonlocal_reach(scenario, until);
-  // A free centre goes along: its walls go farther than their contacts.
-  if (scenario.loading.centre_is_free) end.displacement = std::numeric_limits<double>::infinity();
+  // The centre goes along: its walls go farther than their contacts.
+  if (centre_moves) end.displacement = std::numeric_limits<double>::infinity();
   if (until.quantity == Until::Quantity::displacement) end.displacement = until.value;
   if (until.quantity == Until::Quantity::force) end.force = until.value;
   return end;
 }
 
 /// Largest displacement or force of the programs.
-double largest_target(const Scenario& scenario, const std::vector<Channel>& channels, Step::Kind kind) {
+double largest_target(const Scenario& scenario, const Scene& scene, Step::Kind kind) {
   double largest = 0.0;
+  const std::vector<Channel>& channels = scene.channels;
+  const bool centre_moves = may_move_centre(scenario, scene.classes);
   const auto energy = scenario.material.find("surface_energy");
   const bool adheres = energy != scenario.material.end() && energy->second > 0.0;
   const bool is_displacement = kind == Step::Kind::displacement;
@@ -107,7 +119,7 @@ double largest_target(const Scenario& scenario, const std::vector<Channel>& chan
       for (const Until& until : step.until) {
         // Later steps may begin beyond an event, which then does not end them.
         if (until.quantity == Until::Quantity::event && &step != &channel.program.front()) continue;
-        const Reach end = end_of(scenario, until);
+        const Reach end = end_of(scenario, centre_moves, until);
         reach = std::min(reach, is_displacement ? end.displacement : end.force);
       }
       largest = std::max(largest, reach);
@@ -179,8 +191,8 @@ Scene make_scene(const Scenario& scenario, bool merges_walls) {
   else
     scene.channels = channels_without_walls(scenario);
   scene.system = bind_model(scenario, scene.classes,
-                            {.displacement = largest_target(scenario, scene.channels, Step::Kind::displacement),
-                             .force = largest_target(scenario, scene.channels, Step::Kind::force)});
+                            {.displacement = largest_target(scenario, scene, Step::Kind::displacement),
+                             .force = largest_target(scenario, scene, Step::Kind::force)});
 
   const auto unknowns = scene.system->unknowns();
   const auto is_algebraic = [](const Unknown& u) { return u.kind == Unknown::Kind::algebraic; };
