@@ -82,9 +82,8 @@ void System::sum_up(double xi, double r) {
   const double scale = 3.0 * k_per_solid_angle * material_.bulk_compliance;
   sums_.relative_compression = scale * virial_of_all;
   const double w = scale * virial;
-  const double under_root = 1.0 - 4.0 * w;
-  if (!(under_root > 0.0)) throw std::domain_error("elastic compression to less than half the volume");
-  const double root = std::sqrt(under_root);
+  sums_.under_root = 1.0 - 4.0 * w;
+  const double root = std::sqrt(sums_.under_root);
   const double weight = k_per_solid_angle * material_.bulk_compliance / root;
 
   double caps = 0.0;
@@ -289,9 +288,16 @@ std::optional<std::size_t> System::contact_beyond_pull_off(double r) {
   return std::nullopt;
 }
 
-/// Newton on the balance of forces at a given radius; the force grows with the overlap, so damping is all it needs.
+/// To the balance of forces at a given radius. On the way there the volume need not be defined: where the radius has
+/// grown, walls that the centre gives way to would press it by as much.
 void System::move_centre(double xi, std::span<double> y) {
-  look(xi, y);
+  find_balance(xi, y);
+  keep_look(xi, y);
+}
+
+/// Newton on the balance of forces at a given radius; the force grows with the overlap, so damping is all it needs.
+void System::find_balance(double xi, std::span<double> y) {
+  look_at_forces(xi, y);
   const bool is_only_one = !weakest_contact();
   double way = std::numeric_limits<double>::infinity();
   double step_size = std::numeric_limits<double>::infinity();
@@ -315,7 +321,7 @@ void System::move_centre(double xi, std::span<double> y) {
     for (int halving = 0; halving < k_most_halvings; ++halving) {
       for (int k = 0; k < free_count_; ++k) y[centre_place(k)] = before[k] + step[k];
       try {
-        look(xi, y);
+        look_at_forces(xi, y);
         if (sums_.force.norm() < std::max(error, noise) || step.norm() < k_round_off) break;
         // Stiff contacts may bear more on a way along which soft ones balance: the way that is left says more. Where an
         // edge peels there are other equilibria, to which that might lead.

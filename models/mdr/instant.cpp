@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "mdr/system.hpp"
 
@@ -25,13 +26,24 @@ const UnloadingShape& System::shape(std::size_t i, double r) {
 }
 
 /// Contacts of all classes at an instant.
+/// @throws std::domain_error where the volume of the particle is not defined
 void System::look(double xi, std::span<const double> y) {
+  look_at_forces(xi, y);
+  keep_look(xi, y);
+}
+
+/// The same where only the forces matter.
+void System::look_at_forces(double xi, std::span<const double> y) {
   forget_look();
   for (std::size_t i = 0; i < now_.size(); ++i) {
     look_at(i, is_loaded(i) ? y[wall_places_[i]] : displacement_as_told(i, xi, y), y[k_radius]);
     now_[i].position = now_[i].displacement - carried_by_centre(i, y);
   }
   sum_up(xi, y[k_radius]);
+}
+
+void System::keep_look(double xi, std::span<const double> y) {
+  if (!(sums_.under_root > 0.0)) throw std::domain_error("elastic compression to less than half the volume");
   seen_xi_ = xi;
   std::ranges::copy(y, seen_.begin());
 }

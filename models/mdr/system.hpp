@@ -152,6 +152,7 @@ class System final : public HybridSystem {
   /// Sums over the contacts at an instant; the volume balance is divided by 4 pi R0^3.
   struct Sums {
     double relative_compression = 0.0;  ///< w of all contacts: 1 - 4w > 0 while the volume is defined
+    double under_root = 0.0;            ///< 1 - 4w of those in Q
     double balance = 0.0;               ///< V_geo,Q - V_Q
     double by_radius = 0.0;             ///< its partial derivatives
     double by_time = 0.0;
@@ -228,6 +229,8 @@ class System final : public HybridSystem {
   void note_walls(double xi, std::span<double> y) const noexcept;
 
   void look(double xi, std::span<const double> y);
+  void look_at_forces(double xi, std::span<const double> y);
+  void keep_look(double xi, std::span<const double> y);
   void look_once(double xi, std::span<const double> y);
   void forget_look() noexcept { seen_xi_ = k_nan; }
   [[nodiscard]] Contact touching_contact(double radius, double overlap) const;
@@ -255,6 +258,7 @@ class System final : public HybridSystem {
   [[nodiscard]] bool is_shallow(double overlap) const noexcept;
   [[nodiscard]] std::optional<std::size_t> contact_beyond_pull_off(double r);
   void move_centre(double xi, std::span<double> y);
+  void find_balance(double xi, std::span<double> y);
   void leave_saddle(double xi, std::span<double> y);
   bool approach_balance(double xi, std::span<double> y);
   void grow(double xi, std::span<double> y);
