@@ -65,6 +65,21 @@ bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> 
   return false;
 }
 
+/// Whether any forces of walls under displacement control could balance those of the others. Exactly then these walls
+/// leave the centre no way on along which the others drive it.
+bool Contacts::may_balance(std::span<const Target> targets) {
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();
+  double sum = 0.0;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    free_displacements_[j] = targets[j].is_force ? k_no_wall : 0.0;
+    if (!targets[j].is_force) continue;
+    way -= weights_[j] * targets[j].value * arm_of(j);
+    sum += weights_[j] * targets[j].value;
+  }
+  return !clear_walls(class_count(), Eigen::Matrix3d::Identity(), way, k_same_surroundings) ||
+         way.norm() <= k_resolved * sum;
+}
+
 /// Projector on the directions in which a free centre may go without changing contacts that hold it.
 Eigen::Matrix3d Contacts::unheld_directions() const {
   const auto free = static_cast<Eigen::Index>(free_count());
