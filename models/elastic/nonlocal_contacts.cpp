@@ -283,8 +283,11 @@ bool Contacts::newton(std::span<double> y, double imbalance) {
     deepest = goal.signed_square;
     stiffness = goal.value / deepest;
   }
-  const bool is_first_touch = free_count() > 0 && std::none_of(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n),
-                                                               [&](double s) { return s > k_unloaded * farthest; });
+  bool is_first_touch = free_count() > 0;
+  for (std::size_t j = 0; j < n; ++j) {
+    // How deep a contact is under a force does not say what bears that.
+    if (!targets_[j].is_force && y[j] > k_unloaded * farthest) is_first_touch = false;
+  }
   // Later, a wall that nothing opposes takes it along: the force s^(3/2) that the first step gives that wall is undone
   // by steps of 2/3, 2/9 ... of it.
   const int free_steps = is_first_touch ? k_first_touch_steps : free_count() > 0 && is_to_balance ? 2 : 1;
@@ -311,16 +314,30 @@ bool Contacts::newton(std::span<double> y, double imbalance) {
     if (!eliminate()) return false;
     double correction = 0.0;
     if (free_count() > 0) {
-      regularise_first_touch(stiffness, [&](std::size_t j) {
+      const auto is_touching = [&](std::size_t j) {
         return !targets_[j].is_force && targets_[j].value + arm_of(j).dot(place_of(y)) >= -deepest;
-      });
-      Eigen::Vector3d net = -imbalance * imbalance_;
-      for (std::size_t k = 0; k < free_count(); ++k) {
-        net[at(k)] += net_force(k);
-        for (std::size_t j = 0; j < n; ++j)
-          net[at(k)] += weights_[j] * arms_(at(j), at(k)) * stiffness_[j] * entry(j, n);
+      };
+      regularise_first_touch(stiffness, is_touching);
+      const auto net = [&] {
+        Eigen::Vector3d sum = -imbalance * imbalance_;
+        for (std::size_t k = 0; k < free_count(); ++k) {
+          sum[at(k)] += net_force(k);
+          for (std::size_t j = 0; j < n; ++j)
+            sum[at(k)] += weights_[j] * arms_(at(j), at(k)) * stiffness_[j] * entry(j, n);
+        }
+        return sum;
+      };
+      double borne = 0.0;
+      for (std::size_t j = 0; j < n; ++j) borne += weights_[j] * forces_[j];
+      const double left = move_centre(net(), y.subspan(n));
+      // Where the first contacts do not hold it, others that touch may, as stiff as at first.
+      if (is_first_touch && iteration < free_steps && left > k_balance * borne) {
+        const Eigen::Vector3d rest = net();
+        for (std::size_t j = 0; j < n; ++j) {
+          if (stiffness_[j] == 0.0 && is_touching(j)) stiffness_[j] = stiffness;
+        }
+        move_centre(rest, y.subspan(n));
       }
-      move_centre(net, y.subspan(n));
     }
     double scale = 0.0;
     double length = 0.0;
