@@ -247,7 +247,8 @@ class Ida final : public Integrator {
     ++ida.roots_.evaluations;
     return ida.pending_.guard([&] {
       std::ranges::copy(view(y), ida.complete_.begin());
-      if (ida.has_slaves_) ida.system_.complete(xi, ida.complete_);
+      // A centre that walls take along would lag behind them: of errors alone they would come into contact.
+      ida.system_.complete(xi, ida.complete_);
       ida.watch_.values(xi, ida.complete_, {values, ida.watch_.size()});
       return true;
     });
@@ -273,7 +274,6 @@ class Ida final : public Integrator {
   Watch& watch_;
   Tolerances tolerances_;
   SegmentQuadratures quadratures_;
-  const bool has_slaves_ = system_.has_slaves();
   std::vector<double> complete_;
   std::string message_;
   Pending pending_;
