@@ -401,6 +401,9 @@ void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y
   // Of the places to which others may take a centre along, Newton's method knows no nearest one.
   if (is_own_mode && find_holding(y) && take_centre_to_targets(y)) return;
   std::copy(y.begin(), y.end(), trial_.begin());
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    if (targets_[j].is_force) trial_[j] = targets_[j].signed_square;
+  }
   if (newton(trial_, 0.0) && !has_left_branch(trial_) && is_balanced(trial_)) {
     std::copy(trial_.begin(), trial_.end(), y.begin());
   } else if (!let_all_go(y)) {

@@ -48,6 +48,9 @@ constexpr double k_nowhere = std::numeric_limits<double>::infinity();
 // gathered would grow with 1/margin towards the limit of applicability.
 constexpr double k_pull = 20.0;
 
+/// Of a class under force control, in whose place its power stands.
+double square_of(double power) { return std::pow(std::max(power, 0.0), 1.0 / k_force_power); }
+
 }  // namespace
 
 System::System(const Settings& settings, std::vector<ContactClass> classes)
@@ -146,7 +149,8 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     const bool was_loaded = is_loaded(i);
     const double unit = ramps[i].control == Control::force ? settings_.youngs_modulus * length * length : length;
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
-    if (was_loaded && !is_loaded(i)) y[i] = std::pow(std::max(y[i], 0.0), 1.0 / k_force_power);
+    if (was_loaded && !is_loaded(i)) y[i] = square_of(y[i]);
+    if (!was_loaded && is_loaded(i)) y[i] = std::pow(std::max(y[i], 0.0), k_force_power);
   }
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     if (is_loaded(i) && told(i, k_ahead) < 0.0) throw_pull(i);
@@ -262,7 +266,7 @@ void System::complete(double xi, std::span<double> y) {
 void System::branch_reach(std::span<const double> y, std::span<double> reach) const {
   std::ranges::fill(reach, std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < classes_.size(); ++i) {
-    const double square = is_loaded(i) ? std::pow(std::max(y[i], 0.0), 1.0 / k_force_power) : y[i];
+    const double square = is_loaded(i) ? square_of(y[i]) : y[i];
     reach[i] = contacts_.branch_reach(i, square);
     if (is_loaded(i)) reach[i] = std::pow(square + reach[i], k_force_power) - y[i];
   }
@@ -270,6 +274,10 @@ void System::branch_reach(std::span<const double> y, std::span<double> reach) co
 
 void System::solve(double xi, std::span<double> y) {
   look(xi, y);
+  // Under forces, too, the way begins where y is: the centre would be carried along another one.
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (is_loaded(i)) state_[i] = square_of(y[i]);
+  }
   // Beyond an event that is still to be found, contacts bear that the places before it know nothing of.
   bool is_own_mode = true;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
