@@ -26,7 +26,9 @@ constexpr double k_first_step = 1e-3;
 constexpr double k_first_step_of_slaves = 1e-9;
 constexpr double k_smallest_step = 2e-3;  // over the least progress: still above the rounding of xi
 constexpr int k_most_tries = 500;         // of one step
-constexpr double k_shorter = 0.25;        // what a step is made by that has come to nothing
+// Over what is tolerated of a step: by how much two sequences of the midpoint rule differ that are one solution.
+constexpr double k_most_between_sequences = 100.0;
+constexpr double k_shorter = 0.25;  // what a step is made by that has come to nothing
 
 template <class State>
 State zeros(std::size_t size) {
@@ -125,6 +127,57 @@ class RuleErrors {
   std::size_t stage_ = 0;
 };
 
+/// The midpoint rule goes from every second state to the next, by the rates in between: two sequences, of which the
+/// extrapolation takes the mean and sees only what changes with the number of places. Where rates jump, the one may go
+/// on as before the jump and the other as after it, however many places there are. Their difference, extrapolated as
+/// the states are.
+template <class State>
+class SequenceErrors {
+ public:
+  explicit SequenceErrors(std::size_t size) : size_(size) { table_.fill(zeros<State>(size)); }
+
+  /// @param rates  those at the step's beginning
+  void begin(const State& rates) noexcept {
+    first_ = &rates;
+    column_ = 0;
+    place_ = 0;
+  }
+  /// Rates at the places of the midpoint rule, in their order: at 2, then at 4, 6 ... of them.
+  void see(const State& rates) noexcept {
+    if (column_ == k_most) return;
+    State& sum = table_[column_];
+    const std::size_t places = places_of(column_);
+    if (place_ == 0) {
+      for (std::size_t k = 0; k < size_; ++k) sum[k] = -(*first_)[k];
+    }
+    ++place_;
+    const double weight = place_ == places ? -1.0 : place_ % 2 == 0 ? -2.0 : 2.0;
+    for (std::size_t k = 0; k < size_; ++k) sum[k] += weight * rates[k];
+    if (place_ < places) return;
+    for (std::size_t k = 0; k < size_; ++k) sum[k] /= static_cast<double>(places);
+    for (std::size_t j = column_; j-- > 0;) {
+      const double ratio = static_cast<double>(places) / static_cast<double>(places_of(j));
+      const double onward = 1.0 / (ratio * ratio - 1.0);
+      for (std::size_t k = 0; k < size_; ++k)
+        table_[j][k] = table_[j + 1][k] + onward * (table_[j + 1][k] - table_[j][k]);
+    }
+    ++column_;
+    place_ = 0;
+  }
+  /// Over the length of the step.
+  [[nodiscard]] double operator[](std::size_t k) const noexcept { return table_[0][k]; }
+
+ private:
+  static constexpr std::size_t k_most = 9;  // of Odeint's
+  static constexpr std::size_t places_of(std::size_t column) noexcept { return 2 * (column + 1); }
+
+  std::size_t size_;
+  const State* first_ = nullptr;
+  std::array<State, k_most> table_;
+  std::size_t column_ = 0;
+  std::size_t place_ = 0;
+};
+
 /// What Odeint asks for the error of a step over what is tolerated.
 template <class State>
 class ErrorChecker {
@@ -175,6 +228,7 @@ class ExplicitStepper final : public Stepper {
  public:
   static constexpr bool has_interpolation = std::is_same_v<Controlled, DormandPrince<State>>;
   static constexpr bool has_rule_errors = std::is_same_v<Controlled, Fehlberg<State>>;
+  static constexpr bool has_sequences = std::is_same_v<Controlled, Extrapolation<State>>;
 
   /// @param make  the controlled method, of what is tolerated and its errors as a quadrature
   template <class Make>
@@ -182,6 +236,7 @@ class ExplicitStepper final : public Stepper {
       : form_(form),
         tolerated_(form, tolerances),
         rule_errors_(form.size()),
+        sequence_errors_(form.size()),
         controlled_(make(tolerated_, rule_errors_)),
         reaching_(ErrorChecker<State>(tolerated_, &rule_errors_)) {
     order = method_order;
@@ -207,8 +262,18 @@ class ExplicitStepper final : public Stepper {
       if constexpr (has_interpolation) {
         return controlled_.try_step(system<false>(), old_, old_rates_, end, now_, now_rates_, step);
       } else {
+        const double length = step;
         rule_errors_.begin(1);
-        const auto result = controlled_.try_step(system<has_rule_errors>(), old_, old_rates_, end, now_, step);
+        sequence_errors_.begin(old_rates_);
+        const auto result =
+            controlled_.try_step(system<has_rule_errors, has_sequences>(), old_, old_rates_, end, now_, step);
+        if constexpr (has_sequences) {
+          const auto difference = [&](std::size_t k) { return length * sequence_errors_[k]; };
+          if (result == odeint::success && tolerated_.share(old_, difference) > k_most_between_sequences) {
+            step = k_shorter * length;
+            return odeint::fail;
+          }
+        }
         // A step that ends where the equations do not hold is none, however small its error.
         if (result == odeint::success) rates(now_, now_rates_, end);
         return result;
@@ -254,18 +319,20 @@ class ExplicitStepper final : public Stepper {
     form_.rates(xi, {z.data(), form_.size()}, {dz.data(), form_.size()});
     std::fill(dz.begin() + static_cast<std::ptrdiff_t>(form_.size()), dz.end(), 0.0);
   }
-  template <bool sees_rates>
+  template <bool sees_rates, bool sees_sequences = false>
   auto system() {
     return [this](const State& z, State& dz, double xi) {
       rates(z, dz, xi);
       tolerated_.see(dz);
       if constexpr (sees_rates) rule_errors_.see(dz);
+      if constexpr (sees_sequences) sequence_errors_.see(dz);
     };
   }
 
   ScaledForm& form_;
   Tolerated<State> tolerated_;
   RuleErrors<State> rule_errors_;
+  SequenceErrors<State> sequence_errors_;
   Controlled controlled_;
   Fehlberg<State> reaching_;
   State old_, old_rates_, now_, now_rates_, between_;
