@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
+#include "backing.hpp"
 #include "elastic/nonlocal_contacts.hpp"
 
 namespace monograin::nonlocal {
@@ -65,19 +67,21 @@ bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> 
   return false;
 }
 
-/// Whether any forces of walls under displacement control could balance those of the others. Exactly then these walls
-/// leave the centre no way on along which the others drive it.
-bool Contacts::may_balance(std::span<const Target> targets) {
-  Eigen::Vector3d way = Eigen::Vector3d::Zero();
+/// Whether any forces of walls under displacement control could balance those of the others.
+bool Contacts::may_balance(std::span<const Target> targets) const {
+  Eigen::Vector3d push = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> others;
   double sum = 0.0;
   for (std::size_t j = 0; j < class_count(); ++j) {
-    free_displacements_[j] = targets[j].is_force ? k_no_wall : 0.0;
-    if (!targets[j].is_force) continue;
-    way -= weights_[j] * targets[j].value * arm_of(j);
-    sum += weights_[j] * targets[j].value;
+    const Eigen::Vector3d arm = arm_of(j);
+    if (targets[j].is_force) {
+      push += weights_[j] * targets[j].value * arm;
+      sum += weights_[j] * targets[j].value;
+    } else if (arm.norm() > k_same_surroundings) {
+      others.push_back(arm.normalized());
+    }
   }
-  return !clear_walls(class_count(), Eigen::Matrix3d::Identity(), way, k_same_surroundings) ||
-         way.norm() <= k_resolved * sum;
+  return push.norm() <= k_resolved * sum || can_back(push, others);
 }
 
 /// Projector on the directions in which a free centre may go without changing contacts that hold it.
