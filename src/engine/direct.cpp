@@ -12,8 +12,9 @@
 namespace monograin {
 namespace {
 
-// Pieces of a step of the program; shorter where the state or the quadrature needs it.
-constexpr double k_longest = 0.25;
+// Pieces of a step of the program for each of their nodes, at which guards are looked at; shorter where the state or
+// the quadrature needs it.
+constexpr double k_longest_per_node = 1.0 / 24.0;
 // What is left of a step is not split off where it is no more than this share of a piece.
 constexpr double k_rest = 0.25;
 // The first piece where there are slaved unknowns, and how fast pieces grow from there; the same of looks before a
@@ -69,13 +70,13 @@ class Direct final : public EventLocator {
   void begin(double xi, std::span<const double> y) override {
     segment_begin_ = xi;
     refusals_ = 0;
-    length_ = k_longest;
     is_closed_ = !quadrature_;
     if (const auto primitive = system_.closed_quadrature(xi, y); quadrature_ && primitive) {
       is_closed_ = true;
       primitive_offset_ = y[*quadrature_] - *primitive;
     }
     nodes_ = is_closed_ || work_accuracy_ >= k_few_nodes_accuracy ? &LegendreNodes::few() : &LegendreNodes::many();
+    length_ = longest();
     begin_segment(xi, y);
   }
 
@@ -98,7 +99,7 @@ class Direct final : public EventLocator {
         if (tried < least_progress(begin_) || (tried < k_tiny && ++refusals_ > k_most_refusals)) throw;
         factor = 0.5;
       }
-      length_ = std::min(k_longest, factor * tried);
+      length_ = std::min(longest(), factor * tried);
     }
     statistics_.last_step = end_ - begin_;
     return {.xi = end_, .hit_guard = !fired_.empty()};
@@ -203,6 +204,7 @@ class Direct final : public EventLocator {
     return true;
   }
 
+  [[nodiscard]] double longest() const noexcept { return k_longest_per_node * static_cast<double>(nodes_->count); }
   [[nodiscard]] double piece_length() const noexcept { return piece_end_ - begin_; }
 
   /// How far a state is from the beginning of the piece, over how far it may be; 0 where it may be anywhere.
@@ -315,7 +317,7 @@ class Direct final : public EventLocator {
   bool may_rest_ = false;  ///< some unknown
   double segment_begin_ = 0.0;
   int refusals_ = 0;                     ///< of tiny pieces in this segment
-  double length_ = k_longest;            ///< of the next piece
+  double length_ = 0.0;                  ///< of the next piece
   double piece_end_ = 0.0;               ///< where the piece would end without an event
   LegendreSeries work_;                  ///< rate of the quadrature
   std::size_t integrated_ = 0;           ///< unknowns that rates() knows: the first ones

@@ -9,7 +9,7 @@
 namespace monograin {
 
 /// The integrator looks at the guards at the ends of a piece and wherever it wants in between, not farther apart than
-/// about 1/50 of a step of the program. Guards cross once between two looks; one that crosses and comes back is looked
+/// about 1/16 of a step of the program. Guards cross once between two looks; one that crosses and comes back is looked
 /// for at the extremum of the parabola through three values, and ever nearer to the end of a branch.
 class EventLocator : public Integrator {
  public:
