@@ -131,9 +131,9 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   // and one that stands where what is prescribed falls at first, which gives way to where it grows.
   const bool goes_on = mode_ == before && !(mode_ == Mode::jammed && y[k_fraction] < branch_.begin);
   if (!goes_on) solve(0.0, y);
+  take_piece(0.0);
   require_pores();  // it may have given way until it is full
   if (is_at_limit(0.0)) throw CannotBegin(limit());
-  take_piece(0.0);
   if (goes_on) complete(0.0, y);
   watch(0.0);
   resting_ = y[k_fraction];
@@ -206,15 +206,18 @@ void System::settle(double xi, std::vector<Event>& log) {
     is_jammed_ |= was_jammed && d >= 0 && value >= branch_.least;
   }
   if (is_jammed_ != was_jammed) log.push_back({"jamming"});
+  mode_ = is_jammed_ ? mode_of_jammed(value) : Mode::unjammed;
+}
+
+/// Where the strain falls at first, a packing jams beyond its closed start.
+System::Mode System::mode_of_jammed(double value) const {
+  const bool goes_down = direction() < 0;
+  const bool is_still = direction() <= 0;
+  if (ramp_.control == Control::stress && (value < branch_.least || (value == branch_.least && is_still))) {
+    return Mode::held;
+  }
   const double end_of_start = prescribed_at(start_end_);
-  if (!is_jammed_)
-    mode_ = Mode::unjammed;
-  else if (ramp_.control == Control::stress && (value < branch_.least || (value == branch_.least && d <= 0)))
-    mode_ = Mode::held;
-  else if (value < end_of_start || (value == end_of_start && d < 0))
-    mode_ = Mode::starting;
-  else
-    mode_ = Mode::jammed;
+  return value < end_of_start || (value == end_of_start && goes_down) ? Mode::starting : Mode::jammed;
 }
 
 // --- the state
@@ -445,7 +448,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     switch (guards_[g].kind) {
       case k_jams:
         is_jammed_ = is_up;
-        set_mode(is_up ? Mode::starting : Mode::unjammed, xi, y);
+        set_mode(is_up ? mode_of_jammed(told(xi)) : Mode::unjammed, xi, y);
         break;
       case k_grips:
         set_mode(is_up ? Mode::starting : Mode::held, xi, y);

@@ -95,6 +95,7 @@ class System final : public HybridSystem {
   [[nodiscard]] DomainEnd limit() const;
   void require_state(double xi) const;
   void settle(double xi, std::vector<Event>& log);
+  [[nodiscard]] Mode mode_of_jammed(double value) const;
   void set_mode(Mode mode, double xi, std::span<double> y);
   void watch(double xi);
   void add_guard(int kind, std::string_view name, double place);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -245,6 +246,46 @@ std::optional<double> prescribed_force(const Channel& channel, std::size_t step)
       force.reset();
   }
   return force;
+}
+
+/// The column that shows what a channel of the program prescribes; none where it need not come to that: contacts of a
+/// free centre move with it, and no wall pulls one that does not adhere, or may have snapped off.
+std::optional<std::string> column_of(const Scenario& scenario, const Channel& channel, const Step& step) {
+  constexpr std::array<std::string_view, 5> k_kinds{"displacement", "force", "strain", "stress", "packing_fraction"};
+  const auto control = control_of(step.kind);
+  if (!control) return std::nullopt;
+  const std::string_view kind = k_kinds[static_cast<std::size_t>(*control)];
+  if (scenario.model == "packing") return std::string(kind);
+  if (scenario.model == "material-point") return fmt::format("{}_{}", kind, channel.name);
+  if (*control == Control::displacement && scenario.loading.centre_is_free) return std::nullopt;
+  const bool may_open = step.target < 0.0 || material(scenario, "surface_energy") > 0.0;
+  if (*control == Control::force && may_open) return std::nullopt;
+  return fmt::format("{}.{}", channel.name, kind);
+}
+
+/// What the last step prescribes is reached, unless something else may end it.
+void check_program(const Run& run, Violations& found) {
+  if (run.record.status != RunStatus::complete) return;
+  const Table& table = run.record.history;
+  const Scene scene = make_scene(run.scenario);
+  const auto has_last_step = [&](const Channel& channel) { return channel.program.size() == scene.step_count(); };
+  const auto may_end_early = [&](const Channel& channel) {
+    return has_last_step(channel) &&
+           (!channel.program.back().until.empty() || channel.program.back().kind == Step::Kind::detach);
+  };
+  if (std::ranges::any_of(scene.channels, may_end_early)) return;
+  for (const Channel& channel : scene.channels) {
+    if (!has_last_step(channel)) continue;
+    const double target = channel.program.back().target;
+    const auto name = column_of(run.scenario, channel, channel.program.back());
+    if (!name) continue;
+    const std::size_t column = *table.find(*name);
+    const double last = table.at(table.row_count() - 1, column);
+    const double scale = std::max(std::abs(target), largest_magnitude(table, column));
+    if (std::abs(last - target) <= own_tolerance(run) * scale) continue;
+    found.push_back({"program", fmt::format("{} ends at {:.9g} instead of {:.9g}", *name, last, target)});
+    return;
+  }
 }
 
 /// That forces drive the centre away holds only where no contacts that touch could balance them.
@@ -539,6 +580,7 @@ std::vector<Violation> check_run(const Run& run) {
   check_events(run, found);
   // Fixed steps control no error, and have none of these.
   if (run.integrator.used == "explicit") return found;
+  check_program(run, found);
   if (run.scenario.model == "hertz") check_contacts(run, found);
   if (run.scenario.model == "packing") check_packing(run, found);
   if (run.scenario.model == "material-point") check_material_point(run, found);

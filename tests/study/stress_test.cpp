@@ -92,6 +92,8 @@ TEST_F(BrokenHistory, IsFoundByTheRuleThatItBreaks) {
   EXPECT_TRUE(breaks(check_run(generous), "energy-made"));
   EXPECT_TRUE(breaks(check_run(with_number(run_, "apparent_radius", row_, 0.9 * radius)), "shrinking"));
   EXPECT_TRUE(breaks(check_run(with_number(run_, "time", row_, -1.0)), "time"));
+  const std::size_t last = run_.record.history.row_count() - 1;
+  EXPECT_TRUE(breaks(check_run(with_number(run_, "axial.displacement", last, 0.9 * radius)), "program"));
 }
 
 TEST_F(BrokenHistory, IsFoundWhereARunEndsWithoutReason) {
