@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -9,10 +10,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include "catalogue.hpp"
+#include "scene/scene.hpp"
 #include "study/profiled_system.hpp"
 #include "study/stress_distance.hpp"
 #include "study/stress_events.hpp"
@@ -29,6 +32,8 @@ constexpr std::uint64_t k_samples = 8;  // in pairs
 constexpr double k_patience = 4.0;
 // Overlaps over R0 below which there is nothing but rounding (README, "Limits").
 constexpr double k_resolution = 1e-12;
+// Sum of the squares of normals along a direction that they do not span: rounding.
+constexpr double k_same_directions = 1e-9;
 constexpr double k_slower = 1e6;
 constexpr Magnification k_magnification{.length = 1e3, .stress = 1e-5};
 
@@ -50,21 +55,42 @@ double first_end(const std::vector<Run>& runs) {
   return first;
 }
 
+/// Whether a free centre lies elsewhere in one row than in another, by as much as two such places may differ by.
+bool is_elsewhere(const Run& run, std::size_t row, std::size_t other, double tolerance, double negligible) {
+  const Table& table = run.record.history;
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    if (!table.columns()[c].name.starts_with("centre_")) continue;
+    const double way = std::abs(table.at(row, c) - table.at(other, c));
+    if (way > tolerance * largest_magnitude(table, c) + negligible * run.scenario.radius) return true;
+  }
+  return false;
+}
+
 /// Whether a free centre that nothing holds any more lies elsewhere than at first: walls that bear nothing have taken
-/// it along, and do not take it back. By as much as two such places may differ by.
+/// it along, and do not take it back.
 bool is_left_elsewhere(const Run& run, double tolerance, double negligible) {
   const Table& table = run.record.history;
   const std::size_t last = table.row_count() - 1;
   const double least = tolerance * largest_of_kind(table, "force");
-  bool is_elsewhere = false;
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
-    const Column& column = table.columns()[c];
-    if (kind_of(column) == "force" && std::abs(table.at(last, c)) > least) return false;
-    if (!column.name.starts_with("centre_")) continue;
-    const double way = std::abs(table.at(last, c) - table.at(0, c));
-    is_elsewhere |= way > tolerance * largest_magnitude(table, c) + negligible * run.scenario.radius;
+    if (kind_of(table.columns()[c]) == "force" && std::abs(table.at(last, c)) > least) return false;
   }
-  return is_elsewhere;
+  return is_elsewhere(run, 0, last, tolerance, negligible);
+}
+
+/// Whether contacts hold a centre in every direction in a row. Walls that follow a force do not. Along what is left,
+/// walls that bear nothing take it along.
+bool is_held(const Run& run, std::span<const ContactClass> classes, std::size_t row, double tolerance) {
+  const Table& table = run.record.history;
+  const double least = tolerance * largest_of_kind(table, "force");
+  Eigen::Matrix3d hold = Eigen::Matrix3d::Zero();
+  for (const ContactClass& c : classes) {
+    const auto force = table.find(c.name + ".force");
+    if (c.takes_force || !force || !(std::abs(table.at(row, *force)) > least)) continue;
+    for (const Eigen::Vector3d& normal : c.normals) hold += normal * normal.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hold, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[0] > k_same_directions;
 }
 
 /// Whether an integrator has given up at a stated limit, which says nothing of how the scene goes on.
@@ -317,9 +343,21 @@ class SceneCheck {
     const std::vector<std::size_t> rows = output_rows(table);
     const auto points = static_cast<std::size_t>(scenario_.output.points);
     if (rows.size() != 2 * points + 1) return;
-    std::vector<std::pair<std::size_t, std::size_t>> pairs;
-    for (std::size_t k = 0; k < points; ++k) pairs.emplace_back(rows[k], rows[2 * points - k]);
-    const Distance apart = distance_at(table, table, pairs, nothing_);
+    const Scene scene = make_scene(*there);
+    std::vector<std::pair<std::size_t, std::size_t>> pairs, pairs_elsewhere;
+    for (std::size_t k = 0; k < points; ++k) {
+      const std::size_t row = rows[k];
+      const std::size_t back = rows[2 * points - k];
+      const bool has_own_place = is_held(*run, scene.system->classes(), row, tolerance_) ||
+                                 !is_elsewhere(*run, row, back, tolerance_, nothing_.share);
+      (has_own_place ? pairs : pairs_elsewhere).emplace_back(row, back);
+    }
+    // Where a centre lies that contacts do not hold depends on how it came there; what they bear does not.
+    Negligible nothing_there = nothing_;
+    nothing_there.has_any_place = true;
+    Distance apart = distance_at(table, table, pairs, nothing_);
+    const Distance apart_elsewhere = distance_at(table, table, pairs_elsewhere, nothing_there);
+    if (apart_elsewhere.value > apart.value || std::isnan(apart_elsewhere.value)) apart = apart_elsewhere;
     if (apart.value <= tolerance_) return;
     const double widest =
         spread(*run, runs_beside(*there, share_), [this](const Run& a, const Run& b) { return between(a, b).value; });

@@ -40,6 +40,11 @@ bool is_compared(const Column& column) {
          column.name != "yield_function" && column.name != "coordination_number" && kind_of(column) != "pressure";
 }
 
+/// Where a free centre lies, and where walls are by it; one under no force goes along.
+bool is_place(const Column& column) {
+  return column.name.starts_with("centre_") || kind_of(column) == "overlap" || kind_of(column) == "displacement";
+}
+
 /// Where a column is empty on one side of an event, its value on the other side of the one that a row lies beside.
 std::optional<double> beyond_event(const Table& table, std::size_t row, std::size_t column, double step_share) {
   const auto step = *table.find("step");
@@ -136,7 +141,7 @@ Distance distance_at(const Table& first, const Table& second,
                      const Magnification& larger) {
   Distance worst;
   for (std::size_t c = 0; c < first.columns().size(); ++c) {
-    if (!is_compared(first.columns()[c])) continue;
+    if (!is_compared(first.columns()[c]) || (nothing.has_any_place && is_place(first.columns()[c]))) continue;
     const double factor = factor_of(first.columns()[c].unit, larger);
     const double scale = std::max(scale_of(first, c), scale_of(second, c) / factor);
     if (scale == 0.0) continue;

@@ -42,9 +42,10 @@ struct Distance {
 struct Negligible {
   Magnification unit;
   double share = 0.0;
-  double energy_share = 0.0;  ///< of the largest energy: the tolerance of the direct form's work
-  double step_share = 0.0;    ///< of a step: how far an event may be from where it belongs
-  double length = 0.0;        ///< rounding of an overlap, a difference of lengths of the order of R0
+  double energy_share = 0.0;   ///< of the largest energy: the tolerance of the direct form's work
+  double step_share = 0.0;     ///< of a step: how far an event may be from where it belongs
+  double length = 0.0;         ///< rounding of an overlap, a difference of lengths of the order of R0
+  bool has_any_place = false;  ///< where a free centre lies is nothing, nor are walls by it
 };
 
 /// At pairs of rows, without the pressure (a force over an area, both of which are compared; where both vanish their
