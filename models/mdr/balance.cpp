@@ -443,9 +443,9 @@ void System::hold_centre(std::span<const double> y) {
   if (free_count_ == 0) return;
   for (int k = 0; k < free_count_; ++k) held_centre_[k] = y[centre_place(k)];
   unheld_ = unheld_directions();
-  const bool may_pull = std::ranges::any_of(memory_, [](const Memory& m) { return m.edge != Edge::following; });
   for (std::size_t i = 0; i < memory_.size(); ++i) {
-    bears_[i] = may_pull || directions_[i].norm() < k_no_direction || is_backed(i);
+    const bool may_pull = memory_[i].edge != Edge::following;
+    bears_[i] = directions_[i].norm() < k_no_direction || is_backed(i) || (may_pull && is_backed(i, -1.0));
   }
 }
 

@@ -253,14 +253,16 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
   return false;
 }
 
-/// Whether the other touching contacts can balance a push of one of them on the free centre.
-bool System::is_backed(std::size_t i) const {
+/// Whether the other touching contacts can balance a push of one of them on the free centre, or a pull where the side
+/// is -1; those whose edges do not follow pull, too.
+bool System::is_backed(std::size_t i, double side) const {
   std::vector<Small> others;
   for (std::size_t j = 0; j < memory_.size(); ++j) {
     if (j == i || !touches(memory_[j].regime) || directions_[j].norm() < k_no_direction) continue;
     others.push_back(directions_[j].normalized());
+    if (memory_[j].edge != Edge::following) others.emplace_back(-directions_[j].normalized());
   }
-  return can_back(directions_[i], others);
+  return can_back(side * directions_[i], others);
 }
 
 /// A wall that pushes a particle which nothing holds from the other side has no equilibrium, unless others adhere; nor
