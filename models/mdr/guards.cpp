@@ -217,7 +217,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
       case k_lost:
         values[g] = contact_guard(k_lost, i, xi, now_[i].overlap, r);
         // What only touches is always near to that, and not lost together with others.
-        if (memory_[i].is_virgin) values[g] /= k_shallow;
+        if (memory_[i].is_virgin || rides(i)) values[g] /= k_shallow;
         break;
       case k_follow:
         // An edge that has just come to stick leaves with the square of the way; rounding does not bring it back.

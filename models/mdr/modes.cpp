@@ -70,7 +70,7 @@ void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Ev
 bool System::rides(std::size_t i) const noexcept {
   if (free_count_ == 0 || is_loaded(i) || !(directions_[i].norm() > k_no_direction)) return false;
   const Memory& memory = memory_[i];
-  if (memory.regime == Regime::elastic) return memory.is_virgin && is_shallow(now_[i].overlap);
+  if (memory.regime == Regime::elastic) return (memory.is_virgin || !adheres()) && is_shallow(now_[i].overlap);
   const UnloadingShape& dent = shapes_[i];
   return memory.regime == Regime::unloading && !adheres() &&
          is_shallow(now_[i].overlap - (dent.overlap_max - dent.recovery));
@@ -151,11 +151,7 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
   const std::string_view why = xi == 0.0 ? "load-reversal" : "retreat";
 
   Memory& memory = memory_[i];
-  // Where a first touch is all that there is, its wall would take the free centre along although nothing pulls.
-  const bool withdraws = ramps_[i].end < ramps_[i].start;
-  const bool is_bare = memory.regime == Regime::elastic && now_[i].contact.force == 0.0 && !adheres();
-  if (free_count_ > 0 && is_bare && withdraws && !is_loaded(i) && directions_[i].norm() > k_no_direction &&
-      !is_backed(i)) {
+  if (withdraws_from_touch(i) && parts(i, xi, y)) {
     lose_contact(i);
     log.push_back(event("contact-lost"));
     return true;
@@ -251,6 +247,30 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
       return true;
   }
   return false;
+}
+
+/// Whether a first touch is all that a wall which withdraws has of a free centre: it would take that along although
+/// nothing pulls.
+bool System::withdraws_from_touch(std::size_t i) const {
+  const bool is_bare = memory_[i].regime == Regime::elastic && now_[i].contact.force == 0.0 && !adheres();
+  return free_count_ > 0 && is_bare && ramps_[i].end < ramps_[i].start && !is_loaded(i) &&
+         directions_[i].norm() > k_no_direction && !is_backed(i);
+}
+
+/// Whether such a wall leaves the particle. Where others drive the centre after it faster than it withdraws, it does
+/// not.
+bool System::parts(std::size_t i, double xi, std::span<const double> y) {
+  memory_before_ = memory_;
+  std::vector<std::size_t> bare;
+  for (std::size_t j = 0; j < memory_.size(); ++j) {
+    if (withdraws_from_touch(j)) bare.push_back(j);
+  }
+  for (const std::size_t j : bare) memory_[j].regime = Regime::open;
+  look(xi, y);
+  const double rate = overlap_rate(i, motion(is_growing_));
+  memory_ = memory_before_;
+  look(xi, y);
+  return rate < -k_touch;
 }
 
 /// Whether the other touching contacts can balance a push of one of them on the free centre, or a pull where the side

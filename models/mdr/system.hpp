@@ -285,6 +285,8 @@ class System final : public HybridSystem {
   [[nodiscard]] double edge_rate(std::size_t i, double r, const Motion& now);
   [[nodiscard]] double loaded_rate(double loading, double by_radius, double growth) const noexcept;
   [[nodiscard]] bool is_backed(std::size_t i, double side = 1.0) const;
+  [[nodiscard]] bool withdraws_from_touch(std::size_t i) const;
+  [[nodiscard]] bool parts(std::size_t i, double xi, std::span<const double> y);
   [[nodiscard]] bool rides(std::size_t i) const noexcept;
   void check_support() const;
   void start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log);
