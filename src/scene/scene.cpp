@@ -112,16 +112,23 @@ double largest_target(const Scenario& scenario, const Scene& scene, Step::Kind k
     if (first < channel.program.size()) count = std::min(count, first);
   }
   for (const Channel& channel : channels) {
+    double before = 0.0;  // where the last ramp of this kind has led, at most
     for (const Step& step : std::span(channel.program).first(std::min(count, channel.program.size()))) {
-      if (step.kind != kind) continue;
+      if (step.kind == Step::Kind::hold) continue;
+      if (step.kind != kind) {
+        before = 0.0;
+        continue;
+      }
       const bool is_withdrawal = step.target < 0.0 && (is_displacement || !adheres);
       double reach = (is_withdrawal ? k_share_of_withdrawal : 1.0) * std::abs(step.target);
       for (const Until& until : step.until) {
-        // Later steps may begin beyond an event, which then does not end them.
+        // Later steps may begin beyond an event, or a value, which then does not end them.
         if (until.quantity == Until::Quantity::event && &step != &channel.program.front()) continue;
         const Reach end = end_of(scenario, centre_moves, until);
-        reach = std::min(reach, is_displacement ? end.displacement : end.force);
+        const double place = is_displacement ? end.displacement : end.force;
+        if (place > before) reach = std::min(reach, place);
       }
+      before = is_withdrawal ? 0.0 : reach;
       largest = std::max(largest, reach);
     }
   }
