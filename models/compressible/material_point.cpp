@@ -17,8 +17,10 @@ constexpr std::array k_unknowns{
     Unknown{.name = "plastic_strain_deviatoric", .scale = 0.1, .sum_scale = 1.0},
     Unknown{"plastic_multiplier", Unknown::Kind::quadrature, 1.0},
 };
-// Plastic strains over elastic ones, as they usually are: the stress is made of what is left of the strains.
-constexpr double k_error_gain = 10.0;
+// Plastic strains over elastic ones, of which the stress is what is left: as they are at least in a usual material, and
+// up to where integrators would follow rounding.
+constexpr double k_usual_gain = 10.0;
+constexpr double k_most_gain = 1e3;
 
 // What is nearer than this to the end of an elastic phase has arrived there (step coordinates).
 constexpr double k_round_off = 1e-13;
@@ -79,7 +81,12 @@ MaterialPoint::MaterialPoint(const Settings& settings) : settings_(settings) {
 
 std::span<const Unknown> MaterialPoint::unknowns() const noexcept { return k_unknowns; }
 
-double MaterialPoint::error_gain() const noexcept { return k_error_gain; }
+/// In a stiff material elastic strains are smaller.
+double MaterialPoint::error_gain() const noexcept {
+  const Properties at = properties_at(settings_.parameters, 0.0);
+  const double elastic_strain = at.yield_pressure.value / (3.0 * at.shear_modulus.value);
+  return std::clamp(k_unknowns[k_deviatoric].scale / elastic_strain, k_usual_gain, k_most_gain);
+}
 
 // The flow of von Mises keeps its direction (d(phi) = |d(g^p)|), and so does flow without deviator: f = 0 along that
 // line is one equation.
