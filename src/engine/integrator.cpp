@@ -30,6 +30,9 @@ Statistics& Statistics::operator+=(const Statistics& other) noexcept {
 
 namespace {
 
+// Finer steps would follow the rounding of states.
+constexpr double k_least_rtol = 1e-14;
+
 using Method = std::variant<OdeMethod, OdeintMethod, GslMethod>;
 
 /// Integrators of the explicit form with error control.
@@ -66,7 +69,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem&
   if (name == "direct") return make_direct(system, asked.rtol, watch);
   if (name == "explicit") return make_fixed_step(system, watch, asked);
   const double gain = system.error_gain();
-  const double rtol = asked.rtol / gain;
+  const double rtol = std::max(asked.rtol / gain, std::min(asked.rtol, k_least_rtol));
   // No smaller than it takes to let the relative one count: equations without rates have round-off.
   const Tolerances tolerances{rtol, std::min(asked.atol, std::max(asked.atol / gain, 0.1 * rtol))};
   if (name == "ida") return make_ida(system, watch, tolerances);

@@ -52,6 +52,9 @@ Reach mdr_reach(const Scenario& scenario, const Until& until) {
       if (elastic < law.yield_overlap_ratio * radius) reach.displacement = elastic;
       break;
     }
+    case Until::Quantity::event:
+      if (until.event == "yield" && yields) reach.displacement = law.yield_overlap_ratio * radius;
+      break;
     default:
       break;
   }
