@@ -109,7 +109,7 @@ constexpr std::array k_events{
     Term{"until-met", "a step ends early because its condition is met"},
 };
 
-constexpr std::array<string_view, 8> k_domain{
+constexpr std::array<string_view, 7> k_domain{
     "discs in plane strain; packing fractions up to 1",
     "f_E >= f_G > 0 and a Poisson's ratio below 0.5; at 0.45 the modulus grows fourfold between Phi = 0.97 and 1",
     "jamming at the largest of jamming_fraction, 1 - critical_porosity and exp(-c2): with the published values the "
@@ -119,8 +119,6 @@ constexpr std::array<string_view, 8> k_domain{
     "plastic particles: compaction only; just above jamming the plastic packing is stiffer than the elastic one",
     "consistent coupling: stress and strain fall by less than a millionth just above Phi_c before they grow; under "
     "strain or stress control a packing that stands there gives way to where they grow",
-    "a packing that jams is shown as it begins over the first millionth of the strain or stress that compacts it half "
-    "way, over the first thousandth where that falls at first",
     "coordination law: Z_c, Z_1 and Phi_1 are assumed (isostatic frictionless discs, 6 contacts at Phi = 1)",
 };
 

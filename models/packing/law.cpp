@@ -206,6 +206,11 @@ double total_stress(const Law& law, double phi, double stress_elastic, Piece pie
          plastic_fraction(law, phi, piece) * law.given.plasticity->yield_stress;
 }
 
+double stress_elastic_at(const Law& law, double phi, double stress) noexcept {
+  if (!law.given.plasticity) return stress;
+  return (stress - plastic_fraction(law, phi) * law.given.plasticity->yield_stress) / total_stress_slope(law, phi);
+}
+
 double total_stress_slope(const Law& law, double phi, Piece piece) noexcept {
   return 1.0 - plastic_fraction(law, phi, piece) * (1.0 - law.hardening_share);
 }

@@ -105,6 +105,9 @@ struct State {
 [[nodiscard]] double total_stress(const Law& law, double packing_fraction, double stress_elastic,
                                   Piece piece = Piece::either) noexcept;
 
+/// sigma_e for a given sigma [Pa].
+[[nodiscard]] double stress_elastic_at(const Law& law, double packing_fraction, double stress) noexcept;
+
 /// d sigma/d sigma_e at a given packing fraction.
 [[nodiscard]] double total_stress_slope(const Law& law, double packing_fraction, Piece piece = Piece::either) noexcept;
 

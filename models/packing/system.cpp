@@ -240,7 +240,9 @@ System::Seen System::by_law(double xi) const {
   const double inside = std::clamp(value, branch_.least, last);
   const double phi = ramp_.control == Control::packing_fraction ? inside : packing_fraction_at(law_, branch_, inside);
   const State s = state(law_, phi);
-  return {phi, s.stress_elastic, s.strain, s.stress};
+  if (ramp_.control != Control::stress) return {phi, s.stress_elastic, s.strain, s.stress};
+  // Next to jamming the stress may grow by all of a program before the packing fraction does by its rounding.
+  return {phi, stress_elastic_at(law_, phi, inside), s.strain, inside};
 }
 
 /// Strain of the packing: what the particles leave of the whole.
@@ -409,9 +411,14 @@ void System::watch(double xi) {
       else
         watch_place(k_jams, "jamming", jamming);
       break;
-    case Mode::jammed:
-      if (d < 0) watch_place(k_starts, "", prescribed_at(start_end_));
+    case Mode::jammed: {
+      if (d > 0) break;
+      // Where the strain falls at first, it passes that at jamming before.
+      const double start = prescribed_at(start_end_);
+      const bool comes_loose = ramp_.control == Control::strain && start <= jamming;
+      watch_place(comes_loose ? k_jams : k_starts, comes_loose ? "jamming" : "", start);
       break;
+    }
   }
   if (d < 0) return;
   const double end = branch_.end;
@@ -470,6 +477,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         break;
     }
   }
+  // Other places may lie where the one that has been met does.
+  if (is_up && is_jammed_ && mode_of_jammed(told(xi)) > mode_) set_mode(mode_of_jammed(told(xi)), xi, y);
   if (!end && is_at_limit(xi)) {  // it jams there
     end = limit();
     log.push_back(end->event);

@@ -8,7 +8,6 @@
 #include <iterator>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <span>
 
@@ -70,9 +69,6 @@ constexpr std::string_view k_driven_away[] = {
     "no contact holds the centre of the particle where the forces of the others drive it"};
 // Resultant of unit normals below which a class of walls does not act on the centre.
 constexpr double k_no_direction = 1e-6;
-// Shares of what is prescribed of a packing over which its start is closed; of more, where it has its least value.
-constexpr double k_start = 2e-6;
-constexpr double k_start_of_fold = 2e-3;
 // Gaps over R0 at which a wall touches.
 constexpr double k_touch = 1e-9;
 
@@ -267,16 +263,6 @@ std::optional<std::string> column_of(const Scenario& scenario, const Channel& ch
   return fmt::format("{}.{}", channel.name, kind);
 }
 
-/// How much of what is prescribed of a packing is closed where it begins to bear (`monograin models packing`).
-double closed_start(const Scenario& scenario, const std::string& column) {
-  if (column == "packing_fraction") return 0.0;
-  const packing::Law law = packing_law_of(scenario);
-  const packing::Branch branch =
-      packing::growing_branch(law, column == "strain" ? packing::Measure::strain : packing::Measure::stress);
-  const double half = packing::measured(law, branch.measure, std::midpoint(branch.begin, branch.end));
-  return (branch.begin > law.jamming ? k_start_of_fold : k_start) * (half - branch.least);
-}
-
 /// What the last step prescribes is reached, unless something else may end it.
 void check_program(const Run& run, Violations& found) {
   if (run.record.status != RunStatus::complete) return;
@@ -296,8 +282,7 @@ void check_program(const Run& run, Violations& found) {
     const std::size_t column = *table.find(*name);
     const double last = table.at(table.row_count() - 1, column);
     const double scale = std::max(std::abs(target), largest_magnitude(table, column));
-    const double start = run.scenario.model == "packing" ? closed_start(run.scenario, *name) : 0.0;
-    if (std::abs(last - target) <= own_tolerance(run) * scale + start) continue;
+    if (std::abs(last - target) <= own_tolerance(run) * scale) continue;
     found.push_back({"program", fmt::format("{} ends at {:.9g} instead of {:.9g}", *name, last, target)});
     return;
   }
