@@ -69,6 +69,8 @@ constexpr std::string_view k_driven_away[] = {
     "no contact holds the centre of the particle where the forces of the others drive it"};
 // Resultant of unit normals below which a class of walls does not act on the centre.
 constexpr double k_no_direction = 1e-6;
+// Of what is left of a force's way.
+constexpr double k_little = 1e-3;
 // Gaps over R0 at which a wall touches.
 constexpr double k_touch = 1e-9;
 
@@ -297,7 +299,6 @@ void check_hold(const Run& run, Violations& found) {
   const auto step = static_cast<std::size_t>(table.at(last, *table.find("step"))) - 1;
   const Scene scene = make_scene(run.scenario);
   Eigen::Vector3d push = Eigen::Vector3d::Zero();
-  Eigen::Vector3d push_ahead = Eigen::Vector3d::Zero();  // of forces that have yet to begin
   std::vector<Eigen::Vector3d> others;
   for (std::size_t c = 0; c < scene.classes.size(); ++c) {
     const ContactClass& contact_class = scene.classes[c];
@@ -309,13 +310,12 @@ void check_hold(const Run& run, Violations& found) {
     };
     const std::string_view regime = table.word(last, *table.find(contact_class.name + ".regime"));
     if (const auto force = prescribed_force(scene.channels[c], step)) {
-      push += at_end("force") * normals;
-      push_ahead += *force * normals;
+      // A little later, as others may have yet to begin.
+      push += std::lerp(at_end("force"), *force, k_little) * normals;
     } else if (at_end("overlap") >= -k_touch * run.scenario.radius && regime != "separated") {
       others.push_back(normals.normalized());
     }
   }
-  if (push.isZero()) push = push_ahead;
   if (push.isZero() || !can_back(push, others)) return;
   found.push_back(
       {"held-centre", fmt::format("contacts that touch could balance the forces of '{}'", run.record.message)});
