@@ -184,15 +184,15 @@ void Contacts::let_unheld_centre_go(std::span<const Ramp> ramps, std::span<const
   }
 }
 
-/// Adds to rates the velocity of a centre that touching bystanders take along. Errors leave small gaps, which close
-/// gradually: at once they would open and close in turns.
+/// Adds to rates the velocity of a centre that touching bystanders take along. Errors leave small gaps, or overlaps,
+/// which close gradually: at once they would open and close in turns.
 void Contacts::take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch, std::span<double> dy) {
   const std::size_t n = class_count();
   const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
-  const auto takes_along = [&](std::size_t j) { return is_bystander_[j] && !is_force(j) && y[j] <= 0.0; };
+  const auto takes_along = [&](std::size_t j) { return is_bystander_[j] && !is_force(j) && y[j] >= -touch; };
   const auto closing = [&](std::size_t j) { return -k_closing * y[j]; };
   for (std::size_t j = 0; j < n; ++j) {
-    free_displacements_[j] = takes_along(j) && y[j] >= -touch ? entry(j, n) - closing(j) : k_no_wall;
+    free_displacements_[j] = takes_along(j) ? entry(j, n) - closing(j) : k_no_wall;
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (!release_centre(unheld_directions(), velocity)) return;

@@ -473,8 +473,10 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
   const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
   const auto slope = [&](std::size_t j) { return ramps[j].end - ramps[j].start; };
   forget();
+  // What bystanders bear is error: two of them would hold the centre in their corner.
+  if (free_count() > 0) sort_near(ramps, y, touch);
   for (std::size_t j = 0; j < n; ++j) {
-    if (is_force(j)) stiffness_[j] = 0.0;
+    if (is_force(j) || (free_count() > 0 && is_bystander_[j])) stiffness_[j] = 0.0;
   }
   for (std::size_t j = 0; j < n; ++j) {
     entry(j, n) = is_force(j) ? 0.0 : slope(j);
@@ -487,7 +489,6 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
                             std::to_string(margin(y)));
   }
   if (free_count() > 0) {
-    sort_near(ramps, y, touch);
     regularise_first_touch(
         1.0, [&](std::size_t j) { return !is_force(j) && y[j] == 0.0 && entry(j, n) >= 0.0 && !is_bystander_[j]; });
     const auto force_rate = [&](std::size_t j) { return is_force(j) ? slope(j) : stiffness_[j] * entry(j, n); };
@@ -498,7 +499,6 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     bool is_forced = false;
     for (std::size_t j = 0; j < n; ++j) is_forced = is_forced || (is_force(j) && y[j] > touch);
     for (std::size_t j = 0; j < n; ++j) {
-      // What bystanders bear is error.
       net += weights_[j] * (force_rate(j) + (is_forced && !is_bystander_[j] ? pull * forces_[j] : 0.0)) * arm_of(j);
       // What walls under displacements leave is rounding of all that they would change.
       pressing += weights_[j] * std::abs(force_rate(j));
