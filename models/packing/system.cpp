@@ -240,9 +240,9 @@ System::Seen System::by_law(double xi) const {
   const double inside = std::clamp(value, branch_.least, last);
   const double phi = ramp_.control == Control::packing_fraction ? inside : packing_fraction_at(law_, branch_, inside);
   const State s = state(law_, phi);
-  if (ramp_.control != Control::stress) return {phi, s.stress_elastic, s.strain, s.stress};
-  // Next to jamming the stress may grow by all of a program before the packing fraction does by its rounding.
-  return {phi, stress_elastic_at(law_, phi, inside), s.strain, inside};
+  // Next to jamming strain and stress may grow by all of a program before the packing fraction does by its rounding.
+  if (ramp_.control == Control::stress) return {phi, stress_elastic_at(law_, phi, inside), s.strain, inside};
+  return {phi, s.stress_elastic, ramp_.control == Control::strain ? inside : s.strain, s.stress};
 }
 
 /// Strain of the packing: what the particles leave of the whole.
