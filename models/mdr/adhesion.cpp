@@ -116,8 +116,8 @@ Below below(const Indenter& indenter, const Edge& edge) noexcept {
   return {unit * (0.5 * segment - 2.0 * phi(0.5 * theta)), 0.5 * unit * segment};
 }
 
-/// @param force  of the edge's equilibrium or, where it sticks, of the springs below it
-Contact contact_below(const Frame& frame, double composite_modulus, const Edge& edge, double force) noexcept {
+/// @param lift  displacement of all springs below the edge beyond that of the profile there
+Contact contact_below(const Frame& frame, double composite_modulus, const Edge& edge, double lift) noexcept {
   const double a = edge.radius;
   const Below springs = below(frame.indenter, edge);
   const auto changed = [&](const Frame::Change& change) {
@@ -125,7 +125,8 @@ Contact contact_below(const Frame& frame, double composite_modulus, const Edge& 
            (change.displacement * a - change.height * springs.area + change.half_width * springs.by_width);
   };
   return {.contact_radius = a,
-          .force = force,
+          // What the springs bear without adhesion goes with the same integral.
+          .force = 2.0 * composite_modulus * (springs.by_width + a * lift),
           .by_overlap = 2.0 * composite_modulus * a * frame.by_overlap,
           .by_radius = changed(frame.by_radius),
           .by_overlap_max = changed(frame.by_overlap_max)};
@@ -242,11 +243,8 @@ double overlap_at(const UnloadingShape& shape, double displacement_1d) noexcept 
 }
 
 Contact sticking_contact(const Frame& frame, double composite_modulus, double a) noexcept {
-  const Indenter& indenter = frame.indenter;
-  const Edge edge = edge_at(indenter, a);
-  return contact_below(frame, composite_modulus, edge,
-                       free_force_at(indenter, composite_modulus, edge) +
-                           2.0 * composite_modulus * a * (frame.displacement - height_at(indenter, edge)));
+  const Edge edge = edge_at(frame.indenter, a);
+  return contact_below(frame, composite_modulus, edge, frame.displacement - height_at(frame.indenter, edge));
 }
 
 Contact peeling_contact(const Frame& frame, double composite_modulus, double surface_energy, double critical_radius) {
@@ -258,9 +256,7 @@ Contact peeling_contact(const Frame& frame, double composite_modulus, double sur
     edge = peeling_edge(indenter, composite_modulus, surface_energy, critical_radius, frame.displacement);
   }
   const double stretch = critical_stretch(composite_modulus, surface_energy, edge.radius);
-  Contact contact =
-      contact_below(frame, composite_modulus, edge,
-                    free_force_at(indenter, composite_modulus, edge) - 2.0 * composite_modulus * edge.radius * stretch);
+  Contact contact = contact_below(frame, composite_modulus, edge, -stretch);
   // The edge follows: da = d(delta_1D - g)/(g' - Dl'). At pull-off that is unbounded; it is kept finite here: the slope
   // goes with the root of the distance from there, and displacements are rounded.
   constexpr double k_root_of_rounding = 5e-9;

@@ -211,13 +211,12 @@ void System::settle(double xi, std::vector<Event>& log) {
 
 /// Where the strain falls at first, a packing jams beyond its closed start.
 System::Mode System::mode_of_jammed(double value) const {
-  const bool goes_down = direction() < 0;
-  const bool is_still = direction() <= 0;
-  if (ramp_.control == Control::stress && (value < branch_.least || (value == branch_.least && is_still))) {
+  const int d = direction();
+  if (ramp_.control == Control::stress && (value < branch_.least || (value == branch_.least && d <= 0))) {
     return Mode::held;
   }
   const double end_of_start = prescribed_at(start_end_);
-  return value < end_of_start || (value == end_of_start && goes_down) ? Mode::starting : Mode::jammed;
+  return value < end_of_start || (value == end_of_start && d < 0) ? Mode::starting : Mode::jammed;
 }
 
 // --- the state
@@ -478,7 +477,9 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     }
   }
   // Other places may lie where the one that has been met does.
-  if (is_up && is_jammed_ && mode_of_jammed(told(xi)) > mode_) set_mode(mode_of_jammed(told(xi)), xi, y);
+  if (is_up && is_jammed_) {
+    if (const Mode onward = mode_of_jammed(told(xi)); onward > mode_) set_mode(onward, xi, y);
+  }
   if (!end && is_at_limit(xi)) {  // it jams there
     end = limit();
     log.push_back(end->event);

@@ -348,8 +348,8 @@ class SceneCheck {
     for (std::size_t k = 0; k < points; ++k) {
       const std::size_t row = rows[k];
       const std::size_t back = rows[2 * points - k];
-      const bool has_own_place = is_held(*run, scene.system->classes(), row, tolerance_) ||
-                                 !is_elsewhere(*run, row, back, tolerance_, nothing_.share);
+      const bool has_own_place =
+          is_held(*run, scene.classes, row, tolerance_) || !is_elsewhere(*run, row, back, tolerance_, nothing_.share);
       (has_own_place ? pairs : pairs_elsewhere).emplace_back(row, back);
     }
     // Where a centre lies that contacts do not hold depends on how it came there; what they bear does not.

@@ -33,8 +33,7 @@ struct StressVerdict {
 /// allowed.
 ///
 /// @param seconds  of a processor that all runs have together; a scene that takes longer breaks the rule "time", unless
-/// its
-///   own run is so slow that the runs it would be compared with are no slower
+///                 its own run is so slow that the runs it would be compared with are no slower
 [[nodiscard]] StressVerdict check_scene(const Scenario& scenario, double seconds = k_most_seconds_of_scene);
 
 }  // namespace monograin
