@@ -176,8 +176,10 @@ std::vector<Finding> System::warnings() const {
   if (validity_) result.push_back(*validity_);
   const bool has_other_rule = settings_.radius_rule != RadiusRule::yielded;
   if (const auto made = energies_.finding(
-          has_other_rule ? "the growing apparent radius creates energy; radius_rule = \"yielded\" avoids it"
-                         : "the growing apparent radius creates energy, as it may where elastic strains are large")) {
+          has_other_rule
+              ? "the growing apparent radius creates energy; radius_rule = \"yielded\" avoids it"
+              : "the growing apparent radius creates energy, as it may where elastic strains are large or little of "
+                "the free surface is left")) {
     result.push_back(*made);
   }
   return result;

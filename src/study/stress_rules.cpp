@@ -351,13 +351,16 @@ void check_energy(const Run& run, Violations& found) {
   };
   // Laws that dissipate may give a little more back than was put in, and say so (domain of the models) - but not this
   // rule of this law, as far as that is valid. For materials softer than those it is meant for it has no such bound:
-  // their walls are deep in the particle when it yields, and the free surface is used up at once.
+  // their walls are deep in the particle when it yields, and the free surface is used up at once. Nor where little of
+  // that is left: the radius grows ever faster there, and with it what is stored.
   const bool must_keep = run.scenario.model == "mdr" && option(run.scenario, "radius_rule") == "yielded" &&
                          !warns("elastic strains are not small");
   const double end_of_validity = time_of_first(run, "caps-intersect");
+  const double largest_radius = 2.0 * run.scenario.radius;
+  const auto radius = table.find("apparent_radius");
   const bool is_warned = warns("creates energy");
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const bool is_kept = must_keep && table.at(row, 0) <= end_of_validity;
+    const bool is_kept = must_keep && table.at(row, 0) <= end_of_validity && table.at(row, *radius) <= largest_radius;
     const double share = is_conservative || is_kept ? k_direct_tolerance : k_tolerated_loss;
     const double most = (share + direct_work_tolerance(run)) * scale + energy_floor(run);
     const double lost = table.at(row, *work) - table.at(row, *stored);
