@@ -109,6 +109,24 @@ void System::watch(double xi, std::span<const double> y) {
       guards_.push_back({k_centre_reached, static_cast<int>(i), -1, "limit"});
     }
   }
+  if (goes_one_way(r, now)) {
+    for (Guard& guard : guards_) guard.is_monotone = guard.kind != k_growth_on;
+  }
+}
+
+/// Whether the overlaps, and with them forces, caps and volume, all grow or all shrink over the rest of the step.
+bool System::goes_one_way(double r, const Motion& now) const {
+  if (is_growing_ || free_count_ > 0) return false;
+  bool goes_in = false;
+  bool goes_out = false;
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    // What a deeper contact has in force it may lose in the lever with which that acts on the volume.
+    if (is_loaded(i) || 2.0 * std::max(ramps_[i].start, ramps_[i].end) > 1.0 - r) return false;
+    const double rate = overlap_rate(i, now);
+    goes_in = goes_in || rate > 0.0;
+    goes_out = goes_out || rate < 0.0;
+  }
+  return !(goes_in && goes_out);
 }
 
 void System::watch_contact(std::size_t i, double r, const Motion& now) {

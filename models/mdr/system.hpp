@@ -303,6 +303,7 @@ class System final : public HybridSystem {
   void resume_loading(std::size_t i);
   void meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log);
   void watch(double xi, std::span<const double> y);
+  [[nodiscard]] bool goes_one_way(double r, const Motion& now) const;
   void watch_contact(std::size_t i, double r, const Motion& now);
   void watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_out, bool may_turn);
   [[nodiscard]] double contact_guard(int kind, std::size_t i, double xi, double overlap, double r);

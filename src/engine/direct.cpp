@@ -13,7 +13,7 @@ namespace monograin {
 namespace {
 
 // Pieces of a step of the program for each of their nodes, at which guards are looked at; shorter where the state or
-// the quadrature needs it.
+// the quadrature needs it, and as long as the step where guards go one way and nothing is integrated.
 constexpr double k_longest_per_node = 1.0 / 24.0;
 // What is left of a step is not split off where it is no more than this share of a piece.
 constexpr double k_rest = 0.25;
@@ -33,7 +33,7 @@ constexpr double k_safety = 0.85;
 // rounding. Where the work has a singularity, as at a first touch, its error is up to a hundred times that.
 constexpr double k_rounding_of_work = 1e-16;
 // From which of that on few nodes are enough for it.
-constexpr double k_few_nodes_accuracy = 1e-7;
+constexpr double k_few_nodes_accuracy = 1e-5;
 // An event within this share of a piece may have all nodes beyond it. What the work up to it may be wrong by, as the
 // rates there and at the beginning show it; and how far beyond it the piece ends that is covered again.
 constexpr double k_deep_inside = 0.5;
@@ -165,7 +165,7 @@ class Direct final : public EventLocator {
       guess_ahead(j);
       ++statistics_.rhs_evaluations;
       system_.solve(xi, trial_);
-      if (piece_length() > k_smallest_looked_into) look_inside(xi, trial_);
+      if (piece_length() > k_smallest_looked_into && !watch_.is_monotone()) look_inside(xi, trial_);
       for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
       if (has_branches_ && piece_length() > least_progress(begin_)) {
         if (const double share = share_of_reach(trial_); share > 1.0) {
@@ -204,7 +204,9 @@ class Direct final : public EventLocator {
     return true;
   }
 
-  [[nodiscard]] double longest() const noexcept { return k_longest_per_node * static_cast<double>(nodes_->count); }
+  [[nodiscard]] double longest() const noexcept {
+    return is_closed_ && watch_.is_monotone() ? 1.0 : k_longest_per_node * static_cast<double>(nodes_->count);
+  }
   [[nodiscard]] double piece_length() const noexcept { return piece_end_ - begin_; }
 
   /// How far a state is from the beginning of the piece, over how far it may be; 0 where it may be anywhere.

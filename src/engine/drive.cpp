@@ -323,21 +323,32 @@ class Drive {
   [[nodiscard]] std::vector<std::size_t> collect_fired(double last) {
     std::vector<std::size_t> fired(integrator_->fired().begin(), integrator_->fired().end());
     std::vector<double> now(watch_.size());
-    std::vector<double> before(watch_.size());
     watch_.values(xi_, y_, now);
-    const double middle = std::midpoint(last, xi_);
-    integrator_->dense_output(middle, output_state_);
-    watch_.values(middle, output_state_, before);
-    for (std::size_t g = 0; g < watch_.size(); ++g) {
-      if (std::ranges::find(fired, g) != fired.end()) continue;
-      const double side = before[g] < 0.0 ? 1.0 : -1.0;
-      const bool counts = watch_.directions()[g] == 0 || watch_.directions()[g] == static_cast<int>(side);
+    const auto tolerance_of = [&](std::size_t g) {
       const bool is_told = g < watch_.system_guards() && system_.guards()[g].is_told;
-      const double tolerance = is_told ? k_round_off : integrator_->guard_tolerance();
-      // At its pace it arrives within as long again: a branch may be no longer than what counts as zero.
-      const double way = side * (now[g] - before[g]);
-      const bool has_arrived = way > 0.0 && -side * now[g] <= std::min(tolerance, std::max(k_round_off, way));
-      if (counts && before[g] != 0.0 && has_arrived) fired.push_back(g);
+      return is_told ? k_round_off : integrator_->guard_tolerance();
+    };
+    const auto may_be_met = [&](std::size_t g) {
+      const int direction = watch_.directions()[g];
+      return (direction == 0 || direction * now[g] >= -tolerance_of(g)) && std::ranges::find(fired, g) == fired.end();
+    };
+    std::vector<std::size_t> others;
+    for (std::size_t g = 0; g < watch_.size(); ++g) {
+      if (may_be_met(g)) others.push_back(g);
+    }
+    if (!others.empty()) {
+      std::vector<double> before(watch_.size());
+      const double middle = std::midpoint(last, xi_);
+      integrator_->dense_output(middle, output_state_);
+      watch_.values(middle, output_state_, before);
+      for (const std::size_t g : others) {
+        const double side = before[g] < 0.0 ? 1.0 : -1.0;
+        const bool counts = watch_.directions()[g] == 0 || watch_.directions()[g] == static_cast<int>(side);
+        // At its pace it arrives within as long again: a branch may be no longer than what counts as zero.
+        const double way = side * (now[g] - before[g]);
+        const bool has_arrived = way > 0.0 && -side * now[g] <= std::min(tolerance_of(g), std::max(k_round_off, way));
+        if (counts && before[g] != 0.0 && has_arrived) fired.push_back(g);
+      }
     }
     std::ranges::sort(fired);
     return fired;

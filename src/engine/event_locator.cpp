@@ -18,6 +18,11 @@ constexpr double k_near = 0.5;
 // Looks before the end of a branch: each so many times nearer than the one before, and how many.
 constexpr double k_approach = 0.25;
 constexpr std::size_t k_looks_before_end = 12;
+// What a guard is by rounding at its root, over the larger of its values around it, but no more over the smaller one;
+// and by how much the root then may lie farther on, at first.
+constexpr double k_rounding_of_guard = 1e-14;
+constexpr double k_most_of_guard = 1e-12;
+constexpr double k_rounding_of_root = 1e-15;
 // How far ahead the side of a guard that begins at zero is read.
 constexpr double k_ahead = 1e-9;
 
@@ -231,20 +236,32 @@ double EventLocator::first_root(const View& before, const View& after, std::size
   return first;
 }
 
-/// Root of one guard between two looks.
+/// Root of one guard between two looks: on or just past the boundary, so that the event lies behind and not ahead.
 double EventLocator::polish(std::size_t guard, const View& before, const View& after) {
   // Of a piece as short as the rounding of xi both looks are the root.
   if (after.values[guard] == 0.0 || !(after.xi > before.xi)) return after.xi;
-  std::uintmax_t iterations = 100;
+  const auto [smaller, larger] = std::minmax({std::abs(before.values[guard]), std::abs(after.values[guard])});
+  const double rounding = std::min(k_rounding_of_guard * larger, k_most_of_guard * smaller);
+  double value = 0.0;
   const auto function = [&](double xi) {
     state_at(xi, guess_);
     look(xi, guess_, values_);
-    return values_[guard];
+    value = values_[guard];
+    return std::abs(value) <= rounding ? 0.0 : value;
   };
+  std::uintmax_t iterations = 100;
   const auto [below, above] = boost::math::tools::toms748_solve(
       function, before.xi, after.xi, before.values[guard], after.values[guard],
       [](double a, double b) { return b - a <= 1e-15 * std::max(1e-3, std::abs(b)); }, iterations);
-  return above;  // on or just past the boundary, so that the event lies behind and not ahead
+  if (below < above) return above;
+  double root = above;
+  const auto is_short = [&] { return value != 0.0 && (value > 0.0) == (before.values[guard] > 0.0); };
+  for (double ahead = k_rounding_of_root * root; is_short(); ahead *= 4.0) {
+    root += ahead;
+    if (root >= after.xi) return after.xi;
+    function(root);
+  }
+  return root;
 }
 
 }  // namespace monograin

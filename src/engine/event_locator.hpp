@@ -9,8 +9,9 @@
 namespace monograin {
 
 /// The integrator looks at the guards at the ends of a piece and wherever it wants in between, not farther apart than
-/// about 1/16 of a step of the program. Guards cross once between two looks; one that crosses and comes back is looked
-/// for at the extremum of the parabola through three values, and ever nearer to the end of a branch.
+/// about 1/16 of a step of the program, unless all of them go one way. Guards cross once between two looks; one that
+/// crosses and comes back is looked for at the extremum of the parabola through three values, and ever nearer to the
+/// end of a branch.
 class EventLocator : public Integrator {
  public:
   [[nodiscard]] std::span<const std::size_t> fired() const noexcept override { return fired_; }

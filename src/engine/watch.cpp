@@ -40,6 +40,7 @@ void Watch::renew(double xi, std::span<const double> y) {
     rooted_.push_back(i);
     directions_.push_back(watched.direction);
   }
+  is_monotone_ = rooted_.empty() && std::ranges::all_of(system_.guards(), &Guard::is_monotone);
 }
 
 std::string Watch::name(std::size_t guard) const {

@@ -36,6 +36,9 @@ class Watch {
   /// How many of the guards, from the first on, are the system's.
   [[nodiscard]] std::size_t system_guards() const noexcept { return system_count_; }
 
+  /// Whether the values of all guards at two instants show what crosses between them.
+  [[nodiscard]] bool is_monotone() const noexcept { return is_monotone_; }
+
   /// Whether a condition is met by the present state, however it came about (a jump, a contact lost).
   [[nodiscard]] bool is_met(double xi, std::span<const double> y);
 
@@ -52,6 +55,7 @@ class Watch {
   std::vector<std::size_t> rooted_;  ///< conditions with a root function of their own
   std::vector<int> directions_;
   std::size_t system_count_ = 0;
+  bool is_monotone_ = false;
 };
 
 }  // namespace monograin

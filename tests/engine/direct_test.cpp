@@ -62,6 +62,23 @@ TEST(Direct, SeesAGuardThatBeginsAtZeroAndReturnsWithinTheFirstPiece) {
   }
 }
 
+TEST(Direct, DoesNotSearchForARootWithinRounding) {
+  // A small difference of large numbers is the same at a hundred neighbouring instants, and zero at none of them.
+  constexpr double k_root = 0.0123;
+  const auto difference = [](double y) { return (1.0 + 0.01 * y) - (1.0 + 0.01 * k_root) - 1e-18; };
+  auto toy = std::make_unique<ToySystem>();
+  int looks = 0;
+  toy->watched = {{"rounded", 1, [&](double, View y) {
+                     ++looks;
+                     return difference(y[0]);
+                   }}};
+  const TestRun result = run_directly(std::move(toy));
+  EXPECT_EQ(result.events(), std::vector<std::string>{"rounded"});
+  EXPECT_NEAR(result.time_of("rounded"), k_root, 1e-13);
+  EXPECT_GE(difference(result.at_event("rounded", "y0")), 0.0) << "on or past the root";
+  EXPECT_LT(looks, 64);
+}
+
 TEST(Direct, StateDoesNotDependOnWhatWasAskedBefore) {
   auto toy = decaying_toy();
   toy->finish();
