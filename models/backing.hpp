@@ -6,8 +6,9 @@
 
 namespace monograin {
 
-/// Whether non-negative multiples of the directions add up to the opposite of a push, but for a millionth of it:
-/// non-negative least squares by active sets (Lawson and Hanson), which end with nothing left over if they can.
+/// Whether non-negative multiples of the directions, none beyond a million times a push, add up to its opposite but for
+/// a millionth of it: non-negative least squares by active sets (Lawson and Hanson), which end with nothing left over
+/// if they can.
 /// @param push        not zero
 /// @param directions  unit vectors
 [[nodiscard]] bool can_back(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> directions);

@@ -338,7 +338,13 @@ void System::take_piece(double xi) {
 void System::solve(double xi, std::span<double> y) {
   const Seen now = by_law(xi);
   y[k_fraction] = now.packing_fraction;
-  y[k_particles] = mode_ == Mode::unjammed ? 0.0 : particle_strain(law_, now.packing_fraction);
+  if (mode_ == Mode::unjammed) {
+    y[k_particles] = 0.0;
+  } else if (ramp_.control == Control::strain) {
+    y[k_particles] = law_.sign * (total_strain(law_, now.packing_fraction) - now.strain);
+  } else {
+    y[k_particles] = particle_strain(law_, now.packing_fraction);
+  }
 }
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {

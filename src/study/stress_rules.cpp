@@ -287,7 +287,7 @@ void check_program(const Run& run, Violations& found) {
     // What is rounded: strains of order one, lengths of the order of R0.
     const double unit = scene.classes.empty() ? 1.0 : name->ends_with("displacement") ? run.scenario.radius : 0.0;
     if (std::abs(last - target) <= own_tolerance(run) * scale + k_stress_rounding * unit) continue;
-    found.push_back({"program", fmt::format("{} ends at {:.9g} instead of {:.9g}", *name, last, target)});
+    found.push_back({"program", fmt::format("{} ends {:.3g} off {:.9g}", *name, last - target, target)});
     return;
   }
 }

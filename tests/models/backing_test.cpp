@@ -21,6 +21,14 @@ TEST(Backing, IsThereWhereThePushGoesIntoTheWallsAndNotBesideThem) {
   EXPECT_FALSE(can_back({0, 0, 1}, {}));
 }
 
+TEST(Backing, IsNotThatOfWallsThatAlignButForRounding) {
+  const auto is_backed_at = [](double angle) {
+    return can_back({-1, 0, 0}, std::vector<Vector3d>{{0, 0, -1}, Vector3d(angle, 0, 1).normalized()});
+  };
+  EXPECT_TRUE(is_backed_at(1e-5));
+  EXPECT_FALSE(is_backed_at(1e-8));
+}
+
 TEST(Backing, IsFoundForAnyPushThatPressingForcesMake) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
