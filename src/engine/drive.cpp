@@ -272,8 +272,9 @@ class Drive {
       if (xi_ - segment_start >= k_round_off) {
         idle_events = 0;
         idle_guards_.clear();
+      } else {
+        for (const std::size_t guard : integrator_->fired()) idle_guards_.insert(watch_.name(guard));
       }
-      for (const std::size_t guard : integrator_->fired()) idle_guards_.insert(watch_.name(guard));
       if (++idle_events > k_most_idle_events) throw chattering();
       if (++events > k_most_events) throw endless();
       if (handle_event(last)) return true;
