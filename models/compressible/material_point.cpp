@@ -315,9 +315,9 @@ void MaterialPoint::turn_plastic(Branch branch, const Response& now) {
   choose_side(now);
 }
 
-/// Of s, where that is zero: the one it goes to; none, where it stays.
+/// Of s, where that is zero, or beyond zero by what is error: the one it goes to; none, where it stays.
 void MaterialPoint::choose_side(const Response& now) {
-  if (now.s != 0.0) return;
+  if (branch_.side * now.s > 0.0) return;
   const double rate = elastic_rate(now.at).s;
   branch_.side = rate > 0.0 ? 1.0 : rate < 0.0 ? -1.0 : 0.0;
 }
@@ -360,6 +360,14 @@ bool MaterialPoint::leads_out(bool towards_compression, const Response& now) con
   return towards_compression ? away < 0.0 : away > 0.0;
 }
 
+/// Whether s may change its sign. Under prescribed strains the flow's own share of its rate is in proportion to s: it
+/// goes through zero only where the program takes it, and else decays to where its sign is an integrator's error.
+bool MaterialPoint::passes_apex(const Response& now) const {
+  if (now.s == 0.0) return false;
+  const bool follows_strains = !is_stress(k_axial) && !is_stress(k_lateral);
+  return !follows_strains || branch_.side * elastic_rate(now.at).s < 0.0;
+}
+
 /// How fast the pressure moves at an isochoric end, where phi stands still and s follows p along the tangent.
 double MaterialPoint::pressure_rate_at_end(const Response& now, bool towards_compression) const {
   const Parameters& parameters = settings_.parameters;
@@ -397,7 +405,7 @@ void MaterialPoint::watch_plastic(const Response& now) {
     }
     guards_.push_back({end_of_segment, towards_compression ? 1 : 0, -1, "segment-change"});
   }
-  if (parameters.model == YieldModel::dpc && branch_.segment == Segment::shear && now.s != 0.0) {
+  if (parameters.model == YieldModel::dpc && branch_.segment == Segment::shear && passes_apex(now)) {
     guards_.push_back({apex, 0, -1, "segment-change"});
   }
   const auto watch = [&](Limit limit, string_view name) {

@@ -120,6 +120,7 @@ class MaterialPoint final : public HybridSystem {
   enum class Way { flow, shortest };
   [[nodiscard]] bool is_brought_back(double xi, std::span<double> y, Way way);
   [[nodiscard]] bool leads_out(bool towards_compression, const Response& now) const;
+  [[nodiscard]] bool passes_apex(const Response& now) const;
   [[nodiscard]] double pressure_rate_at_end(const Response& now, bool towards_compression) const;
   [[nodiscard]] bool is_isochoric_end(Segment segment, bool towards_compression) const noexcept;
 
