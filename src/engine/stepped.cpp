@@ -47,11 +47,7 @@ class Stepped final : public EventLocator {
     }
     const double end = std::min(std::min(1.0, (std::floor(begin_ * k_pieces + 1e-9) + 1.0) / k_pieces), step_end_);
     move_end(end);
-    if (end_ - begin_ > k_smallest_looked_into && watch_.size() > 0) {
-      const double middle = std::midpoint(begin_, end_);
-      state_at(middle, middle_state_);
-      look_inside(middle, middle_state_);
-    }
+    if (watch_.size() > 0) look_into_middle();
     locate_event();
     return {.xi = end_, .hit_guard = !fired_.empty()};
   }
@@ -94,6 +90,21 @@ class Stepped final : public EventLocator {
     form_.rates(end_, z_, slope_);
     for (std::size_t k = 0; k < z_.size(); ++k) z_[k] += (xi - end_) * slope_[k];
     form_.complete(xi, z_, y);
+  }
+
+  /// Looks at the middle of the piece. Where a long step leads over an event there may be no state in the middle,
+  /// although there is one at the end: then the piece ends before that.
+  void look_into_middle() {
+    while (end_ - begin_ > k_smallest_looked_into) {
+      const double middle = std::midpoint(begin_, end_);
+      try {
+        state_at(middle, middle_state_);
+        look_inside(middle, middle_state_);
+        return;
+      } catch (const std::domain_error&) {
+        move_end(std::midpoint(begin_, middle));
+      }
+    }
   }
 
   /// A step may lead over an event to where this mode has no state; comes as near as it takes to get one.
