@@ -193,12 +193,13 @@ double ContactSystem::force_of(std::size_t i, double xi, std::span<const double>
   if (is_loaded(i) && touches(i)) return state(i, y[places_[i]]).force;
   const double d = displacement(i, xi, y);
   const Memory& memory = memory_[i];
-  // On a steep curve the rounding of a displacement shows: a wall that stands where it parts from the particle has.
-  const bool is_parting = memory.regime == Regime::unloading &&
-                          std::abs(d - memory.curve.separation()) <= k_rounding * memory.curve.largest;
+  // On a steep curve the rounding of a displacement shows: a wall that stands where it parts from the particle has, and
+  // so has one beyond, which a ramp of hardly more than rounding may lead to before its end is found.
+  const bool has_parted =
+      memory.regime == Regime::unloading && d - memory.curve.separation() <= k_rounding * memory.curve.largest;
   // Of walls that meet the particle within rounding of one instant, and so together, one may still be short of it.
   const bool is_short = memory.regime == Regime::linear && d < 0.0;
-  return is_parting || is_short ? 0.0 : force_at(i, d);
+  return has_parted || is_short ? 0.0 : force_at(i, d);
 }
 
 ContactSystem::State ContactSystem::state(std::size_t i, double u) const noexcept {
