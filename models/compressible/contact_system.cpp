@@ -403,6 +403,8 @@ std::optional<DomainEnd> ContactSystem::fire(std::span<const std::size_t> fired,
         break;
       case k_reload:
         go_on_loading(i, place);
+        // The next part of the law may begin within rounding of the ramp.
+        pass_boundaries(i, is_loaded(i) ? displacement_under(settings_.law, told(i, xi)) : told(i, xi), log);
         if (reaches(place, k_largest_displacement) && goes_beyond(i, k_largest_displacement)) {
           log.push_back({"limit", guard.index});
           end_at(place);
