@@ -48,6 +48,7 @@ class Ida final : public Integrator {
     check("IDASetErrHandlerFn", IDASetErrHandlerFn(memory_.get(), keep_message, &message_));
     check("IDAInit", IDAInit(memory_.get(), residual, 0.0, y_.get(), dy_.get()));
     check("IDASetUserData", IDASetUserData(memory_.get(), this));
+    check("IDAWFtolerances", IDAWFtolerances(memory_.get(), error_weights));
     check("IDASetMaxNumSteps", IDASetMaxNumSteps(memory_.get(), k_most_internal_steps));
     // From where a force is zero, the first steps are smaller than IDA's guess by many orders.
     check("IDASetMaxErrTestFails", IDASetMaxErrTestFails(memory_.get(), k_most_failures));
@@ -63,7 +64,8 @@ class Ida final : public Integrator {
     std::ranges::copy(y, view(y_.get()).begin());
     quadratures_.begin(view(y_.get()));
     system_.all_rates(xi, y, view(dy_.get()));
-    set_tolerances();
+    N_VScale(1.0, least_atol_.get(), atol_.get());
+    raise_tolerances();
     start(xi, 0.0);
     last_length_ = 0.0;
     ++past_.segments;
@@ -81,6 +83,7 @@ class Ida final : public Integrator {
     const double begin = end_;
     N_VScale(1.0, y_.get(), begin_state_.get());
     N_VScale(1.0, dy_.get(), begin_rates_.get());
+    raise_tolerances();
     const auto restart = [&](double step) {
       N_VScale(1.0, begin_state_.get(), y_.get());
       N_VScale(1.0, begin_rates_.get(), dy_.get());
@@ -146,15 +149,24 @@ class Ida final : public Integrator {
   }
 
  private:
-  /// Nothing is told more exactly than the step coordinate: what goes through zero on a long way would be.
-  void set_tolerances() {
-    const auto least = view(least_atol_.get());
+  /// Nothing is told more exactly than the step coordinate: what goes through zero on a long way would be, and what
+  /// grows ever faster towards the end of its equations.
+  void raise_tolerances() {
     const auto rates = view(dy_.get());
-    for (std::size_t k = 0; k < least.size(); ++k) {
+    for (std::size_t k = 0; k < rates.size(); ++k) {
       const double rounding = k_rounding_of_xi * std::abs(rates[k]);
-      view(atol_.get())[k] = std::isfinite(rounding) ? std::max(least[k], rounding) : least[k];
+      double& atol = view(atol_.get())[k];
+      if (std::isfinite(rounding)) atol = std::max(atol, rounding);
     }
-    check("IDASVtolerances", IDASVtolerances(memory_.get(), of_step(tolerances_).rtol, atol_.get()));
+  }
+
+  /// One over what is tolerated.
+  static int error_weights(N_Vector y, N_Vector weights, void* self) noexcept {
+    const auto& ida = *static_cast<Ida*>(self);
+    for (std::size_t k = 0; k < view(y).size(); ++k) {
+      view(weights)[k] = 1.0 / (of_step(ida.tolerances_).rtol * std::abs(view(y)[k]) + view(ida.atol_.get())[k]);
+    }
+    return 0;
   }
 
   /// Takes the system's own state and rates for where a step begins. Beside a fold or a corner those that steps have
