@@ -240,7 +240,10 @@ System::Seen System::by_law(double xi) const {
   const double phi = ramp_.control == Control::packing_fraction ? inside : packing_fraction_at(law_, branch_, inside);
   const State s = state(law_, phi);
   // Next to jamming strain and stress may grow by all of a program before the packing fraction does by its rounding.
-  if (ramp_.control == Control::stress) return {phi, stress_elastic_at(law_, phi, inside), s.strain, inside};
+  if (ramp_.control == Control::stress) {
+    const double stress_elastic = stress_elastic_at(law_, phi, inside);
+    return {phi, stress_elastic, s.modulus > 0.0 ? stress_elastic / s.modulus : s.strain, inside};
+  }
   return {phi, s.stress_elastic, ramp_.control == Control::strain ? inside : s.strain, s.stress};
 }
 
@@ -335,16 +338,15 @@ void System::take_piece(double xi) {
   piece_ = is_full ? Piece::full : Piece::growing;
 }
 
+/// Next to a pole the rounding of Phi shows in the strain: there the particles have what the strain leaves of the
+/// whole.
 void System::solve(double xi, std::span<double> y) {
   const Seen now = by_law(xi);
   y[k_fraction] = now.packing_fraction;
-  if (mode_ == Mode::unjammed) {
-    y[k_particles] = 0.0;
-  } else if (ramp_.control == Control::strain) {
-    y[k_particles] = law_.sign * (total_strain(law_, now.packing_fraction) - now.strain);
-  } else {
-    y[k_particles] = particle_strain(law_, now.packing_fraction);
-  }
+  y[k_particles] = mode_ == Mode::unjammed ? 0.0 : particle_strain(law_, now.packing_fraction);
+  if (ramp_.control == Control::packing_fraction || mode_ == Mode::unjammed) return;
+  const bool gives_way_as_much = y[k_particles] > 0.5 * now.strain;  // so that nothing cancels
+  if (gives_way_as_much) y[k_particles] = law_.sign * (total_strain(law_, now.packing_fraction) - now.strain);
 }
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
