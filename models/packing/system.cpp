@@ -292,8 +292,10 @@ void System::complete(double xi, std::span<double> y) {
     return;
   }
   if (ramp_.control == Control::strain) {
-    // A first guess of an implicit stage leaves the particles as they were, and so takes the packing below jamming.
-    y[k_fraction] = std::max(law_.zero_stress * std::exp(told(xi) + law_.sign * y[k_particles]), least_fraction());
+    // A first guess of an implicit stage leaves the particles as they were, and so takes the packing below jamming or
+    // beyond a pole.
+    const double with_particles = law_.zero_stress * std::exp(told(xi) + law_.sign * y[k_particles]);
+    y[k_fraction] = std::max(std::min(with_particles, branch_.end), least_fraction());
     return;
   }
   // By the shortest way: where the particles give way with the packing (consistent coupling), the packing fraction at a
