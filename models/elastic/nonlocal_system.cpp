@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "difficulties.hpp"
 #include "undefined.hpp"
 
 namespace monograin::nonlocal {
@@ -40,6 +41,8 @@ constexpr double k_touch_of_free_centre = 1e-9;
 // With all terms, approach and force follow from what a contact lacks to the particle's width, of which its own width
 // keeps fewer and fewer digits: from here on less than eleven of the approach.
 constexpr double k_widest_of_all_terms = 1.0 - 1e-6;
+// Contacts nowhere deeper than that, over R0, are rounding of lengths.
+constexpr double k_least_depth = 1e-12;
 // Contacts shallower than this, over the deepest, hold a free centre too softly for an integrator.
 constexpr double k_idle = 1e-6;
 constexpr double k_force_power = 1.5;
@@ -66,6 +69,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
     const double bearable = std::min(force / contacts_.composite_modulus(), contacts_.law().greatest_force());
     reach = std::max(reach, contacts_.law().signed_square_under(bearable));
   }
+  is_shallow_ = reach > 0.0 && reach <= k_least_depth;
   for (const ContactClass& c : classes_) reach = std::max(reach, c.gap / length);
   if (!(reach > 0.0)) reach = 1.0;
   // A program may ask for any displacement: a wall comes to the centre, a contact is as wide as the particle before.
@@ -659,6 +663,7 @@ bool System::is_open(int contact_class) const noexcept {
 }
 
 std::string_view System::difficulty(double xi, std::span<const double> y) {
+  if (is_shallow_) return k_closes_nothing;  // of the whole program
   if (contacts_.least_pivot(look(xi, y)) < k_hard_pivot) {
     return "the limit of applicability is so near that the stiffness magnifies the errors that are tolerated; "
            "expected a larger rtol, or integrator = \"direct\"";

@@ -108,6 +108,7 @@ class System final : public HybridSystem {
   double idle_ = 0.0;                        ///< least s that lets a contact hold a free centre
   double widest_ = 1.0;                      ///< contact radius up to which there are states
   std::optional<double> greatest_approach_;  ///< where a contact is that wide, if the law says so in few digits
+  bool is_shallow_ = false;                  ///< no contact of the program is deeper than rounding
   bool has_begun_ = false;
   bool has_stiffened_ = false;
   double least_margin_ = 1.0;
