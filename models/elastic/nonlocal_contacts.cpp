@@ -24,6 +24,9 @@ constexpr int k_most_roundings = 20;    // times that its end is found with forc
 constexpr double k_share_of_rivalry = 0.25;
 constexpr double k_share_of_depth = 0.5;
 
+// How fast an error of the balance is drawn back where a force shrinks, over how fast that does.
+constexpr double k_hurry = 2.0;
+
 constexpr const char* k_nothing_holds =
     "no contact holds the centre of the particle where the forces of the others drive it";
 
@@ -497,16 +500,25 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     double near = touch;
     // Contacts that bear a centre against a force end with it, if no error of that balance is left.
     bool is_forced = false;
-    for (std::size_t j = 0; j < n; ++j) is_forced = is_forced || (is_force(j) && y[j] > touch);
+    // Where one shrinks, an error of the balance would outlast it, and open the contact that bears it.
+    double hurry = pull;
     for (std::size_t j = 0; j < n; ++j) {
-      net += weights_[j] * (force_rate(j) + (is_forced && !is_bystander_[j] ? pull * forces_[j] : 0.0)) * arm_of(j);
+      is_forced = is_forced || (is_force(j) && y[j] > touch);
+      if (is_force(j) && forces_[j] > 0.0) hurry = std::max(hurry, -k_hurry * slope(j) / forces_[j]);
+    }
+    Eigen::Vector3d error = Eigen::Vector3d::Zero();
+    for (std::size_t j = 0; j < n; ++j) {
+      if (is_forced && !is_bystander_[j]) error += weights_[j] * forces_[j] * arm_of(j);
+      net += weights_[j] * force_rate(j) * arm_of(j);
       // What walls under displacements leave is rounding of all that they would change.
       pressing += weights_[j] * std::abs(force_rate(j));
       near = std::max(near, is_force(j) ? y[j] : k_unloaded * std::abs(y[j]));
     }
     const auto centre = dy.subspan(n);
     std::ranges::fill(centre, 0.0);
-    const double left = move_centre(net, centre);
+    const double left = move_centre(net + pull * error, centre);
+    // So much of an error says nothing of what drives the centre where no contact holds it.
+    if (hurry > pull) move_centre((hurry - pull) * error, centre);
     if (has_bystanders()) take_along(ramps, y, touch, dy);
     // Walls that just touch hold the centre at once, if they can bear; and those that are as near as a force is deep,
     // as errors take them off just before it ends.

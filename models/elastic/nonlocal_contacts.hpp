@@ -99,7 +99,7 @@ class Contacts {
   /// its own s has an infinite rate; the other rates do not depend on that. A free centre leaves the unloaded state as
   /// if the contacts were equally stiff, which is exact where they will be.
   /// @param touch  walls with an s less than this below zero touch: they may hold the centre at once
-  /// @param pull  how fast contacts that bear the centre against a force are drawn back to their balance
+  /// @param pull  how fast contacts that bear the centre against a force are drawn back to their balance, at least
   /// @throws std::domain_error at and beyond the limit of applicability, and where nothing holds a free centre against
   /// prescribed forces
   void rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch = 0.0,
