@@ -510,8 +510,9 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     for (std::size_t j = 0; j < n; ++j) {
       if (is_forced && !is_bystander_[j]) error += weights_[j] * forces_[j] * arm_of(j);
       net += weights_[j] * force_rate(j) * arm_of(j);
-      // What walls under displacements leave is rounding of all that they would change.
-      pressing += weights_[j] * std::abs(force_rate(j));
+      // What walls under displacements leave is rounding of all that they would change; where none is to change, that
+      // of the forces.
+      pressing += weights_[j] * (std::abs(force_rate(j)) + pull * forces_[j]);
       near = std::max(near, is_force(j) ? y[j] : k_unloaded * std::abs(y[j]));
     }
     const auto centre = dy.subspan(n);
