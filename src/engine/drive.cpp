@@ -143,9 +143,9 @@ class Drive {
         system_.begin_step(plan_.ramps, y_, log);
         close_instant(step_start_, 0.0, log);
       } else {
-        begin_history();
+        begin_history(log);
       }
-      const bool is_met = integrate_step();
+      const bool is_met = integrate_step(log);
       open_instant(xi_);
       log.clear();
       if (is_met) log.push_back({"until-met"});
@@ -228,6 +228,12 @@ class Drive {
     return {value, value, ramp.control};
   }
 
+  [[nodiscard]] bool has_ending_event(const std::vector<Event>& log) const {
+    return std::ranges::any_of(log, [&](const Event& event) {
+      return std::ranges::find(plan_.ending_events, event.name) != plan_.ending_events.end();
+    });
+  }
+
   [[nodiscard]] bool is_detached() const {
     return !plan_.detaching.empty() && std::ranges::all_of(plan_.detaching, [&](int c) { return system_.is_open(c); });
   }
@@ -236,10 +242,12 @@ class Drive {
   // -------------------------------------------------------------------------------------------------------------
 
   /// Integrates the step that has begun; leaves xi_ and y_ where it ends. Returns whether a condition ended it.
-  bool integrate_step() {
+  /// @param log  events at its beginning, which may be what it waits for
+  bool integrate_step(const std::vector<Event>& log) {
     xi_ = 0.0;
     watch_.begin_step(plan_.conditions, 0.0, y_);
     plan_outputs();
+    if (has_ending_event(log)) return true;
     if (is_detached()) return false;
     int idle_events = 0;
     int events = 0;
@@ -311,9 +319,7 @@ class Drive {
         throw Stop{where(xi_) + text_of(end->finding)};
       }
       system_.solve(xi_, y_);
-      is_met = is_met || watch_.is_met(xi_, y_) || std::ranges::any_of(log, [&](const Event& event) {
-                 return std::ranges::find(plan_.ending_events, event.name) != plan_.ending_events.end();
-               });
+      is_met = is_met || watch_.is_met(xi_, y_) || has_ending_event(log);
     }
     watch_.renew(xi_, y_);
     return is_met;
@@ -415,8 +421,7 @@ class Drive {
   }
 
   /// The first row. Nothing jumps at the start: before and after an event there are the same.
-  void begin_history() {
-    std::vector<Event> log;
+  void begin_history(std::vector<Event>& log) {
     system_.begin_step(plan_.ramps, y_, log);
     sink_.observe(0.0, 1, 0.0, y_);
     if (!log.empty()) sink_.append(RowSide::before);
