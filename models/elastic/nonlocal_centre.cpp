@@ -312,16 +312,13 @@ bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y,
   return true;
 }
 
-/// Approach of a wall where nothing bears; exactly 0 where it touches but for rounding.
+/// Approach of a wall where nothing bears; exactly 0 where it touches but for rounding, which is that of how far the
+/// centre is, whatever the axes along which it moves.
 double Contacts::free_approach(std::size_t index, const Eigen::Vector3d& centre, double rounding) const {
   const double displacement = free_displacements_[index];
-  double sum = displacement;
-  double size = std::abs(displacement);
-  for (std::size_t k = 0; k < free_count(); ++k) {
-    const double share = arms_(at(index), at(k)) * centre[at(k)];
-    sum += share;
-    size += std::abs(share);
-  }
+  const Eigen::Vector3d arm = arm_of(index);
+  const double sum = displacement + arm.dot(centre);
+  const double size = std::abs(displacement) + arm.norm() * centre.norm();
   return std::abs(sum) <= rounding * size ? 0.0 : sum;
 }
 
