@@ -69,7 +69,7 @@ constexpr std::string_view k_driven_away[] = {
     "no contact holds the centre of the particle where the forces of the others drive it"};
 // Resultant of unit normals below which a class of walls does not act on the centre.
 constexpr double k_no_direction = 1e-6;
-// Of what is left of a force's way.
+// Of what is left of a force's way; of the largest force, what is small beside it.
 constexpr double k_little = 1e-3;
 // Gaps over R0 at which a wall touches.
 constexpr double k_touch = 1e-9;
@@ -300,8 +300,9 @@ void check_hold(const Run& run, Violations& found) {
   const std::size_t last = table.row_count() - 1;
   const auto step = static_cast<std::size_t>(table.at(last, *table.find("step"))) - 1;
   const Scene scene = make_scene(run.scenario);
-  Eigen::Vector3d push = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> others;
+  std::vector<std::pair<double, Eigen::Vector3d>> pushes;  // by prescribed forces, and their normals
+  double largest = 0.0;
+  std::vector<Eigen::Vector3d> others, bearing;
   for (std::size_t c = 0; c < scene.classes.size(); ++c) {
     const ContactClass& contact_class = scene.classes[c];
     Eigen::Vector3d normals = Eigen::Vector3d::Zero();
@@ -313,12 +314,21 @@ void check_hold(const Run& run, Violations& found) {
     const std::string_view regime = table.word(last, *table.find(contact_class.name + ".regime"));
     if (const auto force = prescribed_force(scene.channels[c], step)) {
       // A little later, as others may have yet to begin.
-      push += std::lerp(at_end("force"), *force, k_little) * normals;
+      pushes.emplace_back(std::lerp(at_end("force"), *force, k_little), normals);
+      largest = std::max(largest, pushes.back().first);
     } else if (at_end("overlap") >= -k_touch * run.scenario.radius && regime != "separated") {
       others.push_back(normals.normalized());
+      if (at_end("force") > 0.0) bearing.push_back(others.back());
     }
   }
+  Eigen::Vector3d push = Eigen::Vector3d::Zero();
+  Eigen::Vector3d small_push = Eigen::Vector3d::Zero();
+  for (const auto& [force, normals] : pushes) (force < k_little * largest ? small_push : push) += force * normals;
   if (push.isZero() || !can_back(push, others)) return;
+  // Beside forces so much larger it is not seen whether the small ones can be balanced. Where contacts bear, they may
+  // also give way.
+  for (const Eigen::Vector3d& normal : bearing) others.push_back(-normal);
+  if (!small_push.isZero() && !can_back(small_push, others)) return;
   found.push_back(
       {"held-centre", fmt::format("contacts that touch could balance the forces of '{}'", run.record.message)});
 }
