@@ -65,27 +65,6 @@ std::optional<double> beyond_event(const Table& table, std::size_t row, std::siz
   return std::nullopt;
 }
 
-/// What a column of a contact changes by where the overlap does by a length, as the rows beside this one show; those of
-/// a jump, within that length, do not.
-template <class Value>
-double change_with_overlap(const Table& table, std::size_t row, std::size_t column, double length, Value&& value) {
-  const std::string& name = table.columns()[column].name;
-  const std::size_t dot = name.rfind('.');
-  if (dot == std::string::npos || !(length > 0.0)) return 0.0;
-  const auto overlap = table.find(name.substr(0, dot) + ".overlap");
-  if (!overlap) return 0.0;
-  double steepest = 0.0;
-  const auto has_looked = [&](std::size_t beside) {
-    const double way = std::abs(table.at(beside, *overlap) - table.at(row, *overlap));
-    if (!(way > length)) return false;
-    steepest = std::max(steepest, std::abs(value(table.at(beside, column)) - value(table.at(row, column))) / way);
-    return true;
-  };
-  for (std::size_t beside = row; beside-- > 0 && !has_looked(beside);) continue;
-  for (std::size_t beside = row + 1; beside < table.row_count() && !has_looked(beside); ++beside) continue;
-  return steepest * length;
-}
-
 double factor_of(const std::string& unit, const Magnification& larger) {
   if (unit == "m") return larger.length;
   if (unit == "m3") return std::pow(larger.length, 3);
@@ -125,6 +104,25 @@ double deepest_overlap(const Table& table) {
     for (std::size_t row = 0; row < table.row_count(); ++row) deepest = std::max(deepest, table.at(row, c));
   }
   return deepest;
+}
+
+double change_with_overlap(const Table& table, std::size_t row, std::size_t column, double length,
+                           const std::function<double(double)>& value) {
+  const std::string& name = table.columns()[column].name;
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos || !(length > 0.0)) return 0.0;
+  const auto overlap = table.find(name.substr(0, dot) + ".overlap");
+  if (!overlap) return 0.0;
+  double steepest = 0.0;
+  const auto has_looked = [&](std::size_t beside) {
+    const double way = std::abs(table.at(beside, *overlap) - table.at(row, *overlap));
+    if (!(way > length)) return false;
+    steepest = std::max(steepest, std::abs(value(table.at(beside, column)) - value(table.at(row, column))) / way);
+    return true;
+  };
+  for (std::size_t beside = row; beside-- > 0 && !has_looked(beside);) continue;
+  for (std::size_t beside = row + 1; beside < table.row_count() && !has_looked(beside); ++beside) continue;
+  return steepest * length;
 }
 
 std::vector<std::size_t> output_rows(const Table& table) {

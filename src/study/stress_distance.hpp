@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -34,6 +35,11 @@ struct Distance {
 
 /// Of all contacts; below zero, a gap, where none closes.
 [[nodiscard]] double deepest_overlap(const Table& table);
+
+/// What a column of a contact, or a value that follows from it, changes by where the overlap does by a length, as the
+/// rows beside this one show; those of a jump, within that length, do not.
+[[nodiscard]] double change_with_overlap(const Table& table, std::size_t row, std::size_t column, double length,
+                                         const std::function<double(double)>& value = std::identity());
 
 /// Rows at output points of a history.
 [[nodiscard]] std::vector<std::size_t> output_rows(const Table& table);
