@@ -256,6 +256,12 @@ Contact peeling_contact(const Frame& frame, double composite_modulus, double sur
     edge = peeling_edge(indenter, composite_modulus, surface_energy, critical_radius, frame.displacement);
   }
   const double stretch = critical_stretch(composite_modulus, surface_energy, edge.radius);
+  // An ellipse has no wider edge than that at its end: a trial may lead beyond the equilibrium there, and an edge that
+  // sticks leads back.
+  const bool is_widest = !is_parabola(indenter) && edge.share >= 1.0;
+  if (is_widest && frame.displacement > height_at(indenter, edge) - stretch) {
+    return sticking_contact(frame, composite_modulus, edge.radius);
+  }
   Contact contact = contact_below(frame, composite_modulus, edge, -stretch);
   // The edge follows: da = d(delta_1D - g)/(g' - Dl'). At pull-off that is unbounded; it is kept finite here: the slope
   // goes with the root of the distance from there, and displacements are rounded.
