@@ -40,7 +40,8 @@ double System::contact_guard(int kind, std::size_t i, double xi, double overlap,
     case k_dent_touched:
       return 1.0 - unloading_fraction(shape(i, r), overlap);
     default:
-      return overlap;
+      // A wall that a free centre leaves at a touch, and comes back to at once, would not be seen to have been left.
+      return free_count_ > 0 ? overlap - k_same_overlap : overlap;
   }
 }
 

@@ -151,11 +151,6 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
   const std::string_view why = xi == 0.0 ? "load-reversal" : "retreat";
 
   Memory& memory = memory_[i];
-  if (withdraws_from_touch(i) && parts(i, xi, y)) {
-    lose_contact(i);
-    log.push_back(event("contact-lost"));
-    return true;
-  }
   switch (memory.regime) {
     case Regime::open:
       if (!(moves_in || is_pressed) || !is_past(k_made, 1.0)) return false;
@@ -249,28 +244,59 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
   return false;
 }
 
-/// Whether a first touch is all that a wall which withdraws has of a free centre: it would take that along although
-/// nothing pulls.
-bool System::withdraws_from_touch(std::size_t i) const {
-  const bool is_bare = memory_[i].regime == Regime::elastic && now_[i].contact.force == 0.0 && !adheres();
-  return free_count_ > 0 && is_bare && ramps_[i].end < ramps_[i].start && !is_loaded(i) &&
-         directions_[i].norm() > k_no_direction && !is_backed(i);
+/// Whether a touch that no other contact opposes is all that a wall has of a free centre: it can drive the centre out
+/// of its way, but not draw it along, as nothing pulls.
+bool System::only_drives(std::size_t i) const { return rides(i) && !is_backed(i); }
+
+/// Loses those of such walls that the others drive the centre away from faster than they follow. They drive it no
+/// farther than out of their way.
+/// @return whether there are any
+bool System::leave_behind(double xi, std::span<const double> y, std::vector<Event>& log) {
+  std::vector<Drive> drives;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    if (only_drives(i)) drives.push_back({i});
+  }
+  if (drives.empty()) return false;
+  memory_before_ = memory_;
+  for (const Drive& drive : drives) lose_contact(drive.contact);
+  look(xi, y);
+  const Motion now = motion(is_growing_);
+  for (Drive& drive : drives) drive.rate = overlap_rate(drive.contact, now);
+  Small velocity = Small::Zero();
+  const bool is_free = drive_out(drives, unheld_directions(), velocity);
+  const double least = -k_touch * (1.0 + velocity.norm());
+  bool has_left = false;
+  for (const Drive& drive : drives) {
+    const std::size_t i = drive.contact;
+    if (is_free && drive.rate + directions_[i].dot(velocity) < least) {
+      log.push_back({"contact-lost", static_cast<int>(i)});
+      has_left = true;
+    } else {
+      memory_[i] = memory_before_[i];
+    }
+  }
+  look(xi, y);
+  return has_left;
 }
 
-/// Whether such a wall leaves the particle. Where others drive the centre after it faster than it withdraws, it does
-/// not.
-bool System::parts(std::size_t i, double xi, std::span<const double> y) {
-  memory_before_ = memory_;
-  std::vector<std::size_t> bare;
-  for (std::size_t j = 0; j < memory_.size(); ++j) {
-    if (withdraws_from_touch(j)) bare.push_back(j);
+/// Adds to a velocity of the centre the least by which none of the walls goes into the particle. One that the least for
+/// those before it lets in keeps up with the centre in the end.
+/// @param along  projector on the directions in which nothing else holds the centre
+/// @return false, and the velocity as it was, if there is none
+bool System::drive_out(std::span<const Drive> drives, const SmallMatrix& along, Small& velocity) const {
+  Small now = velocity;
+  for (std::size_t k = 0; k < drives.size(); ++k) {
+    const Small& normal = directions_[drives[k].contact];
+    const double rate = drives[k].rate + normal.dot(now);
+    if (rate <= k_touch * (1.0 + now.norm())) continue;
+    const Small way = along * normal;
+    const double share = way.squaredNorm();
+    if (!(share > k_no_direction * k_no_direction)) return false;
+    now = velocity - way * ((drives[k].rate + normal.dot(velocity)) / share);
+    if (!drive_out(drives.first(k), along - way * way.transpose() / share, now)) return false;
   }
-  for (const std::size_t j : bare) memory_[j].regime = Regime::open;
-  look(xi, y);
-  const double rate = overlap_rate(i, motion(is_growing_));
-  memory_ = memory_before_;
-  look(xi, y);
-  return rate < -k_touch;
+  velocity = now;
+  return true;
 }
 
 /// Whether the other touching contacts can balance a push of one of them on the free centre, or a pull where the side
@@ -400,8 +426,14 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
     if (round == most_rounds()) throw_unsettled();
     is_growing_ = growth ? *growth : wants_growth(xi, y);
     look(xi, y);
-    const Motion now = motion(is_growing_);
     const std::size_t events_before = log.size();
+    if (leave_behind(xi, y, log)) {
+      // What it leaves has drawn the centre along in the search for the balance.
+      if (!has_jumped) complete(xi, y);
+      growth.reset();
+      continue;
+    }
+    const Motion now = motion(is_growing_);
     bool has_changed = false;
     for (std::size_t i = 0; i < memory_.size(); ++i) {
       has_changed = settle_contact(i, xi, y, now, log, made) || has_changed;

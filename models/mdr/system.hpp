@@ -190,6 +190,12 @@ class System final : public HybridSystem {
     Small centre = Small::Zero();  ///< velocity of the centre
   };
 
+  /// A wall that can only drive a free centre out of its way.
+  struct Drive {
+    std::size_t contact = 0;
+    double rate = 0.0;  ///< of its overlap, where none of them does
+  };
+
   struct CapPair {
     int first = 0;
     int second = 0;
@@ -285,8 +291,9 @@ class System final : public HybridSystem {
   [[nodiscard]] double edge_rate(std::size_t i, double r, const Motion& now);
   [[nodiscard]] double loaded_rate(double loading, double by_radius, double growth) const noexcept;
   [[nodiscard]] bool is_backed(std::size_t i, double side = 1.0) const;
-  [[nodiscard]] bool withdraws_from_touch(std::size_t i) const;
-  [[nodiscard]] bool parts(std::size_t i, double xi, std::span<const double> y);
+  [[nodiscard]] bool only_drives(std::size_t i) const;
+  [[nodiscard]] bool leave_behind(double xi, std::span<const double> y, std::vector<Event>& log);
+  bool drive_out(std::span<const Drive> drives, const SmallMatrix& along, Small& velocity) const;
   [[nodiscard]] bool rides(std::size_t i) const noexcept;
   void check_support() const;
   void start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log);
