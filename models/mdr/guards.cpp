@@ -29,8 +29,11 @@ double System::contact_guard(int kind, std::size_t i, double xi, double overlap,
     return scale > 0.0 ? prescribed_force(i, xi) / scale + (kind == k_lost ? k_same_overlap : 0.0) : 0.0;
   }
   switch (kind) {
-    case k_yield:
-      return overlap / ((1.0 + r) * material_.yield_overlap_ratio) - 1.0;
+    case k_yield: {
+      const double at = (1.0 + r) * material_.yield_overlap_ratio;
+      // What only touches may be as deep as that by the rounding of others.
+      return overlap / (rides(i) ? std::max(at, shallow()) : at) - 1.0;
+    }
     case k_reload:
       return overlap - largest_overlap(memory_[i], r) - k_same_overlap;
     case k_lost:

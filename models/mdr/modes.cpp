@@ -478,8 +478,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     const bool is_losing = guard.kind == k_lost;
     // Closed or opened already, together with the contact it balances.
     if ((is_making && touches(memory_[i].regime)) || (is_losing && !touches(memory_[i].regime))) continue;
-    // What only takes the centre along has nothing to unload from.
-    if (guard.kind == k_retreat && rides(i)) continue;
+    // What only takes the centre along has nothing to unload from, nor to yield by.
+    if ((guard.kind == k_retreat || guard.kind == k_yield) && rides(i)) continue;
     // Another guard of the same edge has changed it at this instant, or its contact is back at its largest overlap,
     // where edges only follow.
     const bool is_of_edge = guard.kind == k_peel || guard.kind == k_follow || guard.kind == k_turn;
