@@ -154,6 +154,13 @@ Indenter unloading_indenter(const UnloadingShape& shape) noexcept {
 
 double profile_height(const Indenter& indenter, double a) noexcept { return height_at(indenter, edge_at(indenter, a)); }
 
+double profile_rounding(const Indenter& indenter, double a) noexcept {
+  constexpr double round_off = 4.0 * std::numeric_limits<double>::epsilon();
+  const Edge edge = edge_at(indenter, a);
+  // At its very end the slope is without bound, and the height has the root of the rounding.
+  return 0.5 * indenter.height * edge.share * edge.share * round_off / std::max(edge.cosine, std::sqrt(round_off));
+}
+
 double free_contact_radius(const Indenter& indenter, double displacement_1d) noexcept {
   if (displacement_1d <= 0.0) return 0.0;
   if (is_parabola(indenter)) return std::sqrt(displacement_1d / tip_curvature(indenter));

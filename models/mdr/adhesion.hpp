@@ -26,6 +26,8 @@ struct Indenter {
 
 /// g(a), for a in [0, b]. eqs. 23, 28.
 [[nodiscard]] double profile_height(const Indenter& indenter, double a) noexcept;
+/// By how much g(a) is uncertain by the rounding of a and b: the ellipse is steep near its end.
+[[nodiscard]] double profile_rounding(const Indenter& indenter, double a) noexcept;
 /// Contact radius without adhesion under delta_1D, where g(a) = delta_1D; 0 for delta_1D <= 0, b from A/2 on.
 [[nodiscard]] double free_contact_radius(const Indenter& indenter, double displacement_1d) noexcept;
 /// Force without adhesion at that radius: 2 E* int_0^a (g(a) - g(x)) dx.

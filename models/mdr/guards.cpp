@@ -64,6 +64,13 @@ double System::edge_guard(int kind, std::size_t i, double xi, double overlap, do
   return kind == k_peel ? w / stretch + 1.0 : w / stretch;
 }
 
+/// Overlap by which an edge that sticks may seem to be where it would follow. One that has just come to stick leaves
+/// with the square of the way, and rounding does not bring it back.
+double System::rounding_of_edge(std::size_t i, double r) {
+  const Frame at = frame(i, now_[i].overlap, r);
+  return k_same_overlap + profile_rounding(at.indenter, memory_[i].edge_radius) / at.by_overlap;
+}
+
 double System::cap_guard(const CapPair& pair, double r) const {
   // How far the cosine of the sum of their half angles is below that of the angle between their normals.
   // What only touches has no cap: that of its rounding would be a millionth of R0 wide.
@@ -242,8 +249,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         if (memory_[i].is_virgin || rides(i)) values[g] /= k_shallow;
         break;
       case k_follow:
-        // An edge that has just come to stick leaves with the square of the way; rounding does not bring it back.
-        values[g] = edge_guard(k_follow, i, xi, now_[i].overlap - k_same_overlap, r);
+        values[g] = edge_guard(k_follow, i, xi, now_[i].overlap - rounding_of_edge(i, r), r);
         break;
       case k_peel:
       case k_pull_off:
