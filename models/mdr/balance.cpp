@@ -56,6 +56,8 @@ double look_for_hold(double a, double b, double& best, Function&& function) {
 
 constexpr const char* k_beyond_fold =
     "the contacts hold the free centre no longer: beyond a fold no forces on it balance";
+// Stiffness over the greatest one that is rounding.
+constexpr double k_no_stiffness = 1e-12;
 
 }  // namespace
 
@@ -292,7 +294,20 @@ std::optional<std::size_t> System::contact_beyond_pull_off(double r) {
 /// grown, walls that the centre gives way to would press it by as much.
 void System::move_centre(double xi, std::span<double> y) {
   find_balance(xi, y);
+  check_hold();
   keep_look(xi, y);
+}
+
+/// Beyond its greatest force a plastic contact that gives way bears less: where several do, one of them may go in while
+/// the others unload, and the centre has other places beside the one where all go in.
+/// @throws std::domain_error there
+void System::check_hold() const {
+  const auto softens = [](const Instant& now) { return now.contact.by_overlap < 0.0; };
+  if (free_count_ == 0 || weakest_contact() || std::ranges::none_of(now_, softens)) return;
+  const Small stiffnesses = Eigen::SelfAdjointEigenSolver<SmallMatrix>(sums_.stiffness).eigenvalues();
+  if (stiffnesses.minCoeff() < -k_no_stiffness * stiffnesses.cwiseAbs().maxCoeff()) {
+    throw std::domain_error(k_beyond_greatest_force);
+  }
 }
 
 /// Newton on the balance of forces at a given radius; the force grows with the overlap, so damping is all it needs.

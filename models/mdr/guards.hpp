@@ -15,6 +15,7 @@ enum GuardKind : int {
   k_follow,
   k_pull_off,
   k_unstable,
+  k_spent,
   k_growth_on,
   k_growth_off,
   k_caps,

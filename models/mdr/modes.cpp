@@ -532,6 +532,10 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         if (const auto weakest = weakest_contact()) separate(*weakest, r, y, log);
         others_fired = true;
         continue;
+      case k_spent:
+        end = DomainEnd{event,
+                        {k_beyond_greatest_force, "their stiffness over that of shallow contacts", least_firmness()}};
+        continue;
       case k_follow:
         memory_[i].edge = Edge::following;
         break;

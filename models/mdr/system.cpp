@@ -249,6 +249,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
 void System::solve(double xi, std::span<double> y) {
   if (is_growing_) {
     grow(xi, y);
+    check_hold();
     move_walls(xi, y);  // to the radius of the last iteration
     note_walls(xi, y);
   } else {

@@ -107,6 +107,8 @@ class System final : public HybridSystem {
   /// hold it there goes with the square of this, and is rounding beside that of the same contact along its normal.
   static constexpr double k_no_direction = 1e-6;
   static constexpr const char* k_singular_growth = "singular growth of the apparent radius";
+  static constexpr const char* k_beyond_greatest_force =
+      "the contacts hold the free centre no longer: beyond their greatest force its place is not determined";
   /// Firmness by which contacts hold a free centre so little that they are at a fold: a search for the balance of
   /// forces ends there with a force that is least, and not zero, and rates of the centre change sign through infinity.
   static constexpr double k_at_fold = 1e-2;
@@ -265,6 +267,7 @@ class System final : public HybridSystem {
   [[nodiscard]] std::optional<std::size_t> contact_beyond_pull_off(double r);
   void move_centre(double xi, std::span<double> y);
   void find_balance(double xi, std::span<double> y);
+  void check_hold() const;
   void leave_saddle(double xi, std::span<double> y);
   bool approach_balance(double xi, std::span<double> y);
   void grow(double xi, std::span<double> y);

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "mdr/adhesion_validity.hpp"
 #include "mdr/system.hpp"
@@ -145,7 +146,7 @@ double System::unpeeled_stiffness(std::size_t i) const noexcept {
 }
 
 /// How firmly the contacts hold a free centre in the direction in which they do so least: their stiffness over what it
-/// would be if no edge peeled. Zero where the equilibrium turns back.
+/// would be if no edge peeled and no contact had spent its strength. Zero where the equilibrium turns back.
 double System::least_firmness() const {
   SmallMatrix magnitudes = unheld_;
   SmallMatrix stiffness = unheld_;
@@ -153,9 +154,12 @@ double System::least_firmness() const {
     if (!touches(memory_[i].regime) || is_loaded(i)) continue;
     const SmallMatrix along = directions_[i] * directions_[i].transpose();
     const double count = classes_[i].multiplicity() / material_.composite_modulus;
-    stiffness += count * now_[i].contact.by_overlap * along;
-    // Of two alike that peel the stiffnesses end together, and with them the sum of what they are.
-    magnitudes += count * unpeeled_stiffness(i) * along;
+    stiffness += count * firmness(i) * along;
+    // Of two alike that peel, or spend their strength, the stiffnesses end together, and with them the sum of what they
+    // are.
+    const double at_first =
+        memory_[i].regime == Regime::fully_plastic ? 2.0 * std::numbers::pi * material_.yield_stress : firmness(i);
+    magnitudes += count * std::max(unpeeled_stiffness(i), at_first) * along;
   }
   for (int k = free_count_; k < 3; ++k) stiffness(k, k) = magnitudes(k, k) = 1.0;
   const Small weakest = Eigen::SelfAdjointEigenSolver<SmallMatrix>(stiffness).eigenvectors().col(0);

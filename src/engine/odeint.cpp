@@ -304,7 +304,9 @@ class ExplicitStepper final : public Stepper {
         step = std::min(step, xi - at);
         rule_errors_.begin(0);
         try {
-          static_cast<void>(reaching_.try_step(system<true>(), between_, at, step));
+          const auto result = reaching_.try_step(system<true>(), between_, at, step);
+          // Not from the beginning again: of several states the one sought may not be the nearest to that.
+          if (result == odeint::success && at < xi) form_.reach(at, {between_.data(), form_.size()});
         } catch (const std::domain_error&) {
           // Stages may lie where the equations do not hold, though all of the step does not.
           step *= k_shorter;

@@ -55,6 +55,13 @@ class ScaledForm {
     seen_xi_ = xi;
   }
 
+  /// Rates have led there, and on from there: a state on the curve, from those that they were asked for last.
+  void reach(double xi, std::span<const double> z) {
+    scale_back(z);
+    std::ranges::copy(form_.complete(xi, y_), seen_.begin());
+    seen_xi_ = xi;
+  }
+
   /// @throws std::domain_error where the equations end, or have no finite rates
   void rates(double xi, std::span<const double> z, std::span<double> dz) {
     ++evaluations_;

@@ -95,6 +95,7 @@ constexpr StatedLimit k_stated_limits[] = {
     {"there is no mode in which every contact's branch agrees", "no mode agrees"},
     {k_free_centre, k_free_centre},
     {"beyond a fold no forces on it balance", "fold of the free centre"},
+    {"beyond their greatest force its place is not determined", "greatest force on the free centre"},
     // plastic laws
     {"the walls meet", "the walls meet"},
     {k_fills, k_fills},
