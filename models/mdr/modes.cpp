@@ -79,11 +79,12 @@ bool System::rides(std::size_t i) const noexcept {
 // --- deciding a mode
 
 bool System::gate_is_open(const Motion& now) const noexcept {
-  const double least = k_touch * speed_scale();
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (!is_member(memory_[i])) continue;
-    // What only touches and keeps up with its wall displaces nothing.
-    const bool is_idle = !is_loaded(i) && now_[i].contact.force == 0.0 && std::abs(inward_rate(i, now)) <= least;
+    // Beside stiff contacts the rate of what only touches has fewer digits.
+    const double least = (rides(i) ? k_at_rest : k_touch) * speed_scale();
+    // What keeps up with its wall displaces nothing.
+    const bool is_idle = !is_loaded(i) && std::abs(inward_rate(i, now)) <= least;
     if (settings_.radius_rule == RadiusRule::seed && !is_idle) return true;
     const bool is_driven = is_loaded(i) ? ramps_[i].end > ramps_[i].start : inward_rate(i, now) > least;
     if (memory_[i].is_virgin && is_driven) return true;
