@@ -226,8 +226,10 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = growth_drive(now);
         break;
       case k_unstable:
-      case k_spent:
         values[g] = least_firmness() - k_least_firmness;
+        break;
+      case k_spent:
+        values[g] = is_any_spent() ? least_firmness() - k_least_firmness : 1.0;
         break;
       case k_singular:
         values[g] = free_surface(now, r) - k_least_slope;

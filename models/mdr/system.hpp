@@ -303,6 +303,8 @@ class System final : public HybridSystem {
   void stick(std::size_t i, std::vector<Event>& log);
   [[nodiscard]] std::optional<std::size_t> weakest_contact() const noexcept;
   [[nodiscard]] double unpeeled_stiffness(std::size_t i) const noexcept;
+  [[nodiscard]] double stiffness_of_shallow() const noexcept;
+  [[nodiscard]] bool is_any_spent() const noexcept;
   [[nodiscard]] double least_firmness() const;
   void check_adhesion(std::size_t i, double r);
   void start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);

@@ -145,6 +145,19 @@ double System::unpeeled_stiffness(std::size_t i) const noexcept {
   return 2.0 * material_.composite_modulus * c.contact_radius * opening;
 }
 
+/// Of a plastic contact, which is the less stiff the wider it is.
+double System::stiffness_of_shallow() const noexcept { return 2.0 * std::numbers::pi * material_.yield_stress; }
+
+/// Whether a plastic contact has spent so much of its strength that it may hold a free centre no more.
+bool System::is_any_spent() const noexcept {
+  constexpr double k_spent_share = 0.1;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    const bool is_plastic = memory_[i].regime == Regime::fully_plastic;
+    if (is_plastic && now_[i].contact.by_overlap < k_spent_share * stiffness_of_shallow()) return true;
+  }
+  return false;
+}
+
 /// How firmly the contacts hold a free centre in the direction in which they do so least: their stiffness over what it
 /// would be if no edge peeled and no contact had spent its strength. Zero where the equilibrium turns back.
 double System::least_firmness() const {
@@ -157,8 +170,7 @@ double System::least_firmness() const {
     stiffness += count * firmness(i) * along;
     // Of two alike that peel, or spend their strength, the stiffnesses end together, and with them the sum of what they
     // are.
-    const double at_first =
-        memory_[i].regime == Regime::fully_plastic ? 2.0 * std::numbers::pi * material_.yield_stress : firmness(i);
+    const double at_first = memory_[i].regime == Regime::fully_plastic ? stiffness_of_shallow() : firmness(i);
     magnitudes += count * std::max(unpeeled_stiffness(i), at_first) * along;
   }
   for (int k = free_count_; k < 3; ++k) stiffness(k, k) = magnitudes(k, k) = 1.0;
