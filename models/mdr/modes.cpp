@@ -245,19 +245,45 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
   return false;
 }
 
-/// Whether a touch that no other contact opposes is all that a wall has of a free centre: it can drive the centre out
-/// of its way, but not draw it along, as nothing pulls.
-bool System::only_drives(std::size_t i) const { return rides(i) && !is_backed(i); }
-
-/// Loses those of such walls that the others drive the centre away from faster than they follow. They drive it no
-/// farther than out of their way.
+/// Loses the walls that only touch a free centre and that the others drive it away from faster than they follow: a
+/// touch can drive the centre out of its way, but not draw it along, as nothing pulls. Where walls close in on it from
+/// opposite sides there is no way out, and they are about to bear, as are those that a force presses it against: then
+/// only those are asked that no other contact opposes.
 /// @return whether there are any
 bool System::leave_behind(double xi, std::span<const double> y, std::vector<Event>& log) {
   std::vector<Drive> drives;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (only_drives(i)) drives.push_back({i});
+    if (rides(i)) drives.push_back({i});
   }
   if (drives.empty()) return false;
+  std::vector<Drive> unopposed = drives;
+  std::erase_if(unopposed, [this](const Drive& drive) { return is_backed(drive.contact); });
+  bool is_pressed = false;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    is_pressed = is_pressed || (is_loaded(i) && touches(memory_[i].regime) && directions_[i].norm() > k_no_direction);
+  }
+  std::optional<Small> velocity;
+  if (!is_pressed) velocity = velocity_of(drives, xi, y);
+  if (!velocity && !unopposed.empty()) {
+    drives = unopposed;
+    velocity = velocity_of(drives, xi, y);
+  }
+  if (!velocity) return false;
+  const double least = -k_touch * (1.0 + velocity->norm());
+  bool has_left = false;
+  for (const Drive& drive : drives) {
+    const std::size_t i = drive.contact;
+    if (!(drive.rate + directions_[i].dot(*velocity) < least)) continue;
+    lose_contact(i);
+    log.push_back({"contact-lost", static_cast<int>(i)});
+    has_left = true;
+  }
+  return has_left;
+}
+
+/// Velocity of the centre that such walls add to what it has without them, if they leave it a way out; and the rates of
+/// their overlaps without it.
+std::optional<System::Small> System::velocity_of(std::span<Drive> drives, double xi, std::span<const double> y) {
   memory_before_ = memory_;
   for (const Drive& drive : drives) lose_contact(drive.contact);
   look(xi, y);
@@ -265,19 +291,9 @@ bool System::leave_behind(double xi, std::span<const double> y, std::vector<Even
   for (Drive& drive : drives) drive.rate = overlap_rate(drive.contact, now);
   Small velocity = Small::Zero();
   const bool is_free = drive_out(drives, unheld_directions(), velocity);
-  const double least = -k_touch * (1.0 + velocity.norm());
-  bool has_left = false;
-  for (const Drive& drive : drives) {
-    const std::size_t i = drive.contact;
-    if (is_free && drive.rate + directions_[i].dot(velocity) < least) {
-      log.push_back({"contact-lost", static_cast<int>(i)});
-      has_left = true;
-    } else {
-      memory_[i] = memory_before_[i];
-    }
-  }
+  memory_ = memory_before_;
   look(xi, y);
-  return has_left;
+  return is_free ? std::optional(velocity) : std::nullopt;
 }
 
 /// Adds to a velocity of the centre the least by which none of the walls goes into the particle. One that the least for
