@@ -80,7 +80,9 @@ System::System(Settings settings, std::vector<ContactClass> classes)
     places_[i] = unknowns_.size();
     // Where there is a yield point, what lies before it counts too.
     const double first = boundaries_.empty() || !begins_elastic(law) ? reach : std::min(reach, boundaries_[0].approach);
-    const double typical = std::max(first, k_least_typical);
+    // A depth that follows from a force has digits, however shallow.
+    const double least = settings_.largest_displacement > 0.0 ? k_least_typical : 0.0;
+    const double typical = std::max(first, least);
     unknowns_.push_back({classes_[i].name, Unknown::Kind::differential, std::pow(typical, first_power(law)), true});
   }
   work_place_ = unknowns_.size();
