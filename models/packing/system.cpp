@@ -240,10 +240,7 @@ System::Seen System::by_law(double xi) const {
   const double phi = ramp_.control == Control::packing_fraction ? inside : packing_fraction_at(law_, branch_, inside);
   const State s = state(law_, phi);
   // Next to jamming strain and stress may grow by all of a program before the packing fraction does by its rounding.
-  if (ramp_.control == Control::stress) {
-    const double stress_elastic = stress_elastic_at(law_, phi, inside);
-    return {phi, stress_elastic, s.modulus > 0.0 ? stress_elastic / s.modulus : s.strain, inside};
-  }
+  if (ramp_.control == Control::stress) return {phi, stress_elastic_at(law_, phi, inside), s.strain, inside};
   return {phi, s.stress_elastic, ramp_.control == Control::strain ? inside : s.strain, s.stress};
 }
 
@@ -347,8 +344,12 @@ void System::solve(double xi, std::span<double> y) {
   y[k_fraction] = now.packing_fraction;
   y[k_particles] = mode_ == Mode::unjammed ? 0.0 : particle_strain(law_, now.packing_fraction);
   if (ramp_.control == Control::packing_fraction || mode_ == Mode::unjammed) return;
-  const bool gives_way_as_much = y[k_particles] > 0.5 * now.strain;  // so that nothing cancels
-  if (gives_way_as_much) y[k_particles] = law_.sign * (total_strain(law_, now.packing_fraction) - now.strain);
+  // Elsewhere digits would cancel: beside a greater strain, or in a stress that is plastic for the most part.
+  const bool is_told = ramp_.control == Control::strain;
+  const bool gives_way_as_much = y[k_particles] > 0.5 * now.strain;
+  if (!gives_way_as_much || (!is_told && total_stress_slope(law_, now.packing_fraction) < 0.5)) return;
+  const double strain = is_told ? now.strain : now.stress_elastic / effective_modulus(law_, now.packing_fraction);
+  y[k_particles] = law_.sign * (total_strain(law_, now.packing_fraction) - strain);
 }
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
