@@ -271,7 +271,22 @@ bool Contacts::bear_at_once(std::span<double> y) {
 void Contacts::clear_centre(std::span<const Ramp> ramps, double xi, std::span<const char> is_closed,
                             std::span<double> y) {
   set_targets(ramps, xi);
-  if (!let_all_go(y) && free_count() > 0) let_bystanders_go(is_closed, y);
+  if (let_all_go(y)) return;
+  if (free_count() > 0)
+    let_bystanders_go(is_closed, y);
+  else
+    close_gaps(is_closed, y);
+}
+
+/// Puts open walls where their displacements and the forces of the others leave them: a force far away may lift them by
+/// less than errors of their gaps.
+void Contacts::close_gaps(std::span<const char> is_closed, std::span<double> y) {
+  look(y);
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    if (is_closed[j] || targets_[j].is_force) continue;
+    const double approach = targets_[j].value + lift_by_forces(j);
+    y[j] = approach > 0.0 ? law_.signed_square(approach) : approach;
+  }
 }
 
 /// No other state balances then: its forces would do no work on a way there, sum_j F_j d_j <= 0, but sum_j F_j g_j >

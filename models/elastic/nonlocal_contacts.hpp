@@ -88,7 +88,8 @@ class Contacts {
 
   /// Moves the centre to the nearest place where no wall under displacement control is beyond the surface, and sets y
   /// accordingly. If the walls leave no such place, or one is under a force: out of the way of those that touch but
-  /// cannot bear, where that changes nothing for contacts that hold it.
+  /// cannot bear, where that changes nothing for contacts that hold it. Where the centre is fixed, gaps are what they
+  /// are under the forces of the others.
   /// @param is_closed  classes in contact; others are where their s is above zero
   void clear_centre(std::span<const Ramp> ramps, double xi, std::span<const char> is_closed, std::span<double> y);
 
@@ -188,6 +189,7 @@ class Contacts {
   [[nodiscard]] bool let_all_go(std::span<double> y);
   [[nodiscard]] bool let_others_go(std::span<double> y);
   bool let_bystanders_go(std::span<const char> is_closed, std::span<double> y);
+  void close_gaps(std::span<const char> is_closed, std::span<double> y);
   [[nodiscard]] bool has_left_branch(std::span<const double> y);
   [[nodiscard]] bool is_balanced(std::span<const double> y);
   [[nodiscard]] bool is_balanced_but_for_rounding(std::span<const double> y);
