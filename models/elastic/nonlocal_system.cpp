@@ -38,8 +38,6 @@ constexpr double k_end_of_force = 1e-8;
 constexpr double k_touch = 1e-13;
 // The same over the deepest contact where forces balance: s goes like their rounding to the power 2/3.
 constexpr double k_touch_of_free_centre = 1e-9;
-// In what, over the same, guards count how deep a contact is: a touch is more than what is zero of a guard.
-constexpr double k_guard_unit = 0.1;
 // With all terms, approach and force follow from what a contact lacks to the particle's width, of which its own width
 // keeps fewer and fewer digits: from here on less than eleven of the approach.
 constexpr double k_widest_of_all_terms = 1.0 - 1e-6;
@@ -77,7 +75,6 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   // A program may ask for any displacement: a wall comes to the centre, a contact is as wide as the particle before.
   const double depth = std::min(reach, 1.0);
   touch_ = settings.centre == Centre::free ? k_touch_of_free_centre * depth : k_touch * reach;
-  guard_unit_ = k_guard_unit * depth;
   idle_ = k_idle * depth;
   if (settings.model.terms == Terms::all) {
     widest_ = k_widest_of_all_terms;
@@ -500,10 +497,10 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
     const auto index = static_cast<std::size_t>(std::max(0, guards_[g].index));
     switch (guards_[g].kind) {
       case k_made:
-        values[g] = (state_[index] - touch_) / guard_unit_;
+        values[g] = state_[index] - touch_;
         break;
       case k_lost:
-        values[g] = (state_[index] + touch_) / guard_unit_;
+        values[g] = state_[index] + touch_;
         break;
       case k_impingement:
         values[g] = angle_between_edges(pairs_[index], xi);

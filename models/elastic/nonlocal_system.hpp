@@ -105,7 +105,6 @@ class System final : public HybridSystem {
   std::vector<Ramp> ramps_;  ///< displacements over R0, forces over E R0^2
   std::vector<Regime> regimes_;
   double touch_ = 0.0;                       ///< least |s| that puts a contact on a side
-  double guard_unit_ = 1.0;                  ///< of s, in guards
   double idle_ = 0.0;                        ///< least s that lets a contact hold a free centre
   double widest_ = 1.0;                      ///< contact radius up to which there are states
   std::optional<double> greatest_approach_;  ///< where a contact is that wide, if the law says so in few digits
