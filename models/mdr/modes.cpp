@@ -258,12 +258,8 @@ bool System::leave_behind(double xi, std::span<const double> y, std::vector<Even
   if (drives.empty()) return false;
   std::vector<Drive> unopposed = drives;
   std::erase_if(unopposed, [this](const Drive& drive) { return is_backed(drive.contact); });
-  bool is_pressed = false;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    is_pressed = is_pressed || (is_loaded(i) && touches(memory_[i].regime) && directions_[i].norm() > k_no_direction);
-  }
   std::optional<Small> velocity;
-  if (!is_pressed) velocity = velocity_of(drives, xi, y);
+  if (!touches_have_to_bear(xi)) velocity = velocity_of(drives, xi, y);
   if (!velocity && !unopposed.empty()) {
     drives = unopposed;
     velocity = velocity_of(drives, xi, y);
@@ -279,6 +275,41 @@ bool System::leave_behind(double xi, std::span<const double> y, std::vector<Even
     has_left = true;
   }
   return has_left;
+}
+
+/// Whether forces press a free centre against walls that only touch it as yet: those that bear already cannot balance
+/// them by themselves, now or at the end of the step.
+bool System::touches_have_to_bear(double xi) const {
+  std::vector<Small> bearing;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    if (!touches(memory_[i].regime) || is_loaded(i) || rides(i) || directions_[i].norm() < k_no_direction) continue;
+    bearing.push_back(directions_[i].normalized());
+    if (memory_[i].edge != Edge::following) bearing.emplace_back(-directions_[i].normalized());
+  }
+  const double least = k_no_force * largest_prescribed_force();
+  const auto is_borne = [&](const Small& push) { return push.norm() <= least || can_back(push, bearing); };
+  return !is_borne(prescribed_push(xi)) || !is_borne(prescribed_push(1.0));
+}
+
+/// Sum of the prescribed forces on a free centre.
+System::Small System::prescribed_push(double xi) const noexcept {
+  Small sum = Small::Zero();
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    if (!is_loaded(i) || !touches(memory_[i].regime)) continue;
+    sum += classes_[i].multiplicity() * prescribed_force(i, xi) * directions_[i];
+  }
+  return sum;
+}
+
+/// The largest of them within the step.
+double System::largest_prescribed_force() const noexcept {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    if (!is_loaded(i) || !touches(memory_[i].regime)) continue;
+    const double force = std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
+    largest = std::max(largest, classes_[i].multiplicity() * force);
+  }
+  return largest;
 }
 
 /// Velocity of the centre that such walls add to what it has without them, if they leave it a way out; and the rates of
@@ -340,19 +371,11 @@ void System::check_support() const {
       throw std::domain_error("no contact holds the free centre of the particle against a wall that pushes it");
     }
   }
-  Small at_start = Small::Zero();
-  Small at_end = Small::Zero();
-  double largest = 0.0;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (!is_loaded(i) || !touches(memory_[i].regime)) continue;
-    const double count = classes_[i].multiplicity();
-    at_start += count * ramps_[i].start * directions_[i];
-    at_end += count * ramps_[i].end * directions_[i];
-    largest = std::max({largest, count * std::abs(ramps_[i].start), count * std::abs(ramps_[i].end)});
-  }
+  const double largest = largest_prescribed_force();
   if (largest == 0.0) return;
   const SmallMatrix unheld = unheld_directions();
-  if (std::max((unheld * at_start).norm(), (unheld * at_end).norm()) > k_no_force * largest) {
+  const double left = std::max((unheld * prescribed_push(0.0)).norm(), (unheld * prescribed_push(1.0)).norm());
+  if (left > k_no_force * largest) {
     throw std::domain_error("no contact holds the free centre of the particle against the forces on it");
   }
 }

@@ -295,6 +295,9 @@ class System final : public HybridSystem {
   [[nodiscard]] double loaded_rate(double loading, double by_radius, double growth) const noexcept;
   [[nodiscard]] bool is_backed(std::size_t i, double side = 1.0) const;
   [[nodiscard]] bool leave_behind(double xi, std::span<const double> y, std::vector<Event>& log);
+  [[nodiscard]] bool touches_have_to_bear(double xi) const;
+  [[nodiscard]] Small prescribed_push(double xi) const noexcept;
+  [[nodiscard]] double largest_prescribed_force() const noexcept;
   [[nodiscard]] std::optional<Small> velocity_of(std::span<Drive> drives, double xi, std::span<const double> y);
   bool drive_out(std::span<const Drive> drives, const SmallMatrix& along, Small& velocity) const;
   [[nodiscard]] bool rides(std::size_t i) const noexcept;
