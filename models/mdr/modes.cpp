@@ -475,10 +475,15 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
     }
     const Motion now = motion(is_growing_);
     bool has_changed = false;
+    std::vector<std::size_t> just_loaded;
     for (std::size_t i = 0; i < memory_.size(); ++i) {
+      const bool was_open = !touches(memory_[i].regime);
       has_changed = settle_contact(i, xi, y, now, log, made) || has_changed;
+      if (was_open && is_loaded(i) && touches(memory_[i].regime)) just_loaded.push_back(i);
     }
     if (!has_changed) break;
+    // No guard is met by a wall that a force presses on from the start.
+    for (const std::size_t i : just_loaded) meet_balanced(i, true, y[k_radius], made);
     // Where a contact has pulled off, the others have to balance anew.
     if (!has_jumped && adheres()) balance_anew(xi, y, log, made);
     if (!has_jumped && !adheres()) move_walls(xi, y);
