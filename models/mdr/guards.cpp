@@ -12,10 +12,6 @@ namespace {
 
 // A program that returns exactly to the old maximum does not pass it, whichever way its overlap is rounded.
 constexpr double k_same_overlap = 2e-15;
-// Where several contacts hold a free centre between them, their equilibrium turns back where they hold it no more; the
-// root of a guard that is zero there would lie within the rounding of states that are found no more. What is left of
-// the way is the square of this.
-constexpr double k_least_firmness = 1e-5;
 // The volume's square root ends at 1 - 4w = 0; stop before an implicit code's difference quotients reach over that
 // edge.
 constexpr double k_least_volume = 1e-6;

@@ -28,6 +28,10 @@ enum GuardKind : int {
 inline constexpr double k_touch = 1e-13;
 /// Growth ends where the free surface is used up to this share.
 inline constexpr double k_least_slope = 1e-3;
+/// Where several contacts hold a free centre between them, their equilibrium turns back where they hold it no more; the
+/// root of a guard that is zero there would lie within the rounding of states that are found no more. What is left of
+/// the way is the square of this.
+inline constexpr double k_least_firmness = 1e-5;
 /// A wall this near to the centre of the particle (over R0) has reached it.
 inline constexpr double k_least_distance = 1e-3;
 

@@ -481,7 +481,15 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
       has_changed = settle_contact(i, xi, y, now, log, made) || has_changed;
       if (was_open && is_loaded(i) && touches(memory_[i].regime)) just_loaded.push_back(i);
     }
-    if (!has_changed) break;
+    if (!has_changed) {
+      // Several edges that peel at once may not hold the centre from the start: past already, the guard of that would
+      // not be met.
+      const auto weakest = weakest_contact();
+      if (free_count_ == 0 || !weakest) break;
+      unheld_ = unheld_directions();
+      if (least_firmness() >= k_least_firmness) break;
+      separate(*weakest, y[k_radius], y, log);
+    }
     // No guard is met by a wall that a force presses on from the start.
     for (const std::size_t i : just_loaded) meet_balanced(i, true, y[k_radius], made);
     // Where a contact has pulled off, the others have to balance anew.
