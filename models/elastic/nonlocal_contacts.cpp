@@ -17,6 +17,7 @@ constexpr double k_contraction = 0.5;  // of Newton's corrections; less is a gue
 constexpr int k_first_touch_steps = 20;
 constexpr double k_stagnation = 1e-9;   // rounding grows with 1/margin near the limit
 constexpr double k_balance = 1e-9;      // net force over the sum of forces
+constexpr double k_least_hold = 1e-12;  // of the centre in a direction, over the greatest
 constexpr double k_least_step = 1e-13;  // of the way to a state that is not found at once
 constexpr int k_most_steps = 1000;      // on that way, tried ones included
 constexpr int k_most_roundings = 20;    // times that its end is found with forces of rounding left over
@@ -252,22 +253,41 @@ double Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double>
     }
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hold);
-  const double least = 1e-12 * solver.eigenvalues().cwiseAbs().maxCoeff();
+  const double least = k_least_hold * solver.eigenvalues().cwiseAbs().maxCoeff();
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
-  double left = 0.0;
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d direction = solver.eigenvectors().col(k);
-    const double along = direction.dot(net_force);
-    if (std::abs(solver.eigenvalues()[k]) <= least)
-      left = std::max(left, std::abs(along));
-    else
-      step -= direction * (along / solver.eigenvalues()[k]);
+    if (std::abs(solver.eigenvalues()[k]) > least)
+      step -= direction * (direction.dot(net_force) / solver.eigenvalues()[k]);
   }
   for (std::size_t k = 0; k < free_count(); ++k) {
     centre[k] += step[at(k)];
     for (std::size_t j = 0; j < n; ++j) entry(j, n) += entry(j, n + 1 + k) * step[at(k)];
   }
-  return left;
+  return force_on_nothing(net_force);
+}
+
+/// What is left of a force in directions in which no contact holds the centre, the stiffest taken first: beside a stiff
+/// one, the directions of the matrix of all do not tell one that has just begun from nothing.
+double Contacts::force_on_nothing(Eigen::Vector3d force) const {
+  Eigen::Matrix3d projector = Eigen::Matrix3d::Identity();
+  double stiffest = 0.0;
+  for (std::size_t count = 0; count < free_count(); ++count) {
+    double hold = 0.0;
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+    for (std::size_t j = 0; j < class_count(); ++j) {
+      const Eigen::Vector3d along = projector * arm_of(j);
+      const double own = weights_[j] * stiffness_[j] * along.squaredNorm();
+      if (!(own > hold)) continue;
+      hold = own;
+      direction = along.normalized();
+    }
+    stiffest = std::max(stiffest, hold);
+    if (!(hold > k_least_hold * stiffest)) break;
+    force -= direction * direction.dot(force);
+    projector -= direction * direction.transpose();
+  }
+  return force.norm();
 }
 
 /// Newton's method towards the targets, with a part of the imbalance left. Gives up where its corrections do not
