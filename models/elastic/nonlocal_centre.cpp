@@ -18,9 +18,10 @@ constexpr double k_closing = 20.0;
 // Of a way on which walls take a centre along: places that are the same, over how far it leads; and the shortest steps.
 constexpr double k_same_place = 1e-13;
 constexpr double k_shortest = 1e-11;
-constexpr double k_touching = 1e-10;  // gap of walls that begin to bear
-constexpr double k_early = 1e-9;      // of a step: which walls touch in it is seen there, and as long before its end
-constexpr int k_most_tries = 300;     // of steps; then what differs is rounding
+constexpr double k_small_force = 1e-3;  // over the largest
+constexpr double k_touching = 1e-10;    // gap of walls that begin to bear
+constexpr double k_early = 1e-9;        // of a step: which walls touch in it is seen there, and as long before its end
+constexpr int k_most_tries = 300;       // of steps; then what differs is rounding
 
 }  // namespace
 
@@ -67,21 +68,36 @@ bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> 
   return false;
 }
 
-/// Whether any forces of walls under displacement control could balance those of the others.
-bool Contacts::may_balance(std::span<const Target> targets) const {
-  Eigen::Vector3d push = Eigen::Vector3d::Zero();
+/// Whether any forces of walls under displacement control could balance those of the others. Beside large ones it is
+/// not seen whether the small ones can be balanced: they are asked for by themselves, and where contacts of a state
+/// bear, these may also give way.
+bool Contacts::may_balance(std::span<const Target> targets, std::span<const double> y) const {
+  const auto push_of = [&](std::size_t j) -> Eigen::Vector3d { return weights_[j] * targets[j].value * arm_of(j); };
+  double largest = 0.0;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    if (targets[j].is_force) largest = std::max(largest, push_of(j).norm());
+  }
   std::vector<Eigen::Vector3d> others;
-  double sum = 0.0;
+  std::vector<Eigen::Vector3d> giving_way;
   for (std::size_t j = 0; j < class_count(); ++j) {
     const Eigen::Vector3d arm = arm_of(j);
-    if (targets[j].is_force) {
-      push += weights_[j] * targets[j].value * arm;
-      sum += weights_[j] * targets[j].value;
-    } else if (arm.norm() > k_same_surroundings) {
-      others.push_back(arm.normalized());
-    }
+    if (targets[j].is_force || !(arm.norm() > k_same_surroundings)) continue;
+    others.push_back(arm.normalized());
+    if (y[j] > 0.0) giving_way.push_back(-others.back());
   }
-  return push.norm() <= k_resolved * sum || can_back(push, others);
+  const auto can_be_borne = [&](bool is_small) {
+    Eigen::Vector3d push = Eigen::Vector3d::Zero();
+    double sum = 0.0;
+    for (std::size_t j = 0; j < class_count(); ++j) {
+      if (!targets[j].is_force || (push_of(j).norm() < k_small_force * largest) != is_small) continue;
+      push += push_of(j);
+      sum += weights_[j] * targets[j].value;
+    }
+    return push.norm() <= k_resolved * sum || can_back(push, others);
+  };
+  if (!can_be_borne(false)) return false;
+  others.insert(others.end(), giving_way.begin(), giving_way.end());
+  return can_be_borne(true);
 }
 
 /// Projector on the directions in which a free centre may go without changing contacts that hold it.

@@ -475,7 +475,7 @@ void Contacts::approach_in_steps(std::span<double> y) {
       break;
     }
     if (may_go_on) continue;
-    if (is_on_branch || !may_balance(last_targets_)) throw std::domain_error(k_nothing_holds);
+    if (is_on_branch || !may_balance(last_targets_, state_)) throw std::domain_error(k_nothing_holds);
     look(state_);
     const auto widest = std::max_element(
         now_.begin(), now_.end(), [](const auto& a, const auto& b) { return a.contact_radius < b.contact_radius; });

@@ -179,7 +179,7 @@ class Contacts {
   [[nodiscard]] bool newton(std::span<double> y, double imbalance);
   void find_bystanders();
   [[nodiscard]] bool has_bystanders() const;
-  [[nodiscard]] bool may_balance(std::span<const Target> targets) const;
+  [[nodiscard]] bool may_balance(std::span<const Target> targets, std::span<const double> y) const;
   void find_holding_among(const auto& is_force);
   bool find_holding(std::span<const double> y, double gap = 0.0);
   void sort_near(std::span<const Ramp> ramps, std::span<const double> y, double near);
