@@ -473,9 +473,22 @@ TEST_P(MdrFreeCentreUnderForce, DoesTheWorkOfTheWallsWhileTheRadiusIsHeld) {
   EXPECT_LE(std::abs(pressed.last("dissipation")), 1e-6 * largest(pressed.column("work")));
 }
 
-TEST_P(MdrFreeCentreUnderForce, IsRefusedWhereNothingHoldsItAgainstAForce) {
-  // Both walls have lost the particle, and where it lies between them is not known.
+TEST_P(MdrFreeCentreUnderForce, IsPressedOnWhereBothWallsHaveLostIt) {
+  // The fixed wall has lost the particle, too, but it lies there still.
   const TestRun result = run(against_a_fixed_wall({force_ramp(0.02), ramp(0.0), force_ramp(0.01)}), GetParam());
+  ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
+  EXPECT_TRUE(result.has_event("contact-lost"));
+  const TestRun symmetric = run(simple(force_path({0.02, 0.0, 0.01})));
+  for (const char* overlap : {"z+.overlap", "z-.overlap"}) {
+    EXPECT_NEAR(result.last(overlap), symmetric.last("axial.overlap"), 1e-6 * symmetric.last("axial.overlap"));
+  }
+}
+
+TEST_P(MdrFreeCentreUnderForce, IsRefusedWhereNothingHoldsItAgainstAForce) {
+  // Both walls have gone away, and where it lies between them is not known.
+  Scenario scenario = against_a_fixed_wall({force_ramp(0.02), ramp(0.0), force_ramp(0.01)});
+  scenario.loading.walls[1] = wall("z-", -Eigen::Vector3d::UnitZ(), {hold(), ramp(-0.05), hold()});
+  const TestRun result = run(scenario, GetParam());
   EXPECT_TRUE(result.has_event("contact-lost"));
   EXPECT_EQ(result.record.status, RunStatus::stopped);
   EXPECT_NE(result.record.message.find("step 3, t = 2 s: no contact holds the free centre"), std::string::npos)
