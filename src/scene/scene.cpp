@@ -97,6 +97,25 @@ Reach end_of(const Scenario& scenario, bool centre_moves, const Until& until) {
   return end;
 }
 
+/// Number of steps up to one that ends every run that comes to it: walls of the nonlocal law cannot pull.
+std::size_t count_to_pull(const Scenario& scenario, const std::vector<Channel>& channels) {
+  std::size_t count = 0;
+  for (const Channel& channel : channels) count = std::max(count, channel.program.size());
+  if (scenario.model != "nonlocal") return count;
+  for (std::size_t k = 0; k < count; ++k) {
+    bool pulls = false;
+    bool may_end_before = false;  // a condition on one wall ends the step of all
+    for (const Channel& channel : channels) {
+      if (k >= channel.program.size()) continue;
+      const Step& step = channel.program[k];
+      pulls = pulls || (step.kind == Step::Kind::force && step.target < 0.0);
+      may_end_before = may_end_before || !step.until.empty();
+    }
+    if (pulls && !may_end_before) return k + 1;
+  }
+  return count;
+}
+
 /// Largest displacement or force of the programs.
 double largest_target(const Scenario& scenario, const Scene& scene, Step::Kind kind) {
   double largest = 0.0;
@@ -106,7 +125,7 @@ double largest_target(const Scenario& scenario, const Scene& scene, Step::Kind k
   const bool adheres = energy != scenario.material.end() && energy->second > 0.0;
   const bool is_displacement = kind == Step::Kind::displacement;
   // Steps that a run comes to: what lies beyond would make tolerances as large as what is reached.
-  std::size_t count = std::numeric_limits<std::size_t>::max();
+  std::size_t count = count_to_pull(scenario, channels);
   for (const Channel& channel : channels) {
     const std::size_t first = first_without_branch(scenario, channel.program);
     if (first < channel.program.size()) count = std::min(count, first);
