@@ -241,8 +241,7 @@ void Contacts::regularise_first_touch(double stiffness, const auto& is_touching)
 
 /// Displaces the centre so that a net force vanishes to first order, and lets the approaches follow. Directions that no
 /// contact holds stay.
-/// @return what is left of the net force
-double Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> centre) {
+void Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> centre) {
   const std::size_t n = class_count();
   Eigen::Matrix3d hold = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < free_count(); ++k) {
@@ -264,7 +263,6 @@ double Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double>
     centre[k] += step[at(k)];
     for (std::size_t j = 0; j < n; ++j) entry(j, n) += entry(j, n + 1 + k) * step[at(k)];
   }
-  return force_on_nothing(net_force);
 }
 
 /// What is left of a force in directions in which no contact holds the centre, the stiffest taken first: beside a stiff
@@ -352,7 +350,9 @@ bool Contacts::newton(std::span<double> y, double imbalance) {
       };
       double borne = 0.0;
       for (std::size_t j = 0; j < n; ++j) borne += weights_[j] * forces_[j];
-      const double left = move_centre(net(), y.subspan(n));
+      const Eigen::Vector3d unbalanced = net();
+      const double left = force_on_nothing(unbalanced);
+      move_centre(unbalanced, y.subspan(n));
       // Where the first contacts do not hold it, others that touch may, as stiff as at first.
       if (is_first_touch && iteration < free_steps && left > k_balance * borne) {
         const Eigen::Vector3d rest = net();
@@ -537,9 +537,9 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     }
     const auto centre = dy.subspan(n);
     std::ranges::fill(centre, 0.0);
-    const double left = move_centre(net + pull * error, centre);
+    move_centre(net + hurry * error, centre);
     // So much of an error says nothing of what drives the centre where no contact holds it.
-    if (hurry > pull) move_centre((hurry - pull) * error, centre);
+    const double left = force_on_nothing(net + pull * error);
     if (has_bystanders()) take_along(ramps, y, touch, dy);
     // Walls that just touch hold the centre at once, if they can bear; and those that are as near as a force is deep,
     // as errors take them off just before it ends.

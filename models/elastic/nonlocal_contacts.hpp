@@ -174,7 +174,7 @@ class Contacts {
   void solve_modes(Eigen::VectorXd& x) const noexcept;
   [[nodiscard]] double quotient_of_modes() const noexcept;
   void regularise_first_touch(double stiffness, const auto& is_touching);
-  double move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
+  void move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
   [[nodiscard]] double force_on_nothing(Eigen::Vector3d force) const;
   [[nodiscard]] bool newton(std::span<double> y, double imbalance);
   void find_bystanders();

@@ -87,11 +87,10 @@ void System::watch(double xi, std::span<const double> y) {
   const double r = y[k_radius];
   const Motion now = motion(is_growing_);
   for (std::size_t i = 0; i < memory_.size(); ++i) watch_contact(i, r, now);
-  const bool is_any_plastic =
-      std::ranges::any_of(memory_, [](const Memory& memory) { return memory.regime == Regime::fully_plastic; });
+  const auto is_plastic = [](const Memory& memory) { return memory.regime == Regime::fully_plastic; };
   if (free_count_ > 0 && weakest_contact()) {
     guards_.push_back({.kind = k_unstable, .index = -1, .direction = -1, .name = "pull-off", .is_branch_end = true});
-  } else if (free_count_ > 0 && is_any_plastic) {
+  } else if (free_count_ > 0 && std::ranges::any_of(memory_, is_plastic)) {
     guards_.push_back({.kind = k_spent, .index = -1, .direction = -1, .name = "limit", .is_branch_end = true});
   }
 

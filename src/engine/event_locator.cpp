@@ -19,7 +19,7 @@ constexpr double k_near = 0.5;
 constexpr double k_approach = 0.25;
 constexpr std::size_t k_looks_before_end = 12;
 // What a guard is by rounding at its root, over the larger of its values around it, but no more over the smaller one;
-// and by how much the root then may lie farther on, at first.
+// and how closely the root is known.
 constexpr double k_rounding_of_guard = 1e-14;
 constexpr double k_most_of_guard = 1e-12;
 constexpr double k_rounding_of_root = 1e-15;
@@ -252,7 +252,7 @@ double EventLocator::polish(std::size_t guard, const View& before, const View& a
   std::uintmax_t iterations = 100;
   const auto [below, above] = boost::math::tools::toms748_solve(
       function, before.xi, after.xi, before.values[guard], after.values[guard],
-      [](double a, double b) { return b - a <= 1e-15 * std::max(1e-3, std::abs(b)); }, iterations);
+      [](double a, double b) { return b - a <= k_rounding_of_root * std::max(1e-3, std::abs(b)); }, iterations);
   if (below < above) return above;
   double root = above;
   const auto is_short = [&] { return value != 0.0 && (value > 0.0) == (before.values[guard] > 0.0); };

@@ -163,8 +163,9 @@ class Ida final : public Integrator {
   /// One over what is tolerated.
   static int error_weights(N_Vector y, N_Vector weights, void* self) noexcept {
     const auto& ida = *static_cast<Ida*>(self);
+    const double rtol = of_step(ida.tolerances_).rtol;
     for (std::size_t k = 0; k < view(y).size(); ++k) {
-      view(weights)[k] = 1.0 / (of_step(ida.tolerances_).rtol * std::abs(view(y)[k]) + view(ida.atol_.get())[k]);
+      view(weights)[k] = 1.0 / (rtol * std::abs(view(y)[k]) + view(ida.atol_.get())[k]);
     }
     return 0;
   }
