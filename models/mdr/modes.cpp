@@ -536,9 +536,9 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     // Another guard of the same edge has changed it at this instant, or its contact is back at its largest overlap,
     // where edges only follow.
     const bool is_of_edge = guard.kind == k_peel || guard.kind == k_follow || guard.kind == k_turn;
-    const Memory& memory = memory_[i];
-    const bool has_edge = touches(memory.regime) && !memory.is_virgin;
-    if (is_of_edge && (!has_edge || edges_before_[i] != memory.edge)) continue;
+    // Asked of the guards of edges alone: that of intersecting caps carries the number of their pair, not of a wall.
+    const auto has_edge = [this](const Memory& memory) { return touches(memory.regime) && !memory.is_virgin; };
+    if (is_of_edge && (!has_edge(memory_[i]) || edges_before_[i] != memory_[i].edge)) continue;
     // Nor is a branch at its end that is as short as what counts as zero.
     if (guard.kind == k_reload && memory_[i].regime == Regime::unloading) {
       const double passed = is_loaded(i) ? k_passed_by_force : k_passed;
