@@ -71,19 +71,19 @@ ValueAndSlope elastic_plastic_pressure(const SemimechLaw& law, double x) noexcep
                 : ValueAndSlope{.value = law.fall.greatest - drop, .slope = -slope};
 }
 
-ValueAndSlope low_compressibility_pressure(const SemimechLaw& law, double x) {  // eq. 2.41
+/// Beyond zero porosity it goes on along its tangent: nearly incompressible materials have the logarithm's pole there,
+/// and a trial step that begins at zero porosity has to end somewhere.
+ValueAndSlope low_compressibility_pressure(const SemimechLaw& law, double x) noexcept {  // eq. 2.41
   const Stiffening& c = law.stiffening;
+  const double within = std::min(x, c.zero_porosity);
   const double span = cell_shrinkage(law.configuration, law.fall.end, c.zero_porosity);
-  const double y = cell_shrinkage(law.configuration, law.fall.end, x) / span;
+  const double y = cell_shrinkage(law.configuration, law.fall.end, within) / span;
   // 1 - l y^2 without cancellation at y = 1, where l is close to 1 for nearly incompressible materials.
-  const double rest = cell_shrinkage(law.configuration, x, c.zero_porosity) / span;
+  const double rest = cell_shrinkage(law.configuration, within, c.zero_porosity) / span;
   const double argument = rest * (1.0 + y) + c.softness_complement * y * y;
-  if (!(argument > 0.0)) {
-    throw std::domain_error("gamma/2R = " + text(x) + " is too far above zero porosity at " + text(c.zero_porosity) +
-                            " for the law of low compressibility");
-  }
-  return {.value = law.fall.least - c.pressure_scale * std::log(argument),
-          .slope = -2.0 * c.pressure_scale * c.softness * y / argument * cell_slope(law.configuration, x) / span};
+  const double slope =
+      -2.0 * c.pressure_scale * c.softness * y / argument * cell_slope(law.configuration, within) / span;
+  return {.value = law.fall.least - c.pressure_scale * std::log(argument) + slope * (x - within), .slope = slope};
 }
 
 ValueAndSlope elastic_volumetric_pressure(const SemimechLaw& law, double x) noexcept {  // eq. 2.44

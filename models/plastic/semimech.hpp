@@ -73,9 +73,9 @@ struct SemimechLaw {
 [[nodiscard]] ContactState state_at(const SemimechLaw& law, double x);
 
 /// The formulas of one regime, also somewhat outside of it, for trial steps: its laws are continued analytically, those
-/// with an infinite second derivative at x_Hmax as their mirror image beyond.
-/// @throws std::domain_error for x <= 0 (but open), a regime that the configuration has not, and low compressibility so
-/// far beyond zero porosity that its pressure is infinite
+/// with an infinite second derivative at x_Hmax as their mirror image beyond, low compressibility along its tangent
+/// beyond zero porosity.
+/// @throws std::domain_error for x <= 0 (but open) and a regime that the configuration has not
 [[nodiscard]] ContactState state_in(const SemimechLaw& law, Regime regime, double x);
 
 /// x under a force over Y R^2; 0 for no force.

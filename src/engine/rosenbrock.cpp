@@ -58,7 +58,7 @@ struct Rosenbrock4::Implementation {
         by_xi_of_step(equations.size) {}
 
   /// Rates and their derivatives as the library wants them.
-  /// @param is_known  the derivatives are still those at the beginning of the step
+  /// @param is_known  the derivatives at the beginning of the step are those that were asked for last
   auto system(bool is_known = false) {
     const auto rates = [this](const State& z, State& dz, double at) {
       equations.rates(equations.self, at, &z[0], &dz[0]);
@@ -106,9 +106,9 @@ const double* Rosenbrock4::begin_state() const noexcept { return &implementation
 
 const double* Rosenbrock4::end_state() const noexcept { return &implementation_->now[0]; }
 
-const double* Rosenbrock4::state_at(double xi, double begin) {
+const double* Rosenbrock4::state_at(double xi, double begin, bool is_known) {
   Implementation& own = *implementation_;
-  own.controlled.stepper().do_step(own.system(true), own.old, begin, own.between, xi - begin);
+  own.controlled.stepper().do_step(own.system(is_known), own.old, begin, own.between, xi - begin);
   return &own.between[0];
 }
 

@@ -35,7 +35,8 @@ class Rosenbrock4 {
   [[nodiscard]] const double* end_state() const noexcept;
   /// Within the last step, by a shorter one: the method's own interpolation is some orders less exact. Valid until the
   /// next call.
-  [[nodiscard]] const double* state_at(double xi, double begin);
+  /// @param is_known  the derivatives at the step's beginning are those that were asked for last
+  [[nodiscard]] const double* state_at(double xi, double begin, bool is_known);
 
  private:
   struct Implementation;

@@ -219,10 +219,14 @@ class FixedStep final : public Integrator {
 
 }  // namespace
 
+double DifferenceJacobian::reach(double xi, double length) noexcept {
+  static const double k_cubic_root = std::cbrt(std::numeric_limits<double>::epsilon());
+  return 2.0 * std::max(std::min(k_cubic_root, k_share_of_step * length), k_resolution * xi);
+}
+
 void DifferenceJacobian::at(double xi, std::span<const double> z, double length, std::span<double> jacobian,
                             std::span<double> by_xi) {
   static const double k_root = std::sqrt(std::numeric_limits<double>::epsilon());
-  static const double k_cubic_root = std::cbrt(std::numeric_limits<double>::epsilon());
   const std::size_t n = z.size();
   std::ranges::copy(z, point_.begin());
   form_.rates(xi, point_, base_);
@@ -236,9 +240,9 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
   }
   // Of second order: next to a pole the rounding of xi leaves few digits of quotients over much less than the step, and
   // those of first order over all of it are wrong by a share of their own.
-  const double onward = std::max(std::min(k_cubic_root, k_share_of_step * length), k_resolution * xi);
+  const double onward = reach(xi, length);
   // Beyond 1 the program goes on differently.
-  const double step = shift_within_domain(xi + 2.0 * onward > 1.0 ? -onward : onward, [&](double by) {
+  const double step = shift_within_domain(0.5 * (xi + onward > 1.0 ? -onward : onward), [&](double by) {
     form_.rates(xi + by, point_, shifted_);
     form_.rates(xi + 2.0 * by, point_, beyond_);
   });

@@ -120,7 +120,9 @@ class DifferenceJacobian {
   explicit DifferenceJacobian(ScaledForm& form)
       : form_(form), base_(form.size()), shifted_(form.size()), beyond_(form.size()), point_(form.size()) {}
 
-  /// @param length    of the step that it is for: a regime may be as short
+  /// How far from xi the derivatives look for a step of that length: a regime may be as short.
+  [[nodiscard]] static double reach(double xi, double length) noexcept;
+  /// @param length    of the step that it is for
   /// @param jacobian  row by row
   void at(double xi, std::span<const double> z, double length, std::span<double> jacobian, std::span<double> by_xi);
 
