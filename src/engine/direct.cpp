@@ -47,6 +47,41 @@ constexpr double k_rounding_of_branch = 1e-8;
 // Quadrature pieces are not refined below this; what is left is below round-off of the whole.
 constexpr double k_smallest_quadrature = 1e-6;
 
+/// Rounding of the rates, as the series of pieces show it: their last terms are as large as those of a longer piece
+/// from the same beginning, which was refused. Those of a root fall as the length to the power 1/2, those of a kink as
+/// the length. Pieces need not be as short as to have no rounding: it would add up in their states.
+class RateRounding {
+ public:
+  [[nodiscard]] double known() const noexcept { return known_; }
+
+  void see(const LegendreSeries& rate, double begin, double length, bool is_refused) noexcept {
+    const double tail = rate.tail();
+    if (begin != refused_at_) {
+      if (!is_refused) return;
+      refused_at_ = begin;
+      refused_length_ = length;
+      refused_tail_ = tail;
+      return;
+    }
+    if (tail < k_as_large * refused_tail_ || length > k_shorter * refused_length_) return;
+    if (refused_tail_ > k_most * rate.largest()) return;
+    largest_ = std::max(largest_, refused_tail_);
+    if (++count_ >= k_often) known_ = largest_;
+    refused_at_ = -1.0;
+  }
+
+ private:
+  static constexpr double k_shorter = 0.5;
+  static constexpr double k_as_large = 0.75;
+  static constexpr double k_most = 1e-6;  // over the rates
+  static constexpr int k_often = 3;
+
+  double refused_at_ = -1.0;
+  double refused_length_ = 0.0, refused_tail_ = 0.0;
+  int count_ = 0;
+  double largest_ = 0.0, known_ = 0.0;
+};
+
 class Direct final : public EventLocator {
  public:
   Direct(HybridSystem& system, double rtol, Watch& watch)
@@ -70,6 +105,7 @@ class Direct final : public EventLocator {
   void begin(double xi, std::span<const double> y) override {
     segment_begin_ = xi;
     refusals_ = 0;
+    rounding_ = {};
     is_closed_ = !quadrature_;
     if (const auto primitive = system_.closed_quadrature(xi, y); quadrature_ && primitive) {
       is_closed_ = true;
@@ -182,9 +218,11 @@ class Direct final : public EventLocator {
       work_.fit(*nodes_, slopes_[*quadrature_]);
       const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
       const double length = piece_length();
-      const double reach = work_.reach(2.0 * work_accuracy_ * scale / length);
+      const double reach = work_.reach(2.0 * work_accuracy_ * scale / length, rounding_.known());
       factor = std::clamp(k_safety * reach, k_most_shrinkage, k_most_growth);
-      if (reach < 1.0 && length > k_smallest_quadrature) return false;
+      const bool is_too_long = reach < 1.0 && length > k_smallest_quadrature;
+      rounding_.see(work_, begin_, length, is_too_long);
+      if (is_too_long) return false;
     }
     move_end(piece_end_);
     locate_event();
@@ -322,6 +360,7 @@ class Direct final : public EventLocator {
   double length_ = 0.0;                  ///< of the next piece
   double piece_end_ = 0.0;               ///< where the piece would end without an event
   LegendreSeries work_;                  ///< rate of the quadrature
+  RateRounding rounding_;                ///< of the segment
   std::size_t integrated_ = 0;           ///< unknowns that rates() knows: the first ones
   std::vector<LegendreSamples> gains_;   ///< at the nodes: what the unknowns have gained since the beginning
   std::vector<LegendreSamples> slopes_;  ///< and the rates of the integrated ones

@@ -143,20 +143,26 @@ double LegendreSeries::rest(double negligible) const noexcept {
   return last > negligible ? last / largest : 0.0;
 }
 
-double LegendreSeries::reach(double negligible) const noexcept {
-  const auto largest_of = [this](std::size_t begin, std::size_t end) {
-    double largest = 0.0;
-    for (std::size_t k = begin; k < end; ++k) largest = std::max(largest, std::abs(coefficients_[k]));
-    return largest;
-  };
-  const double largest = largest_of(0, count_);
-  const double before_tail = largest_of(count_ / 2, count_ - 2);
-  const double tail = std::abs(coefficients_[count_ - 1]) + std::abs(coefficients_[count_ - 2]);
-  const double allowed = std::max(k_tail * largest, 0.5 * negligible);
-  const double noise = std::max(k_noise * k_tail * largest, k_noise_of_nothing * 0.5 * negligible);
-  const bool is_noise = before_tail <= k_flat * tail && tail <= noise;
-  if (is_noise || tail == 0.0) return k_farthest;
-  return std::pow(allowed / tail, 1.0 / static_cast<double>(count_ - 1));
+double LegendreSeries::reach(double negligible, double rounding) const noexcept {
+  const double whole = largest();
+  const double last = tail();
+  const double allowed = std::max(k_tail * whole, 0.5 * negligible);
+  const double noise = std::max({k_noise * k_tail * whole, k_noise_of_nothing * 0.5 * negligible, rounding});
+  const bool is_noise = largest_of(count_ / 2, count_ - 2) <= k_flat * last && last <= noise;
+  if (is_noise || last == 0.0) return k_farthest;
+  return std::pow(allowed / last, 1.0 / static_cast<double>(count_ - 1));
+}
+
+double LegendreSeries::tail() const noexcept {
+  return std::abs(coefficients_[count_ - 1]) + std::abs(coefficients_[count_ - 2]);
+}
+
+double LegendreSeries::largest() const noexcept { return largest_of(0, count_); }
+
+double LegendreSeries::largest_of(std::size_t begin, std::size_t end) const noexcept {
+  double largest = 0.0;
+  for (std::size_t k = begin; k < end; ++k) largest = std::max(largest, std::abs(coefficients_[k]));
+  return largest;
 }
 
 }  // namespace monograin

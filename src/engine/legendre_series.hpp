@@ -55,12 +55,17 @@ class LegendreSeries {
   /// How many times as long the interval could be for the series to have converged just so; its last term goes with the
   /// length to the power of its degree.
   /// @param negligible  error of the integral over [-1, 1] that does not count, however large a share of it that is
-  [[nodiscard]] double reach(double negligible) const noexcept;
-
+  /// @param rounding    last coefficients that are known to be rounding, where the second half does not fall either
+  [[nodiscard]] double reach(double negligible, double rounding = 0.0) const noexcept;
+  /// The last coefficients, and the largest one.
+  [[nodiscard]] double tail() const noexcept;
+  [[nodiscard]] double largest() const noexcept;
   /// Its last two terms over the largest one: how far it is from having converged. Nothing where they are negligible.
   [[nodiscard]] double rest(double negligible) const noexcept;
 
  private:
+  [[nodiscard]] double largest_of(std::size_t begin, std::size_t end) const noexcept;
+
   LegendreSamples coefficients_{};
   std::size_t count_ = 0;
   std::size_t terms_ = 0;  ///< up to the last that is not zero: none of what stays as it is

@@ -79,6 +79,33 @@ TEST(Direct, DoesNotSearchForARootWithinRounding) {
   EXPECT_LT(looks, 64);
 }
 
+TEST(Direct, DoesNotRefineRoundingOfTheRates) {
+  for (const double noise : {1e-11, 1e-8, 1e-7}) {
+    auto toy = std::make_unique<ToySystem>();
+    toy->is_quadrature = true;
+    toy->rates_function = [noise](double xi, View, std::span<double> dy) {
+      dy[0] = std::exp(xi) * (1.0 + noise * std::sin(1e9 * xi));
+    };
+    const TestRun result = run_directly(std::move(toy));
+    EXPECT_NEAR(result.last("y0"), std::exp(1.0) - 1.0, noise) << noise;
+    EXPECT_LT(toy_in(result.scene).rates_count, 2000) << noise;
+  }
+}
+
+TEST(Direct, RefinesARootAndAKinkHoweverSmall) {
+  constexpr double k_small = 1e-6;
+  for (const double power : {0.5, 1.0}) {
+    auto toy = std::make_unique<ToySystem>();
+    toy->is_quadrature = true;
+    toy->rates_function = [power](double xi, View, std::span<double> dy) {
+      dy[0] = 1.0 + k_small * std::pow(std::abs(xi - 0.3), power);
+    };
+    const TestRun result = run_directly(std::move(toy));
+    const double integral = 1.0 + k_small * (std::pow(0.3, power + 1.0) + std::pow(0.7, power + 1.0)) / (power + 1.0);
+    EXPECT_NEAR(result.last("y0"), integral, 1e-11) << power;
+  }
+}
+
 TEST(Direct, StateDoesNotDependOnWhatWasAskedBefore) {
   auto toy = decaying_toy();
   toy->finish();

@@ -37,7 +37,8 @@ class ToySystem final : public HybridSystem {
   std::function<void(double start, View from, double xi, std::span<double> y)> flow =
       [](double start, View from, double xi, std::span<double> y) { y[0] = from[0] + xi - start; };
   std::vector<ToyGuard> watched;
-  int mode = 0;  ///< for transitions to set and rates to read
+  bool is_quadrature = false;  ///< y0: rates do not depend on it
+  int mode = 0;                ///< for transitions to set and rates to read
 
   // What the engine did.
   double earliest_xi = 1.0;
@@ -49,7 +50,9 @@ class ToySystem final : public HybridSystem {
   void finish() {
     static constexpr std::string_view k_names[] = {"y0", "y1", "y2"};
     for (std::size_t k = 0; k < initial.size(); ++k) {
-      unknowns_.push_back({k_names[k], Unknown::Kind::differential, 1.0, false});
+      const bool is_integral = is_quadrature && k == 0;
+      unknowns_.push_back(
+          {k_names[k], is_integral ? Unknown::Kind::quadrature : Unknown::Kind::differential, 1.0, false});
       observables_.push_back({std::string(k_names[k]), "m", {}});
     }
     for (std::size_t g = 0; g < watched.size(); ++g) {
