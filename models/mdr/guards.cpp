@@ -54,6 +54,8 @@ double System::edge_guard(int kind, std::size_t i, double xi, double overlap, do
     return (now.displacement - critical) / std::abs(critical);
   }
   const double a = memory_[i].edge_radius;
+  // Without springs a force leads it either way by its sign alone.
+  if (a == 0.0 && is_loaded(i)) return contact_guard(kind == k_peel ? k_lost : k_made, i, xi, overlap, r);
   const double w = now.displacement - profile_height(now.indenter, a);
   const double stretch = critical_stretch(material_.composite_modulus, surface_energy_, a);
   if (stretch == 0.0) return w;

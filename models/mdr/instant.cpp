@@ -186,7 +186,11 @@ double System::displacement_under_force(std::size_t i, double xi, double r, doub
     double displacement_1d = 0.0;
     if (memory.edge == Edge::sticking) {
       const double a = memory.edge_radius;
-      displacement_1d = profile_height(indenter, a) + (force - free_force(indenter, modulus, a)) / (2.0 * modulus * a);
+      // An edge of no radius bears nothing, and is where it touches.
+      if (a > 0.0) {
+        displacement_1d =
+            profile_height(indenter, a) + (force - free_force(indenter, modulus, a)) / (2.0 * modulus * a);
+      }
     } else {
       displacement_1d =
           peel_at_force(indenter, modulus, surface_energy_, pull_off(i, indenter).by_force.contact_radius, force)
