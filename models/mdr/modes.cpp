@@ -180,7 +180,7 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
         start_unloading(i, r, why, log);
         return true;
       }
-      if (memory.is_virgin && moves_in && std::isfinite(material_.yield_overlap_ratio) && is_past(k_yield, 1.0)) {
+      if (may_yield(memory) && moves_in && is_past(k_yield, 1.0)) {
         yield(i, r);
         log.push_back(event("yield"));
         return true;

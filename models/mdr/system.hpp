@@ -314,6 +314,7 @@ class System final : public HybridSystem {
   void separate(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);
   void make_contact(std::size_t i);
   void lose_contact(std::size_t i);
+  [[nodiscard]] bool may_yield(const Memory& memory) const noexcept;
   void yield(std::size_t i, double r);
   void resume_loading(std::size_t i);
   void meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log);

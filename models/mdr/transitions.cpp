@@ -196,7 +196,15 @@ void System::lose_contact(std::size_t i) {
   memory_[i].regime = memory_[i].regime == Regime::unloading ? Regime::separated : Regime::open;
 }
 
+/// Whether an elastic contact yields where it is deep enough: at its largest overlap, and below it where that moves
+/// with the radius, as growth may then press the contact in beyond anything it has borne while its wall goes back.
+bool System::may_yield(const Memory& memory) const noexcept {
+  const bool is_at_largest = memory.is_virgin || settings_.delta_max_rule == DeltaMaxRule::shifted;
+  return is_at_largest && std::isfinite(material_.yield_overlap_ratio);
+}
+
 void System::yield(std::size_t i, double r) {
+  resume_loading(i);
   memory_[i].regime = Regime::fully_plastic;
   memory_[i].area_constant = yield_area_constant(material_.yield_overlap_ratio, 1.0 + r);
 }
