@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -30,6 +31,8 @@ constexpr double k_nearest_saddle = 1e-9;
 constexpr double k_farthest_saddle = 1e-2;
 constexpr double k_longer = 1.25;
 constexpr int k_most_sections = 40;
+// Step of the growing radius after which the next one is rounding.
+constexpr double k_last_step = 1e-10;
 // Components of unit vectors that are rounding.
 constexpr double k_no_component = 1e-15;
 
@@ -471,6 +474,8 @@ double System::balance_residual(double xi, std::span<const double> y) {
 
 /// Newton on the volume balance together with the balance of forces.
 void System::grow(double xi, std::span<double> y) {
+  double below = -std::numeric_limits<double>::infinity();
+  double above = std::numeric_limits<double>::infinity();
   double step_size = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     move_walls(xi, y);
@@ -486,14 +491,24 @@ void System::grow(double xi, std::span<double> y) {
       defect += sums_.by_centre.dot(to_balance);
     }
     if (!(slope > 0.0)) throw std::domain_error(k_singular_growth);
-    const double step = std::clamp(-defect / slope, -0.1, 0.1);
+    double step = std::clamp(-defect / slope, -0.1, 0.1);
+    // The balance rises with the radius, but has a kink where a wall under force pulls off: a step over that, and one
+    // back, may lead to and fro without end. What has been seen on either side bounds the next place.
+    if (free_count_ == 0) {
+      (defect < 0.0 ? below : above) = y[k_radius];
+      const double next = y[k_radius] + step;
+      const bool is_bounded = std::isfinite(above - below);
+      if (std::abs(step) >= k_last_step && is_bounded && (next <= below || next >= above)) {
+        step = std::midpoint(below, above) - y[k_radius];
+      }
+    }
     y[k_radius] += step;
     const Small centre_step = to_balance + step * by_radius;
     for (int k = 0; k < free_count_; ++k) y[centre_place(k)] += centre_step[k];
-    // Quadratic convergence: below 1e-10 the next step is round-off, unless the centre's square-root forces are still
+    // Quadratic convergence: below this the next step is round-off, unless the centre's square-root forces are still
     // settling.
     const double size = std::max(std::abs(step), centre_step.norm());
-    if (size < (free_count_ == 0 ? 1e-10 : 2.0 * k_round_off)) return;
+    if (size < (free_count_ == 0 ? k_last_step : 2.0 * k_round_off)) return;
     // A centre that soft contacts hold goes to and fro by more than that.
     const bool is_balanced = std::abs(step) < 1e-12 && sums_.force.norm() <= rounding_of_forces();
     if (size >= 0.5 * step_size && (size < 1e-12 || is_balanced)) return;
