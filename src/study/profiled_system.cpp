@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 namespace monograin {
@@ -204,18 +205,34 @@ class AlwaysIntegrated final : public Wrapped {
 
 class Disturbed final : public Wrapped {
  public:
-  Disturbed(std::unique_ptr<HybridSystem> system, double share) : Wrapped(std::move(system)), share_(share) {}
+  Disturbed(std::unique_ptr<HybridSystem> system, double share)
+      : Wrapped(std::move(system)), share_(share), shown_(unknowns().size()) {}
 
   void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
+    disturb(y);
+    Wrapped::begin_step(ramps, y, log);
+  }
+  void observe(double xi, View y, State values) override {
+    std::ranges::copy(y, shown_.begin());
+    disturb(shown_);
+    try {
+      Wrapped::complete(xi, shown_);
+      Wrapped::observe(xi, shown_, values);
+    } catch (const std::domain_error&) {
+      Wrapped::observe(xi, y, values);  // next to a limit
+    }
+  }
+
+ private:
+  void disturb(State y) const {
     for (std::size_t k = 0; k < y.size(); ++k) {
       const Unknown& unknown = unknowns()[k];
       if (unknown.kind == Unknown::Kind::differential && !unknown.is_slaved) y[k] *= 1.0 + share_;
     }
-    Wrapped::begin_step(ramps, y, log);
   }
 
- private:
   double share_;
+  std::vector<double> shown_;
 };
 
 class LookingBeyond final : public Wrapped {

@@ -47,7 +47,7 @@ class OutOfTime : public std::runtime_error {
 [[nodiscard]] std::unique_ptr<HybridSystem> looking_beyond(std::unique_ptr<HybridSystem> system, double factor);
 
 /// The same system, whose integrated unknowns are changed by a share of themselves wherever a step of the program
-/// begins: what its rates make of errors.
+/// begins, and where they are shown: what its rates make of errors, and what is seen of them.
 [[nodiscard]] std::unique_ptr<HybridSystem> disturbed(std::unique_ptr<HybridSystem> system, double share);
 
 /// The same system, without closed forms of its work: what they save is measured against it.
