@@ -112,6 +112,7 @@ class ExplicitForm {
 
   /// What the next complete state is sought from.
   void guess(std::span<const double> complete) { std::ranges::copy(complete, complete_.begin()); }
+  [[nodiscard]] std::span<const double> guess() const noexcept { return complete_; }
 
   /// The complete state of an integrated one; valid until the next call of this object. Where there is none, the last
   /// one stays the first guess: what a failed search has left behind would lead astray from a smaller step too.

@@ -162,8 +162,11 @@ class SundialsOde final : public Integrator {
     roots_.fired.clear();
     const double begin = end_;
     N_VScale(1.0, y_.get(), begin_state_.get());
+    // Trials of a step that came to nothing may have led to where other solutions are found.
+    begin_guess_.assign(form_.guess().begin(), form_.guess().end());
     const auto restart = [&](double step) {
       N_VScale(1.0, begin_state_.get(), y_.get());
+      form_.guess(begin_guess_);
       start(begin, step);
     };
     if (corrects_begin()) {
@@ -406,6 +409,7 @@ class SundialsOde final : public Integrator {
   double end_ = 0.0;
   double segment_begin_ = 0.0;
   std::vector<double> first_state_;  ///< of this segment, complete
+  std::vector<double> begin_guess_;  ///< of complete states, where the last step began
   double last_length_ = 0.0;         ///< of a step of this segment
   Statistics past_;
   long for_jacobian_ = 0;  ///< evaluations of rates
