@@ -73,6 +73,10 @@ std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::
 /// the order of what the particle bears there. So is one that is pulled where nothing adheres.
 constexpr double k_share_of_withdrawal = 1e-4;
 
+/// Factor within which laws say where a condition is met that does not tell it: what the last ramp may have led to
+/// already need not end the next one.
+constexpr double k_known_within = 3.0;
+
 /// Whether a free centre may leave its place: classes of walls that push it to no side keep it there.
 bool may_move_centre(const Scenario& scenario, const std::vector<ContactClass>& classes) {
   constexpr double k_no_push = 1e-6;  // of unit normals
@@ -145,7 +149,9 @@ double largest_target(const Scenario& scenario, const Scene& scene, Step::Kind k
         if (until.quantity == Until::Quantity::event && &step != &channel.program.front()) continue;
         const Reach end = end_of(scenario, centre_moves, until);
         const double place = is_displacement ? end.displacement : end.force;
-        if (place > before) reach = std::min(reach, place);
+        const bool is_told =
+            until.quantity == (is_displacement ? Until::Quantity::displacement : Until::Quantity::force);
+        if (place > (is_told ? 1.0 : k_known_within) * before) reach = std::min(reach, place);
       }
       before = is_withdrawal ? 0.0 : reach;
       largest = std::max(largest, reach);
