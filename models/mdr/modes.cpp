@@ -137,8 +137,9 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
   const bool is_carried = is_growing_ && !is_loaded(i) && of_wall >= -k_touch;
   const bool moves_in = of_overlap > k_touch || is_carried;
   const bool moves_out = of_overlap < -k_touch && !is_carried;
-  const bool retreats = settings_.delta_max_rule == DeltaMaxRule::shifted ? of_wall < -k_touch : moves_out;
-  const bool advances = settings_.delta_max_rule == DeltaMaxRule::shifted ? of_wall > k_touch : moves_in;
+  const bool is_shifted = settings_.delta_max_rule == DeltaMaxRule::shifted;
+  const bool retreats = is_shifted ? of_wall < -k_touch : moves_out;
+  const bool advances = is_shifted ? of_wall > k_touch : moves_in;
   // A force that is about to vanish, and was found to do so together with another event, presses no more.
   const bool is_vanishing = ramps_[i].end < ramps_[i].start && contact_guard(k_made, i, xi, overlap, r) < k_together;
   const bool is_pressed = is_loaded(i) && prescribed_force(i, xi) > 0.0 && !is_vanishing;
@@ -195,9 +196,16 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
   }
   if (memory.is_virgin) return false;
   if (advances && is_past(k_reload, 1.0)) {
-    resume_loading(i);
-    log.push_back(event("reload"));
-    return true;
+    // What has turned at this instant rests where it is: from one look to the next the sign of its rate is another one.
+    const double rate = is_shifted ? of_wall : of_overlap;
+    const double passed = contact_guard(k_reload, i, xi, overlap, r);
+    if (!has_turned_[i] || rate > k_at_rest || passed > k_touch) {
+      resume_loading(i);
+      log.push_back(event("reload"));
+      return true;
+    }
+    // Passed by rounding, the guard would not be met.
+    if (passed > 0.0) set_largest(i, r);
   }
   if (adheres()) return settle_edge(i, xi, y, now, is_carried, log);
   if (opens && is_past(k_lost, -1.0)) {
@@ -523,6 +531,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   bool has_jumped = false;
   std::optional<DomainEnd> end;
   for (std::size_t i = 0; i < memory_.size(); ++i) edges_before_[i] = memory_[i].edge;
+  has_turned_.assign(memory_.size(), false);
   for (const std::size_t g : fired) {
     const Guard guard = guards_[g];
     const auto i = static_cast<std::size_t>(std::max(0, guard.index));

@@ -302,6 +302,7 @@ class System final : public HybridSystem {
   bool drive_out(std::span<const Drive> drives, const SmallMatrix& along, Small& velocity) const;
   [[nodiscard]] bool rides(std::size_t i) const noexcept;
   void check_support() const;
+  void set_largest(std::size_t i, double r) noexcept;
   void start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log);
   void stick(std::size_t i, std::vector<Event>& log);
   [[nodiscard]] std::optional<std::size_t> weakest_contact() const noexcept;
@@ -375,6 +376,7 @@ class System final : public HybridSystem {
   std::vector<UnloadingShape> shapes_;
   std::vector<PullOff> pull_offs_;
   std::vector<Edge> edges_before_;
+  std::vector<bool> has_turned_;  ///< started to unload at the instant at which a mode is decided
   std::vector<double> overlaps_before_;
   std::vector<Memory> memory_before_;
   Sums sums_;

@@ -64,10 +64,16 @@ double System::loaded_rate(double loading, double by_radius, double growth) cons
   return is_growing_ && by_radius > 0.0 ? -1.0 : 0.0;
 }
 
+/// Where a contact is becomes its largest overlap.
+void System::set_largest(std::size_t i, double r) noexcept {
+  memory_[i].largest = now_[i].overlap - (settings_.delta_max_rule == DeltaMaxRule::shifted ? r : 0.0);
+}
+
 void System::start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log) {
   Memory& memory = memory_[i];
   memory.is_virgin = false;
-  memory.largest = now_[i].overlap - (settings_.delta_max_rule == DeltaMaxRule::shifted ? r : 0.0);
+  has_turned_[i] = true;
+  set_largest(i, r);
   if (memory.regime == Regime::fully_plastic) memory.regime = Regime::unloading;
   log.push_back({why, static_cast<int>(i)});
   if (!adheres()) return;
