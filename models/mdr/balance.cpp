@@ -178,14 +178,9 @@ double System::firmness(std::size_t i) const noexcept {
   return is_soft_at_first ? std::max(stiffness, least_firm()) : stiffness;
 }
 
-/// Displacement of the centre that changes the net force by `-force`; none along directions that no contact holds.
-System::Small System::balance_step(double Line::*stiffness, double Line::*force) const {
-  if (lines_.size() == 1) {
-    const Line& only = lines_.front();
-    return only.*stiffness == 0.0 ? Small::Zero() : Small(-(only.*force) / only.*stiffness * only.direction);
-  }
-  // Along the line that holds the centre most, across it along the one that does so most there, and so on: in these
-  // directions what stiff contacts do is nothing, not rounding, where only soft ones hold it.
+/// Along the line that holds the centre most, across it along the one that does so most there, and so on: in these
+/// directions what stiff contacts do is nothing, not rounding, where only soft ones hold it.
+System::SmallMatrix System::stiffest_directions(double Line::*stiffness) const {
   SmallMatrix basis = SmallMatrix::Zero();
   for (int k = 0; k < free_count_; ++k) {
     double most = 0.0;
@@ -201,13 +196,27 @@ System::Small System::balance_step(double Line::*stiffness, double Line::*force)
     next.normalize();
     basis.col(k) = (next - basis * (basis.transpose() * next)).normalized();
   }
+  return basis;
+}
 
+/// Of the direction of a line, without rounding.
+System::Small System::components(const SmallMatrix& basis, const Line& line) {
+  const Small raw = basis.transpose() * line.direction;
+  return (raw.array().abs() > k_no_component).select(raw, 0.0);
+}
+
+/// Displacement of the centre that changes the net force by `-force`; none along directions that no contact holds.
+System::Small System::balance_step(double Line::*stiffness, double Line::*force) const {
+  if (lines_.size() == 1) {
+    const Line& only = lines_.front();
+    return only.*stiffness == 0.0 ? Small::Zero() : Small(-(only.*force) / only.*stiffness * only.direction);
+  }
+  const SmallMatrix basis = stiffest_directions(stiffness);
   SmallMatrix sum = SmallMatrix::Zero();
   Small push = Small::Zero();
   Small magnitudes = Small::Zero();
   for (const Line& line : lines_) {
-    const Small raw = basis.transpose() * line.direction;
-    const Small at = (raw.array().abs() > k_no_component).select(raw, 0.0);
+    const Small at = components(basis, line);
     sum += line.*stiffness * at * at.transpose();
     push += line.*force * at;
     magnitudes += std::abs(line.*stiffness) * at.cwiseAbs2();

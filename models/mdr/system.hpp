@@ -177,6 +177,8 @@ class System final : public HybridSystem {
     double stiffness = 0.0;
     double firmness = 0.0;
     double last_stiffness = 0.0;  ///< of the last step towards the balance
+    double held = 0.0;            ///< stiffness that is left, and
+    double unspent = 0.0;         ///< what it would be if no edge peeled and no contact had spent its strength
   };
 
   /// Mean normal of a class as a multiple of the direction of a line.
@@ -253,6 +255,8 @@ class System final : public HybridSystem {
   [[nodiscard]] double least_firm() const noexcept { return 2.0 * material_.composite_modulus * std::sqrt(k_shallow); }
   [[nodiscard]] double firmness(std::size_t i) const noexcept;
   void find_lines();
+  [[nodiscard]] SmallMatrix stiffest_directions(double Line::*stiffness) const;
+  [[nodiscard]] static Small components(const SmallMatrix& basis, const Line& line);
   [[nodiscard]] Small balance_step(double Line::*stiffness, double Line::*force) const;
   [[nodiscard]] Motion motion(bool growing) const;
   [[nodiscard]] Motion growing_motion() const;
@@ -309,7 +313,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double unpeeled_stiffness(std::size_t i) const noexcept;
   [[nodiscard]] double stiffness_of_shallow() const noexcept;
   [[nodiscard]] bool is_any_spent() const noexcept;
-  [[nodiscard]] double least_firmness() const;
+  [[nodiscard]] double least_firmness();
   void check_adhesion(std::size_t i, double r);
   void start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);
   void separate(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);

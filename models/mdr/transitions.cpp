@@ -166,23 +166,36 @@ bool System::is_any_spent() const noexcept {
 
 /// How firmly the contacts hold a free centre in the direction in which they do so least: their stiffness over what it
 /// would be if no edge peeled and no contact had spent its strength. Zero where the equilibrium turns back.
-double System::least_firmness() const {
-  SmallMatrix magnitudes = unheld_;
-  SmallMatrix stiffness = unheld_;
+double System::least_firmness() {
+  for (Line& line : lines_) line.held = line.unspent = 0.0;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (!touches(memory_[i].regime) || is_loaded(i)) continue;
-    const SmallMatrix along = directions_[i] * directions_[i].transpose();
-    const double count = classes_[i].multiplicity() / material_.composite_modulus;
-    stiffness += count * firmness(i) * along;
+    const double along = on_lines_[i].along;
+    const double count = classes_[i].multiplicity() * along * along;
+    Line& line = lines_[on_lines_[i].line];
+    line.held += count * firmness(i);
     // Of two alike that peel, or spend their strength, the stiffnesses end together, and with them the sum of what they
     // are.
     const double at_first = memory_[i].regime == Regime::fully_plastic ? stiffness_of_shallow() : firmness(i);
-    magnitudes += count * std::max(unpeeled_stiffness(i), at_first) * along;
+    line.unspent += count * std::max(unpeeled_stiffness(i), at_first);
   }
-  for (int k = free_count_; k < 3; ++k) stiffness(k, k) = magnitudes(k, k) = 1.0;
-  const Small weakest = Eigen::SelfAdjointEigenSolver<SmallMatrix>(stiffness).eigenvectors().col(0);
-  const double magnitude = weakest.dot(magnitudes * weakest);
-  return magnitude > 0.0 ? weakest.dot(stiffness * weakest) / magnitude : 1.0;
+  // The stiffness of one direction is not to be lost in the rounding of another's.
+  const SmallMatrix basis = stiffest_directions(&Line::unspent);
+  SmallMatrix held = SmallMatrix::Zero();
+  SmallMatrix unspent = SmallMatrix::Zero();
+  for (const Line& line : lines_) {
+    const Small at = components(basis, line);
+    held += line.held * at * at.transpose();
+    unspent += line.unspent * at * at.transpose();
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (unspent(k, k) == 0.0) held(k, k) = unspent(k, k) = 1.0;
+  }
+  const Small scale = unspent.diagonal().cwiseSqrt().cwiseInverse();
+  const SmallMatrix numerator = scale.asDiagonal() * held * scale.asDiagonal();
+  const SmallMatrix denominator = scale.asDiagonal() * unspent * scale.asDiagonal();
+  return Eigen::GeneralizedSelfAdjointEigenSolver<SmallMatrix>(numerator, denominator, Eigen::EigenvaluesOnly)
+      .eigenvalues()[0];
 }
 
 void System::resume_loading(std::size_t i) {
