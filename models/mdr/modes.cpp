@@ -470,7 +470,10 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
   std::vector<Event> made;
   if (!has_jumped) balance_anew(xi, y, log, made);
   held_radius_ = y[k_radius];
+  bool runs_away = false;
   for (std::size_t round = 0;; ++round) {
+    // Where it would run away in a mode that has been tried, the radius goes to and fro with a contact.
+    if (round == most_rounds() && runs_away) throw std::domain_error(k_singular_growth);
     if (round == most_rounds()) throw_unsettled();
     is_growing_ = growth ? *growth : wants_growth(xi, y);
     look(xi, y);
@@ -482,6 +485,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
       continue;
     }
     const Motion now = motion(is_growing_);
+    runs_away = runs_away || (is_growing_ && free_surface(now, y[k_radius]) < k_least_slope);
     bool has_changed = false;
     std::vector<std::size_t> just_loaded;
     for (std::size_t i = 0; i < memory_.size(); ++i) {
