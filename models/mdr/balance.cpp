@@ -23,6 +23,8 @@ constexpr double k_twelfth = 1.0 / 12.0;
 constexpr double k_round_off = std::numeric_limits<double>::epsilon();
 constexpr int k_newton_limit = 60;
 constexpr int k_most_halvings = 40;
+// How far, over R0, no contact is to lead the centre at once that is as soft as rounding.
+constexpr double k_out_of_bounds = 1.0;
 // How many times as long as the last one a step is at most.
 constexpr double k_most_growth = 64.0;
 // How far, over R0, an equilibrium that does not hold the centre is from where its contacts begin to; and by how much
@@ -338,6 +340,8 @@ void System::find_balance(double xi, std::span<double> y) {
     // Overlaps are rounded, and the stiffest contact's force with its own; below that there is nothing to damp.
     const double noise = k_round_off * sums_.stiffness.cwiseAbs().maxCoeff();
     Small step = balance_step(&Line::stiffness, &Line::force);
+    // Contacts that are shallower than rounding are so soft that their tangents lead out of all bounds.
+    if (step.norm() > k_out_of_bounds) step = balance_step(&Line::firmness, &Line::force);
     if (step.norm() == 0.0) {
       if (error <= rounding_of_forces()) return;
       throw std::domain_error("no contact holds the free centre of the particle");
