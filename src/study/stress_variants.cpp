@@ -5,6 +5,8 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -224,10 +226,12 @@ Scenario changed(Scenario scenario, double share, std::uint64_t sample) {
   const std::uint64_t pair = sample / 2;
   const double side = sample % 2 == 0 ? share : -share;
   Dice dice(pair);
+  const std::span<const QuantityKey> keys = find_model(scenario.model)->material;
   for (auto& [key, value] : scenario.material) {
-    // Down, where there is an upper end of what is admissible.
-    const bool is_ratio = key == "poisson_ratio" || key == "nu0" || key == "hardening_exponent";
-    value *= 1.0 + (is_ratio ? share * dice.uniform(-1.0, 0.0) : side * dice.uniform(-1.0, 1.0));
+    const double factor = side * dice.uniform(-1.0, 1.0);
+    // The other way at an end of what is admissible.
+    const Range& range = std::ranges::find(keys, std::string_view(key), &QuantityKey::name)->range;
+    value *= range.contains(value * (1.0 + factor)) ? 1.0 + factor : 1.0 - factor;
   }
   const double radius = scenario.radius;
   // Walls of one class stay so: what symmetry puts together rounding does not take apart. But a free centre is as
