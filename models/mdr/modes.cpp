@@ -273,7 +273,8 @@ bool System::leave_behind(double xi, std::span<const double> y, std::vector<Even
     velocity = velocity_of(drives, xi, y);
   }
   if (!velocity) return false;
-  const double least = -k_touch * (1.0 + velocity->norm());
+  // Beside stiff contacts these rates have fewer digits; what leaves more slowly is lost when it has gone.
+  const double least = -k_at_rest * (1.0 + velocity->norm());
   bool has_left = false;
   for (const Drive& drive : drives) {
     const std::size_t i = drive.contact;
