@@ -456,20 +456,16 @@ bool System::approach_balance(double xi, std::span<double> y) {
 }
 
 /// Projector on the directions in which no touching contact holds the centre.
-System::SmallMatrix System::unheld_directions() const {
+System::SmallMatrix System::unheld_directions() {
+  for (Line& line : lines_) line.held = 0.0;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    const double along = on_lines_[i].along;
+    if (touches(memory_[i].regime) && !is_loaded(i)) lines_[on_lines_[i].line].held += along * along;
+  }
   SmallMatrix unheld = SmallMatrix::Zero();
   for (int k = 0; k < free_count_; ++k) unheld(k, k) = 1.0;
-  SmallMatrix reach = SmallMatrix::Zero();
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (touches(memory_[i].regime) && !is_loaded(i)) reach += directions_[i] * directions_[i].transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(reach);
-  for (int k = 0; k < 3; ++k) {
-    if (solver.eigenvalues()[k] <= 1e-12) continue;
-    const Small direction = solver.eigenvectors().col(k);
-    unheld -= direction * direction.transpose();
-  }
-  return unheld;
+  const SmallMatrix basis = stiffest_directions(&Line::held);
+  return unheld - basis * basis.transpose();
 }
 
 /// Where nothing holds the centre it stays where it is; and a contact that no others balance bears nothing: what the

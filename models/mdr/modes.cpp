@@ -372,7 +372,7 @@ bool System::is_backed(std::size_t i, double side) const {
 /// A wall that pushes a particle which nothing holds from the other side has no equilibrium, unless others adhere; nor
 /// have forces that do not balance where no wall stands against them.
 /// @throws std::domain_error there
-void System::check_support() const {
+void System::check_support() {
   if (free_count_ == 0) return;
   const double least = k_touch * speed_scale();
   for (std::size_t i = 0; !adheres() && i < memory_.size(); ++i) {
@@ -500,7 +500,6 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
       // not be met.
       const auto weakest = weakest_contact();
       if (free_count_ == 0 || !weakest) break;
-      unheld_ = unheld_directions();
       if (least_firmness() >= k_least_firmness) break;
       separate(*weakest, y[k_radius], y, log);
     }

@@ -177,7 +177,7 @@ class System final : public HybridSystem {
     double stiffness = 0.0;
     double firmness = 0.0;
     double last_stiffness = 0.0;  ///< of the last step towards the balance
-    double held = 0.0;            ///< stiffness that is left, and
+    double held = 0.0;            ///< work space: what holds the centre, such as the stiffness that is left; and
     double unspent = 0.0;         ///< what it would be if no edge peeled and no contact had spent its strength
   };
 
@@ -285,7 +285,7 @@ class System final : public HybridSystem {
   [[nodiscard]] std::size_t most_rounds() const noexcept { return 4 * memory_.size() + 8; }
   [[nodiscard]] bool wants_growth(double xi, std::span<double> y);
   [[nodiscard]] double growth_drive(const Motion& now) const noexcept;
-  [[nodiscard]] SmallMatrix unheld_directions() const;
+  [[nodiscard]] SmallMatrix unheld_directions();
   void hold_centre(std::span<const double> y);
   bool settle_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log,
                       std::vector<Event>& made);
@@ -305,7 +305,7 @@ class System final : public HybridSystem {
   [[nodiscard]] std::optional<Small> velocity_of(std::span<Drive> drives, double xi, std::span<const double> y);
   bool drive_out(std::span<const Drive> drives, const SmallMatrix& along, Small& velocity) const;
   [[nodiscard]] bool rides(std::size_t i) const noexcept;
-  void check_support() const;
+  void check_support();
   void set_largest(std::size_t i, double r) noexcept;
   void start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log);
   void stick(std::size_t i, std::vector<Event>& log);
