@@ -28,6 +28,10 @@ double power_of_share(const UnloadingCurve& curve, double displacement, double p
   return std::exp(power * std::log1p((displacement - curve.largest) / curve.length));
 }
 
+// Beyond this share to either side an unloading curve goes on along its tangent. Curves may be much shorter than what a
+// wall is off by when an event is located, and a power of that many lengths has no bounds.
+constexpr double k_farthest_share = 2.0;
+
 }  // namespace
 
 LoadingLaw make_loading_law(double stiffness, double transition, double exponent) {
@@ -126,8 +130,13 @@ UnloadingCurve unloading_from(const LoadingLaw& law, double hertz_stiffness, con
 }
 
 double unloading_force(const UnloadingCurve& curve, double displacement) noexcept {
-  return std::copysign(curve.force * power_of_share(curve, displacement, curve.exponent),
-                       share_of(curve, displacement));
+  const double share = share_of(curve, displacement);
+  const double beyond = std::abs(share) - k_farthest_share;
+  if (beyond > 0.0) {
+    const double at_farthest = curve.force * std::pow(k_farthest_share, curve.exponent);
+    return std::copysign(at_farthest * (1.0 + curve.exponent * beyond / k_farthest_share), share);
+  }
+  return std::copysign(curve.force * power_of_share(curve, displacement, curve.exponent), share);
 }
 
 double unloading_slope(const UnloadingCurve& curve, double displacement) noexcept {
@@ -135,6 +144,12 @@ double unloading_slope(const UnloadingCurve& curve, double displacement) noexcep
 }
 
 double recoverable_work(const UnloadingCurve& curve, double displacement) noexcept {
+  const double beyond = std::abs(share_of(curve, displacement)) - k_farthest_share;
+  if (beyond > 0.0) {
+    const double at_farthest = curve.force * std::pow(k_farthest_share, curve.exponent);
+    const double mean = 1.0 + 0.5 * curve.exponent * beyond / k_farthest_share;
+    return at_farthest * curve.length * (k_farthest_share / (curve.exponent + 1.0) + beyond * mean);
+  }
   return curve.force * curve.length / (curve.exponent + 1.0) *
          power_of_share(curve, displacement, curve.exponent + 1.0);
 }

@@ -112,7 +112,8 @@ struct UnloadingCurve {
 [[nodiscard]] UnloadingCurve unloading_from(const LoadingLaw& law, double hertz_stiffness, const UnloadingRule& rule,
                                             double largest) noexcept;
 
-/// Force on the curve; below d0 it goes on as an odd function of the distance from there.
+/// Force on the curve; below d0 it goes on as an odd function of the distance from there, and a length beyond either
+/// end along its tangent.
 [[nodiscard]] double unloading_force(const UnloadingCurve& curve, double displacement) noexcept;
 [[nodiscard]] double unloading_slope(const UnloadingCurve& curve, double displacement) noexcept;
 /// Work that the contact gives back from here to its opening, from d0 on.
