@@ -392,11 +392,20 @@ std::optional<DomainEnd> ContactSystem::fire(std::span<const std::size_t> fired,
     const auto i = static_cast<std::size_t>(guard.index);
     Memory& memory = memory_[i];
     log.push_back({guard.name, guard.index});
+    // A wall that goes on has passed what begins within rounding of here, or within one step of fixed length.
+    const auto pass_on = [&](double from) {
+      const double d = std::max(from, is_loaded(i) ? displacement_under(settings_.law, told(i, xi)) : told(i, xi));
+      pass_boundaries(i, d, log);
+      if (memory.regime == Regime::unloading || !reaches(d, k_largest_displacement)) return;
+      if (!goes_beyond(i, k_largest_displacement)) return;
+      log.push_back({"limit", guard.index});
+      end_at(k_largest_displacement);
+    };
     switch (guard.kind) {
       case k_made:
         make_contact(i);
         // A dent may be shallower than rounding of the place where the wall meets it.
-        pass_boundaries(i, told(i, xi), log);
+        pass_on(place);
         break;
       case k_transition:
         memory.regime = Regime::exponential;
@@ -404,11 +413,7 @@ std::optional<DomainEnd> ContactSystem::fire(std::span<const std::size_t> fired,
       case k_reload:
         go_on_loading(i, place);
         // The next part of the law may begin within rounding of the ramp.
-        pass_boundaries(i, is_loaded(i) ? displacement_under(settings_.law, told(i, xi)) : told(i, xi), log);
-        if (reaches(place, k_largest_displacement) && goes_beyond(i, k_largest_displacement)) {
-          log.push_back({"limit", guard.index});
-          end_at(place);
-        }
+        pass_on(place);
         break;
       case k_lost:
         memory.regime = Regime::open;
