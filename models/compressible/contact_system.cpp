@@ -77,11 +77,12 @@ void ContactSystem::begin_step(std::span<const Ramp> ramps, std::span<double> y,
     const double unit = takes_force ? std::numbers::pi * radius * radius * settings_.yield_pressure : radius;
     const double stood = classes_[i].takes_force ? displacement_at(i, y[places_[i]]) : 0.0;
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
-    double d = takes_force ? stood : ramps_[i].start;
+    const double d = takes_force ? stood : ramps_[i].start;
     settle(i, d, log);
     if (!touches(i)) memory_[i].resting = d;
-    if (takes_force && touches(i)) d = std::max(d, opening(i));
-    if (classes_[i].takes_force) y[places_[i]] = coordinate(i, d);
+    if (!classes_[i].takes_force) continue;
+    // A force is told; on a steep curve it would not come back from the place of its wall.
+    y[places_[i]] = takes_force && touches(i) ? coordinate_under(i, std::max(ramps_[i].start, 0.0)) : coordinate(i, d);
   }
   has_begun_ = true;
   watch();
