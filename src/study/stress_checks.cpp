@@ -153,8 +153,10 @@ class SceneCheck {
     if (!verdict_.violations.empty()) return;
     share_ = is_direct ? k_stress_rounding : std::max(scenario_.numerics.rtol, k_finest_rtol);
     tolerance_ = std::max(own_tolerance(*run), own_tolerance(*reference_));
+    // Errors of the steps add up, whichever of the two tolerances is the larger one.
+    const double adding_up = tolerance_ / std::max(scenario_.numerics.rtol, k_finest_rtol);
     nothing_ = {.unit = {.length = scenario_.radius, .stress = softest(scenario_)},
-                .share = is_direct ? k_stress_rounding : scenario_.numerics.atol,
+                .share = is_direct ? k_stress_rounding : adding_up * scenario_.numerics.atol,
                 .energy_share = direct_work_tolerance(*run),
                 .step_share = tolerance_,
                 .length = k_stress_rounding * scenario_.radius};
