@@ -10,12 +10,12 @@ namespace {
 
 using std::string_view;
 
-// The multiplier starts from zero in every plastic phase, but has no more digits than the strains that f is made of. So
-// has phi, which in tension may start from zero beside large strains.
+// The path starts from zero in every plastic phase, but has no more digits than the strains that f is made of. So has
+// phi, which in tension may start from zero beside large strains.
 constexpr std::array k_unknowns{
     Unknown{.name = "phi", .scale = 0.1, .sum_scale = 1.0},
     Unknown{.name = "plastic_strain_deviatoric", .scale = 0.1, .sum_scale = 1.0},
-    Unknown{"plastic_multiplier", Unknown::Kind::quadrature, 1.0},
+    Unknown{"plastic_path", Unknown::Kind::quadrature, 1.0},
 };
 // Plastic strains over elastic ones, of which the stress is what is left: as they are at least in a usual material, and
 // up to where integrators would follow rounding.
@@ -213,15 +213,20 @@ void MaterialPoint::require_unique(const Flow& flow) {
   if (!(flow.stiffness > 0.0)) throw std::domain_error("the strain that follows from the program is not unique");
 }
 
+/// Plastic strain for a unit of the multiplier, which is integrated times this: by itself it goes like the reciprocal
+/// of the gradient of f, and has the rounding and the errors of the stress.
+double MaterialPoint::length(const Flow& flow) noexcept { return std::hypot(flow.phi, flow.deviatoric); }
+
 void MaterialPoint::rates(double xi, std::span<const double> y, std::span<double> dy) {
   std::ranges::fill(dy, 0.0);
   if (!is_plastic_) return;
   const Flow now = flow(response(xi, y));
   if (now.loading == 0.0) return;
   require_unique(now);
-  dy[k_multiplier] = now.loading / now.stiffness;
-  dy[k_phi] = dy[k_multiplier] * now.phi;
-  dy[k_deviatoric] = dy[k_multiplier] * now.deviatoric;
+  const double multiplier = now.loading / now.stiffness;
+  dy[k_phi] = multiplier * now.phi;
+  dy[k_deviatoric] = multiplier * now.deviatoric;
+  dy[k_path] = multiplier * length(now);
 }
 
 void MaterialPoint::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
@@ -231,9 +236,10 @@ void MaterialPoint::residual(double xi, std::span<const double> y, std::span<con
   }
   const Flow now = flow(response(xi, y));
   require_unique(now);
-  res[k_phi] = dy[k_phi] - dy[k_multiplier] * now.phi;
-  res[k_deviatoric] = dy[k_deviatoric] - dy[k_multiplier] * now.deviatoric;
-  res[k_multiplier] = now.yield.f;
+  const double multiplier = dy[k_path] / length(now);
+  res[k_phi] = dy[k_phi] - multiplier * now.phi;
+  res[k_deviatoric] = dy[k_deviatoric] - multiplier * now.deviatoric;
+  res[k_path] = now.yield.f;
 }
 
 /// The plastic strains of an elastic phase are those it began with; those of a solvable plastic one lie on a line

@@ -3,12 +3,12 @@
 /// Two channels, axial and lateral, each with its logarithmic strain or its stress prescribed; a single channel drives
 /// both alike. Tension is positive. Inside: stresses in units of the yield pressure at the reference density.
 ///
-/// Unknowns: the state variable phi, the deviatoric plastic strain g^p, and the accumulated plastic multiplier l. The
-/// strains and stresses follow from phi and g^p in closed form, because the elastic law is linear for given moduli, so
-/// that a prescribed lateral stress brings no unknown of its own. Elastic: nothing moves. Plastic, with the flow of
-/// the segment's potential:
-///   implicit  phi' = l' a, g^p' = l' g_s, f = 0, with a = -g_p (vm: |g_s|); of index 1 in the accumulated multiplier
-///   explicit  l' = N/D from the derivative of f = 0; complete() takes the state back to f = 0
+/// Unknowns: the state variable phi, the deviatoric plastic strain g^p, and the path l that both have gone, the
+/// accumulated plastic multiplier times the length of the flow. The strains and stresses follow from phi and g^p in
+/// closed form, because the elastic law is linear for given moduli, so that a prescribed lateral stress brings no
+/// unknown of its own. Elastic: nothing moves. Plastic, with the flow of the segment's potential:
+///   implicit  phi' = l' a/n, g^p' = l' g_s/n, f = 0, with a = -g_p (vm: |g_s|), n = |(a, g_s)|; of index 1 in l
+///   explicit  l' = n N/D from the derivative of f = 0; complete() takes the state back to f = 0
 ///   direct    only where the flow keeps its direction, so that f = 0 along it is one equation: all of vm, and
 ///             hydrostatic loading
 ///
@@ -68,7 +68,7 @@ class MaterialPoint final : public HybridSystem {
   // Places in y.
   static constexpr std::size_t k_phi = 0;
   static constexpr std::size_t k_deviatoric = 1;
-  static constexpr std::size_t k_multiplier = 2;
+  static constexpr std::size_t k_path = 2;
   // Channels.
   static constexpr std::size_t k_axial = 0;
   static constexpr std::size_t k_lateral = 1;
@@ -116,6 +116,7 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] Flow flow(const Response& now) const;
   [[nodiscard]] static double cosine(const Flow& flow) noexcept;
   static void require_unique(const Flow& flow);
+  [[nodiscard]] static double length(const Flow& flow) noexcept;
   [[nodiscard]] Flow flow_to_surface(const Response& now) const;
   enum class Way { flow, shortest };
   [[nodiscard]] bool is_brought_back(double xi, std::span<double> y, Way way);
