@@ -347,7 +347,8 @@ void System::solve(double xi, std::span<double> y) {
   // Elsewhere digits would cancel: beside a greater strain, or in a stress that is plastic for the most part.
   const bool is_told = ramp_.control == Control::strain;
   const bool gives_way_as_much = y[k_particles] > 0.5 * now.strain;
-  if (!gives_way_as_much || (!is_told && total_stress_slope(law_, now.packing_fraction) < 0.5)) return;
+  const double elastic_part = now.stress_elastic * total_stress_slope(law_, now.packing_fraction);
+  if (!gives_way_as_much || (!is_told && elastic_part < 0.5 * now.stress)) return;
   const double strain = is_told ? now.strain : now.stress_elastic / effective_modulus(law_, now.packing_fraction);
   y[k_particles] = law_.sign * (total_strain(law_, now.packing_fraction) - strain);
 }
