@@ -22,6 +22,7 @@ constexpr double k_strain_rounding = 1e-16;
 constexpr double k_last_excess = 1e-9;
 constexpr int k_most_small_corrections = 12;
 constexpr int k_most_corrections = 60;
+constexpr int k_most_halvings = 20;
 // Plastic strain by which no guess of an integrator is wrong at any tolerance. A state that is farther away from its
 // guess than that and the elastic strain lies on another branch, behind a loss of uniqueness.
 constexpr double k_nearby = 1e-2;
@@ -74,14 +75,26 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
   const bool has_caps = is_compressible(settings_.parameters.model);
   double elastic_strain = 0.0;
   int small_corrections = 0;
+  int halvings = 0;
   double phi = 0.0;  // of the last correction
   double deviatoric = 0.0;
-  Flow last;  // where it began
+  Flow last;  // where it began; f, as much of it as it takes away
   std::optional<std::array<double, 2>> floor;
   try {
     for (int i = 0; i < k_most_corrections; ++i) {
-      const Response here = response(xi, y);
-      const Flow now = flow_to_surface(here);
+      Response here;
+      Flow now;
+      try {
+        here = response(xi, y);
+        now = flow_to_surface(here);
+      } catch (const std::domain_error&) {
+        // Next to where moduli become infinite a correction may lead beyond: half of it, or less, does not.
+        if (phi == 0.0 || ++halvings > k_most_halvings) throw;
+        for (double* part : {&phi, &deviatoric, &last.yield.f}) *part *= 0.5;
+        y[k_phi] -= phi;
+        y[k_deviatoric] -= deviatoric;
+        continue;
+      }
       elastic_strain = 1.0 / stiffness_over_strength(here.at);
       const double slope = now.f_by_phi * phi + now.f_by_deviatoric * deviatoric;
       if (has_caps && last.yield.f > 0.0 && now.yield.f > 0.0 && slope > 0.0) {
@@ -89,6 +102,7 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
         y[k_phi] -= back * phi;
         y[k_deviatoric] -= back * deviatoric;
         floor = {last.f_by_deviatoric - now.f_by_deviatoric, now.f_by_phi - last.f_by_phi};
+        phi = deviatoric = 0.0;
         last = {};
         continue;
       }
