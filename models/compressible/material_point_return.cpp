@@ -120,8 +120,6 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
       if (std::hypot(phi, deviatoric) >= last_correction) continue;
       const bool is_found = !has_caps || std::abs(now.yield.f) < k_last_excess;
       if (!is_found && ++small_corrections < k_most_small_corrections) continue;
-      // An arc is the part of its circle away from the axis s = 0.
-      if (branch_.segment == Segment::transition && !(branch_.side * now.yield.f_s > 0.0)) return false;
       const double distance = std::hypot(y[k_phi] - guess, y[k_deviatoric] - guessed_deviatoric);
       return is_solvable() || distance <= std::max(elastic_strain, k_nearby);
     }

@@ -82,6 +82,9 @@ T yield_formula(YieldModel model, double width, const Strengths<T>& with, Branch
     const T q = branch.side * s;
     if (branch.segment == Segment::transition) {
       const T w = q - cap.arc_centre;
+      // Nothing below the centre belongs to the arc; from there this leads to it, and not to the far side of its
+      // circle.
+      if (!(plain(w) > 0.0)) return w - cap.arc_radius;
       return sqrt(T(y * y + w * w)) - cap.arc_radius;
     }
     return q + p * cap.slope - cap.cohesion;

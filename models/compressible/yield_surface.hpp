@@ -59,7 +59,8 @@ struct CapConstants {
 /// The branch at this stress; side -1 (axial compression) where s is zero.
 [[nodiscard]] Branch branch_at(const Parameters& parameters, const Properties& properties, double p, double s);
 
-/// f, g and their derivatives on the formula of a branch, wherever p is.
+/// f, g and their derivatives on the formula of a branch, wherever p is; below the arc's centre f is the height over
+/// the top of the arc.
 [[nodiscard]] Yield yield_on(const Parameters& parameters, const Properties& properties, Branch branch, double p,
                              double s);
 
