@@ -442,6 +442,10 @@ void SundialsOde<ArkodeLibrary>::create() {
   check("ARKStepSetOrder", ARKStepSetOrder(memory_.get(), ArkodeLibrary::order));
   if (form_.has_corrections()) {
     check("ARKStepSetPostprocessStepFn", ARKStepSetPostprocessStepFn(memory_.get(), corrected));
+    // Rates where a step has been corrected have that correction in them, times what may be a great stiffness: what
+    // lies within a step is interpolated without them.
+    const int type = is_implicit ? ARK_INTERP_LAGRANGE : ARK_INTERP_HERMITE;
+    check("ARKStepSetInterpolantType", ARKStepSetInterpolantType(memory_.get(), type));
   }
   if (is_implicit) check("ARKStepSetMaxStep", ARKStepSetMaxStep(memory_.get(), k_longest_implicit_step));
 }
