@@ -28,7 +28,7 @@ namespace {
 // What a scene does with changed data is measured by a few samples of all directions; the worst is a few times worse.
 constexpr double k_sample_multiple = 10.0;
 constexpr std::uint64_t k_samples = 8;  // in pairs
-// A run is stuck that takes so many times as long as the scene's own.
+// A run is stuck that takes so many times as long as the scene's own, or its reference.
 constexpr double k_patience = 4.0;
 // Overlaps over R0 below which there is nothing but rounding (README, "Limits").
 constexpr double k_resolution = 1e-12;
@@ -121,7 +121,7 @@ class SceneCheck {
     try {
       check_all();
     } catch (const OutOfTime&) {
-      // Where the scene itself has taken much of the time, what it would be compared with takes as long.
+      // Where the scene itself or its reference has taken much of the time, what they would be compared with does, too.
       verdict_.is_cut_short = seconds_of_run() < k_patience * own_seconds_;
       if (!verdict_.is_cut_short) {
         report(k_time_rule, fmt::format("{} runs have not come to an end within {:g} s", verdict_.runs, seconds_));
@@ -149,6 +149,8 @@ class SceneCheck {
     const bool is_direct = run->integrator.used == "direct";
     reference_ = is_direct ? run : try_run(as_reference(scenario_), "reference form");
     if (!reference_) return;
+    // What takes its time takes as long beside it.
+    own_seconds_ = std::max(own_seconds_, seconds_of_run());
     if (!is_direct) verdict_.violations = check_run(*reference_);
     if (!verdict_.violations.empty()) return;
     share_ = is_direct ? k_stress_rounding : std::max(scenario_.numerics.rtol, k_finest_rtol);
@@ -375,7 +377,7 @@ class SceneCheck {
   double seconds_;
   double end_ = thread_seconds() + seconds_;
   double run_begin_ = thread_seconds();  ///< of the last run
-  double own_seconds_ = 0.0;             ///< that the scene's own run has taken
+  double own_seconds_ = 0.0;             ///< that the scene's own run, or its reference, has taken
   const Run* own_ = nullptr;             ///< the scene's run, while all is checked
   std::optional<Run> reference_;
   double tolerance_ = 0.0;
