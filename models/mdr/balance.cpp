@@ -33,8 +33,10 @@ constexpr double k_nearest_saddle = 1e-9;
 constexpr double k_farthest_saddle = 1e-2;
 constexpr double k_longer = 1.25;
 constexpr int k_most_sections = 40;
-// Step of the growing radius after which the next one is rounding.
+// Step of the growing radius after which the next one is rounding, where all that depends on it is smooth.
 constexpr double k_last_step = 1e-10;
+// Steps that are rounding, where they do not become shorter.
+constexpr double k_rounding_step = 1e-12;
 // Components of unit vectors that are rounding.
 constexpr double k_no_component = 1e-15;
 
@@ -490,6 +492,10 @@ void System::grow(double xi, std::span<double> y) {
   double below = -std::numeric_limits<double>::infinity();
   double above = std::numeric_limits<double>::infinity();
   double step_size = std::numeric_limits<double>::infinity();
+  // Quadratic convergence: below this the next step is rounding, unless square roots are still settling, of the force
+  // of what touches a free centre or of an edge next to pull-off.
+  const bool peels = std::ranges::any_of(memory_, [](const Memory& memory) { return memory.edge == Edge::peeling; });
+  const double last_step = free_count_ == 0 && !peels ? k_last_step : 2.0 * k_round_off;
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     move_walls(xi, y);
     look(xi, y);
@@ -511,20 +517,18 @@ void System::grow(double xi, std::span<double> y) {
       (defect < 0.0 ? below : above) = y[k_radius];
       const double next = y[k_radius] + step;
       const bool is_bounded = std::isfinite(above - below);
-      if (std::abs(step) >= k_last_step && is_bounded && (next <= below || next >= above)) {
+      if (std::abs(step) >= std::max(last_step, k_rounding_step) && is_bounded && (next <= below || next >= above)) {
         step = std::midpoint(below, above) - y[k_radius];
       }
     }
     y[k_radius] += step;
     const Small centre_step = to_balance + step * by_radius;
     for (int k = 0; k < free_count_; ++k) y[centre_place(k)] += centre_step[k];
-    // Quadratic convergence: below this the next step is round-off, unless the centre's square-root forces are still
-    // settling.
     const double size = std::max(std::abs(step), centre_step.norm());
-    if (size < (free_count_ == 0 ? k_last_step : 2.0 * k_round_off)) return;
+    if (size < last_step) return;
     // A centre that soft contacts hold goes to and fro by more than that.
-    const bool is_balanced = std::abs(step) < 1e-12 && sums_.force.norm() <= rounding_of_forces();
-    if (size >= 0.5 * step_size && (size < 1e-12 || is_balanced)) return;
+    const bool is_balanced = std::abs(step) < k_rounding_step && sums_.force.norm() <= rounding_of_forces();
+    if (size >= 0.5 * step_size && (size < k_rounding_step || is_balanced)) return;
     step_size = size;
   }
   throw std::domain_error("the volume balance of the growing radius has no solution nearby");
