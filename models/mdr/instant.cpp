@@ -56,10 +56,13 @@ void System::look_once(double xi, std::span<const double> y) {
 }
 
 /// An elastic contact. Where the centre is free, a trial that opens it would find a particle that nothing holds there,
-/// at rest wherever it is; a force odd in the overlap leads back to where the contact just touches.
+/// at rest wherever it is; a force odd in the overlap leads back to where the contact just touches. From where a wall
+/// has gone far within a step, one may also lead beyond the middle of the particle: the force goes on with the slope
+/// there.
 Contact System::touching_contact(double radius, double overlap) const {
-  Contact contact = elastic_contact(settings_.elastic_profile, material_.composite_modulus, radius,
-                                    free_count_ > 0 ? std::abs(overlap) : overlap);
+  const double depth = free_count_ > 0 ? std::min(std::abs(overlap), radius) : overlap;
+  Contact contact = elastic_contact(settings_.elastic_profile, material_.composite_modulus, radius, depth);
+  if (free_count_ > 0) contact.force += contact.by_overlap * (std::abs(overlap) - depth);
   if (overlap < 0.0) {
     contact.force = -contact.force;
     contact.by_radius = -contact.by_radius;
