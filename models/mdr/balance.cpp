@@ -382,10 +382,12 @@ void System::find_balance(double xi, std::span<double> y) {
 /// Next to a fold there is, beside the equilibrium that holds the centre, another one that does not, to which a search
 /// from afar may lead, and others beyond pull-off. Between them the contacts hold the centre neither way; the
 /// equilibrium sought is about as far beyond that place.
-void System::leave_saddle(double xi, std::span<double> y) {
+/// @param is_balanced  whether y is such an equilibrium, and not merely where a search has got stuck
+/// @return whether it has found the equilibrium sought
+bool System::leave_saddle(double xi, std::span<double> y, bool is_balanced) {
   look_once(xi, y);
   const auto is_sought = [&] { return least_firmness() >= 0.0 && !contact_beyond_pull_off(y[k_radius]); };
-  if (is_sought()) return;
+  if (is_balanced && is_sought()) return true;
   const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(sums_.stiffness);
   const std::optional<std::size_t> beyond = contact_beyond_pull_off(y[k_radius]);
   const Small weakest = beyond ? Small(directions_[*beyond].normalized()) : Small(solver.eigenvectors().col(0));
@@ -425,17 +427,19 @@ void System::leave_saddle(double xi, std::span<double> y) {
         go(to);
         move_centre(xi, y);
         look(xi, y);
-        if (is_sought()) return;
+        if (is_sought()) return true;
       }
     } catch (const std::domain_error&) {
       continue;  // no branch leads there
     }
   }
+  if (!is_balanced) return false;
   // Any balance short of pull-off shows that they hold it no more.
   go(beyond && firmest ? *firmest : 0.0);
   if (beyond && firmest) move_centre(xi, y);
   look(xi, y);
   if (contact_beyond_pull_off(y[k_radius])) throw std::domain_error(k_beyond_fold);
+  return false;
 }
 
 /// Moves the centre towards the balance of forces, as far as the present branches of the contacts lead.

@@ -204,9 +204,17 @@ double System::largest_overlap(const Memory& memory, double r) const noexcept {
 
 void System::complete(double xi, std::span<double> y) {
   if (!is_growing_) y[k_radius] = held_radius_;
-  place(xi, y);
-  if (free_count_ == 0 || !weakest_contact()) return;
-  leave_saddle(xi, y);
+  const bool may_peel_off = free_count_ > 0 && weakest_contact();
+  bool is_balanced = true;
+  try {
+    place(xi, y);
+  } catch (const std::domain_error&) {
+    // A guess beyond pull-off leads to there, where the force that is left is least.
+    is_balanced = false;
+    if (!may_peel_off || !leave_saddle(xi, y, is_balanced)) throw;
+  }
+  if (!may_peel_off) return;
+  if (is_balanced) leave_saddle(xi, y, is_balanced);
   note_walls(xi, y);
 }
 

@@ -272,7 +272,7 @@ class System final : public HybridSystem {
   void move_centre(double xi, std::span<double> y);
   void find_balance(double xi, std::span<double> y);
   void check_hold() const;
-  void leave_saddle(double xi, std::span<double> y);
+  bool leave_saddle(double xi, std::span<double> y, bool is_balanced);
   bool approach_balance(double xi, std::span<double> y);
   void grow(double xi, std::span<double> y);
 
