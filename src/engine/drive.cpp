@@ -354,11 +354,29 @@ class Drive {
         // At its pace it arrives within as long again: a branch may be no longer than what counts as zero.
         const double way = side * (now[g] - before[g]);
         const bool has_arrived = way > 0.0 && -side * now[g] <= std::min(tolerance_of(g), std::max(k_round_off, way));
-        if (counts && before[g] != 0.0 && has_arrived) fired.push_back(g);
+        if (!counts || before[g] == 0.0 || !has_arrived) continue;
+        if (g < watch_.system_guards() || -side * now[g] <= 0.0 || !goes_away(g, now[g], middle)) fired.push_back(g);
       }
     }
     std::ranges::sort(fired);
     return fired;
+  }
+
+  /// Whether a condition of the program has been nearer to being met before xi_ than it is there: as its branch ends, a
+  /// quantity may turn back.
+  /// @param from  where to begin to look; each look is so many times nearer to xi_
+  [[nodiscard]] bool goes_away(std::size_t guard, double now, double from) {
+    constexpr double k_approach = 0.25;
+    constexpr int k_looks = 12;
+    std::vector<double> before(watch_.size());
+    double distance = xi_ - from;
+    for (int look = 0; look < k_looks; ++look) {
+      distance *= k_approach;
+      integrator_->dense_output(xi_ - distance, output_state_);
+      watch_.values(xi_ - distance, output_state_, before);
+      if (std::abs(before[guard]) < std::abs(now) - k_round_off) return true;
+    }
+    return false;
   }
 
   [[nodiscard]] SolverError too_much_work(long steps, long of_equations) const {
