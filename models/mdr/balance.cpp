@@ -275,13 +275,14 @@ double System::magnitude_of_forces() const noexcept {
   return sum;
 }
 
-/// What is left of forces on the centre that balance, of their own rounding and of that of overlaps, which are between
-/// a wall and a centre that may both have gone far: contacts that only touch it are too soft to bear that without going
-/// to and fro. Walls under force bear theirs as exactly as they stand.
+/// What is left of forces on the centre that balance, of their own rounding and of that of overlaps: contacts that only
+/// touch it are too soft to bear that without going to and fro. Walls under force bear theirs as exactly as they stand.
+/// Overlaps are rounded as what they are differences of: lengths of the order of R0, the way that the centre has gone,
+/// or that of a wall towards it.
 double System::rounding_of_forces() const noexcept {
   double sum = magnitude_of_forces();
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    const double length = std::max(1.0, std::abs(now_[i].position));
+    const double length = std::max(longest_, std::abs(now_[i].position));
     sum += classes_[i].multiplicity() * unpeeled_stiffness(i) * length;
   }
   return 4.0 * k_round_off * sum;

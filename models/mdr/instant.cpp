@@ -35,6 +35,8 @@ void System::look(double xi, std::span<const double> y) {
 /// The same where only the forces matter.
 void System::look_at_forces(double xi, std::span<const double> y) {
   forget_look();
+  longest_ = 1.0;
+  for (int k = 0; k < free_count_; ++k) longest_ = std::max(longest_, std::abs(y[centre_place(k)]));
   for (std::size_t i = 0; i < now_.size(); ++i) {
     look_at(i, is_loaded(i) ? y[wall_places_[i]] : displacement_as_told(i, xi, y), y[k_radius]);
     now_[i].position = now_[i].displacement - carried_by_centre(i, y);

@@ -375,6 +375,7 @@ class System final : public HybridSystem {
   // Work space, so that nothing is allocated while integrating.
   std::vector<double> trial_;
   std::vector<Instant> now_;
+  double longest_ = 1.0;    ///< of the lengths, over R0, that overlaps are differences of
   double seen_xi_ = k_nan;  ///< where look() was last
   std::vector<double> seen_;
   std::vector<UnloadingShape> shapes_;
