@@ -318,11 +318,16 @@ void check_hold(const Run& run, Violations& found) {
       return table.at(last, *table.find(fmt::format("{}.{}", contact_class.name, column)));
     };
     const std::string_view regime = table.word(last, *table.find(contact_class.name + ".regime"));
+    // Where contacts bear, they lift the surface of this law elsewhere: the overlap is no gap there.
+    const double overlap = at_end("overlap");
+    const double touch = k_touch * run.scenario.radius;
+    const bool touches = run.scenario.model == "nonlocal" ? regime != "open" || std::abs(overlap) <= touch
+                                                          : overlap >= -touch && regime != "separated";
     if (const auto force = prescribed_force(scene.channels[c], step)) {
       // A little later, as others may have yet to begin.
       pushes.emplace_back(std::lerp(at_end("force"), *force, k_little), normals);
       largest = std::max(largest, pushes.back().first);
-    } else if (at_end("overlap") >= -k_touch * run.scenario.radius && regime != "separated") {
+    } else if (touches) {
       others.push_back(normals.normalized());
       if (at_end("force") > 0.0) bearing.push_back(others.back());
     }
@@ -330,11 +335,11 @@ void check_hold(const Run& run, Violations& found) {
   Eigen::Vector3d push = Eigen::Vector3d::Zero();
   Eigen::Vector3d small_push = Eigen::Vector3d::Zero();
   for (const auto& [force, normals] : pushes) (force < k_little * largest ? small_push : push) += force * normals;
-  if (push.isZero() || !can_back(push, others)) return;
+  if (!(push.norm() > 0.0) || !can_back(push, others)) return;
   // Beside forces so much larger it is not seen whether the small ones can be balanced. Where contacts bear, they may
   // also give way.
   for (const Eigen::Vector3d& normal : bearing) others.push_back(-normal);
-  if (!small_push.isZero() && !can_back(small_push, others)) return;
+  if (small_push.norm() > 0.0 && !can_back(small_push, others)) return;
   found.push_back(
       {"held-centre", fmt::format("contacts that touch could balance the forces of '{}'", run.record.message)});
 }
