@@ -19,6 +19,7 @@ constexpr double k_closing = 20.0;
 constexpr double k_same_place = 1e-13;
 constexpr double k_shortest = 1e-11;
 constexpr double k_small_force = 1e-3;  // over the largest
+constexpr double k_little = 1e-3;       // of a step
 constexpr double k_touching = 1e-10;    // gap of walls that begin to bear
 constexpr double k_early = 1e-9;        // of a step: which walls touch in it is seen there, and as long before its end
 constexpr int k_most_tries = 300;       // of steps; then what differs is rounding
@@ -62,16 +63,23 @@ void Contacts::sort_near(std::span<const Ramp> ramps, std::span<const double> y,
 /// May change what are bystanders.
 bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> y, double near) {
   sort_near(ramps, y, near);
+  bool do_some_touch = false;
+  for (std::size_t j = 0; j < class_count(); ++j) do_some_touch = do_some_touch || (holds_[j] && y[j] <= 0.0);
+  if (!do_some_touch) return false;
+  // A little later, as forces may have yet to begin.
+  look(y);
   for (std::size_t j = 0; j < class_count(); ++j) {
-    if (holds_[j] && y[j] <= 0.0) return true;
+    const bool is_force = ramps[j].control == Control::force;
+    const double force = std::max(0.0, forces_[j] + k_little * (ramps[j].end - ramps[j].start));
+    targets_[j] = {.is_force = is_force, .value = is_force ? force : 0.0};
   }
-  return false;
+  return may_balance(targets_, y, near);
 }
 
-/// Whether any forces of walls under displacement control could balance those of the others. Beside large ones it is
-/// not seen whether the small ones can be balanced: they are asked for by themselves, and where contacts of a state
-/// bear, these may also give way.
-bool Contacts::may_balance(std::span<const Target> targets, std::span<const double> y) const {
+/// Whether any forces of walls that near, under displacement control, could balance those of the others. Beside large
+/// ones it is not seen whether the small ones can be balanced: they are asked for by themselves, and where contacts of
+/// a state bear, these may also give way.
+bool Contacts::may_balance(std::span<const Target> targets, std::span<const double> y, double near) const {
   const auto push_of = [&](std::size_t j) -> Eigen::Vector3d { return weights_[j] * targets[j].value * arm_of(j); };
   double largest = 0.0;
   for (std::size_t j = 0; j < class_count(); ++j) {
@@ -81,7 +89,7 @@ bool Contacts::may_balance(std::span<const Target> targets, std::span<const doub
   std::vector<Eigen::Vector3d> giving_way;
   for (std::size_t j = 0; j < class_count(); ++j) {
     const Eigen::Vector3d arm = arm_of(j);
-    if (targets[j].is_force || !(arm.norm() > k_same_surroundings)) continue;
+    if (targets[j].is_force || y[j] < -near || !(arm.norm() > k_same_surroundings)) continue;
     others.push_back(arm.normalized());
     if (y[j] > 0.0) giving_way.push_back(-others.back());
   }
@@ -132,6 +140,19 @@ bool Contacts::find_holding(std::span<const double> y, double gap) {
   return are_others;
 }
 
+/// Whether prescribed forces act on the centre along such directions, where only the others could bear them. Beside
+/// large forces the balance of all does not tell a small one from nothing.
+bool Contacts::leaves_forces(const Eigen::Matrix3d& projector, std::span<const double> y) {
+  look(y);
+  Eigen::Vector3d push = Eigen::Vector3d::Zero();
+  double sum = 0.0;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    sum += weights_[j] * forces_[j];
+    if (targets_[j].is_force) push += weights_[j] * targets_[j].value * arm_of(j);
+  }
+  return (projector * push).norm() > k_resolved * sum;
+}
+
 /// Where contacts bear a free centre in some directions only, others may take it along in the rest without bearing: as
 /// soft as they are shallow, so that no step towards the targets is short against that. The bearing ones are balanced
 /// by themselves, and the centre goes out of the way of the others where that changes nothing for them. Where M is
@@ -145,7 +166,8 @@ bool Contacts::let_others_go(std::span<double> y) {
   }
   const Eigen::Matrix3d projector = unheld_directions();
   std::copy(y.begin(), y.end(), trial_.begin());
-  const bool is_found = projector.trace() > 0.5 && newton(trial_, 0.0) && is_balanced(trial_);
+  const bool is_found =
+      projector.trace() > 0.5 && newton(trial_, 0.0) && is_balanced(trial_) && !leaves_forces(projector, trial_);
   std::copy(last_targets_.begin(), last_targets_.end(), targets_.begin());
   if (!is_found) return false;
 

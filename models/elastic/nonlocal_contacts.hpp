@@ -93,7 +93,7 @@ class Contacts {
   /// @param is_closed  classes in contact; others are where their s is above zero
   void clear_centre(std::span<const Ramp> ramps, double xi, std::span<const char> is_closed, std::span<double> y);
 
-  /// Whether walls as near as that may hold a centre that contacts do not.
+  /// Whether walls as near as that may hold a centre that contacts do not, against the forces of a little later.
   [[nodiscard]] bool may_be_held(std::span<const Ramp> ramps, std::span<const double> y, double near);
 
   /// dy/dxi along a solution. Regular from the unloaded state on, but for a class under force control at s = 0, where
@@ -179,7 +179,8 @@ class Contacts {
   [[nodiscard]] bool newton(std::span<double> y, double imbalance);
   void find_bystanders();
   [[nodiscard]] bool has_bystanders() const;
-  [[nodiscard]] bool may_balance(std::span<const Target> targets, std::span<const double> y) const;
+  [[nodiscard]] bool may_balance(std::span<const Target> targets, std::span<const double> y,
+                                 double near = std::numeric_limits<double>::infinity()) const;
   void find_holding_among(const auto& is_force);
   bool find_holding(std::span<const double> y, double gap = 0.0);
   void sort_near(std::span<const Ramp> ramps, std::span<const double> y, double near);
@@ -187,6 +188,7 @@ class Contacts {
   void take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch, std::span<double> dy);
   [[nodiscard]] bool take_centre_to_targets(std::span<double> y);
   [[nodiscard]] bool bear_at_once(std::span<double> y);
+  [[nodiscard]] bool leaves_forces(const Eigen::Matrix3d& projector, std::span<const double> y);
   [[nodiscard]] bool let_all_go(std::span<double> y);
   [[nodiscard]] bool let_others_go(std::span<double> y);
   bool let_bystanders_go(std::span<const char> is_closed, std::span<double> y);

@@ -38,6 +38,8 @@ constexpr double k_end_of_force = 1e-8;
 constexpr double k_touch = 1e-13;
 // The same over the deepest contact where forces balance: s goes like their rounding to the power 2/3.
 constexpr double k_touch_of_free_centre = 1e-9;
+// Over that, how far off walls may be that have just been lost at such a gap: by an error of where that was.
+constexpr double k_just_lost = 2.0;
 // With all terms, approach and force follow from what a contact lacks to the particle's width, of which its own width
 // keeps fewer and fewer digits: from here on less than eleven of the approach.
 constexpr double k_widest_of_all_terms = 1.0 - 1e-6;
@@ -307,7 +309,7 @@ double System::leave_singularity(double xi, std::span<double> y) {
     if (!is_loaded(i)) continue;
     const double end = end_of_force(i);
     const bool begins = state_[i] <= touch_ && told(i, ahead) > told(i, xi);
-    if (begins && contacts_.may_be_held(ramps_, state_, touch_)) later = ahead;
+    if (begins && contacts_.may_be_held(ramps_, state_, k_just_lost * touch_)) later = ahead;
     if (end > xi && end - xi < 2.0 * k_end_of_force) later = end;
   }
   if (later == xi) return xi;
@@ -411,7 +413,7 @@ void System::settle(double xi, std::vector<Event>& log) {
     double square = state_[i];
     if (is_loaded(i)) {
       square = std::max(ramps_[i].start, ramps_[i].end);
-    } else if (std::abs(square) <= touch_) {
+    } else if (std::abs(square) <= k_just_lost * touch_) {
       square = square_ahead(i, xi);
     }
     const bool now_open = square == 0.0 ? was_open : square < 0.0;
