@@ -138,10 +138,7 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
   const bool moves_in = of_overlap > k_touch || is_carried;
   const bool moves_out = of_overlap < -k_touch && !is_carried;
   const bool is_shifted = settings_.delta_max_rule == DeltaMaxRule::shifted;
-  // What has turned at this instant is at rest: from one look to the next the sign of its rate is another one.
-  const bool is_at_rest = is_shifted ? of_wall <= k_at_rest : of_overlap <= k_at_rest && !is_carried;
-  const bool goes_back = has_turned_[i] && is_at_rest;
-  const bool retreats = goes_back || (is_shifted ? of_wall < -k_touch : moves_out);
+  const bool retreats = is_shifted ? of_wall < -k_touch : moves_out;
   const bool advances = is_shifted ? of_wall > k_touch : moves_in;
   // A force that is about to vanish, and was found to do so together with another event, presses no more.
   const bool is_vanishing = ramps_[i].end < ramps_[i].start && contact_guard(k_made, i, xi, overlap, r) < k_together;
@@ -199,8 +196,10 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
   }
   if (memory.is_virgin) return false;
   if (advances && is_past(k_reload, 1.0)) {
+    // What has turned at this instant rests where it is: from one look to the next the sign of its rate is another one.
+    const double rate = is_shifted ? of_wall : of_overlap;
     const double passed = contact_guard(k_reload, i, xi, overlap, r);
-    if (!goes_back || passed > k_touch) {
+    if (!has_turned_[i] || rate > k_at_rest || passed > k_touch) {
       resume_loading(i);
       log.push_back(event("reload"));
       return true;
