@@ -15,6 +15,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double k_yield_pressure = 1.1;  // H at x_y (text before eq. 2.17)
+constexpr double k_little_beyond = 1e-3;  // of zero porosity: trial steps
 
 bool is_enclosed(Configuration configuration) noexcept { return configuration != Configuration::simple; }
 
@@ -71,11 +72,15 @@ ValueAndSlope elastic_plastic_pressure(const SemimechLaw& law, double x) noexcep
                 : ValueAndSlope{.value = law.fall.greatest - drop, .slope = -slope};
 }
 
-/// Beyond zero porosity it goes on along its tangent: nearly incompressible materials have the logarithm's pole there,
-/// and a trial step that begins at zero porosity has to end somewhere.
-ValueAndSlope low_compressibility_pressure(const SemimechLaw& law, double x) noexcept {  // eq. 2.41
+/// A little beyond zero porosity it goes on along its tangent: nearly incompressible materials have the logarithm's
+/// pole there, and a trial step that begins at zero porosity has to end somewhere.
+ValueAndSlope low_compressibility_pressure(const SemimechLaw& law, double x) {  // eq. 2.41
   const Stiffening& c = law.stiffening;
   const double within = std::min(x, c.zero_porosity);
+  if (x - within > k_little_beyond) {
+    throw std::domain_error("gamma/2R = " + text(x) + " is too far above zero porosity at " + text(c.zero_porosity) +
+                            " for the law of low compressibility");
+  }
   const double span = cell_shrinkage(law.configuration, law.fall.end, c.zero_porosity);
   const double y = cell_shrinkage(law.configuration, law.fall.end, within) / span;
   // 1 - l y^2 without cancellation at y = 1, where l is close to 1 for nearly incompressible materials.

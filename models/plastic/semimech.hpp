@@ -74,8 +74,9 @@ struct SemimechLaw {
 
 /// The formulas of one regime, also somewhat outside of it, for trial steps: its laws are continued analytically, those
 /// with an infinite second derivative at x_Hmax as their mirror image beyond, low compressibility along its tangent
-/// beyond zero porosity.
-/// @throws std::domain_error for x <= 0 (but open) and a regime that the configuration has not
+/// a little beyond zero porosity.
+/// @throws std::domain_error for x <= 0 (but open), a regime that the configuration has not, and low compressibility
+/// farther beyond zero porosity
 [[nodiscard]] ContactState state_in(const SemimechLaw& law, Regime regime, double x);
 
 /// x under a force over Y R^2; 0 for no force.

@@ -24,8 +24,11 @@ using IdaMemory = std::unique_ptr<void, IdaDeleter>;
 constexpr double k_slave_tolerance = 1e-4;  // loose, but small enough for difference quotients
 constexpr int k_most_failures = 50;         // of one step
 // Share of what is tolerated of a step that the corrector may leave. Of the library's third the differences of many
-// steps see nothing else where steps are many: the order stays low, and they become no longer.
+// steps see nothing else where steps are many: the order stays low, and they become no longer. But no less than what
+// rounding leaves.
 constexpr double k_left_by_corrector = 0.1;
+constexpr double k_most_left_by_corrector = 0.33;
+constexpr double k_left_by_rounding = 3e-14;
 // A corrector's tolerance over the sums in a residual: above their rounding.
 constexpr double k_above_rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
@@ -55,7 +58,8 @@ class Ida final : public Integrator {
     check("IDASetMaxNumSteps", IDASetMaxNumSteps(memory_.get(), k_most_internal_steps));
     // From where a force is zero, the first steps are smaller than IDA's guess by many orders.
     check("IDASetMaxErrTestFails", IDASetMaxErrTestFails(memory_.get(), k_most_failures));
-    check("IDASetNonlinConvCoef", IDASetNonlinConvCoef(memory_.get(), k_left_by_corrector));
+    const double left = std::clamp(k_left_by_rounding / tolerances.rtol, k_left_by_corrector, k_most_left_by_corrector);
+    check("IDASetNonlinConvCoef", IDASetNonlinConvCoef(memory_.get(), left));
     check("IDASetMaxConvFails", IDASetMaxConvFails(memory_.get(), k_most_failures));
     check("IDASetId", IDASetId(memory_.get(), id_.get()));
     matrix_.reset(SUNDenseMatrix(size, size, context_));
