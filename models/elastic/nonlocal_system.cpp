@@ -38,7 +38,9 @@ constexpr double k_end_of_force = 1e-8;
 constexpr double k_touch = 1e-13;
 // The same over the deepest contact where forces balance: s goes like their rounding to the power 2/3.
 constexpr double k_touch_of_free_centre = 1e-9;
-// Over that, how far off walls may be that have just been lost at such a gap: by an error of where that was.
+// Guards of contacts at such a distance, at least: a wall that stands is well off what integrators take for zero.
+constexpr double k_guard_at_touch = 1e-12;
+// Over that distance, how far off walls may be that have just been lost at such a gap: by an error of where that was.
 constexpr double k_just_lost = 2.0;
 // With all terms, approach and force follow from what a contact lacks to the particle's width, of which its own width
 // keeps fewer and fewer digits: from here on less than eleven of the approach.
@@ -77,6 +79,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   // A program may ask for any displacement: a wall comes to the centre, a contact is as wide as the particle before.
   const double depth = std::min(reach, 1.0);
   touch_ = settings.centre == Centre::free ? k_touch_of_free_centre * depth : k_touch * reach;
+  guard_unit_ = std::min(depth, touch_ / k_guard_at_touch);
   idle_ = k_idle * depth;
   if (settings.model.terms == Terms::all) {
     widest_ = k_widest_of_all_terms;
@@ -390,15 +393,16 @@ std::optional<double> System::closed_quadrature(double xi, std::span<const doubl
 
 // --- transitions
 
-/// Signed square of a class a little later, as soon as it is on a side; 0 if it never is.
-double System::square_ahead(std::size_t i, double xi) {
+/// Signed square of a class a little later, as soon as it is on a side; 0 if it never is, nothing if there is no state
+/// any more before that.
+std::optional<double> System::square_ahead(std::size_t i, double xi) {
   std::vector<double> ahead = state_;
   for (double distance = k_ahead; xi < 1.0; distance *= 10.0) {
     const double later = std::min(1.0, xi + distance);
     try {
       contacts_.solve(ramps_, later, ahead);
     } catch (const std::domain_error&) {
-      return 0.0;  // the run will stop on its way there
+      return std::nullopt;  // the run will stop on its way there
     }
     if (std::abs(ahead[i]) > touch_) return ahead[i];
     if (later == 1.0) return 0.0;
@@ -406,15 +410,18 @@ double System::square_ahead(std::size_t i, double xi) {
   return 0.0;
 }
 
-/// Regimes from the state that look() found. Walls that just touch belong to the side to which they go.
+/// Regimes from the state that look() found. Walls that just touch belong to the side to which they go. At a fixed
+/// centre an open one is where it is but for rounding: its guard says when it is made, which may be much later.
 void System::settle(double xi, std::vector<Event>& log) {
+  const bool are_exact = has_begun_ && contacts_.free_count() == 0;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const bool was_open = regimes_[i] == Regime::open;
+    if (are_exact && was_open && !is_loaded(i) && state_[i] <= touch_) continue;
     double square = state_[i];
     if (is_loaded(i)) {
       square = std::max(ramps_[i].start, ramps_[i].end);
     } else if (std::abs(square) <= k_just_lost * touch_) {
-      square = square_ahead(i, xi);
+      square = square_ahead(i, xi).value_or(0.0);
     }
     const bool now_open = square == 0.0 ? was_open : square < 0.0;
     regimes_[i] = now_open ? Regime::open : Regime::elastic;
@@ -499,10 +506,10 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
     const auto index = static_cast<std::size_t>(std::max(0, guards_[g].index));
     switch (guards_[g].kind) {
       case k_made:
-        values[g] = state_[index] - touch_;
+        values[g] = (state_[index] - touch_) / guard_unit_;
         break;
       case k_lost:
-        values[g] = state_[index] + touch_;
+        values[g] = (state_[index] + touch_) / guard_unit_;
         break;
       case k_impingement:
         values[g] = angle_between_edges(pairs_[index], xi);
@@ -556,7 +563,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   if (end) return end;
   try {
     solve(xi, y);
-    settle_others(fired, log);
+    settle_others(xi, fired, log);
   } catch (const std::domain_error&) {
     // Where there is no state, whoever goes on from here is told.
   }
@@ -564,11 +571,14 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   return std::nullopt;
 }
 
-/// Contacts that the exact state has on another side than an integrator had, whose guards would not cross any more.
-void System::settle_others(std::span<const std::size_t> fired, std::vector<Event>& log) {
+/// Contacts that the exact state has on another side than an integrator had, whose guards would not cross any more. At
+/// a fixed centre a wall at which the surface ends to stand bears nothing, as before it was pressed.
+void System::settle_others(double xi, std::span<const std::size_t> fired, std::vector<Event>& log) {
+  const bool is_fixed = contacts_.free_count() == 0;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const bool was_open = regimes_[i] == Regime::open;
-    const bool is_elsewhere = was_open ? state_[i] > touch_ : state_[i] < -touch_;
+    const auto stands = [&] { return std::abs(state_[i]) <= touch_ && square_ahead(i, xi) == 0.0; };
+    const bool is_elsewhere = was_open ? state_[i] > touch_ : state_[i] < -touch_ || (is_fixed && stands());
     const auto is_own = [&](std::size_t g) {
       return guards_[g].kind <= k_lost && guards_[g].index == static_cast<int>(i);
     };

@@ -78,7 +78,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double end_of_force(std::size_t i) const noexcept;
   [[nodiscard]] double square_under_force(std::size_t i, double xi) const;
   std::span<double> look(double xi, std::span<const double> y);
-  void settle_others(std::span<const std::size_t> fired, std::vector<Event>& log);
+  void settle_others(double xi, std::span<const std::size_t> fired, std::vector<Event>& log);
   void look_closely(double xi, std::span<const double> y);
   void mark_closed();
   void note(std::span<double> y) const;
@@ -88,7 +88,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double limit_value(const Guard& guard, double xi);
   [[nodiscard]] DomainEnd end_at(const Guard& guard, double xi, std::span<const double> y);
   [[nodiscard]] double angle_between_edges(const Pair& pair, double xi);
-  [[nodiscard]] double square_ahead(std::size_t i, double xi);
+  [[nodiscard]] std::optional<double> square_ahead(std::size_t i, double xi);
   void settle(double xi, std::vector<Event>& log);
   void watch();
   void add_guard(int kind, std::size_t index, int direction, std::string_view name);
@@ -105,6 +105,7 @@ class System final : public HybridSystem {
   std::vector<Ramp> ramps_;  ///< displacements over R0, forces over E R0^2
   std::vector<Regime> regimes_;
   double touch_ = 0.0;                       ///< least |s| that puts a contact on a side
+  double guard_unit_ = 1.0;                  ///< of |s| in guards of contacts
   double idle_ = 0.0;                        ///< least s that lets a contact hold a free centre
   double widest_ = 1.0;                      ///< contact radius up to which there are states
   std::optional<double> greatest_approach_;  ///< where a contact is that wide, if the law says so in few digits
