@@ -518,6 +518,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     Eigen::Vector3d net = Eigen::Vector3d::Zero();
     double pressing = 0.0;
     double near = touch;
+    const Eigen::Matrix3d unheld = unheld_directions();
     // Contacts that bear a centre against a force end with it, if no error of that balance is left.
     bool is_forced = false;
     // Where one shrinks, an error of the balance would outlast it, and open the contact that bears it.
@@ -533,7 +534,9 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
       // What walls under displacements leave is rounding of all that they would change; where none is to change, that
       // of the forces.
       pressing += weights_[j] * (std::abs(force_rate(j)) + pull * forces_[j]);
-      near = std::max(near, is_force(j) ? y[j] : k_unloaded * std::abs(y[j]));
+      // Forces that contacts bear already do not say how near those are that may bear the others.
+      const bool is_borne = is_force(j) && (unheld * arm_of(j)).norm() <= k_same_surroundings;
+      near = std::max(near, is_force(j) && !is_borne ? y[j] : k_unloaded * std::abs(y[j]));
     }
     const auto centre = dy.subspan(n);
     std::ranges::fill(centre, 0.0);
