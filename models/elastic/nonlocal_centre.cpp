@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "backing.hpp"
@@ -22,6 +23,8 @@ constexpr double k_small_force = 1e-3;  // over the largest
 constexpr double k_little = 1e-3;       // of a step
 constexpr double k_touching = 1e-10;    // gap of walls that begin to bear
 constexpr double k_early = 1e-9;        // of a step: which walls touch in it is seen there, and as long before its end
+constexpr int k_most_sinking_steps = 100;
+constexpr double k_past_balance = 0.5;  // what forces along a step may be beyond it, over those before it
 constexpr int k_most_tries = 300;       // of steps; then what differs is rounding
 
 }  // namespace
@@ -293,17 +296,45 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
   return is_possible;
 }
 
-/// From a guess with errors: contacts that touch but for such gaps as others are deep may all bear. Those that then do
-/// are balanced by themselves, and the others go.
-bool Contacts::bear_at_once(std::span<double> y) {
-  const auto squares = y.first(class_count());
-  const double deepest = free_count() > 0 ? *std::max_element(squares.begin(), squares.end()) : 0.0;
-  if (!(deepest > 0.0)) return false;
+/// From a guess with errors that are larger than what contacts bear: the centre goes where the energy of the particle
+/// falls. Over places of the centre that is convex wherever M is positive definite, so that no guess is too far away.
+/// @return false, and y as it was, where that does not end in balance, or M is not positive definite with every contact
+/// as deep as in y or in the end
+bool Contacts::sink_to_balance(std::span<double> y) {
+  if (free_count() == 0) return false;
+  std::copy(y.begin(), y.end(), trial_.begin());
+  double size = place_of(trial_).norm();
   for (std::size_t j = 0; j < class_count(); ++j) {
-    may_bear_[j] = targets_[j].is_force ? targets_[j].value > 0.0 : y[j] >= -deepest;
+    size = std::max({size, std::abs(y[j]), targets_[j].is_force ? 0.0 : std::abs(targets_[j].value)});
   }
-  find_holding_among([this](std::size_t j) { return targets_[j].is_force; });
-  return let_others_go(y);
+  const auto net_at = [&](const Eigen::Vector3d& place) -> std::optional<Eigen::Vector3d> {
+    std::copy_n(place.begin(), free_count(), trial_.begin() + static_cast<std::ptrdiff_t>(class_count()));
+    if (!newton(trial_, 0.0, true)) return std::nullopt;
+    Eigen::Vector3d net = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < free_count(); ++k) net[at(k)] = net_force(k);
+    return net;
+  };
+  Eigen::Vector3d place = place_of(trial_);
+  auto net = net_at(place);
+  for (int step = 0; net && step < k_most_sinking_steps; ++step) {
+    Eigen::Vector3d way = way_to_balance(*net);
+    if (way.norm() <= k_resolved * size) break;
+    way *= std::min(1.0, size / way.norm());
+    const double power = way.dot(*net);
+    // Shorter where it leads to contacts that were not seen from here, and past the balance.
+    auto next = net_at(place + way);
+    for (; !(next && way.dot(*next) <= -k_past_balance * power) && way.norm() > k_resolved * size;
+         next = net_at(place + way)) {
+      way *= 0.5;
+    }
+    place += way;
+    net = next;
+  }
+  if (!net || has_left_branch(trial_) || !is_balanced(trial_)) return false;
+  for (std::size_t j = 0; j < class_count(); ++j) state_[j] = std::max(y[j], trial_[j]);
+  if (!(least_pivot(state_) > 0.0)) return false;
+  std::copy(trial_.begin(), trial_.end(), y.begin());
+  return true;
 }
 
 void Contacts::clear_centre(std::span<const Ramp> ramps, double xi, std::span<const char> is_closed,

@@ -239,9 +239,8 @@ void Contacts::regularise_first_touch(double stiffness, const auto& is_touching)
   }
 }
 
-/// Displaces the centre so that a net force vanishes to first order, and lets the approaches follow. Directions that no
-/// contact holds stay.
-void Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> centre) {
+/// The way of the centre on which a net force vanishes to first order. Directions that no contact holds stay.
+Eigen::Vector3d Contacts::way_to_balance(const Eigen::Vector3d& net_force) {
   const std::size_t n = class_count();
   Eigen::Matrix3d hold = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < free_count(); ++k) {
@@ -253,12 +252,19 @@ void Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> c
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hold);
   const double least = k_least_hold * solver.eigenvalues().cwiseAbs().maxCoeff();
-  Eigen::Vector3d step = Eigen::Vector3d::Zero();
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d direction = solver.eigenvectors().col(k);
     if (std::abs(solver.eigenvalues()[k]) > least)
-      step -= direction * (direction.dot(net_force) / solver.eigenvalues()[k]);
+      way -= direction * (direction.dot(net_force) / solver.eigenvalues()[k]);
   }
+  return way;
+}
+
+/// Displaces the centre by that way, and lets the approaches follow.
+void Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> centre) {
+  const std::size_t n = class_count();
+  const Eigen::Vector3d step = way_to_balance(net_force);
   for (std::size_t k = 0; k < free_count(); ++k) {
     centre[k] += step[at(k)];
     for (std::size_t j = 0; j < n; ++j) entry(j, n) += entry(j, n + 1 + k) * step[at(k)];
@@ -290,8 +296,9 @@ double Contacts::force_on_nothing(Eigen::Vector3d force) const {
 
 /// Newton's method towards the targets, with a part of the imbalance left. Gives up where its corrections do not
 /// contract, or M is not positive definite: the other branches are beyond such a state.
-bool Contacts::newton(std::span<double> y, double imbalance) {
+bool Contacts::newton(std::span<double> y, double imbalance, bool do_hold_centre) {
   const std::size_t n = class_count();
+  const bool is_free = free_count() > 0 && !do_hold_centre;
   // From first touch a free centre has to find out which contacts bear it, in as many steps as that takes.
   // On the way in steps nobody asks for balance, and the contacts are those of the state before.
   const bool is_to_balance = imbalance == 0.0;
@@ -304,14 +311,14 @@ bool Contacts::newton(std::span<double> y, double imbalance) {
     deepest = goal.signed_square;
     stiffness = goal.value / deepest;
   }
-  bool is_first_touch = free_count() > 0;
+  bool is_first_touch = is_free;
   for (std::size_t j = 0; j < n; ++j) {
     // How deep a contact is under a force does not say what bears that.
     if (!targets_[j].is_force && y[j] > k_unloaded * farthest) is_first_touch = false;
   }
   // Later, a wall that nothing opposes takes it along: the force s^(3/2) that the first step gives that wall is undone
   // by steps of 2/3, 2/9 ... of it.
-  const int free_steps = is_first_touch ? k_first_touch_steps : free_count() > 0 && is_to_balance ? 2 : 1;
+  const int free_steps = is_first_touch ? k_first_touch_steps : is_free && is_to_balance ? 2 : 1;
   double last = 0.0;
   forget();
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
@@ -334,7 +341,7 @@ bool Contacts::newton(std::span<double> y, double imbalance) {
     }
     if (!eliminate()) return false;
     double correction = 0.0;
-    if (free_count() > 0) {
+    if (is_free) {
       const auto is_touching = [&](std::size_t j) {
         return !targets_[j].is_force && targets_[j].value + arm_of(j).dot(place_of(y)) >= -deepest;
       };
@@ -434,7 +441,7 @@ void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y
       approach_in_steps(y);
     } catch (const std::domain_error&) {
       std::copy(last_targets_.begin(), last_targets_.end(), targets_.begin());
-      if (!bear_at_once(y)) throw;
+      if (!sink_to_balance(y)) throw;
     }
   }
 }

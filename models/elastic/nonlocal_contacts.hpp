@@ -174,9 +174,10 @@ class Contacts {
   void solve_modes(Eigen::VectorXd& x) const noexcept;
   [[nodiscard]] double quotient_of_modes() const noexcept;
   void regularise_first_touch(double stiffness, const auto& is_touching);
+  [[nodiscard]] Eigen::Vector3d way_to_balance(const Eigen::Vector3d& net_force);
   void move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
   [[nodiscard]] double force_on_nothing(Eigen::Vector3d force) const;
-  [[nodiscard]] bool newton(std::span<double> y, double imbalance);
+  [[nodiscard]] bool newton(std::span<double> y, double imbalance, bool do_hold_centre = false);
   void find_bystanders();
   [[nodiscard]] bool has_bystanders() const;
   [[nodiscard]] bool may_balance(std::span<const Target> targets, std::span<const double> y,
@@ -187,7 +188,7 @@ class Contacts {
   [[nodiscard]] Eigen::Matrix3d unheld_directions() const;
   void take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch, std::span<double> dy);
   [[nodiscard]] bool take_centre_to_targets(std::span<double> y);
-  [[nodiscard]] bool bear_at_once(std::span<double> y);
+  [[nodiscard]] bool sink_to_balance(std::span<double> y);
   [[nodiscard]] bool leaves_forces(const Eigen::Matrix3d& projector, std::span<const double> y);
   [[nodiscard]] bool let_all_go(std::span<double> y);
   [[nodiscard]] bool let_others_go(std::span<double> y);
