@@ -21,6 +21,13 @@ using namespace sundials_boundary;
 // sphere then has 500 rtol, and 55 with steps of this length.
 constexpr double k_longest_implicit_step = 1.0 / 32.0;
 
+// The rate at which the implicit method's corrections converge, as told from earlier ones, falls no lower than this. By
+// itself it falls with every stage while steps are alike, and after a change of their length a first correction far
+// larger than what is tolerated is then taken for the last: the estimate of the error sees nothing of that. With 1 the
+// last correction itself is as small as that. Beside a Jacobian of an earlier step the library's 3 may be too few.
+constexpr double k_least_convergence_rate = 1.0;
+constexpr int k_most_corrections = 10;
+
 // Error tests that one step may fail. After a first step the next may be 1e4 times as long; where rates are singular at
 // the beginning, the library's 7 do not always lead back from there.
 constexpr int k_most_failures = 50;
@@ -447,7 +454,10 @@ void SundialsOde<ArkodeLibrary>::create() {
     const int type = is_implicit ? ARK_INTERP_LAGRANGE : ARK_INTERP_HERMITE;
     check("ARKStepSetInterpolantType", ARKStepSetInterpolantType(memory_.get(), type));
   }
-  if (is_implicit) check("ARKStepSetMaxStep", ARKStepSetMaxStep(memory_.get(), k_longest_implicit_step));
+  if (!is_implicit) return;
+  check("ARKStepSetMaxStep", ARKStepSetMaxStep(memory_.get(), k_longest_implicit_step));
+  check("ARKStepSetNonlinCRDown", ARKStepSetNonlinCRDown(memory_.get(), k_least_convergence_rate));
+  check("ARKStepSetMaxNonlinIters", ARKStepSetMaxNonlinIters(memory_.get(), k_most_corrections));
 }
 
 }  // namespace
