@@ -142,10 +142,9 @@ class SundialsOde final : public Integrator {
         of_step_(of_step(tolerances, method == OdeMethod::cvode_bdf ? k_share_of_many : k_usual_share)),
         form_(system) {
     const auto size = static_cast<sunindextype>(form_.size());
-    for (NVector* vector : {&y_, &begin_state_, &rates_, &atol_, &weights_, &errors_})
+    for (NVector* vector : {&y_, &begin_state_, &rates_, &first_rates_, &atol_, &weights_, &errors_})
       vector->reset(N_VNew_Serial(size, context_));
-    N_VConst(0.0, y_.get());
-    N_VConst(0.0, rates_.get());
+    for (NVector* vector : {&y_, &rates_, &first_rates_}) N_VConst(0.0, vector->get());
     for (std::size_t k = 0; k < form_.size(); ++k) {
       view(atol_.get())[k] = of_step_.atol * form_.unknown(k).scale;
     }
@@ -267,6 +266,7 @@ class SundialsOde final : public Integrator {
     end_ = xi;
     follows_root_ = follows_root_ || !roots_.fired.empty();
     N_VConst(0.0, rates_.get());  // those of another mode say nothing of this one
+    find_first_rates();
     check("ReInit", Library::reinit(memory_.get(), method_, right_hand_side, xi, y_.get()));
     check("SetInitStep", Library::set_first_step(memory_.get(), step));
     check("SetStopTime", Library::set_stop_time(memory_.get(), 1.0));
@@ -278,6 +278,21 @@ class SundialsOde final : public Integrator {
     roots_.directions.assign(watch_.directions().begin(), watch_.directions().end());
     check("SetRootDirection", Library::set_root_direction(memory_.get(), roots_.directions.data()));
     check("SetNoInactiveRootWarn", Library::set_no_inactive_root_warning(memory_.get()));
+  }
+
+  /// Where a contact is as shallow as the step coordinate is rounded, its rates where it is made are nothing beside
+  /// those that the next number has.
+  void find_first_rates() {
+    start_end_ = std::min(1.0, end_ * (1.0 + k_rounding_of_xi));
+    first_guess_.assign(form_.guess().begin(), form_.guess().end());
+    try {
+      ++for_jacobian_;
+      form_.rates(start_end_, view(y_.get()), view(first_rates_.get()));
+    } catch (const std::domain_error&) {
+      N_VConst(0.0, first_rates_.get());
+    }
+    if (!all_finite(view(first_rates_.get()))) N_VConst(0.0, first_rates_.get());
+    form_.guess(first_guess_);
   }
 
   int evolve() {
@@ -368,9 +383,12 @@ class SundialsOde final : public Integrator {
   /// errors of its stages: tolerances finer than that no step would keep.
   static int error_weights(N_Vector y, N_Vector weights, void* self) noexcept {
     const auto& ode = *static_cast<SundialsOde*>(self);
+    const bool is_first = ode.end_ <= ode.start_end_;
     for (std::size_t k = 0; k < view(y).size(); ++k) {
       const double tolerated = ode.of_step_.rtol * std::abs(view(y)[k]) + view(ode.atol_.get())[k];
-      view(weights)[k] = 1.0 / std::max(tolerated, k_rounding_of_xi * std::abs(view(ode.rates_.get())[k]));
+      const double first = is_first ? std::abs(view(ode.first_rates_.get())[k]) : 0.0;
+      const double rate = std::max(first, std::abs(view(ode.rates_.get())[k]));
+      view(weights)[k] = 1.0 / std::max(tolerated, k_rounding_of_xi * rate);
     }
     return 0;
   }
@@ -417,13 +435,16 @@ class SundialsOde final : public Integrator {
   double segment_begin_ = 0.0;
   std::vector<double> first_state_;  ///< of this segment, complete
   std::vector<double> begin_guess_;  ///< of complete states, where the last step began
-  double last_length_ = 0.0;         ///< of a step of this segment
+  std::vector<double> first_guess_;
+  double start_end_ = 0.0;    ///< a rounding beyond where the library has begun
+  double last_length_ = 0.0;  ///< of a step of this segment
   Statistics past_;
-  long for_jacobian_ = 0;  ///< evaluations of rates
+  long for_jacobian_ = 0;  ///< evaluations of rates that the library does not count
 
   sundials::Context context_;  // first in, last out
   NVector y_, begin_state_, atol_, weights_, errors_;
-  NVector rates_;  // the last ones that were asked for
+  NVector rates_;        // the last ones that were asked for
+  NVector first_rates_;  // up to start_end_
   Matrix matrix_;
   LinearSolver linear_;
   NonlinearSolver nonlinear_;
