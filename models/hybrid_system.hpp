@@ -53,7 +53,8 @@ struct Guard {
   bool is_silent = false;
   /// Depends on what the program tells alone: no error of an integrator moves it.
   bool is_told = false;
-  /// Rates grow without bound towards it: just before it other guards may cross and come back within no time.
+  /// Rates, or their slopes, grow without bound towards it: just before it other guards may cross and come back within
+  /// no time.
   bool is_branch_end = false;
   /// Goes one way over the rest of the step: its values at two instants show whether it crosses between them.
   bool is_monotone = false;

@@ -446,7 +446,12 @@ void System::watch() {
     if (regimes_[i] == Regime::open)
       add_guard(k_made, i, 1, "contact-made");
     else
-      add_guard(k_lost, i, -1, "contact-lost");
+      // The others follow its force, whose slope has no slope there.
+      guards_.push_back({.kind = k_lost,
+                         .index = static_cast<int>(i),
+                         .direction = -1,
+                         .name = "contact-lost",
+                         .is_branch_end = true});
   }
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const bool both = regimes_[pairs_[p].first] == Regime::elastic && regimes_[pairs_[p].second] == Regime::elastic;
@@ -537,6 +542,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     Event event{guard.name, guard.index};
     switch (guard.kind) {
       case k_made:
+        if (only_stands(index, xi, y)) continue;
         regimes_[index] = Regime::elastic;
         break;
       case k_lost:
@@ -569,6 +575,19 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   }
   watch();
   return std::nullopt;
+}
+
+/// Whether a wall that seems to be made does not touch the surface yet, nor goes on to it: one that comes to stand
+/// there may be within an integrator's tolerance. Where the centre is free, what stands takes it along.
+bool System::only_stands(std::size_t i, double xi, std::span<const double> y) {
+  if (contacts_.free_count() > 0) return false;
+  std::vector<double> exact(y.begin(), y.end());
+  try {
+    solve(xi, exact);
+  } catch (const std::domain_error&) {
+    return false;  // whoever goes on from here is told
+  }
+  return state_[i] <= touch_ && square_ahead(i, xi).value_or(touch_) <= 0.0;
 }
 
 /// Contacts that the exact state has on another side than an integrator had, whose guards would not cross any more. At

@@ -78,6 +78,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double end_of_force(std::size_t i) const noexcept;
   [[nodiscard]] double square_under_force(std::size_t i, double xi) const;
   std::span<double> look(double xi, std::span<const double> y);
+  [[nodiscard]] bool only_stands(std::size_t i, double xi, std::span<const double> y);
   void settle_others(double xi, std::span<const std::size_t> fired, std::vector<Event>& log);
   void look_closely(double xi, std::span<const double> y);
   void mark_closed();
