@@ -302,19 +302,20 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
 /// as deep as in y or in the end
 bool Contacts::sink_to_balance(std::span<double> y) {
   if (free_count() == 0) return false;
-  std::copy(y.begin(), y.end(), trial_.begin());
-  double size = place_of(trial_).norm();
+  std::copy(y.begin(), y.end(), state_.begin());
+  double size = place_of(state_).norm();
   for (std::size_t j = 0; j < class_count(); ++j) {
     size = std::max({size, std::abs(y[j]), targets_[j].is_force ? 0.0 : std::abs(targets_[j].value)});
   }
   const auto net_at = [&](const Eigen::Vector3d& place) -> std::optional<Eigen::Vector3d> {
+    std::ranges::copy(state_, trial_.begin());
     std::copy_n(place.begin(), free_count(), trial_.begin() + static_cast<std::ptrdiff_t>(class_count()));
     if (!newton(trial_, 0.0, true)) return std::nullopt;
     Eigen::Vector3d net = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < free_count(); ++k) net[at(k)] = net_force(k);
     return net;
   };
-  Eigen::Vector3d place = place_of(trial_);
+  Eigen::Vector3d place = place_of(state_);
   auto net = net_at(place);
   for (int step = 0; net && step < k_most_sinking_steps; ++step) {
     Eigen::Vector3d way = way_to_balance(*net);
@@ -329,6 +330,7 @@ bool Contacts::sink_to_balance(std::span<double> y) {
     }
     place += way;
     net = next;
+    std::ranges::copy(trial_, state_.begin());
   }
   if (!net || has_left_branch(trial_) || !is_balanced(trial_)) return false;
   for (std::size_t j = 0; j < class_count(); ++j) state_[j] = std::max(y[j], trial_[j]);
