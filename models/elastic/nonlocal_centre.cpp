@@ -1,6 +1,7 @@
 // Where walls take a free centre that they do not bear.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -22,7 +23,9 @@ constexpr double k_shortest = 1e-11;
 constexpr double k_small_force = 1e-3;  // over the largest
 constexpr double k_little = 1e-3;       // of a step
 constexpr double k_touching = 1e-10;    // gap of walls that begin to bear
-constexpr double k_early = 1e-9;        // of a step: which walls touch in it is seen there, and as long before its end
+constexpr double k_early = 1e-9;        // of a step: which walls touch in it is seen there
+// As long before its end: from too far one that has only just left is not seen, from too near the rest is rounding.
+constexpr std::array k_late{1e-3, 1e-6, 1e-9};
 constexpr int k_most_sinking_steps = 100;
 constexpr double k_past_balance = 0.5;  // what forces along a step may be beyond it, over those before it
 constexpr int k_most_tries = 300;       // of steps; then what differs is rounding
@@ -277,9 +280,11 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
   for (double done = 0.0; is_possible && done < 1.0;) {
     const double next = std::min(1.0, done + step);
     for (auto* state : {&at_once_, &by_halves_, &early_, &late_}) std::ranges::copy(carried_, state->begin());
-    is_possible = go_to(next, at_once_) && go_to(std::midpoint(done, next), by_halves_) && go_to(next, by_halves_) &&
-                  go_to(std::lerp(done, next, k_early), early_) && go_to(std::lerp(done, next, 1.0 - k_early), late_) &&
-                  go_to(next, late_);
+    is_possible =
+        go_to(next, at_once_) && go_to(std::midpoint(done, next), by_halves_) && go_to(next, by_halves_) &&
+        go_to(std::lerp(done, next, k_early), early_) &&
+        std::ranges::all_of(k_late, [&](double late) { return go_to(std::lerp(done, next, 1.0 - late), late_); }) &&
+        go_to(next, late_);
     if (step > k_shortest && tries < k_most_tries && !(is_possible && is_same())) {
       is_possible = true;
       step *= 0.5;
