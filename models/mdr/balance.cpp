@@ -389,9 +389,10 @@ bool System::leave_saddle(double xi, std::span<double> y, bool is_balanced) {
   look_once(xi, y);
   const auto is_sought = [&] { return least_firmness() >= 0.0 && !contact_beyond_pull_off(y[k_radius]); };
   if (is_balanced && is_sought()) return true;
-  const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(sums_.stiffness);
   const std::optional<std::size_t> beyond = contact_beyond_pull_off(y[k_radius]);
-  const Small weakest = beyond ? Small(directions_[*beyond].normalized()) : Small(solver.eigenvectors().col(0));
+  // Of what each of them would hold: what only touches is no stiffer at first than rounding, but would be pressed on
+  // the way.
+  const Small weakest = (beyond ? directions_[*beyond] : weakest_hold().direction).normalized();
   Small saddle = Small::Zero();
   for (int k = 0; k < free_count_; ++k) saddle[k] = y[centre_place(k)];
   const auto go = [&](double way) {

@@ -194,6 +194,12 @@ class System final : public HybridSystem {
     Small centre = Small::Zero();  ///< velocity of the centre
   };
 
+  /// How firmly the contacts hold a free centre in the direction in which they do so least.
+  struct Hold {
+    double firmness = 0.0;
+    Small direction = Small::Zero();
+  };
+
   /// A wall that can only drive a free centre out of its way.
   struct Drive {
     std::size_t contact = 0;
@@ -313,7 +319,8 @@ class System final : public HybridSystem {
   [[nodiscard]] double unpeeled_stiffness(std::size_t i) const noexcept;
   [[nodiscard]] double stiffness_of_shallow() const noexcept;
   [[nodiscard]] bool is_any_spent() const noexcept;
-  [[nodiscard]] double least_firmness();
+  [[nodiscard]] Hold weakest_hold();
+  [[nodiscard]] double least_firmness() { return weakest_hold().firmness; }
   void check_adhesion(std::size_t i, double r);
   void start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);
   void separate(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);

@@ -166,7 +166,7 @@ bool System::is_any_spent() const noexcept {
 
 /// How firmly the contacts hold a free centre in the direction in which they do so least: their stiffness over what it
 /// would be if no edge peeled and no contact had spent its strength. Zero where the equilibrium turns back.
-double System::least_firmness() {
+System::Hold System::weakest_hold() {
   for (Line& line : lines_) line.held = line.unspent = 0.0;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (!touches(memory_[i].regime) || is_loaded(i)) continue;
@@ -194,8 +194,8 @@ double System::least_firmness() {
   const Small scale = unspent.diagonal().cwiseSqrt().cwiseInverse();
   const SmallMatrix numerator = scale.asDiagonal() * held * scale.asDiagonal();
   const SmallMatrix denominator = scale.asDiagonal() * unspent * scale.asDiagonal();
-  return Eigen::GeneralizedSelfAdjointEigenSolver<SmallMatrix>(numerator, denominator, Eigen::EigenvaluesOnly)
-      .eigenvalues()[0];
+  const Eigen::GeneralizedSelfAdjointEigenSolver<SmallMatrix> solver(numerator, denominator);
+  return {solver.eigenvalues()[0], basis * scale.cwiseProduct(solver.eigenvectors().col(0))};
 }
 
 void System::resume_loading(std::size_t i) {
