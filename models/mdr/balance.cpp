@@ -29,7 +29,7 @@ constexpr double k_out_of_bounds = 1.0;
 constexpr double k_most_growth = 64.0;
 // How far, over R0, an equilibrium that does not hold the centre is from where its contacts begin to; and by how much
 // farther each look on the way lies.
-constexpr double k_nearest_saddle = 1e-9;
+constexpr double k_nearest_saddle = 1e-13;
 constexpr double k_farthest_saddle = 1e-2;
 constexpr double k_longer = 1.25;
 constexpr int k_most_sections = 40;
