@@ -122,8 +122,18 @@ bool System::wants_growth(double xi, std::span<double> y) {
 double System::growth_drive(const Motion& now) const noexcept {
   if (sums_.time_scale > 0.0) return now.demand / sums_.time_scale;
   if (now.demand != 0.0) return std::copysign(1.0, now.demand);
-  // First touch: of two things that vanish, the elastic volume (square root of the overlap) vanishes last.
-  return material_.bulk_compliance > 0.0 ? -1.0 : 1.0;
+  // First touch, or the last one: of two things that vanish, the elastic volume (square root of the overlap) vanishes
+  // last.
+  bool goes_in = false;
+  bool goes_out = false;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    if (!is_member(memory_[i])) continue;
+    const double rate = wall_rate(i, now);
+    goes_in = goes_in || rate > 0.0;
+    goes_out = goes_out || rate < 0.0;
+  }
+  const bool is_left = goes_out && !goes_in;
+  return (material_.bulk_compliance > 0.0) == is_left ? 1.0 : -1.0;
 }
 
 /// Fires the guards of one contact that are past already and moving on. Returns whether anything changed.
