@@ -136,6 +136,13 @@ double System::growth_drive(const Motion& now) const noexcept {
   return (material_.bulk_compliance > 0.0) == is_left ? 1.0 : -1.0;
 }
 
+/// Distance of an elastic contact from where it yields, over the overlap there, that counts as none. Contacts that
+/// balance each other on a free centre yield together, and their overlaps agree to the rounding of lengths only.
+double System::nearness_of_yield(std::size_t i) const noexcept {
+  if (free_count_ == 0 || directions_[i].norm() < k_no_direction) return k_touch;
+  return std::max(k_touch, std::min(k_together, k_shallow / material_.yield_overlap_ratio));
+}
+
 /// Fires the guards of one contact that are past already and moving on. Returns whether anything changed.
 bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log,
                             std::vector<Event>& made) {
@@ -191,7 +198,7 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
         start_unloading(i, r, why, log);
         return true;
       }
-      if (may_yield(memory) && moves_in && is_past(k_yield, 1.0)) {
+      if (may_yield(memory) && moves_in && -contact_guard(k_yield, i, xi, overlap, r) <= nearness_of_yield(i)) {
         yield(i, r);
         log.push_back(event("yield"));
         return true;

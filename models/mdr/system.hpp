@@ -327,6 +327,7 @@ class System final : public HybridSystem {
   void make_contact(std::size_t i);
   void lose_contact(std::size_t i);
   [[nodiscard]] bool may_yield(const Memory& memory) const noexcept;
+  [[nodiscard]] double nearness_of_yield(std::size_t i) const noexcept;
   void yield(std::size_t i, double r);
   void resume_loading(std::size_t i);
   void meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log);
