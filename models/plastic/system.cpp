@@ -138,6 +138,8 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
       if (direction(i) < 0 && memory_[i].is_virgin && has_pressed) {
         // By the law: with an integrator's error in it, the force that it had would not bring the wall back to there.
         if (is_loaded(i)) x = displacement_under_force(i, ramps_[i].start, x);
+        // Where the law has no branch for that, the run ends in this state.
+        if (classes_[i].takes_force) y[places_[i]] = coordinate(i, x);
         turn_back(i, x, log);
       }
       // From there, and where a force ends at nothing or has so far to go below that it does so at once.
@@ -170,7 +172,7 @@ int System::direction_of_ramp(std::size_t i, double x, bool was_loaded) const {
   const double way = ramps_[i].end - ramps_[i].start;
   double size = std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
   if (is_loaded(i)) {
-    size = std::max(size, contact(i, x).stiffness * x);
+    size += contact(i, x).stiffness * x;
   } else if (was_loaded && touches(memory_[i].regime)) {
     const Contact now = contact(i, x);
     if (now.stiffness > 0.0) size += now.force / now.stiffness;
