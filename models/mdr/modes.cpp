@@ -1,5 +1,6 @@
 // Modes of the MDR system: what transitions change, and how a mode is decided.
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -23,8 +24,45 @@ constexpr double k_passed = 1e-2;
 constexpr double k_passed_by_force = 1e-6;
 // Caps that have met and are this far from it have parted.
 constexpr double k_parted = 1e-6;
+// Share of a push that its balance may leave.
+constexpr double k_balanced = 1e-10;
+// Of the way on which a push takes a free centre, what counts as away from a wall.
+constexpr double k_left_behind = 1e-6;
+constexpr int k_most_steps = 200;
 // A free centre that has gone this far (over R0) within an instant has sprung.
 constexpr double k_spring = 1e-9;
+
+/// Way on which contacts of these normals, whose forces go with their overlaps to the 3/2, come to balance a push, up
+/// to a factor: Newton on the least of a convex energy.
+Eigen::Vector3d way_under_push(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> normals,
+                               std::span<const double> weights) {
+  const Eigen::Vector3d load = push.normalized();
+  const double most = std::ranges::max(weights);
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();
+  const auto energy = [&](const Eigen::Vector3d& at) {
+    double sum = load.dot(at);
+    for (std::size_t k = 0; k < normals.size(); ++k)
+      sum += 0.4 * weights[k] / most * std::pow(std::max(0.0, normals[k].dot(at)), 2.5);
+    return sum;
+  };
+  for (int iteration = 0; iteration < k_most_steps; ++iteration) {
+    Eigen::Vector3d slope = load;
+    Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+    for (std::size_t k = 0; k < normals.size(); ++k) {
+      const double root = std::sqrt(std::max(0.0, normals[k].dot(way)));
+      slope += weights[k] / most * root * root * root * normals[k];
+      stiffness += 1.5 * weights[k] / most * root * normals[k] * normals[k].transpose();
+    }
+    if (slope.norm() < k_balanced) break;
+    // Where nothing is pressed as yet there is no stiffness.
+    stiffness.diagonal().array() += slope.norm();
+    Eigen::Vector3d step = -stiffness.ldlt().solve(slope);
+    const double before = energy(way);
+    while (energy(way + step) >= before && step.norm() > k_balanced * way.norm()) step *= 0.5;
+    way += step;
+  }
+  return way;
+}
 
 /// Takes the events of a contact out again, those from a place on.
 void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
@@ -172,12 +210,12 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
   Memory& memory = memory_[i];
   switch (memory.regime) {
     case Regime::open:
-      if (!(moves_in || is_pressed) || !is_past(k_made, 1.0)) return false;
+      if (is_left_[i] || !(moves_in || is_pressed) || !is_past(k_made, 1.0)) return false;
       make_contact(i);
       made.push_back(event("contact-made"));
       return true;
     case Regime::separated:
-      if (!(closes || is_pressed) || !is_past(k_dent_touched, 1.0)) return false;
+      if (is_left_[i] || !(closes || is_pressed) || !is_past(k_dent_touched, 1.0)) return false;
       make_contact(i);
       log.push_back(event("dent-touched"));
       return true;
@@ -284,7 +322,11 @@ bool System::leave_behind(double xi, std::span<const double> y, std::vector<Even
   std::vector<Drive> unopposed = drives;
   std::erase_if(unopposed, [this](const Drive& drive) { return is_backed(drive.contact); });
   std::optional<Small> velocity;
-  if (!touches_have_to_bear(xi)) velocity = velocity_of(drives, xi, y);
+  if (touches_have_to_bear(xi)) {
+    if (leave_what_is_not_pressed(drives, xi, log)) return true;
+  } else {
+    velocity = velocity_of(drives, xi, y);
+  }
   if (!velocity && !unopposed.empty()) {
     drives = unopposed;
     velocity = velocity_of(drives, xi, y);
@@ -297,6 +339,40 @@ bool System::leave_behind(double xi, std::span<const double> y, std::vector<Even
     const std::size_t i = drive.contact;
     if (!(drive.rate + directions_[i].dot(*velocity) < least)) continue;
     lose_contact(i);
+    log.push_back({"contact-lost", static_cast<int>(i)});
+    has_left = true;
+  }
+  return has_left;
+}
+
+/// Loses the walls that only touch a free centre and that it leaves where forces begin to press it: contacts give way
+/// with the force to the 2/3, beside which walls stand still at first. Which of them will bear is not to be told one by
+/// one, nor where those to be left still pull in the search for the balance.
+/// @return whether there are any
+bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi, std::vector<Event>& log) {
+  memory_before_ = memory_;
+  for (const Drive& drive : drives) lose_contact(drive.contact);
+  const SmallMatrix along = unheld_directions();
+  memory_ = memory_before_;
+  const double least = k_no_force * largest_prescribed_force();
+  const Small push = along * prescribed_push(1.0);
+  if (push.norm() <= least || (along * prescribed_push(xi)).norm() > least) return false;
+  std::vector<Small> normals;
+  for (const Drive& drive : drives) normals.emplace_back(along * directions_[drive.contact]);
+  std::vector<Small> units;
+  for (const Small& normal : normals) {
+    if (normal.norm() > k_no_direction) units.push_back(normal.normalized());
+  }
+  if (!can_back(push, units)) return false;
+  std::vector<double> weights;
+  for (const Drive& drive : drives) weights.push_back(classes_[drive.contact].multiplicity() * firmness(drive.contact));
+  const Small way = way_under_push(push, normals, weights);
+  bool has_left = false;
+  for (std::size_t k = 0; k < drives.size(); ++k) {
+    const std::size_t i = drives[k].contact;
+    if (!(normals[k].dot(way) < -k_left_behind * way.norm())) continue;
+    lose_contact(i);
+    is_left_[i] = true;
     log.push_back({"contact-lost", static_cast<int>(i)});
     has_left = true;
   }
@@ -553,6 +629,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   std::optional<DomainEnd> end;
   for (std::size_t i = 0; i < memory_.size(); ++i) edges_before_[i] = memory_[i].edge;
   has_turned_.assign(memory_.size(), false);
+  is_left_.assign(memory_.size(), false);
   for (const std::size_t g : fired) {
     const Guard guard = guards_[g];
     const auto i = static_cast<std::size_t>(std::max(0, guard.index));

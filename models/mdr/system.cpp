@@ -42,6 +42,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   pull_offs_.resize(count);
   edges_before_.resize(count);
   has_turned_.resize(count);
+  is_left_.resize(count);
   overlaps_before_.resize(count);
   memory_before_.resize(count);
   ramps_.resize(count);
@@ -180,6 +181,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   has_begun_ = true;
   y[k_work] -= force_work(y);
   has_turned_.assign(memory_.size(), false);
+  is_left_.assign(memory_.size(), false);
   settle(0.0, y, std::nullopt, log);
   if (const auto end = meet_caps_at_once(0.0, y, log)) throw CannotBegin(*end);
 }

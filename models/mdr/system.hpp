@@ -305,6 +305,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double loaded_rate(double loading, double by_radius, double growth) const noexcept;
   [[nodiscard]] bool is_backed(std::size_t i, double side = 1.0) const;
   [[nodiscard]] bool leave_behind(double xi, std::span<const double> y, std::vector<Event>& log);
+  [[nodiscard]] bool leave_what_is_not_pressed(std::span<const Drive> drives, double xi, std::vector<Event>& log);
   [[nodiscard]] bool touches_have_to_bear(double xi) const;
   [[nodiscard]] Small prescribed_push(double xi) const noexcept;
   [[nodiscard]] double largest_prescribed_force() const noexcept;
@@ -390,6 +391,7 @@ class System final : public HybridSystem {
   std::vector<PullOff> pull_offs_;
   std::vector<Edge> edges_before_;
   std::vector<bool> has_turned_;  ///< started to unload at the instant at which a mode is decided
+  std::vector<bool> is_left_;     ///< left, at that instant, by a centre that forces press elsewhere
   std::vector<double> overlaps_before_;
   std::vector<Memory> memory_before_;
   Sums sums_;
