@@ -24,7 +24,7 @@ constexpr int k_most_small_corrections = 12;
 constexpr int k_most_corrections = 60;
 constexpr int k_most_halvings = 20;
 // Plastic strain by which no guess of an integrator is wrong at any tolerance. A state that is farther away from its
-// guess than that and the elastic strain lies on another branch, behind a loss of uniqueness.
+// guess than that and the elastic strain of the guess lies on another branch, behind a loss of uniqueness.
 constexpr double k_nearby = 1e-2;
 
 }  // namespace
@@ -74,6 +74,7 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
   const double guessed_deviatoric = y[k_deviatoric];
   const bool has_caps = is_compressible(settings_.parameters.model);
   double elastic_strain = 0.0;
+  double elastic_strain_of_guess = 0.0;
   int small_corrections = 0;
   int halvings = 0;
   double phi = 0.0;  // of the last correction
@@ -96,6 +97,7 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
         continue;
       }
       elastic_strain = 1.0 / stiffness_over_strength(here.at);
+      if (i == 0) elastic_strain_of_guess = elastic_strain;
       const double slope = now.f_by_phi * phi + now.f_by_deviatoric * deviatoric;
       if (has_caps && last.yield.f > 0.0 && now.yield.f > 0.0 && slope > 0.0) {
         const double back = slope / (last.yield.f + slope);
@@ -121,7 +123,7 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
       const bool is_found = !has_caps || std::abs(now.yield.f) < k_last_excess;
       if (!is_found && ++small_corrections < k_most_small_corrections) continue;
       const double distance = std::hypot(y[k_phi] - guess, y[k_deviatoric] - guessed_deviatoric);
-      return is_solvable() || distance <= std::max(elastic_strain, k_nearby);
+      return is_solvable() || distance <= std::max(elastic_strain_of_guess, k_nearby);
     }
   } catch (const std::domain_error&) {
     // Far corrections that lead to where the law has no surface at all have found nothing, either.
