@@ -117,6 +117,7 @@ class Ida final : public Integrator {
     if (flag == IDA_ROOT_RETURN) {
       check("IDAGetRootInfo", IDAGetRootInfo(memory_.get(), roots_.found.data()));
       roots_.collect();
+      find_hidden(begin);
     } else if (flag == IDA_TSTOP_RETURN) {
       end_ = 1.0;
     }
@@ -206,6 +207,20 @@ class Ida final : public Integrator {
     roots_.directions.assign(watch_.directions().begin(), watch_.directions().end());
     check("IDASetRootDirection", IDASetRootDirection(memory_.get(), roots_.directions.data()));
     check("IDASetNoInactiveRootWarn", IDASetNoInactiveRootWarn(memory_.get()));
+  }
+
+  /// Ends the step at a crossing that the library has not seen, if there is one.
+  void find_hidden(double begin) {
+    const auto values_at = [this](double xi, std::span<double> values) {
+      ++roots_.evaluations;
+      dense_output(xi, complete_);
+      watch_.values(xi, complete_, values);
+    };
+    const auto hidden = crossing_before_branch_end(system_, watch_, roots_.fired, begin, end_,
+                                                   guard_tolerance_of(tolerances_), values_at);
+    if (!hidden) return;
+    end_ = hidden->xi;
+    roots_.fired.assign(1, hidden->guard);
   }
 
   int evolve() {

@@ -4,10 +4,26 @@
 #include <sunlinsol/sunlinsol_dense.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
 
 #include "engine/linear_algebra_clock.hpp"
 
 namespace monograin::sundials_boundary {
+namespace {
+
+// Looks before the end of a branch: each so many times nearer than the one before, and how many.
+constexpr double k_approach = 0.25;
+constexpr int k_looks_before_end = 12;
+
+bool crosses(int direction, double before, double after, double tolerance) noexcept {
+  const bool rises = before < -tolerance && after >= 0.0;
+  const bool falls = before > tolerance && after <= 0.0;
+  return (rises && direction >= 0) || (falls && direction <= 0);
+}
+
+}  // namespace
 
 LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context) {
   LinearSolver solver(SUNLinSol_Dense(y, matrix, context));
@@ -23,6 +39,46 @@ LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context)
                             : clock->time([&] { return SUNLinSolSolve_Dense(self, of, x, b, tolerance); });
   };
   return solver;
+}
+
+std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, const Watch& watch,
+                                                   std::span<const std::size_t> fired, double begin, double end,
+                                                   double tolerance,
+                                                   const std::function<void(double, std::span<double>)>& values_at) {
+  const auto ends_branch = [&](std::size_t g) { return g < watch.system_guards() && system.guards()[g].is_branch_end; };
+  if (std::ranges::none_of(fired, ends_branch)) return std::nullopt;
+  const auto directions = watch.directions();
+  std::vector<double> before(watch.size());
+  std::vector<double> after(watch.size());
+  std::vector<double> values(watch.size());
+  std::optional<Crossing> first;
+  try {
+    values_at(begin, before);
+    double last = begin;
+    double distance = end - begin;
+    for (int look = 0; look < k_looks_before_end && !first; ++look) {
+      distance *= k_approach;
+      if (distance < least_progress(end)) break;
+      const double now = end - distance;
+      values_at(now, after);
+      for (std::size_t g = 0; g < directions.size(); ++g) {
+        if (!crosses(directions[g], before[g], after[g], tolerance)) continue;
+        double below = last;
+        double above = now;
+        while (above - below > least_progress(above)) {
+          const double middle = std::midpoint(below, above);
+          values_at(middle, values);
+          (crosses(directions[g], before[g], values[g], tolerance) ? above : below) = middle;
+        }
+        if (!first || above < first->xi) first = {above, g};
+      }
+      last = now;
+      std::swap(before, after);
+    }
+  } catch (const std::domain_error&) {
+    return std::nullopt;  // no state there
+  }
+  return first;
 }
 
 std::string worst_components(std::span<const Unknown> unknowns, std::span<const double> weights,

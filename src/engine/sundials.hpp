@@ -8,6 +8,8 @@
 #include <sundials/sundials_context.hpp>
 
 #include <cstdlib>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -15,6 +17,7 @@
 
 #include "engine/c_library.hpp"
 #include "engine/explicit_form.hpp"
+#include "engine/watch.hpp"
 
 namespace monograin::sundials_boundary {
 
@@ -87,6 +90,21 @@ int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentS
   if (end - begin >= least_progress(begin)) return false;
   return !pending.domain_end().empty() || (!pending.nearest_domain_end().empty() && end - begin < previous);
 }
+
+/// A guard, and where it crosses.
+struct Crossing {
+  double xi = 0.0;
+  std::size_t guard = 0;
+};
+
+/// What a library does not see that looks at guards where its steps end: just before a branch ends, others may cross
+/// and come back. Looked for between a step's begin and such an end, ever nearer to that.
+/// @param fired       the guards found at the end
+/// @param tolerance   what of a guard counts as zero
+/// @param values_at   xi, values: the guards at a place of the step
+[[nodiscard]] std::optional<Crossing> crossing_before_branch_end(
+    const HybridSystem& system, const Watch& watch, std::span<const std::size_t> fired, double begin, double end,
+    double tolerance, const std::function<void(double, std::span<double>)>& values_at);
 
 /// The unknowns with the largest weighted local errors, worst first, as "name (weighted error)".
 [[nodiscard]] std::string worst_components(std::span<const Unknown> unknowns, std::span<const double> weights,

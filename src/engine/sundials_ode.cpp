@@ -201,6 +201,7 @@ class SundialsOde final : public Integrator {
     if (flag == Library::root_return) {
       check("GetRootInfo", Library::root_info(memory_.get(), roots_.found.data()));
       roots_.collect();
+      find_hidden(begin);
     } else if (flag == Library::stop_return) {
       end_ = 1.0;
     }
@@ -293,6 +294,21 @@ class SundialsOde final : public Integrator {
     }
     if (!all_finite(view(first_rates_.get()))) N_VConst(0.0, first_rates_.get());
     form_.guess(first_guess_);
+  }
+
+  /// Ends the step at a crossing that the library has not seen, if there is one.
+  void find_hidden(double begin) {
+    const auto values_at = [this](double xi, std::span<double> values) {
+      check("GetDky", Library::derivative(memory_.get(), xi, 0, errors_.get()));
+      ++roots_.evaluations;
+      watch_.values(xi, form_.complete(xi, view(errors_.get())), values);
+    };
+    const auto hidden = crossing_before_branch_end(system_, watch_, roots_.fired, begin, end_,
+                                                   guard_tolerance_of(tolerances_), values_at);
+    if (!hidden) return;
+    end_ = hidden->xi;
+    roots_.fired.assign(1, hidden->guard);
+    check("GetDky", Library::derivative(memory_.get(), end_, 0, y_.get()));
   }
 
   int evolve() {
