@@ -7,19 +7,18 @@
 namespace monograin {
 namespace {
 
-constexpr double k_nothing = 1e-6;   // of the push
-constexpr double k_most = 1e6;       // of it: more is needed by walls alone that align but for a millionth
+constexpr double k_most = 1e6;       // of the push: more is needed by walls alone that align but for a millionth
 constexpr double k_no_help = 1e-13;  // nor does a direction help which only rounding leaves along what is left over
 
 }  // namespace
 
-bool can_back(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> directions) {
+bool can_back(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> directions, double nothing) {
   const Eigen::Vector3d unit = push.normalized();
   Eigen::Vector3d left_over = unit;
   std::vector<Eigen::Vector3d> bearing;
   std::vector<double> shares;
   for (std::size_t round = 0; round <= 4 * directions.size(); ++round) {
-    if (left_over.norm() < k_nothing) return std::ranges::all_of(shares, [](double share) { return share <= k_most; });
+    if (left_over.norm() < nothing) return std::ranges::all_of(shares, [](double share) { return share <= k_most; });
     const auto help = [&](const Eigen::Vector3d& direction) { return -direction.dot(left_over); };
     const auto best = std::ranges::max_element(directions, {}, help);
     if (best == directions.end() || help(*best) <= k_no_help) return false;

@@ -7,10 +7,12 @@
 namespace monograin {
 
 /// Whether non-negative multiples of the directions, none beyond a million times a push, add up to its opposite but for
-/// a millionth of it: non-negative least squares by active sets (Lawson and Hanson), which end with nothing left over
-/// if they can.
+/// nothing: non-negative least squares by active sets (Lawson and Hanson), which end with nothing left over if they
+/// can.
 /// @param push        not zero
 /// @param directions  unit vectors
-[[nodiscard]] bool can_back(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> directions);
+/// @param nothing     what may be left over, of the push
+[[nodiscard]] bool can_back(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> directions,
+                            double nothing = 1e-6);
 
 }  // namespace monograin

@@ -73,6 +73,8 @@ constexpr double k_no_direction = 1e-6;
 constexpr double k_little = 1e-3;
 // Gaps over R0 at which a wall touches.
 constexpr double k_touch = 1e-9;
+// What laws leave of forces that balance, over these: walls that align but for more than that balance no others.
+constexpr double k_left_over = 1e-9;
 
 constexpr std::string_view k_full = "no pores are left";
 constexpr std::string_view k_poisson = "Poisson's ratio at 1/2";
@@ -335,11 +337,11 @@ void check_hold(const Run& run, Violations& found) {
   Eigen::Vector3d push = Eigen::Vector3d::Zero();
   Eigen::Vector3d small_push = Eigen::Vector3d::Zero();
   for (const auto& [force, normals] : pushes) (force < k_little * largest ? small_push : push) += force * normals;
-  if (!(push.norm() > 0.0) || !can_back(push, others)) return;
+  if (!(push.norm() > 0.0) || !can_back(push, others, k_left_over)) return;
   // Beside forces so much larger it is not seen whether the small ones can be balanced. Where contacts bear, they may
   // also give way.
   for (const Eigen::Vector3d& normal : bearing) others.push_back(-normal);
-  if (small_push.norm() > 0.0 && !can_back(small_push, others)) return;
+  if (small_push.norm() > 0.0 && !can_back(small_push, others, k_left_over)) return;
   found.push_back(
       {"held-centre", fmt::format("contacts that touch could balance the forces of '{}'", run.record.message)});
 }
