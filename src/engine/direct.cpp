@@ -34,9 +34,11 @@ constexpr double k_safety = 0.85;
 constexpr double k_rounding_of_work = 1e-16;
 // From which of that on few nodes are enough for it.
 constexpr double k_few_nodes_accuracy = 1e-5;
-// An event within this share of a piece may have all nodes beyond it. What the work up to it may be wrong by, as the
-// rates there and at the beginning show it; and how far beyond it the piece ends that is covered again.
+// An event within this share of a piece may have all nodes beyond it; within that one, some. What the work up to it may
+// be wrong by, as the rates there and at the beginning show it; and how far beyond it the piece ends that is covered
+// again.
 constexpr double k_deep_inside = 0.5;
+constexpr double k_inside = 0.99;
 constexpr double k_event_accuracy = 1e-13;
 constexpr double k_just_beyond = 1.001;
 // Where there are several solutions, what the last terms of a piece's series are at most, over the largest: the way
@@ -234,7 +236,7 @@ class Direct final : public EventLocator {
       }
       factor = std::min(factor, std::max(k_safety / share_of_reach(end_state_), k_most_shrinkage));
     }
-    if (!is_closed_ && end_ - begin_ < k_deep_inside * piece_length() && !holds_up_to_end()) {
+    if (!is_closed_ && end_ - begin_ < k_inside * piece_length() && !holds_up_to_end()) {
       factor = k_just_beyond * (end_ - begin_) / piece_length();
       return false;
     }
@@ -333,7 +335,7 @@ class Direct final : public EventLocator {
   }
 
   /// Whether the series of the work is that of this mode up to the event that has ended the piece: a mode need not go
-  /// on smoothly beyond it (a contact that opens has no force), and all nodes may lie there.
+  /// on smoothly beyond it (a contact that opens has no force), and nodes lie there.
   [[nodiscard]] bool holds_up_to_end() {
     system_.rates(end_, end_state_, rates_);
     const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
