@@ -193,7 +193,7 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
   const bool moves_in = of_overlap > k_touch || is_carried;
   const bool moves_out = of_overlap < -k_touch && !is_carried;
   const bool is_shifted = settings_.delta_max_rule == DeltaMaxRule::shifted;
-  const bool retreats = is_shifted ? of_wall < -k_touch : moves_out;
+  const bool retreats = !goes_on_[i] && (is_shifted ? of_wall < -k_touch : moves_out);
   const bool advances = is_shifted ? of_wall > k_touch : moves_in;
   // A force that is about to vanish, and was found to do so together with another event, presses no more.
   const bool is_vanishing = ramps_[i].end < ramps_[i].start && contact_guard(k_made, i, xi, overlap, r) < k_together;
@@ -255,6 +255,7 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
     const double rate = is_shifted ? of_wall : of_overlap;
     const double passed = contact_guard(k_reload, i, xi, overlap, r);
     if (!has_turned_[i] || rate > k_at_rest || passed > k_touch) {
+      has_resumed_[i] = has_turned_[i];
       resume_loading(i);
       log.push_back(event("reload"));
       return true;
@@ -562,10 +563,27 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
                     bool has_jumped) {
   const bool was_growing = is_growing_;
   std::vector<Event> made;
+  goes_on_.assign(memory_.size(), false);
+  has_resumed_.assign(memory_.size(), false);
   if (!has_jumped) balance_anew(xi, y, log, made);
   held_radius_ = y[k_radius];
+  const std::vector<double> first_state(y.begin(), y.end());
+  const std::vector<Memory> first_memory = memory_;
+  const std::size_t first_logged = log.size();
+  const std::size_t first_made = made.size();
   bool runs_away = false;
   for (std::size_t round = 0;; ++round) {
+    // What turns at its largest overlap, and once it has turned goes on beyond that, goes on as it does in the middle
+    // of a step, where its rate is rounding when it turns.
+    if (round == most_rounds() && !runs_away && has_resumed_ != goes_on_) {
+      std::ranges::copy(first_state, y.begin());
+      memory_ = first_memory;
+      log.resize(first_logged);
+      made.resize(first_made);
+      growth.reset();
+      goes_on_ = has_resumed_;
+      round = 0;
+    }
     // Where it would run away in a mode that has been tried, the radius goes to and fro with a contact.
     if (round == most_rounds() && runs_away) throw std::domain_error(k_singular_growth);
     if (round == most_rounds()) throw_unsettled();

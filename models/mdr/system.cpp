@@ -43,6 +43,8 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   edges_before_.resize(count);
   has_turned_.resize(count);
   is_left_.resize(count);
+  has_resumed_.resize(count);
+  goes_on_.resize(count);
   overlaps_before_.resize(count);
   memory_before_.resize(count);
   ramps_.resize(count);

@@ -390,8 +390,10 @@ class System final : public HybridSystem {
   std::vector<UnloadingShape> shapes_;
   std::vector<PullOff> pull_offs_;
   std::vector<Edge> edges_before_;
-  std::vector<bool> has_turned_;  ///< started to unload at the instant at which a mode is decided
-  std::vector<bool> is_left_;     ///< left, at that instant, by a centre that forces press elsewhere
+  std::vector<bool> has_turned_;   ///< started to unload at the instant at which a mode is decided
+  std::vector<bool> has_resumed_;  ///< and gone on beyond its largest overlap at that instant
+  std::vector<bool> goes_on_;      ///< taken to do so from the first, because no mode agrees otherwise
+  std::vector<bool> is_left_;      ///< left, at that instant, by a centre that forces press elsewhere
   std::vector<double> overlaps_before_;
   std::vector<Memory> memory_before_;
   Sums sums_;
