@@ -268,11 +268,12 @@ class Drive {
         if (steps == most || of_equations > k_most_evaluations * most) throw too_much_work(steps, of_equations);
         ++steps;
         advance = integrator_->advance();
-        xi_ = advance.xi;
-        idle_steps = xi_ > last ? 0 : idle_steps + 1;
+        idle_steps = advance.xi > last ? 0 : idle_steps + 1;
         if (idle_steps > k_most_idle_steps) throw stalled(idle_steps);
+        // Place and state together: an output may meet a limit, and the run then ends in them.
+        integrator_->dense_output(advance.xi, y_);
+        xi_ = advance.xi;
         emit_outputs_before(last, xi_);
-        integrator_->dense_output(xi_, y_);
       } while (!advance.hit_guard && xi_ < 1.0);
       if (!advance.hit_guard) break;
 
