@@ -74,9 +74,11 @@ void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
 }  // namespace
 
 /// Where the centre is free, a contact along its directions is carried by others only: the nearest ones close with it
-/// until they balance it, and those open with it that the rest does not balance.
+/// until they balance it, if they can, and those open with it that the rest does not balance.
 void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log) {
   if (free_count_ == 0 || directions_[i].norm() < k_no_direction || adheres()) return;
+  // Walls that cannot balance it have not met the particle with it, however near they are.
+  if (is_made && !may_be_backed(i, r)) return;
   while (!is_made || !is_backed(i)) {
     std::optional<std::size_t> next;
     double nearest = k_together;
@@ -84,13 +86,12 @@ void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Ev
     for (std::size_t j = 0; j < memory_.size(); ++j) {
       if (j == i || is_loaded(j) || directions_[j].norm() < k_no_direction) continue;
       if (touches(memory_[j].regime) == is_made) continue;
-      const bool is_dent = memory_[j].regime == Regime::separated;
-      const int kind = is_made ? (is_dent ? k_dent_touched : k_made) : k_lost;
-      const double distance = std::abs(contact_guard(kind, j, 0.0, now_[j].overlap, r));
+      const double distance =
+          is_made ? way_to_touch(j, r) : std::abs(contact_guard(k_lost, j, 0.0, now_[j].overlap, r));
       if (distance > nearest || (!is_made && is_backed(j))) continue;
       next = j;
       nearest = distance;
-      next_is_dent = is_dent;
+      next_is_dent = memory_[j].regime == Regime::separated;
     }
     if (!next) return;
     if (is_made)
@@ -100,6 +101,23 @@ void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Ev
     log.push_back(
         {is_made ? (next_is_dent ? "dent-touched" : "contact-made") : "contact-lost", static_cast<int>(*next)});
   }
+}
+
+/// How far a wall is from touching the fresh particle or its dent.
+double System::way_to_touch(std::size_t i, double r) {
+  const int kind = memory_[i].regime == Regime::separated ? k_dent_touched : k_made;
+  return std::abs(contact_guard(kind, i, 0.0, now_[i].overlap, r));
+}
+
+/// Whether contacts that touch, or are about to, can balance a push of one on the free centre.
+bool System::may_be_backed(std::size_t i, double r) {
+  std::vector<Small> others;
+  for (std::size_t j = 0; j < memory_.size(); ++j) {
+    if (j == i || directions_[j].norm() < k_no_direction) continue;
+    if (!touches(memory_[j].regime) && (is_loaded(j) || way_to_touch(j, r) > k_together)) continue;
+    others.push_back(directions_[j].normalized());
+  }
+  return can_back(directions_[i], others);
 }
 
 /// Whether a touch, of the fresh particle or of a dent, is all that a wall has of a free centre: nothing presses the

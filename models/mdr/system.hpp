@@ -332,6 +332,8 @@ class System final : public HybridSystem {
   void yield(std::size_t i, double r);
   void resume_loading(std::size_t i);
   void meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log);
+  [[nodiscard]] double way_to_touch(std::size_t i, double r);
+  [[nodiscard]] bool may_be_backed(std::size_t i, double r);
   void watch(double xi, std::span<const double> y);
   [[nodiscard]] bool goes_one_way(double r, const Motion& now) const;
   void watch_contact(std::size_t i, double r, const Motion& now);
