@@ -375,7 +375,9 @@ bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi,
   memory_ = memory_before_;
   const double least = k_no_force * largest_prescribed_force();
   const Small push = along * prescribed_push(1.0);
-  if (push.norm() <= least || (along * prescribed_push(xi)).norm() > least) return false;
+  if (push.norm() <= least) return false;
+  // Once contacts have given way to a force, however small, walls may have caught up with the centre.
+  if ((along * prescribed_push(xi)).norm() > rounding_of_forces()) return false;
   std::vector<Small> normals;
   for (const Drive& drive : drives) normals.emplace_back(along * directions_[drive.contact]);
   std::vector<Small> units;
