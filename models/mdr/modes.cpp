@@ -754,7 +754,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         end = DomainEnd{event, {"the particle is compressed elastically to half its volume", "V/V0", 0.5}};
         continue;
       default:
-        end = DomainEnd{event, {"a wall has reached the centre of the particle", "distance/R0", k_least_distance}};
+        end = centre_reached(guard.index);
         continue;
     }
     others_fired = true;
@@ -795,6 +795,20 @@ std::optional<DomainEnd> System::meet_caps_at_once(double xi, std::span<const do
     if (const auto limit = meet_caps(pair, r, log)) end = limit;
   }
   return end;
+}
+
+DomainEnd System::centre_reached(int contact_class) {
+  return {{"limit", contact_class}, {"a wall has reached the centre of the particle", "distance/R0", k_least_distance}};
+}
+
+/// A wall that stands at the limit already, and goes on from there, which no guard meets.
+std::optional<DomainEnd> System::reach_centre_at_once(double xi, std::span<const double> y) {
+  look_once(xi, y);
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    if (1.0 - now_[i].displacement > k_least_distance) continue;
+    if (wall_rate(i, motion(is_growing_)) > k_at_rest) return centre_reached(static_cast<int>(i));
+  }
+  return std::nullopt;
 }
 
 }  // namespace monograin::mdr

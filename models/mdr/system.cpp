@@ -186,6 +186,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   is_left_.assign(memory_.size(), false);
   settle(0.0, y, std::nullopt, log);
   if (const auto end = meet_caps_at_once(0.0, y, log)) throw CannotBegin(*end);
+  if (const auto end = reach_centre_at_once(0.0, y)) throw CannotBegin(*end);
 }
 
 bool System::is_open(int contact_class) const noexcept {

@@ -344,6 +344,8 @@ class System final : public HybridSystem {
   std::optional<DomainEnd> meet_caps(CapPair& pair, double r, std::vector<Event>& log);
   [[nodiscard]] std::optional<DomainEnd> meet_caps_at_once(double xi, std::span<const double> y,
                                                            std::vector<Event>& log);
+  [[nodiscard]] static DomainEnd centre_reached(int contact_class);
+  [[nodiscard]] std::optional<DomainEnd> reach_centre_at_once(double xi, std::span<const double> y);
   [[nodiscard]] double cap_guard(const CapPair& pair, double r) const;
 
   /// What counts of a contact at its largest overlap: the energy it would give back, or the work done on it (up to a
