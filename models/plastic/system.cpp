@@ -121,6 +121,7 @@ void System::start(std::span<double> y) {
 
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
   const double length = settings_.initial_radius;
+  std::vector<double> begins(ramps_.size());
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     const double unit = ramps[i].control == Control::force ? settings_.strength * length * length : length;
     const bool was_loaded = is_loaded(i);
@@ -130,8 +131,15 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     // Where a wall has left its dent, the rounding of its units must not press it in again.
     const bool stands_at_dent = std::abs(ramps_[i].start - origin(i)) <= k_rounding * origin(i);
     if (memory_[i].regime == Regime::separated && !is_loaded(i) && stands_at_dent) ramps_[i].start = origin(i);
-    double x = is_loaded(i) ? stood : ramps_[i].start;
+    const double x = is_loaded(i) ? stood : ramps_[i].start;
     directions_[i] = direction_of_ramp(i, x, was_loaded);
+    begins[i] = x;
+    // A step that cannot begin is shown where it would have, in its own coordinates.
+    if (classes_[i].takes_force) y[places_[i]] = coordinate(i, x);
+  }
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    if (is_lateral(i)) continue;
+    double x = begins[i];
     if (touches(memory_[i].regime)) {
       // A wall that has only touched leaves no dent.
       const bool has_pressed = x > (is_loaded(i) ? 0.0 : k_least_depth);
