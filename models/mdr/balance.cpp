@@ -2,10 +2,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -425,11 +427,17 @@ bool System::leave_saddle(double xi, std::span<double> y, bool is_balanced) {
         before = std::exchange(now, after);
       }
       if (now <= 0.0) continue;
-      for (const double to : {2.0 * way, way}) {
-        go(to);
-        move_centre(xi, y);
-        look(xi, y);
-        if (is_sought()) return true;
+      // From where a search has got stuck, or from beyond pull-off, it may also be farther.
+      constexpr std::array<double, 5> k_places{2.0, 1.0, 4.0, 8.0, 16.0};
+      for (const double place : std::span(k_places).first(is_balanced && !beyond ? 2 : k_places.size())) {
+        try {
+          go(place * way);
+          move_centre(xi, y);
+          look(xi, y);
+          if (is_sought()) return true;
+        } catch (const std::domain_error&) {
+          continue;  // the search leads astray from there
+        }
       }
     } catch (const std::domain_error&) {
       continue;  // no branch leads there
