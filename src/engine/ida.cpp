@@ -29,6 +29,10 @@ constexpr int k_most_failures = 50;         // of one step
 constexpr double k_left_by_corrector = 0.1;
 constexpr double k_most_left_by_corrector = 0.33;
 constexpr double k_left_by_rounding = 3e-14;
+// Steps of order 1 in a row, each of which was first tried longer, after which the method begins anew. As long as that
+// it never rises to a higher order: a difference of unknowns that go far sees nothing of their errors while steps are
+// alike, and all of them in a longer one.
+constexpr int k_most_failing_steps = 10;
 // A corrector's tolerance over the sums in a residual: above their rounding.
 constexpr double k_above_rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
@@ -76,6 +80,7 @@ class Ida final : public Integrator {
     raise_tolerances();
     start(xi, 0.0);
     last_length_ = 0.0;
+    failing_steps_ = 0;
     ++past_.segments;
     // The system's own rates are consistent; IDACalcIC brings the rest within the tolerance. Where it cannot, because
     // the balance is singular (first touch), the first step shows whether they were.
@@ -102,6 +107,17 @@ class Ida final : public Integrator {
           pending_, begin, [this] { return evolve(); },
           [this](double* step) { return IDAGetCurrentStep(memory_.get(), step); }, restart);
     };
+    if (failing_steps_ == k_most_failing_steps) {
+      failing_steps_ = 0;
+      try {
+        correct_begin(begin);
+        restart(last_length_);
+      } catch (const std::domain_error&) {
+        // Next to the end of the equations it goes on as it has come.
+        N_VScale(1.0, dy_.get(), begin_rates_.get());
+      }
+    }
+    const long failures = error_test_failures();
     int flag = step_once();
     if (flag < 0) {
       correct_begin(begin);
@@ -114,6 +130,9 @@ class Ida final : public Integrator {
       throw std::domain_error(pending_.nearest_domain_end());
     }
     last_length_ = end_ - begin;
+    int order = 0;
+    IDAGetLastOrder(memory_.get(), &order);
+    failing_steps_ = order == 1 && error_test_failures() > failures ? failing_steps_ + 1 : 0;
     if (flag == IDA_ROOT_RETURN) {
       check("IDAGetRootInfo", IDAGetRootInfo(memory_.get(), roots_.found.data()));
       roots_.collect();
@@ -158,6 +177,12 @@ class Ida final : public Integrator {
   }
 
  private:
+  [[nodiscard]] long error_test_failures() const {
+    long failures = 0;
+    IDAGetNumErrTestFails(memory_.get(), &failures);
+    return failures;
+  }
+
   /// Nothing is told more exactly than the step coordinate: what goes through zero on a long way would be, and what
   /// grows ever faster towards the end of its equations.
   void raise_tolerances() {
@@ -316,6 +341,7 @@ class Ida final : public Integrator {
   RootList roots_;
   double end_ = 0.0;
   double last_length_ = 0.0;  ///< of a step of this segment
+  int failing_steps_ = 0;     ///< in a row, of order 1
   Statistics past_;
   long for_jacobian_ = 0;  ///< residuals
 
