@@ -21,7 +21,7 @@ constexpr double k_closing = 20.0;
 constexpr double k_same_place = 1e-13;
 constexpr double k_shortest = 1e-11;
 constexpr double k_small_force = 1e-3;  // over the largest
-constexpr double k_little = 1e-3;       // of a step
+constexpr double k_little = 1e-3;       // of what is left of a step
 constexpr double k_touching = 1e-10;    // gap of walls that begin to bear
 constexpr double k_early = 1e-9;        // of a step: which walls touch in it is seen there
 // As long before its end: from too far one that has only just left is not seen, from too near the rest is rounding.
@@ -72,11 +72,12 @@ bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> 
   bool do_some_touch = false;
   for (std::size_t j = 0; j < class_count(); ++j) do_some_touch = do_some_touch || (holds_[j] && y[j] <= 0.0);
   if (!do_some_touch) return false;
-  // A little later, as forces may have yet to begin.
+  // A little later, as forces may have yet to begin; but not beyond the end of the step, where what is left of them may
+  // point the other way.
   look(y);
   for (std::size_t j = 0; j < class_count(); ++j) {
     const bool is_force = ramps[j].control == Control::force;
-    const double force = std::max(0.0, forces_[j] + k_little * (ramps[j].end - ramps[j].start));
+    const double force = std::max(0.0, std::lerp(forces_[j], ramps[j].end, k_little));
     targets_[j] = {.is_force = is_force, .value = is_force ? force : 0.0};
   }
   return may_balance(targets_, y, near);
