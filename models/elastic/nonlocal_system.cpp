@@ -22,8 +22,9 @@ enum Kind : int { k_made, k_lost, k_impingement, k_stiffening, k_force_ends, k_r
 
 // The last pivot goes like the root of the distance from the limit: this is 1e-10 of R0 before it.
 constexpr double k_least_pivot = 1e-5;
-// The last pivot below which an integrator may find no more steps.
-constexpr double k_hard_pivot = 1e-3;
+// The margin below which an integrator may find no more steps. The last pivot may be many times larger: by how little
+// its wall has to do with the critical mode.
+constexpr double k_hard_margin = 1e-3;
 // The margin from which on the source's formulation is seen to stiffen.
 constexpr double k_stiff_margin = 0.25;
 // Walls this near to opposite never meet on the surface.
@@ -697,7 +698,7 @@ bool System::is_open(int contact_class) const noexcept {
 
 std::string_view System::difficulty(double xi, std::span<const double> y) {
   if (is_shallow_) return k_closes_nothing;  // of the whole program
-  if (contacts_.least_pivot(look(xi, y)) < k_hard_pivot) {
+  if (contacts_.margin(look(xi, y)) < k_hard_margin) {
     return "the limit of applicability is so near that the stiffness magnifies the errors that are tolerated; "
            "expected a larger rtol, or integrator = \"direct\"";
   }
