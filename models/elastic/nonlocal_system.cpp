@@ -25,8 +25,6 @@ constexpr double k_least_pivot = 1e-5;
 // The margin below which an integrator may find no more steps. The last pivot may be many times larger: by how little
 // its wall has to do with the critical mode.
 constexpr double k_hard_margin = 1e-3;
-// The margin from which on the source's formulation is seen to stiffen.
-constexpr double k_stiff_margin = 0.25;
 // Walls this near to opposite never meet on the surface.
 constexpr double k_opposite = 1e-9;
 // Angles that are the same but for rounding.
@@ -608,57 +606,7 @@ void System::settle_others(double xi, std::span<const std::size_t> fired, std::v
   }
 }
 
-// --- what is seen
-
-void System::observe(double xi, std::span<const double> y, std::span<double> values) {
-  look_closely(xi, y);
-  const double length = settings_.initial_radius;
-  const double force_unit = settings_.youngs_modulus * length * length;
-  const double energy_unit = force_unit * length;
-  const double energy = contacts_.energy(state_);
-  const double margin = contacts_.margin(state_);
-  least_margin_ = std::min(least_margin_, margin);
-  auto out = values.begin();
-  *out++ = y[work_place_] * energy_unit;
-  *out++ = energy * energy_unit;
-  *out++ = margin;
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    const ContactState c = now_[i];
-    const double a = c.contact_radius;
-    *out++ = (is_loaded(i) ? c.displacement : told(i, xi)) * length;
-    *out++ = depth(i, xi) * length;
-    *out++ = c.force * force_unit;
-    *out++ = a * length;
-    *out++ = a > 0.0 ? c.force / (pi * a * a) * settings_.youngs_modulus : 0.0;
-    *out++ = static_cast<double>(regimes_[i]);
-    *out++ = a <= k_widest || settings_.radius_rule == RadiusRule::none
-                 ? contacts_.deformed_radius(settings_.radius_rule, i, state_) * length
-                 : std::nan("");
-  }
-  if (settings_.centre == Centre::free) {
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < contacts_.free_count(); ++k) {
-      centre += contacts_.free_directions().col(static_cast<Eigen::Index>(k)) * state_[classes_.size() + k];
-    }
-    for (const double x : centre) *out++ = x * length;
-  }
-}
-
-double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
-  look_closely(xi, y);
-  const auto i = static_cast<std::size_t>(contact_class);
-  ContactState c = now_[i];
-  // A contact that is lost bears nothing, even where the exact state has it for as long as the error of that instant.
-  if (regimes_[i] == Regime::open) c.force = c.contact_radius = 0.0;
-  const double length = settings_.initial_radius;
-  const double area = pi * c.contact_radius * c.contact_radius;
-  return quantity_of({.force = c.force * settings_.youngs_modulus * length * length,
-                      .displacement = (is_loaded(i) ? c.displacement : told(i, xi)) * length,
-                      .pressure = area > 0.0 ? c.force / area * settings_.youngs_modulus : 0.0,
-                      .contact_radius = c.contact_radius * length,
-                      .apparent_radius = length},
-                     quantity);
-}
+// --- what others ask
 
 /// What a wall is to go on from is that of the law: forces of errors on opposite walls would not balance.
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
@@ -669,27 +617,6 @@ double System::controlled(Control control, int contact_class, double xi, std::sp
     std::ranges::copy(y, exact.begin());  // whoever goes on from here is told
   }
   return quantity(control == Control::force ? Quantity::force : Quantity::displacement, contact_class, xi, exact);
-}
-
-/// Pressure under the contact, and its surface, which is the wall's plane.
-std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {
-  constexpr int k_points = 128;
-  look_closely(xi, y);
-  const auto i = static_cast<std::size_t>(contact_class);
-  const ContactState c = now_[i];
-  if (!(c.contact_radius > 0.0)) return {};
-  const double length = settings_.initial_radius;
-  std::vector<SurfacePoint> points;
-  for (int k = 0; k <= k_points; ++k) {
-    const double r = c.contact_radius * std::sin(0.5 * pi * k / k_points);
-    const double pressure = contacts_.law().pressure(state_[i], std::min(r * r, state_[i]));
-    const double height = r < 1.0 ? r * r / (1.0 + std::sqrt(1.0 - r * r)) : std::nan("");
-    points.push_back({.radius = r * length,
-                      .pressure = pressure * contacts_.composite_modulus() * settings_.youngs_modulus,
-                      .displacement = (c.approach - height) * length,
-                      .relaxed_height = height * length});
-  }
-  return points;
 }
 
 bool System::is_open(int contact_class) const noexcept {
@@ -705,15 +632,6 @@ std::string_view System::difficulty(double xi, std::span<const double> y) {
   if (contacts_.free_count() == 0 || !contacts_.is_held_softly(ramps_, look(xi, y), idle_)) return {};
   return "the balance of the free centre is singular, because nothing but contacts that only touch keeps it from "
          "moving; expected integrator = \"direct\"";
-}
-
-std::vector<Finding> System::warnings() const {
-  std::vector<Finding> result;
-  if (has_stiffened_ || least_margin_ < k_stiff_margin) {
-    result.push_back(
-        {"the formulation stiffens as it nears its limit of applicability", "least margin", least_margin_});
-  }
-  return result;
 }
 
 }  // namespace monograin::nonlocal

@@ -94,6 +94,9 @@ class System final : public HybridSystem {
   void watch();
   void add_guard(int kind, std::size_t index, int direction, std::string_view name);
 
+  /// The margin from which on the source's formulation is seen to stiffen.
+  static constexpr double k_stiff_margin = 0.25;
+
   Settings settings_;
   std::vector<ContactClass> classes_;
   Contacts contacts_;

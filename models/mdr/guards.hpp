@@ -26,6 +26,11 @@ enum GuardKind : int {
 
 /// A guard this near to zero, and moving on, counts as crossed when a mode is decided.
 inline constexpr double k_touch = 1e-13;
+/// An edge that has just turned is at rest, and near to where it turned from; integration errors there are no motion.
+inline constexpr double k_at_rest = 1e-8;
+/// With a free centre, contacts along its directions open and close together; their guards agree to the integration
+/// error only.
+inline constexpr double k_together = 1e-6;
 /// Growth ends where the free surface is used up to this share.
 inline constexpr double k_least_slope = 1e-3;
 /// Where several contacts hold a free centre between them, their equilibrium turns back where they hold it no more; the

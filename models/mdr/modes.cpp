@@ -1,22 +1,15 @@
 // Modes of the MDR system: what transitions change, and how a mode is decided.
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "backing.hpp"
 #include "mdr/guards.hpp"
 #include "mdr/system.hpp"
 
 namespace monograin::mdr {
 namespace {
 
-// An edge that has just turned is at rest, and near to where it turned from; integration errors there are no motion.
-constexpr double k_at_rest = 1e-8;
-// With a free centre, contacts along its directions open and close together; their guards agree to the integration
-// error only.
-constexpr double k_together = 1e-6;
 // Share of an unloading branch that is left when it counts as loaded to its end together with another event.
 constexpr double k_passed = 1e-2;
 // Under force a wall would go back by what is missing of its force, over the stiffness of a plastic contact, which is
@@ -24,45 +17,8 @@ constexpr double k_passed = 1e-2;
 constexpr double k_passed_by_force = 1e-6;
 // Caps that have met and are this far from it have parted.
 constexpr double k_parted = 1e-6;
-// Share of a push that its balance may leave.
-constexpr double k_balanced = 1e-10;
-// Of the way on which a push takes a free centre, what counts as away from a wall.
-constexpr double k_left_behind = 1e-6;
-constexpr int k_most_steps = 200;
 // A free centre that has gone this far (over R0) within an instant has sprung.
 constexpr double k_spring = 1e-9;
-
-/// Way on which contacts of these normals, whose forces go with their overlaps to the 3/2, come to balance a push, up
-/// to a factor: Newton on the least of a convex energy.
-Eigen::Vector3d way_under_push(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> normals,
-                               std::span<const double> weights) {
-  const Eigen::Vector3d load = push.normalized();
-  const double most = std::ranges::max(weights);
-  Eigen::Vector3d way = Eigen::Vector3d::Zero();
-  const auto energy = [&](const Eigen::Vector3d& at) {
-    double sum = load.dot(at);
-    for (std::size_t k = 0; k < normals.size(); ++k)
-      sum += 0.4 * weights[k] / most * std::pow(std::max(0.0, normals[k].dot(at)), 2.5);
-    return sum;
-  };
-  for (int iteration = 0; iteration < k_most_steps; ++iteration) {
-    Eigen::Vector3d slope = load;
-    Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
-    for (std::size_t k = 0; k < normals.size(); ++k) {
-      const double root = std::sqrt(std::max(0.0, normals[k].dot(way)));
-      slope += weights[k] / most * root * root * root * normals[k];
-      stiffness += 1.5 * weights[k] / most * root * normals[k] * normals[k].transpose();
-    }
-    if (slope.norm() < k_balanced) break;
-    // Where nothing is pressed as yet there is no stiffness.
-    stiffness.diagonal().array() += slope.norm();
-    Eigen::Vector3d step = -stiffness.ldlt().solve(slope);
-    const double before = energy(way);
-    while (energy(way + step) >= before && step.norm() > k_balanced * way.norm()) step *= 0.5;
-    way += step;
-  }
-  return way;
-}
 
 /// Takes the events of a contact out again, those from a place on.
 void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
@@ -72,65 +28,6 @@ void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
 }
 
 }  // namespace
-
-/// Where the centre is free, a contact along its directions is carried by others only: the nearest ones close with it
-/// until they balance it, if they can, and those open with it that the rest does not balance.
-void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log) {
-  if (free_count_ == 0 || directions_[i].norm() < k_no_direction || adheres()) return;
-  // Walls that cannot balance it have not met the particle with it, however near they are.
-  if (is_made && !may_be_backed(i, r)) return;
-  while (!is_made || !is_backed(i)) {
-    std::optional<std::size_t> next;
-    double nearest = k_together;
-    bool next_is_dent = false;
-    for (std::size_t j = 0; j < memory_.size(); ++j) {
-      if (j == i || is_loaded(j) || directions_[j].norm() < k_no_direction) continue;
-      if (touches(memory_[j].regime) == is_made) continue;
-      const double distance =
-          is_made ? way_to_touch(j, r) : std::abs(contact_guard(k_lost, j, 0.0, now_[j].overlap, r));
-      if (distance > nearest || (!is_made && is_backed(j))) continue;
-      next = j;
-      nearest = distance;
-      next_is_dent = memory_[j].regime == Regime::separated;
-    }
-    if (!next) return;
-    if (is_made)
-      make_contact(*next);
-    else
-      lose_contact(*next);
-    log.push_back(
-        {is_made ? (next_is_dent ? "dent-touched" : "contact-made") : "contact-lost", static_cast<int>(*next)});
-  }
-}
-
-/// How far a wall is from touching the fresh particle or its dent.
-double System::way_to_touch(std::size_t i, double r) {
-  const int kind = memory_[i].regime == Regime::separated ? k_dent_touched : k_made;
-  return std::abs(contact_guard(kind, i, 0.0, now_[i].overlap, r));
-}
-
-/// Whether contacts that touch, or are about to, can balance a push of one on the free centre.
-bool System::may_be_backed(std::size_t i, double r) {
-  std::vector<Small> others;
-  for (std::size_t j = 0; j < memory_.size(); ++j) {
-    if (j == i || directions_[j].norm() < k_no_direction) continue;
-    if (!touches(memory_[j].regime) && (is_loaded(j) || way_to_touch(j, r) > k_together)) continue;
-    others.push_back(directions_[j].normalized());
-  }
-  return can_back(directions_[i], others);
-}
-
-/// Whether a touch, of the fresh particle or of a dent, is all that a wall has of a free centre: nothing presses the
-/// particle against it, and it takes the centre along. Its overlap and the rate of that are rounding; what is that
-/// shallow remembers nothing, and is lost when it has been left by more.
-bool System::rides(std::size_t i) const noexcept {
-  if (free_count_ == 0 || is_loaded(i) || !(directions_[i].norm() > k_no_direction)) return false;
-  const Memory& memory = memory_[i];
-  if (memory.regime == Regime::elastic) return (memory.is_virgin || !adheres()) && is_shallow(now_[i].overlap);
-  const UnloadingShape& dent = shapes_[i];
-  return memory.regime == Regime::unloading && !adheres() &&
-         is_shallow(now_[i].overlap - (dent.overlap_max - dent.recovery));
-}
 
 // --- deciding a mode
 
@@ -325,182 +222,6 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
       return true;
   }
   return false;
-}
-
-/// Loses the walls that only touch a free centre and that the others drive it away from faster than they follow: a
-/// touch can drive the centre out of its way, but not draw it along, as nothing pulls. Where walls close in on it from
-/// opposite sides there is no way out, and they are about to bear, as are those that a force presses it against: then
-/// only those are asked that no other contact opposes.
-/// @return whether there are any
-bool System::leave_behind(double xi, std::span<const double> y, std::vector<Event>& log) {
-  std::vector<Drive> drives;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (rides(i)) drives.push_back({i});
-  }
-  if (drives.empty()) return false;
-  std::vector<Drive> unopposed = drives;
-  std::erase_if(unopposed, [this](const Drive& drive) { return is_backed(drive.contact); });
-  std::optional<Small> velocity;
-  if (touches_have_to_bear(xi)) {
-    if (leave_what_is_not_pressed(drives, xi, log)) return true;
-  } else {
-    velocity = velocity_of(drives, xi, y);
-  }
-  if (!velocity && !unopposed.empty()) {
-    drives = unopposed;
-    velocity = velocity_of(drives, xi, y);
-  }
-  if (!velocity) return false;
-  // Beside stiff contacts these rates have fewer digits; what leaves more slowly is lost when it has gone.
-  const double least = -k_at_rest * (1.0 + velocity->norm());
-  bool has_left = false;
-  for (const Drive& drive : drives) {
-    const std::size_t i = drive.contact;
-    if (!(drive.rate + directions_[i].dot(*velocity) < least)) continue;
-    lose_contact(i);
-    log.push_back({"contact-lost", static_cast<int>(i)});
-    has_left = true;
-  }
-  return has_left;
-}
-
-/// Loses the walls that only touch a free centre and that it leaves where forces begin to press it: contacts give way
-/// with the force to the 2/3, beside which walls stand still at first. Which of them will bear is not to be told one by
-/// one, nor where those to be left still pull in the search for the balance.
-/// @return whether there are any
-bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi, std::vector<Event>& log) {
-  memory_before_ = memory_;
-  for (const Drive& drive : drives) lose_contact(drive.contact);
-  const SmallMatrix along = unheld_directions();
-  memory_ = memory_before_;
-  const double least = k_no_force * largest_prescribed_force();
-  const Small push = along * prescribed_push(1.0);
-  if (push.norm() <= least) return false;
-  // Once contacts have given way to a force, however small, walls may have caught up with the centre.
-  if ((along * prescribed_push(xi)).norm() > rounding_of_forces()) return false;
-  std::vector<Small> normals;
-  for (const Drive& drive : drives) normals.emplace_back(along * directions_[drive.contact]);
-  std::vector<Small> units;
-  for (const Small& normal : normals) {
-    if (normal.norm() > k_no_direction) units.push_back(normal.normalized());
-  }
-  if (!can_back(push, units)) return false;
-  std::vector<double> weights;
-  for (const Drive& drive : drives) weights.push_back(classes_[drive.contact].multiplicity() * firmness(drive.contact));
-  const Small way = way_under_push(push, normals, weights);
-  bool has_left = false;
-  for (std::size_t k = 0; k < drives.size(); ++k) {
-    const std::size_t i = drives[k].contact;
-    if (!(normals[k].dot(way) < -k_left_behind * way.norm())) continue;
-    lose_contact(i);
-    is_left_[i] = true;
-    log.push_back({"contact-lost", static_cast<int>(i)});
-    has_left = true;
-  }
-  return has_left;
-}
-
-/// Whether forces press a free centre against walls that only touch it as yet: those that bear already cannot balance
-/// them by themselves, now or at the end of the step.
-bool System::touches_have_to_bear(double xi) const {
-  std::vector<Small> bearing;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (!touches(memory_[i].regime) || is_loaded(i) || rides(i) || directions_[i].norm() < k_no_direction) continue;
-    bearing.push_back(directions_[i].normalized());
-    if (memory_[i].edge != Edge::following) bearing.emplace_back(-directions_[i].normalized());
-  }
-  const double least = k_no_force * largest_prescribed_force();
-  const auto is_borne = [&](const Small& push) { return push.norm() <= least || can_back(push, bearing); };
-  return !is_borne(prescribed_push(xi)) || !is_borne(prescribed_push(1.0));
-}
-
-/// Sum of the prescribed forces on a free centre.
-System::Small System::prescribed_push(double xi) const noexcept {
-  Small sum = Small::Zero();
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (!is_loaded(i) || !touches(memory_[i].regime)) continue;
-    sum += classes_[i].multiplicity() * prescribed_force(i, xi) * directions_[i];
-  }
-  return sum;
-}
-
-/// The largest of them within the step.
-double System::largest_prescribed_force() const noexcept {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (!is_loaded(i) || !touches(memory_[i].regime)) continue;
-    const double force = std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
-    largest = std::max(largest, classes_[i].multiplicity() * force);
-  }
-  return largest;
-}
-
-/// Velocity of the centre that such walls add to what it has without them, if they leave it a way out; and the rates of
-/// their overlaps without it.
-std::optional<System::Small> System::velocity_of(std::span<Drive> drives, double xi, std::span<const double> y) {
-  memory_before_ = memory_;
-  for (const Drive& drive : drives) lose_contact(drive.contact);
-  look(xi, y);
-  const Motion now = motion(is_growing_);
-  for (Drive& drive : drives) drive.rate = overlap_rate(drive.contact, now);
-  Small velocity = Small::Zero();
-  const bool is_free = drive_out(drives, unheld_directions(), velocity);
-  memory_ = memory_before_;
-  look(xi, y);
-  return is_free ? std::optional(velocity) : std::nullopt;
-}
-
-/// Adds to a velocity of the centre the least by which none of the walls goes into the particle. One that the least for
-/// those before it lets in keeps up with the centre in the end.
-/// @param along  projector on the directions in which nothing else holds the centre
-/// @return false, and the velocity as it was, if there is none
-bool System::drive_out(std::span<const Drive> drives, const SmallMatrix& along, Small& velocity) const {
-  Small now = velocity;
-  for (std::size_t k = 0; k < drives.size(); ++k) {
-    const Small& normal = directions_[drives[k].contact];
-    const double rate = drives[k].rate + normal.dot(now);
-    if (rate <= k_touch * (1.0 + now.norm())) continue;
-    const Small way = along * normal;
-    const double share = way.squaredNorm();
-    if (!(share > k_no_direction * k_no_direction)) return false;
-    now = velocity - way * ((drives[k].rate + normal.dot(velocity)) / share);
-    if (!drive_out(drives.first(k), along - way * way.transpose() / share, now)) return false;
-  }
-  velocity = now;
-  return true;
-}
-
-/// Whether the other touching contacts can balance a push of one of them on the free centre, or a pull where the side
-/// is -1; those whose edges do not follow pull, too.
-bool System::is_backed(std::size_t i, double side) const {
-  std::vector<Small> others;
-  for (std::size_t j = 0; j < memory_.size(); ++j) {
-    if (j == i || !touches(memory_[j].regime) || directions_[j].norm() < k_no_direction) continue;
-    others.push_back(directions_[j].normalized());
-    if (memory_[j].edge != Edge::following) others.emplace_back(-directions_[j].normalized());
-  }
-  return can_back(side * directions_[i], others);
-}
-
-/// A wall that pushes a particle which nothing holds from the other side has no equilibrium, unless others adhere; nor
-/// have forces that do not balance where no wall stands against them.
-/// @throws std::domain_error there
-void System::check_support() {
-  if (free_count_ == 0) return;
-  const double least = k_touch * speed_scale();
-  for (std::size_t i = 0; !adheres() && i < memory_.size(); ++i) {
-    const bool pushes = touches(memory_[i].regime) && !is_loaded(i) && ramps_[i].end - ramps_[i].start > least;
-    if (pushes && directions_[i].norm() > k_no_direction && !is_backed(i)) {
-      throw std::domain_error("no contact holds the free centre of the particle against a wall that pushes it");
-    }
-  }
-  const double largest = largest_prescribed_force();
-  if (largest == 0.0) return;
-  const SmallMatrix unheld = unheld_directions();
-  const double left = std::max((unheld * prescribed_push(0.0)).norm(), (unheld * prescribed_push(1.0)).norm());
-  if (left > k_no_force * largest) {
-    throw std::domain_error("no contact holds the free centre of the particle against the forces on it");
-  }
 }
 
 /// Of the contacts the row that ends the run shows what they have changed to last, and have not been looked at as yet.

@@ -21,6 +21,12 @@ using namespace sundials_boundary;
 // sphere then has 500 rtol, and 55 with steps of this length.
 constexpr double k_longest_implicit_step = 1.0 / 32.0;
 
+// The rtol that a step of that length still keeps where a polynomial through the states of the last steps is what is
+// seen between them. No estimate of the error sees that; it goes with that power of the length. Where the equations are
+// stiff beside that, steps are short because few corrections do not converge.
+constexpr double k_interpolated_rtol = 1e-6;
+constexpr double k_order_between_steps = 6.0;
+
 // The rate at which the implicit method's corrections converge, as told from earlier ones, falls no lower than this. By
 // itself it falls with every stage while steps are alike, and after a change of their length a first correction far
 // larger than what is tolerated is then taken for the last: the estimate of the error sees nothing of that. With 1 the
@@ -492,9 +498,14 @@ void SundialsOde<ArkodeLibrary>::create() {
     check("ARKStepSetInterpolantType", ARKStepSetInterpolantType(memory_.get(), type));
   }
   if (!is_implicit) return;
-  check("ARKStepSetMaxStep", ARKStepSetMaxStep(memory_.get(), k_longest_implicit_step));
   check("ARKStepSetNonlinCRDown", ARKStepSetNonlinCRDown(memory_.get(), k_least_convergence_rate));
-  check("ARKStepSetMaxNonlinIters", ARKStepSetMaxNonlinIters(memory_.get(), k_most_corrections));
+  double longest = k_longest_implicit_step;
+  if (form_.has_corrections()) {
+    longest *= std::min(1.0, std::pow(tolerances_.rtol / k_interpolated_rtol, 1.0 / k_order_between_steps));
+  } else {
+    check("ARKStepSetMaxNonlinIters", ARKStepSetMaxNonlinIters(memory_.get(), k_most_corrections));
+  }
+  check("ARKStepSetMaxStep", ARKStepSetMaxStep(memory_.get(), longest));
 }
 
 }  // namespace

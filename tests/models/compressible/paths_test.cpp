@@ -466,5 +466,24 @@ TEST(MaterialPoint, ConvergesWithTheToleranceOverEveryPath) {
   }
 }
 
+TEST(MaterialPoint, CurvesBetweenImplicitStepsConvergeWithTheTolerance) {
+  for (const Smooth& c : smooth_cases()) {
+    // Stiff: as many steps as that takes, ten thousands.
+    if (c.configuration == Configuration::strain_path) continue;
+    const Scenario scenario = with_points(point(c.parameters, c.configuration, c.steps), 40);
+    const TestRun exact = run(scenario, "cvode-bdf", relative(1e-13));
+    ASSERT_EQ(exact.record.status, RunStatus::complete) << c.name << ": " << exact.record.message;
+    for (int digits = 3; digits <= 12; digits += 3) {
+      const double rtol = std::pow(10.0, -digits);
+      const TestRun result = run(scenario, "arkode-dirk", relative(rtol));
+      ASSERT_EQ(result.record.status, RunStatus::complete) << c.name << ": " << result.record.message;
+      for (const char* column : {"p", "s", "phi", "plastic_strain_deviatoric"}) {
+        EXPECT_LT(difference(result.outputs(column), exact.outputs(column)), 10.0 * rtol + 3e-12)
+            << c.name << ", " << column << ", rtol " << rtol;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace monograin::compressible
