@@ -160,8 +160,8 @@ bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi,
   const double least = k_no_force * largest_prescribed_force();
   const Small push = along * prescribed_push(1.0);
   if (push.norm() <= least) return false;
-  // Once contacts have given way to a force, however small, walls may have caught up with the centre.
-  if ((along * prescribed_push(xi)).norm() > rounding_of_forces()) return false;
+  // Forces begin with a step: once contacts have given way to one, however small, walls may have caught up.
+  if (xi > 0.0 || (along * prescribed_push(xi)).norm() > rounding_of_forces()) return false;
   std::vector<Small> normals;
   for (const Drive& drive : drives) normals.emplace_back(along * directions_[drive.contact]);
   std::vector<Small> units;
