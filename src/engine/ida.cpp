@@ -22,7 +22,6 @@ struct IdaDeleter {
 using IdaMemory = std::unique_ptr<void, IdaDeleter>;
 
 constexpr double k_slave_tolerance = 1e-4;  // loose, but small enough for difference quotients
-constexpr int k_most_failures = 50;         // of one step
 // Share of what is tolerated of a step that the corrector may leave. Of the library's third the differences of many
 // steps see nothing else where steps are many: the order stays low, and they become no longer. But no less than what
 // rounding leaves.

@@ -60,6 +60,10 @@ inline void keep_message(int, const char*, const char*, char* message, void* sin
 /// A solver of small dense systems; timed where a LinearAlgebraClock runs.
 [[nodiscard]] LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context);
 
+/// Error tests and corrections that one step may fail. After a first step the next may be 1e4 times as long; where
+/// rates are singular at the beginning, the libraries' 7 and 10 do not always lead back from there.
+inline constexpr int k_most_failures = 50;
+
 /// What a step is made shorter by that has met the end of the equations.
 inline constexpr double k_retreat = 0.1;
 

@@ -34,10 +34,6 @@ constexpr double k_order_between_steps = 6.0;
 constexpr double k_least_convergence_rate = 1.0;
 constexpr int k_most_corrections = 10;
 
-// Error tests that one step may fail. After a first step the next may be 1e4 times as long; where rates are singular at
-// the beginning, the library's 7 do not always lead back from there.
-constexpr int k_most_failures = 50;
-
 /// CVODE under names that the adapter knows.
 struct CvodeLibrary {
   static constexpr const char* name = "CVode";
@@ -368,7 +364,6 @@ class SundialsOde final : public Integrator {
                       N_Vector) noexcept {
     constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
     static const double k_root = std::sqrt(k_epsilon);
-    constexpr double k_above_rounding = 1e3;
     auto& ode = *static_cast<SundialsOde*>(self);
     double step = 0.0;
     if (Library::current_gamma(ode.memory_.get(), &step) != 0 ||
@@ -378,7 +373,7 @@ class SundialsOde final : public Integrator {
     const auto values = view(y);
     const auto before = view(dy);
     const double norm = N_VWrmsNorm(dy, ode.weights_.get());
-    const double rounding = k_above_rounding * k_epsilon * static_cast<double>(values.size()) * std::abs(step) * norm;
+    const double rounding = 1e3 * k_epsilon * static_cast<double>(values.size()) * std::abs(step) * norm;
     const double least = norm > 0.0 ? rounding : 1.0;
     for (std::size_t j = 0; j < values.size(); ++j) {
       const double value = values[j];
