@@ -10,52 +10,47 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int k_newton_limit = 100;  // a double root at pull-off only halves the error each time
+constexpr int k_most_corrections = 100;  // a double root at pull-off only halves the error each time
 
 /// An edge at the radius a = b sin(theta) of the ellipse, or a of the parabola.
-struct Edge {
+struct ProfileEdge {
   double radius = 0.0;
   double share = 0.0;   ///< of the half width: sin(theta)
   double cosine = 0.0;  ///< of theta; 1 on the parabola
   double rise = 0.0;    ///< of the profile, over half the indenter's height: 1 - cos(theta), or (a/b)^2/2
 };
 
-/// Of the parabola A x^2/(4 b^2), which is also the tip of the ellipse.
-double tip_curvature(const Indenter& indenter) noexcept {
-  return 0.25 * indenter.height / (indenter.half_width * indenter.half_width);
-}
-
-bool is_parabola(const Indenter& indenter) noexcept { return indenter.profile == ElasticProfile::parabola; }
-
-Edge edge_at(const Indenter& indenter, double a) noexcept {
+ProfileEdge edge_at(const Indenter& indenter, double a) noexcept {
   const double share = a / indenter.half_width;
-  if (is_parabola(indenter)) return {a, share, 1.0, 0.5 * share * share};
+  if (indenter.is_parabola()) return {a, share, 1.0, 0.5 * share * share};
   const double sine = std::min(1.0, share);
   const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
   return {a, sine, cosine, sine * sine / (1.0 + cosine)};
 }
 
-Edge edge_at_rise(const Indenter& indenter, double rise) noexcept {
-  const bool by_parabola = is_parabola(indenter);
+ProfileEdge edge_at_rise(const Indenter& indenter, double rise) noexcept {
+  const bool by_parabola = indenter.is_parabola();
   const double share = std::sqrt(rise * (by_parabola ? 2.0 : 2.0 - rise));
   return {indenter.half_width * share, share, by_parabola ? 1.0 : 1.0 - rise, rise};
 }
 
 /// theta on the ellipse
-double angle_of(const Edge& edge) noexcept { return std::atan2(edge.share, edge.cosine); }
+double angle_of(const ProfileEdge& edge) noexcept { return std::atan2(edge.share, edge.cosine); }
 
-double height_at(const Indenter& indenter, const Edge& edge) noexcept { return 0.5 * indenter.height * edge.rise; }
+double height_at(const Indenter& indenter, const ProfileEdge& edge) noexcept {
+  return 0.5 * indenter.height * edge.rise;
+}
 
-double free_force_at(const Indenter& indenter, double composite_modulus, const Edge& edge) noexcept {
-  if (is_parabola(indenter)) {
-    return 4.0 / 3.0 * composite_modulus * tip_curvature(indenter) * edge.radius * edge.radius * edge.radius;
+double free_force_at(const Indenter& indenter, double composite_modulus, const ProfileEdge& edge) noexcept {
+  if (indenter.is_parabola()) {
+    return 4.0 / 3.0 * composite_modulus * indenter.tip_curvature() * edge.radius * edge.radius * edge.radius;
   }
   return 0.5 * composite_modulus * indenter.height * indenter.half_width *
          phi_at(angle_of(edge), edge.share, edge.cosine);
 }
 
 PeelState peel_state_at(const Indenter& indenter, double composite_modulus, double surface_energy,
-                        const Edge& edge) noexcept {
+                        const ProfileEdge& edge) noexcept {
   const double stretch = critical_stretch(composite_modulus, surface_energy, edge.radius);
   return {.contact_radius = edge.radius,
           .displacement_1d = height_at(indenter, edge) - stretch,
@@ -63,7 +58,7 @@ PeelState peel_state_at(const Indenter& indenter, double composite_modulus, doub
 }
 
 /// Slope of an edge's equilibrium, (g' - xi Dl') with g' and Dl' over the cosine on the ellipse, where g' is unbounded.
-double slope(const Indenter& indenter, double stretch, double xi, const Edge& edge) noexcept {
+double slope(const Indenter& indenter, double stretch, double xi, const ProfileEdge& edge) noexcept {
   const double by_height = 0.5 * indenter.height / indenter.half_width * edge.share;
   return by_height - xi * stretch / (2.0 * edge.radius) * edge.cosine;
 }
@@ -73,13 +68,13 @@ double slope(const Indenter& indenter, double stretch, double xi, const Edge& ed
 /// @param xi      1: of displacements, 3: of forces, over 2 E a
 /// @param excess  edge, stretch -> what is to be zero
 template <class Excess>
-Edge descend(const Indenter& indenter, double composite_modulus, double surface_energy, double from, double down_to,
-             double xi, Excess&& excess) noexcept {
+ProfileEdge descend(const Indenter& indenter, double composite_modulus, double surface_energy, double from,
+                    double down_to, double xi, Excess&& excess) noexcept {
   const double unit_stretch = critical_stretch(composite_modulus, surface_energy, indenter.half_width);
-  const double most = is_parabola(indenter) ? std::numeric_limits<double>::infinity() : 1.0;
+  const double most = indenter.is_parabola() ? std::numeric_limits<double>::infinity() : 1.0;
   const double least = edge_at(indenter, down_to).rise;
-  Edge edge = edge_at_rise(indenter, std::min(edge_at(indenter, from).rise, most));
-  for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
+  ProfileEdge edge = edge_at_rise(indenter, std::min(edge_at(indenter, from).rise, most));
+  for (int iteration = 0; iteration < k_most_corrections; ++iteration) {
     const double stretch = unit_stretch * std::sqrt(edge.share);
     const double by_rise = 0.5 * indenter.height - 0.5 * xi * stretch * edge.cosine / (edge.share * edge.share);
     if (!(by_rise > 0.0)) break;
@@ -92,9 +87,9 @@ Edge descend(const Indenter& indenter, double composite_modulus, double surface_
 }
 
 /// How the relaxed profile at a fixed place changes with the indenter; on the ellipse times the cosine there.
-double height_change(const Indenter& indenter, const Frame::Change& change, const Edge& edge) noexcept {
+double height_change(const Indenter& indenter, const Frame::Change& change, const ProfileEdge& edge) noexcept {
   const double height = height_at(indenter, edge);
-  if (is_parabola(indenter)) return height * (change.height - 2.0 * change.half_width);
+  if (indenter.is_parabola()) return height * (change.height - 2.0 * change.half_width);
   return change.height * height * edge.cosine - 0.5 * indenter.height * change.half_width * edge.share * edge.share;
 }
 
@@ -104,9 +99,9 @@ struct Below {
   double by_width = 0.0;  ///< what it loses with the relative half width, the edge where it is
 };
 
-Below below(const Indenter& indenter, const Edge& edge) noexcept {
-  if (is_parabola(indenter)) {
-    const double area = tip_curvature(indenter) * edge.radius * edge.radius * edge.radius / 3.0;
+Below below(const Indenter& indenter, const ProfileEdge& edge) noexcept {
+  if (indenter.is_parabola()) {
+    const double area = indenter.tip_curvature() * edge.radius * edge.radius * edge.radius / 3.0;
     return {area, 2.0 * area};
   }
   const double theta = angle_of(edge);
@@ -117,7 +112,7 @@ Below below(const Indenter& indenter, const Edge& edge) noexcept {
 }
 
 /// @param lift  displacement of all springs below the edge beyond that of the profile there
-Contact contact_below(const Frame& frame, double composite_modulus, const Edge& edge, double lift) noexcept {
+Contact contact_below(const Frame& frame, double composite_modulus, const ProfileEdge& edge, double lift) noexcept {
   const double a = edge.radius;
   const Below springs = below(frame.indenter, edge);
   const auto changed = [&](const Frame::Change& change) {
@@ -133,15 +128,15 @@ Contact contact_below(const Frame& frame, double composite_modulus, const Edge& 
 }
 
 /// Edge in equilibrium at a displacement above the critical one.
-Edge peeling_edge(const Indenter& indenter, double composite_modulus, double surface_energy, double critical_radius,
-                  double displacement_1d) noexcept {
+ProfileEdge peeling_edge(const Indenter& indenter, double composite_modulus, double surface_energy,
+                         double critical_radius, double displacement_1d) noexcept {
   // Beyond this radius half of the tip's parabola alone exceeds the stretch, and the other half delta_1D.
-  const double curvature = tip_curvature(indenter);
+  const double curvature = indenter.tip_curvature();
   const double stretch = critical_stretch(composite_modulus, surface_energy, 1.0);
   const double from = std::max(std::cbrt(4.0 * stretch * stretch / (curvature * curvature)),
                                std::sqrt(2.0 * std::max(0.0, displacement_1d) / curvature));
   return descend(indenter, composite_modulus, surface_energy, from, critical_radius, 1.0,
-                 [&](const Edge& e, double s) { return height_at(indenter, e) - s - displacement_1d; });
+                 [&](const ProfileEdge& e, double s) { return height_at(indenter, e) - s - displacement_1d; });
 }
 
 }  // namespace
@@ -156,14 +151,14 @@ double profile_height(const Indenter& indenter, double a) noexcept { return heig
 
 double profile_rounding(const Indenter& indenter, double a) noexcept {
   constexpr double round_off = 4.0 * std::numeric_limits<double>::epsilon();
-  const Edge edge = edge_at(indenter, a);
+  const ProfileEdge edge = edge_at(indenter, a);
   // At its very end the slope is without bound, and the height has the root of the rounding.
   return 0.5 * indenter.height * edge.share * edge.share * round_off / std::max(edge.cosine, std::sqrt(round_off));
 }
 
 double free_contact_radius(const Indenter& indenter, double displacement_1d) noexcept {
   if (displacement_1d <= 0.0) return 0.0;
-  if (is_parabola(indenter)) return std::sqrt(displacement_1d / tip_curvature(indenter));
+  if (indenter.is_parabola()) return std::sqrt(displacement_1d / indenter.tip_curvature());
   const double y = std::min(1.0, 2.0 * displacement_1d / indenter.height);
   return indenter.half_width * std::sqrt(y * (2.0 - y));
 }
@@ -182,10 +177,10 @@ double critical_radius(const Indenter& indenter, double composite_modulus, doubl
   const double flatness = 2.0 * b / indenter.height;
   const double k = 0.5 * xi * xi * pi * surface_energy / composite_modulus * flatness * flatness;
   const double parabola = std::cbrt(k * b * b);
-  if (is_parabola(indenter)) return parabola;
+  if (indenter.is_parabola()) return parabola;
   // a^3 + k a^2 - k b^2 = 0: convex, with one positive root, below both of these.
   double a = std::min(parabola, b);
-  for (int iteration = 0; iteration < k_newton_limit && a > 0.0; ++iteration) {
+  for (int iteration = 0; iteration < k_most_corrections && a > 0.0; ++iteration) {
     const double step = (a * a * a - k * (b - a) * (b + a)) / (a * (3.0 * a + 2.0 * k));
     a -= step;
     if (!(std::abs(step) > 1e-16 * a)) break;
@@ -209,12 +204,12 @@ PeelState peel_at_force(const Indenter& indenter, double composite_modulus, doub
                         double critical_radius, double force) {
   const PeelState critical = peel_state(indenter, composite_modulus, surface_energy, critical_radius);
   if (force <= critical.force) return critical;
-  const double cubic = 4.0 / 3.0 * composite_modulus * tip_curvature(indenter);
+  const double cubic = 4.0 / 3.0 * composite_modulus * indenter.tip_curvature();
   const double stretch = 2.0 * composite_modulus * critical_stretch(composite_modulus, surface_energy, 1.0);
   const double from =
       std::max(std::cbrt(4.0 * stretch * stretch / (cubic * cubic)), std::cbrt(2.0 * std::max(0.0, force) / cubic));
-  const Edge edge =
-      descend(indenter, composite_modulus, surface_energy, from, critical_radius, 3.0, [&](const Edge& e, double s) {
+  const ProfileEdge edge = descend(
+      indenter, composite_modulus, surface_energy, from, critical_radius, 3.0, [&](const ProfileEdge& e, double s) {
         return (free_force_at(indenter, composite_modulus, e) - force) / (2.0 * composite_modulus * e.radius) - s;
       });
   return peel_state_at(indenter, composite_modulus, surface_energy, edge);
@@ -250,13 +245,13 @@ double overlap_at(const UnloadingShape& shape, double displacement_1d) noexcept 
 }
 
 Contact sticking_contact(const Frame& frame, double composite_modulus, double a) noexcept {
-  const Edge edge = edge_at(frame.indenter, a);
+  const ProfileEdge edge = edge_at(frame.indenter, a);
   return contact_below(frame, composite_modulus, edge, frame.displacement - height_at(frame.indenter, edge));
 }
 
 Contact peeling_contact(const Frame& frame, double composite_modulus, double surface_energy, double critical_radius) {
   const Indenter& indenter = frame.indenter;
-  Edge edge = edge_at(indenter, critical_radius);
+  ProfileEdge edge = edge_at(indenter, critical_radius);
   const double critical_displacement =
       height_at(indenter, edge) - critical_stretch(composite_modulus, surface_energy, critical_radius);
   if (frame.displacement > critical_displacement) {
@@ -265,7 +260,7 @@ Contact peeling_contact(const Frame& frame, double composite_modulus, double sur
   const double stretch = critical_stretch(composite_modulus, surface_energy, edge.radius);
   // An ellipse has no wider edge than that at its end: a trial may lead beyond the equilibrium there, and an edge that
   // sticks leads back.
-  const bool is_widest = !is_parabola(indenter) && edge.share >= 1.0;
+  const bool is_widest = !indenter.is_parabola() && edge.share >= 1.0;
   if (is_widest && frame.displacement > height_at(indenter, edge) - stretch) {
     return sticking_contact(frame, composite_modulus, edge.radius);
   }
@@ -285,19 +280,19 @@ Contact peeling_contact(const Frame& frame, double composite_modulus, double sur
 }
 
 EdgePress edge_press(const Frame& frame, const Frame::Change& by_radius, double a) noexcept {
-  const Edge edge = edge_at(frame.indenter, a);
+  const ProfileEdge edge = edge_at(frame.indenter, a);
   return {.by_overlap = frame.by_overlap * edge.cosine,
           .by_radius = by_radius.displacement * edge.cosine - height_change(frame.indenter, by_radius, edge)};
 }
 
 double adhesive_energy(const Frame& frame, double composite_modulus, double surface_energy, double a) noexcept {
   const Indenter& indenter = frame.indenter;
-  const Edge edge = edge_at(indenter, a);
+  const ProfileEdge edge = edge_at(indenter, a);
   const double w = frame.displacement - height_at(indenter, edge);
-  const double curvature = tip_curvature(indenter);
+  const double curvature = indenter.tip_curvature();
   // The springs as they would be without adhesion, and what the further displacement w of all of them adds.
   const double free_energy =
-      is_parabola(indenter)
+      indenter.is_parabola()
           ? 8.0 / 15.0 * composite_modulus * curvature * curvature * a * a * a * a * a
           : 0.25 * composite_modulus * indenter.height * indenter.height * indenter.half_width * psi(angle_of(edge));
   const double springs =

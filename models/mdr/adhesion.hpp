@@ -17,6 +17,10 @@ struct Indenter {
   ElasticProfile profile = ElasticProfile::ellipse;
   double height = 0.0;      ///< A
   double half_width = 0.0;  ///< b
+
+  [[nodiscard]] bool is_parabola() const noexcept { return profile == ElasticProfile::parabola; }
+  /// Of the parabola A x^2/(4 b^2), which is also the tip of the ellipse: its height over x^2.
+  [[nodiscard]] double tip_curvature() const noexcept { return 0.25 * height / (half_width * half_width); }
 };
 
 /// Of an elastic contact: A = 4R, b = R.

@@ -61,14 +61,13 @@ SurfaceEnergyWindow adhesion_window(const Indenter& indenter, double composite_m
   const double slope = 0.5 * indenter.height / b;
   // k = c dg of the critical radius; without its quadratic term for the parabola.
   const double c = 0.5 * xi * xi * pi / (composite_modulus * slope * slope);
-  const bool is_parabola = indenter.profile == ElasticProfile::parabola;
 
-  const double rest = is_parabola ? b * b : (b - peak_radius) * (b + peak_radius);
+  const double rest = indenter.is_parabola() ? b * b : (b - peak_radius) * (b + peak_radius);
   const double least =
       rest > 0.0 ? peak_radius * peak_radius * peak_radius / (c * rest) : std::numeric_limits<double>::infinity();
   // a_c = zones dg
   const double zones = 0.5 * k_zones_per_diameter * composite_modulus / (pi * yield_stress * yield_stress);
-  const double cubic = zones * zones * (is_parabola ? zones : zones + c);
+  const double cubic = zones * zones * (indenter.is_parabola() ? zones : zones + c);
   return {.least = least, .greatest = b * std::sqrt(c / cubic)};
 }
 

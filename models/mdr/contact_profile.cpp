@@ -18,20 +18,13 @@ using std::numbers::pi;
 constexpr double k_tip = 0.5;
 using TipRule = boost::math::quadrature::gauss<double, 20>;
 
-bool is_parabola(const Indenter& indenter) noexcept { return indenter.profile == ElasticProfile::parabola; }
-
-/// Height of the parabola over x^2, A/(4 b^2).
-double curvature(const Indenter& indenter) noexcept {
-  return 0.25 * indenter.height / (indenter.half_width * indenter.half_width);
-}
-
 /// sqrt(a^2 - x^2) without cancellation
 double chord(double a, double x) noexcept { return std::sqrt((a - x) * (a + x)); }
 
 /// g(a) - g(x) for 0 <= x <= a, without cancellation near the edge.
 double below_edge(const Indenter& indenter, double a, double x) noexcept {
   const double squares = (a - x) * (a + x);
-  if (is_parabola(indenter)) return curvature(indenter) * squares;
+  if (indenter.is_parabola()) return indenter.tip_curvature() * squares;
   const double b = indenter.half_width;
   const double heights = chord(b, x) + chord(b, a);
   return heights > 0.0 ? 0.5 * indenter.height * squares / (b * heights) : 0.0;
@@ -59,7 +52,7 @@ double ellipse_outside(const Indenter& indenter, double a, double r, double angl
 double parabola_outside(const Indenter& indenter, double a, double r, double angle) {
   if (a <= k_tip * r)
     return TipRule::integrate([&](double t) { return below_edge(indenter, a, r * std::sin(t)); }, 0.0, angle);
-  return curvature(indenter) * ((a * a - 0.5 * r * r) * angle + 0.5 * a * chord(r, a));
+  return indenter.tip_curvature() * ((a * a - 0.5 * r * r) * angle + 0.5 * a * chord(r, a));
 }
 
 }  // namespace
@@ -81,7 +74,7 @@ double ContactProfile::pressure(double r) const noexcept {
 double ContactProfile::pressure_at_chord(double half_chord) const noexcept {
   const double a = contact_radius;
   const double b = indenter.half_width;
-  const double slope = is_parabola(indenter) ? half_chord / b : std::atan2(half_chord, chord(b, a));
+  const double slope = indenter.is_parabola() ? half_chord / b : std::atan2(half_chord, chord(b, a));
   const double edge = displacement_1d - profile_height(indenter, a);
   return composite_modulus / pi * (0.5 * indenter.height / b * slope + edge / half_chord);
 }
@@ -92,13 +85,13 @@ double ContactProfile::surface_displacement(double r) const {
   if (distance <= a) return displacement_1d - relaxed_height(distance);
   const double angle = std::atan2(a, chord(distance, a));
   const double edge = displacement_1d - profile_height(indenter, a);
-  const double inside = is_parabola(indenter) ? parabola_outside(indenter, a, distance, angle)
-                                              : ellipse_outside(indenter, a, distance, angle);
+  const double inside = indenter.is_parabola() ? parabola_outside(indenter, a, distance, angle)
+                                               : ellipse_outside(indenter, a, distance, angle);
   return 2.0 / pi * (edge * angle + inside);
 }
 
 double ContactProfile::relaxed_height(double r) const {
-  if (is_parabola(indenter)) return 0.5 * curvature(indenter) * r * r;
+  if (indenter.is_parabola()) return 0.5 * indenter.tip_curvature() * r * r;
   const double distance = std::abs(r);
   const double modulus = distance / indenter.half_width;
   if (modulus > 1.0) return std::numeric_limits<double>::quiet_NaN();

@@ -22,7 +22,7 @@ std::string_view reason_of_limit(const HardeningLaw& law) noexcept {
 }
 
 /// d_i (eq. 3.47, whose indices are 1, 3, 5).
-RadiusSeries radius_series(Configuration configuration, double mu) noexcept {
+RadiusSeries hardening_radius_series(Configuration configuration, double mu) noexcept {
   const auto& [d1, d3, d5] = rigid_radius_series(configuration);
   return {.first = d1 * std::exp(-0.485 * mu),
           .third = d3 * std::exp(-1.455 * mu),
@@ -61,7 +61,7 @@ HardeningLaw make_hardening(double exponent, Configuration configuration, Minimu
   if (!(exponent >= 0.0 && exponent <= 1.0))
     throw std::invalid_argument("the hardening exponent 1/m must be in [0, 1], but is " + text(exponent));
   HardeningLaw law{
-      .configuration = configuration, .exponent = exponent, .radius = radius_series(configuration, exponent)};
+      .configuration = configuration, .exponent = exponent, .radius = hardening_radius_series(configuration, exponent)};
   const RadiusSeries minimum = condition == MinimumCondition::current ? law.radius : rigid_radius_series(configuration);
   // eq. 3.48. The same value has to stand in the amplitudes of the fall, where the source prints 3.101: only so is the
   // pressure continuous at its minimum, and positive in simple compression.
