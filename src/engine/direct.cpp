@@ -51,7 +51,8 @@ constexpr double k_smallest_quadrature = 1e-6;
 
 /// Rounding of the rates, as the series of pieces show it: their last terms are as large as those of a longer piece
 /// from the same beginning, which was refused. Those of a root fall as the length to the power 1/2, those of a kink as
-/// the length. Pieces need not be as short as to have no rounding: it would add up in their states.
+/// the length; where it lies just inside a longer piece they do not, but those of several are not alike. Pieces need
+/// not be as short as to have no rounding: it would add up in their states.
 class RateRounding {
  public:
   [[nodiscard]] double known() const noexcept { return known_; }
@@ -67,6 +68,10 @@ class RateRounding {
     }
     if (tail < k_as_large * refused_tail_ || length > k_shorter * refused_length_) return;
     if (refused_tail_ > k_most * rate.largest()) return;
+    if (std::max(largest_, refused_tail_) > k_alike * std::min(largest_, refused_tail_)) {
+      largest_ = 0.0;
+      count_ = 0;
+    }
     largest_ = std::max(largest_, refused_tail_);
     if (++count_ >= k_often) known_ = largest_;
     refused_at_ = -1.0;
@@ -76,6 +81,7 @@ class RateRounding {
   static constexpr double k_shorter = 0.5;
   static constexpr double k_as_large = 0.75;
   static constexpr double k_most = 1e-6;  // over the rates
+  static constexpr double k_alike = 10.0;
   static constexpr int k_often = 3;
 
   double refused_at_ = -1.0;
