@@ -125,7 +125,7 @@ class Ida final : public Integrator {
       flag = step_once();
     }
     check("IDASolve", flag);
-    if (is_stuck_at_end(pending_, begin, end_, last_length_)) {
+    if (flag != IDA_ROOT_RETURN && is_stuck_at_end(pending_, begin, end_, last_length_)) {
       throw std::domain_error(pending_.nearest_domain_end());
     }
     last_length_ = end_ - begin;

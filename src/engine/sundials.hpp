@@ -87,8 +87,9 @@ int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentS
   return flag;
 }
 
-/// Whether a step shows that ever smaller ones would never get to the end of the equations. Where only difference
-/// quotients have met that end, steps have to become smaller: the first one of a segment may be as short by itself.
+/// Whether a step that ends at no guard shows that ever smaller ones would never get to the end of the equations. Where
+/// only difference quotients have met that end, steps have to become smaller: the first one of a segment may be as
+/// short by itself.
 /// @param previous  length of the step before; 0 for a segment's first one
 [[nodiscard]] inline bool is_stuck_at_end(const Pending& pending, double begin, double end, double previous) {
   if (end - begin >= least_progress(begin)) return false;

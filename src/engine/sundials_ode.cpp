@@ -196,7 +196,7 @@ class SundialsOde final : public Integrator {
       flag = step_once();
     }
     check(Library::name, flag);
-    if (is_stuck_at_end(pending_, begin, end_, last_length_)) {
+    if (flag != Library::root_return && is_stuck_at_end(pending_, begin, end_, last_length_)) {
       throw std::domain_error(pending_.nearest_domain_end());
     }
     last_length_ = end_ - begin;
