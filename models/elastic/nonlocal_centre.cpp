@@ -22,7 +22,6 @@ constexpr double k_same_place = 1e-13;
 constexpr double k_shortest = 1e-11;
 constexpr double k_small_force = 1e-3;  // over the largest
 constexpr double k_little = 1e-3;       // of what is left of a step
-constexpr double k_touching = 1e-10;    // gap of walls that begin to bear
 constexpr double k_early = 1e-9;        // of a step: which walls touch in it is seen there
 // As long before its end: from too far one that has only just left is not seen, from too near the rest is rounding.
 constexpr std::array k_late{1e-3, 1e-6, 1e-9};

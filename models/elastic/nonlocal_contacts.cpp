@@ -17,6 +17,7 @@ constexpr double k_contraction = 0.5;  // of Newton's corrections; less is a gue
 constexpr int k_first_touch_steps = 20;
 constexpr double k_stagnation = 1e-9;   // rounding grows with 1/margin near the limit
 constexpr double k_balance = 1e-9;      // net force over the sum of forces
+constexpr double k_cancelled = 1e-12;   // the same of prescribed forces where nothing else bears
 constexpr double k_least_hold = 1e-12;  // of the centre in a direction, over the greatest
 constexpr double k_least_step = 1e-13;  // of the way to a state that is not found at once
 constexpr int k_most_steps = 1000;      // on that way, tried ones included
@@ -250,7 +251,8 @@ Eigen::Vector3d Contacts::way_to_balance(const Eigen::Vector3d& net_force) {
       }
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hold);
+  // It is symmetric but where stiffnesses have been lent; directions that no contact holds are those of either side.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (hold + hold.transpose()));
   const double least = k_least_hold * solver.eigenvalues().cwiseAbs().maxCoeff();
   Eigen::Vector3d way = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
@@ -271,9 +273,9 @@ void Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> c
   }
 }
 
-/// What is left of a force in directions in which no contact holds the centre, the stiffest taken first: beside a stiff
-/// one, the directions of the matrix of all do not tell one that has just begun from nothing.
-double Contacts::force_on_nothing(Eigen::Vector3d force) const {
+/// Projector on the directions in which no contact holds the centre, the stiffest taken first: beside a stiff one, the
+/// directions of the matrix of all do not tell one that has just begun from nothing.
+Eigen::Matrix3d Contacts::directions_of_nothing() const {
   Eigen::Matrix3d projector = Eigen::Matrix3d::Identity();
   double stiffest = 0.0;
   for (std::size_t count = 0; count < free_count(); ++count) {
@@ -288,10 +290,38 @@ double Contacts::force_on_nothing(Eigen::Vector3d force) const {
     }
     stiffest = std::max(stiffest, hold);
     if (!(hold > k_least_hold * stiffest)) break;
-    force -= direction * direction.dot(force);
     projector -= direction * direction.transpose();
   }
-  return force.norm();
+  return projector;
+}
+
+/// What the prescribed forces of the targets add up to in those directions, however small it is beside other forces.
+double Contacts::unborne_force() const {
+  if (std::ranges::none_of(targets_, &Target::is_force)) return 0.0;
+  const Eigen::Matrix3d projector = directions_of_nothing();
+  Eigen::Vector3d push = Eigen::Vector3d::Zero();
+  double sum = 0.0;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    const Eigen::Vector3d along = projector * arm_of(j);
+    if (!targets_[j].is_force || along.norm() <= k_same_surroundings) continue;
+    push += weights_[j] * targets_[j].value * along;
+    sum += weights_[j] * targets_[j].value;
+  }
+  return push.norm() > k_cancelled * sum ? push.norm() : 0.0;
+}
+
+/// Beside contacts that bear, only walls that touch in a state may bear a force which begins: they are taken to be as
+/// stiff as under it.
+/// @param gap  of walls that touch
+/// @return whether there is such a force
+bool Contacts::lend_stiffness(double gap, std::span<const double> y) {
+  const double force = unborne_force();
+  if (force == 0.0) return false;
+  const double square = law_.signed_square_under(std::min(force / modulus_, law_.greatest_force()));
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    if (!targets_[j].is_force && stiffness_[j] == 0.0 && y[j] >= -gap) stiffness_[j] = force / square;
+  }
+  return true;
 }
 
 /// Newton's method towards the targets, with a part of the imbalance left. Gives up where its corrections do not
@@ -318,7 +348,7 @@ bool Contacts::newton(std::span<double> y, double imbalance, bool do_hold_centre
   }
   // Later, a wall that nothing opposes takes it along: the force s^(3/2) that the first step gives that wall is undone
   // by steps of 2/3, 2/9 ... of it.
-  const int free_steps = is_first_touch ? k_first_touch_steps : is_free && is_to_balance ? 2 : 1;
+  int free_steps = is_first_touch ? k_first_touch_steps : is_free && is_to_balance ? 2 : 1;
   double last = 0.0;
   forget();
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
@@ -339,6 +369,8 @@ bool Contacts::newton(std::span<double> y, double imbalance, bool do_hold_centre
     for (std::size_t j = 0; j < n; ++j) {
       entry(j, n) = targets_[j].is_force ? 0.0 : targets_[j].value + lift(j, y) - now_[j].approach;
     }
+    const bool may_lend = iteration == 0 && is_free && is_to_balance && !is_first_touch;
+    if (may_lend && lend_stiffness(k_touching * farthest, y)) free_steps = k_first_touch_steps;
     if (!eliminate()) return false;
     double correction = 0.0;
     if (is_free) {
@@ -358,7 +390,7 @@ bool Contacts::newton(std::span<double> y, double imbalance, bool do_hold_centre
       double borne = 0.0;
       for (std::size_t j = 0; j < n; ++j) borne += weights_[j] * forces_[j];
       const Eigen::Vector3d unbalanced = net();
-      const double left = force_on_nothing(unbalanced);
+      const double left = (directions_of_nothing() * unbalanced).norm();
       move_centre(unbalanced, y.subspan(n));
       // Where the first contacts do not hold it, others that touch may, as stiff as at first.
       if (is_first_touch && iteration < free_steps && left > k_balance * borne) {
@@ -406,7 +438,11 @@ bool Contacts::is_balanced(std::span<const double> y) {
   for (std::size_t k = 0; k < free_count(); ++k) {
     if (std::abs(net_force(k)) > k_balance * sum) return false;
   }
-  return true;
+  forget();
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    if (targets_[j].is_force) stiffness_[j] = 0.0;
+  }
+  return unborne_force() == 0.0;
 }
 
 /// Contacts of a centre that only goes along are no deeper than rounding: what the resolved displacement makes of their
@@ -549,7 +585,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     std::ranges::fill(centre, 0.0);
     move_centre(net + hurry * error, centre);
     // So much of an error says nothing of what drives the centre where no contact holds it.
-    const double left = force_on_nothing(net + pull * error);
+    const double left = (directions_of_nothing() * (net + pull * error)).norm();
     if (has_bystanders()) take_along(ramps, y, touch, dy);
     // Walls that just touch hold the centre at once, if they can bear; and those that are as near as a force is deep,
     // as errors take them off just before it ends.

@@ -152,6 +152,7 @@ class Contacts {
   /// Contacts shallower than this, over where the walls go, say nothing of which will bear the centre.
   static constexpr double k_unloaded = 1e-6;
   static constexpr double k_same_surroundings = 1e-9;
+  static constexpr double k_touching = 1e-10;  ///< gap of walls that begin to bear
   [[nodiscard]] static Eigen::Index at(std::size_t index) noexcept { return static_cast<Eigen::Index>(index); }
 
   struct Target {
@@ -176,7 +177,9 @@ class Contacts {
   void regularise_first_touch(double stiffness, const auto& is_touching);
   [[nodiscard]] Eigen::Vector3d way_to_balance(const Eigen::Vector3d& net_force);
   void move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
-  [[nodiscard]] double force_on_nothing(Eigen::Vector3d force) const;
+  [[nodiscard]] Eigen::Matrix3d directions_of_nothing() const;
+  [[nodiscard]] double unborne_force() const;
+  bool lend_stiffness(double gap, std::span<const double> y);
   [[nodiscard]] bool newton(std::span<double> y, double imbalance, bool do_hold_centre = false);
   void find_bystanders();
   [[nodiscard]] bool has_bystanders() const;
