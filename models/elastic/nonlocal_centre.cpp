@@ -230,10 +230,13 @@ void Contacts::let_unheld_centre_go(std::span<const Ramp> ramps, std::span<const
 
 /// Adds to rates the velocity of a centre that touching bystanders take along. Errors leave small gaps, or overlaps,
 /// which close gradually: at once they would open and close in turns.
-void Contacts::take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch, std::span<double> dy) {
+void Contacts::take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch,
+                          std::span<const char> touches, std::span<double> dy) {
   const std::size_t n = class_count();
   const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
-  const auto takes_along = [&](std::size_t j) { return is_bystander_[j] && !is_force(j) && y[j] >= -touch; };
+  const auto takes_along = [&](std::size_t j) {
+    return is_bystander_[j] && !is_force(j) && y[j] >= -touch && (touches.empty() || touches[j]);
+  };
   const auto closing = [&](std::size_t j) { return -k_closing * y[j]; };
   for (std::size_t j = 0; j < n; ++j) {
     free_displacements_[j] = takes_along(j) ? entry(j, n) - closing(j) : k_no_wall;
@@ -382,14 +385,16 @@ bool Contacts::let_all_go(std::span<double> y) {
 
 /// Where nothing bears and nothing begins to, the centre goes out of the way of the walls that touch, and of no other.
 /// Gaps of errors close gradually: walls that touch only where there is none would leave the centre in turns.
-bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch) {
+bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch,
+                         std::span<const char> touches) {
   const std::size_t n = class_count();
   if (free_count() == 0) return false;
   for (std::size_t j = 0; j < n; ++j) {
     const bool is_force = ramps[j].control == Control::force;
     const double slope = ramps[j].end - ramps[j].start;
     if (y[j] > 0.0 || (is_force && slope != 0.0)) return false;
-    free_displacements_[j] = is_force || y[j] < -touch ? k_no_wall : slope + k_closing * y[j];
+    const bool is_off = y[j] < -touch || !(touches.empty() || touches[j]);
+    free_displacements_[j] = is_force || is_off ? k_no_wall : slope + k_closing * y[j];
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (!release_centre(Eigen::Matrix3d::Identity(), velocity)) return false;

@@ -532,9 +532,9 @@ void Contacts::approach_in_steps(std::span<double> y) {
 }
 
 void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch,
-                     double pull) {
+                     double pull, std::span<const char> touches) {
   const std::size_t n = class_count();
-  if (let_go_on(ramps, y, dy, touch)) return;
+  if (let_go_on(ramps, y, dy, touch, touches)) return;
   look(y);
   const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
   const auto slope = [&](std::size_t j) { return ramps[j].end - ramps[j].start; };
@@ -586,7 +586,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     move_centre(net + hurry * error, centre);
     // So much of an error says nothing of what drives the centre where no contact holds it.
     const double left = (directions_of_nothing() * (net + pull * error)).norm();
-    if (has_bystanders()) take_along(ramps, y, touch, dy);
+    if (has_bystanders()) take_along(ramps, y, touch, touches, dy);
     // Walls that just touch hold the centre at once, if they can bear; and those that are as near as a force is deep,
     // as errors take them off just before it ends.
     if (left > k_balance * pressing && !may_be_held(ramps, y, near)) throw std::domain_error(k_nothing_holds);

@@ -100,11 +100,12 @@ class Contacts {
   /// its own s has an infinite rate; the other rates do not depend on that. A free centre leaves the unloaded state as
   /// if the contacts were equally stiff, which is exact where they will be.
   /// @param touch  walls with an s less than this below zero touch: they may hold the centre at once
+  /// @param touches  walls that may take the centre along as soon as they touch; empty: all
   /// @param pull  how fast contacts that bear the centre against a force are drawn back to their balance, at least
   /// @throws std::domain_error at and beyond the limit of applicability, and where nothing holds a free centre against
   /// prescribed forces
   void rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch = 0.0,
-             double pull = 0.0);
+             double pull = 0.0, std::span<const char> touches = {});
 
   /// What is left of the equations, one per unknown: that of the approach under displacement control, s_j - s(F_j)
   /// under force control, balance of forces.
@@ -189,7 +190,8 @@ class Contacts {
   bool find_holding(std::span<const double> y, double gap = 0.0);
   void sort_near(std::span<const Ramp> ramps, std::span<const double> y, double near);
   [[nodiscard]] Eigen::Matrix3d unheld_directions() const;
-  void take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch, std::span<double> dy);
+  void take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch, std::span<const char> touches,
+                  std::span<double> dy);
   [[nodiscard]] bool take_centre_to_targets(std::span<double> y);
   [[nodiscard]] bool sink_to_balance(std::span<double> y);
   [[nodiscard]] bool leaves_forces(const Eigen::Matrix3d& projector, std::span<const double> y);
@@ -201,7 +203,7 @@ class Contacts {
   [[nodiscard]] bool is_balanced(std::span<const double> y);
   [[nodiscard]] bool is_balanced_but_for_rounding(std::span<const double> y);
   [[nodiscard]] bool let_go_on(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy,
-                               double touch);
+                               double touch, std::span<const char> touches);
   [[nodiscard]] double free_approach(std::size_t index, const Eigen::Vector3d& centre,
                                      double rounding = k_resolved) const;
   [[nodiscard]] bool release_centre(const Eigen::Matrix3d& projector, Eigen::Vector3d& centre) const;

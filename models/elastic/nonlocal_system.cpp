@@ -18,7 +18,18 @@ using std::numbers::pi;
 constexpr std::array<std::string_view, 2> k_regime_words{"open", "elastic"};
 
 // Guards. The index is that of a class, of a pair, or -1.
-enum Kind : int { k_made, k_lost, k_impingement, k_stiffening, k_force_ends, k_radius, k_centre, k_limit };
+enum Kind : int {
+  k_made,
+  k_lost,
+  k_touched,
+  k_left,
+  k_impingement,
+  k_stiffening,
+  k_force_ends,
+  k_radius,
+  k_centre,
+  k_limit
+};
 
 // The last pivot goes like the root of the distance from the limit: this is 1e-10 of R0 before it.
 constexpr double k_least_pivot = 1e-5;
@@ -37,6 +48,9 @@ constexpr double k_end_of_force = 1e-8;
 constexpr double k_touch = 1e-13;
 // The same over the deepest contact where forces balance: s goes like their rounding to the power 2/3.
 constexpr double k_touch_of_free_centre = 1e-9;
+// Over that distance, how near a wall is that begins to take a free centre along: at the whole of it the centre would
+// go before the wall is there.
+constexpr double k_begins = 1e-3;
 // Guards of contacts at such a distance, at least: a wall that stands is well off what integrators take for zero.
 constexpr double k_guard_at_touch = 1e-12;
 // Over that distance, how far off walls may be that have just been lost at such a gap: by an error of where that was.
@@ -108,6 +122,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   now_.resize(count);
   edge_angles_.resize(count);
   is_closed_.resize(count);
+  touches_.resize(count);
   for (const ContactClass& c : classes_) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& normal : c.normals) mean += normal / c.multiplicity();
@@ -140,6 +155,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
 void System::start(std::span<double> y) {
   std::ranges::fill(y, 0.0);
   std::ranges::fill(regimes_, Regime::open);
+  std::ranges::fill(touches_, false);
   for (Pair& pair : pairs_) pair.has_impinged = false;
   has_begun_ = false;
   has_stiffened_ = false;
@@ -167,6 +183,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   solve(0.0, y);
   look(0.0, y);
   settle(0.0, log);
+  mark_touching();
   has_begun_ = true;
   watch();
   if (const auto end = limit_at_start(y)) throw CannotBegin(*end);
@@ -333,7 +350,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
     if (!is_loaded(i)) drawn_ramps_[i].end += k_pull * (told(i, xi) - now_[i].displacement);
   }
   try {
-    contacts_.rates(drawn_ramps_, state_, rates_, touch_, k_pull);
+    contacts_.rates(drawn_ramps_, state_, rates_, touch_, k_pull, touches_);
   } catch (const std::domain_error&) {
     throw_pull_that_follows(xi);
     throw;
@@ -436,6 +453,14 @@ void System::add_guard(int kind, std::size_t index, int direction, std::string_v
   guards_.push_back({kind, static_cast<int>(index), direction, name});
 }
 
+/// Walls that touch in the state that look() found, until they are well off.
+void System::mark_touching() {
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const bool is_off = regimes_[i] == Regime::open && state_[i] < -idle_;
+    touches_[i] = regimes_[i] == Regime::elastic || state_[i] >= -k_begins * touch_ || (touches_[i] && !is_off);
+  }
+}
+
 void System::watch() {
   guards_.clear();
   const bool is_at_rest = std::ranges::all_of(ramps_, [](const Ramp& ramp) { return ramp.start == ramp.end; });
@@ -451,6 +476,15 @@ void System::watch() {
                          .direction = -1,
                          .name = "contact-lost",
                          .is_branch_end = true});
+  }
+  // Guards that say from where, and until where, an open wall may take a free centre along.
+  for (std::size_t i = 0; contacts_.free_count() > 0 && i < classes_.size(); ++i) {
+    if (is_loaded(i) || regimes_[i] != Regime::open) continue;
+    guards_.push_back({.kind = touches_[i] ? k_left : k_touched,
+                       .index = static_cast<int>(i),
+                       .direction = touches_[i] ? -1 : 1,
+                       .name = touches_[i] ? "wall-left" : "wall-touched",
+                       .is_silent = true});
   }
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const bool both = regimes_[pairs_[p].first] == Regime::elastic && regimes_[pairs_[p].second] == Regime::elastic;
@@ -515,6 +549,12 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
       case k_lost:
         values[g] = (state_[index] + touch_) / guard_unit_;
         break;
+      case k_touched:
+        values[g] = (state_[index] + k_begins * touch_) / guard_unit_;
+        break;
+      case k_left:
+        values[g] = (state_[index] + idle_) / guard_unit_;
+        break;
       case k_impingement:
         values[g] = angle_between_edges(pairs_[index], xi);
         break;
@@ -557,6 +597,10 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
       case k_stiffening:
         has_stiffened_ = true;
         break;
+      case k_touched:
+      case k_left:
+        touches_[index] = guard.kind == k_touched;
+        continue;
       case k_force_ends:
         continue;
       default:
@@ -569,6 +613,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   try {
     solve(xi, y);
     settle_others(xi, fired, log);
+    mark_touching();
   } catch (const std::domain_error&) {
     // Where there is no state, whoever goes on from here is told.
   }

@@ -91,6 +91,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double angle_between_edges(const Pair& pair, double xi);
   [[nodiscard]] std::optional<double> square_ahead(std::size_t i, double xi);
   void settle(double xi, std::vector<Event>& log);
+  void mark_touching();
   void watch();
   void add_guard(int kind, std::size_t index, int direction, std::string_view name);
 
@@ -125,6 +126,7 @@ class System final : public HybridSystem {
   std::vector<double> edge_angles_;  ///< as far as the guards have asked for them; nan: not yet
   std::vector<Ramp> drawn_ramps_;
   std::vector<char> is_closed_;
+  std::vector<char> touches_;  ///< may take a free centre along; an open wall until it is well off
 };
 
 }  // namespace monograin::nonlocal
