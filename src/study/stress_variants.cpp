@@ -138,6 +138,29 @@ std::optional<Step> first_half(const Scenario& scenario, const std::vector<Step>
   return half;
 }
 
+/// Has all of a wall's way lie that much farther out: where it starts, and where its program leads.
+void move_out(WallSpec& wall, double distance, const std::vector<Step>& common) {
+  wall.gap += distance;
+  if (wall.is_fixed) return;
+  if (wall.steps.empty()) wall.steps = common;
+  for (Step& step : wall.steps) {
+    if (step.kind == Step::Kind::displacement) step.target -= distance;
+    for (Until& until : step.until) {
+      if (until.quantity == Until::Quantity::displacement) until.value -= distance;
+    }
+  }
+}
+
+/// Changes what ends a step. Overlaps are differences of lengths of the order of R0, and areas of contacts go with
+/// them.
+void change(Until& until, double share, double radius) {
+  double& value = until.value;
+  value *= 1.0 + share;
+  if (until.quantity == Until::Quantity::displacement) value += share * radius;
+  if (until.quantity != Until::Quantity::contact_radius) return;
+  value = std::sqrt(std::max(0.0, value * value + share * radius * radius));
+}
+
 }  // namespace
 
 Scenario with_integrator(Scenario scenario, std::string integrator) {
@@ -239,7 +262,7 @@ Scenario changed(Scenario scenario, double share, std::uint64_t sample) {
   const bool is_skewed = scenario.loading.centre_is_free && sample % 4 < 2;
   for (WallSpec& wall : scenario.loading.walls) {
     wall.gap *= 1.0 + share;
-    if (is_skewed) wall.gap += share * radius * dice.uniform(0.0, 1.0);
+    if (is_skewed) move_out(wall, share * radius * dice.uniform(0.0, 1.0), scenario.loading.steps);
   }
   for_each_program(scenario, [&](std::vector<Step>& steps, double) {
     Dice of_steps(pair + k_of_steps);
@@ -253,7 +276,7 @@ Scenario changed(Scenario scenario, double share, std::uint64_t sample) {
       if (step.kind == Step::Kind::displacement) step.target += side * factor * radius;
       if (step.kind == Step::Kind::strain) step.target += side * factor;
       if (step.lateral) step.lateral->target *= 1.0 + side * factor;
-      for (Until& until : step.until) until.value *= 1.0 + side * of_steps.uniform(-1.0, 1.0);
+      for (Until& until : step.until) change(until, side * of_steps.uniform(-1.0, 1.0), radius);
     }
   });
   return scenario;
