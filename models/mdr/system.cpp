@@ -184,6 +184,12 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   y[k_work] -= force_work(y);
   has_turned_.assign(memory_.size(), false);
   is_left_.assign(memory_.size(), false);
+  look(0.0, y);
+  for (std::size_t i = 0; i < ramps_.size(); ++i) {
+    // The nearest walls close with it, as no guard is met by one that touches already.
+    const bool begins_to_press = is_loaded(i) && ramps_[i].start == 0.0 && ramps_[i].end > 0.0;
+    if (begins_to_press && touches(memory_[i].regime)) meet_balanced(i, true, y[k_radius], log);
+  }
   settle(0.0, y, std::nullopt, log);
   if (const auto end = meet_caps_at_once(0.0, y, log)) throw CannotBegin(*end);
   if (const auto end = reach_centre_at_once(0.0, y)) throw CannotBegin(*end);
