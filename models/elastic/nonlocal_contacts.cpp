@@ -577,9 +577,10 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
       // What walls under displacements leave is rounding of all that they would change; where none is to change, that
       // of the forces.
       pressing += weights_[j] * (std::abs(force_rate(j)) + pull * forces_[j]);
-      // Forces that contacts bear already do not say how near those are that may bear the others.
+      // Forces that contacts bear already, or that do not shrink, do not say how near those are that may bear the
+      // others.
       const bool is_borne = is_force(j) && (unheld * arm_of(j)).norm() <= k_same_surroundings;
-      near = std::max(near, is_force(j) && !is_borne ? y[j] : k_unloaded * std::abs(y[j]));
+      near = std::max(near, is_force(j) && slope(j) < 0.0 && !is_borne ? y[j] : k_unloaded * std::abs(y[j]));
     }
     const auto centre = dy.subspan(n);
     std::ranges::fill(centre, 0.0);
