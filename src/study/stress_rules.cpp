@@ -15,6 +15,7 @@
 #include "catalogue.hpp"
 #include "compressible/material_point_info.hpp"
 #include "compressible/yield_surface.hpp"
+#include "elastic/hertz.hpp"
 #include "mdr/contact.hpp"
 #include "packing/law.hpp"
 #include "scene/mdr_law.hpp"
@@ -71,7 +72,7 @@ constexpr std::string_view k_driven_away[] = {
 constexpr double k_no_direction = 1e-6;
 // Of what is left of a force's way; of the largest force, what is small beside it.
 constexpr double k_little = 1e-3;
-// Gaps over R0 at which a wall touches.
+// Gaps at which a wall touches, over how deep a program presses: as well as that places are known.
 constexpr double k_touch = 1e-9;
 // What laws leave of forces that balance, over these: walls that align but for more than that balance no others.
 constexpr double k_left_over = 1e-9;
@@ -300,6 +301,21 @@ void check_program(const Run& run, Violations& found) {
   }
 }
 
+/// How deep a program presses at most, as far as contacts are elastic and not as wide as the particle.
+double deepest_asked_for(const Scenario& scenario, const Scene& scene) {
+  const double modulus = composite_modulus(material(scenario, "youngs_modulus"), material(scenario, "poisson_ratio"));
+  double deepest = 0.0;
+  for (const Channel& channel : scene.channels) {
+    for (const Step& step : channel.program) {
+      if (step.kind == Step::Kind::displacement) deepest = std::max(deepest, step.target);
+      if (step.kind != Step::Kind::force || !(step.target > 0.0)) continue;
+      const double overlap = mdr::elastic_overlap(mdr::ElasticProfile::parabola, modulus, scenario.radius, step.target);
+      deepest = std::max(deepest, overlap);
+    }
+  }
+  return std::min(deepest, scenario.radius);
+}
+
 /// That forces drive the centre away holds only where no contacts that touch could balance them.
 void check_hold(const Run& run, Violations& found) {
   const auto is_said = [&run](std::string_view words) { return run.record.message.find(words) != std::string::npos; };
@@ -311,6 +327,7 @@ void check_hold(const Run& run, Violations& found) {
   std::vector<std::pair<double, Eigen::Vector3d>> pushes;  // by prescribed forces, and their normals
   double largest = 0.0;
   std::vector<Eigen::Vector3d> others, bearing;
+  const double touch = k_touch * deepest_asked_for(run.scenario, scene);
   for (std::size_t c = 0; c < scene.classes.size(); ++c) {
     const ContactClass& contact_class = scene.classes[c];
     Eigen::Vector3d normals = Eigen::Vector3d::Zero();
@@ -322,7 +339,6 @@ void check_hold(const Run& run, Violations& found) {
     const std::string_view regime = table.word(last, *table.find(contact_class.name + ".regime"));
     // Where contacts bear, they lift the surface of this law elsewhere: the overlap is no gap there.
     const double overlap = at_end("overlap");
-    const double touch = k_touch * run.scenario.radius;
     const bool touches = run.scenario.model == "nonlocal" ? regime != "open" || std::abs(overlap) <= touch
                                                           : overlap >= -touch && regime != "separated";
     if (const auto force = prescribed_force(scene.channels[c], step)) {
