@@ -580,7 +580,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
       // Forces that contacts bear already, or that do not shrink, do not say how near those are that may bear the
       // others.
       const bool is_borne = is_force(j) && (unheld * arm_of(j)).norm() <= k_same_surroundings;
-      near = std::max(near, is_force(j) && slope(j) < 0.0 && !is_borne ? y[j] : k_unloaded * std::abs(y[j]));
+      near = std::max(near, is_force(j) && slope(j) < 0.0 && !is_borne ? y[j] : k_unloaded * y[j]);
     }
     const auto centre = dy.subspan(n);
     std::ranges::fill(centre, 0.0);
