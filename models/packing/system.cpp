@@ -371,9 +371,10 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
     res[k_fraction] = y[k_fraction] - resting_;
     return;
   }
-  // What an integrator tolerates may reach down to the closed start, and below jamming: from the least packing fraction
-  // on everything goes on along its tangent.
-  std::array<double, 2> inside{y[k_particles], std::max(y[k_fraction], least_fraction())};
+  // What an integrator tolerates may reach down to the closed start, and below jamming, or beyond where what is
+  // prescribed has its least value: from within the closed start on everything goes on along its tangent.
+  const double least = std::max(least_fraction(), std::midpoint(branch_.begin, start_end_));
+  std::array<double, 2> inside{y[k_particles], std::max(y[k_fraction], least)};
   std::array<double, 2> all{};
   rates(xi, inside, all);
   // Rates count along what is prescribed, whichever of the unknowns that leaves free.
