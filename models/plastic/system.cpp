@@ -175,7 +175,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
 }
 
 /// A ramp that rounding has left between two equal values goes nowhere. A force under which a wall stands has the
-/// rounding of its place, too, and a place where a force has left it has that of the force.
+/// rounding of its place, too, and a place where a force has left it has that of the force and of its coordinate.
 int System::direction_of_ramp(std::size_t i, double x, bool was_loaded) const {
   const double way = ramps_[i].end - ramps_[i].start;
   double size = std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
@@ -183,7 +183,7 @@ int System::direction_of_ramp(std::size_t i, double x, bool was_loaded) const {
     size += contact(i, x).stiffness * x;
   } else if (was_loaded && touches(memory_[i].regime)) {
     const Contact now = contact(i, x);
-    if (now.stiffness > 0.0) size += now.force / now.stiffness;
+    if (now.stiffness > 0.0) size += now.force / now.stiffness + std::abs(x);
   }
   if (std::abs(way) <= k_rounding * size) return 0;
   return way > 0.0 ? 1 : -1;
