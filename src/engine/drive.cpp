@@ -256,7 +256,7 @@ class Drive {
     int idle_steps = 0;
     while (plan_.duration > 0.0 && 1.0 - xi_ > k_round_off) {
       const double segment_start = xi_;
-      xi_ = system_.leave_singularity(xi_, y_);
+      change_state([this](std::span<double> y) { xi_ = system_.leave_singularity(xi_, y); });
       if (xi_ == 1.0) break;
       integrator_->begin(xi_, y_);
       Integrator::Advance advance{};
@@ -271,7 +271,7 @@ class Drive {
         idle_steps = advance.xi > last ? 0 : idle_steps + 1;
         if (idle_steps > k_most_idle_steps) throw stalled(idle_steps);
         // Place and state together: an output may meet a limit, and the run then ends in them.
-        integrator_->dense_output(advance.xi, y_);
+        change_state([&](std::span<double> y) { integrator_->dense_output(advance.xi, y); });
         xi_ = advance.xi;
         emit_outputs_before(last, xi_);
       } while (!advance.hit_guard && xi_ < 1.0);
@@ -291,13 +291,23 @@ class Drive {
     }
     // An event may leave a rest of the step that is rounding, but not beside a contact that is as shallow.
     if (plan_.duration > 0.0 && xi_ < 1.0) {
-      if (system_.is_solvable())
-        system_.solve(1.0, y_);
-      else
-        system_.complete(1.0, y_);
+      change_state([this](std::span<double> y) {
+        if (system_.is_solvable())
+          system_.solve(1.0, y);
+        else
+          system_.complete(1.0, y);
+      });
     }
     xi_ = 1.0;
     return false;
+  }
+
+  /// Changes the state wholly or, where that meets the end of the equations, not at all: the run ends in it.
+  template <class Change>
+  void change_state(Change&& change) {
+    output_state_ = y_;
+    change(output_state_);
+    std::swap(y_, output_state_);
   }
 
   /// Applies what has fired at xi_. Returns whether a condition of the program ends the step here.
@@ -319,7 +329,7 @@ class Drive {
       if (end) {
         throw Stop{where(xi_) + text_of(end->finding)};
       }
-      system_.solve(xi_, y_);
+      change_state([this](std::span<double> y) { system_.solve(xi_, y); });
       is_met = is_met || watch_.is_met(xi_, y_) || has_ending_event(log);
     }
     watch_.renew(xi_, y_);
