@@ -28,8 +28,39 @@ constexpr std::array k_late{1e-3, 1e-6, 1e-9};
 constexpr int k_most_sinking_steps = 100;
 constexpr double k_past_balance = 0.5;  // what forces along a step may be beyond it, over those before it
 constexpr int k_most_tries = 300;       // of steps; then what differs is rounding
+constexpr double k_cancelled = 1e-12;   // of prescribed forces where nothing else bears, over their sum
 
 }  // namespace
+
+/// What the prescribed forces of the targets add up to in the directions in which no contact holds the centre,
+/// however small it is beside other forces.
+double Contacts::unborne_force() const {
+  if (std::ranges::none_of(targets_, &Target::is_force)) return 0.0;
+  const Eigen::Matrix3d projector = directions_of_nothing();
+  Eigen::Vector3d push = Eigen::Vector3d::Zero();
+  double sum = 0.0;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    const Eigen::Vector3d along = projector * arm_of(j);
+    if (!targets_[j].is_force || along.norm() <= k_same_surroundings) continue;
+    push += weights_[j] * targets_[j].value * along;
+    sum += weights_[j] * targets_[j].value;
+  }
+  return push.norm() > k_cancelled * sum ? push.norm() : 0.0;
+}
+
+/// Beside contacts that bear, only walls that touch in a state may bear a force which begins: they are taken to be as
+/// stiff as under it.
+/// @param gap  of walls that touch
+/// @return whether there is such a force
+bool Contacts::lend_stiffness(double gap, std::span<const double> y) {
+  const double force = unborne_force();
+  if (force == 0.0) return false;
+  const double square = law_.signed_square_under(std::min(force / modulus_, law_.greatest_force()));
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    if (!targets_[j].is_force && stiffness_[j] == 0.0 && y[j] >= -gap) stiffness_[j] = force / square;
+  }
+  return true;
+}
 
 /// Finds the walls that only take a free centre along: of those that may bear, no forces balance of which one is on
 /// such a wall. Exactly then the centre has a way on which it leaves that wall and comes nearer to no other.

@@ -17,7 +17,6 @@ constexpr double k_contraction = 0.5;  // of Newton's corrections; less is a gue
 constexpr int k_first_touch_steps = 20;
 constexpr double k_stagnation = 1e-9;   // rounding grows with 1/margin near the limit
 constexpr double k_balance = 1e-9;      // net force over the sum of forces
-constexpr double k_cancelled = 1e-12;   // the same of prescribed forces where nothing else bears
 constexpr double k_least_hold = 1e-12;  // of the centre in a direction, over the greatest
 constexpr double k_least_step = 1e-13;  // of the way to a state that is not found at once
 constexpr int k_most_steps = 1000;      // on that way, tried ones included
@@ -293,35 +292,6 @@ Eigen::Matrix3d Contacts::directions_of_nothing() const {
     projector -= direction * direction.transpose();
   }
   return projector;
-}
-
-/// What the prescribed forces of the targets add up to in those directions, however small it is beside other forces.
-double Contacts::unborne_force() const {
-  if (std::ranges::none_of(targets_, &Target::is_force)) return 0.0;
-  const Eigen::Matrix3d projector = directions_of_nothing();
-  Eigen::Vector3d push = Eigen::Vector3d::Zero();
-  double sum = 0.0;
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    const Eigen::Vector3d along = projector * arm_of(j);
-    if (!targets_[j].is_force || along.norm() <= k_same_surroundings) continue;
-    push += weights_[j] * targets_[j].value * along;
-    sum += weights_[j] * targets_[j].value;
-  }
-  return push.norm() > k_cancelled * sum ? push.norm() : 0.0;
-}
-
-/// Beside contacts that bear, only walls that touch in a state may bear a force which begins: they are taken to be as
-/// stiff as under it.
-/// @param gap  of walls that touch
-/// @return whether there is such a force
-bool Contacts::lend_stiffness(double gap, std::span<const double> y) {
-  const double force = unborne_force();
-  if (force == 0.0) return false;
-  const double square = law_.signed_square_under(std::min(force / modulus_, law_.greatest_force()));
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    if (!targets_[j].is_force && stiffness_[j] == 0.0 && y[j] >= -gap) stiffness_[j] = force / square;
-  }
-  return true;
 }
 
 /// Newton's method towards the targets, with a part of the imbalance left. Gives up where its corrections do not
