@@ -117,7 +117,8 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     ramp_.end = ramp_.start;
   }
   const auto require_pores = [&] {
-    if (is_jammed_ && direction() > 0 && y[k_fraction] >= 1.0) throw std::domain_error("no pores are left");
+    const bool is_pressed_on = direction() > 0 || told(0.0) > branch_.greatest * (1.0 + k_same);
+    if (is_jammed_ && is_pressed_on && y[k_fraction] >= 1.0) throw std::domain_error("no pores are left");
   };
   require_pores();
   // Another control may find the packing where what it prescribes falls as the packing is compacted.
@@ -130,7 +131,10 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   // An integrated state goes on; elsewhere the law says what it is: a packing that jams beyond its closed start, too,
   // and one that stands where what is prescribed falls at first, which gives way to where it grows.
   const bool goes_on = mode_ == before && !(mode_ == Mode::jammed && y[k_fraction] < branch_.begin);
-  if (!goes_on) solve(0.0, y);
+  if (!goes_on) {
+    if (is_jammed_) require_state(0.0);
+    solve(0.0, y);
+  }
   take_piece(0.0);
   require_pores();  // it may have given way until it is full
   if (is_at_limit(0.0)) throw CannotBegin(limit());
