@@ -152,13 +152,26 @@ Dimension find_dimension(const std::string& model, std::string_view key) {
   return std::ranges::find(keys, key, &QuantityKey::name)->dimension;
 }
 
-/// Rounding of an energy: overlaps are differences of lengths of the order of R0.
-double energy_floor(const Run& run) {
+double stiffest_modulus(const Run& run) {
   double stiffest = 0.0;
   for (const auto& [key, value] : run.scenario.material) {
     if (find_dimension(run.scenario.model, key) == Dimension::stress) stiffest = std::max(stiffest, value);
   }
-  return k_stress_rounding * stiffest * std::pow(run.scenario.radius, 3);
+  return stiffest;
+}
+
+/// Rounding of an energy: overlaps are differences of lengths of the order of R0.
+double energy_floor(const Run& run) {
+  return k_stress_rounding * stiffest_modulus(run) * std::pow(run.scenario.radius, 3);
+}
+
+/// Rounding of the force of a contact that goes back, for the same reason: how stiff that is does not show in a curve
+/// along which the particle grows.
+double force_floor(const Run& run, std::size_t row, const std::string& wall) {
+  const auto contact_radius = run.record.history.find(wall + ".contact_radius");
+  if (!contact_radius) return 0.0;
+  return k_stress_rounding * 2.0 * stiffest_modulus(run) * run.record.history.at(row, *contact_radius) *
+         run.scenario.radius;
 }
 
 using Violations = std::vector<Violation>;
@@ -292,9 +305,11 @@ void check_program(const Run& run, Violations& found) {
     // What is rounded: strains of order one, lengths of the order of R0.
     const double unit = scene.classes.empty() ? 1.0 : name->ends_with("displacement") ? run.scenario.radius : 0.0;
     // The force of a shallow contact is known as well as its overlap, a difference of such lengths.
-    const double by_overlap =
-        name->ends_with("force") ? change_with_overlap(table, last_row, column, k_stress_rounding * run.scenario.radius)
-                                 : 0.0;
+    double by_overlap = 0.0;
+    if (name->ends_with("force")) {
+      by_overlap = std::max(change_with_overlap(table, last_row, column, k_stress_rounding * run.scenario.radius),
+                            force_floor(run, last_row, channel.name));
+    }
     if (std::abs(last - target) <= own_tolerance(run) * scale + k_stress_rounding * unit + by_overlap) continue;
     found.push_back({"program", fmt::format("{} ends {:.3g} off {:.9g}", *name, last - target, target)});
     return;
