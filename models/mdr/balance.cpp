@@ -119,8 +119,10 @@ void System::sum_up(double xi, double r) {
       const double firm = firmness(i);
       const double along = on_lines_[i].along;
       Line& line = lines_[on_lines_[i].line];
-      line.force += count * c.force * along;
-      line.force_by_time += count * (is_loaded(i) ? speed : firm * speed) * along;
+      if (!is_slight(i)) {
+        line.force += count * c.force * along;
+        line.force_by_time += count * (is_loaded(i) ? speed : firm * speed) * along;
+      }
       if (!is_loaded(i)) {
         line.force_by_radius += count * (firm + c.by_radius) * along;
         line.stiffness += count * c.by_overlap * along * along;

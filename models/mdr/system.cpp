@@ -50,6 +50,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   ramps_.resize(count);
   wall_places_.resize(count);
   bears_.resize(count, true);
+  may_be_slight_.resize(count, false);
 
   Eigen::Matrix3Xd means(3, static_cast<Eigen::Index>(count));
   for (std::size_t i = 0; i < count; ++i) {
@@ -184,6 +185,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   y[k_work] -= force_work(y);
   has_turned_.assign(memory_.size(), false);
   is_left_.assign(memory_.size(), false);
+  find_slight_forces();
   look(0.0, y);
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     // The nearest walls close with it, as no guard is met by one that touches already.

@@ -309,6 +309,9 @@ class System final : public HybridSystem {
   [[nodiscard]] bool touches_have_to_bear(double xi) const;
   [[nodiscard]] Small prescribed_push(double xi) const noexcept;
   [[nodiscard]] double largest_prescribed_force() const noexcept;
+  [[nodiscard]] double largest_force(std::size_t contact) const noexcept;
+  void find_slight_forces();
+  [[nodiscard]] bool is_slight(std::size_t contact) const;
   [[nodiscard]] std::optional<Small> velocity_of(std::span<Drive> drives, double xi, std::span<const double> y);
   bool drive_out(std::span<const Drive> drives, const SmallMatrix& along, Small& velocity) const;
   [[nodiscard]] bool rides(std::size_t i) const noexcept;
@@ -383,6 +386,7 @@ class System final : public HybridSystem {
   Small held_centre_ = Small::Zero();         ///< of a free centre, where the present mode began
   SmallMatrix unheld_ = SmallMatrix::Zero();  ///< projector on the directions in which nothing holds it
   std::vector<bool> bears_;                   ///< whether a contact can be anything but a touch in the present mode
+  std::vector<bool> may_be_slight_;           ///< a force within the step that is rounding beside the others
   std::vector<Guard> guards_;
 
   // Work space, so that nothing is allocated while integrating.

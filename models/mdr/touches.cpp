@@ -212,12 +212,28 @@ System::Small System::prescribed_push(double xi) const noexcept {
 double System::largest_prescribed_force() const noexcept {
   double largest = 0.0;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (!is_loaded(i) || !touches(memory_[i].regime)) continue;
-    const double force = std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
-    largest = std::max(largest, classes_[i].multiplicity() * force);
+    if (touches(memory_[i].regime)) largest = std::max(largest, largest_force(i));
   }
   return largest;
 }
+
+/// Of a wall and its images within the step; zero where none is prescribed.
+double System::largest_force(std::size_t i) const noexcept {
+  return is_loaded(i) ? classes_[i].multiplicity() * std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end)) : 0.0;
+}
+
+/// Finds the forces that are rounding beside the others within the step.
+void System::find_slight_forces() {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < memory_.size(); ++i) largest = std::max(largest, largest_force(i));
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    const bool is_free = free_count_ > 0 && directions_[i].norm() > k_no_direction;
+    may_be_slight_[i] = is_free && is_loaded(i) && largest_force(i) <= k_no_force * largest;
+  }
+}
+
+/// Whether a force is as small and nothing bears it: a wall that only touches would be left for it, and come back.
+bool System::is_slight(std::size_t i) const { return may_be_slight_[i] && !is_backed(i); }
 
 /// Velocity of the centre that such walls add to what it has without them, if they leave it a way out; and the rates of
 /// their overlaps without it.
