@@ -225,7 +225,9 @@ class SceneCheck {
   double spread_of_states() {
     if (reference_->integrator.used != "direct" || own_->integrator.used == "direct") return 0.0;
     double widest = 0.0;
-    for (const double share : {share_, -share_}) {
+    // By as much as they may be off, less what the samples are counted by.
+    const double most = tolerance_ / k_sample_multiple;
+    for (const double share : {most, -most}) {
       ++verdict_.runs;
       try {
         const Run run = run_limited(
