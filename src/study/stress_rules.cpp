@@ -79,7 +79,6 @@ constexpr double k_left_over = 1e-9;
 
 constexpr std::string_view k_full = "no pores are left";
 constexpr std::string_view k_poisson = "Poisson's ratio at 1/2";
-constexpr std::string_view k_uniqueness = "loss of uniqueness";
 
 // The models' domains (`monograin models NAME`) say the reasons.
 constexpr StatedLimit k_stated_limits[] = {

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "history/run.hpp"
@@ -31,6 +32,9 @@ inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::
 
 /// How a run has ended: "complete", or the limit of the model that its message states; empty: neither.
 [[nodiscard]] std::string stated_end(const Run& run);
+
+/// The stated end where plastic strain grows without bound.
+inline constexpr std::string_view k_uniqueness = "loss of uniqueness";
 
 /// What the work of a run of the direct form may be wrong by, over the largest energy; 0 for other runs.
 [[nodiscard]] double direct_work_tolerance(const Run& run);
