@@ -30,6 +30,14 @@ constexpr double k_past_balance = 0.5;  // what forces along a step may be beyon
 constexpr int k_most_tries = 300;       // of steps; then what differs is rounding
 constexpr double k_cancelled = 1e-12;   // of prescribed forces where nothing else bears, over their sum
 
+/// How fast, at most, a wall that takes a centre along closes a gap of errors. Beyond what touches that grows without
+/// bound, and the wall is free: ended at once, the bound would stand between an implicit step and its solution.
+double closing(double signed_square, double touch) {
+  const double gap = -signed_square;
+  const double share = gap <= touch ? 1.0 : std::max(0.0, 2.0 - gap / touch);
+  return k_closing * gap / share;
+}
+
 }  // namespace
 
 /// What the prescribed forces of the targets add up to in the directions in which no contact holds the centre,
@@ -266,18 +274,17 @@ void Contacts::take_along(std::span<const Ramp> ramps, std::span<const double> y
   const std::size_t n = class_count();
   const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
   const auto takes_along = [&](std::size_t j) {
-    return is_bystander_[j] && !is_force(j) && y[j] >= -touch && (touches.empty() || touches[j]);
+    return is_bystander_[j] && !is_force(j) && (touches.empty() || touches[j]);
   };
-  const auto closing = [&](std::size_t j) { return -k_closing * y[j]; };
   for (std::size_t j = 0; j < n; ++j) {
-    free_displacements_[j] = takes_along(j) ? entry(j, n) - closing(j) : k_no_wall;
+    free_displacements_[j] = takes_along(j) ? entry(j, n) - closing(y[j], touch) : k_no_wall;
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (!release_centre(unheld_directions(), velocity)) return;
   for (std::size_t j = 0; j < n; ++j) {
     const bool is_touching = free_displacements_[j] != k_no_wall;
-    entry(j, n) =
-        is_touching ? std::min(free_approach(j, velocity), 0.0) + closing(j) : entry(j, n) + arm_of(j).dot(velocity);
+    entry(j, n) = is_touching ? std::min(free_approach(j, velocity), 0.0) + closing(y[j], touch)
+                              : entry(j, n) + arm_of(j).dot(velocity);
   }
   for (std::size_t k = 0; k < free_count(); ++k) dy[n + k] += velocity[at(k)];
 }
@@ -424,8 +431,8 @@ bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y,
     const bool is_force = ramps[j].control == Control::force;
     const double slope = ramps[j].end - ramps[j].start;
     if (y[j] > 0.0 || (is_force && slope != 0.0)) return false;
-    const bool is_off = y[j] < -touch || !(touches.empty() || touches[j]);
-    free_displacements_[j] = is_force || is_off ? k_no_wall : slope + k_closing * y[j];
+    const bool is_off = !(touches.empty() || touches[j]);
+    free_displacements_[j] = is_force || is_off ? k_no_wall : slope - closing(y[j], touch);
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (!release_centre(Eigen::Matrix3d::Identity(), velocity)) return false;
@@ -433,7 +440,7 @@ bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y,
     const bool is_touching = free_displacements_[j] != k_no_wall;
     free_displacements_[j] = ramps[j].end - ramps[j].start;
     const double rate = free_approach(j, velocity);
-    dy[j] = ramps[j].control == Control::force ? 0.0 : is_touching ? std::min(rate, -k_closing * y[j]) : rate;
+    dy[j] = ramps[j].control == Control::force ? 0.0 : is_touching ? std::min(rate, closing(y[j], touch)) : rate;
   }
   std::copy_n(velocity.begin(), free_count(), dy.begin() + static_cast<std::ptrdiff_t>(n));
   return true;

@@ -510,7 +510,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
   const auto slope = [&](std::size_t j) { return ramps[j].end - ramps[j].start; };
   forget();
   // What bystanders bear is error: two of them would hold the centre in their corner.
-  if (free_count() > 0) sort_near(ramps, y, touch);
+  if (free_count() > 0) sort_near(ramps, y, 2.0 * touch);
   for (std::size_t j = 0; j < n; ++j) {
     if (is_force(j) || (free_count() > 0 && is_bystander_[j])) stiffness_[j] = 0.0;
   }

@@ -575,13 +575,18 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
                                       std::vector<Event>& log) {
   look_closely(xi, y);
   std::optional<DomainEnd> end;
+  // What has yet to touch a free centre bears nothing at that instant, and may only take it along.
+  const auto only_touches = [&](int wall) {
+    return std::ranges::any_of(fired,
+                               [&](std::size_t g) { return guards_[g].kind == k_touched && guards_[g].index == wall; });
+  };
   for (const std::size_t g : fired) {
     const Guard guard = guards_[g];
     const auto index = static_cast<std::size_t>(std::max(0, guard.index));
     Event event{guard.name, guard.index};
     switch (guard.kind) {
       case k_made:
-        if (only_stands(index, xi, y)) continue;
+        if (only_touches(guard.index) || only_stands(index, xi, y)) continue;
         regimes_[index] = Regime::elastic;
         break;
       case k_lost:
