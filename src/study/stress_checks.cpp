@@ -101,8 +101,13 @@ bool is_held(const Run& run, std::span<const ContactClass> classes, std::size_t 
   return solver.eigenvalues()[0] > k_same_directions;
 }
 
-/// Whether an integrator has given up at a stated limit, which says nothing of how the scene goes on.
-bool has_given_up(const Run& run) { return run.record.status == RunStatus::failed && !stated_end(run).empty(); }
+/// Whether an integrator has given up at a stated limit, which says nothing of how the scene goes on: as does a trial
+/// step beyond a fold, before the pull-off there is found.
+bool has_given_up(const Run& run) {
+  const std::string end = stated_end(run);
+  if (run.record.status == RunStatus::failed) return !end.empty();
+  return end == k_fold && run.integrator.used != "direct";
+}
 
 /// The softest of a material's moduli and strengths.
 double softest(const Scenario& scenario) {

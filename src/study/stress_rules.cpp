@@ -96,7 +96,7 @@ constexpr StatedLimit k_stated_limits[] = {
     {"outside the pressure table", "outside the pressure table"},
     {"there is no mode in which every contact's branch agrees", "no mode agrees"},
     {k_free_centre, k_free_centre},
-    {"beyond a fold no forces on it balance", "fold of the free centre"},
+    {"beyond a fold no forces on it balance", k_fold},
     {"beyond their greatest force its place is not determined", "greatest force on the free centre"},
     // plastic laws
     {"the walls meet", "the walls meet"},

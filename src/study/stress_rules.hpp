@@ -33,6 +33,9 @@ inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::
 /// How a run has ended: "complete", or the limit of the model that its message states; empty: neither.
 [[nodiscard]] std::string stated_end(const Run& run);
 
+/// The stated end where peeling contacts hold a free centre no longer.
+inline constexpr std::string_view k_fold = "fold of the free centre";
+
 /// The stated end where plastic strain grows without bound.
 inline constexpr std::string_view k_uniqueness = "loss of uniqueness";
 
