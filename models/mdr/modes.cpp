@@ -196,6 +196,8 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
   const bool moves_out = rate < -k_at_rest && !is_carried;
   const double overlap = now_[i].overlap;
   const auto is_past = [&](int kind, double sign) { return sign * edge_guard(kind, i, xi, overlap, r) >= -k_touch; };
+  // What has turned at this instant rests: from one look to the next the sign of its rate is another one.
+  const bool rests = has_turned_[i] && std::abs(overlap_rate(i, now)) <= k_at_rest;
   Memory& memory = memory_[i];
   switch (memory.edge) {
     case Edge::following:
@@ -203,6 +205,7 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
       stick(i, log);
       return true;
     case Edge::sticking:
+      if (rests) return false;
       if (moves_in && is_past(k_follow, 1.0)) {
         memory.edge = Edge::following;
         log.push_back({"follow", static_cast<int>(i)});
@@ -437,6 +440,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
           separate(*weakest, r, y, log);
         else
           stick(i, log);
+        has_turned_[i] = true;
         others_fired = true;
         continue;
       case k_peel:
