@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -21,6 +22,9 @@ constexpr double k_last_correction = 1e-11;
 constexpr double k_strain_rounding = 1e-16;
 constexpr double k_last_excess = 1e-9;
 constexpr int k_most_small_corrections = 12;
+// What is left of f by rounding, over the shares that the stresses have in it.
+constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
+constexpr int k_most_corrections_of_rounding = 2;
 constexpr int k_most_corrections = 60;
 constexpr int k_most_halvings = 20;
 // Plastic strain by which no guess of an integrator is wrong at any tolerance. A state that is farther away from its
@@ -76,6 +80,7 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
   double elastic_strain = 0.0;
   double elastic_strain_of_guess = 0.0;
   int small_corrections = 0;
+  int corrections_of_rounding = 0;
   int halvings = 0;
   double phi = 0.0;  // of the last correction
   double deviatoric = 0.0;
@@ -119,7 +124,12 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
       y[k_phi] += phi;
       y[k_deviatoric] += deviatoric;
       const double last_correction = std::min(k_last_correction, std::sqrt(k_strain_rounding * elastic_strain));
-      if (std::hypot(phi, deviatoric) >= last_correction) continue;
+      if (std::hypot(phi, deviatoric) >= last_correction) {
+        // Under prescribed stresses f may grow so little with phi that its rounding is a larger strain than that.
+        const Yield& at = now.yield;
+        const double rounding = k_rounding * (std::abs(at.f_p * here.p) + std::abs(at.f_s * here.s));
+        if (!(std::abs(at.f) <= rounding) || ++corrections_of_rounding < k_most_corrections_of_rounding) continue;
+      }
       const bool is_found = !has_caps || std::abs(now.yield.f) < k_last_excess;
       if (!is_found && ++small_corrections < k_most_small_corrections) continue;
       const double distance = std::hypot(y[k_phi] - guess, y[k_deviatoric] - guessed_deviatoric);
