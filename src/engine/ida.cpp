@@ -183,11 +183,12 @@ class Ida final : public Integrator {
   }
 
   /// Nothing is told more exactly than the step coordinate: what goes through zero on a long way would be, and what
-  /// grows ever faster towards the end of its equations.
+  /// grows ever faster towards the end of its equations. A residual has that rounding, too: the share that the
+  /// corrector may leave is no less.
   void raise_tolerances() {
     const auto rates = view(dy_.get());
     for (std::size_t k = 0; k < rates.size(); ++k) {
-      const double rounding = k_rounding_of_xi * std::abs(rates[k]);
+      const double rounding = k_rounding_of_xi / k_left_by_corrector * std::abs(rates[k]);
       double& atol = view(atol_.get())[k];
       if (std::isfinite(rounding)) atol = std::max(atol, rounding);
     }
