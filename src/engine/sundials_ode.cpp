@@ -339,7 +339,9 @@ class SundialsOde final : public Integrator {
   }
 
   /// A method that remembers its steps goes on from them until the state is off by what is tolerated of the curve: in a
-  /// smaller correction its next steps would see nothing but a jump, and the rounding in it. Adams' method gains
+  /// smaller correction its next steps would see nothing but a jump, and the rounding in it. Where what is tolerated of
+  /// a step is rounding of the step coordinate, it goes on for as many of them as elsewhere: errors of first steps are
+  /// all that it would get otherwise, and along the surface no correction takes them away. Adams' method gains
   /// nothing by that where it is slow, at the stiff ends of segments of a yield surface.
   /// @return whether begin_state_ is a new beginning
   bool corrects_begin() {
@@ -351,7 +353,8 @@ class SundialsOde final : public Integrator {
     bool is_off = false;
     for (std::size_t k = 0; k < state.size(); ++k) {
       const double size = std::max(std::abs(state[k]), form_.unknown(k).scale);
-      is_off = is_off || std::abs(better[k] - state[k]) > tolerances_.rtol * size;
+      const double rounding = k_rounding_of_xi * std::abs(view(rates_.get())[k]) / k_share_of_many;
+      is_off = is_off || std::abs(better[k] - state[k]) > std::max(tolerances_.rtol * size, rounding);
     }
     if (is_off) std::ranges::copy(better, state.begin());
     return is_off;
