@@ -135,7 +135,7 @@ class Ida final : public Integrator {
     if (flag == IDA_ROOT_RETURN) {
       check("IDAGetRootInfo", IDAGetRootInfo(memory_.get(), roots_.found.data()));
       roots_.collect();
-      find_hidden(begin);
+      find_root(begin);
     } else if (flag == IDA_TSTOP_RETURN) {
       end_ = 1.0;
     }
@@ -234,8 +234,8 @@ class Ida final : public Integrator {
     check("IDASetNoInactiveRootWarn", IDASetNoInactiveRootWarn(memory_.get()));
   }
 
-  /// Ends the step at a crossing that the library has not seen, if there is one.
-  void find_hidden(double begin) {
+  /// Ends the step where a guard has crossed: at a crossing that the library has not seen, if there is one.
+  void find_root(double begin) {
     const auto values_at = [this](double xi, std::span<double> values) {
       ++roots_.evaluations;
       dense_output(xi, complete_);
@@ -243,9 +243,13 @@ class Ida final : public Integrator {
     };
     const auto hidden = crossing_before_branch_end(system_, watch_, roots_.fired, begin, end_,
                                                    guard_tolerance_of(tolerances_), values_at);
-    if (!hidden) return;
-    end_ = hidden->xi;
-    roots_.fired.assign(1, hidden->guard);
+    if (hidden) {
+      end_ = hidden->xi;
+      roots_.fired.assign(1, hidden->guard);
+      return;
+    }
+    guard_values_.resize(watch_.size());
+    end_ = polished_root(roots_.fired, begin, end_, guard_tolerance_of(tolerances_), guard_values_, values_at);
   }
 
   int evolve() {
@@ -335,7 +339,7 @@ class Ida final : public Integrator {
   Watch& watch_;
   Tolerances tolerances_;
   SegmentQuadratures quadratures_;
-  std::vector<double> complete_;
+  std::vector<double> complete_, guard_values_;
   std::string message_;
   Pending pending_;
   RootList roots_;

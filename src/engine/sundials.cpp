@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -16,6 +17,8 @@ namespace {
 // Looks before the end of a branch: each so many times nearer than the one before, and how many.
 constexpr double k_approach = 0.25;
 constexpr int k_looks_before_end = 12;
+// How closely the libraries know a root, over the place where the step ends and its length.
+constexpr double k_rounding_of_root = 100.0 * std::numeric_limits<double>::epsilon();
 
 bool crosses(int direction, double before, double after, double tolerance) noexcept {
   const bool rises = before < -tolerance && after >= 0.0;
@@ -79,6 +82,29 @@ std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, c
     return std::nullopt;  // no state there
   }
   return first;
+}
+
+double polished_root(std::span<const std::size_t> fired, double begin, double end, double tolerance,
+                     std::span<double> values, const std::function<void(double, std::span<double>)>& values_at) {
+  try {
+    values_at(end, values);
+    if (std::ranges::none_of(fired, [&](std::size_t g) { return std::abs(values[g]) > tolerance; })) return end;
+    const std::vector<double> beyond(values.begin(), values.end());
+    const auto is_beyond = [&](double xi) {
+      values_at(xi, values);
+      return std::ranges::all_of(fired, [&](std::size_t g) { return values[g] * beyond[g] >= 0.0; });
+    };
+    double below = std::max(begin, end - 2.0 * k_rounding_of_root * (end + (end - begin)));
+    if (is_beyond(below)) return end;
+    double above = end;
+    for (double middle = std::midpoint(below, above); below < middle && middle < above;
+         middle = std::midpoint(below, above)) {
+      (is_beyond(middle) ? above : below) = middle;
+    }
+    return above;
+  } catch (const std::domain_error&) {
+    return end;
+  }
 }
 
 std::string worst_components(std::span<const Unknown> unknowns, std::span<const double> weights,

@@ -111,6 +111,14 @@ struct Crossing {
     const HybridSystem& system, const Watch& watch, std::span<const std::size_t> fired, double begin, double end,
     double tolerance, const std::function<void(double, std::span<double>)>& values_at);
 
+/// Where fired guards have crossed. The library knows a root to a hundred roundings of the step coordinate; where a
+/// guard goes beyond `tolerance` in those, the place is looked for among them.
+/// @param begin, end  of the step that ends at the root
+/// @param values_at   as above
+[[nodiscard]] double polished_root(std::span<const std::size_t> fired, double begin, double end, double tolerance,
+                                   std::span<double> values,
+                                   const std::function<void(double, std::span<double>)>& values_at);
+
 /// The unknowns with the largest weighted local errors, worst first, as "name (weighted error)".
 [[nodiscard]] std::string worst_components(std::span<const Unknown> unknowns, std::span<const double> weights,
                                            std::span<const double> errors);

@@ -203,7 +203,7 @@ class SundialsOde final : public Integrator {
     if (flag == Library::root_return) {
       check("GetRootInfo", Library::root_info(memory_.get(), roots_.found.data()));
       roots_.collect();
-      find_hidden(begin);
+      find_root(begin);
     } else if (flag == Library::stop_return) {
       end_ = 1.0;
     }
@@ -298,18 +298,26 @@ class SundialsOde final : public Integrator {
     form_.guess(first_guess_);
   }
 
-  /// Ends the step at a crossing that the library has not seen, if there is one.
-  void find_hidden(double begin) {
+  /// Ends the step where a guard has crossed: at a crossing that the library has not seen, if there is one.
+  void find_root(double begin) {
     const auto values_at = [this](double xi, std::span<double> values) {
-      check("GetDky", Library::derivative(memory_.get(), xi, 0, errors_.get()));
+      // An interpolation asks for rates beside the curve, where there may be none.
+      pending_.forget();
+      const int flag = Library::derivative(memory_.get(), xi, 0, errors_.get());
+      if (flag < 0 && !pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
+      check("GetDky", flag);
       ++roots_.evaluations;
       watch_.values(xi, form_.complete(xi, view(errors_.get())), values);
     };
     const auto hidden = crossing_before_branch_end(system_, watch_, roots_.fired, begin, end_,
                                                    guard_tolerance_of(tolerances_), values_at);
-    if (!hidden) return;
-    end_ = hidden->xi;
-    roots_.fired.assign(1, hidden->guard);
+    guard_values_.resize(watch_.size());
+    const double root =
+        hidden ? hidden->xi
+               : polished_root(roots_.fired, begin, end_, guard_tolerance_of(tolerances_), guard_values_, values_at);
+    if (hidden) roots_.fired.assign(1, hidden->guard);
+    if (root == end_) return;
+    end_ = root;
     check("GetDky", Library::derivative(memory_.get(), end_, 0, y_.get()));
   }
 
@@ -454,6 +462,7 @@ class SundialsOde final : public Integrator {
   double end_ = 0.0;
   double segment_begin_ = 0.0;
   std::vector<double> first_state_;  ///< of this segment, complete
+  std::vector<double> guard_values_;
   std::vector<double> begin_guess_;  ///< of complete states, where the last step began
   std::vector<double> first_guess_;
   double start_end_ = 0.0;    ///< a rounding beyond where the library has begun
