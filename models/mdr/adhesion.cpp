@@ -10,6 +10,8 @@ namespace {
 
 using std::numbers::pi;
 
+// The slope of an edge's equilibrium goes with the root of the distance from pull-off, and displacements are rounded.
+constexpr double k_root_of_rounding = 5e-9;
 constexpr int k_most_corrections = 100;  // a double root at pull-off only halves the error each time
 
 /// An edge at the radius a = b sin(theta) of the ellipse, or a of the parabola.
@@ -61,6 +63,12 @@ PeelState peel_state_at(const Indenter& indenter, double composite_modulus, doub
 double slope(const Indenter& indenter, double stretch, double xi, const ProfileEdge& edge) noexcept {
   const double by_height = 0.5 * indenter.height / indenter.half_width * edge.share;
   return by_height - xi * stretch / (2.0 * edge.radius) * edge.cosine;
+}
+
+/// The same of displacements, no less than what rounding leaves of it at pull-off, where it is zero.
+double slope_off_pull_off(const Indenter& indenter, double stretch, const ProfileEdge& edge) noexcept {
+  const double least = k_root_of_rounding * indenter.height / indenter.half_width;
+  return std::max(least, slope(indenter, stretch, 1.0, edge));
 }
 
 /// Newton's method from above on a convex increasing function of the rise, so that it comes down to the root without
@@ -265,11 +273,8 @@ Contact peeling_contact(const Frame& frame, double composite_modulus, double sur
     return sticking_contact(frame, composite_modulus, edge.radius);
   }
   Contact contact = contact_below(frame, composite_modulus, edge, -stretch);
-  // The edge follows: da = d(delta_1D - g)/(g' - Dl'). At pull-off that is unbounded; it is kept finite here: the slope
-  // goes with the root of the distance from there, and displacements are rounded.
-  constexpr double k_root_of_rounding = 5e-9;
-  const double least_slope = k_root_of_rounding * indenter.height / indenter.half_width;
-  const double follow = 2.0 * composite_modulus * stretch / std::max(least_slope, slope(indenter, stretch, 1.0, edge));
+  // The edge follows: da = d(delta_1D - g)/(g' - Dl'). At pull-off that is unbounded; it is kept finite here.
+  const double follow = 2.0 * composite_modulus * stretch / slope_off_pull_off(indenter, stretch, edge);
   const auto followed = [&](const Frame::Change& change) {
     return follow * (change.displacement * edge.cosine - height_change(indenter, change, edge));
   };
@@ -277,6 +282,22 @@ Contact peeling_contact(const Frame& frame, double composite_modulus, double sur
   contact.by_radius -= followed(frame.by_radius);
   contact.by_overlap_max -= followed(frame.by_overlap_max);
   return contact;
+}
+
+double peeling_softening(const Frame& frame, double composite_modulus, double surface_energy, double a) noexcept {
+  const Indenter& indenter = frame.indenter;
+  const ProfileEdge edge = edge_at(indenter, a);
+  const double stretch = critical_stretch(composite_modulus, surface_energy, a);
+  const double slope = slope_off_pull_off(indenter, stretch, edge);
+  // Of the stiffness 2 E (a - Dl cos/slope), by delta_1D: the radius goes with cos/slope, and the cosine, on the
+  // ellipse, with a rate that is finite at its end.
+  const double by_radius = edge.cosine / slope;
+  const double of_cosine = indenter.is_parabola() ? 0.0 : -edge.share / (indenter.half_width * slope);
+  const double of_stretch = 0.5 * stretch / a * by_radius;
+  const double of_height = 0.5 * indenter.height / (indenter.half_width * indenter.half_width) * by_radius;
+  const double of_slope = of_height + 0.5 * of_stretch * edge.cosine / a - 0.5 * stretch / a * of_cosine;
+  const double of_share = of_stretch * edge.cosine + stretch * (of_cosine - edge.cosine * of_slope / slope);
+  return 2.0 * composite_modulus * (by_radius - of_share / slope) * frame.by_overlap * frame.by_overlap;
 }
 
 EdgePress edge_press(const Frame& frame, const Frame::Change& by_radius, double a) noexcept {

@@ -86,6 +86,10 @@ struct Frame {
 /// Contact whose edge peels (eqs. 46-48).
 [[nodiscard]] Contact peeling_contact(const Frame& frame, double composite_modulus, double surface_energy,
                                       double critical_radius);
+/// How much the stiffness of a contact whose edge peels at the radius a falls as it goes back, d2F/d(delta)2; kept
+/// finite at pull-off, as the stiffness is.
+[[nodiscard]] double peeling_softening(const Frame& frame, double composite_modulus, double surface_energy,
+                                       double a) noexcept;
 /// How the springs at the edge are pressed, d(delta_1D - g(a)) at fixed a, by the overlap and by the change of indenter
 /// that comes with R; both times the cosine of the edge on the ellipse, whose slope is unbounded at its end.
 struct EdgePress {

@@ -222,7 +222,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = growth_drive(now);
         break;
       case k_unstable:
-        values[g] = least_firmness() - k_least_firmness;
+        values[g] = hold_guard(r);
         break;
       case k_spent:
         values[g] = is_any_spent() ? least_firmness() - k_least_firmness : 1.0;

@@ -354,7 +354,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
       // not be met.
       const auto weakest = weakest_contact();
       if (free_count_ == 0 || !weakest) break;
-      if (least_firmness() >= k_least_firmness) break;
+      if (hold_guard(y[k_radius]) >= 0.0) break;
       separate(*weakest, y[k_radius], y, log);
     }
     // No guard is met by a wall that a force presses on from the start.

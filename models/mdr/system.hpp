@@ -324,6 +324,8 @@ class System final : public HybridSystem {
   [[nodiscard]] double stiffness_of_shallow() const noexcept;
   [[nodiscard]] bool is_any_spent() const noexcept;
   [[nodiscard]] Hold weakest_hold();
+  [[nodiscard]] double rounding_of_hold(const Hold& hold, double r);
+  [[nodiscard]] double hold_guard(double r);
   [[nodiscard]] double least_firmness() { return weakest_hold().firmness; }
   void check_adhesion(std::size_t i, double r);
   void start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "mdr/adhesion_validity.hpp"
+#include "mdr/guards.hpp"
 #include "mdr/system.hpp"
 
 namespace monograin::mdr {
@@ -196,6 +197,28 @@ System::Hold System::weakest_hold() {
   const SmallMatrix denominator = scale.asDiagonal() * unspent * scale.asDiagonal();
   const Eigen::GeneralizedSelfAdjointEigenSolver<SmallMatrix> solver(numerator, denominator);
   return {solver.eigenvalues()[0], basis * scale.cwiseProduct(solver.eigenvectors().col(0))};
+}
+
+/// What rounding leaves uncertain of that next to a fold, where it goes with the root of the distance: beyond it there
+/// is no state, or one that holds the centre no more.
+double System::rounding_of_hold(const Hold& hold, double r) {
+  double softening = 0.0;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    if (memory_[i].edge != Edge::peeling || is_loaded(i)) continue;
+    const double along = std::abs(directions_[i].dot(hold.direction));
+    const Frame at = frame(i, now_[i].overlap, r);
+    const double modulus = material_.composite_modulus;
+    const double of_one = peeling_softening(at, modulus, surface_energy_, now_[i].contact.contact_radius);
+    softening += classes_[i].multiplicity() * std::abs(of_one) * along * along * along;
+  }
+  return std::sqrt(2.0 * softening * hold.direction.norm() * rounding_of_forces());
+}
+
+/// What is left until the contacts hold a free centre no more.
+double System::hold_guard(double r) {
+  const Hold hold = weakest_hold();
+  const double rounding = std::min(rounding_of_hold(hold, r), k_at_fold);
+  return hold.firmness - std::max(k_least_firmness, rounding);
 }
 
 void System::resume_loading(std::size_t i) {
