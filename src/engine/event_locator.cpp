@@ -216,8 +216,12 @@ void EventLocator::look_up_to(double last) {
   for (std::size_t look = 0; look < k_looks_before_end; ++look) {
     distance *= k_approach;
     if (distance < least_progress(end_)) return;
-    state_at(end_ - distance, guess_);
-    look_inside(end_ - distance, guess_);
+    try {
+      state_at(end_ - distance, guess_);
+      look_inside(end_ - distance, guess_);
+    } catch (const std::domain_error&) {
+      continue;  // next to where the equations end a state is not found wherever there is one
+    }
   }
 }
 
@@ -227,7 +231,13 @@ double EventLocator::first_root(const View& before, const View& after, std::size
   double first = std::numeric_limits<double>::infinity();
   for (std::size_t g = 0; g < directions.size(); ++g) {
     if (!crosses(directions[g], before.values[g], after.values[g])) continue;
-    const double root = polish(g, before, after);
+    double root = after.xi;
+    try {
+      root = polish(g, before, after);
+    } catch (const std::domain_error&) {
+      // Looks that are as near as that are both the root, whether or not there is a state between them.
+      if (after.xi - before.xi >= 2.0 * least_progress(begin_)) throw;
+    }
     if (root < first) {
       first = root;
       guard = g;
