@@ -241,6 +241,8 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         break;
       case k_retreat:
         values[g] = settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate(i, now) : overlap_rate(i, now);
+        // What rests beside a centre that moves has rates of either sign.
+        values[g] += 2.0 * k_touch;
         if (rides(i)) values[g] = 1.0;
         break;
       case k_turn:

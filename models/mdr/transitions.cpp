@@ -42,7 +42,11 @@ double System::edge_rate(std::size_t i, double r, const Motion& now) {
   // force is, growth is nothing beside that.
   const bool is_being_made = is_loaded(i) && !(c.by_overlap > 0.0);
   if (is_being_made) overlap_speed = ramps_[i].end - ramps_[i].start;
-  if (is_being_made || now.growth == 0.0) return overlap_speed > 0.0 ? 1.0 : overlap_speed < 0.0 ? -1.0 : 0.0;
+  if (is_being_made || now.growth == 0.0) {
+    // Where a free centre keeps up with a wall, what is left of their speeds has any sign.
+    const double rounding = is_loaded(i) ? 0.0 : k_touch * (std::abs(now_[i].rate_by_time) + now.centre.norm());
+    return overlap_speed > rounding ? 1.0 : overlap_speed < -rounding ? -1.0 : 0.0;
+  }
   const Frame at = frame(i, now_[i].overlap, r);
   Frame::Change change = at.by_radius;
   if (settings_.delta_max_rule == DeltaMaxRule::shifted) {
