@@ -413,7 +413,10 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
       const double passed = is_loaded(i) ? k_passed_by_force : k_passed;
       if (unloading_fraction(shape(i, r), now_[i].overlap) > passed) continue;
     }
-    if (guard.kind == k_peel && edge_rate(i, r, now) >= -k_at_rest) continue;
+    if (guard.kind == k_peel && edge_rate(i, r, now) >= -k_at_rest) {
+      set_edge_back(i, r);
+      continue;
+    }
     if (guard.kind == k_follow && edge_rate(i, r, now) <= k_at_rest) continue;
     switch (guard.kind) {
       case k_yield:

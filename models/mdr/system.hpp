@@ -345,6 +345,7 @@ class System final : public HybridSystem {
   void watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_out, bool may_turn);
   [[nodiscard]] double contact_guard(int kind, std::size_t i, double xi, double overlap, double r);
   [[nodiscard]] double edge_guard(int kind, std::size_t i, double xi, double overlap, double r);
+  void set_edge_back(std::size_t i, double r);
   [[nodiscard]] double rounding_of_edge(std::size_t i, double r);
   std::optional<DomainEnd> meet_caps(CapPair& pair, double r, std::vector<Event>& log);
   [[nodiscard]] std::optional<DomainEnd> meet_caps_at_once(double xi, std::span<const double> y,

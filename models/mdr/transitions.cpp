@@ -114,6 +114,17 @@ void System::stick(std::size_t i, std::vector<Event>& log) {
   log.push_back({"stick", static_cast<int>(i)});
 }
 
+/// An edge that has just turned sticks where it would peel, and leaves with the square of the way: found to be past
+/// that by rounding, it would be found there again.
+void System::set_edge_back(std::size_t i, double r) {
+  const Frame at = frame(i, now_[i].overlap, r);
+  double& a = memory_[i].edge_radius;
+  // The profile becomes steeper outwards, and is steeper there than this; an edge of no radius stays as it is.
+  const double steepness = (profile_height(at.indenter, a) - profile_height(at.indenter, 0.5 * a)) / (0.5 * a);
+  const double way = rounding_of_edge(i, r) * at.by_overlap / steepness;
+  if (way < k_at_rest * a) a -= way;
+}
+
 /// Pull-off: the edge is no longer stable, and the contact opens at once.
 void System::separate(std::size_t i, double r, std::span<double> y, std::vector<Event>& log) {
   Memory& memory = memory_[i];
