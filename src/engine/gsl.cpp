@@ -2,6 +2,7 @@
 // from the step's beginning with the Runge-Kutta method of order 8.
 
 #include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
 #include <gsl/gsl_odeiv2.h>
 
 #include <algorithm>
@@ -21,6 +22,10 @@ using Driver = Handle<gsl_odeiv2_driver*, gsl_odeiv2_driver_free>;
 
 constexpr double k_first_step = 1e-3;
 constexpr double k_smallest_step = 1e-2;  // over the least progress
+// By how much, over what is tolerated, an implicit step may lie beside what the rates at its ends lead to before it is
+// looked at more closely; and then, where the rates answer to the state: what is tolerated of the curve.
+constexpr double k_doubtful = 2.0;
+constexpr double k_wrong = 1.0 / k_share_of_many;
 
 const gsl_odeiv2_step_type* type_of(GslMethod method) {
   switch (method) {
@@ -101,7 +106,15 @@ class GslStepper final : public Stepper {
         reaching_(make_driver(gsl_odeiv2_step_rk8pd, tolerances)),
         old_(form.size()),
         now_(form.size()),
-        between_(form.size()) {
+        between_(form.size()),
+        old_rates_(form.size()),
+        rates_(form.size()) {
+    if (driver_->s->type == gsl_odeiv2_step_msbdf) {
+      by_z_.resize(form.size() * form.size());
+      for (auto* values : {&by_xi_, &beside_, &tolerated_}) values->resize(form.size());
+      permutation_.reset(gsl_permutation_alloc(form.size()));
+      if (!permutation_) throw std::bad_alloc();
+    }
     // Without a limit it goes on for ever where the rates jump: its steps become as small as they like.
     gsl_odeiv2_driver_set_nmax(reaching_.get(), static_cast<unsigned long>(k_most_internal_steps));
   }
@@ -109,6 +122,7 @@ class GslStepper final : public Stepper {
   void begin(double xi, std::span<const double> z) override {
     std::ranges::copy(z, now_.begin());
     begin_ = end_ = xi;
+    are_rates_known_ = false;
     step_ = std::min(k_first_step, 1.0 - xi);
     gsl_odeiv2_driver_reset(driver_.get());
   }
@@ -133,10 +147,12 @@ class GslStepper final : public Stepper {
       const bool has_arrived = at - begin_ < least_progress(begin_) && !pending_.domain_end().empty();
       // A step that ends where the equations do not hold is none, however small its error.
       const bool is_accepted = status == GSL_SUCCESS && at > begin_ && !has_arrived &&
-                               rates(at, now_.data(), between_.data(), this) == GSL_SUCCESS;
+                               rates(at, now_.data(), rates_.data(), this) == GSL_SUCCESS && !leads_elsewhere(at);
       pending_.rethrow();
       if (is_accepted) {
         end_ = at;
+        std::swap(old_rates_, rates_);
+        are_rates_known_ = true;
         order = static_cast<int>(gsl_odeiv2_step_order(driver_->s));
         return end_;
       }
@@ -173,6 +189,38 @@ class GslStepper final : public Stepper {
   }
 
  private:
+  /// Whether a step of BDF has led elsewhere than the rates do. The library takes corrections for small beside a
+  /// Jacobian of earlier steps that is far greater than that of this one; and where rates grow with the state by more
+  /// than one over the step, as before a fold, its equation has no solution, or one that leads back.
+  [[nodiscard]] bool leads_elsewhere(double end) {
+    if (by_z_.empty() || !are_rates_known_) return false;
+    const std::size_t size = now_.size();
+    const double length = end - begin_;
+    bool is_doubtful = false;
+    for (std::size_t k = 0; k < size; ++k) {
+      const double way = now_[k] - old_[k];
+      const auto [least, most] = std::minmax({length * old_rates_[k], length * rates_[k]});
+      const double margin = 0.5 * (most - least);
+      beside_[k] = way - std::clamp(way, least - margin, most + margin);
+      gsl_odeiv2_control_errlevel(driver_->c, now_[k], rates_[k], length, k, &tolerated_[k]);
+      is_doubtful = is_doubtful || std::abs(beside_[k]) > k_doubtful * tolerated_[k];
+    }
+    if (!is_doubtful) return false;
+    if (jacobian(end, now_.data(), by_z_.data(), by_xi_.data(), this) != GSL_SUCCESS) return true;
+    for (double& value : by_z_) value *= -length;
+    for (std::size_t k = 0; k < size; ++k) by_z_[k * size + k] += 1.0;
+    gsl_matrix_view matrix = gsl_matrix_view_array(by_z_.data(), size, size);
+    gsl_vector_view correction = gsl_vector_view_array(beside_.data(), size);
+    int sign = 0;
+    gsl_linalg_LU_decomp(&matrix.matrix, permutation_.get(), &sign);
+    if (gsl_linalg_LU_sgndet(&matrix.matrix, sign) <= 0) return true;
+    gsl_linalg_LU_svx(&matrix.matrix, permutation_.get(), &correction.vector);
+    for (std::size_t k = 0; k < size; ++k) {
+      if (std::abs(beside_[k]) > k_wrong * tolerated_[k]) return true;
+    }
+    return false;
+  }
+
   [[nodiscard]] Driver make_driver(const gsl_odeiv2_step_type* type, const Tolerances& tolerances) {
     const double share = type == gsl_odeiv2_step_rk8pd ? k_usual_share : k_share_of_many;
     const auto [rtol, atol] = of_step(tolerances, share);
@@ -214,6 +262,10 @@ class GslStepper final : public Stepper {
   Driver reaching_;
   Pending pending_;
   std::vector<double> old_, now_, between_;
+  std::vector<double> old_rates_, rates_;
+  bool are_rates_known_ = false;  ///< at the beginning of the step
+  std::vector<double> by_z_, by_xi_, beside_, tolerated_;
+  Handle<gsl_permutation*, gsl_permutation_free> permutation_;
   double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
 };
 
