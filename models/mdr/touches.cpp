@@ -228,7 +228,7 @@ void System::find_slight_forces() {
   for (std::size_t i = 0; i < memory_.size(); ++i) largest = std::max(largest, largest_force(i));
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     const bool is_free = free_count_ > 0 && directions_[i].norm() > k_no_direction;
-    may_be_slight_[i] = is_free && is_loaded(i) && largest_force(i) <= k_no_force * largest;
+    may_be_slight_[i] = is_free && largest_force(i) > 0.0 && largest_force(i) <= k_no_force * largest;
   }
 }
 

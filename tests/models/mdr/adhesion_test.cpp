@@ -404,6 +404,13 @@ TEST(MdrPeelingContact, HasTheDerivativesOfItsForce) {
       expect_derivative(
           contact.by_overlap, [&](double x) { return bond.peeling(bond.radius, bond.overlap_max, x).force; }, overlap,
           room / opening, noise);
+      const double softening =
+          peeling_softening(bond.frame(overlap), bond.modulus, bond.surface_energy, contact.contact_radius);
+      const double noise_of_stiffness =
+          noise / (std::abs(overlap) + bond.overlap_max) + std::abs(softening) * (std::abs(overlap) + bond.overlap_max);
+      expect_derivative(
+          softening, [&](double x) { return bond.peeling(bond.radius, bond.overlap_max, x).by_overlap; }, overlap,
+          room / opening, noise_of_stiffness);
       // What of that one unit of the others uses up: the displacement and the profile there.
       const auto length_of = [&](const Frame::Change& change, double length) {
         const double speed =
