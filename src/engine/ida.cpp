@@ -234,22 +234,14 @@ class Ida final : public Integrator {
     check("IDASetNoInactiveRootWarn", IDASetNoInactiveRootWarn(memory_.get()));
   }
 
-  /// Ends the step where a guard has crossed: at a crossing that the library has not seen, if there is one.
+  /// Ends the step where a guard has crossed.
   void find_root(double begin) {
     const auto values_at = [this](double xi, std::span<double> values) {
       ++roots_.evaluations;
       dense_output(xi, complete_);
       watch_.values(xi, complete_, values);
     };
-    const auto hidden = crossing_before_branch_end(system_, watch_, roots_.fired, begin, end_,
-                                                   guard_tolerance_of(tolerances_), values_at);
-    if (hidden) {
-      end_ = hidden->xi;
-      roots_.fired.assign(1, hidden->guard);
-      return;
-    }
-    guard_values_.resize(watch_.size());
-    end_ = polished_root(roots_.fired, begin, end_, guard_tolerance_of(tolerances_), guard_values_, values_at);
+    end_ = root_of_step(system_, watch_, roots_.fired, begin, end_, guard_tolerance_of(tolerances_), values_at);
   }
 
   int evolve() {
@@ -339,7 +331,7 @@ class Ida final : public Integrator {
   Watch& watch_;
   Tolerances tolerances_;
   SegmentQuadratures quadratures_;
-  std::vector<double> complete_, guard_values_;
+  std::vector<double> complete_;
   std::string message_;
   Pending pending_;
   RootList roots_;

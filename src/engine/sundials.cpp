@@ -26,24 +26,13 @@ bool crosses(int direction, double before, double after, double tolerance) noexc
   return (rises && direction >= 0) || (falls && direction <= 0);
 }
 
-}  // namespace
+/// A guard, and where it crosses.
+struct Crossing {
+  double xi = 0.0;
+  std::size_t guard = 0;
+};
 
-LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context) {
-  LinearSolver solver(SUNLinSol_Dense(y, matrix, context));
-  if (LinearAlgebraClock::running() == nullptr) return solver;
-  solver->ops->setup = [](SUNLinearSolver self, SUNMatrix of) {
-    LinearAlgebraClock* clock = LinearAlgebraClock::running();
-    return clock == nullptr ? SUNLinSolSetup_Dense(self, of)
-                            : clock->time([&] { return SUNLinSolSetup_Dense(self, of); });
-  };
-  solver->ops->solve = [](SUNLinearSolver self, SUNMatrix of, N_Vector x, N_Vector b, realtype tolerance) {
-    LinearAlgebraClock* clock = LinearAlgebraClock::running();
-    return clock == nullptr ? SUNLinSolSolve_Dense(self, of, x, b, tolerance)
-                            : clock->time([&] { return SUNLinSolSolve_Dense(self, of, x, b, tolerance); });
-  };
-  return solver;
-}
-
+/// Looked for between a step's begin and such an end, ever nearer to that.
 std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, const Watch& watch,
                                                    std::span<const std::size_t> fired, double begin, double end,
                                                    double tolerance,
@@ -84,12 +73,14 @@ std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, c
   return first;
 }
 
-double polished_root(std::span<const std::size_t> fired, double begin, double end, double tolerance,
-                     std::span<double> values, const std::function<void(double, std::span<double>)>& values_at) {
+/// Where a guard goes beyond what counts as zero in those roundings, its place is looked for among them.
+double polished_root(std::span<const std::size_t> fired, std::size_t guard_count, double begin, double end,
+                     double tolerance, const std::function<void(double, std::span<double>)>& values_at) {
+  std::vector<double> values(guard_count);
   try {
     values_at(end, values);
     if (std::ranges::none_of(fired, [&](std::size_t g) { return std::abs(values[g]) > tolerance; })) return end;
-    const std::vector<double> beyond(values.begin(), values.end());
+    const std::vector<double> beyond = values;
     const auto is_beyond = [&](double xi) {
       values_at(xi, values);
       return std::ranges::all_of(fired, [&](std::size_t g) { return values[g] * beyond[g] >= 0.0; });
@@ -105,6 +96,33 @@ double polished_root(std::span<const std::size_t> fired, double begin, double en
   } catch (const std::domain_error&) {
     return end;
   }
+}
+
+}  // namespace
+
+LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context) {
+  LinearSolver solver(SUNLinSol_Dense(y, matrix, context));
+  if (LinearAlgebraClock::running() == nullptr) return solver;
+  solver->ops->setup = [](SUNLinearSolver self, SUNMatrix of) {
+    LinearAlgebraClock* clock = LinearAlgebraClock::running();
+    return clock == nullptr ? SUNLinSolSetup_Dense(self, of)
+                            : clock->time([&] { return SUNLinSolSetup_Dense(self, of); });
+  };
+  solver->ops->solve = [](SUNLinearSolver self, SUNMatrix of, N_Vector x, N_Vector b, realtype tolerance) {
+    LinearAlgebraClock* clock = LinearAlgebraClock::running();
+    return clock == nullptr ? SUNLinSolSolve_Dense(self, of, x, b, tolerance)
+                            : clock->time([&] { return SUNLinSolSolve_Dense(self, of, x, b, tolerance); });
+  };
+  return solver;
+}
+
+double root_of_step(const HybridSystem& system, const Watch& watch, std::vector<std::size_t>& fired, double begin,
+                    double end, double tolerance, const std::function<void(double, std::span<double>)>& values_at) {
+  if (const auto hidden = crossing_before_branch_end(system, watch, fired, begin, end, tolerance, values_at)) {
+    fired.assign(1, hidden->guard);
+    return hidden->xi;
+  }
+  return polished_root(fired, watch.size(), begin, end, tolerance, values_at);
 }
 
 std::string worst_components(std::span<const Unknown> unknowns, std::span<const double> weights,

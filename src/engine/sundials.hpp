@@ -96,28 +96,16 @@ int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentS
   return !pending.domain_end().empty() || (!pending.nearest_domain_end().empty() && end - begin < previous);
 }
 
-/// A guard, and where it crosses.
-struct Crossing {
-  double xi = 0.0;
-  std::size_t guard = 0;
-};
-
-/// What a library does not see that looks at guards where its steps end: just before a branch ends, others may cross
-/// and come back. Looked for between a step's begin and such an end, ever nearer to that.
-/// @param fired       the guards found at the end
+/// Where a step has to end that a library has ended at fired guards. Just before a branch ends, others may cross and
+/// come back, which it does not see: it looks at guards where its steps end. And it knows a root to a hundred roundings
+/// of the step coordinate only, in which a guard may go far.
+/// @param fired       in: the guards found at the end; out: the one that crosses before, if there is one
+/// @param begin, end  of the step
 /// @param tolerance   what of a guard counts as zero
 /// @param values_at   xi, values: the guards at a place of the step
-[[nodiscard]] std::optional<Crossing> crossing_before_branch_end(
-    const HybridSystem& system, const Watch& watch, std::span<const std::size_t> fired, double begin, double end,
-    double tolerance, const std::function<void(double, std::span<double>)>& values_at);
-
-/// Where fired guards have crossed. The library knows a root to a hundred roundings of the step coordinate; where a
-/// guard goes beyond `tolerance` in those, the place is looked for among them.
-/// @param begin, end  of the step that ends at the root
-/// @param values_at   as above
-[[nodiscard]] double polished_root(std::span<const std::size_t> fired, double begin, double end, double tolerance,
-                                   std::span<double> values,
-                                   const std::function<void(double, std::span<double>)>& values_at);
+[[nodiscard]] double root_of_step(const HybridSystem& system, const Watch& watch, std::vector<std::size_t>& fired,
+                                  double begin, double end, double tolerance,
+                                  const std::function<void(double, std::span<double>)>& values_at);
 
 /// The unknowns with the largest weighted local errors, worst first, as "name (weighted error)".
 [[nodiscard]] std::string worst_components(std::span<const Unknown> unknowns, std::span<const double> weights,

@@ -298,7 +298,7 @@ class SundialsOde final : public Integrator {
     form_.guess(first_guess_);
   }
 
-  /// Ends the step where a guard has crossed: at a crossing that the library has not seen, if there is one.
+  /// Ends the step where a guard has crossed.
   void find_root(double begin) {
     const auto values_at = [this](double xi, std::span<double> values) {
       // An interpolation asks for rates beside the curve, where there may be none.
@@ -309,13 +309,8 @@ class SundialsOde final : public Integrator {
       ++roots_.evaluations;
       watch_.values(xi, form_.complete(xi, view(errors_.get())), values);
     };
-    const auto hidden = crossing_before_branch_end(system_, watch_, roots_.fired, begin, end_,
-                                                   guard_tolerance_of(tolerances_), values_at);
-    guard_values_.resize(watch_.size());
     const double root =
-        hidden ? hidden->xi
-               : polished_root(roots_.fired, begin, end_, guard_tolerance_of(tolerances_), guard_values_, values_at);
-    if (hidden) roots_.fired.assign(1, hidden->guard);
+        root_of_step(system_, watch_, roots_.fired, begin, end_, guard_tolerance_of(tolerances_), values_at);
     if (root == end_) return;
     end_ = root;
     check("GetDky", Library::derivative(memory_.get(), end_, 0, y_.get()));
@@ -462,7 +457,6 @@ class SundialsOde final : public Integrator {
   double end_ = 0.0;
   double segment_begin_ = 0.0;
   std::vector<double> first_state_;  ///< of this segment, complete
-  std::vector<double> guard_values_;
   std::vector<double> begin_guess_;  ///< of complete states, where the last step began
   std::vector<double> first_guess_;
   double start_end_ = 0.0;    ///< a rounding beyond where the library has begun
