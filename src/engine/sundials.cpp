@@ -73,13 +73,15 @@ std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, c
   return first;
 }
 
-/// Where a guard goes beyond what counts as zero in those roundings, its place is looked for among them.
-double polished_root(std::span<const std::size_t> fired, std::size_t guard_count, double begin, double end,
-                     double tolerance, const std::function<void(double, std::span<double>)>& values_at) {
-  std::vector<double> values(guard_count);
+/// Where a guard of the system goes beyond what counts as zero in those roundings, its place is looked for among them.
+/// Conditions of the program are met wherever in them: no mode begins there that has to go on from it.
+double polished_root(const Watch& watch, std::span<const std::size_t> fired, double begin, double end, double tolerance,
+                     const std::function<void(double, std::span<double>)>& values_at) {
+  std::vector<double> values(watch.size());
   try {
     values_at(end, values);
-    if (std::ranges::none_of(fired, [&](std::size_t g) { return std::abs(values[g]) > tolerance; })) return end;
+    const auto is_far = [&](std::size_t g) { return g < watch.system_guards() && std::abs(values[g]) > tolerance; };
+    if (std::ranges::none_of(fired, is_far)) return end;
     const std::vector<double> beyond = values;
     const auto is_beyond = [&](double xi) {
       values_at(xi, values);
@@ -122,7 +124,7 @@ double root_of_step(const HybridSystem& system, const Watch& watch, std::vector<
     fired.assign(1, hidden->guard);
     return hidden->xi;
   }
-  return polished_root(fired, watch.size(), begin, end, tolerance, values_at);
+  return polished_root(watch, fired, begin, end, tolerance, values_at);
 }
 
 std::string worst_components(std::span<const Unknown> unknowns, std::span<const double> weights,
