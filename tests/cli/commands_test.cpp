@@ -13,7 +13,7 @@
 #include "history/table.hpp"
 #include "support/command_test.hpp"
 
-namespace monograin {
+namespace monograin::commands_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -520,4 +520,4 @@ TEST_F(Commands, BenchHoldsLawsAgainstFiniteElements) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::commands_test

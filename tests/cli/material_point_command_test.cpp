@@ -9,7 +9,7 @@
 #include "history/table.hpp"
 #include "support/command_test.hpp"
 
-namespace monograin {
+namespace monograin::material_point_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,4 +75,4 @@ TEST_F(MaterialPointCommand, DescribesTheModelAndItsConstants) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::material_point_command_test

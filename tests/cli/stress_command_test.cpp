@@ -6,7 +6,7 @@
 
 #include "support/command_test.hpp"
 
-namespace monograin {
+namespace monograin::stress_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -61,4 +61,4 @@ TEST_F(StressCommand, RefusesATimeThatIsNone) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::stress_command_test

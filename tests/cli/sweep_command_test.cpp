@@ -10,7 +10,7 @@
 #include "history/table.hpp"
 #include "support/command_test.hpp"
 
-namespace monograin {
+namespace monograin::sweep_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,4 +121,4 @@ TEST_F(SweepCommand, RunsEveryReadySweep) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::sweep_command_test

@@ -34,7 +34,7 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 #endif
 
-namespace monograin {
+namespace monograin::allocation_test {
 namespace {
 
 #ifdef MONOGRAIN_COUNTS_ALLOCATIONS
@@ -90,4 +90,4 @@ INSTANTIATE_TEST_SUITE_P(OfEveryModel, Allocations,
 #endif
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::allocation_test

@@ -9,7 +9,7 @@
 #include "support/test_run.hpp"
 #include "support/toy_system.hpp"
 
-namespace monograin {
+namespace monograin::direct_test {
 namespace {
 
 using View = ToySystem::View;
@@ -133,4 +133,4 @@ TEST(Direct, ReachesTheEndOfTheStepExactly) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::direct_test

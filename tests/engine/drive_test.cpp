@@ -10,7 +10,7 @@
 #include "support/test_run.hpp"
 #include "support/toy_system.hpp"
 
-namespace monograin {
+namespace monograin::drive_test {
 namespace {
 
 using enum Until::Quantity;
@@ -305,4 +305,4 @@ TEST(Failures, OfAnExplicitMethodNameThoseForStiffEquations) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::drive_test

@@ -11,7 +11,7 @@
 #include "support/test_run.hpp"
 #include "support/toy_system.hpp"
 
-namespace monograin {
+namespace monograin::integrator_test {
 namespace {
 
 using View = ToySystem::View;
@@ -263,4 +263,4 @@ TEST(Automatic, StaysWithTheStiffMethod) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::integrator_test

@@ -11,7 +11,7 @@
 #include "scenario/scenario.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::integrators_test {
 namespace {
 
 const char* const k_scenes[] = {"die",      "adhesion",  "force",    "cycles", "late-wall",
@@ -86,4 +86,4 @@ TEST(IntegratorNames, AreThoseOfScenarioFiles) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::integrators_test

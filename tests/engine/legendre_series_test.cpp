@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace monograin {
+namespace monograin::legendre_series_test {
 namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
@@ -201,4 +201,4 @@ TEST(LegendreReach, DoesNotDependOnTheFunctionsSize) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::legendre_series_test

@@ -23,6 +23,7 @@
 
 #include "engine/sundials.hpp"
 
+namespace monograin::sundials_facts_test {
 namespace {
 
 using monograin::sundials_boundary::LinearSolver;
@@ -590,3 +591,4 @@ TEST(SundialsIda, HidesASingularBalanceBehindDifferenceQuotientsAndAnswersWrongl
 }
 
 }  // namespace
+}  // namespace monograin::sundials_facts_test

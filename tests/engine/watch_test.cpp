@@ -7,7 +7,7 @@
 #include "engine/watch.hpp"
 #include "support/toy_system.hpp"
 
-namespace monograin {
+namespace monograin::watch_test {
 namespace {
 
 class WatchTest : public ::testing::Test {
@@ -85,4 +85,4 @@ TEST_F(WatchTest, IsMetByAnyOfItsConditions) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::watch_test

@@ -8,7 +8,7 @@
 
 #include "support/temporary_folder.hpp"
 
-namespace monograin::figure {
+namespace monograin::figure::chart_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,4 +118,4 @@ TEST(Chart, IsDrawnWithPointsLinesAndAreas) {
 }
 
 }  // namespace
-}  // namespace monograin::figure
+}  // namespace monograin::figure::chart_test

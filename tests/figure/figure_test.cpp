@@ -12,7 +12,7 @@
 
 #include "support/text_file.hpp"
 
-namespace monograin {
+namespace monograin::figure_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -279,4 +279,4 @@ TEST_F(Figure, DoesNotMixModelsWithAndWithoutWalls) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::figure_test

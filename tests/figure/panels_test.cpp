@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace monograin::figure {
+namespace monograin::figure::panels_test {
 namespace {
 
 TEST(AxisRange, StartsAtZeroWhereTheValuesDo) {
@@ -54,4 +54,4 @@ TEST(Layout, LetsNoPanelOverlapAnother) {
 }
 
 }  // namespace
-}  // namespace monograin::figure
+}  // namespace monograin::figure::panels_test

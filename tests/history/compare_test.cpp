@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace monograin {
+namespace monograin::compare_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -215,4 +215,4 @@ TEST(CompareTables, NamesTheColumnThatCannotBeCompared) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::compare_test

@@ -11,7 +11,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::run_files_test {
 namespace {
 
 const std::string k_table = "x,p\n0,2.75\n0.1,2.1\n0.2,1.7\n0.5,1.2\n";
@@ -43,4 +43,4 @@ TEST(RunFiles, HoldTheTablesThatTheScenarioNames) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::run_files_test

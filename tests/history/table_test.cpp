@@ -17,7 +17,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace monograin {
+namespace monograin::table_test {
 namespace {
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
@@ -231,4 +231,4 @@ TEST_F(CsvFile, SaysThatAFileOrItsNameIsWrong) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::table_test

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace monograin {
+namespace monograin::backing_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -59,4 +59,4 @@ TEST(Backing, IsNotThereBeyondAPlaneThatNoDirectionCrosses) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::backing_test

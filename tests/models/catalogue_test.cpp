@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace monograin {
+namespace monograin::catalogue_test {
 namespace {
 
 using std::string_view;
@@ -155,4 +155,4 @@ TEST(Range, ContainsItsBoundsUnlessTheyAreOpen) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::catalogue_test

@@ -14,7 +14,7 @@
 #include "scenario/support.hpp"
 #include "support/text_file.hpp"
 
-namespace monograin {
+namespace monograin::corpus_test {
 namespace {
 
 std::size_t take_while(std::string_view text, std::size_t from, bool (*belongs)(char)) {
@@ -236,4 +236,4 @@ TEST(Mutations, OfSingleBytesNeverEndTheProgram) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::corpus_test

@@ -10,7 +10,7 @@
 #include "scenario/support.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace monograin {
+namespace monograin::curve_file_test {
 namespace {
 
 constexpr const char* k_good_table = "delta_max_over_R,p_over_Y\n0,2.75\n0.1,2.1\n0.2,1.7\n0.5,1.2\n";
@@ -273,4 +273,4 @@ TEST_F(UnloadingTable, DoesNotGoWithTheNumbersItStandsFor) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::curve_file_test

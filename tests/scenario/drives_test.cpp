@@ -9,7 +9,7 @@
 #include "scenario/scenario.hpp"
 #include "scenario/support.hpp"
 
-namespace monograin {
+namespace monograin::drives_test {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -139,4 +139,4 @@ TEST(DrivesSchema, AcceptsWhatTheReaderAccepts) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::drives_test

@@ -11,7 +11,7 @@
 #include "scenario/numbers.hpp"
 #include "scenario/scenario.hpp"
 
-namespace monograin {
+namespace monograin::edit_test {
 namespace {
 
 constexpr const char* k_scenario = R"(# Größe: two bytes, one column
@@ -92,4 +92,4 @@ TEST(Numbers, SettingOneIsLikeWritingItIntoTheFile) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::edit_test

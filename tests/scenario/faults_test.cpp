@@ -8,7 +8,7 @@
 #include "scenario/scenario.hpp"
 #include "scenario/support.hpp"
 
-namespace monograin {
+namespace monograin::faults_test {
 namespace {
 
 struct FaultRow {
@@ -409,4 +409,4 @@ TEST(ScenarioText, WithManyDotsOutsideKeysIsAccepted) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::faults_test

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace monograin {
+namespace monograin::key_path_test {
 namespace {
 
 constexpr const char* k_scenario = R"toml(model = "hardening"
@@ -72,4 +72,4 @@ TEST(KeyPaths, ThatLeadNowhereAreToldWhy) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::key_path_test

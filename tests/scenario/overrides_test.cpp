@@ -6,7 +6,7 @@
 #include "scenario/scenario.hpp"
 #include "scenario/support.hpp"
 
-namespace monograin {
+namespace monograin::overrides_test {
 namespace {
 
 Scenario with(const std::vector<std::string>& overrides) {
@@ -101,4 +101,4 @@ TEST(Overrides, StayOnOneLineInMessages) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::overrides_test

@@ -7,7 +7,7 @@
 #include "scenario/support.hpp"
 #include "support/text_file.hpp"
 
-namespace monograin {
+namespace monograin::reader_test {
 namespace {
 
 Scenario good(std::string_view text, const std::vector<std::string>& overrides = {}) {
@@ -233,4 +233,4 @@ TEST(ReadyScenarios, ContainTheBuiltInOne) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::reader_test

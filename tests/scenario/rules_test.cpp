@@ -8,7 +8,7 @@
 #include "scenario/scenario.hpp"
 #include "scenario/support.hpp"
 
-namespace monograin {
+namespace monograin::rules_test {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -169,4 +169,4 @@ TEST(LoadingOnly, RefusesWallsThatGoBack) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::rules_test

@@ -9,7 +9,7 @@
 #include "scenario/support.hpp"
 #include "support/text_file.hpp"
 
-namespace monograin {
+namespace monograin::schema_test {
 namespace {
 
 using nlohmann::json;
@@ -87,4 +87,4 @@ TEST(Schema, AcceptsNestedCycles) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::schema_test

@@ -5,7 +5,7 @@
 #include <locale>
 #include <numbers>
 
-namespace monograin {
+namespace monograin::units_test {
 namespace {
 
 struct UnitRow {
@@ -98,4 +98,4 @@ TEST(PlausibleRange, IsFiniteAndKeepsZeroOutWhereItIsOut) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::units_test

@@ -8,7 +8,7 @@
 
 #include "scenario/support.hpp"
 
-namespace monograin {
+namespace monograin::walls_test {
 namespace {
 
 constexpr const char* k_two_walls =
@@ -109,4 +109,4 @@ TEST(Cycles, AreLimitedInDepth) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::walls_test

@@ -8,7 +8,7 @@
 
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::nonlocal_model_test {
 namespace {
 
 using std::numbers::pi;
@@ -78,4 +78,4 @@ TEST(NonlocalLimitOfAScenario, IsNoneWhereTheWallsMeetOrAForceIsPrescribedOrNoth
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::nonlocal_model_test

@@ -10,7 +10,7 @@
 
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::scene_test {
 namespace {
 
 std::vector<std::pair<std::string, double>> names_and_multiplicities(const Scene& scene) {
@@ -130,4 +130,4 @@ TEST(Scene, SaysWhatItSkips) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::scene_test

@@ -10,7 +10,7 @@
 
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::symmetry_test {
 namespace {
 
 using Classes = std::vector<std::size_t>;
@@ -115,4 +115,4 @@ TEST(SymmetryClasses, OfFiftyWallsTakeNoTime) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::symmetry_test

@@ -12,7 +12,7 @@
 #include "models/accuracy.hpp"
 #include "models/mdr/reference_windows.hpp"
 
-namespace monograin {
+namespace monograin::adhesion_map_test {
 namespace {
 
 using mdr::AdhesionValidity;
@@ -183,4 +183,4 @@ TEST(AdhesionMap, SaysWhichMaterialTheModelDoesNotReach) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::adhesion_map_test

@@ -14,7 +14,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 
-namespace monograin {
+namespace monograin::atlas_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -643,4 +643,4 @@ TEST(ReadyAtlas, HoldsModelSemimechAgainstFiniteElements) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::atlas_test

@@ -13,7 +13,7 @@
 #include "study/profiled_system.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace monograin {
+namespace monograin::bench_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -257,4 +257,4 @@ TEST(BenchFiles, AreATableItsNumbersAndFigures) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::bench_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace monograin {
+namespace monograin::branches_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -95,4 +95,4 @@ TEST(Branches, CurvesWithoutACommonRangeAreAFault) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::branches_test

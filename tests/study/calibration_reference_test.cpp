@@ -19,7 +19,7 @@
 #include "study/calibration.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace monograin {
+namespace monograin::calibration_reference_test {
 namespace {
 
 /// Numbers of a header line such as "weights 1/P_max: kappa = 6.09 MPa, 1/m = 0.66, se = 0.05, 0.008, ...".
@@ -198,4 +198,4 @@ TEST(PackingCalibration, OfFourCurvesTogetherMeetsTheFitComputedElsewhere) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::calibration_reference_test

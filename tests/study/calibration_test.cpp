@@ -18,7 +18,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 
-namespace monograin {
+namespace monograin::calibration_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -763,4 +763,4 @@ TEST_F(CalibrationTest, ReportsTheFaultsOfEveryCurve) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::calibration_test

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace monograin {
+namespace monograin::constraint_test {
 namespace {
 
 bool holds(std::string_view text, double a, double b = 0.0) {
@@ -43,4 +43,4 @@ TEST(Constraints, TellWhereTheyAreWrong) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::constraint_test

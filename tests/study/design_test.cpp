@@ -10,7 +10,7 @@
 
 #include "study/sweep_file.hpp"
 
-namespace monograin {
+namespace monograin::design_test {
 namespace {
 
 double continuous_criterion(Design design) {
@@ -130,4 +130,4 @@ TEST(SpaceFillingDesign, RefusesWhatCannotBeMade) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::design_test

@@ -7,7 +7,7 @@
 
 #include "elastic/nonlocal_coupling.hpp"
 
-namespace monograin {
+namespace monograin::expression_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -92,4 +92,4 @@ TEST(Expression, SaysWhatIsWrongAndWhere) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::expression_test

@@ -12,7 +12,7 @@
 
 #include "study/uncertainty.hpp"
 
-namespace monograin {
+namespace monograin::least_squares_test {
 namespace {
 
 /// Fits y over x by a function of some parameters.
@@ -215,4 +215,4 @@ TEST(Uncertainty, AsManyPointsAsParametersLeaveNothingToEstimateErrorsFrom) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::least_squares_test

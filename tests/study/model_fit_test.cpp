@@ -18,7 +18,7 @@
 #include "study/calibration.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace monograin {
+namespace monograin::model_fit_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -173,4 +173,4 @@ TEST_F(CompressibleCalibration, IsReportedAndRunsAgain) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::model_fit_test

@@ -9,7 +9,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::profile_test {
 namespace {
 
 constexpr std::size_t k_radius = 1;
@@ -93,4 +93,4 @@ TEST(ContactProfiles, AreDrawnFromARunThatBringsItsScenarioAlong) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::profile_test

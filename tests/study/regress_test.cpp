@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace monograin {
+namespace monograin::regress_test {
 namespace {
 
 TEST(StoredCurves, AreMetByEveryReadyScenarioWithEveryIntegrator) {
@@ -34,4 +34,4 @@ TEST(StoredCurves, NeedAFolderOfScenarios) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::regress_test

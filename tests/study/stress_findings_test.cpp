@@ -13,7 +13,7 @@
 #include "support/test_run.hpp"
 #include "support/text_file.hpp"
 
-namespace monograin {
+namespace monograin::stress_findings_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -86,4 +86,4 @@ TEST(StressLimits, AToleranceOfTheSizeOfRoundingIsNamed) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::stress_findings_test

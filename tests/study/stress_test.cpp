@@ -18,7 +18,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 
-namespace monograin {
+namespace monograin::stress_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -238,4 +238,4 @@ TEST(StressTestRuns, PassEightyScenes) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::stress_test

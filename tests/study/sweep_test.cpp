@@ -11,7 +11,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 
-namespace monograin {
+namespace monograin::sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -418,4 +418,4 @@ TEST_F(StoppedSweep, RefusesTheFolderOfARun) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::sweep_test

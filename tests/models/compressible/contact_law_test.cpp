@@ -13,7 +13,7 @@
 
 #include "models/accuracy.hpp"
 
-namespace monograin::compressible {
+namespace monograin::compressible::contact_law_test {
 namespace {
 
 const LoadingLaw k_law{2.0, 0.15, 3.0};
@@ -192,4 +192,4 @@ TEST(CompressibleUnloadingTable, NeedsNoCommonDisplacements) {
 }
 
 }  // namespace
-}  // namespace monograin::compressible
+}  // namespace monograin::compressible::contact_law_test

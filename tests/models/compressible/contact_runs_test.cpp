@@ -18,7 +18,7 @@
 #include "models/compressible/scenarios.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::contact_runs_test {
 namespace {
 
 // --- an independent evaluation of the printed equations, with more digits than the program has
@@ -689,4 +689,4 @@ TEST(CompressibleRandomScenes, AreCompleteWithoutBlanks) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::contact_runs_test

@@ -15,7 +15,7 @@
 #include "models/accuracy.hpp"
 #include "support/text_file.hpp"
 
-namespace monograin::compressible {
+namespace monograin::compressible::curve_fit_test {
 namespace {
 
 struct Data {
@@ -142,4 +142,4 @@ TEST(CompressibleUnloadingFit, RecoversAnExactUnloading) {
 }
 
 }  // namespace
-}  // namespace monograin::compressible
+}  // namespace monograin::compressible::curve_fit_test

@@ -13,7 +13,7 @@
 
 #include "models/compressible/cases.hpp"
 
-namespace monograin::compressible {
+namespace monograin::compressible::independent_test {
 namespace {
 
 using Real = long double;
@@ -431,4 +431,4 @@ TEST(ClosedForm, CompressionAtConstantLateralStress) {
 }
 
 }  // namespace
-}  // namespace monograin::compressible
+}  // namespace monograin::compressible::independent_test

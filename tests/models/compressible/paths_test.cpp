@@ -11,7 +11,7 @@
 #include "compressible/yield_surface.hpp"
 #include "models/compressible/cases.hpp"
 
-namespace monograin::compressible {
+namespace monograin::compressible::paths_test {
 namespace {
 
 const std::set<std::string> k_ends{"density-limit", "cap-centre-tensile", "cap-axis-nonpositive", "poisson-half",
@@ -486,4 +486,4 @@ TEST(MaterialPoint, CurvesBetweenImplicitStepsConvergeWithTheTolerance) {
 }
 
 }  // namespace
-}  // namespace monograin::compressible
+}  // namespace monograin::compressible::paths_test

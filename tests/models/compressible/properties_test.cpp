@@ -9,7 +9,7 @@
 #include "models/compressible/cases.hpp"
 #include "support/reference_case.hpp"
 
-namespace monograin::compressible {
+namespace monograin::compressible::properties_test {
 namespace {
 
 struct Named {
@@ -131,4 +131,4 @@ TEST(CompressiblePresets, AreTheRowsOfTheTables) {
 }
 
 }  // namespace
-}  // namespace monograin::compressible
+}  // namespace monograin::compressible::properties_test

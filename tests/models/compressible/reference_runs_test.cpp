@@ -4,7 +4,7 @@
 
 #include "models/compressible/cases.hpp"
 
-namespace monograin::compressible {
+namespace monograin::compressible::reference_runs_test {
 namespace {
 
 class ReferencePoint : public ::testing::TestWithParam<const char*> {
@@ -45,4 +45,4 @@ INSTANTIATE_TEST_SUITE_P(Files, ReferencePoint, ::testing::ValuesIn(k_reference_
                          [](const auto& file) { return std::string(file.param); });
 
 }  // namespace
-}  // namespace monograin::compressible
+}  // namespace monograin::compressible::reference_runs_test

@@ -15,7 +15,7 @@
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
 
-namespace monograin::compressible {
+namespace monograin::compressible::regressions_test {
 namespace {
 
 Table table_in(const std::string& file) { return read_csv(MONOGRAIN_SOURCE_DIR "/" + file + ".csv"); }
@@ -144,4 +144,4 @@ TEST(CompressibleRegressions, TakeWhatIsGivenInsteadAndKnowWhereTheyExtrapolate)
 }
 
 }  // namespace
-}  // namespace monograin::compressible
+}  // namespace monograin::compressible::regressions_test

@@ -8,7 +8,7 @@
 #include "engine/integrator.hpp"
 #include "models/compressible/cases.hpp"
 
-namespace monograin::compressible {
+namespace monograin::compressible::scenario_test {
 namespace {
 
 std::string die(const std::string& material, const std::string& rest = "") {
@@ -121,4 +121,4 @@ TEST(MaterialPointScenario, HasTheColumnsOfTheContract) {
 }
 
 }  // namespace
-}  // namespace monograin::compressible
+}  // namespace monograin::compressible::scenario_test

@@ -10,7 +10,7 @@
 
 #include "models/compressible/cases.hpp"
 
-namespace monograin::compressible {
+namespace monograin::compressible::yield_surface_test {
 namespace {
 
 const std::vector<Parameters>& materials() {
@@ -266,4 +266,4 @@ TEST(YieldSurface, RefusesAnArcThatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace monograin::compressible
+}  // namespace monograin::compressible::yield_surface_test

@@ -9,7 +9,7 @@
 
 #include "models/accuracy.hpp"
 
-namespace monograin {
+namespace monograin::hertz_test {
 namespace {
 
 constexpr double k_rounding = 4 * k_epsilon;  // a product of a few factors and one square root
@@ -82,4 +82,4 @@ TEST(Hertz, NotANumberIsPassedOn) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::hertz_test

@@ -7,7 +7,7 @@
 
 #include "history/table.hpp"
 
-namespace monograin {
+namespace monograin::line_contact_test {
 namespace {
 
 constexpr double k_modulus = 10.0 / (1.0 - 0.45 * 0.45);  // MPa
@@ -78,4 +78,4 @@ TEST(LineContact, EndsWhereItIsAsWideAsTheRadius) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::line_contact_test

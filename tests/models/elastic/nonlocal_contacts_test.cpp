@@ -19,7 +19,7 @@
 #include "models/accuracy.hpp"
 #include "models/elastic/nonlocal_cases.hpp"
 
-namespace monograin::nonlocal {
+namespace monograin::nonlocal::nonlocal_contacts_test {
 namespace {
 
 using std::numbers::pi;
@@ -842,4 +842,4 @@ TEST(NonlocalRefusal, NamesContactsAsWideAsTheSphere) {
 }
 
 }  // namespace
-}  // namespace monograin::nonlocal
+}  // namespace monograin::nonlocal::nonlocal_contacts_test

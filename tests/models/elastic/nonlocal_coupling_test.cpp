@@ -12,7 +12,7 @@
 #include "models/accuracy.hpp"
 #include "models/elastic/nonlocal_cases.hpp"
 
-namespace monograin::nonlocal {
+namespace monograin::nonlocal::nonlocal_coupling_test {
 namespace {
 
 using std::numbers::pi;
@@ -236,4 +236,4 @@ TEST(NonlocalEdges, MeetWhereTheAnglesOfTheContactsAddUp) {
 }
 
 }  // namespace
-}  // namespace monograin::nonlocal
+}  // namespace monograin::nonlocal::nonlocal_coupling_test

@@ -14,7 +14,7 @@
 #include "models/accuracy.hpp"
 #include "models/elastic/nonlocal_cases.hpp"
 
-namespace monograin::nonlocal {
+namespace monograin::nonlocal::nonlocal_law_test {
 namespace {
 
 constexpr std::array k_squares{1e-14, 1e-9, 1e-4, 0.01, 0.0999, 0.1001, 0.25, 0.6, 0.95};
@@ -193,4 +193,4 @@ TEST_P(NonlocalLaw, RefusesForcesThatPull) {
 }
 
 }  // namespace
-}  // namespace monograin::nonlocal
+}  // namespace monograin::nonlocal::nonlocal_law_test

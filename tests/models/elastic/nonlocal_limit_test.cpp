@@ -14,7 +14,7 @@
 #include "models/accuracy.hpp"
 #include "models/elastic/nonlocal_cases.hpp"
 
-namespace monograin::nonlocal {
+namespace monograin::nonlocal::nonlocal_limit_test {
 namespace {
 
 using std::numbers::pi;
@@ -264,4 +264,4 @@ TEST(NonlocalEvents, AreThoseOfThirtyDigitsWithGaps) {
 }
 
 }  // namespace
-}  // namespace monograin::nonlocal
+}  // namespace monograin::nonlocal::nonlocal_limit_test

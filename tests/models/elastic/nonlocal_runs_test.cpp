@@ -15,7 +15,7 @@
 #include "models/accuracy.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::nonlocal_runs_test {
 namespace {
 
 using std::numbers::pi;
@@ -457,4 +457,4 @@ TEST(NonlocalRandomWalls, AgreeInAllForms) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::nonlocal_runs_test

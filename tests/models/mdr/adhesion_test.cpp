@@ -18,7 +18,7 @@
 #include "models/accuracy.hpp"
 #include "models/mdr/grains.hpp"
 
-namespace monograin::mdr {
+namespace monograin::mdr::adhesion_test {
 namespace {
 
 using std::numbers::pi;
@@ -726,4 +726,4 @@ TEST(MdrAdhesion, IsHomogeneous) {
 }
 
 }  // namespace
-}  // namespace monograin::mdr
+}  // namespace monograin::mdr::adhesion_test

@@ -13,7 +13,7 @@
 #include "models/mdr/reference_windows.hpp"
 #include "support/reference_case.hpp"
 
-namespace monograin::mdr {
+namespace monograin::mdr::adhesion_validity_test {
 namespace {
 
 using std::numbers::pi;
@@ -163,4 +163,4 @@ INSTANTIATE_TEST_SUITE_P(Mdr, MdrAdhesionReference, ::testing::Values(Control::d
                          });
 
 }  // namespace
-}  // namespace monograin::mdr
+}  // namespace monograin::mdr::adhesion_validity_test

@@ -13,7 +13,7 @@
 #include "models/accuracy.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::adhesive_runs_test {
 namespace {
 
 using std::numbers::pi;
@@ -468,4 +468,4 @@ TEST(MdrAdhesiveDie, AgreesInAllFormsWhileOnePairIsTornOffAndAnotherIsDrivenIn) 
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::adhesive_runs_test

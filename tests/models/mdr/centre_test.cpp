@@ -9,7 +9,7 @@
 #include "models/accuracy.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::centre_test {
 namespace {
 
 Scenario with_free_centre(Scenario scenario) {
@@ -200,4 +200,4 @@ TEST(FreeCentre, ThatComesLooseLaterStopsTheRunThere) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::centre_test

@@ -18,7 +18,7 @@
 #include "models/mdr/grains.hpp"
 #include "support/reference_case.hpp"
 
-namespace monograin::mdr {
+namespace monograin::mdr::contact_profile_test {
 namespace {
 
 using std::numbers::pi;
@@ -265,4 +265,4 @@ TEST(MdrContactProfile, EndsAtTheHalfWidthOfTheEllipse) {
 }
 
 }  // namespace
-}  // namespace monograin::mdr
+}  // namespace monograin::mdr::contact_profile_test

@@ -14,7 +14,7 @@
 #include "models/accuracy.hpp"
 #include "models/mdr/grains.hpp"
 
-namespace monograin::mdr {
+namespace monograin::mdr::contact_test {
 namespace {
 
 using std::numbers::pi;
@@ -426,4 +426,4 @@ TEST(MdrContact, DoesNotDependOnTheUnits) {
 }
 
 }  // namespace
-}  // namespace monograin::mdr
+}  // namespace monograin::mdr::contact_test

@@ -7,7 +7,7 @@
 #include "models/accuracy.hpp"
 #include "models/mdr/grains.hpp"
 
-namespace monograin::mdr {
+namespace monograin::mdr::derivatives_test {
 namespace {
 
 /// Compares a derivative with differences of its function over a small share of the length over which that one changes.
@@ -110,4 +110,4 @@ TEST(MdrDerivatives, OfTheUnloadingContactAreExactAlsoAboveTheLargestOverlap) {
 }
 
 }  // namespace
-}  // namespace monograin::mdr
+}  // namespace monograin::mdr::derivatives_test

@@ -6,7 +6,7 @@
 
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::dissipation_test {
 namespace {
 
 TestRun run_finely(const Scenario& scenario) { return run(with_points(scenario, 400)); }
@@ -158,4 +158,4 @@ TEST(MdrPlasticCycle, DissipatesSpuriouslyWithTheRuleOfTheSeedOnly) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::dissipation_test

@@ -9,7 +9,7 @@
 #include "models/accuracy.hpp"
 #include "models/mdr/grains.hpp"
 
-namespace monograin::mdr {
+namespace monograin::mdr::energy_test {
 namespace {
 
 using std::numbers::pi;
@@ -118,4 +118,4 @@ TEST(MdrYieldEnergy, FallsByAFixedFactorOfTheUnloadingComplianceForTheParabola) 
 }
 
 }  // namespace
-}  // namespace monograin::mdr
+}  // namespace monograin::mdr::energy_test

@@ -12,7 +12,7 @@
 #include "models/accuracy.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::force_control_test {
 namespace {
 
 using std::numbers::pi;
@@ -502,4 +502,4 @@ INSTANTIATE_TEST_SUITE_P(AllForms, MdrFreeCentreUnderForce, ::testing::ValuesIn(
 });
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::force_control_test

@@ -7,7 +7,7 @@
 
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::guards_test {
 namespace {
 
 /// A system at the end of a run, which goes on.
@@ -94,4 +94,4 @@ TEST(MdrGuards, DoNotSayThatTheyGoOneWayWhereTheRadiusGrowsOrForcesAreGiven) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::guards_test

@@ -9,7 +9,7 @@
 #include "models/accuracy.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::hertz_system_test {
 namespace {
 
 TEST(HertzScene, ForceIsThatOfHertzInEveryRow) {
@@ -75,4 +75,4 @@ TEST(HertzScene, StopsWhereAWallReachesTheCentre) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::hertz_system_test

@@ -12,7 +12,7 @@
 #include "models/accuracy.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::invariants_test {
 namespace {
 
 // A die that is loaded, unloaded until its axial walls separate, and loaded beyond: every regime and most events.
@@ -242,4 +242,4 @@ TEST(MdrYield, ForceJumpsWithTheEllipseOnly) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::invariants_test

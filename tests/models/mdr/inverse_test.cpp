@@ -14,7 +14,7 @@
 #include "models/accuracy.hpp"
 #include "models/mdr/grains.hpp"
 
-namespace monograin::mdr {
+namespace monograin::mdr::inverse_test {
 namespace {
 
 using std::numbers::pi;
@@ -188,4 +188,4 @@ TEST(MdrUnloadingOverlap, EndsHalfARecoveryAboveTheLargestOverlap) {
 }
 
 }  // namespace
-}  // namespace monograin::mdr
+}  // namespace monograin::mdr::inverse_test

@@ -8,7 +8,7 @@
 #include "support/reference_case.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::lammps_test {
 namespace {
 
 /// A curve over the path of the walls, row by row at ever larger path lengths.
@@ -81,4 +81,4 @@ TEST(MdrAgainstLammps, RatchetOfTheSeedsRuleIsNotTheirs) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::lammps_test

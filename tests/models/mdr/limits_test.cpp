@@ -6,7 +6,7 @@
 
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::limits_test {
 namespace {
 
 Scenario die_to(double displacement) { return mdr_scenario(Configuration::die, 20.0, 0.3, path({displacement})); }
@@ -110,4 +110,4 @@ TEST(MdrWarnings, TellThatAMaterialNeverYields) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::limits_test

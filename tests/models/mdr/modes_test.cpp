@@ -7,7 +7,7 @@
 
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::modes_test {
 namespace {
 
 constexpr const char* k_radius_rules[] = {"gated", "yielded", "seed"};
@@ -222,4 +222,4 @@ TEST(MdrForms, AgreeWhereAStiffContactUnloadsWhileTheRadiusGrows) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::modes_test

@@ -8,7 +8,7 @@
 #include "mdr/contact.hpp"
 #include "models/accuracy.hpp"
 
-namespace monograin::mdr {
+namespace monograin::mdr::point_values_test {
 namespace {
 
 const Table& point_values() {
@@ -116,4 +116,4 @@ TEST(MdrPointValues, UnloadingContactIsMet) {
 }
 
 }  // namespace
-}  // namespace monograin::mdr
+}  // namespace monograin::mdr::point_values_test

@@ -16,7 +16,7 @@
 #include "models/accuracy.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin::mdr {
+namespace monograin::mdr::pressure_curve_test {
 namespace {
 
 using std::numbers::pi;
@@ -327,4 +327,4 @@ TEST(MdrRunWithTable, StopsAtItsEnd) {
 }
 
 }  // namespace
-}  // namespace monograin::mdr
+}  // namespace monograin::mdr::pressure_curve_test

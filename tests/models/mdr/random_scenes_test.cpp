@@ -22,7 +22,7 @@
 #include "study/dice.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::random_scenes_test {
 namespace {
 
 // --- the scenes
@@ -416,4 +416,4 @@ TEST(MdrRandomScenes, AllFormsAgree) {
 }
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::random_scenes_test

@@ -9,7 +9,7 @@
 #include "support/reference_case.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin {
+namespace monograin::reference_test {
 namespace {
 
 constexpr const char* k_curves[] = {"uniaxial_EY25",
@@ -85,4 +85,4 @@ INSTANTIATE_TEST_SUITE_P(Mdr, IntegratorAgainstReference,
                          });
 
 }  // namespace
-}  // namespace monograin
+}  // namespace monograin::reference_test

@@ -15,7 +15,7 @@
 #include "models/accuracy.hpp"
 #include "support/reference_case.hpp"
 
-namespace monograin::mdr {
+namespace monograin::mdr::relaxed_profile_test {
 namespace {
 
 using std::numbers::pi;
@@ -245,4 +245,4 @@ TEST(MdrRelaxedProfile, EndsWithItsSamples) {
 }
 
 }  // namespace
-}  // namespace monograin::mdr
+}  // namespace monograin::mdr::relaxed_profile_test

@@ -12,7 +12,7 @@
 
 #include "models/accuracy.hpp"
 
-namespace monograin::mdr {
+namespace monograin::mdr::transforms_test {
 namespace {
 
 using std::numbers::pi;
@@ -220,4 +220,4 @@ TEST(MdrTransforms, GiveTheImageOfASurfaceDisplacement) {
 }
 
 }  // namespace
-}  // namespace monograin::mdr
+}  // namespace monograin::mdr::transforms_test

@@ -12,7 +12,7 @@
 #include "models/accuracy.hpp"
 #include "models/packing/cases.hpp"
 
-namespace monograin::packing {
+namespace monograin::packing::law_test {
 namespace {
 
 double largest_error(const std::vector<double>& expected, const std::vector<double>& actual, double unit) {
@@ -320,4 +320,4 @@ TEST(PackingLaw, HasNoStateOutsideItsDomain) {
 }
 
 }  // namespace
-}  // namespace monograin::packing
+}  // namespace monograin::packing::law_test

@@ -11,7 +11,7 @@
 #include "models/packing/cases.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin::packing {
+namespace monograin::packing::runs_test {
 namespace {
 
 std::string option(const char* key, double value) { return fmt::format("{} = {:.17g}\n", key, value); }
@@ -396,4 +396,4 @@ TEST(PackingUnloading, OfPlasticParticlesThatOnlyTheRunFindsStopsIt) {
 }
 
 }  // namespace
-}  // namespace monograin::packing
+}  // namespace monograin::packing::runs_test

@@ -17,7 +17,7 @@
 #include "models/accuracy.hpp"
 #include "models/plastic/cases.hpp"
 
-namespace monograin::plastic {
+namespace monograin::plastic::hardening_test {
 namespace {
 
 using std::numbers::pi;
@@ -549,4 +549,4 @@ TEST(HardeningBoundaries, BelongToTheRegimeBefore) {
 }
 
 }  // namespace
-}  // namespace monograin::plastic
+}  // namespace monograin::plastic::hardening_test

@@ -23,6 +23,9 @@ static std::ostream& operator<<(std::ostream& out, const LudwikMaterial& materia
   return out << "E = " << modulus << ", Y = " << yield << ", K = " << hardening << ", n = " << n;
 }
 
+}  // namespace monograin::plastic
+
+namespace monograin::plastic::ludwik_test {
 namespace {
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
@@ -222,4 +225,4 @@ TEST(LudwikStress, IsYieldStressPlusAPower) {
 }
 
 }  // namespace
-}  // namespace monograin::plastic
+}  // namespace monograin::plastic::ludwik_test

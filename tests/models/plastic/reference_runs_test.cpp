@@ -15,7 +15,7 @@
 #include "plastic/hardening.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin::plastic {
+namespace monograin::plastic::reference_runs_test {
 namespace {
 
 /// Largest errors of a run's columns at the rows of a reference curve.
@@ -149,4 +149,4 @@ INSTANTIATE_TEST_SUITE_P(Plastic, ReferenceCurve, ::testing::ValuesIn(curve_file
                          [](const auto& file) { return file.param; });
 
 }  // namespace
-}  // namespace monograin::plastic
+}  // namespace monograin::plastic::reference_runs_test

@@ -17,7 +17,7 @@
 #include "scene/plastic_law.hpp"
 #include "support/test_run.hpp"
 
-namespace monograin::plastic {
+namespace monograin::plastic::runs_test {
 namespace {
 
 using Walls = monograin::Configuration;
@@ -369,4 +369,4 @@ TEST(PlasticRandomScenes, AgreeInAllForms) {
 }
 
 }  // namespace
-}  // namespace monograin::plastic
+}  // namespace monograin::plastic::runs_test

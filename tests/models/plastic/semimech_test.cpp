@@ -21,7 +21,7 @@
 #include "models/plastic/cases.hpp"
 #include "plastic/hardening.hpp"
 
-namespace monograin::plastic {
+namespace monograin::plastic::semimech_test {
 namespace {
 
 using std::numbers::pi;
@@ -810,4 +810,4 @@ TEST(SemimechLateralContacts, HaveBoundariesAndADomainOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace monograin::plastic
+}  // namespace monograin::plastic::semimech_test

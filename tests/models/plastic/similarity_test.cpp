@@ -15,7 +15,7 @@
 #include "models/accuracy.hpp"
 #include "models/plastic/cases.hpp"
 
-namespace monograin::plastic {
+namespace monograin::plastic::similarity_test {
 namespace {
 
 using std::numbers::pi;
@@ -364,4 +364,4 @@ TEST(SimilarityDomain, RefusesExponentsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace monograin::plastic
+}  // namespace monograin::plastic::similarity_test
