@@ -28,7 +28,7 @@ constexpr double k_opening_power = 1.5;
 // Share of a ramp that takes no time: integrators do not step so far.
 constexpr double k_instant = 1e-13;
 // Share of a prescribed value that is rounding.
-constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
+constexpr double k_rounding = 16.0 * std::numeric_limits<double>::epsilon();
 // Depth over R0 below which a contact is rounding.
 constexpr double k_least_depth = 1e-12;
 // Contacts shallower than this over R0 have no digits left where a ramp takes the wall there.
