@@ -285,6 +285,13 @@ std::array<double, 2> System::excess_slopes(std::span<const double> y) const {
 /// Of an integrated state: the closed start lies below.
 double System::least_fraction() const noexcept { return law_.jamming * (1.0 + 0.5 * k_start); }
 
+/// What an integrator tolerates may reach down to the closed start, and below jamming, or beyond where what is
+/// prescribed has its least value: from within the closed start on everything goes on along its tangent.
+std::array<double, 2> System::within_branch(std::span<const double> y) const noexcept {
+  const double least = std::max(least_fraction(), std::midpoint(branch_.begin, start_end_));
+  return {y[k_particles], std::max(y[k_fraction], least)};
+}
+
 void System::complete(double xi, std::span<double> y) {
   if (mode_ != Mode::jammed) return solve(xi, y);
   require_state(xi);
@@ -361,8 +368,9 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
   dy[k_particles] = dy[k_fraction] = 0.0;
   if (mode_ != Mode::jammed || direction() == 0) return;
   require_state(xi);
-  const double phi = y[k_fraction];
-  const Slopes s = slopes(law_, phi, strain_of(y), piece_);
+  const std::array<double, 2> near = within_branch(y);
+  const double phi = near[k_fraction];
+  const Slopes s = slopes(law_, phi, strain_of(near), piece_);
   const double growth = growth_of(s);
   if (!(growth > 0.0) || has_passed_end(phi, growth)) throw std::domain_error(end_of_branch(ramp_.control));
   dy[k_fraction] = (ramp_.end - ramp_.start) / growth;
@@ -375,10 +383,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
     res[k_fraction] = y[k_fraction] - resting_;
     return;
   }
-  // What an integrator tolerates may reach down to the closed start, and below jamming, or beyond where what is
-  // prescribed has its least value: from within the closed start on everything goes on along its tangent.
-  const double least = std::max(least_fraction(), std::midpoint(branch_.begin, start_end_));
-  std::array<double, 2> inside{y[k_particles], std::max(y[k_fraction], least)};
+  const std::array<double, 2> inside = within_branch(y);
   std::array<double, 2> all{};
   rates(xi, inside, all);
   // Rates count along what is prescribed, whichever of the unknowns that leaves free.

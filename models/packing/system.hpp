@@ -82,6 +82,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double excess(double xi, std::span<const double> y) const;
   [[nodiscard]] std::array<double, 2> excess_slopes(std::span<const double> y) const;
   [[nodiscard]] double least_fraction() const noexcept;
+  [[nodiscard]] std::array<double, 2> within_branch(std::span<const double> y) const noexcept;
   [[nodiscard]] bool is_brought_back(double xi, std::span<double> y) const;
   [[nodiscard]] Regime regime() const noexcept;
 
