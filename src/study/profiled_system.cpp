@@ -1,6 +1,7 @@
 #include "study/profiled_system.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -205,8 +206,8 @@ class AlwaysIntegrated final : public Wrapped {
 
 class Disturbed final : public Wrapped {
  public:
-  Disturbed(std::unique_ptr<HybridSystem> system, double share)
-      : Wrapped(std::move(system)), share_(share), shown_(unknowns().size()) {}
+  Disturbed(std::unique_ptr<HybridSystem> system, const std::array<double, 2>& shares)
+      : Wrapped(std::move(system)), shares_(shares), shown_(unknowns().size()) {}
 
   void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
     disturb(y);
@@ -227,11 +228,11 @@ class Disturbed final : public Wrapped {
   void disturb(State y) const {
     for (std::size_t k = 0; k < y.size(); ++k) {
       const Unknown& unknown = unknowns()[k];
-      if (unknown.kind == Unknown::Kind::differential && !unknown.is_slaved) y[k] *= 1.0 + share_;
+      if (unknown.kind == Unknown::Kind::differential && !unknown.is_slaved) y[k] *= 1.0 + shares_[k % 2];
     }
   }
 
-  double share_;
+  std::array<double, 2> shares_;
   std::vector<double> shown_;
 };
 
@@ -310,8 +311,8 @@ std::unique_ptr<HybridSystem> looking_beyond(std::unique_ptr<HybridSystem> syste
   return std::make_unique<LookingBeyond>(std::move(system), factor);
 }
 
-std::unique_ptr<HybridSystem> disturbed(std::unique_ptr<HybridSystem> system, double share) {
-  return std::make_unique<Disturbed>(std::move(system), share);
+std::unique_ptr<HybridSystem> disturbed(std::unique_ptr<HybridSystem> system, const std::array<double, 2>& shares) {
+  return std::make_unique<Disturbed>(std::move(system), shares);
 }
 
 std::unique_ptr<HybridSystem> always_integrated(std::unique_ptr<HybridSystem> system) {

@@ -1,6 +1,7 @@
 /// A system that tells where the time goes, one that has no more than so much, and some that waste it.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <stdexcept>
 
@@ -48,7 +49,9 @@ class OutOfTime : public std::runtime_error {
 
 /// The same system, whose integrated unknowns are changed by a share of themselves wherever a step of the program
 /// begins, and where they are shown: what its rates make of errors, and what is seen of them.
-[[nodiscard]] std::unique_ptr<HybridSystem> disturbed(std::unique_ptr<HybridSystem> system, double share);
+/// @param shares  of the unknowns in turn: errors of several may be alike, or against each other
+[[nodiscard]] std::unique_ptr<HybridSystem> disturbed(std::unique_ptr<HybridSystem> system,
+                                                      const std::array<double, 2>& shares);
 
 /// The same system, without closed forms of its work: what they save is measured against it.
 [[nodiscard]] std::unique_ptr<HybridSystem> always_integrated(std::unique_ptr<HybridSystem> system);
