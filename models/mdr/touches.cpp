@@ -1,6 +1,7 @@
 // Touches of a free centre: which walls meet it together, which it leaves, and what holds it.
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -17,27 +18,44 @@ constexpr double k_balanced = 1e-10;
 // Of the way on which a push takes a free centre, what counts as away from a wall.
 constexpr double k_left_behind = 1e-6;
 constexpr int k_most_steps = 200;
+// Stiffness, over that of the direction that is held most, of one that no contact holds.
+constexpr double k_not_held = 1e-12;
 
-/// Way on which contacts of these normals, whose forces go with their overlaps to the 3/2, come to balance a push, up
-/// to a factor: Newton on the least of a convex energy.
-Eigen::Vector3d way_under_push(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> normals,
-                               std::span<const double> weights) {
-  const Eigen::Vector3d load = push.normalized();
-  const double most = std::ranges::max(weights);
+/// What measures the centre's way by the overlaps of contacts of these normals: between walls that are nearly opposite
+/// it is far longer than they are. Blind to directions in which no contact holds the centre.
+Eigen::Matrix3d measure_by_overlaps(std::span<const Eigen::Vector3d> normals, std::span<const double> weights) {
+  Eigen::Matrix3d held = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < normals.size(); ++k) held += weights[k] * normals[k] * normals[k].transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(held);
+  const double least = k_not_held * directions.eigenvalues().maxCoeff();
+  const Eigen::Vector3d lengths =
+      directions.eigenvalues().unaryExpr([=](double value) { return value > least ? 1.0 / std::sqrt(value) : 0.0; });
+  return lengths.asDiagonal() * directions.eigenvectors().transpose();
+}
+
+/// Overlaps to which contacts of these normals, whose forces go with their overlaps to the 3/2, come under a push, over
+/// the way that they take, up to a factor: Newton on the least of a convex energy.
+std::vector<double> overlaps_under_push(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> normals,
+                                        std::vector<double> weights) {
+  for (const double most = std::ranges::max(weights); double& weight : weights) weight /= most;
+  const Eigen::Matrix3d measure = measure_by_overlaps(normals, weights);
+  const Eigen::Vector3d load = (measure * push).normalized();
+  std::vector<Eigen::Vector3d> measured;
+  for (const Eigen::Vector3d& normal : normals) measured.emplace_back(measure * normal);
   Eigen::Vector3d way = Eigen::Vector3d::Zero();
   const auto energy = [&](const Eigen::Vector3d& at) {
     double sum = load.dot(at);
-    for (std::size_t k = 0; k < normals.size(); ++k)
-      sum += 0.4 * weights[k] / most * std::pow(std::max(0.0, normals[k].dot(at)), 2.5);
+    for (std::size_t k = 0; k < measured.size(); ++k)
+      sum += 0.4 * weights[k] * std::pow(std::max(0.0, measured[k].dot(at)), 2.5);
     return sum;
   };
   for (int iteration = 0; iteration < k_most_steps; ++iteration) {
     Eigen::Vector3d slope = load;
     Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
-    for (std::size_t k = 0; k < normals.size(); ++k) {
-      const double root = std::sqrt(std::max(0.0, normals[k].dot(way)));
-      slope += weights[k] / most * root * root * root * normals[k];
-      stiffness += 1.5 * weights[k] / most * root * normals[k] * normals[k].transpose();
+    for (std::size_t k = 0; k < measured.size(); ++k) {
+      const double root = std::sqrt(std::max(0.0, measured[k].dot(way)));
+      slope += weights[k] * root * root * root * measured[k];
+      stiffness += 1.5 * weights[k] * root * measured[k] * measured[k].transpose();
     }
     if (slope.norm() < k_balanced) break;
     // Where nothing is pressed as yet there is no stiffness.
@@ -47,7 +65,9 @@ Eigen::Vector3d way_under_push(const Eigen::Vector3d& push, std::span<const Eige
     while (energy(way + step) >= before && step.norm() > k_balanced * way.norm()) step *= 0.5;
     way += step;
   }
-  return way;
+  std::vector<double> overlaps;
+  for (const Eigen::Vector3d& normal : measured) overlaps.push_back(normal.dot(way) / way.norm());
+  return overlaps;
 }
 
 }  // namespace
@@ -171,11 +191,11 @@ bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi,
   if (!can_back(push, units)) return false;
   std::vector<double> weights;
   for (const Drive& drive : drives) weights.push_back(classes_[drive.contact].multiplicity() * firmness(drive.contact));
-  const Small way = way_under_push(push, normals, weights);
+  const std::vector<double> overlaps = overlaps_under_push(push, normals, weights);
   bool has_left = false;
   for (std::size_t k = 0; k < drives.size(); ++k) {
     const std::size_t i = drives[k].contact;
-    if (!(normals[k].dot(way) < -k_left_behind * way.norm())) continue;
+    if (!(overlaps[k] < -k_left_behind)) continue;
     lose_contact(i);
     is_left_[i] = true;
     log.push_back({"contact-lost", static_cast<int>(i)});
