@@ -32,7 +32,7 @@ struct Crossing {
   std::size_t guard = 0;
 };
 
-/// Looked for between a step's begin and such an end, ever nearer to that.
+/// The first crossing within a step that ends with a branch, if there is one: looked for ever nearer to its end.
 std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, const Watch& watch,
                                                    std::span<const std::size_t> fired, double begin, double end,
                                                    double tolerance,
@@ -73,8 +73,8 @@ std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, c
   return first;
 }
 
-/// Where a guard of the system goes beyond what counts as zero in those roundings, its place is looked for among them.
-/// Conditions of the program are met wherever in them: no mode begins there that has to go on from it.
+/// Where a guard of the system goes beyond what counts as zero within the roundings of the end, its place is looked for
+/// among them. Conditions of the program are met wherever in them: no mode begins there that has to go on from it.
 double polished_root(const Watch& watch, std::span<const std::size_t> fired, double begin, double end, double tolerance,
                      const std::function<void(double, std::span<double>)>& values_at) {
   std::vector<double> values(watch.size());
