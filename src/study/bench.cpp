@@ -26,10 +26,10 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr double k_tightest = 1e-13;  ///< of references
-constexpr std::size_t k_most_repeats = 200;
-constexpr int k_rounds = 5;         ///< in which the runs are made
-constexpr double k_too_long = 1.0;  ///< a run after which tighter tolerances are left out [s]
-constexpr int k_evaluations = 16;   ///< of the law at each output point, to time them
+constexpr int k_rounds = 50;          ///< in which the runs are made
+constexpr double k_too_long = 1.0;    ///< a run after which tighter tolerances are left out [s]
+constexpr double k_profile_time = 0.02;
+constexpr int k_evaluations = 16;  ///< of the law at each output point, to time them
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -174,10 +174,9 @@ class Stopwatch {
   /// @param run  one run, and how long it took
   explicit Stopwatch(std::function<double()> run) : run_(std::move(run)) {}
 
-  /// Runs it until its runs have taken so long together, or are enough, and at least once.
+  /// Runs it until its runs have taken so long together, and at least once.
   void run_for(double least_time) {
-    const std::size_t least = times_.empty() ? 1 : 0;
-    for (std::size_t i = 0; i < least || (times_.size() < k_most_repeats && total_ < least_time); ++i) {
+    while (times_.empty() || total_ < least_time) {
       times_.push_back(run_());
       total_ += times_.back();
     }
@@ -195,7 +194,8 @@ class Stopwatch {
   double total_ = 0.0;
 };
 
-/// Things that are to be compared, all in turn: a machine that is slower for a while is so for all of them.
+/// Things that are to be compared, all in turn, for a short time each: a machine that is slower or faster for a while
+/// is so for all of them.
 void time_in_turn(std::vector<Stopwatch>& watches, double least_time) {
   for (int round = 1; round <= k_rounds; ++round) {
     for (Stopwatch& watch : watches) watch.run_for(least_time * round / k_rounds);
@@ -357,29 +357,34 @@ BenchScene measure_scene(const Scenario& scenario, const BenchSettings& settings
 BenchProfile profile_scene(const Scenario& scenario, const std::string& name) {
   const std::string integrator = choose_integrator(name, *make_scene(scenario).system).used;
   BenchProfile profile{.scene = scenario.name, .integrator = integrator};
-  profile.total = time_alone(0.02, [&] {
-                    double seconds = 0.0;
-                    static_cast<void>(run_once(scenario, integrator, scenario.numerics.rtol, &seconds));
-                    return seconds;
-                  }).fastest;
-  // Of several runs the one that others have disturbed least, as above.
-  constexpr int k_runs = 5;
   double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < k_runs; ++k) {
+  std::vector<Stopwatch> watches;
+  watches.emplace_back([&] {
+    double seconds = 0.0;
+    static_cast<void>(run_once(scenario, integrator, scenario.numerics.rtol, &seconds));
+    return seconds;
+  });
+  // Of several runs the one that others have disturbed least, as of those without a look at their parts.
+  watches.emplace_back([&] {
     SystemProfile system;
     const LinearAlgebraClock clock;
     Scene scene = make_scene(scenario);
     scene.system = profiled(std::move(scene.system), system);
+    const auto start = Clock::now();
     static_cast<void>(record_run(scene, integrator, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output));
-    const double known = system.law.seconds + system.guards.seconds + system.recording.seconds + clock.seconds();
-    if (known >= least) continue;
-    least = known;
-    profile.law = system.law.seconds;
-    profile.law_calls = system.law.calls;
-    profile.guards = system.guards.seconds;
-    profile.recording = system.recording.seconds;
-    profile.linear_algebra = clock.seconds();
-  }
+    const double seconds = seconds_since(start);
+    if (seconds < least) {
+      least = seconds;
+      profile.law = system.law.seconds;
+      profile.law_calls = system.law.calls;
+      profile.guards = system.guards.seconds;
+      profile.recording = system.recording.seconds;
+      profile.linear_algebra = clock.seconds();
+    }
+    return seconds;
+  });
+  time_in_turn(watches, k_profile_time);
+  profile.total = watches[0].timing().fastest;
   return profile;
 }
 

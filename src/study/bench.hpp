@@ -15,7 +15,7 @@ namespace monograin {
 struct BenchSettings {
   std::vector<std::string> integrators{};  ///< "auto" and the names of integrators; empty: all
   std::vector<double> tolerances{};        ///< relative ones, from loose to tight; empty: 1e-2 to 1e-13
-  double least_time = 0.02;                ///< a run is repeated until it has taken so long, or often enough [s]
+  double least_time = 0.05;                ///< a run is repeated until it has taken so long [s]
 };
 
 /// One integrator at one tolerance. Errors are nan where the run has not come as far as the reference.
