@@ -25,11 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr double k_tightest = 1e-13;  ///< of references
-constexpr int k_rounds = 50;          ///< in which the runs are made
-constexpr double k_too_long = 1.0;    ///< a run after which tighter tolerances are left out [s]
-constexpr double k_profile_time = 0.02;
-constexpr int k_evaluations = 16;  ///< of the law at each output point, to time them
+constexpr double k_tightest = 1e-13;     ///< of references
+constexpr int k_rounds = 50;             ///< in which the runs are made
+constexpr double k_too_long = 1.0;       ///< a run after which tighter tolerances are left out [s]
+constexpr double k_profile_time = 0.02;  ///< for which a history is profiled [s]
+constexpr int k_evaluations = 16;        ///< of the law at each output point, to time them
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
