@@ -45,6 +45,13 @@ RunRecord run_once(const Scenario& scenario, const std::string& integrator, doub
   return record;
 }
 
+/// How long one run takes, recording included, set-up of the scene not.
+double time_once(const Scenario& scenario, const std::string& integrator, double rtol) {
+  double seconds = 0.0;
+  static_cast<void>(run_once(scenario, integrator, rtol, &seconds));
+  return seconds;
+}
+
 // --- errors
 
 bool is_state(const Column& column) {
@@ -202,12 +209,6 @@ void time_in_turn(std::vector<Stopwatch>& watches, double least_time) {
   }
 }
 
-Timing time_alone(double least_time, std::function<double()> run) {
-  Stopwatch watch(std::move(run));
-  watch.run_for(least_time);
-  return watch.timing();
-}
-
 // --- a scene
 
 /// What errors are measured against.
@@ -321,11 +322,13 @@ BenchScene measure_scene(const Scenario& scenario, const BenchSettings& settings
                     .points = {}};
   result.agreement = curve_error(first.record.history, second.record.history).whole;
   result.rows = first.record.history.row_count();
-  result.setup = time_alone(settings.least_time, [&] {
-                   const auto start = Clock::now();
-                   static_cast<void>(make_scene(scenario));
-                   return seconds_since(start);
-                 }).fastest;
+  Stopwatch setup([&] {
+    const auto start = Clock::now();
+    static_cast<void>(make_scene(scenario));
+    return seconds_since(start);
+  });
+  setup.run_for(settings.least_time);
+  result.setup = setup.timing().fastest;
   const Scene scene = make_scene(scenario);
   std::vector<Stopwatch> watches;
   for (const std::string& name : names) {
@@ -335,11 +338,7 @@ BenchScene measure_scene(const Scenario& scenario, const BenchSettings& settings
       if (choice.used == "direct" && !scene.system->is_solvable()) break;
       const Standard& standard = choice.used == first.integrator ? second : first;
       result.points.push_back(measure_point(scenario, name, choice.used, rtol, standard));
-      watches.emplace_back([&scenario, used = choice.used, rtol] {
-        double seconds = 0.0;
-        static_cast<void>(run_once(scenario, used, rtol, &seconds));
-        return seconds;
-      });
+      watches.emplace_back([&scenario, used = choice.used, rtol] { return time_once(scenario, used, rtol); });
       if (shown) shown();
       if (result.points.back().fastest > k_too_long) break;
     }
@@ -359,11 +358,7 @@ BenchProfile profile_scene(const Scenario& scenario, const std::string& name) {
   BenchProfile profile{.scene = scenario.name, .integrator = integrator};
   double least = std::numeric_limits<double>::infinity();
   std::vector<Stopwatch> watches;
-  watches.emplace_back([&] {
-    double seconds = 0.0;
-    static_cast<void>(run_once(scenario, integrator, scenario.numerics.rtol, &seconds));
-    return seconds;
-  });
+  watches.emplace_back([&] { return time_once(scenario, integrator, scenario.numerics.rtol); });
   // Of several runs the one that others have disturbed least, as of those without a look at their parts.
   watches.emplace_back([&] {
     SystemProfile system;
