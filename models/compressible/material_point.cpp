@@ -361,7 +361,7 @@ bool MaterialPoint::leads_out(bool towards_compression, const Response& now) con
   const Flow flow_now = flow(now);
   if (!(flow_now.stiffness > 0.0)) return true;
   const double multiplier = flow_now.loading / flow_now.stiffness;
-  const double of_end = -transition_start_slope(settings_.parameters, now.at) * flow_now.phi;
+  const double of_end = -cap_constants(settings_.parameters, now.at).transition_start.slope * flow_now.phi;
   const double away = flow_now.elastic.p + multiplier * (flow_now.p_by_flow - of_end);
   return towards_compression ? away < 0.0 : away > 0.0;
 }
@@ -379,7 +379,8 @@ double MaterialPoint::pressure_rate_at_end(const Response& now, bool towards_com
   const Parameters& parameters = settings_.parameters;
   const bool is_corner = parameters.model == YieldModel::dpc && branch_.segment == Segment::shear &&
                          neighbour(parameters, branch_.segment, towards_compression) == Segment::cap;
-  const double tangent = is_corner ? branch_.side * cap_constants(parameters, now.at).slope : 0.0;  // -ds/dp
+  const double tangent =
+      is_corner ? branch_.side * cap_constants(parameters, now.at).friction_slope.value : 0.0;  // -ds/dp
   const double axial = prescribed_rate(k_axial);
   const double lateral = prescribed_rate(k_lateral);
   if (is_stress(k_axial) && is_stress(k_lateral)) return (axial + 2.0 * lateral) / 3.0;

@@ -1,119 +1,80 @@
 #include "compressible/yield_surface.hpp"
 
-#include <Eigen/Core>
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
-#include <unsupported/Eigen/AutoDiff>
 
 namespace monograin::compressible {
 namespace {
 
-using std::sqrt;
-
 // Segments are taken to hold this much beyond their ends where an exit is looked for, in units of the yield pressure.
 constexpr double k_slack = 1e-12;
 
-/// A number with its derivatives by p, s and phi.
-using Dual = Eigen::AutoDiffScalar<Eigen::Vector3d>;
-
-Dual variable(double value, int index) { return {value, Eigen::Vector3d::Unit(index)}; }
-Dual evolving(const Evolving& quantity) { return {quantity.value, quantity.slope * Eigen::Vector3d::Unit(2)}; }
-
-double plain(double x) { return x; }
-double plain(const Dual& x) { return x.value(); }
-
-/// What the formulas of Table 2 are made of, with or without derivatives.
-template <class T>
-struct Strengths {
-  T yield_pressure, shear, tensile, axis_ratio, centre;
-};
-
-Strengths<double> values_of(const Properties& at) {
-  return {at.yield_pressure.value, at.shear_strength.value, at.tensile_strength.value, at.axis_ratio.value,
-          at.cap_centre.value};
+Evolving product(const Evolving& a, const Evolving& b) {
+  return {a.value * b.value, a.slope * b.value + a.value * b.slope};
 }
 
-Strengths<Dual> duals_of(const Properties& at) {
-  return {evolving(at.yield_pressure), evolving(at.shear_strength), evolving(at.tensile_strength),
-          evolving(at.axis_ratio), evolving(at.cap_centre)};
+/// Of the cap's ellipse, along p (Table 3, corrected).
+Evolving half_axis(const Properties& at) { return product(at.axis_ratio, at.shear_strength); }
+
+/// Table 2, von Mises and von Mises double cap: f = g.
+Yield yield_of_von_mises(const Properties& at, Segment segment, double p, double s) {
+  const Evolving& strength = at.shear_strength;
+  const double c = s / strength.value;
+  Yield yield{c * c - 1.0, 0.0, 2.0 * c / strength.value, -2.0 * c * c * strength.slope / strength.value};
+  if (segment != Segment::shear) {
+    const bool is_cap = segment == Segment::cap;
+    const Evolving centre = is_cap ? at.cap_centre : Evolving{};
+    const Evolving axis = is_cap ? half_axis(at) : at.tensile_strength;
+    const double b = (p + centre.value) / axis.value;
+    yield.f = b * b + c * c - 1.0;
+    yield.f_p = 2.0 * b / axis.value;
+    yield.f_phi += 2.0 * b * (centre.slope - b * axis.slope) / axis.value;
+  }
+  yield.g = yield.f;
+  yield.g_p = yield.f_p;
+  yield.g_s = yield.f_s;
+  return yield;
 }
 
-template <class T>
-struct CapRelations {
-  T slope, cohesion, stretch, arc_radius, arc_centre, start;
-};
-
-/// Table 2, below the table, with the entries of Table 3 put in: C is the shear strength.
-template <class T>
-CapRelations<T> cap_relations(const Strengths<T>& with, double width) {
-  const T reach = with.tensile + with.centre;
-  if (!(plain(reach) > 0.0)) {
-    throw std::domain_error("the tensile strength is beyond the cap's centre: the shear line has no slope");
-  }
-  const T slope = with.shear / reach;
-  const T secant = sqrt(1.0 + slope * slope);  // 1/cos pi6
-  const T a = width * secant;
-  const T room = 1.0 + width - a;
-  if (!(plain(room) > 0.0)) throw std::domain_error("transition_width is too large for the slope of the shear line");
-  CapRelations<T> cap{slope,
-                      with.tensile * slope,
-                      1.0 / room,
-                      width * with.shear,
-                      (1.0 - a) * with.shear,
-                      with.centre - width * with.shear * slope / secant};
-  if (!(plain(cap.arc_centre) + plain(cap.arc_radius) / plain(secant) > 0.0)) {
-    throw std::domain_error("transition_width is too large: the arc reaches the axis of pressure");
-  }
-  return cap;
+/// Table 2, cap of dpc: f = g.
+Yield yield_of_cap(const Properties& at, const CapConstants& cap, double p, double s) {
+  const Evolving axis = half_axis(at);
+  const Evolving stretch = product(cap.flow_stretch, at.axis_ratio);
+  const double y = p + at.cap_centre.value;
+  const double x = stretch.value * s;
+  const double root = std::sqrt(y * y + x * x);
+  const double f = root - axis.value;
+  const double f_p = y / root;
+  const double f_s = stretch.value * x / root;
+  return {f, f_p, f_s, (y * at.cap_centre.slope + x * stretch.slope * s) / root - axis.slope, f, f_p, f_s};
 }
 
-/// f of Table 2.
-template <class T>
-T yield_formula(YieldModel model, double width, const Strengths<T>& with, Branch branch, const T& p, const T& s) {
-  const T y = p + with.centre;
-  if (model == YieldModel::dpc) {
-    const CapRelations<T> cap = cap_relations(with, width);
-    if (branch.segment == Segment::cap) {
-      const T x = cap.stretch * with.axis_ratio * s;
-      return sqrt(T(y * y + x * x)) - with.axis_ratio * with.shear;
-    }
-    const T q = branch.side * s;
-    if (branch.segment == Segment::transition) {
-      const T w = q - cap.arc_centre;
-      // Nothing below the centre belongs to the arc; from there this leads to it, and not to the far side of its
-      // circle.
-      if (!(plain(w) > 0.0)) return w - cap.arc_radius;
-      return sqrt(T(y * y + w * w)) - cap.arc_radius;
-    }
-    return q + p * cap.slope - cap.cohesion;
+/// Table 2, shear line and arc of dpc.
+Yield yield_of_shear(const Properties& at, const CapConstants& cap, Branch branch, double p, double s) {
+  const double y = p + at.cap_centre.value;
+  const double q = branch.side * s;
+  Yield yield{q + p * cap.friction_slope.value - cap.cohesion.value, cap.friction_slope.value, branch.side,
+              p * cap.friction_slope.slope - cap.cohesion.slope};
+  if (branch.segment == Segment::transition) {
+    const double w = q - cap.arc_centre.value;
+    // Nothing below the centre belongs to the arc; from there the height leads to it, and not to the far side of its
+    // circle.
+    const bool is_above = w > 0.0;
+    const double root = is_above ? std::sqrt(y * y + w * w) : w;
+    const double f_w = is_above ? w / root : 1.0;
+    yield.f = root - cap.arc_radius.value;
+    yield.f_p = is_above ? y / root : 0.0;
+    yield.f_s = branch.side * f_w;
+    yield.f_phi = yield.f_p * at.cap_centre.slope - f_w * cap.arc_centre.slope - cap.arc_radius.slope;
   }
-  const T c = s / with.shear;
-  if (branch.segment == Segment::tension) {
-    const T b = p / with.tensile;
-    return b * b + c * c - 1.0;
-  }
-  if (branch.segment == Segment::cap) {
-    const T b = y / T(with.axis_ratio * with.shear);
-    return b * b + c * c - 1.0;
-  }
-  return c * c - 1.0;
+  const double along = cap.friction_slope.value * y;
+  const double across = cap.flow_stretch.value * s;
+  const double root = std::sqrt(along * along + across * across);
+  yield.g = root - at.shear_strength.value;
+  yield.g_p = cap.friction_slope.value * along / root;
+  yield.g_s = cap.flow_stretch.value * across / root;
+  return yield;
 }
-
-/// g of Table 2: f, but for the shear line and the arc of dpc.
-template <class T>
-T potential_formula(YieldModel model, double width, const Strengths<T>& with, Branch branch, const T& p, const T& s) {
-  if (model != YieldModel::dpc || branch.segment == Segment::cap) {
-    return yield_formula(model, width, with, branch, p, s);
-  }
-  const CapRelations<T> cap = cap_relations(with, width);
-  const T x = (p + with.centre) * cap.slope;
-  const T y = cap.stretch * s;
-  return sqrt(T(x * x + y * y)) - with.shear;
-}
-
-double cap_half_axis(const Strengths<double>& with) { return with.axis_ratio * with.shear; }
 
 /// A straight way in the plane of p and s, and where it leaves a segment's formula, its interior being on the near
 /// side.
@@ -143,19 +104,41 @@ struct Way {
 }  // namespace
 
 CapConstants cap_constants(const Parameters& parameters, const Properties& properties) {
-  const auto cap = cap_relations(values_of(properties), parameters.transition_width);
-  return {cap.slope, cap.cohesion, cap.arc_radius, cap.arc_centre, cap.stretch, cap.start};
-}
-
-double transition_start_slope(const Parameters& parameters, const Properties& properties) {
-  return cap_relations(duals_of(properties), parameters.transition_width).start.derivatives()[2];
+  const double width = parameters.transition_width;
+  const Evolving& shear = properties.shear_strength;
+  const Evolving& tensile = properties.tensile_strength;
+  const Evolving& centre = properties.cap_centre;
+  const double reach = tensile.value + centre.value;
+  if (!(reach > 0.0)) {
+    throw std::domain_error("the tensile strength is beyond the cap's centre: the shear line has no slope");
+  }
+  const double tangent = shear.value / reach;
+  const Evolving friction{tangent, (shear.slope - tangent * (tensile.slope + centre.slope)) / reach};
+  const double secant = std::sqrt(1.0 + tangent * tangent);
+  const Evolving sine{tangent / secant, friction.slope / (secant * secant * secant)};
+  const Evolving a{width * secant, width * sine.value * friction.slope};
+  const double room = 1.0 + width - a.value;
+  if (!(room > 0.0)) throw std::domain_error("transition_width is too large for the slope of the shear line");
+  const double stretch = 1.0 / room;
+  const Evolving arc_radius{width * shear.value, width * shear.slope};
+  const Evolving arc_centre = product({1.0 - a.value, -a.slope}, shear);
+  if (!(arc_centre.value + arc_radius.value / secant > 0.0)) {
+    throw std::domain_error("transition_width is too large: the arc reaches the axis of pressure");
+  }
+  const Evolving arc_reach = product(arc_radius, sine);
+  return {friction,
+          product(tensile, friction),
+          arc_radius,
+          arc_centre,
+          {stretch, stretch * stretch * a.slope},
+          {centre.value - arc_reach.value, centre.slope - arc_reach.slope}};
 }
 
 Segment segment_at(const Parameters& parameters, const Properties& properties, double p) {
   if (parameters.model == YieldModel::vm) return Segment::shear;
   if (p < -properties.cap_centre.value) return Segment::cap;
   if (parameters.model == YieldModel::vmdc) return p > 0.0 ? Segment::tension : Segment::shear;
-  const bool is_shear = p > -cap_constants(parameters, properties).transition_start;
+  const bool is_shear = p > -cap_constants(parameters, properties).transition_start.value;
   return is_shear || parameters.transition_width == 0.0 ? Segment::shear : Segment::transition;
 }
 
@@ -164,32 +147,20 @@ Branch branch_at(const Parameters& parameters, const Properties& properties, dou
 }
 
 Yield yield_on(const Parameters& parameters, const Properties& properties, Branch branch, double p, double s) {
-  const Strengths<Dual> with = duals_of(properties);
-  const Dual p_dual = variable(p, 0);
-  const Dual s_dual = variable(s, 1);
-  const Dual f = yield_formula(parameters.model, parameters.transition_width, with, branch, p_dual, s_dual);
-  Yield yield{f.value(), f.derivatives()[0], f.derivatives()[1], f.derivatives()[2]};
-  if (parameters.model == YieldModel::dpc && branch.segment != Segment::cap) {
-    const Dual g = potential_formula(parameters.model, parameters.transition_width, with, branch, p_dual, s_dual);
-    yield.g = g.value();
-    yield.g_p = g.derivatives()[0];
-    yield.g_s = g.derivatives()[1];
-  } else {
-    yield.g = yield.f;
-    yield.g_p = yield.f_p;
-    yield.g_s = yield.f_s;
-  }
-  return yield;
+  if (parameters.model != YieldModel::dpc) return yield_of_von_mises(properties, branch.segment, p, s);
+  const CapConstants cap = cap_constants(parameters, properties);
+  if (branch.segment == Segment::cap) return yield_of_cap(properties, cap, p, s);
+  return yield_of_shear(properties, cap, branch, p, s);
 }
 
 double yield_function(const Parameters& parameters, const Properties& properties, double p, double s) {
-  const Strengths<double> with = values_of(properties);
   const Branch branch = branch_at(parameters, properties, p, s);
-  const double f = yield_formula(parameters.model, parameters.transition_width, with, branch, p, s);
-  if (branch.segment != Segment::transition) return f;
-  const auto cap = cap_relations(with, parameters.transition_width);
-  const bool is_below_centre = std::abs(s) <= cap.arc_centre;
-  return is_below_centre ? -std::hypot(p + with.centre, std::abs(s) - cap.arc_centre) - cap.arc_radius : f;
+  if (branch.segment == Segment::transition) {
+    const CapConstants cap = cap_constants(parameters, properties);
+    const double w = std::abs(s) - cap.arc_centre.value;
+    if (w <= 0.0) return -std::hypot(p + properties.cap_centre.value, w) - cap.arc_radius.value;
+  }
+  return yield_on(parameters, properties, branch, p, s).f;
 }
 
 std::optional<double> distance_to_end(const Parameters& parameters, const Properties& properties, Segment segment,
@@ -197,7 +168,7 @@ std::optional<double> distance_to_end(const Parameters& parameters, const Proper
   const double centre = properties.cap_centre.value;
   const bool has_arc = parameters.model == YieldModel::dpc && parameters.transition_width > 0.0;
   if (parameters.model == YieldModel::vm) return std::nullopt;
-  const auto arc_start = [&] { return cap_constants(parameters, properties).transition_start; };
+  const auto arc_start = [&] { return cap_constants(parameters, properties).transition_start.value; };
   switch (segment) {
     case Segment::tension:
       if (towards_compression) return p;
@@ -233,7 +204,7 @@ Segment neighbour(const Parameters& parameters, Segment segment, bool towards_co
 
 std::optional<Exit> way_out(const Parameters& parameters, const Properties& properties, double p, double s,
                             double p_rate, double s_rate) {
-  const Strengths<double> with = values_of(properties);
+  const double centre = properties.cap_centre.value;
   const Way way{p, s, p_rate, s_rate};
   std::optional<Exit> first;
   const auto consider = [&](Segment segment, double side, std::optional<double> t) {
@@ -248,26 +219,28 @@ std::optional<Exit> way_out(const Parameters& parameters, const Properties& prop
   };
   const double shear_side = s + s_rate > 0.0 ? 1.0 : -1.0;
   if (parameters.model != YieldModel::dpc) {
-    const double by_strength = 1.0 / with.shear;
+    const double by_strength = 1.0 / properties.shear_strength.value;
     consider(Segment::shear, shear_side, way.out_of(0.0, 0.0, 0.0, by_strength, 1.0));
     if (parameters.model == YieldModel::vm) return first;
-    consider(Segment::tension, shear_side, way.out_of(0.0, 1.0 / with.tensile, 0.0, by_strength, 1.0));
-    const double by_axis = 1.0 / cap_half_axis(with);
-    consider(Segment::cap, shear_side, way.out_of(by_axis * with.centre, by_axis, 0.0, by_strength, 1.0));
+    consider(Segment::tension, shear_side,
+             way.out_of(0.0, 1.0 / properties.tensile_strength.value, 0.0, by_strength, 1.0));
+    const double by_axis = 1.0 / half_axis(properties).value;
+    consider(Segment::cap, shear_side, way.out_of(by_axis * centre, by_axis, 0.0, by_strength, 1.0));
     return first;
   }
-  const auto cap = cap_relations(with, parameters.transition_width);
+  const CapConstants cap = cap_constants(parameters, properties);
   for (const double side : {-1.0, 1.0}) {
-    const double rate = side * s_rate + p_rate * cap.slope;
+    const double rate = side * s_rate + p_rate * cap.friction_slope.value;
     if (rate > 0.0) {
-      const double t = -(side * s + p * cap.slope - cap.cohesion) / rate;
+      const double t = -(side * s + p * cap.friction_slope.value - cap.cohesion.value) / rate;
       if (side * (s + std::max(t, 0.0) * s_rate) >= -k_slack) consider(Segment::shear, side, t);
     }
     if (parameters.transition_width == 0.0) continue;
-    const auto t = way.out_of(with.centre, 1.0, -cap.arc_centre, side, cap.arc_radius);
-    if (t && side * (s + *t * s_rate) > cap.arc_centre) consider(Segment::transition, side, t);
+    const auto t = way.out_of(centre, 1.0, -cap.arc_centre.value, side, cap.arc_radius.value);
+    if (t && side * (s + *t * s_rate) > cap.arc_centre.value) consider(Segment::transition, side, t);
   }
-  const auto out = way.out_of(with.centre, 1.0, 0.0, cap.stretch * with.axis_ratio, cap_half_axis(with));
+  const auto out =
+      way.out_of(centre, 1.0, 0.0, cap.flow_stretch.value * properties.axis_ratio.value, half_axis(properties).value);
   consider(Segment::cap, out && s + *out * s_rate > 0.0 ? 1.0 : -1.0, out);
   return first;
 }

@@ -38,20 +38,17 @@ struct Yield {
 
 /// Relations between the constants of the Drucker-Prager cap (Table 2, below the table; Table 3).
 struct CapConstants {
-  double slope = 0.0;             ///< tan pi6 of the shear line
-  double cohesion = 0.0;          ///< pi5, where the line meets p = 0
-  double arc_radius = 0.0;        ///< pi8 C
-  double arc_centre = 0.0;        ///< (1 - A) C: the arc's centre along q, above p = -pi3
-  double flow_stretch = 0.0;      ///< B
-  double transition_start = 0.0;  ///< p_i: the arc begins at p = -p_i
+  Evolving friction_slope;    ///< tan pi6 of the shear line
+  Evolving cohesion;          ///< pi5, where the line meets p = 0
+  Evolving arc_radius;        ///< pi8 C, where C is the shear strength
+  Evolving arc_centre;        ///< (1 - A) C: the arc's centre along q, above p = -pi3
+  Evolving flow_stretch;      ///< B
+  Evolving transition_start;  ///< p_i: the arc begins at p = -p_i
 };
 
 /// @throws std::domain_error where the line, the arc or the cap has no place (Lambda + pi3 <= 0, B <= 0, arc below q =
 /// 0)
 [[nodiscard]] CapConstants cap_constants(const Parameters& parameters, const Properties& properties);
-
-/// d(p_i)/d(phi).
-[[nodiscard]] double transition_start_slope(const Parameters& parameters, const Properties& properties);
 
 /// The segment that the surface has at this pressure.
 [[nodiscard]] Segment segment_at(const Parameters& parameters, const Properties& properties, double p);

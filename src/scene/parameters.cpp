@@ -210,12 +210,12 @@ void add_material_point(const Scenario& scenario, List& list) {
   list.push_back({"cap_centre", unit * at.cap_centre.value, "Pa", "pi3"});
   if (m.model != YieldModel::dpc) return;
   const CapConstants cap = cap_constants(m, at);
-  list.push_back({"friction_slope", cap.slope, "-", "tan pi6"});
-  list.push_back({"cohesion", unit * cap.cohesion, "Pa", "pi5"});
-  list.push_back({"arc_radius", unit * cap.arc_radius, "Pa", "pi8 C"});
-  list.push_back({"arc_centre", unit * cap.arc_centre, "Pa", "(1 - A) C"});
-  list.push_back({"flow_stretch", cap.flow_stretch, "-", "B"});
-  list.push_back({"transition_start", unit * cap.transition_start, "Pa", "p_i"});
+  list.push_back({"friction_slope", cap.friction_slope.value, "-", "tan pi6"});
+  list.push_back({"cohesion", unit * cap.cohesion.value, "Pa", "pi5"});
+  list.push_back({"arc_radius", unit * cap.arc_radius.value, "Pa", "pi8 C"});
+  list.push_back({"arc_centre", unit * cap.arc_centre.value, "Pa", "(1 - A) C"});
+  list.push_back({"flow_stretch", cap.flow_stretch.value, "-", "B"});
+  list.push_back({"transition_start", unit * cap.transition_start.value, "Pa", "p_i"});
 }
 
 void add_plastic(const Scenario& scenario, List& list) {

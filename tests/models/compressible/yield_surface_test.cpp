@@ -25,7 +25,7 @@ double strength_at(const Parameters& m, const Properties& at, Segment segment, d
   const double reach = 4.0 * at.shear_strength.value;
   double inside = 0.0;
   double outside = reach;
-  if (segment == Segment::transition) inside = cap_constants(m, at).arc_centre;
+  if (segment == Segment::transition) inside = cap_constants(m, at).arc_centre.value;
   for (int i = 0; i < 200; ++i) {
     const double q = 0.5 * (inside + outside);
     (yield_on(m, at, {segment, 1.0}, p, q).f < 0.0 ? inside : outside) = q;
@@ -44,7 +44,7 @@ std::vector<Segment> segments_of(const Parameters& m) {
 double pressure_in(const Parameters& m, const Properties& at, Segment segment, double share) {
   const double centre = at.cap_centre.value;
   const bool has_arc = m.model == YieldModel::dpc && m.transition_width > 0.0;
-  const double arc = has_arc ? cap_constants(m, at).transition_start : centre;
+  const double arc = has_arc ? cap_constants(m, at).transition_start.value : centre;
   switch (segment) {
     case Segment::tension:
       return std::lerp(at.tensile_strength.value, 0.0, share);
@@ -64,7 +64,7 @@ TEST(YieldSurface, DerivativesAreDifferenceQuotients) {
       const Properties at = properties_at(m, phi);
       for (const Segment segment : segments_of(m)) {
         for (const double share : {0.2, 0.5, 0.9}) {
-          for (const double side : {-1.0, 1.0}) {
+          for (const double side : {-1.0, 0.0, 1.0}) {
             const double p = pressure_in(m, at, segment, share);
             const double s = side * 0.97 * strength_at(m, at, segment, p);
             const Branch branch{segment, side};
@@ -88,6 +88,22 @@ TEST(YieldSurface, DerivativesAreDifferenceQuotients) {
           }
         }
       }
+    }
+  }
+}
+
+TEST(YieldSurface, SlopesOfTheCapsConstantsAreDifferenceQuotients) {
+  const double phi = 0.1;
+  const double step = 1e-6;
+  for (const Parameters& m : {lactose(0.0), lactose(0.03), lactose(0.05)}) {
+    const CapConstants here = cap_constants(m, properties_at(m, phi));
+    const CapConstants above = cap_constants(m, properties_at(m, phi + step));
+    const CapConstants below = cap_constants(m, properties_at(m, phi - step));
+    for (const auto member :
+         {&CapConstants::friction_slope, &CapConstants::cohesion, &CapConstants::arc_radius, &CapConstants::arc_centre,
+          &CapConstants::flow_stretch, &CapConstants::transition_start}) {
+      const double quotient = ((above.*member).value - (below.*member).value) / (2.0 * step);
+      EXPECT_NEAR((here.*member).slope, quotient, 1e-9 * (1.0 + std::abs(quotient)));
     }
   }
 }
@@ -156,10 +172,10 @@ TEST(YieldSurface, GradientsJumpWhereTheSourceSays) {
                      std::hypot(before.g_p, before.g_s) / std::hypot(after.g_p, after.g_s));
   };
   const auto [f_at_arc, g_at_arc] = ratio(Segment::shear, Segment::transition);
-  EXPECT_NEAR(f_at_arc, std::hypot(1.0, cap.slope), 1e-12);
+  EXPECT_NEAR(f_at_arc, std::hypot(1.0, cap.friction_slope.value), 1e-12);
   EXPECT_NEAR(g_at_arc, 1.0, 1e-12);
   const auto [f_at_cap, g_at_cap] = ratio(Segment::transition, Segment::cap);
-  EXPECT_NEAR(f_at_cap, 1.0 / (cap.flow_stretch * at.axis_ratio.value), 1e-12);
+  EXPECT_NEAR(f_at_cap, 1.0 / (cap.flow_stretch.value * at.axis_ratio.value), 1e-12);
   EXPECT_NEAR(g_at_cap, 1.0 / at.axis_ratio.value, 1e-12);
 }
 
@@ -191,7 +207,7 @@ TEST(YieldSurface, HasTheStrengthsItIsMadeFrom) {
     const double p = -at.cap_centre.value;
     const double q = strength_at(m, at, Segment::cap, p);
     // dpc rounds its edge off below the shear strength.
-    const double stretch = m.model == YieldModel::dpc ? cap_constants(m, at).flow_stretch : 1.0;
+    const double stretch = m.model == YieldModel::dpc ? cap_constants(m, at).flow_stretch.value : 1.0;
     EXPECT_NEAR(q, at.shear_strength.value / stretch, 1e-13);
   }
 }
@@ -202,9 +218,10 @@ TEST(YieldSurface, RelationsOfTheCapAreThePrintedOnes) {
   const CapConstants cap = cap_constants(m, at);
   const double centre = at.cap_centre.value;
   const double eps = at.axis_ratio.value;
-  EXPECT_NEAR(centre, (at.yield_pressure.value - eps * cap.cohesion) / (1.0 + eps * cap.slope), 1e-13);
-  EXPECT_NEAR(cap.cohesion / cap.slope, at.tensile_strength.value, 1e-14);
-  EXPECT_NEAR(cap.cohesion + centre * cap.slope, at.shear_strength.value, 1e-14);
+  EXPECT_NEAR(centre, (at.yield_pressure.value - eps * cap.cohesion.value) / (1.0 + eps * cap.friction_slope.value),
+              1e-13);
+  EXPECT_NEAR(cap.cohesion.value / cap.friction_slope.value, at.tensile_strength.value, 1e-14);
+  EXPECT_NEAR(cap.cohesion.value + centre * cap.friction_slope.value, at.shear_strength.value, 1e-14);
 }
 
 // Below the arc's centre the printed formula would call a state without any deviator yielded (corrected).
