@@ -2,32 +2,36 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <vector>
+#include <boost/container/static_vector.hpp>
 
 namespace monograin {
 namespace {
 
 constexpr double k_most = 1e6;       // of the push: more is needed by walls alone that align but for a millionth
 constexpr double k_no_help = 1e-13;  // nor does a direction help which only rounding leaves along what is left over
+// Three bear whatever is borne; there are others where directions depend on each other but for rounding.
+constexpr int k_most_bearing = 8;
 
 }  // namespace
 
 bool can_back(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> directions, double nothing) {
   const Eigen::Vector3d unit = push.normalized();
   Eigen::Vector3d left_over = unit;
-  std::vector<Eigen::Vector3d> bearing;
-  std::vector<double> shares;
+  boost::container::static_vector<Eigen::Vector3d, k_most_bearing> bearing;
+  boost::container::static_vector<double, k_most_bearing> shares;
   for (std::size_t round = 0; round <= 4 * directions.size(); ++round) {
     if (left_over.norm() < nothing) return std::ranges::all_of(shares, [](double share) { return share <= k_most; });
     const auto help = [&](const Eigen::Vector3d& direction) { return -direction.dot(left_over); };
     const auto best = std::ranges::max_element(directions, {}, help);
-    if (best == directions.end() || help(*best) <= k_no_help) return false;
+    if (best == directions.end() || help(*best) <= k_no_help || bearing.size() == k_most_bearing) return false;
     bearing.push_back(*best);
     shares.push_back(0.0);
     for (double way = 0.0; way < 1.0 && !bearing.empty();) {
-      Eigen::Matrix3Xd together(3, static_cast<Eigen::Index>(bearing.size()));
+      Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, k_most_bearing> together(
+          3, static_cast<Eigen::Index>(bearing.size()));
       for (std::size_t k = 0; k < bearing.size(); ++k) together.col(static_cast<Eigen::Index>(k)) = bearing[k];
-      const Eigen::VectorXd wanted = together.colPivHouseholderQr().solve(-unit);
+      const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, k_most_bearing, 1> wanted =
+          together.colPivHouseholderQr().solve(-unit);
       // Towards what is wanted, up to where the first of them would have to pull, which goes.
       way = 1.0;
       std::size_t first = bearing.size();
@@ -41,8 +45,8 @@ bool can_back(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> dire
         shares[k] += way * (wanted[static_cast<Eigen::Index>(k)] - shares[k]);
       }
       if (first == bearing.size()) break;
-      bearing.erase(bearing.begin() + static_cast<std::ptrdiff_t>(first));
-      shares.erase(shares.begin() + static_cast<std::ptrdiff_t>(first));
+      bearing.erase(bearing.nth(first));
+      shares.erase(shares.nth(first));
     }
     left_over = unit;
     for (std::size_t k = 0; k < bearing.size(); ++k) left_over += shares[k] * bearing[k];

@@ -51,6 +51,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   wall_places_.resize(count);
   bears_.resize(count, true);
   may_be_slight_.resize(count, false);
+  backing_.reserve(2 * count);
 
   Eigen::Matrix3Xd means(3, static_cast<Eigen::Index>(count));
   for (std::size_t i = 0; i < count; ++i) {

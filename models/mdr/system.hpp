@@ -303,7 +303,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double overlap_rate(std::size_t i, const Motion& now) const noexcept;
   [[nodiscard]] double edge_rate(std::size_t i, double r, const Motion& now);
   [[nodiscard]] double loaded_rate(double loading, double by_radius, double growth) const noexcept;
-  [[nodiscard]] bool is_backed(std::size_t i, double side = 1.0) const;
+  [[nodiscard]] bool is_backed(std::size_t i, double side = 1.0);
   [[nodiscard]] bool leave_behind(double xi, std::span<const double> y, std::vector<Event>& log);
   [[nodiscard]] bool leave_what_is_not_pressed(std::span<const Drive> drives, double xi, std::vector<Event>& log);
   [[nodiscard]] bool touches_have_to_bear(double xi) const;
@@ -311,7 +311,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double largest_prescribed_force() const noexcept;
   [[nodiscard]] double largest_force(std::size_t contact) const noexcept;
   void find_slight_forces();
-  [[nodiscard]] bool is_slight(std::size_t contact) const;
+  [[nodiscard]] bool is_slight(std::size_t contact);
   [[nodiscard]] std::optional<Small> velocity_of(std::span<Drive> drives, double xi, std::span<const double> y);
   bool drive_out(std::span<const Drive> drives, const SmallMatrix& along, Small& velocity) const;
   [[nodiscard]] bool rides(std::size_t i) const noexcept;
@@ -395,8 +395,9 @@ class System final : public HybridSystem {
   // Work space, so that nothing is allocated while integrating.
   std::vector<double> trial_;
   std::vector<Instant> now_;
-  double longest_ = 1.0;    ///< of the lengths, over R0, that overlaps are differences of
-  double seen_xi_ = k_nan;  ///< where look() was last
+  std::vector<Small> backing_;  ///< directions of what may back a contact
+  double longest_ = 1.0;        ///< of the lengths, over R0, that overlaps are differences of
+  double seen_xi_ = k_nan;      ///< where look() was last
   std::vector<double> seen_;
   std::vector<UnloadingShape> shapes_;
   std::vector<PullOff> pull_offs_;

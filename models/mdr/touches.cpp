@@ -253,7 +253,7 @@ void System::find_slight_forces() {
 }
 
 /// Whether a force is as small and nothing bears it: a wall that only touches would be left for it, and come back.
-bool System::is_slight(std::size_t i) const { return may_be_slight_[i] && !is_backed(i); }
+bool System::is_slight(std::size_t i) { return may_be_slight_[i] && !is_backed(i); }
 
 /// Velocity of the centre that such walls add to what it has without them, if they leave it a way out; and the rates of
 /// their overlaps without it.
@@ -292,14 +292,14 @@ bool System::drive_out(std::span<const Drive> drives, const SmallMatrix& along, 
 
 /// Whether the other touching contacts can balance a push of one of them on the free centre, or a pull where the side
 /// is -1; those whose edges do not follow pull, too.
-bool System::is_backed(std::size_t i, double side) const {
-  std::vector<Small> others;
+bool System::is_backed(std::size_t i, double side) {
+  backing_.clear();
   for (std::size_t j = 0; j < memory_.size(); ++j) {
     if (j == i || !touches(memory_[j].regime) || directions_[j].norm() < k_no_direction) continue;
-    others.push_back(directions_[j].normalized());
-    if (memory_[j].edge != Edge::following) others.emplace_back(-directions_[j].normalized());
+    backing_.push_back(directions_[j].normalized());
+    if (memory_[j].edge != Edge::following) backing_.emplace_back(-directions_[j].normalized());
   }
-  return can_back(side * directions_[i], others);
+  return can_back(side * directions_[i], backing_);
 }
 
 /// A wall that pushes a particle which nothing holds from the other side has no equilibrium, unless others adhere; nor

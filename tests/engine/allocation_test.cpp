@@ -78,6 +78,37 @@ TEST_P(Allocations, DependOnEventsOnly) {
   }
 }
 
+// Whether other contacts bear a force that is rounding beside theirs is asked at every state.
+constexpr const char* k_slight_force = R"(
+  model = "hertz"
+  particle.radius = 1
+  material = { youngs_modulus = 1, poisson_ratio = 0.4 }
+  [loading]
+  configuration = "walls"
+  centre = "equilibrium"
+  [[loading.wall]]
+  name = "driven"
+  normal = [1, 0, 0]
+  steps = [{ displacement = 0.1, duration = 1 }]
+  [[loading.wall]]
+  name = "loaded"
+  normal = [-1, 0, 0]
+  steps = [{ force = 0.05, duration = 1 }]
+  [[loading.wall]]
+  name = "slight"
+  normal = [0, 1, 0]
+  steps = [{ force = 1e-12, duration = 1 }]
+)";
+
+TEST(AllocationsOfSlightForces, DependOnEventsOnly) {
+  const Scenario scenario = parse_scenario(k_slight_force, "slight-force");
+  for (const char* integrator : {"direct", "cvode-bdf"}) {
+    count(scenario, integrator, 1e-5, 10);  // tables that are made once
+    const Count coarse = count(scenario, integrator, 1e-5, 10);
+    EXPECT_EQ(count(scenario, integrator, 1e-5, 300).allocations, coarse.allocations) << integrator;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(OfEveryModel, Allocations,
                          ::testing::Values("die", "uniaxial", "semimech", "hardening", "similarity", "nonlocal",
                                            "compressible", "packing", "material-point"),
