@@ -13,6 +13,7 @@
 #include "history/run.hpp"
 #include "scene/scene.hpp"
 #include "study/stress_generator.hpp"
+#include "study/stress_scene.hpp"
 #include "support/temporary_folder.hpp"
 
 // Under a sanitizer the allocator is its own.
@@ -57,6 +58,16 @@ Count count(Scenario scenario, std::string_view integrator, double rtol, int poi
   return {allocation_count - before, record.statistics.steps, record.statistics.events, record.status};
 }
 
+struct Pair {
+  Count coarse, fine;
+};
+
+/// With few and with many output points, after tables that are made once.
+Pair count_both(const Scenario& scenario, std::string_view integrator, double rtol) {
+  count(scenario, integrator, rtol, 10);
+  return {count(scenario, integrator, rtol, 10), count(scenario, integrator, rtol, 300)};
+}
+
 class Allocations : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Allocations, DependOnEventsOnly) {
@@ -68,10 +79,8 @@ TEST_P(Allocations, DependOnEventsOnly) {
     if (integrator == "odeint-rosenbrock4" || integrator == "odeint-bulirsch-stoer") continue;
     if (integrator == "direct" && !make_scene(scenario).system->is_solvable()) continue;
     SCOPED_TRACE(integrator);
-    count(scenario, integrator, 1e-5, 10);  // tables that are made once
-    const Count loose = count(scenario, integrator, 1e-5, 10);
+    const auto [loose, fine] = count_both(scenario, integrator, 1e-5);
     const Count tight = count(scenario, integrator, 1e-7, 10);
-    const Count fine = count(scenario, integrator, 1e-5, 300);
     for (const Count& each : {loose, tight, fine}) EXPECT_EQ(each.status, RunStatus::complete);
     EXPECT_TRUE(integrator == "direct" || tight.steps >= loose.steps);
     if (tight.events != loose.events) continue;  // two that coincide may be seen as one
@@ -107,9 +116,7 @@ constexpr const char* k_slight_force = R"(
 TEST(AllocationsOfSlightForces, DependOnEventsOnly) {
   const Scenario scenario = parse_scenario(k_slight_force, "slight-force");
   for (const char* integrator : {"direct", "cvode-bdf"}) {
-    count(scenario, integrator, 1e-5, 10);  // tables that are made once
-    const Count coarse = count(scenario, integrator, 1e-5, 10);
-    const Count fine = count(scenario, integrator, 1e-5, 300);
+    const auto [coarse, fine] = count_both(scenario, integrator, 1e-5);
     EXPECT_EQ(coarse.status, RunStatus::complete);
     EXPECT_EQ(fine.allocations, coarse.allocations) << integrator;
   }
@@ -123,9 +130,7 @@ TEST(AllocationsOfDrawnScenes, DependOnEventsOnly) {
   for (std::uint64_t i = 0; i < 150; ++i) {
     const Scenario scenario = parse_stress_text(scenario_text(draw_stress_scene(3, i, tables.path())), tables.path());
     const char* integrator = make_scene(scenario).system->is_solvable() ? "direct" : "cvode-bdf";
-    count(scenario, integrator, 1e-6, 10);  // tables that are made once
-    const Count coarse = count(scenario, integrator, 1e-6, 10);
-    const Count fine = count(scenario, integrator, 1e-6, 300);
+    const auto [coarse, fine] = count_both(scenario, integrator, 1e-6);
     // What fails ends in exceptions.
     const auto is_complete = [](const Count& each) { return each.status == RunStatus::complete; };
     if (!is_complete(coarse) || !is_complete(fine) || fine.events != coarse.events) continue;
