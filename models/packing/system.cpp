@@ -135,6 +135,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     if (is_jammed_) require_state(0.0);
     solve(0.0, y);
   }
+  if (!goes_on) pass_places(0.0, log);
   take_piece(0.0);
   require_pores();  // it may have given way until it is full
   if (is_at_limit(0.0)) throw CannotBegin(limit());
@@ -441,7 +442,8 @@ void System::watch(double xi) {
       break;
     }
   }
-  if (d < 0) return;
+  // A loose packing comes to strains that a jammed one has, but not to its states.
+  if (d < 0 || !is_jammed_) return;
   const double end = branch_.end;
   if (!is_softer_ && softening_ <= end) watch_place(k_softens, "plastic-softening", prescribed_at(softening_));
   const double plastic = full_plasticity(law_);
@@ -453,6 +455,28 @@ void System::watch(double xi) {
   } else {
     watch_place(k_limit, "limit", last_place());
   }
+}
+
+/// A packing that jams or gives way beyond its closed start passes these with it.
+void System::pass_places(double xi, std::vector<Event>& log) {
+  const auto is_passed = [&](double place) {
+    if (!is_jammed_ || place > branch_.end) return false;
+    return place <= branch_.begin || prescribed_at(place) <= told(xi);
+  };
+  if (!is_softer_ && is_passed(softening_)) {
+    is_softer_ = true;
+    log.push_back({"plastic-softening"});
+  }
+  if (!is_fully_plastic_ && is_passed(full_plasticity(law_))) {
+    is_fully_plastic_ = true;
+    log.push_back({"fully-plastic"});
+  }
+}
+
+/// Where the strain falls at first and never grows to what it is at jamming, there is nothing to give way to.
+void System::end_branch_at_jamming() noexcept {
+  branch_.begin = branch_.end = law_.jamming;
+  branch_.least = branch_.greatest = at_jamming_.strain;
 }
 
 void System::guard_values(double xi, std::span<const double> /*y*/, std::span<double> values) {
@@ -476,6 +500,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     switch (guards_[g].kind) {
       case k_jams:
         is_jammed_ = is_up;
+        if (is_up && told(xi) > branch_.greatest) end_branch_at_jamming();
         set_mode(is_up ? mode_of_jammed(told(xi)) : Mode::unjammed, xi, y);
         break;
       case k_grips:
@@ -501,15 +526,14 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   // Other places may lie where the one that has been met does.
   if (is_up && is_jammed_) {
     if (const Mode onward = mode_of_jammed(told(xi)); onward > mode_) set_mode(onward, xi, y);
+    pass_places(xi, log);
   }
   if (!end && is_at_limit(xi)) {  // it jams there
     end = limit();
     log.push_back(end->event);
   }
-  if (!end) {
-    take_piece(xi);
-    watch(xi);
-  }
+  take_piece(xi);
+  if (!end) watch(xi);
   resting_ = y[k_fraction];
   return end;
 }

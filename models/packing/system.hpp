@@ -99,6 +99,8 @@ class System final : public HybridSystem {
   [[nodiscard]] Mode mode_of_jammed(double value) const;
   void set_mode(Mode mode, double xi, std::span<double> y);
   void watch(double xi);
+  void pass_places(double xi, std::vector<Event>& log);
+  void end_branch_at_jamming() noexcept;
   void add_guard(int kind, std::string_view name, double place);
 
   Law law_;

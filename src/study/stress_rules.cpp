@@ -527,10 +527,20 @@ void check_packing(const Run& run, Violations& found) {
   const double scale = largest_magnitude(table, stress);
   check_rows(run, "tension", "the packing pulls", found,
              [&](const Table& t, std::size_t row) { return -t.at(row, stress) - tolerance * scale; });
+  const packing::Law law = packing_law_of(run.scenario);
+  const auto regime = *table.find("regime");
+  check_rows(run, "regime", "the regime does not belong to the packing fraction", found,
+             [&](const Table& t, std::size_t row) {
+               const std::string_view word = t.word(row, regime);
+               const double phi = t.at(row, fraction);
+               const double full = std::max(packing::full_plasticity(law), law.jamming);
+               if (word == "unjammed") return phi / law.jamming - 1.0 - tolerance;
+               return (word == "fully-plastic" ? full / phi : phi / full) - 1.0 - tolerance;
+             });
   // It grows like a root from jamming on, and is compared by what it follows from.
   const auto coordination = *table.find("coordination_number");
   check_rows(run, "coordination", "the coordination number does not belong to the packing fraction", found,
-             [&, law = packing_law_of(run.scenario)](const Table& t, std::size_t row) {
+             [&](const Table& t, std::size_t row) {
                const double number = t.at(row, coordination);
                if (std::isnan(number)) return -1.0;
                return std::abs(number / packing::coordination_number(law, t.at(row, fraction)) - 1.0) -

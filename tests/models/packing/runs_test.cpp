@@ -329,6 +329,58 @@ TEST(PackingRuns, HoldAndEndAtEvents) {
   }
 }
 
+/// A packing whose strain falls from jamming on, as its modulus begins.
+Parameters falls_at_first(double coupling_factor) {
+  Parameters p = published(0.0);
+  p.poisson_ratio = 0.3;
+  p.plasticity->yield_stress = 2e-5;
+  p.plastic_growth = 20.0;
+  p.coupling_factor = coupling_factor;
+  p.strain_offset = 0.24;
+  p.critical_porosity = 0.18;
+  return p;
+}
+
+TEST(PackingJamming, PassesWithItWhatLiesBeforeTheGrowingStrain) {
+  const Parameters p = falls_at_first(0.1);
+  const Law law = make_law(p);
+  const double jamming_strain = state(law, law.jamming).strain;
+  const double found = packing_fraction_at(law, growing_branch(law, Measure::strain), jamming_strain);
+  ASSERT_GT(found, full_plasticity(law));
+  for (const char* integrator : k_integrators) {
+    const TestRun run_ = run(scenario_of(p, {to_strain(0.08)}, 0.81), integrator);
+    EXPECT_EQ(run_.record.status, RunStatus::complete) << run_.record.message;
+    const double time = run_.time_of("jamming");
+    EXPECT_GT(time, 0.0);
+    EXPECT_EQ(run_.time_of("plastic-softening"), time) << integrator;
+    EXPECT_EQ(run_.time_of("fully-plastic"), time) << integrator;
+    const auto regime = *run_.record.history.find("regime");
+    const auto fraction = *run_.record.history.find("packing_fraction");
+    for (std::size_t row = 0; row < run_.record.history.row_count(); ++row) {
+      const bool is_jammed = run_.record.history.at(row, fraction) > law.jamming;
+      EXPECT_EQ(run_.record.history.word(row, regime), is_jammed ? "fully-plastic" : "unjammed") << integrator;
+    }
+  }
+}
+
+TEST(PackingEnds, AtJammingWhereTheStrainNeverGrowsToThatAgain) {
+  for (const double coupling_factor : {0.02, 0.03}) {
+    const Parameters p = falls_at_first(coupling_factor);
+    const Law law = make_law(p);
+    const State at_jamming = state(law, law.jamming);
+    ASSERT_LT(growing_branch(law, Measure::strain).greatest, at_jamming.strain);
+    for (const char* integrator : k_integrators) {
+      const TestRun run_ = run(scenario_of(p, {to_strain(0.08)}, 0.81), integrator);
+      EXPECT_EQ(run_.record.status, RunStatus::stopped);
+      EXPECT_NE(run_.record.message.find("does not grow"), std::string::npos) << run_.record.message;
+      EXPECT_EQ(run_.time_of("limit"), run_.time_of("jamming")) << integrator;
+      EXPECT_EQ(run_.last("packing_fraction"), law.jamming) << integrator;
+      EXPECT_NEAR(run_.last("strain"), at_jamming.strain, 1e-15) << integrator;
+      EXPECT_EQ(run_.last("stress"), at_jamming.stress) << integrator;
+    }
+  }
+}
+
 TEST(PackingEnds, WhereNoPoresAreLeft) {
   for (const char* integrator : k_integrators) {
     const TestRun beyond = run(scenario_of(published(1.0), {to_fraction(1.2)}), integrator);
