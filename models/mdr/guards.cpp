@@ -170,15 +170,14 @@ void System::watch_contact(std::size_t i, double r, const Motion& now) {
     case Regime::unloading:
       break;
   }
+  if (memory.regime == Regime::elastic && may_come_in && may_yield(memory)) add(k_yield, 1, "yield");
   if (memory.is_virgin) {
-    if (memory.regime == Regime::elastic && may_come_in && may_yield(memory)) add(k_yield, 1, "yield");
     const bool is_shifted = settings_.delta_max_rule == DeltaMaxRule::shifted;
     const bool may_retreat = is_free || (may_turn && (is_loaded(i) || (wall_rate(i, now) < 0.0 && !is_shifted)));
     if (may_retreat) guards_.push_back({k_retreat, index, -1, "retreat"});
     if (is_free && memory.regime == Regime::elastic) guards_.push_back({k_lost, index, -1, "contact-lost"});
     return;
   }
-  if (is_growing_ && memory.regime == Regime::elastic && may_yield(memory)) add(k_yield, 1, "yield");
   if (may_come_in) add(k_reload, 1, "reload");
   if (adheres())
     watch_edge(i, r, may_come_in, may_go_out, may_turn);

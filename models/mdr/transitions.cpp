@@ -254,7 +254,8 @@ void System::lose_contact(std::size_t i) {
 }
 
 /// Whether an elastic contact yields where it is deep enough: at its largest overlap, and below it where that moves
-/// with the radius, as growth may then press the contact in beyond anything it has borne while its wall goes back.
+/// with the radius, as growth may then have pressed the contact in beyond anything it has borne while its wall went
+/// back, or have left it with a largest overlap that it never had.
 bool System::may_yield(const Memory& memory) const noexcept {
   const bool is_at_largest = memory.is_virgin || settings_.delta_max_rule == DeltaMaxRule::shifted;
   return is_at_largest && std::isfinite(material_.yield_overlap_ratio);
