@@ -65,7 +65,7 @@ LegendreNodes::LegendreNodes(std::span<const double> abscissae, std::span<const 
     double previous = 0.0;
     double legendre = 1.0;
     for (std::size_t k = 0; k < count; ++k) {
-      to_coefficients[k][j] = 0.5 * (2.0 * static_cast<double>(k) + 1.0) * weights[from_middle] * legendre;
+      to_coefficients[j][k] = 0.5 * (2.0 * static_cast<double>(k) + 1.0) * weights[from_middle] * legendre;
       next_legendre(k, places[j], previous, legendre);
     }
   }
@@ -102,9 +102,10 @@ double LegendreNodes::cardinal(std::size_t node, std::size_t i, std::size_t know
 
 void LegendreSeries::fit(const LegendreNodes& nodes, const LegendreSamples& samples) noexcept {
   count_ = nodes.count;
-  for (std::size_t k = 0; k < count_; ++k) {
-    coefficients_[k] = 0.0;
-    for (std::size_t j = 0; j < count_; ++j) coefficients_[k] += nodes.to_coefficients[k][j] * samples[j];
+  coefficients_.fill(0.0);
+  // All coefficients of a sample at once, those beyond the last one too, which are zero.
+  for (std::size_t j = 0; j < count_; ++j) {
+    for (std::size_t k = 0; k < k_most_nodes; ++k) coefficients_[k] += nodes.to_coefficients[j][k] * samples[j];
   }
   terms_ = count_;
   while (terms_ > 0 && coefficients_[terms_ - 1] == 0.0) --terms_;

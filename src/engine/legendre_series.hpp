@@ -32,7 +32,7 @@ class LegendreNodes {
 
   std::size_t count;
   LegendreSamples places{};
-  std::array<LegendreSamples, k_most_nodes> to_coefficients{};  ///< of Legendre polynomials
+  std::array<LegendreSamples, k_most_nodes> to_coefficients{};  ///< of Legendre polynomials, for each sample
   std::array<Ahead, k_most_nodes> ahead{};
 
  private:
