@@ -118,16 +118,8 @@ Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Ce
   directions_ = centre == Centre::free ? basis_of(mean_normals, k_same_surroundings) : Eigen::Matrix3Xd(3, 0);
   arms_ = mean_normals.transpose() * directions_;
 
-  if (has_modes_of_walls_) {
-    mode_coupling_ = influence;
-    mode_class_ = class_of;
-  } else {
-    // With positive couplings the critical mode is positive (Perron), hence one of the classes.
-    const Eigen::VectorXd root = weights.cwiseSqrt();
-    const Eigen::MatrixXd scaled = root.asDiagonal() * coupling_ * root.cwiseInverse().asDiagonal();
-    mode_coupling_ = 0.5 * (scaled + scaled.transpose());
-    for (std::size_t j = 0; j < n; ++j) mode_class_.push_back(j);
-  }
+  // With positive couplings the critical mode is positive (Perron), hence one of the classes.
+  modes_ = Modes(influence, class_of, !has_modes_of_walls_);
 
   stride_ = n + 1 + free_count();
   now_.resize(n);
@@ -142,10 +134,6 @@ Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Ce
   for (auto* state : {&trial_, &state_, &unit_rates_, &carried_, &at_once_, &by_halves_, &early_, &late_})
     state->resize(unknown_count());
   unit_ramps_.resize(n);
-  modes_ = mode_coupling_;
-  stiffness_roots_.resize(n);
-  eigenvalues_.compute(modes_);
-  critical_mode_ = eigenvalues_.eigenvectors().col(0);
 }
 
 Contacts::Target Contacts::target(bool is_force, double value) const {
@@ -372,21 +360,24 @@ bool Contacts::newton(std::span<double> y, double imbalance, bool do_hold_centre
       }
     }
     double scale = 0.0;
-    double length = 0.0;
     for (std::size_t j = 0; j < n; ++j) {
       if (targets_[j].is_force) continue;
       const double step = entry(j, n) / now_[j].approach_slope;
       y[j] += step;
       correction = std::max(correction, std::abs(step));
       scale = std::max(scale, std::abs(y[j]));
-      length = std::max({length, std::abs(targets_[j].value), std::abs(lift(j, y))});
     }
     // What is left is at most a further contraction of this correction.
     const double contraction = iteration > 0 ? std::min(correction / last, 1.0) : 1.0;
     if (correction * contraction <= k_resolved * scale) return true;
     // Contacts that are shallow against the way of the centre are what rounding of that leaves.
-    if (iteration >= free_steps && contraction > k_contraction)
+    if (iteration >= free_steps && contraction > k_contraction) {
+      double length = 0.0;
+      for (std::size_t j = 0; j < n; ++j) {
+        if (!targets_[j].is_force) length = std::max({length, std::abs(targets_[j].value), std::abs(lift(j, y))});
+      }
       return correction <= std::max(k_stagnation * scale, k_resolved * length);
+    }
     last = correction;
   }
   return false;
@@ -599,6 +590,16 @@ void Contacts::jacobian(std::span<const Ramp> ramps, std::span<const double> y, 
       for (std::size_t k = 0; k < free_count(); ++k) jacobian(at(j), at(n + k)) = -arms_(at(j), at(k));
     }
   }
+}
+
+double Contacts::margin(std::span<const double> y) {
+  look(y);
+  return modes_.margin(stiffness_);
+}
+
+double Contacts::least_pivot(std::span<const double> y, double shift) {
+  look(y);
+  return modes_.least_pivot(stiffness_, shift);
 }
 
 double Contacts::branch_reach(std::size_t index, double signed_square) const noexcept {

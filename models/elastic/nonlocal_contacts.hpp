@@ -21,7 +21,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -29,6 +28,7 @@
 
 #include "elastic/nonlocal_coupling.hpp"
 #include "elastic/nonlocal_law.hpp"
+#include "elastic/nonlocal_modes.hpp"
 #include "walls.hpp"
 
 namespace monograin::nonlocal {
@@ -171,10 +171,6 @@ class Contacts {
   [[nodiscard]] double lift(std::size_t index, std::span<const double> y) const noexcept;
   [[nodiscard]] double net_force(std::size_t direction) const noexcept;
   [[nodiscard]] bool eliminate() noexcept;
-  void set_modes(double shift);
-  double eliminate_modes(bool to_the_end) noexcept;
-  void solve_modes(Eigen::VectorXd& x) const noexcept;
-  [[nodiscard]] double quotient_of_modes() const noexcept;
   void regularise_first_touch(double stiffness, const auto& is_touching);
   [[nodiscard]] Eigen::Vector3d way_to_balance(const Eigen::Vector3d& net_force);
   void move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
@@ -234,9 +230,7 @@ class Contacts {
   };
   std::vector<std::vector<Neighbour>> neighbours_;  ///< of the first wall of each class
 
-  // Modes in which the path may turn back: those of the classes, or of all walls where a coupling is negative.
-  Eigen::MatrixXd mode_coupling_;  ///< symmetric
-  std::vector<std::size_t> mode_class_;
+  Modes modes_;  ///< of the classes, or of all walls where a coupling is negative
   bool has_modes_of_walls_ = false;
   std::vector<double> rivalry_;  ///< s of each class from where walls push each other off; infinite where they do not
 
@@ -259,10 +253,6 @@ class Contacts {
   std::vector<double> carried_, at_once_, by_halves_, early_, late_;
   std::vector<Ramp> unit_ramps_;
   Eigen::Vector3d imbalance_ = Eigen::Vector3d::Zero();
-  Eigen::MatrixXd modes_;
-  std::vector<double> stiffness_roots_;
-  Eigen::VectorXd critical_mode_;  ///< of the least eigenvalue, as it was found last
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigenvalues_;
 };
 
 }  // namespace monograin::nonlocal

@@ -499,6 +499,8 @@ void System::watch() {
                        .is_silent = true,
                        .is_told = true});
   }
+  // The formulation stiffens before it comes to its limit.
+  const bool will_stiffen = !has_stiffened_ && contacts_.least_pivot(state_, k_stiff_margin) > 0.0;
   if (!has_stiffened_) guards_.push_back({k_stiffening, -1, -1, "stiffening"});
   const bool needs_radius = settings_.radius_rule != RadiusRule::none || settings_.model.terms == Terms::all;
   for (std::size_t i = 0; needs_radius && i < classes_.size(); ++i) {
@@ -507,7 +509,7 @@ void System::watch() {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (regimes_[i] == Regime::elastic) add_guard(k_centre, i, -1, "limit");
   }
-  guards_.push_back({k_limit, -1, -1, "limit"});
+  if (!will_stiffen) guards_.push_back({k_limit, -1, -1, "limit"});
 }
 
 /// How far a wall has come towards the centre, wherever that is.
