@@ -17,8 +17,8 @@ namespace monograin::nonlocal {
 class Modes {
  public:
   Modes() = default;
-  /// @param influence  symmetric, over the walls
-  /// @param class_of   for each wall; all walls of a class have the same surroundings
+  /// @param influence   symmetric, over the walls
+  /// @param class_of    for each wall; all walls of a class have the same surroundings
   /// @param of_classes  leave out the differences within classes
   Modes(const Eigen::MatrixXd& influence, std::span<const std::size_t> class_of, bool of_classes);
 
