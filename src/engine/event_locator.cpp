@@ -113,12 +113,19 @@ bool EventLocator::any_crosses(const View& before, const View& after) const {
 }
 
 /// Where between a look and the next a guard may have crossed and come back: the extremum of the parabola through these
-/// two and a third; where there is none, the next look.
+/// two and the one after, or before, whichever is first; where there is none, the next look.
 double EventLocator::hidden_extremum(std::size_t place) const {
   const View a = seen(place);
   const View b = seen(place + 1);
   if (b.xi - a.xi < k_smallest_hidden || looks_.empty()) return b.xi;
-  const View third = seen(place < looks_.size() ? place + 2 : place - 1);
+  double extremum = b.xi;
+  if (place < looks_.size()) extremum = std::min(extremum, extremum_of(a, b, seen(place + 2)));
+  if (place > 0) extremum = std::min(extremum, extremum_of(a, b, seen(place - 1)));
+  return extremum;
+}
+
+/// The same for one third look.
+double EventLocator::extremum_of(const View& a, const View& b, const View& third) const {
   const auto directions = watch_.directions();
   const double per_length = 1.0 / (b.xi - a.xi);
   const double per_third = 1.0 / (third.xi - b.xi);
