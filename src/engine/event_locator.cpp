@@ -1,6 +1,7 @@
 #include "engine/event_locator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
@@ -118,18 +119,19 @@ double EventLocator::hidden_extremum(std::size_t place) const {
   const View a = seen(place);
   const View b = seen(place + 1);
   if (b.xi - a.xi < k_smallest_hidden || looks_.empty()) return b.xi;
-  double extremum = b.xi;
-  if (place < looks_.size()) extremum = std::min(extremum, extremum_of(a, b, seen(place + 2)));
-  if (place > 0) extremum = std::min(extremum, extremum_of(a, b, seen(place - 1)));
-  return extremum;
-}
+  struct Third {
+    View view;
+    double per_b = 0.0;  ///< one over its distance from b, and from a
+    double per_a = 0.0;
+  };
+  std::array<Third, 2> thirds;
+  std::size_t count = 0;
+  const auto add = [&](const View& view) { thirds[count++] = {view, 1.0 / (view.xi - b.xi), 1.0 / (view.xi - a.xi)}; };
+  if (place < looks_.size()) add(seen(place + 2));
+  if (place > 0) add(seen(place - 1));
 
-/// The same for one third look.
-double EventLocator::extremum_of(const View& a, const View& b, const View& third) const {
   const auto directions = watch_.directions();
   const double per_length = 1.0 / (b.xi - a.xi);
-  const double per_third = 1.0 / (third.xi - b.xi);
-  const double per_both = 1.0 / (third.xi - a.xi);
   double extremum = b.xi;
   for (std::size_t g = 0; g < directions.size(); ++g) {
     const double at_a = a.values[g];
@@ -137,13 +139,15 @@ double EventLocator::extremum_of(const View& a, const View& b, const View& third
     const double sign = at_a < 0.0 ? 1.0 : -1.0;  // towards zero
     if (at_a == 0.0 || (directions[g] != 0 && directions[g] != static_cast<int>(sign))) continue;
     const double slope = (at_b - at_a) * per_length;
-    const double curvature = ((third.values[g] - at_b) * per_third - slope) * per_both;
-    if (!(sign * curvature < 0.0)) continue;
-    const double place_of_extremum = 0.5 * (a.xi + b.xi - slope / curvature);
-    if (!(place_of_extremum > a.xi && place_of_extremum < b.xi)) continue;
-    const double height = at_a + (place_of_extremum - a.xi) * (slope + curvature * (place_of_extremum - b.xi));
-    if (sign * height < -k_near * std::min(std::abs(at_a), std::abs(at_b))) continue;
-    extremum = std::min(extremum, place_of_extremum);
+    for (const Third& third : std::span(thirds).first(count)) {
+      const double curvature = ((third.view.values[g] - at_b) * third.per_b - slope) * third.per_a;
+      if (!(sign * curvature < 0.0)) continue;
+      const double place_of_extremum = 0.5 * (a.xi + b.xi - slope / curvature);
+      if (!(place_of_extremum > a.xi && place_of_extremum < b.xi)) continue;
+      const double height = at_a + (place_of_extremum - a.xi) * (slope + curvature * (place_of_extremum - b.xi));
+      if (sign * height < -k_near * std::min(std::abs(at_a), std::abs(at_b))) continue;
+      extremum = std::min(extremum, place_of_extremum);
+    }
   }
   return extremum;
 }

@@ -65,7 +65,6 @@ class EventLocator : public Integrator {
   [[nodiscard]] View seen(std::size_t place) const;
   [[nodiscard]] bool any_crosses(const View& before, const View& after) const;
   [[nodiscard]] double hidden_extremum(std::size_t place) const;
-  [[nodiscard]] double extremum_of(const View& a, const View& b, const View& third) const;
   [[nodiscard]] double first_root(const View& before, const View& after, std::size_t& guard);
   [[nodiscard]] std::size_t shorten(double xi, std::size_t looks);
   [[nodiscard]] bool is_branch_end(std::size_t guard) const;

@@ -528,12 +528,12 @@ void check_packing(const Run& run, Violations& found) {
   check_rows(run, "tension", "the packing pulls", found,
              [&](const Table& t, std::size_t row) { return -t.at(row, stress) - tolerance * scale; });
   const packing::Law law = packing_law_of(run.scenario);
+  const double full = std::max(packing::full_plasticity(law), law.jamming);
   const auto regime = *table.find("regime");
   check_rows(run, "regime", "the regime does not belong to the packing fraction", found,
              [&](const Table& t, std::size_t row) {
                const std::string_view word = t.word(row, regime);
                const double phi = t.at(row, fraction);
-               const double full = std::max(packing::full_plasticity(law), law.jamming);
                if (word == "unjammed") return phi / law.jamming - 1.0 - tolerance;
                return (word == "fully-plastic" ? full / phi : phi / full) - 1.0 - tolerance;
              });
