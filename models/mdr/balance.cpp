@@ -80,55 +80,44 @@ void System::sum_up(double xi, double r) {
       line = {.direction = line.direction, .last_stiffness = line.last_stiffness};
     }
   }
-  sums_.power = 0.0;
-  sums_.force_work = 0.0;
-
   double virial_of_all = 0.0;
   double virial = 0.0;  // of the members of the growth set
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    const double one = classes_[i].multiplicity() * now_[i].contact.force * (1.0 - now_[i].displacement);
+    const double one = counts_[i] * now_[i].contact.force * (1.0 - now_[i].displacement);
     virial_of_all += one;
     if (is_member(memory_[i])) virial += one;
   }
   const double scale = 3.0 * k_per_solid_angle * material_.bulk_compliance;
-  sums_.relative_compression = scale * virial_of_all;
   const double w = scale * virial;
-  sums_.under_root = 1.0 - 4.0 * w;
-  const double root = std::sqrt(sums_.under_root);
+  const double under_root = 1.0 - 4.0 * w;
+  const double root = std::sqrt(under_root);
   const double weight = k_per_solid_angle * material_.bulk_compliance / root;
 
+  // Sums of their own: what is written to contacts might else be written to those in sums_.
+  double power = 0.0;
+  double work_of_forces = 0.0;
   double caps = 0.0;
   double overlaps = 0.0;
-  sums_.by_time = 0.0;
-  sums_.time_scale = 0.0;
-  sums_.by_radius = 0.0;
+  double by_time = 0.0;
+  double time_scale = 0.0;
+  double by_radius = 0.0;
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    set_rates(i, r);
-    if (!touches(memory_[i].regime)) continue;
-    const Instant& now = now_[i];
-    const Contact& c = now.contact;
-    const double count = classes_[i].multiplicity();
+    Instant& now = now_[i];
+    const bool is_under_force = is_loaded(i);
     const double speed = ramps_[i].end - ramps_[i].start;
-    if (is_loaded(i)) {
-      sums_.power -= count * now.position * speed;
-      sums_.force_work += count * prescribed_force(i, xi) * now.position;
+    now.rate_by_time = is_under_force ? 0.0 : speed;
+    now.rate_by_growth = 0.0;
+    if (is_under_force) set_rates_under_force(i, r);
+    if (!touches(memory_[i].regime)) continue;
+    const Contact& c = now.contact;
+    const double count = counts_[i];
+    if (is_under_force) {
+      power -= count * now.position * speed;
+      work_of_forces += count * prescribed_force(i, xi) * now.position;
     } else if (bears_[i]) {
-      sums_.power += count * c.force * speed;
+      power += count * c.force * speed;
     }
-    if (free_count_ > 0) {
-      const double firm = firmness(i);
-      const double along = on_lines_[i].along;
-      Line& line = lines_[on_lines_[i].line];
-      if (!is_slight(i)) {
-        line.force += count * c.force * along;
-        line.force_by_time += count * (is_loaded(i) ? speed : firm * speed) * along;
-      }
-      if (!is_loaded(i)) {
-        line.force_by_radius += count * (firm + c.by_radius) * along;
-        line.stiffness += count * c.by_overlap * along * along;
-        line.firmness += count * firm * along * along;
-      }
-    }
+    if (free_count_ > 0) push_line(i);
     if (!is_member(memory_[i])) continue;
     const double distance = 1.0 - now.displacement;
     caps += count * now.overlap * now.overlap * (3.0 * radius - now.overlap);
@@ -136,13 +125,20 @@ void System::sum_up(double xi, double r) {
     const double cap_rate = 0.25 * now.overlap * (2.0 * radius - now.overlap);
     const double volume_rate = weight * (c.by_overlap * distance - c.force);
     const double by_displacement = count * (volume_rate - cap_rate);
-    sums_.by_time += by_displacement * now.rate_by_time;
-    sums_.time_scale += count * (std::abs(volume_rate) + std::abs(cap_rate)) * std::abs(now.rate_by_time);
-    sums_.by_radius += count * weight * (c.by_overlap + c.by_radius) * distance + by_displacement * now.rate_by_growth;
-    if (free_count_ > 0 && !is_loaded(i)) sums_.by_centre += by_displacement * directions_[i];
+    by_time += by_displacement * now.rate_by_time;
+    time_scale += count * (std::abs(volume_rate) + std::abs(cap_rate)) * std::abs(now.rate_by_time);
+    by_radius += count * weight * (c.by_overlap + c.by_radius) * distance + by_displacement * now.rate_by_growth;
+    if (free_count_ > 0 && !is_under_force) sums_.by_centre += by_displacement * directions_[i];
   }
+  sums_.energy.reset();
+  sums_.relative_compression = scale * virial_of_all;
+  sums_.under_root = under_root;
+  sums_.power = power;
+  sums_.force_work = work_of_forces;
+  sums_.by_time = by_time;
+  sums_.time_scale = time_scale;
   sums_.balance = r * (1.0 + r * (1.0 + k_third * r)) - k_twelfth * caps + 2.0 * k_third * w / (1.0 + root);
-  sums_.by_radius += radius * radius - 0.5 * radius * overlaps;
+  sums_.by_radius = by_radius + (radius * radius - 0.5 * radius * overlaps);
   if (free_count_ == 0) return;
   // At first touch all stiffnesses vanish together.
   const bool is_first_touch = std::ranges::all_of(lines_, [](const Line& line) { return line.stiffness == 0.0; });
@@ -152,6 +148,25 @@ void System::sum_up(double xi, double r) {
     if (is_first_touch) line.stiffness = line.firmness / least_firm();
     sums_.force += line.force * line.direction;
     sums_.stiffness += line.stiffness * line.direction * line.direction.transpose();
+  }
+}
+
+/// What a touching contact does to a free centre along its line.
+void System::push_line(std::size_t i) {
+  const double count = counts_[i];
+  const double firm = firmness(i);
+  const double along = on_lines_[i].along;
+  const double speed = ramps_[i].end - ramps_[i].start;
+  const Contact& c = now_[i].contact;
+  Line& line = lines_[on_lines_[i].line];
+  if (!is_slight(i)) {
+    line.force += count * c.force * along;
+    line.force_by_time += count * (is_loaded(i) ? speed : firm * speed) * along;
+  }
+  if (!is_loaded(i)) {
+    line.force_by_radius += count * (firm + c.by_radius) * along;
+    line.stiffness += count * c.by_overlap * along * along;
+    line.firmness += count * firm * along * along;
   }
 }
 
@@ -275,7 +290,7 @@ double System::inward_rate(std::size_t i, const Motion& motion) const noexcept {
 
 double System::magnitude_of_forces() const noexcept {
   double sum = 0.0;
-  for (std::size_t i = 0; i < now_.size(); ++i) sum += classes_[i].multiplicity() * std::abs(now_[i].contact.force);
+  for (std::size_t i = 0; i < now_.size(); ++i) sum += counts_[i] * std::abs(now_[i].contact.force);
   return sum;
 }
 
@@ -287,7 +302,7 @@ double System::rounding_of_forces() const noexcept {
   double sum = magnitude_of_forces();
   for (std::size_t i = 0; i < now_.size(); ++i) {
     const double length = std::max(longest_, std::abs(now_[i].position));
-    sum += classes_[i].multiplicity() * unpeeled_stiffness(i) * length;
+    sum += counts_[i] * unpeeled_stiffness(i) * length;
   }
   return 4.0 * k_round_off * sum;
 }
@@ -496,6 +511,7 @@ void System::hold_centre(std::span<const double> y) {
     const bool may_pull = memory_[i].edge != Edge::following;
     bears_[i] = directions_[i].norm() < k_no_direction || is_backed(i) || (may_pull && is_backed(i, -1.0));
   }
+  forget_look();
 }
 
 double System::balance_residual(double xi, std::span<const double> y) {

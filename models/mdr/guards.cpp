@@ -85,7 +85,7 @@ double System::cap_guard(const CapPair& pair, double r) const {
 /// Lists the guards that can fire before the step ends.
 void System::watch(double xi, std::span<const double> y) {
   guards_.clear();
-  look(xi, y);
+  look_once(xi, y);
   const double r = y[k_radius];
   const Motion now = motion(is_growing_);
   for (std::size_t i = 0; i < memory_.size(); ++i) watch_contact(i, r, now);

@@ -35,13 +35,14 @@ void System::look(double xi, std::span<const double> y) {
 /// The same where only the forces matter.
 void System::look_at_forces(double xi, std::span<const double> y) {
   forget_look();
+  const double r = y[k_radius];
   longest_ = 1.0;
   for (int k = 0; k < free_count_; ++k) longest_ = std::max(longest_, std::abs(y[centre_place(k)]));
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    look_at(i, is_loaded(i) ? y[wall_places_[i]] : displacement_as_told(i, xi, y), y[k_radius]);
+    look_at(i, is_loaded(i) ? y[wall_places_[i]] : displacement_as_told(i, xi, y), r);
     now_[i].position = now_[i].displacement - carried_by_centre(i, y);
   }
-  sum_up(xi, y[k_radius]);
+  sum_up(xi, r);
 }
 
 void System::keep_look(double xi, std::span<const double> y) {
@@ -144,7 +145,7 @@ double System::force_work(std::span<const double> y) {
     if (!is_loaded(i)) continue;
     look_at(i, y[wall_places_[i]], y[k_radius]);
     const double position = now_[i].displacement - carried_by_centre(i, y);
-    sum += classes_[i].multiplicity() * now_[i].contact.force * position;
+    sum += counts_[i] * now_[i].contact.force * position;
   }
   return sum;
 }
@@ -260,19 +261,15 @@ Contact System::firm_contact(std::size_t i, double r) {
   return contact_at(i, is_dent ? std::min(touch + k_shallow, shape(i, r).overlap_max) : k_shallow, r);
 }
 
-/// How the displacement of a wall goes with xi and R.
-void System::set_rates(std::size_t i, double r) {
+/// How the displacement of a wall under force goes with xi and R; zero where it stays.
+void System::set_rates_under_force(std::size_t i, double r) {
   Instant& now = now_[i];
   const double speed = ramps_[i].end - ramps_[i].start;
-  now.rate_by_time = is_loaded(i) ? 0.0 : speed;
-  now.rate_by_growth = 0.0;
-  if (!is_loaded(i)) return;
   const Contact c = firm_contact(i, r);
   if (memory_[i].edge == Edge::peeling) {
     // Where it pulls off, a force holds it no longer: whatever the radius, the overlap is about that.
     const double critical = pull_off(i, frame(i, now.overlap, r).indenter).by_force.contact_radius;
     if (c.contact_radius <= (1.0 + k_at_pull_off) * critical) {
-      now.rate_by_time = 0.0;
       now.rate_by_growth = -1.0;
       return;
     }

@@ -48,7 +48,7 @@ bool System::gate_is_open(const Motion& now) const noexcept {
 /// Whether the radius starts to grow, or goes on growing, at this instant.
 bool System::wants_growth(double xi, std::span<double> y) {
   if (settings_.radius_rule == RadiusRule::fixed) return false;
-  look(xi, y);
+  look_once(xi, y);
   const Motion now = motion(false);
   if (!gate_is_open(now)) return false;
   double drive = growth_drive(now);
@@ -294,8 +294,9 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
       has_changed = has_changed || (has_entered && !is_as_last);
     }
     if (!has_changed && !has_arrived) throw_unsettled();
-    if (!has_changed) return;
+    if (!has_changed) break;
   }
+  forget_look();  // what turns was looked at where it came from
 }
 
 /// Decides the mode: branch of every contact and growth depend on each other, so assume, look, correct, and repeat.
@@ -306,6 +307,7 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
 void System::settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log,
                     bool has_jumped) {
   const bool was_growing = is_growing_;
+  forget_look();
   std::vector<Event> made;
   goes_on_.assign(memory_.size(), false);
   has_resumed_.assign(memory_.size(), false);
@@ -332,11 +334,12 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
     if (round == most_rounds() && runs_away) throw std::domain_error(k_singular_growth);
     if (round == most_rounds()) throw_unsettled();
     is_growing_ = growth ? *growth : wants_growth(xi, y);
-    look(xi, y);
+    look_once(xi, y);
     const std::size_t events_before = log.size();
     if (leave_behind(xi, y, log)) {
       // What it leaves has drawn the centre along in the search for the balance.
       if (!has_jumped) complete(xi, y);
+      forget_look();
       growth.reset();
       continue;
     }
@@ -357,6 +360,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
       if (hold_guard(y[k_radius]) >= 0.0) break;
       separate(*weakest, y[k_radius], y, log);
     }
+    forget_look();
     // No guard is met by a wall that a force presses on from the start.
     for (const std::size_t i : just_loaded) meet_balanced(i, true, y[k_radius], made);
     // Where a contact has pulled off, the others have to balance anew.
@@ -369,7 +373,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
   if (is_growing_ != was_growing) log.push_back({is_growing_ ? "growth-on" : "growth-off"});
   log.insert(log.end(), made.begin(), made.end());
 
-  look(xi, y);
+  look_once(xi, y);
   frozen_balance_ = is_growing_ ? sums_.balance : 0.0;
   // Past already, its guard would not be met.
   if (is_growing_ && free_surface(motion(true), y[k_radius]) < k_least_slope) {
@@ -377,12 +381,11 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
   }
   hold_centre(y);
   watch(xi, y);
-  forget_look();
 }
 
 std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                       std::vector<Event>& log) {
-  look(xi, y);
+  look_once(xi, y);
   const double r = y[k_radius];
   const Motion now = motion(is_growing_);
   std::optional<bool> growth;

@@ -55,9 +55,10 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
 
   Eigen::Matrix3Xd means(3, static_cast<Eigen::Index>(count));
   for (std::size_t i = 0; i < count; ++i) {
+    counts_.push_back(classes_[i].multiplicity());
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& normal : classes_[i].normals) mean += normal;
-    means.col(static_cast<Eigen::Index>(i)) = mean / classes_[i].multiplicity();
+    means.col(static_cast<Eigen::Index>(i)) = mean / counts_[i];
   }
   // The centre can only move in ways that keep the symmetry: along the mean normals of the classes.
   if (settings_.centre_is_free) {
@@ -187,7 +188,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   has_turned_.assign(memory_.size(), false);
   is_left_.assign(memory_.size(), false);
   find_slight_forces();
-  look(0.0, y);
+  if (free_count_ > 0) look(0.0, y);
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     // The nearest walls close with it, as no guard is met by one that touches already.
     const bool begins_to_press = is_loaded(i) && ramps_[i].start == 0.0 && ramps_[i].end > 0.0;

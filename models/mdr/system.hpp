@@ -164,6 +164,8 @@ class System final : public HybridSystem {
     Small force = Small::Zero();  ///< net force along the free directions, and its derivative by the centre
     SmallMatrix stiffness = SmallMatrix::Zero();
     double time_scale = 0.0;  ///< sum of the magnitudes in by_time
+    /// Stored energy where no part of it is open to question, once it has been asked for.
+    std::optional<double> energy{};
   };
 
   /// Walls that face each other, or the same way, push a free centre along one line. What they do is summed up there
@@ -237,7 +239,7 @@ class System final : public HybridSystem {
   [[nodiscard]] const PullOff& pull_off(std::size_t i, const Indenter& indenter);
   [[nodiscard]] double touching_overlap(std::size_t i, double r);
   [[nodiscard]] double displacement_under_force(std::size_t i, double xi, double r, double guess);
-  void set_rates(std::size_t i, double r);
+  void set_rates_under_force(std::size_t i, double r);
   [[nodiscard]] double displacement_as_told(std::size_t i, double xi, std::span<const double> y) const noexcept;
   [[nodiscard]] double carried_by_centre(std::size_t i, std::span<const double> y) const noexcept;
   void place(double xi, std::span<double> y);
@@ -257,6 +259,7 @@ class System final : public HybridSystem {
   [[nodiscard]] Contact firm_contact(std::size_t i, double r);
   [[nodiscard]] double force_work(std::span<const double> y);
   void sum_up(double xi, double r);
+  void push_line(std::size_t i);
   /// Stiffness of a contact as deep as rounding.
   [[nodiscard]] double least_firm() const noexcept { return 2.0 * material_.composite_modulus * std::sqrt(k_shallow); }
   [[nodiscard]] double firmness(std::size_t i) const noexcept;
@@ -370,6 +373,7 @@ class System final : public HybridSystem {
   double stress_unit_ = 1.0;
   double surface_energy_ = 0.0;  ///< over the stress unit and R0
   std::vector<ContactClass> classes_;
+  std::vector<double> counts_;  ///< walls of each class
   std::vector<Unknown> unknowns_;
   std::vector<Observable> observables_;
   std::vector<Small> directions_;  ///< mean normal of each class along the free directions of the centre

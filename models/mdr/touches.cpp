@@ -190,7 +190,7 @@ bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi,
   }
   if (!can_back(push, units)) return false;
   std::vector<double> weights;
-  for (const Drive& drive : drives) weights.push_back(classes_[drive.contact].multiplicity() * firmness(drive.contact));
+  for (const Drive& drive : drives) weights.push_back(counts_[drive.contact] * firmness(drive.contact));
   const std::vector<double> overlaps = overlaps_under_push(push, normals, weights);
   bool has_left = false;
   for (std::size_t k = 0; k < drives.size(); ++k) {
@@ -223,7 +223,7 @@ System::Small System::prescribed_push(double xi) const noexcept {
   Small sum = Small::Zero();
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (!is_loaded(i) || !touches(memory_[i].regime)) continue;
-    sum += classes_[i].multiplicity() * prescribed_force(i, xi) * directions_[i];
+    sum += counts_[i] * prescribed_force(i, xi) * directions_[i];
   }
   return sum;
 }
@@ -239,7 +239,7 @@ double System::largest_prescribed_force() const noexcept {
 
 /// Of a wall and its images within the step; zero where none is prescribed.
 double System::largest_force(std::size_t i) const noexcept {
-  return is_loaded(i) ? classes_[i].multiplicity() * std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end)) : 0.0;
+  return is_loaded(i) ? counts_[i] * std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end)) : 0.0;
 }
 
 /// Finds the forces that are rounding beside the others within the step.

@@ -71,6 +71,7 @@ double System::loaded_rate(double loading, double by_radius, double growth) cons
 
 /// Where a contact is becomes its largest overlap.
 void System::set_largest(std::size_t i, double r) noexcept {
+  forget_look();
   memory_[i].largest = now_[i].overlap - (settings_.delta_max_rule == DeltaMaxRule::shifted ? r : 0.0);
 }
 
@@ -134,7 +135,7 @@ void System::separate(std::size_t i, double r, std::span<double> y, std::vector<
     // The wall keeps the work done on it so far. Where the contact holds negative energy, the load has at least to
     // supply that in the snap.
     const double supplied = std::max(0.0, -contact_energy(i, r, PlasticPart::recoverable));
-    y[k_work] += classes_[i].multiplicity() * (now.contact.force * now.position + supplied);
+    y[k_work] += counts_[i] * (now.contact.force * now.position + supplied);
     memory.resting = now.displacement;
   }
   memory.edge = Edge::following;
@@ -187,7 +188,7 @@ System::Hold System::weakest_hold() {
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (!touches(memory_[i].regime) || is_loaded(i)) continue;
     const double along = on_lines_[i].along;
-    const double count = classes_[i].multiplicity() * along * along;
+    const double count = counts_[i] * along * along;
     Line& line = lines_[on_lines_[i].line];
     line.held += count * firmness(i);
     // Of two alike that peel, or spend their strength, the stiffnesses end together, and with them the sum of what they
@@ -224,7 +225,7 @@ double System::rounding_of_hold(const Hold& hold, double r) {
     const Frame at = frame(i, now_[i].overlap, r);
     const double modulus = material_.composite_modulus;
     const double of_one = peeling_softening(at, modulus, surface_energy_, now_[i].contact.contact_radius);
-    softening += classes_[i].multiplicity() * std::abs(of_one) * along * along * along;
+    softening += counts_[i] * std::abs(of_one) * along * along * along;
   }
   return std::sqrt(2.0 * softening * hold.direction.norm() * rounding_of_forces());
 }
