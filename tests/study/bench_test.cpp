@@ -256,5 +256,32 @@ TEST(BenchFiles, AreATableItsNumbersAndFigures) {
   EXPECT_EQ(text.find("## What is not computed"), std::string::npos) << "no savings were measured";
 }
 
+TEST(BenchFiles, CompareBdfWithAutoAtTheErrorThatAutoHasByDefault) {
+  const auto point = [](const char* integrator, double rtol, double error, double seconds) {
+    BenchPoint made;
+    made.integrator = integrator;
+    made.rtol = rtol;
+    made.curve_error = error;
+    made.fastest = made.median = seconds;
+    return made;
+  };
+  BenchScene scene;
+  scene.name = "made up";
+  scene.chosen = "direct";
+  scene.rows = 1;
+  scene.evaluation = 1e-6;
+  // The run at 1e-4 is faster, and not what is compared.
+  scene.points = {point("auto", 1e-4, 1e-5, 1e-6), point("auto", 1e-8, 2e-11, 1e-5),
+                  point("cvode-bdf", 1e-8, 1e-9, 1e-4), point("cvode-bdf", 1e-10, 1e-11, 2.5e-4),
+                  point("cvode-bdf", 1e-12, 1e-12, 4e-4)};
+  const auto shown = [&] { return bench_text({scene}, {}, {}); };
+  EXPECT_NE(shown().find(" 25 |             10 |\n"), std::string::npos) << shown();
+  // What it does not come to it is compared with at the least error that it comes to.
+  scene.points[1].curve_error = 1e-13;
+  EXPECT_NE(shown().find(" > 40 |             10 |\n"), std::string::npos) << shown();
+  scene.points.erase(scene.points.begin() + 2, scene.points.end());
+  EXPECT_NE(shown().find(" - |             10 |\n"), std::string::npos) << shown();
+}
+
 }  // namespace
 }  // namespace monograin::bench_test
