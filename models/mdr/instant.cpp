@@ -236,6 +236,7 @@ double System::carried_by_centre(std::size_t i, std::span<const double> y) const
 
 /// The walls under force, at a given radius.
 void System::move_walls(double xi, std::span<double> y) {
+  if (!takes_forces_) return;
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     if (!is_loaded(i)) continue;
     double& place = y[wall_places_[i]];
@@ -245,6 +246,7 @@ void System::move_walls(double xi, std::span<double> y) {
 
 /// The unknowns of walls that are under force at other times only.
 void System::note_walls(double xi, std::span<double> y) const noexcept {
+  if (!takes_forces_) return;
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     if (classes_[i].takes_force && !is_loaded(i)) y[wall_places_[i]] = displacement_as_told(i, xi, y);
   }

@@ -49,6 +49,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   memory_before_.resize(count);
   ramps_.resize(count);
   wall_places_.resize(count);
+  takes_forces_ = std::ranges::any_of(classes_, &ContactClass::takes_force);
   bears_.resize(count, true);
   may_be_slight_.resize(count, false);
   backing_.reserve(2 * count);

@@ -379,6 +379,7 @@ class System final : public HybridSystem {
   std::vector<Small> directions_;  ///< mean normal of each class along the free directions of the centre
   std::vector<Line> lines_;        ///< in which they lie
   std::vector<OnLine> on_lines_;   ///< where each class is
+  bool takes_forces_ = false;      ///< whether any class ever does
   int free_count_ = 0;             ///< free directions of the centre, 0 to 3
   Eigen::Matrix3d free_directions_ = Eigen::Matrix3d::Zero();  ///< their orthonormal basis, in the first columns
   std::vector<CapPair> cap_pairs_;
