@@ -32,6 +32,8 @@ constexpr double k_safety = 0.85;
 // What the series of a piece's work may leave out, over the work: the square of the tolerance, but no less than
 // rounding. Where the work has a singularity, as at a first touch, its error is up to a hundred times that.
 constexpr double k_rounding_of_work = 1e-16;
+// How many times as large last terms may be that are rounding, where the rates are next to nothing beside the work.
+constexpr double k_noise_of_nothing = 1e4;
 // From which of that on few nodes are enough for it.
 constexpr double k_few_nodes_accuracy = 1e-5;
 // An event within this share of a piece may have all nodes beyond it; within that one, some. What the work up to it may
@@ -226,7 +228,9 @@ class Direct final : public EventLocator {
       work_.fit(*nodes_, slopes_[*quadrature_]);
       const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
       const double length = piece_length();
-      const double reach = work_.reach(2.0 * work_accuracy_ * scale / length, rounding_.known());
+      // What is tolerated is no rounding: terms that fall slowly, as those of a kink do, leave out more than they show.
+      const double rounding = std::max(rounding_.known(), k_noise_of_nothing * k_rounding_of_work * scale / length);
+      const double reach = work_.reach(2.0 * work_accuracy_ * scale / length, rounding);
       factor = std::clamp(k_safety * reach, k_most_shrinkage, k_most_growth);
       const bool is_too_long = reach < 1.0 && length > k_smallest_quadrature;
       rounding_.see(work_, begin_, length, is_too_long);

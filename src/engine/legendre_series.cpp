@@ -14,10 +14,9 @@ using Rule = boost::math::quadrature::gauss<double, count>;
 // square of that, and to a fiftieth of it in between.
 constexpr double k_tail = 1e-11;
 // Where the second half of the coefficients falls by less than this factor, they are rounding, which shorter pieces
-// have too; and how many times as large they may be there, as a share and where the whole is next to nothing.
+// have too; and how many times as large they may be there.
 constexpr double k_flat = 10.0;
 constexpr double k_noise = 100.0;
-constexpr double k_noise_of_nothing = 1e4;
 // How many times as long the interval could be where there is nothing to tell it from.
 constexpr double k_farthest = 2.0;
 
@@ -148,7 +147,7 @@ double LegendreSeries::reach(double negligible, double rounding) const noexcept 
   const double whole = largest();
   const double last = tail();
   const double allowed = std::max(k_tail * whole, 0.5 * negligible);
-  const double noise = std::max({k_noise * k_tail * whole, k_noise_of_nothing * 0.5 * negligible, rounding});
+  const double noise = std::max(k_noise * k_tail * whole, rounding);
   const bool is_noise = largest_of(count_ / 2, count_ - 2) <= k_flat * last && last <= noise;
   if (is_noise || last == 0.0) return k_farthest;
   return std::pow(allowed / last, 1.0 / static_cast<double>(count_ - 1));

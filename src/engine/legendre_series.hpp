@@ -55,7 +55,7 @@ class LegendreSeries {
   /// How many times as long the interval could be for the series to have converged just so; its last term goes with the
   /// length to the power of its degree.
   /// @param negligible  error of the integral over [-1, 1] that does not count, however large a share of it that is
-  /// @param rounding    last coefficients that are known to be rounding, where the second half does not fall either
+  /// @param rounding    last coefficients that may be rounding, and are where the second half does not fall either
   [[nodiscard]] double reach(double negligible, double rounding = 0.0) const noexcept;
   /// The last coefficients, and the largest one.
   [[nodiscard]] double tail() const noexcept;

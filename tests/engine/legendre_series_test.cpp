@@ -180,6 +180,15 @@ TEST(LegendreReach, IsFarOfWhatIsExactOrRounding) {
   EXPECT_GE(series_of([](double t) { return (1e6 + 0.3 * t) - 1e6; }).reach(0.0), 2.0);
 }
 
+TEST(LegendreReach, KnowsRoundingByWhatItIsToldOnly) {
+  // A kink: the second half of its coefficients falls slowly, and leaves out more than the last ones show.
+  const LegendreSeries series = series_of([](double t) { return std::max(t - 0.3, 0.0); });
+  const double last = series.tail();
+  EXPECT_LT(series.reach(0.2 * last), 1.0);
+  EXPECT_LT(series.reach(0.2 * last, 0.9 * last), 1.0);
+  EXPECT_GE(series.reach(0.2 * last, 1.1 * last), 2.0);
+}
+
 TEST(LegendreRest, TellsJumpsAndRootsFromSmoothFunctions) {
   const LegendreNodes& nodes = LegendreNodes::few();
   EXPECT_EQ(series_of([](double) { return 0.0; }, nodes).rest(0.0), 0.0);
