@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <variant>
@@ -13,6 +14,9 @@ namespace {
 // ends, over R0: shallower contacts are rounding, and steps of an integrator so short would be, too.
 constexpr double k_deepest = 0.9;
 constexpr double k_shallowest = 1e-12;
+// How closely the place is then known: next to the limit work may grow by orders over a tenth of the way.
+constexpr int k_bisections = 20;
+constexpr double k_place = 1e-6;
 // Share of a displacement by which a wall that holds its place may seem to go back.
 constexpr double k_same_place = 1e-9;
 
@@ -91,13 +95,22 @@ Reach plastic_reach(const Scenario& scenario, const Until& until) {
     }
     return reach;
   }
+  const auto contact_at = [&](double x) { return std::visit([x](const auto& any) { return state_at(any, x); }, law); };
+  const auto is_met = [&](double x) {
+    return value_of(scenario, strength, x, contact_at(x), until.quantity) >= until.value;
+  };
+  double first = 0.0;
+  // Pressures fall again further in.
   for (double x = k_deepest * plastic::limit(law); x > 0.5 * k_shallowest; x *= 0.5) {
-    const plastic::ContactState contact = std::visit([x](const auto& any) { return state_at(any, x); }, law);
-    // Pressures fall again further in.
-    if (value_of(scenario, strength, x, contact, until.quantity) < until.value) continue;
-    reach = reach_at(x, contact);
+    if (is_met(x)) first = x;
   }
-  return reach;
+  if (first == 0.0) return reach;
+  double before = 0.5 * first;
+  for (int k = 0; k < k_bisections; ++k) {
+    const double middle = std::midpoint(before, first);
+    (is_met(middle) ? first : before) = middle;
+  }
+  return reach_at(first, contact_at(first));
 }
 
 std::size_t first_without_branch(const Scenario& scenario, std::span<const Step> program) {
@@ -119,8 +132,8 @@ std::size_t first_without_branch(const Scenario& scenario, std::span<const Step>
     if (deepest > k_shallowest && x < (1.0 - k_same_place) * deepest) return k;
     for (const Until& until : step.until) {
       const bool is_foreseen = until.value > 0.0 || until.quantity == Until::Quantity::event;
-      // Where it is met is known to within a factor 2.
-      x = is_foreseen ? std::min(x, 0.5 * plastic_reach(scenario, until).displacement / scenario.radius) : 0.0;
+      const double place = plastic_reach(scenario, until).displacement / scenario.radius;
+      x = is_foreseen ? std::min(x, (1.0 - k_place) * place) : 0.0;
     }
     deepest = std::max(deepest, x);
   }

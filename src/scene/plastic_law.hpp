@@ -17,8 +17,8 @@ namespace monograin {
 /// The strength [Pa] that stresses of its law are counted in.
 [[nodiscard]] double plastic_strength_of(const Scenario& scenario);
 
-/// How far a contact is pressed that reaches a condition's value for the first time, to within a factor 2, or the event
-/// that ends a regime; infinity where it never does.
+/// How far a contact is pressed that reaches a condition's value for the first time, to within 1e-6 of that, or the
+/// event that ends a regime; infinity where it never does.
 [[nodiscard]] Reach plastic_reach(const Scenario& scenario, const Until& until);
 
 /// Index of the first step of a program that leads a contact back, where the law has no branch for that and the run

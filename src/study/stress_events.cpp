@@ -6,6 +6,8 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <string_view>
+#include <utility>
 
 namespace monograin {
 
@@ -32,8 +34,12 @@ bool have_company(const Run& run, const EventNames& names, double share) {
   const auto time = *events.find("time");
   const auto event = *events.find("event");
   const auto contact_class = *events.find("class");
+  const auto is_asked_for = [&](std::string_view of, const char* what) {
+    return std::ranges::find(names, fmt::format("{} {}", of, what)) != names.end();
+  };
   double step_start = 0.0;
   std::map<std::string, bool> company;
+  std::map<std::string, bool> was_lost_in_company;
   for (std::size_t row = 0; row < events.row_count();) {
     std::size_t end = row;
     while (end < events.row_count() && events.word(end, event) != "step-end") ++end;
@@ -43,7 +49,13 @@ bool have_company(const Run& run, const EventNames& names, double share) {
       const double at = events.at(a, time);
       bool has_company = at - step_start <= near || step_end - at <= near;
       for (std::size_t b = row; b < end; ++b) has_company |= a != b && std::abs(at - events.at(b, time)) <= near;
-      if (has_company) company[fmt::format("{} {}", events.word(a, contact_class), events.word(a, event))] = true;
+      const std::string of(events.word(a, contact_class));
+      if (events.word(a, event) == "contact-lost") {
+        was_lost_in_company[of] = has_company && is_asked_for(of, "contact-lost");
+      } else if (events.word(a, event) == "contact-made") {
+        has_company |= std::exchange(was_lost_in_company[of], false);
+      }
+      if (has_company) company[fmt::format("{} {}", of, events.word(a, event))] = true;
     }
     step_start = step_end;
     row = end + 1;

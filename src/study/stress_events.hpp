@@ -18,7 +18,8 @@ using EventNames = std::vector<std::string>;
 
 /// Whether events of those names each have another event, or a corner of the program, within that share of their step:
 /// where contacts open together, one that is a rounding error late may keep the force of a rounding error, and what a
-/// program nearly reaches at a corner may be left out.
+/// program nearly reaches at a corner may be left out. A contact that was lost in company, and should not have been, is
+/// made in company whenever that is.
 [[nodiscard]] bool have_company(const Run& run, const EventNames& names, double share);
 
 /// In words.

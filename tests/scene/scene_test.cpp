@@ -112,6 +112,12 @@ TEST(Scene, CountsTolerancesByWhereConditionsEndItsRamps) {
               work_of(semimech, "displacement = 0.8"))
         << condition;
   }
+  // Next to the limit work grows a millionfold over a factor 2 of the way.
+  const std::string stiff =
+      "model = \"semimech\"\nmaterial = { youngs_modulus = 2e5, poisson_ratio = 0.4999, yield_stress = 1 }\n";
+  const double told = work_of(stiff, "displacement = 0.26");
+  EXPECT_GT(work_of(stiff, "displacement = 1"), 1e5 * told);
+  EXPECT_NEAR(work_of(stiff, "displacement = 1, until = { displacement = 0.26 }"), told, 1e-4 * told);
   const std::string hertz = "model = \"hertz\"\nmaterial = { youngs_modulus = 1, poisson_ratio = 0.3 }\n";
   EXPECT_EQ(work_of(hertz, "displacement = 0.8, until = { displacement = 0.01 }"),
             work_of(hertz, "displacement = 0.01"));
