@@ -117,7 +117,7 @@ void System::sum_up(double xi, double r) {
     } else if (bears_[i]) {
       power += count * c.force * speed;
     }
-    if (free_count_ > 0) push_line(i);
+    if (free_count_ > 0) push_line(i, r);
     if (!is_member(memory_[i])) continue;
     const double distance = 1.0 - now.displacement;
     caps += count * now.overlap * now.overlap * (3.0 * radius - now.overlap);
@@ -152,7 +152,7 @@ void System::sum_up(double xi, double r) {
 }
 
 /// What a touching contact does to a free centre along its line.
-void System::push_line(std::size_t i) {
+void System::push_line(std::size_t i, double r) {
   const double count = counts_[i];
   const double firm = firmness(i);
   const double along = on_lines_[i].along;
@@ -164,7 +164,13 @@ void System::push_line(std::size_t i) {
     line.force_by_time += count * (is_loaded(i) ? speed : firm * speed) * along;
   }
   if (!is_loaded(i)) {
-    line.force_by_radius += count * (firm + c.by_radius) * along;
+    double by_radius = c.by_radius;
+    if (memory_[i].regime == Regime::unloading && memory_[i].edge == Edge::following && c.by_overlap < firm) {
+      // Where a dent begins moves with the radius, however little presses it.
+      const Contact pressed = firm_contact(i, r);
+      by_radius = firm * (pressed.by_radius / pressed.by_overlap);
+    }
+    line.force_by_radius += count * (firm + by_radius) * along;
     line.stiffness += count * c.by_overlap * along * along;
     line.firmness += count * firm * along * along;
   }

@@ -259,7 +259,7 @@ class System final : public HybridSystem {
   [[nodiscard]] Contact firm_contact(std::size_t i, double r);
   [[nodiscard]] double force_work(std::span<const double> y);
   void sum_up(double xi, double r);
-  void push_line(std::size_t i);
+  void push_line(std::size_t i, double r);
   /// Stiffness of a contact as deep as rounding.
   [[nodiscard]] double least_firm() const noexcept { return 2.0 * material_.composite_modulus * std::sqrt(k_shallow); }
   [[nodiscard]] double firmness(std::size_t i) const noexcept;
