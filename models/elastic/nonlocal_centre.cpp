@@ -308,12 +308,14 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
     find_holding(state, k_touching * size);
     return let_others_go(state);
   };
-  const auto is_same = [&] {
-    if ((place_of(at_once_) - place_of(by_halves_)).norm() > k_same_place * size) return false;
+  const auto touch_the_same = [&](std::span<const double> other) {
     for (std::size_t j = 0; j < n; ++j) {
-      if ((at_once_[j] == 0.0) != (early_[j] == 0.0) || (at_once_[j] == 0.0) != (late_[j] == 0.0)) return false;
+      if ((at_once_[j] == 0.0) != (other[j] == 0.0)) return false;
     }
     return true;
+  };
+  const auto lead_to_one_place = [&] {
+    return (place_of(at_once_) - place_of(by_halves_)).norm() <= k_same_place * size;
   };
   bool is_possible = true;
   double step = 1.0;
@@ -321,12 +323,15 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
   for (double done = 0.0; is_possible && done < 1.0;) {
     const double next = std::min(1.0, done + step);
     for (auto* state : {&at_once_, &by_halves_, &early_, &late_}) std::ranges::copy(carried_, state->begin());
+    const bool may_be_cut = step > k_shortest && tries < k_most_tries;
+    // What shows soonest that a step is too long is asked first: most are.
+    const auto goes_on = [may_be_cut](bool is_same) { return is_same || !may_be_cut; };
     is_possible =
-        go_to(next, at_once_) && go_to(std::midpoint(done, next), by_halves_) && go_to(next, by_halves_) &&
-        go_to(std::lerp(done, next, k_early), early_) &&
+        go_to(next, at_once_) && go_to(std::lerp(done, next, k_early), early_) && goes_on(touch_the_same(early_)) &&
+        go_to(std::midpoint(done, next), by_halves_) && go_to(next, by_halves_) && goes_on(lead_to_one_place()) &&
         std::ranges::all_of(k_late, [&](double late) { return go_to(std::lerp(done, next, 1.0 - late), late_); }) &&
-        go_to(next, late_);
-    if (step > k_shortest && tries < k_most_tries && !(is_possible && is_same())) {
+        go_to(next, late_) && goes_on(touch_the_same(late_));
+    if (may_be_cut && !is_possible) {
       is_possible = true;
       step *= 0.5;
       ++tries;
