@@ -237,10 +237,16 @@ void System::throw_pull(std::size_t i) const {
   throw std::domain_error("a wall of class '" + classes_[i].name + "' would have to pull");
 }
 
-/// Where a force ends, contacts leave the centre at the same instant: that the wall would have to pull is said of both.
-void System::throw_pull_that_follows(double xi) const {
-  for (std::size_t i = 0; i < ramps_.size(); ++i) {
-    if (is_loaded(i) && ramps_[i].end < 0.0 && square_under_force(i, xi) <= idle_) throw_pull(i);
+/// Where a force ends, contacts leave the centre at the same instant: that the wall would have to pull is said of
+/// whatever has no state there, a trial far off among them.
+void System::or_pull_that_follows(double xi, auto&& ask) const {
+  try {
+    ask();
+  } catch (const std::domain_error&) {
+    for (std::size_t i = 0; i < ramps_.size(); ++i) {
+      if (is_loaded(i) && ramps_[i].end < 0.0 && square_under_force(i, xi) <= idle_) throw_pull(i);
+    }
+    throw;
   }
 }
 
@@ -308,12 +314,7 @@ void System::solve(double xi, std::span<double> y) {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     is_own_mode = is_own_mode && (regimes_[i] == Regime::elastic || state_[i] <= touch_);
   }
-  try {
-    contacts_.solve(ramps_, xi, state_, is_own_mode);
-  } catch (const std::domain_error&) {
-    throw_pull_that_follows(xi);
-    throw;
-  }
+  or_pull_that_follows(xi, [&] { contacts_.solve(ramps_, xi, state_, is_own_mode); });
   note(y);
 }
 
@@ -349,12 +350,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
     drawn_ramps_[i] = ramps_[i];
     if (!is_loaded(i)) drawn_ramps_[i].end += k_pull * (told(i, xi) - now_[i].displacement);
   }
-  try {
-    contacts_.rates(drawn_ramps_, state_, rates_, touch_, k_pull, touches_);
-  } catch (const std::domain_error&) {
-    throw_pull_that_follows(xi);
-    throw;
-  }
+  or_pull_that_follows(xi, [&] { contacts_.rates(drawn_ramps_, state_, rates_, touch_, k_pull, touches_); });
   std::ranges::copy(rates_, dy.begin());
   // dF/dxi of every contact, and with it that of the walls that follow a force.
   const auto force_rate = [&](std::size_t i) {
@@ -386,7 +382,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
   look(xi, y);
-  contacts_.residual(ramps_, xi, state_, res.first(state_.size()));
+  or_pull_that_follows(xi, [&] { contacts_.residual(ramps_, xi, state_, res.first(state_.size())); });
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_loaded(i)) res[i] = y[i] - std::pow(state_[i], k_force_power);
   }

@@ -74,7 +74,7 @@ class System final : public HybridSystem {
   [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return ramps_[i].control == Control::force; }
   [[nodiscard]] double told(std::size_t i, double xi) const noexcept;
   [[noreturn]] void throw_pull(std::size_t i) const;
-  void throw_pull_that_follows(double xi) const;
+  void or_pull_that_follows(double xi, auto&& ask) const;
   [[nodiscard]] double end_of_force(std::size_t i) const noexcept;
   [[nodiscard]] double square_under_force(std::size_t i, double xi) const;
   std::span<double> look(double xi, std::span<const double> y);
