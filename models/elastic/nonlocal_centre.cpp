@@ -319,6 +319,7 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
   };
   bool is_possible = true;
   double step = 1.0;
+  double too_far = 1.0;  // where the last step that was too long ended
   int tries = 0;
   for (double done = 0.0; is_possible && done < 1.0;) {
     const double next = std::min(1.0, done + step);
@@ -333,6 +334,7 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
         go_to(next, late_) && goes_on(touch_the_same(late_));
     if (may_be_cut && !is_possible) {
       is_possible = true;
+      too_far = next;
       step *= 0.5;
       ++tries;
       continue;
@@ -340,7 +342,8 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
     if (!is_possible) break;
     std::ranges::copy(by_halves_, carried_.begin());
     done = next;
-    step *= 2.0;
+    // What is too far is so for the place where other walls begin to touch: that is closed in on, and passed.
+    step = done < too_far ? std::max(k_shortest, 0.5 * (too_far - done)) : 1.0 - done;
   }
   std::copy(way_end_.begin(), way_end_.end(), targets_.begin());
   if (is_possible) std::copy(carried_.begin(), carried_.end(), y.begin());
