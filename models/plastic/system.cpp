@@ -124,15 +124,17 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   std::vector<double> begins(ramps_.size());
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     const double unit = ramps[i].control == Control::force ? settings_.strength * length * length : length;
-    const bool was_loaded = is_loaded(i);
     const double stood = classes_[i].takes_force ? displacement_at(i, y[places_[i]]) : 0.0;
-    ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
+    const Ramp last = std::exchange(ramps_[i], {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control});
     if (is_lateral(i)) continue;
+    if (directions_[i] == 0 && last.control == ramps_[i].control) ramps_[i].start = last.end;
     // Where a wall has left its dent, the rounding of its units must not press it in again.
     const bool stands_at_dent = std::abs(ramps_[i].start - origin(i)) <= k_rounding * origin(i);
     if (memory_[i].regime == Regime::separated && !is_loaded(i) && stands_at_dent) ramps_[i].start = origin(i);
     const double x = is_loaded(i) ? stood : ramps_[i].start;
-    directions_[i] = direction_of_ramp(i, x, was_loaded);
+    directions_[i] = direction_of_ramp(i, x);
+    // What goes nowhere stays, for as long as it is told to: from the end of such a ramp it might have to go back.
+    if (directions_[i] == 0) ramps_[i].end = ramps_[i].start;
     begins[i] = x;
     // A step that cannot begin is shown where it would have, in its own coordinates.
     if (classes_[i].takes_force) y[places_[i]] = coordinate(i, x);
@@ -175,13 +177,14 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
 }
 
 /// A ramp that rounding has left between two equal values goes nowhere. A force under which a wall stands has the
-/// rounding of its place, too, and a place where a force has left it has that of the force and of its coordinate.
-int System::direction_of_ramp(std::size_t i, double x, bool was_loaded) const {
+/// rounding of its place, too, and a place where a force has left it, however long ago, has that of the force and of
+/// its coordinate.
+int System::direction_of_ramp(std::size_t i, double x) const {
   const double way = ramps_[i].end - ramps_[i].start;
   double size = std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
   if (is_loaded(i)) {
     size += contact(i, x).stiffness * x;
-  } else if (was_loaded && touches(memory_[i].regime)) {
+  } else if (classes_[i].takes_force && touches(memory_[i].regime)) {
     const Contact now = contact(i, x);
     if (now.stiffness > 0.0) size += now.force / now.stiffness + std::abs(x);
   }

@@ -110,7 +110,7 @@ class System final : public HybridSystem {
   [[nodiscard]] bool presses(std::size_t i) const noexcept { return is_loaded(i) && touches(memory_[i].regime); }
   /// Of the present ramp: 1 inwards, -1 back, 0 nowhere.
   [[nodiscard]] int direction(std::size_t i) const noexcept { return directions_[i]; }
-  [[nodiscard]] int direction_of_ramp(std::size_t i, double x, bool was_loaded) const;
+  [[nodiscard]] int direction_of_ramp(std::size_t i, double x) const;
   [[nodiscard]] bool is_reloaded(std::size_t i, double x) const;
   [[nodiscard]] double told(std::size_t i, double xi) const noexcept;
   [[nodiscard]] bool is_on_indenter(std::size_t i) const noexcept;
