@@ -362,19 +362,24 @@ void System::find_balance(double xi, std::span<double> y) {
   const bool is_only_one = !weakest_contact();
   double way = std::numeric_limits<double>::infinity();
   double step_size = std::numeric_limits<double>::infinity();
+  bool has_gone_back = false;
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     const double error = sums_.force.norm();
     if (error == 0.0) return;
-    // Overlaps are rounded, and the stiffest contact's force with its own; below that there is nothing to damp.
-    const double noise = k_round_off * sums_.stiffness.cwiseAbs().maxCoeff();
+    // Below what is rounding there is nothing to damp: a contact that only touches would stay where it is.
+    const double noise = rounding_of_forces();
     Small step = balance_step(&Line::stiffness, &Line::force);
     // Contacts that are shallower than rounding are so soft that their tangents lead out of all bounds.
     if (step.norm() > k_out_of_bounds) step = balance_step(&Line::firmness, &Line::force);
     if (step.norm() == 0.0) {
-      if (error <= rounding_of_forces()) return;
+      if (error <= noise) return;
       throw std::domain_error("no contact holds the free centre of the particle");
     }
-    if (step.norm() >= 0.5 * step_size && (step.norm() < 1e-12 || error <= rounding_of_forces())) return;
+    if (step.norm() >= 0.5 * step_size) {
+      if (step.norm() < k_rounding_step) return;
+      // Soft contacts that are met from afar may be led back to where they only touch by as much, once.
+      if (error <= noise && std::exchange(has_gone_back, true)) return;
+    }
     step_size = step.norm();
     // Where the last step had to be cut short, as next to a fold, there is no need to begin far beyond that again.
     if (k_most_growth * way < step_size) step *= k_most_growth * way / step_size;
