@@ -346,7 +346,9 @@ class SceneCheck {
     if (apart.value <= tolerance_) return;
     const double widest =
         spread(*reference_, neighbours(), [this](const Run& a, const Run& b) { return between_ends(a, b).value; });
-    if (std::isnan(widest) || apart.value <= tolerance_ + k_sample_multiple * widest) {
+    const auto is_within = [&](double spread) { return apart.value <= tolerance_ + k_sample_multiple * spread; };
+    // Two runs each have errors of their own, which the scene carries on.
+    if (std::isnan(widest) || is_within(widest) || is_within(spread_of_states())) {
       verdict_.is_ill_conditioned = true;
       return;
     }
