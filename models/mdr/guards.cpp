@@ -239,7 +239,11 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = 1.0 - now_[i].displacement - k_least_distance;
         break;
       case k_retreat:
-        values[g] = settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate(i, now) : overlap_rate(i, now);
+        if (goes_on_[i]) {
+          values[g] = rate_if_turned(i, xi, y);
+          break;
+        }
+        values[g] = virgin_rate(i, now);
         // What rests beside a centre that moves has rates of either sign.
         values[g] += 2.0 * k_touch;
         if (rides(i)) values[g] = 1.0;

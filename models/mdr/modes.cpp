@@ -167,7 +167,7 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
   if (memory.is_virgin) return false;
   if (advances && is_past(k_reload, 1.0)) {
     // What has turned at this instant rests where it is: from one look to the next the sign of its rate is another one.
-    const double rate = is_shifted ? of_wall : of_overlap;
+    const double rate = virgin_rate(i, now);
     const double passed = contact_guard(k_reload, i, xi, overlap, r);
     if (!has_turned_[i] || rate > k_at_rest || passed > k_touch) {
       has_resumed_[i] = has_turned_[i];

@@ -304,6 +304,8 @@ class System final : public HybridSystem {
   [[nodiscard]] double speed_scale() const noexcept;
   [[nodiscard]] double wall_rate(std::size_t i, const Motion& now) const noexcept;
   [[nodiscard]] double overlap_rate(std::size_t i, const Motion& now) const noexcept;
+  [[nodiscard]] double virgin_rate(std::size_t i, const Motion& now) const noexcept;
+  [[nodiscard]] double rate_if_turned(std::size_t i, double xi, std::span<const double> y);
   [[nodiscard]] double edge_rate(std::size_t i, double r, const Motion& now);
   [[nodiscard]] double loaded_rate(double loading, double by_radius, double growth) const noexcept;
   [[nodiscard]] bool is_backed(std::size_t i, double side = 1.0);
@@ -320,6 +322,7 @@ class System final : public HybridSystem {
   [[nodiscard]] bool rides(std::size_t i) const noexcept;
   void check_support();
   void set_largest(std::size_t i, double r) noexcept;
+  void turn(std::size_t i, double r) noexcept;
   void start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log);
   void stick(std::size_t i, std::vector<Event>& log);
   [[nodiscard]] std::optional<std::size_t> weakest_contact() const noexcept;

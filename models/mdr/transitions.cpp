@@ -33,6 +33,25 @@ double System::overlap_rate(std::size_t i, const Motion& now) const noexcept {
   return loaded_rate(ramps_[i].end - ramps_[i].start, now_[i].contact.by_radius, now.growth);
 }
 
+/// How fast what makes a largest overlap goes up, likewise: the overlap, or the wall where that moves with the radius.
+double System::virgin_rate(std::size_t i, const Motion& now) const noexcept {
+  return settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate(i, now) : overlap_rate(i, now);
+}
+
+/// The same of a contact that turned here, times by how much stiffer it would be. One that goes back, but once it has
+/// turned would be pressed on, does both in turns without end: it goes on as it does at its largest overlap, until this
+/// falls below zero.
+double System::rate_if_turned(std::size_t i, double xi, std::span<const double> y) {
+  const Memory before = memory_[i];
+  turn(i, y[k_radius]);
+  look(xi, y);
+  const double stiffer = std::max(1.0, now_[i].contact.by_overlap / stiffness_of_shallow());
+  const double rate = stiffer * virgin_rate(i, motion(is_growing_));
+  memory_[i] = before;
+  look(xi, y);
+  return rate;
+}
+
 /// Whether the springs at the edge of a contact are being pressed (+) or stretched (-), of order one: what the overlap
 /// does over the sum of that and what the growing indenter does.
 double System::edge_rate(std::size_t i, double r, const Motion& now) {
@@ -75,12 +94,17 @@ void System::set_largest(std::size_t i, double r) noexcept {
   memory_[i].largest = now_[i].overlap - (settings_.delta_max_rule == DeltaMaxRule::shifted ? r : 0.0);
 }
 
-void System::start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log) {
+/// From its largest overlap, which is where it is, to the branch below that.
+void System::turn(std::size_t i, double r) noexcept {
   Memory& memory = memory_[i];
   memory.is_virgin = false;
-  has_turned_[i] = true;
   set_largest(i, r);
   if (memory.regime == Regime::fully_plastic) memory.regime = Regime::unloading;
+}
+
+void System::start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log) {
+  turn(i, r);
+  has_turned_[i] = true;
   log.push_back({why, static_cast<int>(i)});
   if (!adheres()) return;
   stick(i, log);
