@@ -169,8 +169,9 @@ class SceneCheck {
     if (!verdict_.violations.empty()) return;
     share_ = is_direct ? k_stress_rounding : std::max(scenario_.numerics.rtol, k_finest_rtol);
     tolerance_ = std::max(own_tolerance(*run), own_tolerance(*reference_));
-    // Errors of the steps add up, whichever of the two tolerances is the larger one.
-    const double adding_up = tolerance_ / std::max(scenario_.numerics.rtol, k_finest_rtol);
+    // Errors of the steps add up, whichever of the two tolerances is the larger one; and neither is held to be finer
+    // than integrators are.
+    const double adding_up = tolerance_ / scenario_.numerics.rtol;
     nothing_ = {.unit = {.length = scenario_.radius, .stress = softest(scenario_)},
                 .share = is_direct ? k_stress_rounding : adding_up * scenario_.numerics.atol,
                 .energy_share = direct_work_tolerance(*run),
