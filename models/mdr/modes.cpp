@@ -222,6 +222,7 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
       }
       if (rate < 0.0 && !is_carried) return false;
       stick(i, log);
+      has_turned_[i] = true;
       return true;
   }
   return false;
@@ -416,7 +417,11 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
       const double passed = is_loaded(i) ? k_passed_by_force : k_passed;
       if (unloading_fraction(shape(i, r), now_[i].overlap) > passed) continue;
     }
-    if (guard.kind == k_peel && edge_rate(i, r, now) >= -k_at_rest) {
+    // Beside stiff contacts the rate of what turns with them has fewer digits.
+    const auto rests = [&] {
+      return edge_rate(i, r, now) >= -k_at_rest || std::abs(overlap_rate(i, now)) <= k_at_rest;
+    };
+    if (guard.kind == k_peel && rests()) {
       set_edge_back(i, r);
       continue;
     }
