@@ -178,11 +178,15 @@ MaterialPoint::Increment MaterialPoint::elastic_rate(const Properties& at) const
 
 // --- plastic flow
 
-/// Consistency: N - D l' = 0 is the derivative of f = 0 (section 2, with total moduli).
 MaterialPoint::Flow MaterialPoint::flow(const Response& now) const {
+  return flow(now, yield_on(settings_.parameters, now.at, branch_, now.p, now.s));
+}
+
+/// Consistency: N - D l' = 0 is the derivative of f = 0 (section 2, with total moduli).
+MaterialPoint::Flow MaterialPoint::flow(const Response& now, const Yield& yield) const {
   const Properties& at = now.at;
   Flow flow;
-  flow.yield = yield_on(settings_.parameters, at, branch_, now.p, now.s);
+  flow.yield = yield;
   const Yield& y = flow.yield;
   const bool compressible = is_compressible(settings_.parameters.model);
   flow.phi = compressible ? -y.g_p : std::abs(y.g_s);

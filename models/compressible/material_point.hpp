@@ -114,10 +114,12 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] static double stiffness_over_strength(const Properties& at) noexcept;
   [[nodiscard]] Increment elastic_rate(const Properties& at) const;
   [[nodiscard]] Flow flow(const Response& now) const;
+  [[nodiscard]] Flow flow(const Response& now, const Yield& yield) const;
   [[nodiscard]] static double cosine(const Flow& flow) noexcept;
   static void require_unique(const Flow& flow);
   [[nodiscard]] static double length(const Flow& flow) noexcept;
   [[nodiscard]] Flow flow_to_surface(const Response& now) const;
+  [[nodiscard]] std::optional<Yield> yield_across_cap(const Response& now) const;
   enum class Way { flow, shortest };
   [[nodiscard]] bool is_brought_back(double xi, std::span<double> y, Way way);
   [[nodiscard]] bool leads_out(bool towards_compression, const Response& now) const;

@@ -54,10 +54,30 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
   throw std::domain_error("no plastic strain brings the stress back to the yield surface");
 }
 
+/// Of a guess on the far side of a cap that the program does not leave: the tangent of f at its mirror image, which
+/// leads to the near side. In strains a cap of a hardly compressible material is narrow, and a guess may lie anywhere;
+/// f itself would lead to the ellipse that goes on beyond the segment's end.
+std::optional<Yield> MaterialPoint::yield_across_cap(const Response& now) const {
+  const Segment segment = branch_.segment;
+  if (segment != Segment::cap && segment != Segment::tension) return std::nullopt;
+  if (is_stress(k_axial) && is_stress(k_lateral)) return std::nullopt;
+  const bool ends_in_compression = segment == Segment::tension;
+  const double distance = *distance_to_end(settings_.parameters, now.at, segment, ends_in_compression, now.p);
+  const double outwards = ends_in_compression ? -1.0 : 1.0;
+  if (distance >= 0.0 || outwards * pressure_rate_at_end(now, ends_in_compression) > 0.0) return std::nullopt;
+  const double to_image = 2.0 * outwards * distance;
+  Yield yield = yield_on(settings_.parameters, now.at, branch_, now.p + to_image, now.s);
+  // Next to the end f goes on smoothly, for states that are there by an error.
+  if (std::abs(distance * yield.f_p) <= std::abs(now.s * yield.f_s)) return std::nullopt;
+  yield.f -= yield.f_p * to_image;
+  return yield;
+}
+
 /// What leads back to f = 0. The shear segment of vm and vmdc is a pair of lines, c^2 = 1 with c = s over the strength,
 /// and a guess that is off by more than the elastic strain lies beside the other one: the distance c - 1 from the line
 /// of this side, with its own slopes, leads to the right one from anywhere.
 MaterialPoint::Flow MaterialPoint::flow_to_surface(const Response& now) const {
+  if (const auto across = yield_across_cap(now)) return flow(now, *across);
   Flow flow_now = flow(now);
   const bool is_line = settings_.parameters.model != YieldModel::dpc && branch_.segment == Segment::shear;
   if (!is_line || branch_.side == 0.0) return flow_now;
