@@ -30,12 +30,15 @@ constexpr int k_most_halvings = 20;
 // Plastic strain by which no guess of an integrator is wrong at any tolerance. A state that is farther away from its
 // guess than that and the elastic strain of the guess lies on another branch, behind a loss of uniqueness.
 constexpr double k_nearby = 1e-2;
+// How much farther than the shortest way the one along the flow may be. Next to a loss of uniqueness the flow goes
+// along the surface, and errors would move a state by their root, or to anywhere.
+constexpr double k_most_detour = 1e3;
 
 }  // namespace
 
-/// Brings the plastic strains to f = 0 along the flow or, where that does not lead there, by the shortest way: both
-/// strains may carry an integrator's errors. Where stresses are prescribed, f does not depend on g^p, and near a
-/// critical state the flow hardly changes phi: there by the shortest way alone.
+/// Brings the plastic strains to f = 0 along the flow or, where that does not lead there or leads along the surface, by
+/// the shortest way: both strains may carry an integrator's errors. Where stresses are prescribed, f does not depend on
+/// g^p, and near a critical state the flow hardly changes phi: there by the shortest way alone.
 void MaterialPoint::complete(double xi, std::span<double> y) {
   if (!is_plastic_) return;
   const double phi = y[k_phi];
@@ -99,6 +102,7 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
   const bool has_caps = is_compressible(settings_.parameters.model);
   double elastic_strain = 0.0;
   double elastic_strain_of_guess = 0.0;
+  double shortest = 0.0;
   int small_corrections = 0;
   int corrections_of_rounding = 0;
   int halvings = 0;
@@ -122,7 +126,10 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
         continue;
       }
       elastic_strain = 1.0 / stiffness_over_strength(here.at);
-      if (i == 0) elastic_strain_of_guess = elastic_strain;
+      if (i == 0) {
+        elastic_strain_of_guess = elastic_strain;
+        shortest = std::abs(now.yield.f) / std::hypot(now.f_by_phi, now.f_by_deviatoric);
+      }
       const double slope = now.f_by_phi * phi + now.f_by_deviatoric * deviatoric;
       if (has_caps && last.yield.f > 0.0 && now.yield.f > 0.0 && slope > 0.0) {
         const double back = slope / (last.yield.f + slope);
@@ -153,7 +160,9 @@ bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
       const bool is_found = !has_caps || std::abs(now.yield.f) < k_last_excess;
       if (!is_found && ++small_corrections < k_most_small_corrections) continue;
       const double distance = std::hypot(y[k_phi] - guess, y[k_deviatoric] - guessed_deviatoric);
-      return is_solvable() || distance <= std::max(elastic_strain_of_guess, k_nearby);
+      if (is_solvable()) return true;
+      if (is_along_flow && distance > std::max(k_last_correction, k_most_detour * shortest)) return false;
+      return distance <= std::max(elastic_strain_of_guess, k_nearby);
     }
   } catch (const std::domain_error&) {
     // Far corrections that lead to where the law has no surface at all have found nothing, either.
