@@ -342,7 +342,7 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
     if (!is_possible) break;
     std::ranges::copy(by_halves_, carried_.begin());
     done = next;
-    // What is too far is so for the place where other walls begin to touch: that is closed in on, and passed.
+    // A step is too long where other walls begin to touch on it: that place is closed in on, and passed.
     step = done < too_far ? std::max(k_shortest, 0.5 * (too_far - done)) : 1.0 - done;
   }
   std::copy(way_end_.begin(), way_end_.end(), targets_.begin());
