@@ -256,8 +256,9 @@ double System::strain_of(std::span<const double> y) const noexcept {
 
 System::Seen System::seen(double xi, std::span<const double> y) const {
   if (mode_ != Mode::jammed) return by_law(xi);
-  const double phi = y[k_fraction];
-  const double strain = strain_of(y);
+  // Past where all of its particles yield by the rounding of a stress that hardly grows there, it is seen there.
+  const double phi = is_fully_plastic_ ? y[k_fraction] : std::min(y[k_fraction], full_plasticity(law_));
+  const double strain = strain_of(std::array{y[k_particles], phi});
   const double stress_elastic = strain * effective_modulus(law_, phi);
   return {phi, stress_elastic, strain, total_stress(law_, phi, stress_elastic, piece_)};
 }
