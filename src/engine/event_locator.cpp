@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 namespace monograin {
@@ -155,7 +156,11 @@ double EventLocator::hidden_extremum(std::size_t place) const {
 /// Moves the end of the piece to the first root in it, if there is one.
 void EventLocator::locate_event() {
   fired_.clear();
-  bool has_approached = false;
+  struct End {
+    double root = 0.0;
+    std::size_t guard = 0;
+  };
+  std::optional<End> of_branch;
   for (std::size_t place = 0; place <= looks_.size();) {
     const View before = seen(place);
     View after = seen(place + 1);
@@ -183,8 +188,8 @@ void EventLocator::locate_event() {
     const bool is_shorter = root < end_ - least_progress(begin_);
     place = shorten(root, place);
     const double last_look = seen(place).xi;
-    if (is_branch_end(first) && !has_approached) {
-      has_approached = true;
+    if (is_branch_end(first) && !of_branch) {
+      of_branch = {root, first};
       look_up_to(last_look);
       continue;
     }
@@ -206,6 +211,8 @@ void EventLocator::locate_event() {
     if (!has_earlier) return;
     fired_.clear();
   }
+  // Found short of zero by its rounding, it is a root nonetheless: the next piece would end there, and so on.
+  if (of_branch && of_branch->root == end_) fired_.push_back(of_branch->guard);
 }
 
 /// Ends the piece at xi, or where it has a state before that, and forgets the looks beyond the first ones.
