@@ -15,8 +15,6 @@ namespace {
 
 // Looks that are nearer to each other than this are not searched for guards that cross twice.
 constexpr double k_smallest_hidden = 1e-6;
-// An extremum this near to zero, over the guard where it was last seen, is looked at.
-constexpr double k_near = 0.5;
 // Looks before the end of a branch: each so many times nearer than the one before, and how many.
 constexpr double k_approach = 0.25;
 constexpr std::size_t k_looks_before_end = 12;
@@ -144,10 +142,7 @@ double EventLocator::hidden_extremum(std::size_t place) const {
       const double curvature = ((third.view.values[g] - at_b) * third.per_b - slope) * third.per_a;
       if (!(sign * curvature < 0.0)) continue;
       const double place_of_extremum = 0.5 * (a.xi + b.xi - slope / curvature);
-      if (!(place_of_extremum > a.xi && place_of_extremum < b.xi)) continue;
-      const double height = at_a + (place_of_extremum - a.xi) * (slope + curvature * (place_of_extremum - b.xi));
-      if (sign * height < -k_near * std::min(std::abs(at_a), std::abs(at_b))) continue;
-      extremum = std::min(extremum, place_of_extremum);
+      if (place_of_extremum > a.xi && place_of_extremum < b.xi) extremum = std::min(extremum, place_of_extremum);
     }
   }
   return extremum;
