@@ -133,6 +133,8 @@ class Stepped final : public EventLocator {
 // Difference quotients along xi: well within the step that they are for, and well above the rounding of xi.
 constexpr double k_share_of_step = 0.1;
 constexpr double k_resolution = 1e-14;
+const double k_cubic_root = std::cbrt(std::numeric_limits<double>::epsilon());
+constexpr double k_least_size = 1e-2;  // of an unknown over its scale
 
 /// Forward Euler with a fixed step, as explicit codes of the discrete-element kind go: transitions take effect at the
 /// first step's end that finds them past.
@@ -221,7 +223,6 @@ class FixedStep final : public Integrator {
 }  // namespace
 
 double DifferenceJacobian::reach(double xi, double length) noexcept {
-  static const double k_cubic_root = std::cbrt(std::numeric_limits<double>::epsilon());
   return 2.0 * std::max(std::min(k_cubic_root, k_share_of_step * length), k_resolution * xi);
 }
 
@@ -231,12 +232,23 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
   const std::size_t n = z.size();
   std::ranges::copy(z, point_.begin());
   form_.rates(xi, point_, base_);
+  std::ranges::fill(jacobian, 0.0);
+  double largest_way = k_root;
+  for (const double rate : base_) largest_way = std::max(largest_way, std::abs(length * rate));
   for (std::size_t j = 0; j < n; ++j) {
-    const double step = shift_within_domain(k_root * std::max(std::abs(z[j]), 1e-2), [&](double by) {
+    if (form_.is_quadrature(j)) continue;  // no rate depends on it
+    const double size = std::abs(z[j]);
+    // Where contacts have just begun, the rates change over their overlaps, which other unknowns are much larger than:
+    // a step is as short as that, and so is the way it goes.
+    const double way = base_[j] != 0.0 ? std::abs(length * base_[j]) : largest_way;
+    const double wanted = std::max(std::min(k_share_of_step * way, k_cubic_root * std::max(size, k_least_size)),
+                                   k_root * std::max(size, way));
+    const double step = shift_within_domain(wanted, [&](double by) {
       point_[j] = z[j] + by;
       form_.rates(xi, point_, shifted_);
     });
-    for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted_[i] - base_[i]) / step;
+    const double back = look_back(xi, z[j], j, step);
+    for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted_[i] - beyond_[i]) / (step + back);
     point_[j] = z[j];
   }
   // Of second order: next to a pole the rounding of xi leaves few digits of quotients over much less than the step, and
@@ -250,6 +262,20 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
   for (std::size_t i = 0; i < n; ++i) {
     by_xi[i] = (4.0 * (shifted_[i] - base_[i]) - (beyond_[i] - base_[i])) / (2.0 * step);
   }
+}
+
+double DifferenceJacobian::look_back(double xi, double z, std::size_t j, double step) {
+  // Beyond zero a contact is open, and the rates are others.
+  if (std::abs(z) > step) {
+    try {
+      point_[j] = z - step;
+      form_.rates(xi, point_, beyond_);
+      return step;
+    } catch (const std::domain_error&) {
+    }
+  }
+  std::ranges::copy(base_, beyond_.begin());
+  return 0.0;
 }
 
 std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, Watch& watch,

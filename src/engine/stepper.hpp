@@ -20,6 +20,9 @@ class ScaledForm {
         seen_(system.unknowns().size()) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return form_.size(); }
+  [[nodiscard]] bool is_quadrature(std::size_t k) const noexcept {
+    return form_.unknown(k).kind == Unknown::Kind::quadrature;
+  }
   [[nodiscard]] bool has_slaves() const noexcept { return form_.has_slaves(); }
   [[nodiscard]] bool has_corrections() const noexcept { return form_.has_corrections(); }
   [[nodiscard]] long evaluations() const noexcept { return evaluations_; }
@@ -114,7 +117,8 @@ class Stepper {
 [[nodiscard]] std::unique_ptr<Stepper> make_odeint(OdeintMethod method, ScaledForm& form, const Tolerances& tolerances);
 [[nodiscard]] std::unique_ptr<Stepper> make_gsl(GslMethod method, ScaledForm& form, const Tolerances& tolerances);
 
-/// d(rates)/dz and d(rates)/dxi by forward differences.
+/// d(rates)/dz and d(rates)/dxi by differences of second order: what those of first order leave would cost a linearly
+/// implicit method its order.
 class DifferenceJacobian {
  public:
   explicit DifferenceJacobian(ScaledForm& form)
@@ -127,6 +131,10 @@ class DifferenceJacobian {
   void at(double xi, std::span<const double> z, double length, std::span<double> jacobian, std::span<double> by_xi);
 
  private:
+  /// Puts the rates for an unknown that is less by a step into `beyond_`, or those at the point where there are none.
+  /// @return how much less it is
+  double look_back(double xi, double z, std::size_t j, double step);
+
   ScaledForm& form_;
   std::vector<double> base_, shifted_, beyond_, point_;
 };

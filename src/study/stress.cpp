@@ -40,7 +40,8 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 /// The verdict on a scene; nothing where it is not admissible.
 std::optional<StressVerdict> verdict_of(const StressScene& scene, const fs::path& tables, double seconds) {
   try {
-    return check_scene(parse_stress_text(scenario_text(scene), tables), std::min(seconds, k_most_seconds_of_scene));
+    const Scenario scenario = parse_stress_text(scenario_text(scene), tables);
+    return check_scene(scenario, std::min(seconds, most_seconds_of(scenario)));
   } catch (const ScenarioError&) {
     return std::nullopt;
   }

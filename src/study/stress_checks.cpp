@@ -411,6 +411,14 @@ class SceneCheck {
 
 }  // namespace
 
+double most_seconds_of(const Scenario& scenario) {
+  constexpr double k_of_scene = 30.0;
+  constexpr double k_of_step = 1.0;
+  return std::max(k_of_scene, k_of_step * static_cast<double>(step_count(scenario)));
+}
+
 StressVerdict check_scene(const Scenario& scenario, double seconds) { return SceneCheck(scenario, seconds).verdict(); }
+
+StressVerdict check_scene(const Scenario& scenario) { return check_scene(scenario, most_seconds_of(scenario)); }
 
 }  // namespace monograin

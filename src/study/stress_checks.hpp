@@ -9,8 +9,9 @@
 
 namespace monograin {
 
-/// What all runs of one scene may take together; usual are a few hundredths.
-inline constexpr double k_most_seconds_of_scene = 30.0;
+/// What all runs of a scene may take a processor together [s]; usual are a few hundredths. A method of low order at a
+/// fine tolerance takes its time for every step of a long program.
+[[nodiscard]] double most_seconds_of(const Scenario& scenario);
 /// The rule of that.
 inline constexpr const char* k_time_rule = "time";
 
@@ -34,6 +35,8 @@ struct StressVerdict {
 ///
 /// @param seconds  of a processor that all runs have together; a scene that takes longer breaks the rule "time", unless
 ///                 its own run is so slow that the runs it would be compared with are no slower
-[[nodiscard]] StressVerdict check_scene(const Scenario& scenario, double seconds = k_most_seconds_of_scene);
+[[nodiscard]] StressVerdict check_scene(const Scenario& scenario, double seconds);
+/// Has as long as `most_seconds_of` says.
+[[nodiscard]] StressVerdict check_scene(const Scenario& scenario);
 
 }  // namespace monograin

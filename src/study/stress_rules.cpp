@@ -627,16 +627,20 @@ bool stays_elastic(const Run& run) {
   return true;
 }
 
+std::size_t step_count(const Scenario& scenario) {
+  std::size_t count = scenario.loading.steps.size();
+  for (const WallSpec& wall : scenario.loading.walls) count = std::max(count, wall.steps.size());
+  return count;
+}
+
 double direct_work_tolerance(const Run& run) {
   return run.integrator.used == "direct" ? k_direct_work * run.scenario.numerics.rtol : 0.0;
 }
 
 double own_tolerance(const Run& run) {
   if (run.integrator.used == "direct") return k_direct_tolerance;
-  const Loading& loading = run.scenario.loading;
-  std::size_t steps = loading.steps.size();
-  for (const WallSpec& wall : loading.walls) steps = std::max(steps, wall.steps.size());
-  return std::max(k_rtol_multiple, k_rtol_multiple_of_step * static_cast<double>(steps)) *
+  const auto steps = static_cast<double>(step_count(run.scenario));
+  return std::max(k_rtol_multiple, k_rtol_multiple_of_step * steps) *
          std::max(run.scenario.numerics.rtol, k_finest_rtol);
 }
 

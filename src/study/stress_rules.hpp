@@ -39,6 +39,9 @@ inline constexpr std::string_view k_fold = "fold of the free centre";
 /// The stated end where plastic strain grows without bound.
 inline constexpr std::string_view k_uniqueness = "loss of uniqueness";
 
+/// Steps of the longest program, cycles written out.
+[[nodiscard]] std::size_t step_count(const Scenario& scenario);
+
 /// What the work of a run of the direct form may be wrong by, over the largest energy; 0 for other runs.
 [[nodiscard]] double direct_work_tolerance(const Run& run);
 

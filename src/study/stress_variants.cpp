@@ -13,6 +13,7 @@
 #include "catalogue.hpp"
 #include "scene/scene.hpp"
 #include "study/dice.hpp"
+#include "study/stress_rules.hpp"
 
 namespace monograin {
 namespace {
@@ -205,9 +206,7 @@ Scenario magnified(Scenario scenario, const Magnification& by) {
 
 std::optional<Scenario> halved(Scenario scenario, std::size_t& cut) {
   if (starts_anywhere(scenario)) return {};
-  std::size_t count = scenario.loading.steps.size();
-  for (const WallSpec& wall : scenario.loading.walls) count = std::max(count, wall.steps.size());
-  for (cut = count; cut-- > 0;) {
+  for (cut = step_count(scenario); cut-- > 0;) {
     bool is_possible = true;
     Scenario halves = scenario;
     for_each_program(halves, [&](std::vector<Step>& steps, double gap) {

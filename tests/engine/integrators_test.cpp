@@ -76,6 +76,47 @@ TEST(FixedSteps, ConvergeWithTheirLength) {
   EXPECT_LT(last, 1e-3);
 }
 
+/// A free centre between six walls, one of which touches and bears nothing: the rates jump where that one opens, and
+/// where contacts begin they change over overlaps that the unknowns are much larger than.
+constexpr const char* k_touching_wall = R"(
+model = "nonlocal"
+particle.radius = 1e-3
+material = { youngs_modulus = 4e6, poisson_ratio = 0.14 }
+nonlocal = { terms = 3, contact_radius_rule = "integral" }
+output.points = 20
+
+[loading]
+configuration = "walls"
+centre = "equilibrium"
+steps = [
+  { displacement = "0.07 R0", duration = 1 },
+  { displacement = 0, duration = 1 },
+]
+wall = [
+  { name = "w0", normal = [0.584, -0.661, -0.471] },
+  { name = "w1", normal = [-0.584, 0.661, 0.471], gap = "0.022 R0", fixed = true },
+  { name = "w2", normal = [-0.599, 0.678, 0.426] },
+  { name = "w3", normal = [0.524, -0.549, -0.651], fixed = true },
+  { name = "w4", normal = [0.599, -0.678, -0.426], fixed = true },
+  { name = "w5", normal = [-0.418, 0.002, -0.909] },
+]
+)";
+
+double steps_of(const std::string& integrator, double rtol) {
+  const TestRun now = run(parse_scenario(k_touching_wall, "touching wall"), integrator, relative(rtol));
+  EXPECT_EQ(now.record.status, RunStatus::complete) << rtol << ": " << now.record.message;
+  return static_cast<double>(now.record.statistics.steps);
+}
+
+TEST(DifferenceQuotients, LeaveALinearlyImplicitMethodItsOrder) {
+  EXPECT_LT(steps_of("odeint-rosenbrock4", 1e-10),
+            std::pow(1e-8 / 1e-10, 1.0 / 4.0) * steps_of("odeint-rosenbrock4", 1e-8));
+}
+
+TEST(DifferenceQuotients, DoNotLookPastAContactThatOpens) {
+  for (const double rtol : {1e-6, 1e-7, 1e-8}) EXPECT_LT(steps_of("gsl-msbdf", rtol), 2000.0);
+}
+
 TEST(IntegratorNames, AreThoseOfScenarioFiles) {
   for (const std::string_view name : integrator_names()) {
     EXPECT_NO_THROW(static_cast<void>(
