@@ -1,5 +1,6 @@
 #include "figure/page.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <system_error>
@@ -16,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double k_x_label_cm = 1.05;       // from an axis down to the middle of its label
 constexpr double k_most_decade_tics = 6.0;  // of a logarithmic axis: more of their labels run into each other
 
 [[nodiscard]] Format format_of(const fs::path& output) {
@@ -50,6 +52,25 @@ void make_folder(const fs::path& folder) {
   return {};
 }
 
+/// Of numbers that are too long for the room beside an axis, the power of ten that they share; 0 for others.
+[[nodiscard]] int shared_power(const AxisRange& range) {
+  constexpr int k_least = -3;
+  constexpr int k_most = 4;
+  const double largest = std::max(std::abs(range.lowest), std::abs(range.highest));
+  const int power = static_cast<int>(std::floor(std::log10(largest)));
+  return power < k_least || power > k_most ? power : 0;
+}
+
+/// Tics with the numbers that a power of ten leaves.
+[[nodiscard]] std::string tics_over_power(const AxisRange& range, int power) {
+  std::string tics;
+  for (double k = std::ceil(range.lowest / range.tic_step); k * range.tic_step <= range.highest; k += 1.0) {
+    const double place = k * range.tic_step;
+    tics += fmt::format("{}'{:.6g}' {:.6g}", tics.empty() ? "" : ", ", place / std::pow(10.0, power), place);
+  }
+  return fmt::format("({})", tics);
+}
+
 [[nodiscard]] std::string axis_text(char name, const Axis& axis) {
   const auto& [lowest, highest, tic_step] = axis.range;
   if (axis.is_logarithmic) {
@@ -61,7 +82,16 @@ void make_folder(const fs::path& folder) {
         "set format {0} '10^{{%T}}'\n",
         name, lowest, highest, tics);
   }
-  return fmt::format("set {0}range [{1:.6g}:{2:.6g}]; set {0}tics {3:.6g}\n", name, lowest, highest, tic_step);
+  const int power = shared_power(axis.range);
+  return fmt::format("set {0}range [{1:.6g}:{2:.6g}]; set {0}tics {3}\n", name, lowest, highest,
+                     power == 0 ? fmt::format("{:.6g}", tic_step) : tics_over_power(axis.range, power));
+}
+
+/// Says at the end of an axis what its numbers are to be multiplied by.
+[[nodiscard]] std::string power_text(int label, const Axis& axis, const std::string& place) {
+  const int power = axis.is_logarithmic ? 0 : shared_power(axis.range);
+  if (power == 0) return fmt::format("unset label {}\n", label);
+  return fmt::format("set label {} '×10^{{{}}}' at {} right\n", label, power, place);
 }
 
 }  // namespace
@@ -93,10 +123,13 @@ std::string frame_text(const Panel& panel, const Layout& layout, const Axis& x, 
       "{}{}"
       "set xlabel {}\n"
       "set label 1 '({})' at graph 0.02, 1.06 left\n"
-      "set label 2 {} at screen {:.4f}, {:.4f} center rotate by 90\n",
+      "set label 2 {} at screen {:.4f}, {:.4f} center rotate by 90\n"
+      "{}{}",
       axes.left / layout.width, axes.right() / layout.width, axes.bottom / layout.height, axes.top() / layout.height,
       axis_text('x', x), axis_text('y', y), gnuplot_string(x.label), letter, gnuplot_string(y.label),
-      panel.y_label_left / layout.width, (axes.bottom + 0.5 * axes.height) / layout.height);
+      panel.y_label_left / layout.width, (axes.bottom + 0.5 * axes.height) / layout.height,
+      power_text(3, x, fmt::format("graph 1, screen {:.4f}", (axes.bottom - k_x_label_cm) / layout.height)),
+      power_text(4, y, "graph -0.01, 1.06"));
 }
 
 void write_whole(const fs::path& file, const std::string& text) {

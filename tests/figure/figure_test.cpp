@@ -179,6 +179,18 @@ TEST_F(Figure, StaysInUnitsWhereARunHasNoScales) {
   EXPECT_NE(read_text(in_folder("bare.gp")).find("Force {/:Italic F} [N]"), std::string::npos);
 }
 
+TEST_F(Figure, HasRoomForTheNumbersOfItsAxes) {
+  std::string stiff = k_mdr_history;
+  stiff.replace(stiff.find("1e9"), 3, "1e15");
+  write(in_folder("stiff/history.csv"), stiff);
+  draw_runs({in_folder("stiff")}, in_folder("stiff.svg"));
+  const std::string script = read_text(in_folder("stiff.gp"));
+  EXPECT_NE(script.find("set ytics ('0' 0, '0.5' 5e-09, '1' 1e-08, '1.5' 1.5e-08, '2' 2e-08)"), std::string::npos)
+      << script;
+  EXPECT_NE(script.find("'×10^{-8}' at graph -0.01"), std::string::npos) << script;
+  EXPECT_NE(script.find("set xtics 0.1\n"), std::string::npos) << script;
+}
+
 TEST_F(Figure, RefusesAnUnknownFormatAndListsTheKnown) {
   EXPECT_EQ(fault_of({run()}, "a.jpg"), "a.jpg: unknown figure format '.jpg'; expected .svg, .pdf or .png");
   EXPECT_EQ(fault_of({run()}, "a"), "a: unknown figure format ''; expected .svg, .pdf or .png");
