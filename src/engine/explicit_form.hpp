@@ -50,6 +50,22 @@ double shift_within_domain(double increment, Shift&& shift) {
   }
 }
 
+/// Largest change of rates beside the largest of them.
+/// @param scale_of  of an unknown, by its place
+template <class ScaleOf>
+double change_of_rates(std::span<const double> before, std::span<const double> after, ScaleOf&& scale_of) {
+  double largest = 0.0;
+  double change = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    largest = std::max(largest, std::abs(before[i]) / scale_of(i));
+    change = std::max(change, std::abs(after[i] - before[i]) / scale_of(i));
+  }
+  return change > 0.0 ? change / largest : 0.0;
+}
+/// Rates that change by more over a difference quotient's increment may jump within it, where a contact opens or is no
+/// longer taken along. Then the side counts on which they change less.
+inline constexpr double k_jump = 1e-2;
+
 /// Quadratures counted anew from every segment's start: their relative tolerance then refers to the segment's own
 /// share, and a hundred cycles of loading and unloading do not wear the total away.
 class SegmentQuadratures {

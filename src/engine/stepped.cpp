@@ -243,13 +243,8 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
     const double way = base_[j] != 0.0 ? std::abs(length * base_[j]) : largest_way;
     const double wanted = std::max(std::min(k_share_of_step * way, k_cubic_root * std::max(size, k_least_size)),
                                    k_root * std::max(size, way));
-    const double step = shift_within_domain(wanted, [&](double by) {
-      point_[j] = z[j] + by;
-      form_.rates(xi, point_, shifted_);
-    });
-    const double back = look_back(xi, z[j], j, step);
-    for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted_[i] - beyond_[i]) / (step + back);
-    point_[j] = z[j];
+    const double seen = look_beside(xi, j, wanted);
+    for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted_[i] - beyond_[i]) / seen;
   }
   // Of second order: next to a pole the rounding of xi leaves few digits of quotients over much less than the step, and
   // those of first order over all of it are wrong by a share of their own.
@@ -264,18 +259,24 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
   }
 }
 
-double DifferenceJacobian::look_back(double xi, double z, std::size_t j, double step) {
-  // Beyond zero a contact is open, and the rates are others.
-  if (std::abs(z) > step) {
-    try {
-      point_[j] = z - step;
-      form_.rates(xi, point_, beyond_);
-      return step;
-    } catch (const std::domain_error&) {
-    }
+double DifferenceJacobian::look_beside(double xi, std::size_t j, double wanted) {
+  const double z = point_[j];
+  const double step = shift_within_domain(wanted, [&](double by) {
+    point_[j] = z + by;
+    form_.rates(xi, point_, shifted_);
+  });
+  const double forth = form_.change_of_rates(base_, shifted_);
+  double back = std::numeric_limits<double>::infinity();
+  try {
+    point_[j] = z - step;
+    form_.rates(xi, point_, beyond_);
+    back = form_.change_of_rates(base_, beyond_);
+  } catch (const std::domain_error&) {
   }
-  std::ranges::copy(base_, beyond_.begin());
-  return 0.0;
+  point_[j] = z;
+  if (std::max(forth, back) <= k_jump) return 2.0 * step;
+  std::ranges::copy(base_, (forth <= back ? beyond_ : shifted_).begin());
+  return step;
 }
 
 std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, Watch& watch,

@@ -20,6 +20,9 @@ class ScaledForm {
         seen_(system.unknowns().size()) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return form_.size(); }
+  [[nodiscard]] double change_of_rates(std::span<const double> before, std::span<const double> after) const {
+    return monograin::change_of_rates(before, after, [](std::size_t) { return 1.0; });
+  }
   [[nodiscard]] bool is_quadrature(std::size_t k) const noexcept {
     return form_.unknown(k).kind == Unknown::Kind::quadrature;
   }
@@ -131,9 +134,9 @@ class DifferenceJacobian {
   void at(double xi, std::span<const double> z, double length, std::span<double> jacobian, std::span<double> by_xi);
 
  private:
-  /// Puts the rates for an unknown that is less by a step into `beyond_`, or those at the point where there are none.
-  /// @return how much less it is
-  double look_back(double xi, double z, std::size_t j, double step);
+  /// Rates for more of an unknown, in `shifted_`, and for less of it, in `beyond_`; those at the point itself in place
+  /// of a side that does not count. @return how far apart the two are
+  double look_beside(double xi, std::size_t j, double wanted);
 
   ScaledForm& form_;
   std::vector<double> base_, shifted_, beyond_, point_;

@@ -363,6 +363,23 @@ class SundialsOde final : public Integrator {
     return is_off;
   }
 
+  [[nodiscard]] double change_of_rates(std::span<const double> before, std::span<const double> after) const {
+    return monograin::change_of_rates(before, after, [this](std::size_t i) { return form_.unknown(i).scale; });
+  }
+
+  /// That increment, or the opposite one where the rates change less.
+  template <class Shift>
+  double take_gentler_side(double increment, std::span<const double> before, N_Vector shifted, Shift&& shift) const {
+    const double change = change_of_rates(before, view(shifted));
+    try {
+      shift(-increment);
+      if (change_of_rates(before, view(shifted)) < change) return -increment;
+    } catch (const std::domain_error&) {
+    }
+    shift(increment);
+    return increment;
+  }
+
   /// d(rates)/dy by difference quotients, as the library's own, but for increments that leave the domain, and those of
   /// an unknown that begins at zero: rates of the work may rise there like a root, and what is rounding beside the step
   /// shows no slope that the step could use.
@@ -387,11 +404,14 @@ class SundialsOde final : public Integrator {
       const double in_step = std::min(std::abs(step * before[j]), tolerated);
       double increment = std::max({k_root * std::abs(value), least * tolerated, in_step});
       const int flag = ode.pending_.guard([&] {
-        increment = shift_within_domain(increment, [&](double by) {
+        const auto shift = [&](double by) {
           values[j] = value + by;
           ++ode.for_jacobian_;
           ode.pending_.beside([&] { ode.form_.rates(xi, values, view(shifted)); });
-        });
+        };
+        increment = shift_within_domain(increment, shift);
+        if (ode.change_of_rates(before, view(shifted)) > k_jump)
+          increment = ode.take_gentler_side(increment, before, shifted, shift);
         return all_finite(view(shifted));
       });
       values[j] = value;
