@@ -106,6 +106,11 @@ double System::prescribed_at(double packing_fraction) const {
   return measured(law_, branch_.measure, packing_fraction);
 }
 
+/// The same of one that jams, where that is no stress.
+double System::prescribed_at_jamming() const noexcept {
+  return ramp_.control == Control::strain ? at_jamming_.strain : law_.jamming;
+}
+
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
   const bool is_other = ramps[0].control != ramp_.control || branch_.begin == 0.0;
   ramp_ = ramps[0];
@@ -205,7 +210,7 @@ void System::settle(double xi, std::vector<Event>& log) {
   if (ramp_.control == Control::stress) {
     is_jammed_ = was_jammed || value > 0.0 || d > 0;
   } else {
-    const double jamming = ramp_.control == Control::strain ? at_jamming_.strain : law_.jamming;
+    const double jamming = prescribed_at_jamming();
     is_jammed_ = value > jamming || (value == jamming && (d > 0 || (d == 0 && was_jammed)));
     // Where the strain falls at first, a packing that is not unloaded stays jammed below the strain at jamming.
     is_jammed_ |= was_jammed && d >= 0 && value >= branch_.least;
@@ -417,7 +422,7 @@ void System::watch(double xi) {
   const auto watch_place = [&](int kind, std::string_view name, double place) {
     if (is_ahead(place)) add_guard(kind, name, place);
   };
-  const double jamming = ramp_.control == Control::strain ? at_jamming_.strain : law_.jamming;
+  const double jamming = prescribed_at_jamming();
   switch (mode_) {
     case Mode::unjammed:
       // Under stress it jams at once, where a step begins.
@@ -474,10 +479,11 @@ void System::pass_places(double xi, std::vector<Event>& log) {
   }
 }
 
-/// Where the strain falls at first and never grows to what it is at jamming, there is nothing to give way to.
+/// Where the strain falls at first and never grows to what it is at jamming, or the branch ends there but for rounding,
+/// there is nothing to give way to.
 void System::end_branch_at_jamming() noexcept {
   branch_.begin = branch_.end = law_.jamming;
-  branch_.least = branch_.greatest = at_jamming_.strain;
+  branch_.least = branch_.greatest = prescribed_at_jamming();
 }
 
 void System::guard_values(double xi, std::span<const double> /*y*/, std::span<double> values) {

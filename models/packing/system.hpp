@@ -78,6 +78,7 @@ class System final : public HybridSystem {
   [[nodiscard]] Seen by_law(double xi) const;
   [[nodiscard]] Seen seen(double xi, std::span<const double> y) const;
   [[nodiscard]] double prescribed_at(double packing_fraction) const;
+  [[nodiscard]] double prescribed_at_jamming() const noexcept;
   [[nodiscard]] double strain_of(std::span<const double> y) const noexcept;
   [[nodiscard]] double excess(double xi, std::span<const double> y) const;
   [[nodiscard]] std::array<double, 2> excess_slopes(std::span<const double> y) const;

@@ -23,6 +23,7 @@ constexpr std::size_t k_looks_before_end = 12;
 constexpr double k_rounding_of_guard = 1e-14;
 constexpr double k_most_of_guard = 1e-12;
 constexpr double k_rounding_of_root = 1e-15;
+constexpr double k_share_of_progress = 1e-2;  // that a root is known to
 // How far ahead the side of a guard that begins at zero is read.
 constexpr double k_ahead = 1e-9;
 
@@ -275,7 +276,7 @@ double EventLocator::polish(std::size_t guard, const View& before, const View& a
   std::uintmax_t iterations = 100;
   const auto [below, above] = boost::math::tools::toms748_solve(
       function, before.xi, after.xi, before.values[guard], after.values[guard],
-      [](double a, double b) { return b - a <= k_rounding_of_root * std::max(1e-3, std::abs(b)); }, iterations);
+      [](double a, double b) { return b - a <= k_share_of_progress * least_progress(b); }, iterations);
   if (below < above) return above;
   double root = above;
   const auto is_short = [&] { return value != 0.0 && (value > 0.0) == (before.values[guard] > 0.0); };
