@@ -179,7 +179,9 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
     if (passed > 0.0) set_largest(i, r);
   }
   if (adheres()) return settle_edge(i, xi, y, now, is_carried, log);
-  if (opens && is_past(k_lost, -1.0)) {
+  // No force presses a wall on what is left of its contact: whether that ends does not wait for the radius to grow.
+  const bool is_let_go = is_loaded(i) && ramps_[i].start <= 0.0 && ramps_[i].end <= 0.0;
+  if ((opens || is_let_go) && is_past(k_lost, -1.0)) {
     lose_contact(i);
     log.push_back(event("contact-lost"));
     return true;

@@ -205,7 +205,7 @@ class Direct final : public EventLocator {
   bool cover_piece(double& factor) {
     forget_looks();
     if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
-    if (begin_ == segment_begin_ && begin_ < k_first) look_early();
+    if (begin_ == segment_begin_) look_early();
     for (std::size_t j = 0; j < nodes_->count; ++j) {
       const double xi = node(j);
       guess_ahead(j);
@@ -304,13 +304,14 @@ class Direct final : public EventLocator {
     }
   }
 
-  /// A step may begin with a singularity, as from first touch on: smooth in one guard, and not in another.
+  /// A step may begin with a singularity, as from first touch on: smooth in one guard, and not in another. A segment
+  /// that begins soon after is as near to it.
   void look_early() {
     const auto is_near = [](double value) { return std::abs(value) > k_zero_guard && std::abs(value) < k_near_zero; };
     if (has_slaves_ || std::ranges::none_of(begin_values_, is_near)) return;
     const double first_node = 0.5 * piece_length() * (1.0 + nodes_->places[0]);
     try {
-      for (double distance = k_first; k_grading * distance <= first_node; distance *= k_grading) {
+      for (double distance = std::max(k_first, begin_); k_grading * distance <= first_node; distance *= k_grading) {
         std::ranges::copy(begin_state_, trial_.begin());
         ++statistics_.rhs_evaluations;
         system_.solve(begin_ + distance, trial_);
