@@ -233,7 +233,7 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
   std::ranges::copy(z, point_.begin());
   form_.rates(xi, point_, base_);
   std::ranges::fill(jacobian, 0.0);
-  double largest_way = k_root;
+  double largest_way = k_root;  // where nothing moves
   for (const double rate : base_) largest_way = std::max(largest_way, std::abs(length * rate));
   for (std::size_t j = 0; j < n; ++j) {
     if (form_.is_quadrature(j)) continue;  // no rate depends on it

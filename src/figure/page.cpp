@@ -64,7 +64,8 @@ void make_folder(const fs::path& folder) {
 /// Tics with the numbers that a power of ten leaves.
 [[nodiscard]] std::string tics_over_power(const AxisRange& range, int power) {
   std::string tics;
-  for (double k = std::ceil(range.lowest / range.tic_step); k * range.tic_step <= range.highest; k += 1.0) {
+  const double first = std::ceil(range.lowest / range.tic_step) + 0.0;  // no zero with a sign
+  for (double k = first; k * range.tic_step <= range.highest; k += 1.0) {
     const double place = k * range.tic_step;
     tics += fmt::format("{}'{:.6g}' {:.6g}", tics.empty() ? "" : ", ", place / std::pow(10.0, power), place);
   }

@@ -182,6 +182,7 @@ TEST_F(Figure, StaysInUnitsWhereARunHasNoScales) {
 TEST_F(Figure, HasRoomForTheNumbersOfItsAxes) {
   std::string stiff = k_mdr_history;
   stiff.replace(stiff.find("1e9"), 3, "1e15");
+  stiff.replace(stiff.find("0.001,0,0,0,separated"), 7, "0.001,-10");
   write(in_folder("stiff/history.csv"), stiff);
   draw_runs({in_folder("stiff")}, in_folder("stiff.svg"));
   const std::string script = read_text(in_folder("stiff.gp"));
