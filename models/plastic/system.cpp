@@ -107,7 +107,6 @@ void System::start(std::span<double> y) {
   memory_.assign(classes_.size(), Memory{});
   has_begun_ = false;
   farthest_ = 0.0;
-  energies_ = {};
   has_lateral_gap_ = false;
   overshooting_.reset();
   for (std::size_t i = 0; i < classes_.size(); ++i) {

@@ -15,7 +15,6 @@
 
 #include <vector>
 
-#include "energy_watch.hpp"
 #include "hybrid_system.hpp"
 #include "mdr/contact.hpp"
 #include "plastic/law.hpp"
@@ -166,7 +165,6 @@ class System final : public HybridSystem {
   std::vector<double> guard_places_;  ///< x at which they are zero
 
   std::vector<std::string> range_messages_;
-  EnergyWatch energies_;
   double farthest_ = 0.0;               ///< largest x looked at
   bool has_lateral_gap_ = false;        ///< a lateral contact was undefined
   std::optional<double> overshooting_;  ///< recovery over displacement of a contact that opens beyond first touch

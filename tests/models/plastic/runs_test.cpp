@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "history/energy.hpp"
 #include "mdr/contact.hpp"
 #include "models/plastic/cases.hpp"
 #include "models/plastic/scenarios.hpp"
@@ -170,8 +171,10 @@ TEST(PlasticLateralContacts, AreEmptyWhereTheSourceHasNoLaw) {
     EXPECT_EQ(std::isnan(force[k]), x[k] > 0.1 || is_unloaded) << x[k];
     EXPECT_EQ(std::isnan(pressure[k]), (x[k] > 0.1 && x[k] < 0.4102) || is_unloaded) << x[k];
   }
-  EXPECT_EQ(now.record.warnings.size(), 1u);
-  EXPECT_TRUE(contains(now.record.warnings.front(), "lateral")) << now.record.warnings.front();
+  ASSERT_EQ(now.record.warnings.size(), 2u);
+  EXPECT_TRUE(contains(now.record.warnings.front(), "2.1 to 3.5 times those of finite elements"))
+      << now.record.warnings.front();
+  EXPECT_TRUE(contains(now.record.warnings.back(), "no law for lateral contacts")) << now.record.warnings.back();
 }
 
 // --- unloading by the indenter of model mdr
@@ -245,13 +248,25 @@ TEST(PlasticUnloading, IsTheSameUnderAForceInAllForms) {
   EXPECT_GE(lost_dissipation(direct), -1e-9);
 }
 
+TEST(SemimechWarnings, SayWhereAWholeRunIsTooStiff) {
+  const auto warns = [](double reach) {
+    const TestRun result = run(unloading_steel(Walls::simple, {ramp(reach)}));
+    return std::ranges::any_of(result.record.warnings,
+                               [](const std::string& text) { return contains(text, "where the law is too stiff"); });
+  };
+  EXPECT_TRUE(warns(8e-6));
+  EXPECT_TRUE(warns(0.029));
+  EXPECT_FALSE(warns(0.031));
+}
+
 TEST(PlasticUnloading, WarnsOfContactsThatRecoverMoreThanTheyWereCompressed) {
   const double yield = std::get<SemimechLaw>(plastic_law_of(steel(Walls::simple, {}))).yield_approach;
   const TestRun small = run(unloading_steel(Walls::simple, {ramp(1.05 * yield), ramp(0.9 * yield)}));
   // What it recovers more it also gives back as energy.
+  EXPECT_TRUE(energy_warning(small.record.history, 1.0, "semimech", 0.0));
   ASSERT_EQ(small.record.warnings.size(), 2u);
-  EXPECT_TRUE(contains(small.record.warnings.back(), "creates energy")) << small.record.warnings.back();
-  EXPECT_TRUE(contains(small.record.warnings.front(), "recovers more")) << small.record.warnings.front();
+  EXPECT_TRUE(contains(small.record.warnings.front(), "too stiff")) << small.record.warnings.front();
+  EXPECT_TRUE(contains(small.record.warnings.back(), "recovers more")) << small.record.warnings.back();
   EXPECT_TRUE(run(unloading_steel(Walls::simple, {ramp(0.1), ramp(0.09)})).record.warnings.empty());
 }
 
