@@ -96,9 +96,8 @@ constexpr std::array<string_view, 8> k_domain{
     "unloading: the source has no law for alpha and beta; a warning where Hertz's 1.5 and 1 stand in for them",
     "unloading ends at first touch or before: where beta would have it beyond, alpha stays and a warning counts it",
     "reloading: not in the source; elastic on the way of the unloading",
-    "warned: dissipation below -1e-6 of the work, where alpha, beta or a soft material make the unloading softer than "
-    "the "
-    "loading",
+    "warned: dissipation that falls by more than 1e-6 of the energy, where alpha, beta or a soft material make the "
+    "unloading softer than the loading",
 };
 
 std::optional<double> value_of(const std::map<std::string, double>& values, const char* key) {

@@ -61,7 +61,6 @@ void ContactSystem::start(std::span<double> y) {
   has_begun_ = false;
   clipped_ = 0;
   least_ratio_ = 1.0;
-  energies_ = {};
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const double gap = classes_[i].gap / settings_.initial_radius;
     ramps_[i] = {-gap, -gap, Control::displacement};
@@ -451,7 +450,6 @@ void ContactSystem::observe(double xi, std::span<const double> y, std::span<doub
     least_ratio_ = std::min(least_ratio_, slope_ratio(settings_.law, curve));
   }
   auto out = values.begin();
-  energies_.see(y[work_place_], stored);
   *out++ = y[work_place_] * energy_unit;
   *out++ = stored * energy_unit;
   *out++ = (y[work_place_] - stored) * energy_unit;
@@ -507,10 +505,6 @@ std::vector<Finding> ContactSystem::warnings() const {
   if (least_ratio_ < 1.0 - k_same_place) {
     found.push_back({"unloading is, or would be, less steep than loading: the cycle may give back more than it took",
                      "least slope over that of loading", least_ratio_});
-  }
-  if (const auto made = energies_.finding(
-          "the unloading creates energy: alpha, beta and the stiffness make it softer than the loading")) {
-    found.push_back(*made);
   }
   return found;
 }

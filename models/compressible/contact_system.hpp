@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "compressible/contact_law.hpp"
-#include "energy_watch.hpp"
 #include "hybrid_system.hpp"
 
 namespace monograin::compressible {
@@ -116,7 +115,6 @@ class ContactSystem final : public HybridSystem {
   std::vector<Guard> guards_;
   std::vector<double> guard_places_;  ///< displacement at which they are zero
 
-  EnergyWatch energies_;
   int clipped_ = 0;           ///< unloadings that would have opened before first touch
   double least_ratio_ = 1.0;  ///< of the slopes where a contact that was looked at has turned back, or would
 };

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "catalogue.hpp"
+#include "history/energy.hpp"
 #include "history/recorder.hpp"
 
 namespace monograin {
@@ -101,6 +102,10 @@ Run run_scenario(const Scenario& scenario, const SystemWrapper& wrapped) {
   for (std::size_t c = 0; c < scene.classes.size(); ++c) run.classes.push_back({scene.classes[c].name, scene.walls[c]});
   run.skipped = std::move(scene.skipped);
   if (run.integrator.used == "direct") run.skipped.emplace_back("time integration: every state is solved for directly");
+  const double rtol = run.integrator.used == "direct" ? 0.0 : scenario.numerics.rtol;
+  if (auto warning = energy_warning(run.record.history, scenario.radius, scenario.model, rtol)) {
+    run.record.warnings.push_back(std::move(*warning));
+  }
   run.record.history.header = header_of(run);
   run.record.events.header = run.record.history.header;
   return run;

@@ -1,0 +1,66 @@
+#include "history/energy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace monograin {
+namespace {
+
+// Share of the scale from which on a fall is worth a warning; laws make smaller corrections at their transitions.
+constexpr double k_worth_a_warning = 1e-6;
+// Global error of a controlled integration over its rtol.
+constexpr double k_error_over_rtol = 100.0;
+// Rounding of an overlap over R0: a difference of a few lengths of that order.
+constexpr double k_overlap_rounding = 16.0 * std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+std::optional<DissipationFall> largest_dissipation_fall(const Table& history, double radius) {
+  const auto work = history.find("work");
+  const auto stored = history.find("stored_energy");
+  if (!work || !stored) return std::nullopt;
+  std::vector<std::size_t> forces;
+  for (std::size_t c = 0; c < history.columns().size(); ++c) {
+    if (history.columns()[c].name.ends_with(".force")) forces.push_back(c);
+  }
+  DissipationFall largest;
+  double greatest = -std::numeric_limits<double>::infinity();
+  double time_of_greatest = 0.0;
+  double rounding = 0.0;
+  for (std::size_t row = 0; row < history.row_count(); ++row) {
+    const double dissipation = history.at(row, *work) - history.at(row, *stored);
+    largest.scale = std::max({largest.scale, std::abs(history.at(row, *work)), std::abs(history.at(row, *stored))});
+    double force = 0.0;
+    for (const std::size_t c : forces) force += std::abs(history.at(row, c));
+    rounding = std::max(rounding, k_overlap_rounding * force * radius);
+    if (dissipation > greatest) {
+      greatest = dissipation;
+      time_of_greatest = history.at(row, 0);
+    } else if (greatest - dissipation > largest.amount) {
+      largest.amount = greatest - dissipation;
+      largest.from = time_of_greatest;
+      largest.to = history.at(row, 0);
+    }
+  }
+  if (!(largest.amount > rounding)) return std::nullopt;
+  return largest;
+}
+
+std::optional<std::string> energy_warning(const Table& history, double radius, const std::string& model, double rtol) {
+  const auto fall = largest_dissipation_fall(history, radius);
+  if (!fall || !(fall->share() > k_worth_a_warning)) return std::nullopt;
+  const std::string where = fmt::format(
+      "dissipation falls by {:.3g} J, {:.2g} of the largest energy, from t = {:.9g} s "
+      "to t = {:.9g} s",
+      fall->amount, fall->share(), fall->from, fall->to);
+  if (fall->share() <= k_error_over_rtol * rtol) {
+    return fmt::format("{}: the integration may be off by as much at rtol = {:g}", where, rtol);
+  }
+  return fmt::format("the law creates energy: {}; 'monograin models {}' says where it may", where, model);
+}
+
+}  // namespace monograin
