@@ -101,6 +101,7 @@ void System::sum_up(double xi, double r) {
   double by_time = 0.0;
   double time_scale = 0.0;
   double by_radius = 0.0;
+  double of_walls = 0.0;  // part of by_radius
   for (std::size_t i = 0; i < now_.size(); ++i) {
     Instant& now = now_[i];
     const bool is_under_force = is_loaded(i);
@@ -127,7 +128,8 @@ void System::sum_up(double xi, double r) {
     const double by_displacement = count * (volume_rate - cap_rate);
     by_time += by_displacement * now.rate_by_time;
     time_scale += count * (std::abs(volume_rate) + std::abs(cap_rate)) * std::abs(now.rate_by_time);
-    by_radius += count * weight * (c.by_overlap + c.by_radius) * distance + by_displacement * now.rate_by_growth;
+    by_radius += count * weight * (c.by_overlap + c.by_radius) * distance;
+    of_walls += by_displacement * now.rate_by_growth;
     if (free_count_ > 0 && !is_under_force) sums_.by_centre += by_displacement * directions_[i];
   }
   sums_.energy.reset();
@@ -138,7 +140,8 @@ void System::sum_up(double xi, double r) {
   sums_.by_time = by_time;
   sums_.time_scale = time_scale;
   sums_.balance = r * (1.0 + r * (1.0 + k_third * r)) - k_twelfth * caps + 2.0 * k_third * w / (1.0 + root);
-  sums_.by_radius = by_radius + (radius * radius - 0.5 * radius * overlaps);
+  sums_.by_radius_at_rest = by_radius + (radius * radius - 0.5 * radius * overlaps);
+  sums_.by_radius = sums_.by_radius_at_rest + of_walls;
   if (free_count_ == 0) return;
   // At first touch all stiffnesses vanish together.
   const bool is_first_touch = std::ranges::all_of(lines_, [](const Line& line) { return line.stiffness == 0.0; });

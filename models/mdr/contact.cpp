@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +14,9 @@
 
 namespace monograin::mdr {
 namespace {
+
+// Share of a force that rounding may leave where an overlap is sought for it: the contact area is a difference.
+constexpr double k_force_rounding = 1e-10;
 
 using std::numbers::pi;
 
@@ -321,18 +325,28 @@ double elastic_overlap(ElasticProfile profile, double composite_modulus, double 
 
 double plastic_overlap(const Material& material, double radius, double force, double area_constant, double guess) {
   // The overlap without any area; the force rises from there to its largest value not far below the radius.
-  const double least = radius - std::sqrt(radius * radius + area_constant);
-  double overlap = std::clamp(guess, least + 1e-3 * (radius - least), 0.999 * radius);
+  double low = radius - std::sqrt(radius * radius + area_constant);
+  double high = radius;
+  double overlap = std::clamp(guess, low + 1e-3 * (radius - low), 0.999 * radius);
   double last_step = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < 60; ++iteration) {
+  for (int iteration = 0; iteration < 100; ++iteration) {
     const Contact contact = plastic_contact(material, radius, overlap, area_constant);
-    if (!(contact.by_overlap > 0.0)) break;
-    const double next = overlap + (force - contact.force) / contact.by_overlap;
-    const double step = std::clamp(next, 0.5 * (overlap + least), 0.5 * (overlap + radius)) - overlap;
-    overlap += step;
-    const double size = std::abs(step);
-    if (size <= 1e-16 * overlap || (size >= last_step && size < 1e-13 * overlap)) return overlap;
-    last_step = size;
+    const double missing = force - contact.force;
+    const bool is_rising = contact.by_overlap > 0.0;
+    // Past its largest value the force falls, and the overlap sought is below.
+    (is_rising && missing > 0.0 ? low : high) = overlap;
+    double next = overlap + missing / contact.by_overlap;
+    const bool is_outside = !is_rising || !(next >= low && next <= high);
+    if (is_outside) next = std::midpoint(low, high);
+    const double size = std::abs(next - overlap);
+    overlap = next;
+    if (size > 1e-16 * overlap && (size < last_step || size >= 1e-13 * overlap)) {
+      last_step = size;
+      continue;
+    }
+    // Between the largest force and one above it the search closes in on the former.
+    if (is_outside && missing > k_force_rounding * force) break;
+    return overlap;
   }
   throw std::domain_error("the force is above the largest that a plastic contact bears");
 }

@@ -99,6 +99,8 @@ void System::watch(double xi, std::span<const double> y) {
   if (is_growing_) {
     guards_.push_back({k_growth_off, -1, -1, "growth-off"});
     guards_.push_back({k_singular, -1, -1, "singular-growth"});
+    // Under displacement control the two are one.
+    if (takes_forces_) guards_.push_back({k_covered, -1, -1, "singular-growth"});
   } else if (settings_.radius_rule != RadiusRule::fixed && gate_is_open(now)) {
     guards_.push_back({k_growth_on, -1, 1, "growth-on"});
     // The share of a contact in the demand for growth may change sign just before it is lost.
@@ -171,6 +173,10 @@ void System::watch_contact(std::size_t i, double r, const Motion& now) {
       break;
   }
   if (memory.regime == Regime::elastic && may_come_in && may_yield(memory)) add(k_yield, 1, "yield");
+  if (has_greatest_force(i)) {
+    guards_.push_back(
+        {.kind = k_greatest_force, .index = index, .direction = -1, .name = "limit", .is_branch_end = true});
+  }
   if (memory.is_virgin) {
     const bool is_shifted = settings_.delta_max_rule == DeltaMaxRule::shifted;
     const bool may_retreat = is_free || (may_turn && (is_loaded(i) || (wall_rate(i, now) < 0.0 && !is_shifted)));
@@ -228,6 +234,12 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         break;
       case k_singular:
         values[g] = free_surface(now, r) - k_least_slope;
+        break;
+      case k_covered:
+        values[g] = free_surface_at_rest(r) - k_least_slope;
+        break;
+      case k_greatest_force:
+        values[g] = stiffness_left(i) - k_last_stiffness;
         break;
       case k_volume:
         values[g] = 1.0 - 4.0 * sums_.relative_compression - k_least_volume;

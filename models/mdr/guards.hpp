@@ -20,6 +20,8 @@ enum GuardKind : int {
   k_growth_off,
   k_caps,
   k_singular,
+  k_covered,
+  k_greatest_force,
   k_volume,
   k_centre_reached
 };
@@ -37,6 +39,9 @@ inline constexpr double k_least_slope = 1e-3;
 /// root of a guard that is zero there would lie within the rounding of states that are found no more. What is left of
 /// the way is the square of this.
 inline constexpr double k_least_firmness = 1e-5;
+/// Stiffness of a plastic contact under force, over that of a shallow one, at which it counts as bearing the largest
+/// force that it can. At less its overlap would magnify errors of the radius a hundredfold and more.
+inline constexpr double k_last_stiffness = 1e-2;
 /// A wall this near to the centre of the particle (over R0) has reached it.
 inline constexpr double k_least_distance = 1e-3;
 

@@ -39,8 +39,9 @@ void System::look_at_forces(double xi, std::span<const double> y) {
   longest_ = 1.0;
   for (int k = 0; k < free_count_; ++k) longest_ = std::max(longest_, std::abs(y[centre_place(k)]));
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    look_at(i, is_loaded(i) ? y[wall_places_[i]] : displacement_as_told(i, xi, y), r);
-    now_[i].position = now_[i].displacement - carried_by_centre(i, y);
+    const double carried = carried_by_centre(i, y);
+    now_[i].position = is_loaded(i) ? y[wall_places_[i]] - carried : prescribed_position(i, xi);
+    look_at(i, is_loaded(i) ? y[wall_places_[i]] : now_[i].position + carried, r);
   }
   sum_up(xi, r);
 }
@@ -219,12 +220,11 @@ double System::displacement_under_force(std::size_t i, double xi, double r, doub
   return guess;
 }
 
-/// Displacement of a wall as the program and a free centre make it.
-double System::displacement_as_told(std::size_t i, double xi, std::span<const double> y) const noexcept {
+/// Where the program puts a wall under displacement control, towards the place where the centre started, over R0.
+double System::prescribed_position(std::size_t i, double xi) const noexcept {
   // As exact as std::lerp, which takes longer than the rest of this.
   const Ramp& ramp = ramps_[i];
-  const double told = xi == 1.0 ? ramp.end : ramp.start + xi * (ramp.end - ramp.start);
-  return told + carried_by_centre(i, y);
+  return xi == 1.0 ? ramp.end : ramp.start + xi * (ramp.end - ramp.start);
 }
 
 /// How far a free centre has come towards the walls of a class.
@@ -248,7 +248,8 @@ void System::move_walls(double xi, std::span<double> y) {
 void System::note_walls(double xi, std::span<double> y) const noexcept {
   if (!takes_forces_) return;
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
-    if (classes_[i].takes_force && !is_loaded(i)) y[wall_places_[i]] = displacement_as_told(i, xi, y);
+    if (classes_[i].takes_force && !is_loaded(i))
+      y[wall_places_[i]] = prescribed_position(i, xi) + carried_by_centre(i, y);
   }
 }
 

@@ -379,8 +379,13 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
   look_once(xi, y);
   frozen_balance_ = is_growing_ ? sums_.balance : 0.0;
   // Past already, its guard would not be met.
-  if (is_growing_ && free_surface(motion(true), y[k_radius]) < k_least_slope) {
+  if (is_growing_ &&
+      std::min(free_surface(motion(true), y[k_radius]), free_surface_at_rest(y[k_radius])) < k_least_slope) {
     throw std::domain_error(k_singular_growth);
+  }
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    if (has_greatest_force(i) && stiffness_left(i) < k_last_stiffness)
+      throw std::domain_error(k_greatest_force_reached);
   }
   hold_centre(y);
   watch(xi, y);
@@ -484,9 +489,13 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         if (const auto limit = meet_caps(cap_pairs_[i], r, log)) end = limit;
         continue;
       case k_singular:
+      case k_covered:
         end = DomainEnd{event,
                         {"the free surface of the particle is used up and the apparent radius would run away",
                          "growth slope D_eff/(4 pi R^2)", k_least_slope}};
+        continue;
+      case k_greatest_force:
+        end = DomainEnd{event, {k_greatest_force_reached, "stiffness left", stiffness_left(i)}};
         continue;
       case k_volume:
         end = DomainEnd{event, {"the particle is compressed elastically to half its volume", "V/V0", 0.5}};

@@ -71,7 +71,6 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   const double energy_unit = force_unit * length;
   const double work = y[k_work] + sums_.force_work;
   const double stored = energy(r, PlasticPart::recoverable);
-  energies_.see(work, stored);
 
   auto out = values.begin();
   if (settings_.radius_rule != RadiusRule::fixed) {
@@ -86,7 +85,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   *out++ = (work - stored) * energy_unit;
   for (std::size_t i = 0; i < now_.size(); ++i) {
     const Contact c = visible_contact(i);
-    *out++ = now_[i].displacement * length;
+    *out++ = now_[i].position * length;
     *out++ = now_[i].overlap * length;
     *out++ = c.force * force_unit;
     *out++ = c.contact_radius * length;
@@ -122,7 +121,7 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
   const double length = settings_.initial_radius;
   const double area = pi * contact.contact_radius * contact.contact_radius;
   return quantity_of({.force = contact.force * stress_unit_ * length * length,
-                      .displacement = now_[i].displacement * length,
+                      .displacement = now_[i].position * length,
                       .pressure = area > 0.0 ? contact.force / area * stress_unit_ : 0.0,
                       .contact_radius = contact.contact_radius * length,
                       .apparent_radius = (1.0 + y[k_radius]) * length},
@@ -180,14 +179,6 @@ std::vector<Finding> System::warnings() const {
                       radius_at_caps_});
   }
   if (validity_) result.push_back(*validity_);
-  const bool has_other_rule = settings_.radius_rule != RadiusRule::yielded;
-  if (const auto made = energies_.finding(
-          has_other_rule
-              ? "the growing apparent radius creates energy; radius_rule = \"yielded\" avoids it"
-              : "the growing apparent radius creates energy, as it may where elastic strains are large or little of "
-                "the free surface is left")) {
-    result.push_back(*made);
-  }
   return result;
 }
 

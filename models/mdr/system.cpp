@@ -157,7 +157,6 @@ void System::start(std::span<double> y) {
   memory_.assign(classes_.size(), Memory{});
   is_growing_ = false;
   held_radius_ = 0.0;
-  energies_ = {};
   validity_.reset();
   caps_have_met_ = false;
   for (CapPair& pair : cap_pairs_) pair.have_met = false;

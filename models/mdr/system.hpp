@@ -15,7 +15,6 @@
 #include <optional>
 #include <vector>
 
-#include "energy_watch.hpp"
 #include "hybrid_system.hpp"
 #include "mdr/adhesion.hpp"
 #include "mdr/contact.hpp"
@@ -54,7 +53,7 @@ struct Settings {
   double yield_stress = std::numeric_limits<double>::infinity();  ///< Y [Pa], > 0; infinity: elastic throughout
   double surface_energy = 0.0;                                    ///< dg of the particle-wall contact [J/m2], >= 0
   ElasticProfile elastic_profile = ElasticProfile::ellipse;
-  RadiusRule radius_rule = RadiusRule::gated;
+  RadiusRule radius_rule = RadiusRule::yielded;
   DeltaMaxRule delta_max_rule = DeltaMaxRule::running_maximum;
   std::shared_ptr<const PressureCurve> pressure_curve{};  ///< p_Y/Y over delta/R; null: the source's exponential
   bool stops_at_cap_intersection = false;
@@ -107,6 +106,8 @@ class System final : public HybridSystem {
   /// hold it there goes with the square of this, and is rounding beside that of the same contact along its normal.
   static constexpr double k_no_direction = 1e-6;
   static constexpr const char* k_singular_growth = "singular growth of the apparent radius";
+  static constexpr const char* k_greatest_force_reached =
+      "the force is next to the largest that a plastic contact bears: the wider it is, the softer it becomes";
   static constexpr const char* k_beyond_greatest_force =
       "the contacts hold the free centre no longer: beyond their greatest force its place is not determined";
   /// Firmness by which contacts hold a free centre so little that they are at a fold: a search for the balance of
@@ -136,8 +137,8 @@ class System final : public HybridSystem {
 
   /// One contact class at an instant.
   struct Instant {
-    double displacement = 0.0;  ///< of the contact: towards the centre, wherever that is
-    double position = 0.0;      ///< of the wall
+    double displacement = 0.0;  ///< of the wall relative to the centre, wherever that is, over R0
+    double position = 0.0;      ///< of the wall itself, towards the place where the centre started, over R0
     double overlap = 0.0;
     Contact contact;
     double rate_by_time = 0.0;    ///< of the displacement, at fixed R and centre, with xi
@@ -156,7 +157,8 @@ class System final : public HybridSystem {
     double relative_compression = 0.0;  ///< w of all contacts: 1 - 4w > 0 while the volume is defined
     double under_root = 0.0;            ///< 1 - 4w of those in Q
     double balance = 0.0;               ///< V_geo,Q - V_Q
-    double by_radius = 0.0;             ///< its partial derivatives
+    double by_radius = 0.0;             ///< its partial derivatives, walls under force moving as that asks for
+    double by_radius_at_rest = 0.0;     ///< by_radius where every wall stands still
     double by_time = 0.0;
     Small by_centre = Small::Zero();
     double power = 0.0;           ///< d(work)/dxi, less d(force times displacement) where the force is prescribed
@@ -240,7 +242,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double touching_overlap(std::size_t i, double r);
   [[nodiscard]] double displacement_under_force(std::size_t i, double xi, double r, double guess);
   void set_rates_under_force(std::size_t i, double r);
-  [[nodiscard]] double displacement_as_told(std::size_t i, double xi, std::span<const double> y) const noexcept;
+  [[nodiscard]] double prescribed_position(std::size_t i, double xi) const noexcept;
   [[nodiscard]] double carried_by_centre(std::size_t i, std::span<const double> y) const noexcept;
   void place(double xi, std::span<double> y);
   void move_walls(double xi, std::span<double> y);
@@ -269,9 +271,22 @@ class System final : public HybridSystem {
   [[nodiscard]] Small balance_step(double Line::*stiffness, double Line::*force) const;
   [[nodiscard]] Motion motion(bool growing) const;
   [[nodiscard]] Motion growing_motion() const;
-  /// Share of the particle's surface that growth has for itself.
+  /// Share of the particle's surface that growth has for itself while the program moves the walls.
   [[nodiscard]] static double free_surface(const Motion& motion, double r) noexcept {
     return motion.slope / ((1.0 + r) * (1.0 + r));
+  }
+  /// Share of the particle's surface that growth has for itself between walls that stand still, whatever prescribes
+  /// where they do: the model ends where it is used up, under every control.
+  [[nodiscard]] double free_surface_at_rest(double r) const noexcept {
+    return sums_.by_radius_at_rest / ((1.0 + r) * (1.0 + r));
+  }
+  /// True for a plastic contact under a prescribed force: at a given radius it bears no more than a largest one.
+  [[nodiscard]] bool has_greatest_force(std::size_t i) const noexcept {
+    return is_loaded(i) && memory_[i].regime == Regime::fully_plastic;
+  }
+  /// Stiffness of a contact over that of a shallow plastic one.
+  [[nodiscard]] double stiffness_left(std::size_t i) const noexcept {
+    return now_[i].contact.by_overlap / stiffness_of_shallow();
   }
   [[nodiscard]] double magnitude_of_forces() const noexcept;
   [[nodiscard]] double rounding_of_forces() const noexcept;
@@ -417,7 +432,6 @@ class System final : public HybridSystem {
   std::vector<double> overlaps_before_;
   std::vector<Memory> memory_before_;
   Sums sums_;
-  EnergyWatch energies_;
   std::optional<Finding> validity_;  ///< of the first adhesive contact to unload for which the model is not valid
   bool caps_have_met_ = false;
   double radius_at_caps_ = 0.0;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -325,11 +326,16 @@ class Drive {
       if (is_seen) open_instant(xi_);
       std::vector<Event> log;
       const auto end = system_.fire(of_system, xi_, y_, log);
-      if (is_seen) close_instant(time(xi_), xi_, log);
-      if (end) {
-        throw Stop{where(xi_) + text_of(end->finding)};
+      std::exception_ptr failure;
+      try {
+        if (!end) change_state([this](std::span<double> y) { system_.solve(xi_, y); });
+      } catch (const std::domain_error&) {
+        failure = std::current_exception();
       }
-      change_state([this](std::span<double> y) { system_.solve(xi_, y); });
+      // The row after the events shows what has jumped; that a state was not found does not undo them.
+      if (is_seen) close_instant(time(xi_), xi_, log);
+      if (end) throw Stop{where(xi_) + text_of(end->finding)};
+      if (failure) std::rethrow_exception(failure);
       is_met = is_met || watch_.is_met(xi_, y_) || has_ending_event(log);
     }
     watch_.renew(xi_, y_);

@@ -183,7 +183,7 @@ void add_walls(const Scenario& scenario, bool merges_walls, Scene& scene) {
   for (std::size_t c = 0; c < class_count; ++c) {
     scene.classes[c].name = names[c];
     scene.classes[c].gap = walls[first_wall[c]].gap;
-    const double start = -scene.classes[c].gap;
+    const double start = 0.0 - scene.classes[c].gap;  // not -0
     scene.channels.push_back({names[c], {start, start, Control::displacement}, walls[first_wall[c]].steps});
     scene.classes[c].takes_force =
         std::ranges::any_of(scene.channels[c].program, [](const Step& step) { return step.kind == Step::Kind::force; });

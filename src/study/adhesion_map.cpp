@@ -31,6 +31,8 @@ radius = "1 m"
 youngs_modulus = "1 Pa"
 poisson_ratio = 0.3
 yield_stress = "1 Pa"
+[mdr]
+radius_rule = "gated"  # as the source draws its map
 [loading]
 configuration = "simple"
 [[loading.steps]]

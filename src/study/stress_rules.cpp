@@ -90,7 +90,7 @@ constexpr StatedLimit k_stated_limits[] = {
     {"elastic compression to less than half the volume", "half the volume"},
     {"a wall has reached the centre of the particle", "a wall at the centre"},
     {"the wall has reached the centre of the particle", "a wall at the centre"},
-    {"the force is above the largest that a plastic contact bears", "largest force"},
+    {"the largest that a plastic contact bears", "largest force"},
     {"overlap above twice the apparent radius", "overlap of the diameter"},
     {"contact caps intersect", "contact caps intersect"},
     {"outside the pressure table", "outside the pressure table"},

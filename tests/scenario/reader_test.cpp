@@ -36,7 +36,7 @@ TEST(Scenario, IsReadInSi) {
 TEST(Scenario, HasDefaultsFilledIn) {
   const Scenario scenario = good(k_good_scenario);
   EXPECT_EQ(scenario.material.at("surface_energy"), 0.0);
-  EXPECT_EQ(std::get<std::string>(scenario.options.at("radius_rule")), "gated");
+  EXPECT_EQ(std::get<std::string>(scenario.options.at("radius_rule")), "yielded");
   EXPECT_EQ(std::get<std::string>(scenario.options.at("elastic_profile")), "ellipse");
   EXPECT_EQ(std::get<std::string>(scenario.options.at("delta_max_rule")), "running-maximum");
   EXPECT_FALSE(std::get<bool>(scenario.options.at("strict")));

@@ -416,6 +416,24 @@ wall = [{ name = "near", normal = [0, 0, 1] },
   EXPECT_EQ(result.program_steps, 1U);
 }
 
+TEST_F(CalibrationTest, ARunWithAFreeCentreReturnsItsOwnParameters) {
+  // The punch goes twice as far as either contact is deep; the data hold its own travel.
+  for (const char* model : {"hertz", "nonlocal"}) {
+    const std::string scenario = replaced(replaced(k_hertz, "model = \"hertz\"", fmt::format("model = \"{}\"", model)),
+                                          "configuration = \"simple\"\n", R"(configuration = "walls"
+centre = "equilibrium"
+wall = [{ name = "punch", normal = [0, 0, 1] }, { name = "anvil", normal = [0, 0, -1], fixed = true }]
+)");
+    write("s.toml", scenario);
+    write("c.toml",
+          replaced(replaced(k_calibration, "\"displacement", "\"punch.displacement"), "\"force", "\"punch.force"));
+    const auto rows =
+        measure(scenario, {"material.youngs_modulus=65e9", "output.points=9"}, "punch.displacement", "punch.force");
+    write("d.csv", csv_of(rows, "punch.displacement[m],punch.force[N],w"));
+    EXPECT_NEAR(calibrate(read()).solution.parameters[0] / 65e9, 1.0, 1e-9) << model;
+  }
+}
+
 TEST_F(CalibrationTest, OtherQuantitiesCanBeFitted) {
   std::vector<Row> rows;
   for (int i = 1; i <= 5; ++i) {

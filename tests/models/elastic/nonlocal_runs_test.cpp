@@ -314,6 +314,22 @@ TEST(NonlocalRuns, AForcePressesAFreeParticleAgainstAFixedWallAsTwoForcesDo) {
   }
 }
 
+TEST(NonlocalRuns, LeaveADisplacementThatOfTheWallItself) {
+  const Scenario walls = between(nonlocal_scenario(Configuration::walls, 0.3, {}),
+                                 {wall("top", {0, 0, 1}, path({0.1, 0.05})), wall("bottom", {0, 0, -1})});
+  for (const char* integrator : k_integrators) {
+    const TestRun now = run(with_free_centre(walls), integrator);
+    EXPECT_EQ(now.outputs("top.displacement")[50], 0.1) << integrator;
+    EXPECT_EQ(largest(now.column("bottom.displacement")), 0.0) << integrator;
+    const auto centre = now.column("centre_z");
+    const auto overlap = now.column("top.overlap");
+    const auto displacement = now.column("top.displacement");
+    for (std::size_t row = 0; row < centre.size(); ++row) {
+      EXPECT_NEAR(overlap[row], displacement[row] + centre[row], 1e-15) << integrator << ", row " << row;
+    }
+  }
+}
+
 TEST(NonlocalRuns, OfOneTermWithoutCouplingAreHertzian) {
   // A single driven wall under a fixed centre feels no other.
   Scenario one = between(nonlocal_scenario(Configuration::walls, 0.3, {}),

@@ -199,5 +199,58 @@ TEST(FreeCentre, ThatComesLooseLaterStopsTheRunThere) {
   }
 }
 
+/// Largest difference between a wall's overlap and what its displacement, the centre and the growing radius make of it.
+double misplacement(const TestRun& result) {
+  const std::vector<double> x[] = {result.column("centre_x"), result.column("centre_y"), result.column("centre_z")};
+  const bool grows = result.record.history.find("apparent_radius").has_value();
+  double worst = 0.0;
+  for (const ContactClass& c : result.scene.classes) {
+    const std::vector<double> displacement = result.column(c.name + ".displacement");
+    const std::vector<double> overlap = result.column(c.name + ".overlap");
+    for (std::size_t row = 0; row < overlap.size(); ++row) {
+      const Eigen::Vector3d centre(x[0][row], x[1][row], x[2][row]);
+      const double growth = grows ? result.column("apparent_radius")[row] - 1.0 : 0.0;
+      const double expected = displacement[row] + c.normals.front().dot(centre) + growth;
+      worst = std::max(worst, std::abs(overlap[row] - expected));
+    }
+  }
+  return worst;
+}
+
+TEST(FreeCentre, LeavesADisplacementThatOfTheWallItself) {
+  for (const Scenario& particle : {hertz_particle(), mdr_particle()}) {
+    for (const char* integrator : k_integrators) {
+      const TestRun result = run(press(particle, {0.04, 0.02}), integrator);
+      const std::vector<double> top = result.outputs("top.displacement");
+      EXPECT_EQ(top[50], 0.04) << integrator << ", " << particle.model;
+      EXPECT_EQ(top[100], 0.02) << integrator << ", " << particle.model;
+      EXPECT_EQ(largest(result.column("bottom.displacement")), 0.0) << integrator << ", " << particle.model;
+      EXPECT_LE(misplacement(result), 1e-15) << integrator << ", " << particle.model;
+    }
+    EXPECT_LE(misplacement(run(crooked_tripod(particle, {0.04, 0.02}))), 1e-15) << particle.model;
+  }
+}
+
+TEST(FreeCentre, LeavesADisplacementThatOfTheWallItselfUnderForce) {
+  for (const Scenario& particle : {hertz_particle(), mdr_particle()}) {
+    const TestRun result = run(with_free_centre(between(
+        particle, {wall("top", {0, 0, 1}, {force_ramp(0.004), force_ramp(0.001)}), wall("bottom", {0, 0, -1})})));
+    EXPECT_LE(misplacement(result), 1e-15) << particle.model;
+    EXPECT_EQ(largest(result.column("bottom.displacement")), 0.0) << particle.model;
+    // The wall above comes nearer by both overlaps.
+    EXPECT_GT(result.outputs("top.displacement")[50], 1.9 * result.outputs("bottom.overlap")[50]) << particle.model;
+  }
+}
+
+TEST(FreeCentre, MeetsAConditionByTheTravelOfTheWall) {
+  for (const Scenario& particle : {hertz_particle(), mdr_particle()}) {
+    const Step step = until(ramp(0.1), Until::Quantity::displacement, 0.04);
+    const TestRun result =
+        run(with_free_centre(between(particle, {wall("top", {0, 0, 1}, {step}), wall("bottom", {0, 0, -1})})));
+    EXPECT_NEAR(result.last("top.displacement"), 0.04, 1e-15) << particle.model;
+    EXPECT_NEAR(result.last("time"), 0.4, 1e-14) << particle.model;
+  }
+}
+
 }  // namespace
 }  // namespace monograin::centre_test

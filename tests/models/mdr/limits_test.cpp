@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "support/test_run.hpp"
@@ -69,6 +70,62 @@ TEST(MdrSingularGrowth, StopsTheRunWithItsHistory) {
       EXPECT_GT(result.last("axial.displacement"), 0.18) << integrator << ", " << describe(scenario);
     }
   }
+}
+
+TEST(MdrSingularGrowth, StopsAtOneStateUnderEveryControl) {
+  for (const Configuration configuration : {Configuration::die, Configuration::hydrostatic}) {
+    for (const char* rule : {"yielded", "gated"}) {
+      const auto pressed_by = [&](const Step& step) {
+        return with(mdr_scenario(configuration, 100.0, 0.3, {step}), "radius_rule", rule);
+      };
+      const TestRun expected = run(pressed_by(ramp(0.6)));
+      ASSERT_EQ(expected.events().back(), "singular-growth") << rule;
+      const double force = expected.last("axial.force");
+      for (const char* integrator : k_integrators) {
+        // Twice what the particle bears there.
+        const TestRun result = run(pressed_by(force_ramp(2.0 * force)), integrator);
+        EXPECT_EQ(result.record.status, RunStatus::stopped) << integrator << ", " << rule;
+        EXPECT_EQ(result.events().back(), "singular-growth") << integrator << ", " << rule;
+        EXPECT_NEAR(result.last("axial.force") / force, 1.0, 1e-7) << integrator << ", " << rule;
+        EXPECT_NEAR(result.last("axial.displacement"), expected.last("axial.displacement"), 1e-7)
+            << integrator << ", " << rule;
+      }
+    }
+  }
+}
+
+TEST(MdrForce, NeverTakesWallsBackWhileItGrows) {
+  // Beyond the end of the free surface they would go back, and the particle would do two thirds of its work again.
+  const TestRun result = run(with(mdr_scenario(Configuration::die, 100.0, 0.3, {force_ramp(0.07)}), "elastic_profile",
+                                  "parabola"));  // the ellipse gives way at yield
+  EXPECT_TRUE(std::ranges::is_sorted(result.column("axial.displacement")));
+  EXPECT_GE(lost_dissipation(result), -2e-4);  // all of it next to that end
+}
+
+TEST(MdrGreatestForce, EndsARunAtOnePlaceInAllFormsAndUnits) {
+  Scenario scenario = mdr_scenario(Configuration::simple, 100.0, 0.3, {force_ramp(0.4)});
+  const TestRun expected = run(scenario);
+  ASSERT_EQ(expected.events().back(), "axial:limit");
+  ASSERT_NE(expected.record.message.find("largest that a plastic contact bears"), std::string::npos);
+  const double end = expected.last("time");
+  for (const char* integrator : k_integrators) {
+    const TestRun result = run(scenario, integrator);
+    EXPECT_EQ(result.events().back(), "axial:limit") << integrator;
+    EXPECT_NEAR(result.last("time") / end, 1.0, 1e-6) << integrator;  // a hundred rtol
+  }
+  for (const double size : {37e-6, 7.0}) {
+    scenario.radius = size;
+    scenario.loading.steps = {force_ramp(0.4 * size * size)};
+    EXPECT_NEAR(run(scenario).last("time") / end, 1.0, 1e-12) << size;
+  }
+}
+
+TEST(MdrGreatestForce, RefusesAForceThatGrowsBeyondIt) {
+  const TestRun result = run(mdr_scenario(Configuration::simple, 100.0, 0.3, {ramp(0.95), force_ramp(5.0)}));
+  EXPECT_EQ(result.record.status, RunStatus::stopped);
+  EXPECT_NE(result.record.message.find("step 2"), std::string::npos) << result.record.message;
+  EXPECT_NE(result.record.message.find("largest that a plastic contact bears"), std::string::npos)
+      << result.record.message;
 }
 
 TEST(MdrVolume, BelowHalfStopsTheRun) {
