@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ranges>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,6 +19,8 @@ namespace {
 using Style = ChartSeries::Style;
 
 constexpr double k_line_width = 1.8;
+constexpr unsigned k_shade = 0xECECECu;  ///< beyond the range of a law
+constexpr std::string_view k_floor_legend = "at the lower end of the axis, or below";
 
 // The full stop keeps gnuplot, which compares beginnings, from taking one name for another.
 [[nodiscard]] std::string block_of(std::size_t panel, std::size_t series) {
@@ -28,6 +31,10 @@ constexpr double k_line_width = 1.8;
 }
 [[nodiscard]] std::string block_of_area(std::size_t panel, std::size_t area) {
   return fmt::format("panel {} area {}.", panel + 1, area + 1);
+}
+
+[[nodiscard]] std::string block_of_floor(std::size_t panel, std::size_t series) {
+  return fmt::format("panel {} series {} at the floor.", panel + 1, series + 1);
 }
 
 [[nodiscard]] std::string block_of_band(std::size_t panel, std::size_t band) {
@@ -53,11 +60,39 @@ void append_band(std::string& text, const ChartBand& band, std::size_t panel, st
   }
 }
 
+/// The lower end of the axis that the errors of a series go down to; nothing where it has no floor.
+[[nodiscard]] std::optional<double> floor_of(const ChartSeries& series, const Axis& y) {
+  return series.is_error && y.is_logarithmic ? std::optional(y.range.lowest) : std::nullopt;
+}
+
+[[nodiscard]] bool is_at_floor(double value, std::optional<double> floor) { return floor && value <= *floor; }
+
+/// A series whose line does not go below the floor.
+[[nodiscard]] ChartSeries above_floor(ChartSeries series, std::optional<double> floor) {
+  for (double& value : series.y) {
+    if (is_at_floor(value, floor)) value = *floor;
+  }
+  return series;
+}
+
+[[nodiscard]] bool reaches_floor(const ChartSeries& series, std::optional<double> floor) {
+  return std::ranges::any_of(series.y, [&](double value) { return is_at_floor(value, floor); });
+}
+
 void append_point(std::string& text, const ChartSeries& series, std::size_t row) {
   append_number(text, series.x[row]);
   text += ' ';
   append_number(text, series.y[row]);
   text += '\n';
+}
+
+void append_floor(std::string& text, const ChartSeries& series, std::optional<double> floor, std::size_t panel,
+                  std::size_t place) {
+  if (!reaches_floor(series, floor)) return;
+  text += fmt::format("\n\n# {} {}\n", block_of_floor(panel, place), series.legend);
+  for (std::size_t row = 0; row < series.x.size(); ++row) {
+    if (is_at_floor(series.y[row], floor)) append_point(text, series, row);
+  }
 }
 
 void append_series(std::string& text, const ChartSeries& series, std::size_t panel, std::size_t place) {
@@ -73,102 +108,6 @@ void append_series(std::string& text, const ChartSeries& series, std::size_t pan
     append_phase(text, phases, phase, [&](std::size_t row) { append_point(text, series, row); });
   }
 }
-
-/// Gives each legend its colour and its points: series with the same legend look the same in every panel.
-class Looks {
- public:
-  explicit Looks(const Chart& chart) {
-    for (const ChartPanel& panel : chart.panels) {
-      for (const ChartSeries& series : panel.series) add(series);
-    }
-  }
-
-  [[nodiscard]] std::string line(const ChartSeries& series) const {
-    return fmt::format("with lines lc rgb '#{:06X}' lw {}", colour(series, lines_), k_line_width);
-  }
-
-  [[nodiscard]] std::string points(const ChartSeries& series) const {
-    const unsigned shade = series.colour ? colour_of(*series.colour) : k_neutral_colour;
-    return fmt::format("with points pt {} ps 0.5 lw 1 lc rgb '#{:06X}'", point_of(place_in(points_, series)), shade);
-  }
-
-  [[nodiscard]] std::vector<LegendRow> legend_rows(const Chart& chart) const {
-    LegendRow curves{"Curve", {}};
-    LegendRow points{"Points", {}};
-    LegendRow areas{"Area", {}};
-    for (const ChartPanel& panel : chart.panels) {
-      for (const ChartArea& area : panel.areas) put(areas, {area.legend, area_style(area.colour)});
-      for (const ChartBand& band : panel.bands) put(areas, {band.legend, area_style(band.colour)});
-      for (const ChartSeries& series : panel.series) {
-        const bool is_points = series.style == Style::points;
-        put(is_points ? points : curves, {series.legend, is_points ? this->points(series) : sample(series)});
-      }
-    }
-    std::vector<LegendRow> rows{areas, curves, path_row(chart), points};
-    std::erase_if(rows, [](const LegendRow& row) { return row.entries.empty(); });
-    return rows;
-  }
-
-  [[nodiscard]] static std::string area_style(unsigned colour) {
-    return fmt::format("with boxxyerror fs solid 1.0 noborder lc rgb '#{:06X}'", colour);
-  }
-
-  [[nodiscard]] static std::string band_style(unsigned colour) {
-    return fmt::format("with filledcurves fs solid 1.0 noborder fc rgb '#{:06X}'", colour);
-  }
-
-  [[nodiscard]] static std::string_view dash_of(Style style) {
-    if (style == Style::dashed) return dash(Phase::unloading);
-    if (style == Style::dash_dotted) return "dt (7,3,1.5,3)";
-    return dash(style == Style::dotted ? Phase::reloading : Phase::loading);
-  }
-
- private:
-  void add(const ChartSeries& series) {
-    auto& names = series.style == Style::points ? points_ : lines_;
-    if (std::ranges::find(names, series.legend) == names.end()) names.push_back(series.legend);
-  }
-
-  [[nodiscard]] static std::size_t place_in(const std::vector<std::string>& names, const ChartSeries& series) {
-    return static_cast<std::size_t>(std::ranges::find(names, series.legend) - names.begin());
-  }
-
-  [[nodiscard]] static unsigned colour(const ChartSeries& series, const std::vector<std::string>& names) {
-    return colour_of(series.colour.value_or(place_in(names, series)));
-  }
-
-  [[nodiscard]] std::string sample(const ChartSeries& series) const {
-    return fmt::format("{} {}", line(series), dash_of(series.style));
-  }
-
-  static void put(LegendRow& row, LegendRow::Entry entry) {
-    const auto is_same = [&](const LegendRow::Entry& other) {
-      return other.title == entry.title && other.style == entry.style;
-    };
-    if (!entry.title.empty() && std::ranges::none_of(row.entries, is_same)) row.entries.push_back(std::move(entry));
-  }
-
-  /// Only where a line turns back, so that its dashes ask for an explanation.
-  [[nodiscard]] static LegendRow path_row(const Chart& chart) {
-    LegendRow row{"Path", {}};
-    for (const Phase phase : k_phases) {
-      const bool is_there = std::ranges::any_of(chart.panels, [&](const ChartPanel& panel) {
-        return std::ranges::any_of(panel.series, [&](const ChartSeries& series) {
-          return series.style == Style::phases && has_phase(phases_along(series.x), phase);
-        });
-      });
-      if (!is_there) continue;
-      const auto style =
-          fmt::format("with lines lc rgb '#{:06X}' lw {} {}", k_neutral_colour, k_line_width, dash(phase));
-      row.entries.push_back({std::string(phase_name(phase)), style});
-    }
-    if (row.entries.size() == 1) row.entries.clear();
-    return row;
-  }
-
-  std::vector<std::string> lines_;
-  std::vector<std::string> points_;
-};
 
 /// The axis over all values on it.
 [[nodiscard]] Axis axis_over(const ChartAxis& wanted, std::vector<double> values) {
@@ -225,7 +164,149 @@ struct PanelAxes {
   return {axis_over(panel.x, std::move(x)), axis_over(panel.y, std::move(y))};
 }
 
-[[nodiscard]] std::string plots_of(const ChartPanel& panel, std::size_t place, const Looks& looks) {
+/// Gives each legend its colour and its points: series with the same legend look the same in every panel.
+class Looks {
+ public:
+  explicit Looks(const Chart& chart) {
+    for (const ChartPanel& panel : chart.panels) {
+      for (const ChartSeries& series : panel.series) add(series);
+    }
+    give_colours();
+  }
+
+  [[nodiscard]] std::string line(const ChartSeries& series) const {
+    return dashed_line(stroke(series), dash_of(series.style));
+  }
+
+  [[nodiscard]] std::string line(const ChartSeries& series, Phase phase) const {
+    return phase_line(stroke(series), phase);
+  }
+
+  [[nodiscard]] std::string floor_points(const ChartSeries& series) const { return floor_style(stroke(series).colour); }
+
+  [[nodiscard]] std::string points(const ChartSeries& series) const {
+    const auto place = static_cast<std::size_t>(std::ranges::find(points_, series.legend) - points_.begin());
+    const unsigned shade = series.colour ? colour_of(*series.colour) : k_neutral_colour;
+    return fmt::format("with points pt {} ps 0.5 lw 1 lc rgb '#{:06X}'", point_of(place), shade);
+  }
+
+  [[nodiscard]] std::vector<LegendRow> legend_rows(const Chart& chart) const {
+    LegendRow curves{"Curve", {}};
+    LegendRow points{"Points", {}};
+    LegendRow areas{"Area", {}};
+    for (const ChartPanel& panel : chart.panels) {
+      if (panel.range) put(areas, {panel.range->legend, area_style(k_shade)});
+      for (const ChartArea& area : panel.areas) put(areas, {area.legend, area_style(area.colour)});
+      for (const ChartBand& band : panel.bands) put(areas, {band.legend, area_style(band.colour)});
+      for (const ChartSeries& series : panel.series) {
+        const bool is_points = series.style == Style::points;
+        put(is_points ? points : curves, {series.legend, is_points ? this->points(series) : line(series)});
+      }
+    }
+    if (has_floor(chart)) put(points, {std::string(k_floor_legend), floor_style(k_neutral_colour)});
+    std::vector<LegendRow> rows{areas, curves, path_row(chart), points};
+    std::erase_if(rows, [](const LegendRow& row) { return row.entries.empty(); });
+    return rows;
+  }
+
+  [[nodiscard]] static std::string area_style(unsigned colour) {
+    return fmt::format("with boxxyerror fs solid 1.0 noborder lc rgb '#{:06X}'", colour);
+  }
+
+  [[nodiscard]] static std::string band_style(unsigned colour) {
+    return fmt::format("with filledcurves fs solid 1.0 noborder fc rgb '#{:06X}'", colour);
+  }
+
+ private:
+  struct Lines {
+    std::string legend;
+    std::optional<std::size_t> colour;  ///< its place; that of the series, else one that is given here
+  };
+
+  [[nodiscard]] static std::string floor_style(unsigned colour) {
+    return fmt::format("with points pt 11 ps 0.6 lc rgb '#{:06X}'", colour);
+  }
+
+  /// gnuplot's dash type; that of the phases is the one of loading.
+  [[nodiscard]] static std::string_view dash_of(Style style) {
+    switch (style) {
+      case Style::dashed:
+        return "(7,4)";
+      case Style::dotted:
+        return "(2,4)";
+      case Style::dash_dotted:
+        return "(7,3,1.5,3)";
+      case Style::phases:
+      case Style::solid:
+      case Style::points:
+        break;
+    }
+    return "1";
+  }
+  void add(const ChartSeries& series) {
+    if (series.style == Style::points) {
+      if (std::ranges::find(points_, series.legend) == points_.end()) points_.push_back(series.legend);
+      return;
+    }
+    auto found = std::ranges::find(lines_, series.legend, &Lines::legend);
+    if (found == lines_.end()) found = lines_.insert(lines_.end(), {series.legend, {}});
+    if (!found->colour) found->colour = series.colour;
+  }
+
+  /// Each legend without a colour takes the next that no other has.
+  void give_colours() {
+    std::size_t next = 0;
+    const auto is_taken = [this](std::size_t place) {
+      return std::ranges::find(lines_, std::optional(place), &Lines::colour) != lines_.end();
+    };
+    for (Lines& lines : lines_) {
+      if (lines.colour) continue;
+      while (is_taken(next)) ++next;
+      lines.colour = next;
+    }
+  }
+
+  [[nodiscard]] Stroke stroke(const ChartSeries& series) const {
+    const auto lines = std::ranges::find(lines_, series.legend, &Lines::legend);
+    return {colour_of(series.colour ? *series.colour : *lines->colour), k_line_width};
+  }
+
+  [[nodiscard]] static bool has_floor(const Chart& chart) {
+    return std::ranges::any_of(chart.panels, [](const ChartPanel& panel) {
+      const Axis y = axes_of(panel).y;
+      return std::ranges::any_of(panel.series,
+                                 [&](const ChartSeries& series) { return reaches_floor(series, floor_of(series, y)); });
+    });
+  }
+
+  static void put(LegendRow& row, LegendRow::Entry entry) {
+    const auto is_same = [&](const LegendRow::Entry& other) {
+      return other.title == entry.title && other.style == entry.style;
+    };
+    if (!entry.title.empty() && std::ranges::none_of(row.entries, is_same)) row.entries.push_back(std::move(entry));
+  }
+
+  /// Only where a line turns back, so that its dashes ask for an explanation.
+  [[nodiscard]] static LegendRow path_row(const Chart& chart) {
+    LegendRow row{"Path", {}};
+    for (const Phase phase : k_phases) {
+      const bool is_there = std::ranges::any_of(chart.panels, [&](const ChartPanel& panel) {
+        return std::ranges::any_of(panel.series, [&](const ChartSeries& series) {
+          return series.style == Style::phases && has_phase(phases_along(series.x), phase);
+        });
+      });
+      if (!is_there) continue;
+      row.entries.push_back({std::string(phase_name(phase)), phase_line({k_neutral_colour, k_line_width}, phase)});
+    }
+    if (row.entries.size() == 1) row.entries.clear();
+    return row;
+  }
+
+  std::vector<Lines> lines_;
+  std::vector<std::string> points_;
+};
+
+[[nodiscard]] std::string plots_of(const ChartPanel& panel, std::size_t place, const Axis& y, const Looks& looks) {
   std::vector<std::string> plots;
   for (std::size_t k = 0; k < panel.areas.size(); ++k) {
     if (panel.areas[k].boxes.empty()) continue;
@@ -241,18 +322,40 @@ struct PanelAxes {
     if (series.style == Style::points) {
       plots.push_back(fmt::format("data index {} {}", gnuplot_string(block_of(place, k)), looks.points(series)));
     } else if (series.style != Style::phases) {
-      plots.push_back(fmt::format("data index {} {} {}", gnuplot_string(block_of(place, k)), looks.line(series),
-                                  Looks::dash_of(series.style)));
+      plots.push_back(fmt::format("data index {} {}", gnuplot_string(block_of(place, k)), looks.line(series)));
     } else {
       const auto phases = phases_along(series.x);
       for (const Phase phase : k_phases) {
         if (!has_phase(phases, phase)) continue;
-        plots.push_back(fmt::format("data index {} {} {}", gnuplot_string(block_of(place, k, phase)),
-                                    looks.line(series), dash(phase)));
+        plots.push_back(
+            fmt::format("data index {} {}", gnuplot_string(block_of(place, k, phase)), looks.line(series, phase)));
       }
     }
   }
+  for (std::size_t k = 0; k < panel.series.size(); ++k) {
+    const ChartSeries& series = panel.series[k];
+    if (!reaches_floor(series, floor_of(series, y))) continue;
+    plots.push_back(
+        fmt::format("data index {} {}", gnuplot_string(block_of_floor(place, k)), looks.floor_points(series)));
+  }
   return plots.empty() ? std::string("plot NaN\n") : fmt::format("plot {}\n", fmt::join(plots, ", \\\n  "));
+}
+
+/// Shades what lies outside a range of the abscissa.
+[[nodiscard]] std::string shades_of(const std::optional<ChartRange>& range, const Axis& x) {
+  std::string text = "unset object\n";
+  if (!range) return text;
+  const auto shade = [&](double from, double to) {
+    if (!(from < to)) return;
+    text += fmt::format(
+        "set object rectangle from first {:.10g}, graph 0 to first {:.10g}, graph 1 behind fc rgb '#{:06X}' fs solid "
+        "noborder\n",
+        from, to, k_shade);
+  };
+  const auto& [lowest, highest, step] = x.range;
+  if (range->from) shade(lowest, std::min(*range->from, highest));
+  if (range->to) shade(std::max(*range->to, lowest), highest);
+  return text;
 }
 
 }  // namespace
@@ -269,7 +372,13 @@ std::string chart_data(const Chart& chart, const std::string& source) {
       }
     }
     for (std::size_t b = 0; b < panel.bands.size(); ++b) append_band(text, panel.bands[b], k, b);
-    for (std::size_t s = 0; s < panel.series.size(); ++s) append_series(text, panel.series[s], k, s);
+    const Axis y = axes_of(panel).y;
+    for (std::size_t s = 0; s < panel.series.size(); ++s) {
+      const auto floor = floor_of(panel.series[s], y);
+      const ChartSeries shown = above_floor(panel.series[s], floor);
+      append_series(text, shown, k, s);
+      append_floor(text, shown, floor, k, s);
+    }
   }
   return text;
 }
@@ -285,13 +394,13 @@ std::string chart_script(const Chart& chart, Format format, const std::string& f
   for (std::size_t k = 0; k < chart.panels.size(); ++k) {
     const ChartPanel& panel = chart.panels[k];
     const PanelAxes axes = axes_of(panel);
-    const char letter = static_cast<char>('a' + k % 26);
     text += "\nunset logscale; set format '%g'";
-    text += frame_text(layout.panels[k], layout, axes.x, axes.y, letter);
-    text += fmt::format("set label 3 {} at graph 0.98, 1.06 right\n", gnuplot_string(panel.note));
-    text += plots_of(panel, k, looks);
+    text += frame_text(layout, k, axes.x, axes.y);
+    text += shades_of(panel.range, axes.x);
+    text += fmt::format("set label 5 {} at graph 0.98, 1.06 right\n", label_string(panel.note));
+    text += plots_of(panel, k, axes.y, looks);
   }
-  text += "unset logscale\n" + legend_text(rows, layout);
+  text += "unset logscale; unset object\n" + legend_text(rows, layout);
   return text + k_page_foot;
 }
 

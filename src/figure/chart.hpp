@@ -22,11 +22,14 @@ struct ChartSeries {
     points,
   };
 
-  std::string legend;  ///< series with the same legend share its line there; empty: it has none
+  std::string legend;  ///< gnuplot's enhanced text; series with the same one share its line there; empty: none
   Style style = Style::phases;
-  std::optional<std::size_t> colour;  ///< place among the colours, from 0; absent: that of the legend's place
+  std::optional<std::size_t> colour;  ///< place among the colours, from 0; absent: the next that no other legend has
   std::vector<double> x;
   std::vector<double> y;
+  /// y is an error, which may be zero. On a logarithmic ordinate the line does not go below the axis' lower end, and
+  /// has marks where its values are there or below.
+  bool is_error = false;
 };
 
 /// Filled boxes of one colour, drawn below the series.
@@ -54,10 +57,18 @@ struct ChartAxis {
   bool is_logarithmic = false;  ///< only positive values are shown then
 };
 
+/// The part of the abscissa to which a law was fitted, or in which it holds: what lies outside is shaded.
+struct ChartRange {
+  std::optional<double> from{};  ///< absent: it has no lower end
+  std::optional<double> to{};    ///< absent: it has no upper end
+  std::string legend{};          ///< of the shade
+};
+
 struct ChartPanel {
   ChartAxis x;
   ChartAxis y;
   std::string note{};  ///< what tells this panel from the others, above it
+  std::optional<ChartRange> range{};
   std::vector<ChartArea> areas{};
   std::vector<ChartBand> bands{};
   std::vector<ChartSeries> series{};

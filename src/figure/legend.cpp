@@ -8,6 +8,7 @@
 
 #include "figure/data_file.hpp"
 #include "figure/gnuplot.hpp"
+#include "figure/page.hpp"
 
 namespace monograin::figure {
 namespace {
@@ -17,7 +18,11 @@ constexpr std::array k_colours{0x0072B2u, 0xD55E00u, 0x009E73u, 0xCC79A7u, 0xE69
 
 constexpr double k_first_width = 2.0;
 constexpr double k_last_width = 1.5;
-constexpr double k_palest = 0.55;  ///< share of white in the last run's shade
+constexpr double k_palest = 0.55;          ///< share of white in the last run's shade
+constexpr double k_reloading_width = 2.2;  ///< of the dots, over that of the line
+/// Shares of black, and of white, in colours that come again.
+constexpr double k_darker = 0.5;
+constexpr double k_paler = 0.5;
 
 /// Open points (circle, square, triangles, diamond, pentagon), then crosses, and only then filled points.
 constexpr std::array k_points{6, 4, 8, 10, 12, 14, 2, 1, 3, 7, 5, 9, 11, 13, 15};
@@ -27,18 +32,19 @@ constexpr double k_character_cm = 0.19;
 constexpr double k_sample_cm = 1.6;
 constexpr double k_heading_cm = 1.7;
 
-[[nodiscard]] unsigned mixed_with_white(unsigned colour, double share) noexcept {
+/// @param grey  0 for black, 255 for white
+[[nodiscard]] unsigned mixed_with(double grey, unsigned colour, double share) noexcept {
   unsigned mixed = 0;
   for (const unsigned shift : {16u, 8u, 0u}) {
     const double channel = (colour >> shift) & 0xFFu;
-    mixed |= static_cast<unsigned>(std::lround(std::lerp(channel, 255.0, share))) << shift;
+    mixed |= static_cast<unsigned>(std::lround(std::lerp(channel, grey, share))) << shift;
   }
   return mixed;
 }
 
 [[nodiscard]] double entry_width(const LegendRow& row) {
   std::size_t longest = 0;
-  for (const auto& entry : row.entries) longest = std::max(longest, entry.title.size());
+  for (const auto& entry : row.entries) longest = std::max(longest, shown_length(entry.title));
   return k_sample_cm + k_character_cm * static_cast<double>(longest);
 }
 
@@ -55,7 +61,7 @@ constexpr double k_heading_cm = 1.7;
 [[nodiscard]] LegendRow contact_row(const Palette& palette) {
   LegendRow row{"Contact", {}};
   for (const std::string& name : palette.contacts()) {
-    row.entries.push_back({name, "with lines " + palette.contact_line(0, name)});
+    row.entries.push_back({plain_text(name), phase_line(palette.contact_line(0, name), Phase::loading)});
   }
   return row;
 }
@@ -63,7 +69,7 @@ constexpr double k_heading_cm = 1.7;
 [[nodiscard]] LegendRow run_row(const std::vector<RunCurves>& runs, const Palette& palette) {
   LegendRow row{"Run", {}};
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    row.entries.push_back({runs[k].name, "with lines " + palette.particle_line(k)});
+    row.entries.push_back({plain_text(runs[k].name), phase_line(palette.particle_line(k), Phase::loading)});
   }
   return row;
 }
@@ -72,9 +78,8 @@ constexpr double k_heading_cm = 1.7;
   LegendRow row{"Path", {}};
   for (const Phase phase : k_phases) {
     if (std::ranges::none_of(runs, [=](const RunCurves& run) { return has_phase(run.phases, phase); })) continue;
-    const auto line = runs.size() > 1 ? fmt::format("lc rgb '#{:06X}' lw {}", k_neutral_colour, k_first_width)
-                                      : palette.particle_line(0);
-    row.entries.push_back({std::string(phase_name(phase)), fmt::format("with lines {} {}", line, dash(phase))});
+    const Stroke stroke = runs.size() > 1 ? Stroke{k_neutral_colour, k_first_width} : palette.particle_line(0);
+    row.entries.push_back({std::string(phase_name(phase)), phase_line(stroke, phase)});
   }
   return row;
 }
@@ -82,7 +87,7 @@ constexpr double k_heading_cm = 1.7;
 [[nodiscard]] LegendRow event_row(const std::vector<RunCurves>& runs) {
   LegendRow row{"Events", {}};
   for (const std::string& name : event_names(runs)) {
-    row.entries.push_back({name, "with points " + event_points(row.entries.size())});
+    row.entries.push_back({plain_text(name), "with points " + event_points(row.entries.size())});
   }
   return row;
 }
@@ -97,39 +102,71 @@ Palette::Palette(const std::vector<RunCurves>& runs) : run_count_(runs.size()) {
   }
 }
 
-std::string Palette::line(std::size_t run, unsigned colour) const {
+Stroke Palette::line(std::size_t run, unsigned colour) const {
   const double share = run_count_ > 1 ? static_cast<double>(run) / static_cast<double>(run_count_ - 1) : 0.0;
-  const unsigned shade = colours_tell_runs() ? colour : mixed_with_white(colour, k_palest * share);
-  return fmt::format("lc rgb '#{:06X}' lw {:.3g}", shade, std::lerp(k_first_width, k_last_width, share));
+  return {colours_tell_runs() ? colour : mixed_with(255.0, colour, k_palest * share),
+          std::lerp(k_first_width, k_last_width, share)};
 }
 
-std::string Palette::contact_line(std::size_t run, std::string_view contact) const {
+Stroke Palette::contact_line(std::size_t run, std::string_view contact) const {
   const auto place = static_cast<std::size_t>(std::ranges::find(contacts_, contact) - contacts_.begin());
   return line(run, colour_of(colours_tell_runs() ? run : place));
 }
 
-std::string Palette::particle_line(std::size_t run) const {
+Stroke Palette::particle_line(std::size_t run) const {
   return line(run, colours_tell_runs() ? colour_of(run) : k_neutral_colour);
 }
 
-unsigned colour_of(std::size_t place) noexcept { return k_colours[place % k_colours.size()]; }
+unsigned colour_of(std::size_t place) noexcept {
+  const unsigned colour = k_colours[place % k_colours.size()];
+  switch (place / k_colours.size() % 3) {
+    case 1:
+      return mixed_with(0.0, colour, k_darker);
+    case 2:
+      return mixed_with(255.0, colour, k_paler);
+    default:
+      return colour;
+  }
+}
 
 int point_of(std::size_t place) noexcept { return k_points[place % k_points.size()]; }
 
-std::string_view dash(Phase phase) noexcept {
+std::string phase_line(const Stroke& stroke, Phase phase) {
   switch (phase) {
     case Phase::loading:
-      return "dt 1";
+      return dashed_line(stroke, "1");
     case Phase::unloading:
-      return "dt (7,4)";
+      return dashed_line(stroke, "(7,4)");
     case Phase::reloading:
-      return "dt (2,4)";
+      return dashed_line({stroke.colour, k_reloading_width * stroke.width}, "(0.8,2.6)");
   }
   return {};
 }
 
+std::string dashed_line(const Stroke& stroke, std::string_view dash) {
+  return fmt::format("with lines lc rgb '#{:06X}' lw {:.3g} dt {}", stroke.colour, stroke.width, dash);
+}
+
 std::string event_points(std::size_t place) {
   return fmt::format("pt {} ps 0.9 lw 1.1 lc rgb '#000000'", point_of(place));
+}
+
+std::size_t shown_length(std::string_view enhanced) {
+  std::size_t length = 0;
+  for (std::size_t k = 0; k < enhanced.size(); ++k) {
+    const char c = enhanced[k];
+    const bool names_a_font = c == '/' && k > 0 && enhanced[k - 1] == '{';
+    if (names_a_font) {
+      k = std::min(enhanced.find_first_of(" }", k), enhanced.size());
+    } else if (c == '\\' && k + 1 < enhanced.size()) {
+      ++length;
+      ++k;
+    } else {
+      const bool goes_on = (static_cast<unsigned char>(c) & 0xC0u) == 0x80u;  // a later byte of a character
+      if (!goes_on && std::string_view("{}^_@&~").find(c) == std::string_view::npos) ++length;
+    }
+  }
+  return length;
 }
 
 std::vector<LegendRow> legend_rows(const std::vector<RunCurves>& runs, const Palette& palette) {
@@ -164,10 +201,10 @@ std::string legend_text(const std::vector<LegendRow>& rows, const Layout& layout
     for (std::size_t k = 0; k < row.entries.size(); ++k) {
       const double left = place.left + k_heading_cm + static_cast<double>(k % columns) * entry_width(row);
       text += fmt::format(
-          "set key at screen {:.4f}, {:.4f} left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 "
+          "set key at screen {:.4f}, {:.4f} left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 "
           "noautotitle\n"
           "plot [0:1] [0:1] NaN, keyentry {} title {}\n",
-          left / layout.width, top / layout.height, row.entries[k].style, gnuplot_string(row.entries[k].title));
+          left / layout.width, top / layout.height, row.entries[k].style, label_string(row.entries[k].title));
       if (k == 0) text += "unset label 1\n";
       if ((k + 1) % columns == 0 && k + 1 < row.entries.size()) top -= k_legend_line_cm;
     }

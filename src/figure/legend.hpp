@@ -11,6 +11,18 @@
 
 namespace monograin::figure {
 
+/// Colour (0xRRGGBB) and width of a line.
+struct Stroke {
+  unsigned colour;
+  double width;
+};
+
+/// gnuplot's line of a phase: loading solid, unloading dashed, reloading as dots wider than the line, which show on top
+/// of dashes where both lines take the same path.
+[[nodiscard]] std::string phase_line(const Stroke& stroke, Phase phase);
+/// gnuplot's line with a dash type of its own.
+[[nodiscard]] std::string dashed_line(const Stroke& stroke, std::string_view dash);
+
 /// Gives each contact class its colour and each run its shade and width; runs with one class in all differ in colour.
 class Palette {
  public:
@@ -18,39 +30,39 @@ class Palette {
 
   [[nodiscard]] const std::vector<std::string>& contacts() const noexcept { return contacts_; }
 
-  /// gnuplot's colour and width of a contact's curve.
-  [[nodiscard]] std::string contact_line(std::size_t run, std::string_view contact) const;
-  /// The same for what belongs to the particle.
-  [[nodiscard]] std::string particle_line(std::size_t run) const;
+  [[nodiscard]] Stroke contact_line(std::size_t run, std::string_view contact) const;
+  /// The line of what belongs to the particle.
+  [[nodiscard]] Stroke particle_line(std::size_t run) const;
 
  private:
-  [[nodiscard]] std::string line(std::size_t run, unsigned colour) const;
+  [[nodiscard]] Stroke line(std::size_t run, unsigned colour) const;
   [[nodiscard]] bool colours_tell_runs() const noexcept { return run_count_ > 1 && contacts_.size() == 1; }
 
   std::size_t run_count_;
   std::vector<std::string> contacts_;
 };
 
-/// Colours (0xRRGGBB) and gnuplot's point types, told apart in colour-blindness and in grey print; they come round
-/// again.
+/// Colours (0xRRGGBB) and gnuplot's point types, told apart in colour-blindness and in grey print. After six places the
+/// colours come again darker, after twelve paler; after eighteen, and the points after fifteen, they repeat.
 [[nodiscard]] unsigned colour_of(std::size_t place) noexcept;
 [[nodiscard]] int point_of(std::size_t place) noexcept;
 /// For what has no colour of its own.
 inline constexpr unsigned k_neutral_colour = 0x303030u;
 
-/// gnuplot's dash type of a phase.
-[[nodiscard]] std::string_view dash(Phase phase) noexcept;
 /// gnuplot's style of the marks of the event with that place in the legend.
 [[nodiscard]] std::string event_points(std::size_t place);
 
 struct LegendRow {
   struct Entry {
-    std::string title;
+    std::string title;  ///< gnuplot's enhanced text
     std::string style;  ///< from `with` on
   };
   std::string heading;
   std::vector<Entry> entries;
 };
+
+/// Characters that an enhanced text shows.
+[[nodiscard]] std::size_t shown_length(std::string_view enhanced);
 
 /// Contacts, runs, phases and events; a row that would tell nothing is left out.
 [[nodiscard]] std::vector<LegendRow> legend_rows(const std::vector<RunCurves>& runs, const Palette& palette);

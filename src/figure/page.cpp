@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -17,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double k_x_label_cm = 1.05;       // from an axis down to the middle of its label
+constexpr double k_x_label_cm = 1.05;  // from an axis down to the middle of its label
+constexpr std::string_view k_minus = "\u2212";
 constexpr double k_most_decade_tics = 6.0;  // of a logarithmic axis: more of their labels run into each other
 
 [[nodiscard]] Format format_of(const fs::path& output) {
@@ -67,7 +69,8 @@ void make_folder(const fs::path& folder) {
   const double first = std::ceil(range.lowest / range.tic_step) + 0.0;  // no zero with a sign
   for (double k = first; k * range.tic_step <= range.highest; k += 1.0) {
     const double place = k * range.tic_step;
-    tics += fmt::format("{}'{:.6g}' {:.6g}", tics.empty() ? "" : ", ", place / std::pow(10.0, power), place);
+    tics += fmt::format("{}{} {:.6g}", tics.empty() ? "" : ", ",
+                        label_string(fmt::format("{:.6g}", place / std::pow(10.0, power))), place);
   }
   return fmt::format("({})", tics);
 }
@@ -92,7 +95,7 @@ void make_folder(const fs::path& folder) {
 [[nodiscard]] std::string power_text(int label, const Axis& axis, const std::string& place) {
   const int power = axis.is_logarithmic ? 0 : shared_power(axis.range);
   if (power == 0) return fmt::format("unset label {}\n", label);
-  return fmt::format("set label {} '×10^{{{}}}' at {} right\n", label, power, place);
+  return fmt::format("set label {} {} at {} right\n", label, label_string(fmt::format("×10^{{{}}}", power)), place);
 }
 
 }  // namespace
@@ -104,6 +107,7 @@ std::string page_head(Format format, const Layout& layout, const std::string& fi
       "if (!exists(\"output\")) output = {0}\n"
       "data = {1}\n\n"
       "set encoding utf8\n"
+      "set minussign\n"
       "set terminal {2}\n"
       "set output output\n"
       "set border 3 lw 0.8\n"
@@ -116,21 +120,50 @@ std::string page_head(Format format, const Layout& layout, const std::string& fi
       gnuplot_string(figure_name), gnuplot_string(data_name), terminal(format, layout));
 }
 
-std::string frame_text(const Panel& panel, const Layout& layout, const Axis& x, const Axis& y, char letter) {
+std::string frame_text(const Layout& layout, std::size_t place, const Axis& x, const Axis& y) {
+  const Panel& panel = layout.panels[place];
   const Box& axes = panel.axes;
+  const std::string letter =
+      layout.panels.size() > 1 ? fmt::format("({})", static_cast<char>('a' + place % 26)) : std::string();
   return fmt::format(
       "\nset lmargin at screen {:.4f}; set rmargin at screen {:.4f}\n"
       "set bmargin at screen {:.4f}; set tmargin at screen {:.4f}\n"
       "{}{}"
       "set xlabel {}\n"
-      "set label 1 '({})' at graph 0.02, 1.06 left\n"
+      "set label 1 '{}' at graph 0.02, 1.06 left\n"
       "set label 2 {} at screen {:.4f}, {:.4f} center rotate by 90\n"
       "{}{}",
       axes.left / layout.width, axes.right() / layout.width, axes.bottom / layout.height, axes.top() / layout.height,
-      axis_text('x', x), axis_text('y', y), gnuplot_string(x.label), letter, gnuplot_string(y.label),
+      axis_text('x', x), axis_text('y', y), label_string(x.label), letter, label_string(y.label),
       panel.y_label_left / layout.width, (axes.bottom + 0.5 * axes.height) / layout.height,
       power_text(3, x, fmt::format("graph 1, screen {:.4f}", (axes.bottom - k_x_label_cm) / layout.height)),
       power_text(4, y, "graph -0.01, 1.06"));
+}
+
+std::string label_string(std::string_view enhanced) {
+  constexpr std::string_view k_before_a_minus = " ({=";
+  // gnuplot asks SVG renderers to keep the blanks of a text that has two in a row: else some drop those beside a change
+  // of font. These two are one point high.
+  constexpr std::string_view k_keep_blanks = "{/=1   }";
+  std::string text;
+  char before = ' ';
+  for (const char c : enhanced) {
+    const bool is_minus = c == '-' && k_before_a_minus.find(before) != std::string_view::npos;
+    text += is_minus ? k_minus : std::string_view(&c, 1);
+    before = c;
+  }
+  const bool changes_font = text.find_first_of("{^_") != std::string::npos;
+  if (changes_font && text.find(' ') != std::string::npos) text += k_keep_blanks;
+  return gnuplot_string(text);
+}
+
+std::string plain_text(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    if (std::string_view("\\{}^_@&~").find(c) != std::string_view::npos) text += '\\';
+    text += c;
+  }
+  return text;
 }
 
 void write_whole(const fs::path& file, const std::string& text) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "figure/panels.hpp"
 
@@ -22,9 +23,16 @@ struct Axis {
 [[nodiscard]] std::string page_head(Format format, const Layout& layout, const std::string& figure_name,
                                     const std::string& data_name);
 
-/// Axes, labels and letter of a panel; the `plot` command is to follow.
-[[nodiscard]] std::string frame_text(const Panel& panel, const Layout& layout, const Axis& x, const Axis& y,
-                                     char letter);
+/// Axes and labels of a panel, with its letter where there are several; the `plot` command is to follow.
+/// @param place  of the panel in the layout
+[[nodiscard]] std::string frame_text(const Layout& layout, std::size_t place, const Axis& x, const Axis& y);
+
+/// Gnuplot's enhanced text, quoted, as a label wants it: blanks that no renderer drops beside a change of font, and
+/// minus signs instead of hyphens where a hyphen begins a number or stands between terms.
+[[nodiscard]] std::string label_string(std::string_view enhanced);
+
+/// A name that is to appear as it is, as gnuplot's enhanced text.
+[[nodiscard]] std::string plain_text(std::string_view name);
 
 /// Last part of a script.
 inline constexpr const char* k_page_foot = "unset multiplot\nunset output\n";

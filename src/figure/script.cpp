@@ -28,9 +28,8 @@ void append_curves(std::vector<std::string>& plots, const std::vector<RunCurves>
       const auto line = is_of_particle ? palette.particle_line(k) : palette.contact_line(k, contact.name);
       for (const Phase phase : k_phases) {
         if (!has_phase(runs[k].phases, phase)) continue;
-        plots.push_back(fmt::format("data index {} using 1:{} with lines {} {}",
-                                    gnuplot_string(block_name(k, contact.name, phase)), data_column(quantity), line,
-                                    dash(phase)));
+        plots.push_back(fmt::format("data index {} using 1:{} {}", gnuplot_string(block_name(k, contact.name, phase)),
+                                    data_column(quantity), phase_line(line, phase)));
       }
       if (is_of_particle) break;  // the same beside every contact
     }
@@ -102,11 +101,10 @@ std::string script_text(const std::vector<RunCurves>& runs, const Scales& scales
       arrange(quantities.size(), line_count(rows, k_legend_strip_cm), line_count(rows, k_legend_cell_cm));
 
   std::string text = page_head(format, layout, figure_name, data_name);
-  char letter = 'a';
   for (std::size_t k = 0; k < quantities.size(); ++k) {
     const PanelValues values = panel_values(runs, scales, quantities[k]);
-    text += frame_text(layout.panels[k], layout, {scales.displacement_label(), axis_range(values.x)},
-                       {scales.label(quantities[k]), axis_range(values.y)}, letter++);
+    text += frame_text(layout, k, {scales.displacement_label(), axis_range(values.x)},
+                       {scales.label(quantities[k]), axis_range(values.y)});
     text += plots_text(runs, palette, quantities[k]);
   }
   text += legend_text(rows, layout);

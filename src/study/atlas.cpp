@@ -222,7 +222,8 @@ class FigureMaker {
 
  private:
   [[nodiscard]] figure::ChartPanel chart_panel(const PanelSpec& spec) {
-    figure::ChartPanel panel{.x = spec.x, .y = spec.y, .note = spec.note, .areas = {}, .series = {}};
+    figure::ChartPanel panel{
+        .x = spec.x, .y = spec.y, .note = spec.note, .range = spec.fitted, .areas = {}, .series = {}};
     for (const CurveSpec& curve : spec.curves) append_curves(curve, panel);
     for (const PointsSpec& points : spec.points) panel.series.push_back(chart_points(points));
     return panel;
@@ -246,7 +247,8 @@ class FigureMaker {
                               .style = spec.styles[std::min(k, spec.styles.size() - 1)],
                               .colour = spec.colour,
                               .x = std::move(curve.x),
-                              .y = std::move(curve.y)});
+                              .y = std::move(curve.y),
+                              .is_error = !spec.references.empty()});
     }
   }
 

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "figure/page.hpp"
 #include "scenario/document.hpp"
 #include "scenario/overrides.hpp"
 #include "scenario/section.hpp"
@@ -127,6 +128,21 @@ class DefinitionReader {
             .is_logarithmic = scaled.toggle(key("log")).value_or(false)};
   }
 
+  [[nodiscard]] std::optional<figure::ChartRange> fitted(const Section& section_with_key) {
+    if (!section_with_key.has("fitted")) return std::nullopt;
+    static const Keys keys = fitted_keys();
+    const Section section(reading_, section_with_key.table("fitted", "fitted"), keys);
+    figure::ChartRange range{
+        .from = section.number("from"), .to = section.number("to"), .legend = section.text("label")};
+    const bool is_ordered = !range.from || !range.to || *range.from < *range.to;
+    if ((!range.from && !range.to && !section.has_or_misspells("from") && !section.has_or_misspells("to")) ||
+        !is_ordered) {
+      faults_.add(section_with_key.value_place("fitted"),
+                  is_ordered ? "the range has no end; expected 'from', 'to' or both" : "'from' is not below 'to'");
+    }
+    return range;
+  }
+
   void check_range(const Section& panel, const figure::ChartAxis& axis, char name) {
     if (axis.is_logarithmic && ((axis.lowest && *axis.lowest <= 0.0) || (axis.highest && *axis.highest <= 0.0))) {
       faults_.add(panel.place(), fmt::format("a logarithmic axis has no place for {}_min or {}_max = 0", name, name));
@@ -154,6 +170,7 @@ class DefinitionReader {
     PanelSpec spec{.x = axis(section, root, 'x'),
                    .y = axis(section, root, 'y'),
                    .note = section.text("note"),
+                   .fitted = fitted(section.has("fitted") ? section : root),
                    .curves = {},
                    .points = {}};
     check_range(section, spec.x, 'x');
@@ -300,7 +317,8 @@ class DefinitionReader {
     }
     const bool is_named = !legends.empty() || !spec.legends.front().empty();
     for (std::size_t k = 0; k < values.size(); ++k) {
-      if (!is_named) legends.push_back(fmt::format("{} = {}", key.substr(key.rfind('.') + 1), values[k]));
+      if (!is_named)
+        legends.push_back(figure::plain_text(fmt::format("{} = {}", key.substr(key.rfind('.') + 1), values[k])));
       add_curve(sections, {{fmt::format("{}={}", key, values[k]), section.value_place("values", k)}}, swept, spec);
     }
     if (!legends.empty()) spec.legends = std::move(legends);

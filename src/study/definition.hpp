@@ -64,6 +64,7 @@ struct PanelSpec {
   figure::ChartAxis x;
   figure::ChartAxis y;
   std::string note;
+  std::optional<figure::ChartRange> fitted;
   std::vector<CurveSpec> curves;
   std::vector<PointsSpec> points;
 };

@@ -70,6 +70,9 @@ void append_shared_keys(Keys& keys) {
   keys.push_back(number_key("x_max", "right end of the abscissa"));
   keys.push_back(number_key("y_min", "lower end of the ordinate"));
   keys.push_back(number_key("y_max", "upper end of the ordinate"));
+  keys.push_back(table_key("fitted",
+                           "part of the abscissa to which a law was fitted or in which it holds; beyond is shaded",
+                           "{ from = 0.03, to = 0.5 }"));
   keys.push_back({.name = "x_log", .meaning = "logarithmic abscissa", .kind = Kind::toggle});
   keys.push_back({.name = "y_log", .meaning = "logarithmic ordinate", .kind = Kind::toggle});
 }
@@ -144,6 +147,13 @@ Keys sweep_keys() {
 
 Keys parameter_keys() {
   return {number_key("from", "first value of t", true), number_key("to", "last value of t", true)};
+}
+
+Keys fitted_keys() {
+  Keys keys{number_key("from", "its lower end"), number_key("to", "its upper end"),
+            text_key("label", "text in the legend for what lies beyond", "\"beyond the fitted range\"")};
+  keys[2].default_value = std::string_view("beyond the fitted range");
+  return keys;
 }
 
 Keys points_keys() {

@@ -31,6 +31,8 @@ inline constexpr const char* k_example_y = "\"axial.force / (E * R0^2)\"";
 [[nodiscard]] Keys sweep_keys();
 /// The range of t in a formula.
 [[nodiscard]] Keys parameter_keys();
+/// The part of the abscissa to which a law was fitted.
+[[nodiscard]] Keys fitted_keys();
 /// Points of a panel, and those of a comparison.
 [[nodiscard]] Keys points_keys();
 /// The phase diagrams of adhesion.

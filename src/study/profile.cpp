@@ -118,8 +118,11 @@ fs::path draw_profiles(const Table& profiles, const fs::path& output) {
     if (radius.empty()) continue;
     using Style = figure::ChartSeries::Style;
     const auto add = [&](figure::ChartPanel& panel, const std::string& state, Style style, std::vector<double> y) {
-      panel.series.push_back(
-          {.legend = classes.labels[c] + state, .style = style, .colour = c, .x = radius, .y = std::move(y)});
+      panel.series.push_back({.legend = figure::plain_text(classes.labels[c]) + state,
+                              .style = style,
+                              .colour = c,
+                              .x = radius,
+                              .y = std::move(y)});
     };
     std::vector<double> load = of_class(profiles, c, "pressure", 1.0 / yield_stress.value_or(1.0));
     highest = std::max(highest, std::ranges::max(load));

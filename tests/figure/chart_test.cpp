@@ -5,7 +5,10 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <set>
+#include <string_view>
 
+#include "figure/legend.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace monograin::figure::chart_test {
@@ -115,6 +118,125 @@ TEST(Chart, IsDrawnWithPointsLinesAndAreas) {
     files.write(chart_data(chart, "test"), chart_script(chart, files.format(), files.figure_name(), files.data_name()));
     EXPECT_GT(fs::file_size(folder.path() / name), 1000U) << name;
   }
+}
+
+TEST(Chart, DrawsReloadingWiderThanTheUnloadingThatItCovers) {
+  ChartSeries cycle = series("a", ChartSeries::Style::phases);
+  cycle.x = {0.0, 1.0, 0.5, 0.9};
+  cycle.y = {0.0, 2.0, 1.0, 1.8};
+  const std::string script = script_of(chart_of({cycle}));
+  EXPECT_NE(script.find("unloading.' with lines lc rgb '#0072B2' lw 1.8 dt (7,4)"), std::string::npos) << script;
+  EXPECT_NE(script.find("reloading.' with lines lc rgb '#0072B2' lw 3.96 dt (0.8,2.6)"), std::string::npos) << script;
+  EXPECT_NE(script.find("lw 3.96 dt (0.8,2.6) title 'reloading'"), std::string::npos)
+      << "the legend says so: " << script;
+}
+
+TEST(Chart, GivesEachOfManyLegendsAStyleOfItsOwn) {
+  std::vector<ChartSeries> many;
+  for (char name = 'a'; name < 'a' + 18; ++name) many.push_back(series({name}));
+  const std::string script = script_of(chart_of(many));
+  std::set<std::string> styles;
+  constexpr std::string_view k_entry = "keyentry ";
+  for (std::size_t at = script.find(k_entry); at != std::string::npos; at = script.find(k_entry, at + 1)) {
+    styles.insert(script.substr(at, script.find(" title ", at) - at));
+  }
+  EXPECT_EQ(styles.size(), 18U);
+}
+
+TEST(Chart, LeavesColoursThatOthersAskFor) {
+  ChartSeries first = series("first");
+  ChartSeries second = series("second");
+  second.colour = 0;
+  const std::string script = script_of(chart_of({first, second}));
+  EXPECT_NE(script.find("'panel 1 series 1.' with lines lc rgb '#D55E00'"), std::string::npos) << script;
+  EXPECT_NE(script.find("'panel 1 series 2.' with lines lc rgb '#0072B2'"), std::string::npos) << script;
+}
+
+TEST(Chart, MarksErrorsThatALogarithmicAxisCannotShow) {
+  ChartSeries errors = series("a");
+  errors.y = {1e-3, 0.0, 1e-9};
+  errors.is_error = true;
+  Chart chart = chart_of({errors});
+  chart.panels[0].y = {.label = "y", .lowest = 1e-6, .is_logarithmic = true};
+  const std::string data = chart_data(chart, "");
+  EXPECT_NE(data.find("# panel 1 series 1. a\n0 0.001\n1 1e-06\n0.5 1e-06\n"), std::string::npos) << data;
+  EXPECT_NE(data.find("# panel 1 series 1 at the floor. a\n1 1e-06\n0.5 1e-06\n"), std::string::npos) << data;
+  const std::string script = script_of(chart);
+  EXPECT_EQ(count(script, "title 'at the lower end of the axis, or below'"), 1U) << script;
+  EXPECT_EQ(count(script, "series 1 at the floor.'"), 1U) << script;
+}
+
+TEST(Chart, MarksNothingOnAnAxisThatShowsZero) {
+  ChartSeries errors = series("a");
+  errors.is_error = true;
+  EXPECT_EQ(script_of(chart_of({errors})).find("floor"), std::string::npos);
+  errors.is_error = false;
+  Chart chart = chart_of({errors});
+  chart.panels[0].y.is_logarithmic = true;
+  EXPECT_EQ(script_of(chart).find("floor"), std::string::npos) << "a curve that is no error may begin at zero";
+}
+
+TEST(Chart, ShadesWhatLiesOutsideARange) {
+  Chart chart = chart_of({series("a")});
+  chart.panels[0].range = {.from = 0.25, .to = 0.75, .legend = "beyond"};
+  const std::string script = script_of(chart);
+  EXPECT_EQ(count(script, "set object rectangle"), 2U) << script;
+  EXPECT_NE(script.find("from first 0, graph 0 to first 0.25, graph 1 behind"), std::string::npos) << script;
+  EXPECT_NE(script.find("from first 0.75, graph 0 to first 1.03, graph 1 behind"), std::string::npos) << script;
+  EXPECT_EQ(count(script, "title 'beyond'"), 1U) << script;
+  chart.panels[0].range = {.from = -1.0, .to = 2.0, .legend = "beyond"};
+  EXPECT_EQ(count(script_of(chart), "set object rectangle"), 0U) << "all that is shown lies inside";
+}
+
+TEST(Chart, HasLettersOnlyForSeveralPanels) {
+  Chart chart = chart_of({series("a")});
+  EXPECT_EQ(script_of(chart).find("'(a)'"), std::string::npos);
+  chart.panels.push_back(chart.panels.front());
+  EXPECT_NE(script_of(chart).find("'(a)'"), std::string::npos);
+  EXPECT_NE(script_of(chart).find("'(b)'"), std::string::npos);
+}
+
+TEST(Chart, KeepsItsNoteBesideThePowerOfTenOfItsAbscissa) {
+  Chart chart = chart_of({series("a")});
+  chart.panels[0].series[0].x = {0.0, 1e-7, 0.5e-7};
+  const std::string script = script_of(chart);
+  EXPECT_NE(script.find("'it''s a note'"), std::string::npos) << script;
+  EXPECT_NE(script.find("'×10^{−7}'"), std::string::npos) << script;
+}
+
+TEST(Label, HasMinusSignsAndKeepsItsHyphens) {
+  EXPECT_EQ(label_string("a - b"), "'a − b'");
+  EXPECT_EQ(label_string("-1"), "'−1'");
+  EXPECT_EQ(label_string("10^{-3}"), "'10^{−3}'");
+  EXPECT_EQ(label_string("elastic-plastic"), "'elastic-plastic'");
+}
+
+TEST(Label, ShowsANameAsItIs) {
+  EXPECT_EQ(plain_text("radius_rule"), "radius\\_rule");
+  EXPECT_EQ(plain_text("a{b}^c"), "a\\{b\\}\\^c");
+}
+
+/// rsvg-convert drops blanks beside a change of font where they are not to be kept.
+TEST(Label, KeepsItsBlanksInEveryRenderer) {
+  const TemporaryFolder folder;
+  Chart chart = chart_of({series("{/:Italic ν} = 0.3")});
+  chart.panels[0].x.label = "Force {/:Italic F} / ({/:Italic E R}_0^2)";
+  const FigureFiles files(folder.path() / "a.svg");
+  files.write(chart_data(chart, ""), chart_script(chart, files.format(), files.figure_name(), files.data_name()));
+  std::ifstream in(files.figure());
+  const std::string svg{std::istreambuf_iterator<char>(in), {}};
+  for (const char* part : {">Force </tspan>", "> = 0.3</tspan>"}) {
+    const std::size_t at = svg.find(part);
+    ASSERT_NE(at, std::string::npos) << part;
+    const std::size_t text = svg.rfind("<text", at);
+    EXPECT_EQ(svg.compare(text, 27, "<text xml:space=\"preserve\">"), 0) << svg.substr(text, 100);
+  }
+}
+
+TEST(Label, IsAsLongAsWhatItShows) {
+  EXPECT_EQ(shown_length("{/:Italic ν} = 0.3"), 7U);
+  EXPECT_EQ(shown_length("Γ_0/{/:Italic σ}_{y0}"), 6U);
+  EXPECT_EQ(shown_length(plain_text("a_b")), 3U);
 }
 
 }  // namespace

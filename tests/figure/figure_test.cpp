@@ -167,8 +167,8 @@ TEST_F(Figure, OverlaysRunsUnderNamesThatDiffer) {
   write(in_folder("other/it's_a_run/history.csv"), k_mdr_history);
   EXPECT_EQ(fault_of({run(), in_folder("other/it's_a_run/history.csv")}, in_folder("both.svg")), "no fault");
   const std::string script = read_text(in_folder("both.gp"));
-  EXPECT_NE(script.find("runs/it''s_a_run'"), std::string::npos) << script;
-  EXPECT_NE(script.find("other/it''s_a_run/history.csv'"), std::string::npos) << script;
+  EXPECT_NE(script.find("runs/it''s\\_a\\_run'"), std::string::npos) << script;
+  EXPECT_NE(script.find("other/it''s\\_a\\_run/history.csv'"), std::string::npos) << script;
 }
 
 TEST_F(Figure, StaysInUnitsWhereARunHasNoScales) {
@@ -188,7 +188,7 @@ TEST_F(Figure, HasRoomForTheNumbersOfItsAxes) {
   const std::string script = read_text(in_folder("stiff.gp"));
   EXPECT_NE(script.find("set ytics ('0' 0, '0.5' 5e-09, '1' 1e-08, '1.5' 1.5e-08, '2' 2e-08)"), std::string::npos)
       << script;
-  EXPECT_NE(script.find("'×10^{-8}' at graph -0.01"), std::string::npos) << script;
+  EXPECT_NE(script.find("'×10^{−8}' at graph -0.01"), std::string::npos) << script;
   EXPECT_NE(script.find("set xtics 0.1\n"), std::string::npos) << script;
 }
 

@@ -94,8 +94,8 @@ TEST_F(Atlas, DrawsOneCurveForEachValueOfAKey) {
            "[[panel]]\ncurve = [{ vary = { key = \"material.poisson_ratio\", values = [0.0, 0.5] } }]\n");
   const auto& series = made.chart.panels[0].series;
   ASSERT_EQ(series.size(), 2U);
-  EXPECT_EQ(series[0].legend, "poisson_ratio = 0");
-  EXPECT_EQ(series[1].legend, "poisson_ratio = 0.5");
+  EXPECT_EQ(series[0].legend, "poisson\\_ratio = 0");
+  EXPECT_EQ(series[1].legend, "poisson\\_ratio = 0.5");
   EXPECT_NEAR(*std::ranges::max_element(series[1].y) / *std::ranges::max_element(series[0].y), 4.0 / 3.0, 1e-12);
 }
 
@@ -221,7 +221,7 @@ TEST_F(Atlas, DrawsDerivedParametersOverASweptKey) {
       ", points = 2 }, vary = { key = \"material.poisson_ratio\", values = [0.0, 0.5], styles = [\"solid\", "
       "\"dash-dotted\"] }");
   ASSERT_EQ(varied.size(), 2U);
-  EXPECT_EQ(varied[1].legend, "poisson_ratio = 0.5");
+  EXPECT_EQ(varied[1].legend, "poisson\\_ratio = 0.5");
   EXPECT_EQ(varied[0].style, figure::ChartSeries::Style::solid);
   EXPECT_EQ(varied[1].style, figure::ChartSeries::Style::dash_dotted);
   EXPECT_DOUBLE_EQ(varied[1].y[1] / varied[0].y[1], 4.0 / 3.0);
@@ -537,6 +537,31 @@ row = [{ label = "elastic", curve = {}, points = { file = "points.csv", x = "x",
   EXPECT_NEAR(table.at(0, *table.find("peak_error")), std::abs(4.0 / 3.0 * 1e-3 - 1.4e-3) / 1.4e-3, 1e-12);
   EXPECT_NEAR(table.at(0, *table.find("residual")), 0.0, 1e-12);
   EXPECT_NE(read_text(out / "small.md").find("| elastic |"), std::string::npos);
+}
+
+TEST_F(Atlas, ShadesWhatALawWasNotFittedTo) {
+  const std::string shown = std::string(k_head) + "fitted = { to = 0.005 }\n" + k_scenario;
+  const AtlasFigure made = make(shown +
+                                "[[panel]]\ncurve = [{ legend = \"Hertz\" }]\n[[panel]]\n"
+                                "fitted = { from = 0.002, to = 0.004, label = \"outside\" }\n"
+                                "curve = [{ legend = \"Hertz\" }]\n");
+  const auto& everywhere = made.chart.panels[0].range;
+  ASSERT_TRUE(everywhere);
+  EXPECT_FALSE(everywhere->from);
+  EXPECT_EQ(everywhere->to, 0.005);
+  EXPECT_EQ(everywhere->legend, "beyond the fitted range");
+  const auto& own = made.chart.panels[1].range;
+  ASSERT_TRUE(own);
+  EXPECT_EQ(own->from, 0.002);
+  EXPECT_EQ(own->legend, "outside");
+}
+
+TEST_F(Atlas, RefusesAFittedRangeWithoutEndsOrLength) {
+  const std::string panel = "[[panel]]\ncurve = [{}]\n";
+  EXPECT_EQ(fault_of(std::string(k_head) + "fitted = {}\n" + k_scenario + panel),
+            "small.toml:5:10: the range has no end; expected 'from', 'to' or both");
+  EXPECT_EQ(fault_of(std::string(k_head) + "fitted = { from = 2, to = 1 }\n" + k_scenario + panel),
+            "small.toml:5:10: 'from' is not below 'to'");
 }
 
 TEST_F(Atlas, SaysWhichRunsDidNotEnd) {
