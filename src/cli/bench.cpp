@@ -22,6 +22,7 @@ struct BenchOptions {
   std::string list = "scenarios/bench/scenes.toml";
   std::string definitions = "plots";
   std::string output = "plots";
+  std::string measured;
   std::vector<std::string> integrators;
   std::vector<double> tolerances;
   bool is_against_fe = false;
@@ -73,6 +74,12 @@ void check_integrators(const std::vector<std::string>& names) {
 
 int bench(const BenchOptions& options) {
   if (options.is_against_fe) return bench_against_fe(options);
+  if (!options.measured.empty()) {
+    for (const fs::path& file : redraw_bench(options.measured, options.output)) {
+      fmt::print(stderr, "-> {}\n", file.string());
+    }
+    return k_success;
+  }
   check_integrators(options.integrators);
   const BenchSettings settings{.integrators = options.integrators, .tolerances = options.tolerances};
   const std::vector<Scenario> scenarios = chosen_scenes(options);
@@ -112,6 +119,9 @@ void add_bench_command(CLI::App& app, Action& action) {
   command->add_flag("--against-fe", options->is_against_fe,
                     "Instead hold every law against finite-element curves: errors, slopes and a figure");
   command->add_option("--plots", options->definitions, "Folder of the definition for --against-fe [plots]");
+  command->add_option("--redraw", options->measured, "Instead draw the figures anew from an earlier bench.csv")
+      ->check(CLI::ExistingFile)
+      ->excludes("--against-fe");
   command->add_option("-o,--output", options->output, "Folder of table, CSV and figures [plots]");
   command->footer("Example: monograin bench mdr-die-50 --integrator auto cvode-bdf -o bench");
   command->callback([options, &action] { action = [options] { return bench(*options); }; });

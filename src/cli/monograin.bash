@@ -19,7 +19,7 @@ _monograin() {
     compare) options="--x --y --tol --help" ;;
     calibrate) options="--output --confidence --quiet --help" ;;
     sweep) options="--jobs --shard --design-only --output --help" ;;
-    bench) options="--scenes --integrator --rtol --profile --against-fe --plots --output --help" ;;
+    bench) options="--scenes --integrator --rtol --profile --against-fe --redraw --plots --output --help" ;;
     stress) options="--time --seed --first --scenes --jobs --output --help" ;;
     regress) options="--accept --scenarios --curves --help" ;;
     *) options="--help" ;;

@@ -97,4 +97,8 @@ std::vector<std::filesystem::path> write_bench(const std::vector<BenchScene>& sc
                                                const std::vector<BenchSaving>& savings,
                                                const std::filesystem::path& folder);
 
+/// Draws the figures of an earlier bench anew, from its bench.csv and without measuring.
+/// @return the figures @throws FigureError, or std::runtime_error where the file is not of a bench
+std::vector<std::filesystem::path> redraw_bench(const std::filesystem::path& csv, const std::filesystem::path& folder);
+
 }  // namespace monograin

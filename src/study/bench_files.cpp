@@ -35,23 +35,24 @@ struct Line {
   ChartSeries::Style style;
 };
 
-/// How integrators are drawn: those of one library in one panel.
+/// How integrators are drawn: those of one library in one panel and with one dash, each line in its own way in all
+/// panels together.
 constexpr std::array k_lines{
     Line{"direct", 0, 0, ChartSeries::Style::points},
     Line{"auto", 0, 1, ChartSeries::Style::points},
-    Line{"explicit", 0, 5, ChartSeries::Style::dash_dotted},
-    Line{"ida", 0, 2, ChartSeries::Style::solid},
+    Line{"explicit", 0, 5, ChartSeries::Style::dotted},
+    Line{"ida", 0, 2, ChartSeries::Style::dotted},
     Line{"cvode-adams", 1, 0, ChartSeries::Style::solid},
     Line{"cvode-bdf", 1, 1, ChartSeries::Style::solid},
-    Line{"arkode-erk", 1, 2, ChartSeries::Style::dashed},
-    Line{"arkode-dirk", 1, 3, ChartSeries::Style::dashed},
-    Line{"odeint-dopri5", 2, 0, ChartSeries::Style::solid},
-    Line{"odeint-fehlberg78", 2, 1, ChartSeries::Style::solid},
+    Line{"arkode-erk", 1, 2, ChartSeries::Style::solid},
+    Line{"arkode-dirk", 1, 3, ChartSeries::Style::solid},
+    Line{"odeint-dopri5", 2, 0, ChartSeries::Style::dashed},
+    Line{"odeint-fehlberg78", 2, 1, ChartSeries::Style::dashed},
     Line{"odeint-bulirsch-stoer", 2, 2, ChartSeries::Style::dashed},
     Line{"odeint-rosenbrock4", 2, 3, ChartSeries::Style::dashed},
-    Line{"gsl-rk8pd", 3, 0, ChartSeries::Style::solid},
-    Line{"gsl-msadams", 3, 1, ChartSeries::Style::solid},
-    Line{"gsl-msbdf", 3, 2, ChartSeries::Style::dashed},
+    Line{"gsl-rk8pd", 3, 0, ChartSeries::Style::dash_dotted},
+    Line{"gsl-msadams", 3, 1, ChartSeries::Style::dash_dotted},
+    Line{"gsl-msbdf", 3, 2, ChartSeries::Style::dash_dotted},
 };
 constexpr std::array<const char*, 4> k_panels{"Direct form, fixed steps, IDA", "CVODE, ARKODE", "Boost.Odeint", "GSL"};
 
@@ -267,8 +268,12 @@ using Place = std::function<std::pair<double, double>(const BenchPoint&)>;
   for (const char* note : k_panels) chart.panels.push_back({.x = x, .y = y, .note = note});
   for (const Line& line : k_lines) {
     for (const BenchScene& scene : scenes) {
-      ChartSeries series{
-          .legend = std::string(line.integrator), .style = line.style, .colour = line.colour, .x = {}, .y = {}};
+      ChartSeries series{.legend = std::string(line.integrator),
+                         .style = line.style,
+                         .colour = line.colour,
+                         .x = {},
+                         .y = {},
+                         .is_error = true};
       for (const BenchPoint& point : scene.points) {
         if (point.integrator != line.integrator) continue;
         const auto [along, up] = place(point);
@@ -314,7 +319,7 @@ constexpr double k_least_error = 1e-16;  ///< what a figure shows of an error of
   for (const Line& line : k_lines) {
     if (line.integrator == "auto") continue;
     ChartSeries series{.legend = std::string(line.integrator),
-                       .style = line.style == ChartSeries::Style::points ? ChartSeries::Style::solid : line.style,
+                       .style = line.style == ChartSeries::Style::points ? ChartSeries::Style::dotted : line.style,
                        .colour = line.colour,
                        .x = {},
                        .y = {}};
@@ -337,6 +342,35 @@ constexpr double k_least_error = 1e-16;  ///< what a figure shows of an error of
   }
   std::erase_if(chart.panels, [](const figure::ChartPanel& panel) { return panel.series.empty(); });
   return chart;
+}
+
+std::vector<fs::path> draw_bench(const std::vector<BenchScene>& scenes, const std::string& machine,
+                                 const fs::path& folder) {
+  const figure::ChartAxis error{.label = "Error of the curve, at least 10^{−16}", .is_logarithmic = true};
+  const figure::ChartAxis time{.label = "Time of one history [ms]", .is_logarithmic = true};
+  const figure::ChartAxis rtol{.label = "Relative tolerance", .is_logarithmic = true};
+  const figure::ChartAxis event{.label = "Error of event times", .lowest = k_least_error, .is_logarithmic = true};
+  std::vector<std::pair<std::string, figure::Chart>> charts;
+  for (const BenchScene& scene : scenes) {
+    charts.emplace_back("bench-" + scene.name, chart_of({scene}, error, time, [](const BenchPoint& point) {
+                          return std::pair{std::max(point.curve_error, k_least_error), 1e3 * point.fastest};
+                        }));
+  }
+  charts.emplace_back("bench-summary", summary_of(scenes));
+  charts.emplace_back("bench-events", chart_of({worst_events(scenes)}, rtol, event, [](const BenchPoint& point) {
+                        return std::pair{point.rtol, point.event_error};
+                      }));
+  std::erase_if(charts, [](const auto& named) { return named.second.panels.empty(); });
+  std::vector<figure::FigureFiles> files;
+  for (const auto& [name, chart] : charts) files.emplace_back(folder / (name + ".svg"));
+  std::vector<fs::path> written;
+  for (std::size_t k = 0; k < charts.size(); ++k) {
+    const figure::Chart& chart = charts[k].second;
+    files[k].write(figure::chart_data(chart, "Run time against error; " + machine),
+                   figure::chart_script(chart, files[k].format(), files[k].figure_name(), files[k].data_name()));
+    written.push_back(files[k].figure());
+  }
+  return written;
 }
 
 }  // namespace
@@ -370,40 +404,48 @@ std::string bench_text(const std::vector<BenchScene>& scenes, const std::vector<
   return text;
 }
 
+std::vector<fs::path> redraw_bench(const fs::path& csv, const fs::path& folder) {
+  const Table table = read_csv(csv);
+  const auto words = [&](std::string_view name) {
+    const auto found = table.find(name);
+    if (!found || !table.columns()[*found].holds_words()) {
+      throw std::runtime_error(fmt::format("{}: has no words in a column '{}'", csv.string(), name));
+    }
+    return *found;
+  };
+  const std::size_t scene = words("scene");
+  const std::size_t integrator = words("integrator");
+  const auto rtol = table.column("rtol");
+  const auto curve_error = table.column("curve_error");
+  const auto event_error = table.column("event_error");
+  const auto fastest = table.column("fastest");
+  std::vector<BenchScene> scenes;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const std::string name(table.word(row, scene));
+    auto found = std::ranges::find(scenes, name, &BenchScene::name);
+    if (found == scenes.end()) {
+      found = scenes.emplace(scenes.end());
+      found->name = name;
+    }
+    BenchPoint& point = found->points.emplace_back();
+    point.integrator = table.word(row, integrator);
+    point.rtol = rtol[row];
+    point.curve_error = curve_error[row];
+    point.event_error = event_error[row];
+    point.fastest = fastest[row];
+  }
+  return draw_bench(scenes, std::string(table.header_value("machine")), folder);
+}
+
 std::vector<fs::path> write_bench(const std::vector<BenchScene>& scenes, const std::vector<BenchProfile>& profiles,
                                   const std::vector<BenchSaving>& savings, const fs::path& folder) {
-  const figure::ChartAxis error{.label = "Error of the curve", .is_logarithmic = true};
-  const figure::ChartAxis time{.label = "Time of one history (ms)", .is_logarithmic = true};
-  const figure::ChartAxis rtol{.label = "rtol", .is_logarithmic = true};
-  const figure::ChartAxis event{.label = "Error of event times", .is_logarithmic = true};
-  std::vector<std::pair<std::string, figure::Chart>> charts;
-  for (const BenchScene& scene : scenes) {
-    charts.emplace_back("bench-" + scene.name, chart_of({scene}, error, time, [](const BenchPoint& point) {
-                          return std::pair{std::max(point.curve_error, k_least_error), 1e3 * point.fastest};
-                        }));
-  }
-  charts.emplace_back("bench-summary", summary_of(scenes));
-  charts.emplace_back("bench-events", chart_of({worst_events(scenes)}, rtol, event, [](const BenchPoint& point) {
-                        return std::pair{point.rtol, std::max(point.event_error, k_least_error)};
-                      }));
-  std::vector<figure::FigureFiles> files;
-  for (const auto& [name, chart] : charts) {
-    if (!chart.panels.empty()) files.emplace_back(folder / (name + ".svg"));
-  }
+  std::vector<fs::path> written = draw_bench(scenes, machine_text(), folder);
   fs::create_directories(folder);
   std::ostringstream csv;
   write_csv(csv_of(scenes), csv);
   figure::write_whole(folder / "bench.csv", csv.str());
   figure::write_whole(folder / "bench.md", bench_text(scenes, profiles, savings));
-  std::vector<fs::path> written{folder / "bench.csv", folder / "bench.md"};
-  auto next = files.begin();
-  for (const auto& [name, chart] : charts) {
-    if (chart.panels.empty()) continue;
-    const figure::FigureFiles& figure = *next++;
-    figure.write(figure::chart_data(chart, "Run time against error; " + machine_text()),
-                 figure::chart_script(chart, figure.format(), figure.figure_name(), figure.data_name()));
-    written.push_back(figure.figure());
-  }
+  written.insert(written.begin(), {folder / "bench.csv", folder / "bench.md"});
   return written;
 }
 

@@ -499,6 +499,15 @@ TEST_F(Commands, BenchMeasuresNamedScenesAndScenarioFiles) {
   }
 }
 
+TEST_F(Commands, BenchDrawsItsFiguresAnewWithoutMeasuring) {
+  const Outcome outcome = monograin("bench --redraw '" MONOGRAIN_SOURCE_DIR "/plots/bench.csv' -o out");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(outcome.out.empty()) << "no table: " << outcome.out;
+  EXPECT_TRUE(fs::exists(path("out/bench-summary.svg")));
+  EXPECT_FALSE(fs::exists(path("out/bench.csv")));
+  EXPECT_EQ(monograin("bench --redraw none.csv").code, 2);
+}
+
 TEST_F(Commands, BenchRefusesWhatItDoesNotKnow) {
   const Outcome scene = monograin(std::string("bench nowhere -o out") + k_bench_scenes);
   EXPECT_EQ(scene.code, 2);

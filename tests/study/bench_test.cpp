@@ -12,6 +12,7 @@
 #include "scene/scene.hpp"
 #include "study/profiled_system.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin::bench_test {
 namespace {
@@ -255,6 +256,12 @@ TEST(BenchFiles, AreATableItsNumbersAndFigures) {
     EXPECT_NE(text.find(heading), std::string::npos) << heading;
   }
   EXPECT_EQ(text.find("## What is not computed"), std::string::npos) << "no savings were measured";
+}
+
+TEST(BenchFiles, AreNotDrawnFromAFileOfSomethingElse) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "other.csv", "scene,rtol\n1,2\n");
+  EXPECT_THROW(redraw_bench(folder.path() / "other.csv", folder.path()), std::runtime_error);
 }
 
 TEST(BenchFiles, CompareBdfWithAutoAtTheErrorThatAutoHasByDefault) {
