@@ -3,6 +3,7 @@ if (!exists("output")) output = 'die.svg'
 data = 'die.dat'
 
 set encoding utf8
+set minussign
 set terminal svg enhanced size 643,571 font 'Helvetica,13' background 'white'
 set output output
 set border 3 lw 0.8
@@ -17,15 +18,17 @@ set lmargin at screen 0.1294; set rmargin at screen 0.4735
 set bmargin at screen 0.6921; set tmargin at screen 0.9603
 set xrange [0:0.4326]; set xtics 0.1
 set yrange [0:0.170762]; set ytics 0.05
-set xlabel 'Displacement {/:Italic δ}_o / {/:Italic R}_0'
+set xlabel 'Displacement {/:Italic δ}_o / {/:Italic R}_0{/=1   }'
 set label 1 '(a)' at graph 0.02, 1.06 left
-set label 2 'Force {/:Italic F} / ({/:Italic E R}_0^2)' at screen 0.0235, 0.8262 center rotate by 90
+set label 2 'Force {/:Italic F} / ({/:Italic E R}_0^2){/=1   }' at screen 0.0235, 0.8262 center rotate by 90
+unset label 3
+unset label 4
 plot data index 'run 1 axial loading' using 1:2 with lines lc rgb '#0072B2' lw 2 dt 1, \
   data index 'run 1 axial unloading' using 1:2 with lines lc rgb '#0072B2' lw 2 dt (7,4), \
-  data index 'run 1 axial reloading' using 1:2 with lines lc rgb '#0072B2' lw 2 dt (2,4), \
+  data index 'run 1 axial reloading' using 1:2 with lines lc rgb '#0072B2' lw 4.4 dt (0.8,2.6), \
   data index 'run 1 lateral loading' using 1:2 with lines lc rgb '#D55E00' lw 2 dt 1, \
   data index 'run 1 lateral unloading' using 1:2 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
-  data index 'run 1 lateral reloading' using 1:2 with lines lc rgb '#D55E00' lw 2 dt (2,4), \
+  data index 'run 1 lateral reloading' using 1:2 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
   data index 'event contact-made.' using 1:2 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event yield.' using 1:2 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event load-reversal.' using 1:2 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000', \
@@ -37,15 +40,17 @@ set lmargin at screen 0.6294; set rmargin at screen 0.9735
 set bmargin at screen 0.6921; set tmargin at screen 0.9603
 set xrange [0:0.4326]; set xtics 0.1
 set yrange [0:2.42637]; set ytics 0.5
-set xlabel 'Displacement {/:Italic δ}_o / {/:Italic R}_0'
+set xlabel 'Displacement {/:Italic δ}_o / {/:Italic R}_0{/=1   }'
 set label 1 '(b)' at graph 0.02, 1.06 left
-set label 2 'Mean pressure {/:Italic p} / {/:Italic Y}' at screen 0.5235, 0.8262 center rotate by 90
+set label 2 'Mean pressure {/:Italic p} / {/:Italic Y}{/=1   }' at screen 0.5235, 0.8262 center rotate by 90
+unset label 3
+unset label 4
 plot data index 'run 1 axial loading' using 1:3 with lines lc rgb '#0072B2' lw 2 dt 1, \
   data index 'run 1 axial unloading' using 1:3 with lines lc rgb '#0072B2' lw 2 dt (7,4), \
-  data index 'run 1 axial reloading' using 1:3 with lines lc rgb '#0072B2' lw 2 dt (2,4), \
+  data index 'run 1 axial reloading' using 1:3 with lines lc rgb '#0072B2' lw 4.4 dt (0.8,2.6), \
   data index 'run 1 lateral loading' using 1:3 with lines lc rgb '#D55E00' lw 2 dt 1, \
   data index 'run 1 lateral unloading' using 1:3 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
-  data index 'run 1 lateral reloading' using 1:3 with lines lc rgb '#D55E00' lw 2 dt (2,4), \
+  data index 'run 1 lateral reloading' using 1:3 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
   data index 'event contact-made.' using 1:3 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event yield.' using 1:3 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event load-reversal.' using 1:3 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000', \
@@ -57,15 +62,17 @@ set lmargin at screen 0.1294; set rmargin at screen 0.4735
 set bmargin at screen 0.2947; set tmargin at screen 0.5629
 set xrange [0:0.4326]; set xtics 0.1
 set yrange [0:0.900716]; set ytics 0.2
-set xlabel 'Displacement {/:Italic δ}_o / {/:Italic R}_0'
+set xlabel 'Displacement {/:Italic δ}_o / {/:Italic R}_0{/=1   }'
 set label 1 '(c)' at graph 0.02, 1.06 left
-set label 2 'Contact area {/:Italic A}_c / (π{/:Italic R}_0^2)' at screen 0.0235, 0.4288 center rotate by 90
+set label 2 'Contact area {/:Italic A}_c / (π{/:Italic R}_0^2){/=1   }' at screen 0.0235, 0.4288 center rotate by 90
+unset label 3
+unset label 4
 plot data index 'run 1 axial loading' using 1:4 with lines lc rgb '#0072B2' lw 2 dt 1, \
   data index 'run 1 axial unloading' using 1:4 with lines lc rgb '#0072B2' lw 2 dt (7,4), \
-  data index 'run 1 axial reloading' using 1:4 with lines lc rgb '#0072B2' lw 2 dt (2,4), \
+  data index 'run 1 axial reloading' using 1:4 with lines lc rgb '#0072B2' lw 4.4 dt (0.8,2.6), \
   data index 'run 1 lateral loading' using 1:4 with lines lc rgb '#D55E00' lw 2 dt 1, \
   data index 'run 1 lateral unloading' using 1:4 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
-  data index 'run 1 lateral reloading' using 1:4 with lines lc rgb '#D55E00' lw 2 dt (2,4), \
+  data index 'run 1 lateral reloading' using 1:4 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
   data index 'event contact-made.' using 1:4 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event yield.' using 1:4 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event load-reversal.' using 1:4 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000', \
@@ -77,12 +84,14 @@ set lmargin at screen 0.6294; set rmargin at screen 0.9735
 set bmargin at screen 0.2947; set tmargin at screen 0.5629
 set xrange [0:0.4326]; set xtics 0.1
 set yrange [0.996199:1.1305]; set ytics 0.05
-set xlabel 'Displacement {/:Italic δ}_o / {/:Italic R}_0'
+set xlabel 'Displacement {/:Italic δ}_o / {/:Italic R}_0{/=1   }'
 set label 1 '(d)' at graph 0.02, 1.06 left
-set label 2 'Apparent radius {/:Italic R} / {/:Italic R}_0' at screen 0.5235, 0.4288 center rotate by 90
+set label 2 'Apparent radius {/:Italic R} / {/:Italic R}_0{/=1   }' at screen 0.5235, 0.4288 center rotate by 90
+unset label 3
+unset label 4
 plot data index 'run 1 axial loading' using 1:5 with lines lc rgb '#303030' lw 2 dt 1, \
   data index 'run 1 axial unloading' using 1:5 with lines lc rgb '#303030' lw 2 dt (7,4), \
-  data index 'run 1 axial reloading' using 1:5 with lines lc rgb '#303030' lw 2 dt (2,4), \
+  data index 'run 1 axial reloading' using 1:5 with lines lc rgb '#303030' lw 4.4 dt (0.8,2.6), \
   data index 'event growth-on.' using 1:5 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event growth-off.' using 1:5 with points pt 12 ps 0.9 lw 1.1 lc rgb '#000000'
 
@@ -91,36 +100,36 @@ plot data index 'run 1 axial loading' using 1:5 with lines lc rgb '#303030' lw 2
 unset border; unset tics; unset xlabel; unset label
 set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0
 set label 1 'Contact' at screen 0.0176, 0.1689 left
-set key at screen 0.1176, 0.1854 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#0072B2' lw 2 title 'axial'
+set key at screen 0.1176, 0.1854 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#0072B2' lw 2 dt 1 title 'axial'
 unset label 1
-set key at screen 0.2900, 0.1854 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#D55E00' lw 2 title 'lateral'
+set key at screen 0.2900, 0.1854 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#D55E00' lw 2 dt 1 title 'lateral'
 set label 1 'Path' at screen 0.0176, 0.1358 left
-set key at screen 0.1176, 0.1523 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+set key at screen 0.1176, 0.1523 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#303030' lw 2 dt 1 title 'loading'
 unset label 1
-set key at screen 0.3124, 0.1523 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+set key at screen 0.3124, 0.1523 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#303030' lw 2 dt (7,4) title 'unloading'
-set key at screen 0.5071, 0.1523 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#303030' lw 2 dt (2,4) title 'reloading'
+set key at screen 0.5071, 0.1523 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#303030' lw 4.4 dt (0.8,2.6) title 'reloading'
 set label 1 'Events' at screen 0.0176, 0.1026 left
-set key at screen 0.1176, 0.1192 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+set key at screen 0.1176, 0.1192 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000' title 'growth-on'
 unset label 1
-set key at screen 0.3571, 0.1192 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+set key at screen 0.3571, 0.1192 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-made'
-set key at screen 0.5965, 0.1192 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+set key at screen 0.5965, 0.1192 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000' title 'yield'
-set key at screen 0.1176, 0.0861 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+set key at screen 0.1176, 0.0861 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000' title 'load-reversal'
-set key at screen 0.3571, 0.0861 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+set key at screen 0.3571, 0.0861 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with points pt 12 ps 0.9 lw 1.1 lc rgb '#000000' title 'growth-off'
-set key at screen 0.5965, 0.0861 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+set key at screen 0.5965, 0.0861 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with points pt 14 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-lost'
-set key at screen 0.1176, 0.0530 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+set key at screen 0.1176, 0.0530 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with points pt 2 ps 0.9 lw 1.1 lc rgb '#000000' title 'dent-touched'
-set key at screen 0.3571, 0.0530 left top horizontal Left reverse noenhanced spacing 1.2 samplen 2.5 noautotitle
+set key at screen 0.3571, 0.0530 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with points pt 1 ps 0.9 lw 1.1 lc rgb '#000000' title 'reload'
 unset multiplot
 unset output

@@ -12,6 +12,7 @@
 
 #include "history/table.hpp"
 #include "support/command_test.hpp"
+#include "support/svg_figure.hpp"
 
 namespace monograin::commands_test {
 namespace {
@@ -56,6 +57,13 @@ TEST_F(Commands, RunWithoutAFileLeavesTheDefaultSceneInRunsDie) {
                              "axial.pressure[Pa]", "axial.regime", "lateral.force[N]", "lateral.regime"}) {
     EXPECT_TRUE(history.find(column)) << column;
   }
+}
+
+TEST_F(Commands, RunAndPlotDrawTheCommittedFigureOfTheDefaultScene) {
+  ASSERT_EQ(monograin("run").code, 0);
+  ASSERT_EQ(monograin("plot runs/die -o die.svg").code, 0);
+  const auto found = differences(read_svg(path("die.svg")), read_svg(MONOGRAIN_SOURCE_DIR "/plots/die.svg"));
+  EXPECT_TRUE(found.empty()) << found.size() << " differences: " << found.front();
 }
 
 TEST_F(Commands, RunWritesWhatIsNeededToRepeatIt) {

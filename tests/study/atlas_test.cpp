@@ -1,16 +1,21 @@
 #include "study/atlas.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "figure/figure.hpp"
 #include "plastic/compression.hpp"
 #include "scenario/scenario.hpp"
+#include "support/svg_figure.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 
@@ -575,9 +580,65 @@ TEST_F(Atlas, SaysWhichRunsDidNotEnd) {
   EXPECT_FALSE(made.chart.panels[0].series[0].x.empty()) << "the curve goes as far as the run";
 }
 
+// --- the figures of the project
+
+[[nodiscard]] bool shows_anything(const SvgFigure& figure, std::size_t panel) {
+  return std::ranges::any_of(figure.plots, [&](const SvgPlot& plot) {
+    return plot.title.starts_with(fmt::format("data index 'panel {} ", panel)) && !plot.lines.empty();
+  });
+}
+
+/// Two titles of a legend that have the same style; empty where each has its own.
+[[nodiscard]] std::string repeated_style(const std::string& script) {
+  std::map<std::string, std::string> titles;
+  constexpr std::string_view k_entry = "keyentry ";
+  constexpr std::string_view k_title = " title ";
+  for (std::size_t at = script.find(k_entry); at != std::string::npos; at = script.find(k_entry, at + 1)) {
+    const std::string line = script.substr(at, script.find('\n', at) - at);
+    const std::size_t title = line.find(k_title);
+    const auto [known, is_new] = titles.try_emplace(line.substr(0, title), line.substr(title));
+    if (!is_new) return fmt::format("{} and{}", line, known->second);
+  }
+  return {};
+}
+
+/// Rounding, which differs between compilers, decides the last digits of a run and so its distance from another run.
+/// Figures of such distances are compared to one and a half decades, without the marks at their floor.
+[[nodiscard]] bool shows_errors(const AtlasFigure& made) {
+  return std::ranges::any_of(made.chart.panels, [](const figure::ChartPanel& panel) {
+    return std::ranges::any_of(panel.series, &figure::ChartSeries::is_error);
+  });
+}
+[[nodiscard]] SvgFigure without_floor(SvgFigure figure) {
+  std::erase_if(figure.plots,
+                [](const SvgPlot& plot) { return plot.title.find(" at the floor.") != std::string::npos; });
+  return figure;
+}
+
+void expect_same_numbers(const Table& drawn, const Table& committed) {
+  ASSERT_EQ(drawn.row_count(), committed.row_count());
+  ASSERT_EQ(drawn.columns().size(), committed.columns().size());
+  for (std::size_t column = 0; column < drawn.columns().size(); ++column) {
+    EXPECT_EQ(drawn.columns()[column].heading(), committed.columns()[column].heading());
+    for (std::size_t row = 0; row < drawn.row_count(); ++row) {
+      if (drawn.columns()[column].holds_words()) {
+        EXPECT_EQ(drawn.word(row, column), committed.word(row, column));
+        continue;
+      }
+      const double was = committed.at(row, column);
+      if (std::isnan(was)) {
+        EXPECT_TRUE(std::isnan(drawn.at(row, column)));
+      } else {
+        EXPECT_NEAR(drawn.at(row, column), was, 1e-4 * std::abs(was))
+            << drawn.columns()[column].name << ", row " << row;
+      }
+    }
+  }
+}
+
 class ReadyDefinition : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(ReadyDefinition, IsReadAndComputed) {
+TEST_P(ReadyDefinition, IsComputedAndDrawnAsItsCommittedFigure) {
   const AtlasFigure made = make_atlas(MONOGRAIN_SOURCE_DIR "/plots", {GetParam()}).front();
   EXPECT_FALSE(made.chart.panels.empty() && made.tables.empty() && made.value_tables.empty());
   EXPECT_EQ(made.status, RunStatus::complete);
@@ -588,6 +649,26 @@ TEST_P(ReadyDefinition, IsReadAndComputed) {
       EXPECT_GT(series.x.size(), is_line ? 1U : 0U);
     }
   }
+  const fs::path plots = MONOGRAIN_SOURCE_DIR "/plots";
+  const TemporaryFolder folder;
+  write_atlas({made}, folder.path());
+  const std::string tables = GetParam() + ".csv";
+  if (fs::exists(folder.path() / tables)) {
+    expect_same_numbers(read_csv(folder.path() / tables), read_csv(plots / tables));
+  }
+  if (made.chart.panels.empty()) return;
+
+  const std::string name = GetParam() + "." + made.format;
+  const SvgFigure drawn = read_svg(folder.path() / name);
+  for (std::size_t panel = 1; panel <= made.chart.panels.size(); ++panel) {
+    EXPECT_TRUE(shows_anything(drawn, panel)) << "panel " << panel << " is empty";
+  }
+  EXPECT_EQ(repeated_style(read_text(folder.path() / (GetParam() + ".gp"))), "");
+  const SvgFigure committed = read_svg(plots / name);
+  const auto found = shows_errors(made) ? differences(without_floor(drawn), without_floor(committed), {.line = 20.0})
+                                        : differences(drawn, committed);
+  EXPECT_TRUE(found.empty()) << "the committed figure is not what the program draws; monograin atlas " << GetParam()
+                             << " draws it anew: " << fmt::format("{}", fmt::join(found, "\n"));
 }
 
 std::vector<std::string> ready_definitions() {
@@ -604,6 +685,15 @@ INSTANTIATE_TEST_SUITE_P(Plots, ReadyDefinition, ::testing::ValuesIn(ready_defin
   std::ranges::replace(name, '-', '_');
   return name;
 });
+
+TEST(ReadyAtlas, HasADefinitionForEachCommittedFigure) {
+  const auto definitions = ready_definitions();
+  for (const auto& entry : fs::directory_iterator(MONOGRAIN_SOURCE_DIR "/plots")) {
+    const std::string name = entry.path().stem().string();
+    if (entry.path().extension() != ".svg" || name == "die" || name.starts_with("bench-")) continue;
+    EXPECT_TRUE(std::ranges::binary_search(definitions, name)) << name << ".svg: nothing draws it";
+  }
+}
 
 /// The laws of the source are within some tens of per cent of the continuum; far more would be a wrong scale.
 TEST(ReadyAtlas, HoldsModelMdrAgainstFiniteElements) {

@@ -11,6 +11,7 @@
 #include "history/run.hpp"
 #include "scene/scene.hpp"
 #include "study/profiled_system.hpp"
+#include "support/svg_figure.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 
@@ -256,6 +257,21 @@ TEST(BenchFiles, AreATableItsNumbersAndFigures) {
     EXPECT_NE(text.find(heading), std::string::npos) << heading;
   }
   EXPECT_EQ(text.find("## What is not computed"), std::string::npos) << "no savings were measured";
+}
+
+TEST(BenchFiles, AreDrawnAnewFromTheNumbersAsTheCommittedFigures) {
+  const fs::path plots = MONOGRAIN_SOURCE_DIR "/plots";
+  const TemporaryFolder folder;
+  const auto files = redraw_bench(plots / "bench.csv", folder.path());
+  for (const fs::path& file : files) {
+    const auto found = differences(read_svg(file), read_svg(plots / file.filename()));
+    EXPECT_TRUE(found.empty()) << file.filename() << ": " << found.size() << " differences: " << found.front();
+  }
+  for (const auto& entry : fs::directory_iterator(plots)) {
+    const fs::path name = entry.path().filename();
+    if (name.extension() != ".svg" || !name.string().starts_with("bench-")) continue;
+    EXPECT_TRUE(fs::exists(folder.path() / name)) << name << " is of no scene in bench.csv";
+  }
 }
 
 TEST(BenchFiles, AreNotDrawnFromAFileOfSomethingElse) {
