@@ -131,7 +131,7 @@ class StateReader {
 
 Table read_table(const fs::path& file) {
   try {
-    return read_csv(file);
+    return read_csv(file, FileKind::regular);
   } catch (const std::runtime_error& fault) {
     throw FigureError(fault.what());
   }

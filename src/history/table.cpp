@@ -2,15 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <ostream>
 #include <stdexcept>
-#include <system_error>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -24,6 +20,7 @@ namespace {
 constexpr int k_digits = std::numeric_limits<double>::max_digits10;
 /// Longest text of one number: sign, 17 digits, point, exponent such as e-308.
 constexpr std::size_t k_longest_number = 32;
+constexpr std::size_t k_largest_csv = std::size_t{4} << 30U;
 
 // --- writing
 
@@ -57,7 +54,7 @@ void append_header(std::string& text, const Table& table) {
   for (const auto& [key, value] : table.header) {
     std::string line = value.empty() ? fmt::format("# {}", key) : fmt::format("# {}: {}", key, value);
     std::ranges::replace_if(
-        line, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+        line, [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; }, ' ');
     text += line + '\n';
   }
 }
@@ -241,18 +238,13 @@ class CsvText {
          name.substr(1, name.size() - 2) == column.unit;
 }
 
-[[nodiscard]] std::string file_contents(const std::filesystem::path& file) {
-  const auto fail = [&](const std::string& reason) {
-    throw std::runtime_error(fmt::format("{}:1: cannot be read: {}", file.string(), reason));
-  };
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) fail("it is a directory");
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) fail(std::generic_category().message(errno));
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) fail("reading failed");
-  return text;
+[[nodiscard]] std::string file_contents(const std::filesystem::path& file, FileKind kind) {
+  auto [text, problem] = read_text_file(file, k_largest_csv, kind);
+  if (problem.empty() && text.size() > k_largest_csv) {
+    problem = fmt::format("the file is too large; expected at most {} GiB", k_largest_csv >> 30U);
+  }
+  if (!problem.empty()) throw std::runtime_error(fmt::format("{}:1: cannot be read: {}", file.string(), problem));
+  return std::move(text);
 }
 
 }  // namespace
@@ -323,8 +315,8 @@ void write_csv(const Table& table, std::ostream& out) {
   out.write(text.data(), static_cast<std::streamsize>(text.size()));
 }
 
-Table read_csv(const std::filesystem::path& file) {
-  const std::string text = file_contents(file);
+Table read_csv(const std::filesystem::path& file, FileKind kind) {
+  const std::string text = file_contents(file, kind);
   return CsvText(file.string(), text).table();
 }
 

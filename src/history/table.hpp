@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "scenario/text_file.hpp"
+
 namespace monograin {
 
 /// One column. A column with labels holds words: its values are indices into them.
@@ -74,6 +76,6 @@ void write_csv(const Table& table, std::ostream& out);
 /// A column in which any cell is not a number becomes a column of words (an empty cell is the empty word).
 /// @throws std::runtime_error `file:line: what is wrong` for a missing or empty file, ragged rows, no header row, two
 /// columns with the same heading
-[[nodiscard]] Table read_csv(const std::filesystem::path& file);
+[[nodiscard]] Table read_csv(const std::filesystem::path& file, FileKind kind = FileKind::any);
 
 }  // namespace monograin

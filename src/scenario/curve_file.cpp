@@ -11,13 +11,11 @@
 #include "scenario/cells.hpp"
 #include "scenario/language.hpp"
 #include "scenario/measured_data.hpp"
-#include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 
 namespace monograin {
 namespace {
 
-constexpr std::size_t k_largest_table = 1024U * 1024U;
 constexpr std::size_t k_most_faults = 20;  ///< of one table: nobody reads on
 constexpr std::string_view k_example_headings = "delta_max_over_R,p_over_Y";
 
@@ -165,10 +163,9 @@ SampledCurve parse_columns(std::string_view text, const std::string& origin, std
   return table;
 }
 
-SampledCurve read_curve(const std::filesystem::path& file, std::span<const QuantityKey> columns,
+SampledCurve take_curve(const FileText& file, const std::string& name, std::span<const QuantityKey> columns,
                         const SourceLocation& named_at, std::string_view naming, FaultList& faults) {
-  const auto [text, problem] = read_text_file(file, k_largest_table);
-  const std::string name = file.string();
+  const auto& [text, problem] = file;
   if (!problem.empty()) {
     std::string headings(k_example_headings);
     for (const QuantityKey& column : columns) {

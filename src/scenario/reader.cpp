@@ -123,24 +123,31 @@ void read_material(Reading& reading, const Section& root, const Language& langua
   }
 }
 
+FileText text_in(const FileTexts& files, const std::string& name) {
+  const auto found = files.find(name);
+  return found == files.end() ? FileText{{}, "it was not recorded"} : FileText{found->second, {}};
+}
+
 /// The curve in the file that an option names, if it names one.
 void read_curve_of(Reading& reading, const Section& options, const KeySpec& spec, const std::filesystem::path& folder,
-                   Scenario& scenario) {
-  const std::string file = options.text(spec.name);
-  if (file.empty()) return;
-  const std::string naming = fmt::format("{} = \"{}\"", spec.name, shown(file));
-  scenario.curves.emplace(
-      spec.name, read_curve(folder / file, spec.columns, options.value_place(spec.name), naming, reading.faults));
+                   const FileTexts* files, Scenario& scenario) {
+  const std::string name = options.text(spec.name);
+  if (name.empty()) return;
+  const std::string naming = fmt::format("{} = \"{}\"", spec.name, shown(name));
+  const SourceLocation place = options.value_place(spec.name);
+  const std::filesystem::path file = folder / name;
+  const FileText read = files == nullptr ? read_text_file(file, k_largest_table) : text_in(*files, name);
+  scenario.curves.emplace(spec.name, take_curve(read, file.string(), spec.columns, place, naming, reading.faults));
 }
 
 void read_options(Reading& reading, const Section& root, const Language& language, const std::string& origin,
-                  Scenario& scenario) {
+                  const FileTexts* files, Scenario& scenario) {
   const std::string name(language.model->name);
   const Section options(reading, root.table(name, "[" + name + "]"), language.options);
   const std::filesystem::path folder = std::filesystem::path(origin).parent_path();
   for (const KeySpec& spec : language.options) {
     if (auto value = option_value(options, spec)) scenario.options.emplace(spec.name, std::move(*value));
-    if (spec.kind == KeySpec::Kind::file) read_curve_of(reading, options, spec, folder, scenario);
+    if (spec.kind == KeySpec::Kind::file) read_curve_of(reading, options, spec, folder, files, scenario);
   }
 }
 
@@ -159,7 +166,7 @@ void read_numerics(Reading& reading, const Section& root, const Language& langua
 
 }  // namespace
 
-Scenario read_tree(const toml::table& tree, const std::string& origin, FaultList& faults) {
+Scenario read_tree(const toml::table& tree, const std::string& origin, const FileTexts* files, FaultList& faults) {
   const Language& language = language_of(model_to_check_against(tree));
   Reading reading{faults};
   const SourceLocation top{origin};
@@ -171,7 +178,7 @@ Scenario read_tree(const toml::table& tree, const std::string& origin, FaultList
   read_particle(reading, root, language, scenario);
   if (language.model != nullptr) {
     read_material(reading, root, language, scenario);
-    read_options(reading, root, language, origin, scenario);
+    read_options(reading, root, language, origin, files, scenario);
   }
   if (!language.loading.empty()) {
     scenario.loading = read_loading(reading, root.table("loading", "[loading]"), language);

@@ -8,14 +8,13 @@
 #include "scenario/faults.hpp"
 #include "scenario/overrides.hpp"
 #include "scenario/reader.hpp"
-#include "scenario/text_file.hpp"
 
 namespace monograin {
 namespace {
 
-std::string read_file(const std::filesystem::path& file) {
+std::string read_file(const std::filesystem::path& file, FileKind kind) {
   // A text beyond the limit is refused by the parser.
-  auto [text, problem] = read_text_file(file, k_largest_text);
+  auto [text, problem] = read_text_file(file, k_largest_text, kind);
   if (problem.empty()) return std::move(text);
   throw_fault({file.string()}, problem + "; expected a scenario file");
 }
@@ -34,10 +33,10 @@ toml::table parse_table(std::string_view text, std::string_view key, const std::
 }
 
 Scenario parse_tree(toml::table& root, std::string_view text, const std::string& origin,
-                    const std::vector<std::string>& overrides) {
+                    const std::vector<std::string>& overrides, const FileTexts* files = nullptr) {
   FaultList faults;
   for (const std::string& override_text : overrides) apply_override(root, override_text, faults);
-  Scenario scenario = read_tree(root, origin, faults);
+  Scenario scenario = read_tree(root, origin, files, faults);
   faults.throw_if_any();
   scenario.name = name_of(origin);
   scenario.text = text;
@@ -110,13 +109,19 @@ Step::Kind ramp_of(Control control) noexcept {
   return Step::Kind::hold;
 }
 
-Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  return parse_scenario(read_file(file), file.string(), overrides);
+Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides, FileKind kind) {
+  return parse_scenario(read_file(file, kind), file.string(), overrides);
 }
 
 Scenario parse_scenario(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides) {
   toml::table root = parse_document(text, origin);
   return parse_tree(root, text, origin, overrides);
+}
+
+Scenario parse_recorded_scenario(std::string_view text, const std::string& origin,
+                                 const std::vector<std::string>& overrides, const FileTexts& files) {
+  toml::table root = parse_document(text, origin);
+  return parse_tree(root, text, origin, overrides, &files);
 }
 
 Scenario parse_scenario_table(std::string_view text, std::string_view key, const std::string& origin,

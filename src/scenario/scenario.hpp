@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "scenario/text_file.hpp"
 #include "walls.hpp"
 
 namespace monograin {
@@ -162,11 +163,20 @@ class ScenarioTemplate {
 ///                   index in brackets picks from an array: `loading.steps[0].displacement=0.3`. Checked like the file.
 /// @throws ScenarioError with every fault found: wrong syntax, unknown or missing keys, types, units, ranges,
 /// combinations
-[[nodiscard]] Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+[[nodiscard]] Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
+                                     FileKind kind = FileKind::regular);
 
 /// The same from a text in memory; `origin` stands for the file's name in messages and names the scenario.
 [[nodiscard]] Scenario parse_scenario(std::string_view text, const std::string& origin,
                                       const std::vector<std::string>& overrides = {});
+
+/// Texts of the files that a scenario names, by the names that it has for them.
+using FileTexts = std::map<std::string, std::string>;
+
+/// A scenario that was recorded with the files that it names. No file is opened: one that is not in `files` is reported
+/// as missing.
+[[nodiscard]] Scenario parse_recorded_scenario(std::string_view text, const std::string& origin,
+                                               const std::vector<std::string>& overrides, const FileTexts& files);
 
 /// The same from a table of a larger document, which is the scenario's text then; places are those in the document.
 [[nodiscard]] Scenario parse_scenario_table(std::string_view text, std::string_view key, const std::string& origin,

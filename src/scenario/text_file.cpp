@@ -1,18 +1,75 @@
 #include "scenario/text_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 namespace monograin {
+namespace {
 
-FileText read_text_file(const std::filesystem::path& file, std::size_t largest) {
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& file, int error) {
+  throw std::runtime_error(file.string() + ": cannot be written: " + std::generic_category().message(error));
+}
+
+/// A file that is closed, and removed unless it was moved to its place.
+class PartialFile {
+ public:
+  /// @param file  the file that is to be written
+  explicit PartialFile(const fs::path& file) {
+    static std::atomic<unsigned> count{0};
+    do {  // O_EXCL: nothing that lies there already is opened, be it a link
+      path_ = file.parent_path() / ("." + std::to_string(getpid()) + "-" + std::to_string(count++) + ".partial");
+      descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (descriptor_ < 0 && errno == EEXIST);
+    if (descriptor_ < 0) fail(file, errno);
+  }
+  PartialFile(const PartialFile&) = delete;
+  PartialFile& operator=(const PartialFile&) = delete;
+  ~PartialFile() {
+    if (descriptor_ >= 0) close(descriptor_);
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove(path_, ignored);
+  }
+
+  /// @return whether all was written; errno says why not
+  [[nodiscard]] bool write(std::string_view text) {
+    while (!text.empty()) {
+      const ssize_t written = ::write(descriptor_, text.data(), text.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return false;
+      text.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return close(std::exchange(descriptor_, -1)) == 0;
+  }
+
+  [[nodiscard]] bool move_to(const fs::path& file) {
+    if (rename(path_.c_str(), file.c_str()) != 0) return false;
+    path_.clear();
+    return true;
+  }
+
+ private:
+  fs::path path_;
+  int descriptor_ = -1;
+};
+
+}  // namespace
+
+FileText read_text_file(const fs::path& file, std::size_t largest, FileKind kind) {
   std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) return {{}, "there is no such file"};
-  if (std::filesystem::is_directory(status)) return {{}, "this is a directory"};
+  const auto status = fs::status(file, error);
+  if (!fs::exists(status)) return {{}, "there is no such file"};
+  if (fs::is_directory(status)) return {{}, "this is a directory"};
+  if (kind == FileKind::regular && !fs::is_regular_file(status)) return {{}, "this is a device or a pipe"};
   std::ifstream stream(file, std::ios::binary);
   std::string text;
   std::array<char, 65536> chunk{};
@@ -24,15 +81,18 @@ FileText read_text_file(const std::filesystem::path& file, std::size_t largest) 
   return {std::move(text), {}};
 }
 
-void write_text_file(const std::filesystem::path& file, std::string_view text) {
-  const std::filesystem::path partial = file.string() + ".partial";
-  std::ofstream stream(partial, std::ios::binary);
-  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  stream.close();
-  if (!stream) {
-    throw std::runtime_error(partial.string() + ": cannot be written: " + std::generic_category().message(errno));
-  }
-  std::filesystem::rename(partial, file);
+void write_text_file(const fs::path& file, std::string_view text) {
+  PartialFile partial(file);
+  if (!partial.write(text) || !partial.move_to(file)) fail(file, errno);
+}
+
+void sync_to_disk(const fs::path& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (descriptor < 0) fail(file, errno);
+  const bool is_done = fsync(descriptor) == 0 || errno == EINVAL;  // a file system that has no such thing
+  const int error = errno;
+  close(descriptor);
+  if (!is_done) fail(file, error);
 }
 
 }  // namespace monograin

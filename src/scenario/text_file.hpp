@@ -13,12 +13,24 @@ struct FileText {
   std::string problem;  ///< "there is no such file"; empty: the text was read
 };
 
+/// What may be opened.
+enum class FileKind {
+  any,      ///< pipes too: for files named on the command line
+  regular,  ///< for files named by other files, which could name a device or a pipe that nobody writes to
+};
+
 /// Reads no more than a little beyond `largest` bytes, which is for the caller to refuse: pipes and devices need not
 /// end.
-[[nodiscard]] FileText read_text_file(const std::filesystem::path& file, std::size_t largest);
+[[nodiscard]] FileText read_text_file(const std::filesystem::path& file, std::size_t largest,
+                                      FileKind kind = FileKind::regular);
 
-/// Writes a file whole or not at all: beside its place first, under the name FILE.partial.
+/// Writes a file whole or not at all: under a hidden name beside its place first. A link of that name is replaced, not
+/// followed.
 /// @throws std::runtime_error naming the file and why it cannot be written
 void write_text_file(const std::filesystem::path& file, std::string_view text);
+
+/// Waits until a file, or the list of names in a folder, is on the disk.
+/// @throws std::runtime_error naming the file and why it cannot be written
+void sync_to_disk(const std::filesystem::path& file);
 
 }  // namespace monograin

@@ -52,7 +52,7 @@ class CalibrationReader {
   explicit CalibrationReader(const fs::path& file) : file_(file), reading_{faults_} {}
 
   Calibration read() {
-    auto [text, problem] = read_text_file(file_, k_largest_text);
+    auto [text, problem] = read_text_file(file_, k_largest_text, FileKind::any);
     if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a calibration file");
     made_.text = std::move(text);
     made_.file = file_.string();

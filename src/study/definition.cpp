@@ -6,8 +6,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -16,6 +14,7 @@
 #include "scenario/document.hpp"
 #include "scenario/overrides.hpp"
 #include "scenario/section.hpp"
+#include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 #include "study/definition_language.hpp"
 
@@ -84,10 +83,9 @@ class DefinitionReader {
 
  private:
   [[nodiscard]] std::string contents() const {
-    std::ifstream in(file_, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(in), {}};
-    if (!in.is_open() || in.bad()) throw_fault({file_.string()}, "the file cannot be read");
-    return text;
+    auto [text, problem] = read_text_file(file_, k_largest_text);
+    if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected the definition of a figure");
+    return std::move(text);
   }
 
   [[nodiscard]] std::optional<PlacedExpression> formula(const Section& section, std::string_view key) {
@@ -416,7 +414,7 @@ class DefinitionReader {
   [[nodiscard]] Table table_in(const Section& section) {
     if (section.text("file").empty()) return {};
     try {
-      return read_csv(file_.parent_path() / section.text("file"));
+      return read_csv(file_.parent_path() / section.text("file"), FileKind::regular);
     } catch (const std::runtime_error& error) {
       faults_.add(section.value_place("file"), error.what());
     }

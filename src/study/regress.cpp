@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include "history/compare.hpp"
 #include "history/run.hpp"
+#include "scenario/text_file.hpp"
 #include "scene/scene.hpp"
 
 namespace monograin {
@@ -129,12 +130,9 @@ RegressionResult compare(const Run& run, const fs::path& curves) {
 }
 
 void store(const fs::path& file, const Table& table) {
-  const fs::path partial = file.string() + ".partial";
-  std::ofstream out(partial, std::ios::binary);
-  if (out) write_csv(table, out);
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", partial.string()));
-  fs::rename(partial, file);
+  std::ostringstream text;
+  write_csv(table, text);
+  write_text_file(file, text.view());
 }
 
 }  // namespace

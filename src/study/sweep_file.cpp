@@ -87,7 +87,7 @@ class SweepReader {
   explicit SweepReader(const fs::path& file) : file_(file), reading_{faults_} {}
 
   [[nodiscard]] Sweep read() {
-    auto [text, problem] = read_text_file(file_, k_largest_text);
+    auto [text, problem] = read_text_file(file_, k_largest_text, FileKind::any);
     if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a sweep file");
     digested_ = text;
     const toml::table tree = parse_document(text, file_.string());
