@@ -86,11 +86,11 @@ void append_events(const Table& events, const Table& history, const BodyFigure& 
   for (std::size_t row = 0; row < events.row_count(); ++row) {
     const std::string event(events.word(row, *name));
     if (event == "step-end" || event == "until-met") continue;
-    auto found = std::ranges::find(series, plain_text(event), &ChartSeries::legend);
+    auto found = std::ranges::find(series, verbatim_text(event), &ChartSeries::legend);
     if (found == series.end()) {
       found = series.insert(
           series.end(),
-          {.legend = plain_text(event), .style = ChartSeries::Style::points, .colour = {}, .x = {}, .y = {}});
+          {.legend = verbatim_text(event), .style = ChartSeries::Style::points, .colour = {}, .x = {}, .y = {}});
     }
     found->x.push_back(x[row]);
     found->y.push_back(y[row]);
@@ -125,7 +125,7 @@ std::optional<Chart> body_chart(const std::vector<fs::path>& runs) {
     const Table marks = fs::exists(folder / "events.csv", ignored) ? read_table(folder / "events.csv") : Table{};
     for (std::size_t panel = 0; panel < figure->panels.size(); ++panel) {
       // One run needs no name, and is drawn while its folder has none yet.
-      chart.panels[panel].series.push_back({.legend = runs.size() > 1 ? plain_text(folder.filename().string()) : "",
+      chart.panels[panel].series.push_back({.legend = runs.size() > 1 ? verbatim_text(folder.filename().string()) : "",
                                             .style = ChartSeries::Style::phases,
                                             .colour = {},
                                             .x = values_of(history, history, figure->x, sign),

@@ -42,7 +42,8 @@ constexpr std::string_view k_floor_legend = "at the lower end of the axis, or be
 }
 
 void append_band(std::string& text, const ChartBand& band, std::size_t panel, std::size_t place) {
-  text += fmt::format("\n\n# {} {}; columns: x, lowest and highest y\n", block_of_band(panel, place), band.legend);
+  text += fmt::format("\n\n# {} {}; columns: x, lowest and highest y\n", block_of_band(panel, place),
+                      plain_text(band.legend));
   const auto append_row = [&](std::size_t row) {
     const double values[] = {band.x[row], band.lower[row], band.upper[row]};
     if (std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
@@ -97,14 +98,14 @@ void append_floor(std::string& text, const ChartSeries& series, std::optional<do
 
 void append_series(std::string& text, const ChartSeries& series, std::size_t panel, std::size_t place) {
   if (series.style != Style::phases) {
-    text += fmt::format("\n\n# {} {}\n", block_of(panel, place), series.legend);
+    text += fmt::format("\n\n# {} {}\n", block_of(panel, place), plain_text(series.legend));
     for (std::size_t row = 0; row < series.x.size(); ++row) append_point(text, series, row);
     return;
   }
   const auto phases = phases_along(series.x);
   for (const Phase phase : k_phases) {
     if (!has_phase(phases, phase)) continue;
-    text += fmt::format("\n\n# {} {}", block_of(panel, place, phase), series.legend);
+    text += fmt::format("\n\n# {} {}", block_of(panel, place, phase), plain_text(series.legend));
     append_phase(text, phases, phase, [&](std::size_t row) { append_point(text, series, row); });
   }
 }
@@ -361,12 +362,12 @@ class Looks {
 }  // namespace
 
 std::string chart_data(const Chart& chart, const std::string& source) {
-  std::string text = fmt::format("# {}\n# columns: x, y as on the axes\n", source);
+  std::string text = fmt::format("# {}\n# columns: x, y as on the axes\n", plain_text(source));
   for (std::size_t k = 0; k < chart.panels.size(); ++k) {
     const ChartPanel& panel = chart.panels[k];
     for (std::size_t a = 0; a < panel.areas.size(); ++a) {
       text += fmt::format("\n\n# {} {}; columns: lowest and highest x, lowest and highest y\n", block_of_area(k, a),
-                          panel.areas[a].legend);
+                          plain_text(panel.areas[a].legend));
       for (const auto& [x_low, x_high, y_low, y_high] : panel.areas[a].boxes) {
         text += fmt::format("{:.10g} {:.10g} {:.10g} {:.10g}\n", x_low, x_high, y_low, y_high);
       }

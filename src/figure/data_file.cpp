@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "figure/gnuplot.hpp"
+
 namespace monograin::figure {
 namespace {
 
@@ -54,11 +56,11 @@ std::string_view phase_name(Phase phase) noexcept {
 }
 
 std::string block_name(std::size_t run, const std::string& contact, Phase phase) {
-  return fmt::format("run {} {} {}", run + 1, contact, phase_name(phase));
+  return plain_text(fmt::format("run {} {} {}", run + 1, contact, phase_name(phase)));
 }
 
 // The full stop keeps gnuplot, which compares beginnings, from taking one name for another.
-std::string block_name(const std::string& event) { return fmt::format("event {}.", event); }
+std::string block_name(const std::string& event) { return plain_text(fmt::format("event {}.", event)); }
 
 bool is_marked(const EventMark& mark, Quantity quantity) {
   const bool is_of_particle = mark.contact_class.empty();
@@ -85,7 +87,7 @@ std::string data_text(const std::vector<RunCurves>& runs, const Scales& scales) 
   for (const Quantity quantity : k_quantities) text += "; " + scales.label(quantity);
   text += '\n';
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    text += fmt::format("# run {}: {}\n", k + 1, runs[k].name);
+    text += fmt::format("# run {}: {}\n", k + 1, plain_text(runs[k].name));
     for (const ContactCurve& contact : runs[k].contacts) {
       for (const Phase phase : k_phases) {
         if (!has_phase(runs[k].phases, phase)) continue;

@@ -27,7 +27,6 @@ class FigureError : public std::runtime_error {
 /// @param output  file to write; the extension picks the format: .svg, .pdf, .png
 /// @throws FigureError when gnuplot is missing, the format is unknown, a run cannot be read, or gnuplot fails (names
 /// the script). Without gnuplot nothing is written; a figure that was there stays until the new one is whole.
-/// Ignores SIGPIPE while gnuplot runs, for the whole process.
 void draw_runs(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& output);
 
 }  // namespace monograin

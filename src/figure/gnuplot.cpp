@@ -1,14 +1,21 @@
 #include "figure/gnuplot.hpp"
 
-#include <csignal>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <system_error>
+#include <vector>
 
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <gnuplot-iostream.h>
-#include <unistd.h>
 
 #include "figure/figure.hpp"
 
@@ -17,74 +24,76 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What gnuplot says once the script has run to its end: its exit code is 0 even where the script failed.
-constexpr std::string_view k_done = "monograin: the script ran to its end";
+constexpr const char* k_drawing = "drawing";
+constexpr const char* k_log = "log";
 
-/// If gnuplot dies, writing to it must fail instead of ending this process.
-class SigpipeIgnored {
+/// A hidden folder beside a figure in which gnuplot works. It is gone when the work is done, however it ends.
+class Workplace {
  public:
-  SigpipeIgnored() {
-    struct sigaction ignore = {};
-    ignore.sa_handler = SIG_IGN;
-    sigaction(SIGPIPE, &ignore, &before_);
+  explicit Workplace(const fs::path& parent) {
+    std::string pattern = (parent / ".figure-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) {
+      throw FigureError(fmt::format("{} cannot be written to: {}", parent.string(), std::strerror(errno)));
+    }
+    path_ = pattern;
   }
-  SigpipeIgnored(const SigpipeIgnored&) = delete;
-  SigpipeIgnored& operator=(const SigpipeIgnored&) = delete;
-  ~SigpipeIgnored() { sigaction(SIGPIPE, &before_, nullptr); }
-
- private:
-  struct sigaction before_ = {};
-};
-
-/// A file that is gone when the work is done, however it ends.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
+  Workplace(const Workplace&) = delete;
+  Workplace& operator=(const Workplace&) = delete;
+  ~Workplace() {
     std::error_code ignored;
-    fs::remove(path_, ignored);
+    fs::remove_all(path_, ignored);
   }
 
   [[nodiscard]] const fs::path& path() const noexcept { return path_; }
-  [[nodiscard]] bool is_empty() const {
-    std::error_code missing;
-    const auto size = fs::file_size(path_, missing);
-    return missing || size == 0;
-  }
 
  private:
   fs::path path_;
 };
-
-[[nodiscard]] std::string quoted_for_shell(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      result += "'\\''";
-    } else {
-      result += c;
-    }
-  }
-  return result + '\'';
-}
 
 [[nodiscard]] std::string contents(const fs::path& file) {
   std::ifstream in(file);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Runs the script with its figure going to `output` and all that gnuplot says to `log`.
-void load_script(const fs::path& gnuplot, const fs::path& script, const fs::path& output, const fs::path& log) {
-  // --default-settings: a figure must not depend on somebody's ~/.gnuplot. "|| true": gnuplot-iostream prints to stderr
-  // when the program fails; failure is judged by the log.
-  const std::string command = fmt::format("{} --default-settings > {} 2>&1 || true", quoted_for_shell(gnuplot.string()),
-                                          quoted_for_shell(log.string()));
-  const SigpipeIgnored sigpipe_ignored;
-  Gnuplot pipe(command);
-  pipe << "cd " << gnuplot_string(script.parent_path().string()) << "\noutput = " << gnuplot_string(output.string())
-       << "\nload " << gnuplot_string(script.filename().string()) << "\nprint " << gnuplot_string(k_done) << "\n";
+/// Runs a program in a folder, with nothing to read and all that it says in a file.
+/// @return its exit code; -1 where it did not come to its end
+[[nodiscard]] int run_program(const fs::path& program, std::vector<std::string> words, const fs::path& folder,
+                              const fs::path& log) {
+  words.insert(words.begin(), program.string());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600);
+  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  pid_t child = 0;
+  const int failure = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failure != 0) {
+    throw FigureError(fmt::format("{} cannot be started: {}", program.string(), std::strerror(failure)));
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0) {
+    if (errno != EINTR) return -1;
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+[[nodiscard]] bool is_control(char c) noexcept { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; }
+
+/// A gnuplot string that can hold any byte. What means something in it is given by its number: gnuplot runs what it
+/// finds between backquotes, even there.
+[[nodiscard]] std::string in_double_quotes(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool has_meaning = c == '"' || c == '\\' || c == '`' || is_control(c) || byte > 0x7FU;
+    result += has_meaning ? fmt::format("\\{:03o}", static_cast<unsigned>(byte)) : std::string(1, c);
+  }
+  return result + '"';
 }
 
 }  // namespace
@@ -106,29 +115,42 @@ fs::path find_gnuplot() {
 }
 
 void run_gnuplot(const fs::path& gnuplot, const fs::path& script, const fs::path& figure) {
-  const fs::path place = fs::absolute(script);
-  const std::string suffix = fmt::format(".{}", getpid());
-  const TemporaryFile drawing(fs::absolute(figure).concat(suffix + ".part"));
-  const TemporaryFile log(fs::absolute(figure).concat(suffix + ".log"));
-  load_script(gnuplot, place, drawing.path(), log.path());
-
-  const std::string said = contents(log.path());
-  if (said.find(k_done) == std::string::npos || drawing.is_empty()) {
+  const fs::path folder = fs::absolute(script).parent_path();
+  const Workplace workplace(folder);
+  const std::string drawing = (fs::path(".") / workplace.path().filename() / k_drawing).string();
+  const fs::path log = workplace.path() / k_log;
+  // --default-settings: a figure must not depend on somebody's ~/.gnuplot.
+  const int code = run_program(
+      gnuplot,
+      {"--default-settings", "-e", fmt::format("output = '{}'", drawing), (fs::path(".") / script.filename()).string()},
+      folder, log);
+  std::error_code failure;
+  const auto size = fs::file_size(workplace.path() / k_drawing, failure);
+  if (code != 0 || failure || size == 0) {
+    const std::string said = contents(log);
     throw FigureError(fmt::format("gnuplot could not draw the figure from {}: {}", script.string(),
                                   said.empty() ? "it said nothing" : said));
   }
-  std::error_code failure;
-  fs::rename(drawing.path(), figure, failure);
+  fs::rename(workplace.path() / k_drawing, figure, failure);
   if (failure) throw FigureError(fmt::format("{} cannot be written: {}", figure.string(), failure.message()));
 }
 
+std::string plain_text(std::string_view text) {
+  // What is not UTF-8 would make an SVG that no reader opens; the round trip replaces it.
+  using Json = nlohmann::json;
+  std::string result = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+  std::ranges::replace_if(result, is_control, ' ');
+  return result;
+}
+
 std::string gnuplot_string(std::string_view text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') result += '\'';
-    result += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return result + '\'';
+  const std::string plain = plain_text(text);  // in single quotes, a quote next to another one ends the string
+  return plain.find('\'') == std::string::npos ? '\'' + plain + '\'' : in_double_quotes(plain);
+}
+
+std::string gnuplot_file(const std::string& name) {
+  const std::string path = "./" + name;
+  return plain_text(path) == path ? gnuplot_string(path) : in_double_quotes(path);
 }
 
 }  // namespace monograin::figure

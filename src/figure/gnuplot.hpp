@@ -1,4 +1,4 @@
-/// The gnuplot program: found on the PATH, fed through a pipe, and watched for what it leaves behind.
+/// The gnuplot program: found on the PATH, run on a script without a shell, and watched for what it leaves behind.
 #pragma once
 
 #include <filesystem>
@@ -10,14 +10,22 @@ namespace monograin::figure {
 /// The gnuplot program on the PATH. @throws FigureError that says how to install it
 [[nodiscard]] std::filesystem::path find_gnuplot();
 
-/// Loads a script in its own folder and puts the figure in its place once it is whole. The script writes its figure to
-/// the file the gnuplot variable `output` names.
+/// Runs a script in its own folder and puts the figure in its place once it is whole. The script writes its figure to
+/// the file the gnuplot variable `output` names. Neither name is ever read as a command.
 ///
+/// @param figure  in the script's folder
 /// @throws FigureError naming the script, with what gnuplot said, when no figure comes out; an older figure stays
 void run_gnuplot(const std::filesystem::path& gnuplot, const std::filesystem::path& script,
                  const std::filesystem::path& figure);
 
-/// A text as a gnuplot string in single quotes. Line breaks become spaces: a gnuplot string has none.
+/// A text on one line: control characters become spaces, and what is not UTF-8 the replacement character.
+[[nodiscard]] std::string plain_text(std::string_view text);
+
+/// A text that a figure shows, as a gnuplot string.
 [[nodiscard]] std::string gnuplot_string(std::string_view text);
+
+/// A file in the script's folder, as a gnuplot string that holds exactly its name. The leading `./` keeps gnuplot from
+/// reading a name that begins with `<`, `|`, `~`, `$`, `-` or `+` as anything but a file.
+[[nodiscard]] std::string gnuplot_file(const std::string& name);
 
 }  // namespace monograin::figure

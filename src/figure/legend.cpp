@@ -61,7 +61,7 @@ constexpr double k_heading_cm = 1.7;
 [[nodiscard]] LegendRow contact_row(const Palette& palette) {
   LegendRow row{"Contact", {}};
   for (const std::string& name : palette.contacts()) {
-    row.entries.push_back({plain_text(name), phase_line(palette.contact_line(0, name), Phase::loading)});
+    row.entries.push_back({verbatim_text(name), phase_line(palette.contact_line(0, name), Phase::loading)});
   }
   return row;
 }
@@ -69,7 +69,7 @@ constexpr double k_heading_cm = 1.7;
 [[nodiscard]] LegendRow run_row(const std::vector<RunCurves>& runs, const Palette& palette) {
   LegendRow row{"Run", {}};
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    row.entries.push_back({plain_text(runs[k].name), phase_line(palette.particle_line(k), Phase::loading)});
+    row.entries.push_back({verbatim_text(runs[k].name), phase_line(palette.particle_line(k), Phase::loading)});
   }
   return row;
 }
@@ -87,7 +87,7 @@ constexpr double k_heading_cm = 1.7;
 [[nodiscard]] LegendRow event_row(const std::vector<RunCurves>& runs) {
   LegendRow row{"Events", {}};
   for (const std::string& name : event_names(runs)) {
-    row.entries.push_back({plain_text(name), "with points " + event_points(row.entries.size())});
+    row.entries.push_back({verbatim_text(name), "with points " + event_points(row.entries.size())});
   }
   return row;
 }

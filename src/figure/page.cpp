@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "figure/figure.hpp"
 #include "figure/gnuplot.hpp"
+#include "scenario/text_file.hpp"
 
 namespace monograin::figure {
 namespace {
@@ -103,7 +103,7 @@ void make_folder(const fs::path& folder) {
 std::string page_head(Format format, const Layout& layout, const std::string& figure_name,
                       const std::string& data_name) {
   return fmt::format(
-      "# Draws {0}; run it in its own folder.\n"
+      "# Draws {0}. To be run in its own folder, as gnuplot ./NAME.gp\n"
       "if (!exists(\"output\")) output = {0}\n"
       "data = {1}\n\n"
       "set encoding utf8\n"
@@ -117,7 +117,7 @@ std::string page_head(Format format, const Layout& layout, const std::string& fi
       "set xlabel offset 0, 0.5\n"
       "unset key\n"
       "set multiplot\n",
-      gnuplot_string(figure_name), gnuplot_string(data_name), terminal(format, layout));
+      gnuplot_file(figure_name), gnuplot_file(data_name), terminal(format, layout));
 }
 
 std::string frame_text(const Layout& layout, std::size_t place, const Axis& x, const Axis& y) {
@@ -157,7 +157,7 @@ std::string label_string(std::string_view enhanced) {
   return gnuplot_string(text);
 }
 
-std::string plain_text(std::string_view name) {
+std::string verbatim_text(std::string_view name) {
   std::string text;
   for (const char c : name) {
     if (std::string_view("\\{}^_@&~").find(c) != std::string_view::npos) text += '\\';
@@ -167,16 +167,10 @@ std::string plain_text(std::string_view name) {
 }
 
 void write_whole(const fs::path& file, const std::string& text) {
-  const fs::path part = fs::path(file).concat(fmt::format(".{}.part", getpid()));
-  std::ofstream out(part, std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  std::error_code failure;
-  if (out) fs::rename(part, file, failure);
-  if (!out || failure) {
-    std::error_code ignored;
-    fs::remove(part, ignored);
-    throw FigureError(fmt::format("{} cannot be written", file.string()));
+  try {
+    write_text_file(file, text);
+  } catch (const std::runtime_error& error) {
+    throw FigureError(error.what());
   }
 }
 

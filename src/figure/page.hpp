@@ -32,7 +32,7 @@ struct Axis {
 [[nodiscard]] std::string label_string(std::string_view enhanced);
 
 /// A name that is to appear as it is, as gnuplot's enhanced text.
-[[nodiscard]] std::string plain_text(std::string_view name);
+[[nodiscard]] std::string verbatim_text(std::string_view name);
 
 /// Last part of a script.
 inline constexpr const char* k_page_foot = "unset multiplot\nunset output\n";

@@ -316,7 +316,7 @@ class DefinitionReader {
     const bool is_named = !legends.empty() || !spec.legends.front().empty();
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (!is_named)
-        legends.push_back(figure::plain_text(fmt::format("{} = {}", key.substr(key.rfind('.') + 1), values[k])));
+        legends.push_back(figure::verbatim_text(fmt::format("{} = {}", key.substr(key.rfind('.') + 1), values[k])));
       add_curve(sections, {{fmt::format("{}={}", key, values[k]), section.value_place("values", k)}}, swept, spec);
     }
     if (!legends.empty()) spec.legends = std::move(legends);

@@ -118,7 +118,7 @@ fs::path draw_profiles(const Table& profiles, const fs::path& output) {
     if (radius.empty()) continue;
     using Style = figure::ChartSeries::Style;
     const auto add = [&](figure::ChartPanel& panel, const std::string& state, Style style, std::vector<double> y) {
-      panel.series.push_back({.legend = figure::plain_text(classes.labels[c]) + state,
+      panel.series.push_back({.legend = figure::verbatim_text(classes.labels[c]) + state,
                               .style = style,
                               .colour = c,
                               .x = radius,

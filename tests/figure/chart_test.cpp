@@ -212,8 +212,8 @@ TEST(Label, HasMinusSignsAndKeepsItsHyphens) {
 }
 
 TEST(Label, ShowsANameAsItIs) {
-  EXPECT_EQ(plain_text("radius_rule"), "radius\\_rule");
-  EXPECT_EQ(plain_text("a{b}^c"), "a\\{b\\}\\^c");
+  EXPECT_EQ(verbatim_text("radius_rule"), "radius\\_rule");
+  EXPECT_EQ(verbatim_text("a{b}^c"), "a\\{b\\}\\^c");
 }
 
 /// rsvg-convert drops blanks beside a change of font where they are not to be kept.
@@ -236,7 +236,7 @@ TEST(Label, KeepsItsBlanksInEveryRenderer) {
 TEST(Label, IsAsLongAsWhatItShows) {
   EXPECT_EQ(shown_length("{/:Italic ν} = 0.3"), 7U);
   EXPECT_EQ(shown_length("Γ_0/{/:Italic σ}_{y0}"), 6U);
-  EXPECT_EQ(shown_length(plain_text("a_b")), 3U);
+  EXPECT_EQ(shown_length(verbatim_text("a_b")), 3U);
 }
 
 }  // namespace
