@@ -9,6 +9,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/progress.hpp"
+#include "history/staged_folder.hpp"
 #include "study/atlas.hpp"
 #include "study/bench.hpp"
 
@@ -83,6 +84,7 @@ int bench(const BenchOptions& options) {
   check_integrators(options.integrators);
   const BenchSettings settings{.integrators = options.integrators, .tolerances = options.tolerances};
   const std::vector<Scenario> scenarios = chosen_scenes(options);
+  prepare_folder(options.output);
   std::vector<BenchScene> scenes;
   std::vector<BenchProfile> profiles;
   {

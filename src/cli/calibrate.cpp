@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "cli/commands.hpp"
-#include "history/run_files.hpp"
+#include "history/staged_folder.hpp"
 #include "study/calibration.hpp"
 
 namespace monograin {
@@ -52,16 +52,12 @@ int run_calibration(const CalibrateOptions& options) {
   Calibration calibration = read_calibration(options.file);
   if (options.confidence) calibration.confidence = *options.confidence;
   const fs::path folder = options.output.empty() ? fs::path("runs") / calibration.name : fs::path(options.output);
-  try {
-    check_run_folder(folder, k_calibration_marker);
-  } catch (const std::runtime_error& error) {
-    throw UsageError(error.what());
-  }
+  StagedFolder staged(folder, k_calibration_marker);
   const CalibrationResult result = [&] {
     ProgressLine line(!options.is_quiet);
     return calibrate(calibration, [&line](double done) { line.show(done); });
   }();
-  const std::string no_figure = write_calibration(calibration, result, folder);
+  const std::string no_figure = write_calibration(calibration, result, staged);
   fmt::print("{}", calibration_text(calibration, result));
   if (!no_figure.empty()) fmt::print(stderr, "warning: no figure: {}\n", no_figure);
   if (options.is_quiet) return k_success;

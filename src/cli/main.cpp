@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -45,6 +46,7 @@ bool names_no_command(const CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of the system is a fault of writing like others
   CLI::App app("Workbench for the mechanics of a single particle under contact.", "monograin");
   app.set_version_flag("--version", fmt::format("monograin {}", version()));
   app.footer("Example: monograin run --plot");

@@ -1,7 +1,9 @@
 // `monograin run` and `monograin check`.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -28,13 +30,14 @@ struct RunOptions {
 struct Job {
   Scenario scenario;
   fs::path folder;
+  std::unique_ptr<StagedFolder> staged;
   double parse_time = 0.0;
 };
 
 template <class Read>
 Job make_job(Read&& read) {
   const auto start = std::chrono::steady_clock::now();
-  Job job{.scenario = read(), .folder = {}, .parse_time = 0.0};
+  Job job{.scenario = read(), .folder = {}, .staged = {}, .parse_time = 0.0};
   job.parse_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return job;
 }
@@ -49,7 +52,7 @@ std::vector<Job> read_jobs(const RunOptions& options) {
   std::vector<Fault> faults;
   for (const std::string& file : options.files) {
     try {
-      jobs.push_back(make_job([&] { return read_scenario(file, options.overrides); }));
+      jobs.push_back(make_job([&] { return read_scenario(file, options.overrides, FileKind::any); }));
     } catch (const ScenarioError& error) {
       faults.insert(faults.end(), error.faults().begin(), error.faults().end());
     }
@@ -58,24 +61,32 @@ std::vector<Job> read_jobs(const RunOptions& options) {
   return jobs;
 }
 
+/// The folder's name below `runs` or below -o: runs with other overrides of one scenario stand side by side.
+std::string folder_name(const Scenario& scenario) {
+  if (scenario.overrides.empty()) return scenario.name;
+  std::vector<std::string> overrides = scenario.overrides;
+  // Only among those of one key the order counts.
+  std::ranges::stable_sort(overrides, {}, [](const std::string& text) { return text.substr(0, text.find('=')); });
+  const std::string digest = text_digest(fmt::format("{}", fmt::join(overrides, "\n")));
+  constexpr std::size_t k_digits = 8;
+  return fmt::format("{}-{}", scenario.name, digest.substr(digest.find(':') + 1, k_digits));
+}
+
+/// Chooses and makes the folders of all jobs, so that none is run whose result could not be written.
 void choose_folders(std::vector<Job>& jobs, const std::string& output) {
   std::set<fs::path> taken;
   for (Job& job : jobs) {
     const bool is_own_folder = !output.empty() && jobs.size() == 1;
     const fs::path base = output.empty() ? fs::path("runs") : fs::path(output);
-    job.folder = is_own_folder ? base : base / job.scenario.name;
+    job.folder = is_own_folder ? base : base / folder_name(job.scenario);
     if (!taken.insert(fs::weakly_canonical(job.folder)).second) {
       throw UsageError(
           fmt::format("two scenarios are named '{}' and would write to the same folder {}; run them one by one "
                       "with -o",
                       job.scenario.name, job.folder.string()));
     }
-    try {
-      check_run_folder(job.folder);
-    } catch (const std::runtime_error& error) {
-      throw UsageError(error.what());
-    }
   }
+  for (Job& job : jobs) job.staged = std::make_unique<StagedFolder>(job.folder);
 }
 
 /// A run never fails because its figure could not be drawn.
@@ -99,7 +110,7 @@ int run(const RunOptions& options) {
   for (const Job& job : jobs) {
     Run result = run_scenario(job.scenario);
     result.timings.parse = job.parse_time;
-    write_run(result, job.folder, options.draws_figure ? draw_figure : std::function<void(const fs::path&)>());
+    write_run(result, *job.staged, options.draws_figure ? draw_figure : std::function<void(const fs::path&)>());
     if (!options.is_quiet) {
       for (const std::string& warning : result.record.warnings) fmt::print(stderr, "warning: {}\n", warning);
       report(result, job.folder);
@@ -131,8 +142,9 @@ void add_run_command(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("run", "Run scenarios; without a file: the die compaction that comes with the program");
   command->add_option("FILE", options->files, "Scenario files (TOML)");
-  command->add_option("-o,--output", options->output,
-                      "Folder of the run (of several files: the folder that holds theirs) [runs/NAME]");
+  command->add_option(
+      "-o,--output", options->output,
+      "Folder of the run (of several files: the folder that holds theirs) [runs/NAME, with --set runs/NAME-DIGEST]");
   command->add_option("--set", options->overrides, "Override a key: key=value, e.g. material.yield_stress='30 MPa'")
       ->type_name("KEY=VALUE")
       ->expected(1)

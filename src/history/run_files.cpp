@@ -1,16 +1,14 @@
 #include "history/run_files.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
+
+#include "scenario/text_file.hpp"
+#include "scenario/words.hpp"
 
 namespace monograin {
 namespace {
@@ -18,11 +16,13 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-void write_file(const fs::path& file, const std::function<void(std::ostream&)>& write) {
-  std::ofstream out(file, std::ios::binary);
-  if (out) write(out);
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+constexpr int k_run_format = 1;  ///< of run.json
+constexpr std::size_t k_largest_run = std::size_t{256} << 20U;
+
+void write_table(const Table& table, const fs::path& file) {
+  std::ostringstream text;
+  write_csv(table, text);
+  write_text_file(file, text.view());
 }
 
 Json versions() { return {{"monograin", version()}, {"sundials", sundials_version()}, {"compiler", __VERSION__}}; }
@@ -45,7 +45,9 @@ Json to_json(const Run& run) {
   for (const ClassSummary& c : run.classes) {
     classes.push_back({{"name", c.name}, {"multiplicity", c.walls.size()}, {"walls", c.walls}});
   }
-  return {{"status", to_string(record.status)},
+  return {{"program", "monograin"},
+          {"format", k_run_format},
+          {"status", to_string(record.status)},
           {"message", record.message},
           {"model", scenario.model},
           {"classes", classes},
@@ -77,88 +79,41 @@ Json to_json(const Run& run) {
             {"files", files_of(scenario)}}}};
 }
 
-/// Puts a staged folder where the target is. The exchange is one step for everybody who looks.
-void exchange(const fs::path& staged, const fs::path& target) {
-  if (!fs::exists(target)) {
-    fs::rename(staged, target);
-  } else if (renameat2(AT_FDCWD, staged.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) != 0) {
-    // A file system without exchange: the old result steps aside for an instant.
-    const fs::path aside = staged.string() + ".old";
-    fs::rename(target, aside);
-    fs::rename(staged, target);
-    fs::remove_all(aside);
-  }
-}
-
 }  // namespace
 
-void check_run_folder(const fs::path& target, std::string_view marker) {
-  if (!fs::exists(target)) return;
-  if (!fs::is_directory(target)) {
-    throw std::runtime_error(fmt::format("{}: is a file; expected a folder for the result", target.string()));
-  }
-  if (!fs::is_empty(target) && !fs::exists(target / marker)) {
-    throw std::runtime_error(
-        fmt::format("{}: holds files but no earlier result of this kind (no {}), and a result replaces its folder; "
-                    "choose another folder with -o",
-                    target.string(), marker));
-  }
-}
-
-StagedFolder::StagedFolder(fs::path target, std::string_view marker)
-    : target_(fs::absolute(std::move(target)).lexically_normal()) {
-  if (!target_.has_filename()) target_ = target_.parent_path();
-  check_run_folder(target_, marker);
-  fs::create_directories(target_.parent_path());
-  std::string pattern = (target_.parent_path() / ("." + target_.filename().string() + ".XXXXXX")).string();
-  if (mkdtemp(pattern.data()) == nullptr) {
-    throw std::runtime_error(fmt::format("{}: cannot be created: {}", pattern, std::strerror(errno)));
-  }
-  staged_ = pattern;
-  fs::permissions(staged_, fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec |
-                               fs::perms::others_read | fs::perms::others_exec);
-}
-
-StagedFolder::~StagedFolder() {
-  std::error_code ignored;  // what cannot be removed stays hidden beside the result
-  fs::remove_all(staged_, ignored);
-}
-
-void StagedFolder::publish() { exchange(staged_, target_); }
-
-void write_run(Run& run, const fs::path& folder, const std::function<void(const fs::path&)>& draw) {
+void write_run(Run& run, StagedFolder& folder, const std::function<void(const fs::path&)>& draw) {
   const auto start = std::chrono::steady_clock::now();
-  StagedFolder staged(folder);
-  write_file(staged.path() / "history.csv", [&](std::ostream& out) { write_csv(run.record.history, out); });
-  write_file(staged.path() / "events.csv", [&](std::ostream& out) { write_csv(run.record.events, out); });
+  write_table(run.record.history, folder.path() / "history.csv");
+  write_table(run.record.events, folder.path() / "events.csv");
   run.timings.output = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  write_file(staged.path() / "run.json", [&](std::ostream& out) {
-    // Nobody checks that the comments in a table are UTF-8.
-    out << to_json(run).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
-  });
-  if (draw) draw(staged.path());
-  staged.publish();
+  // Nobody checks that the comments in a table are UTF-8.
+  write_text_file(folder.path() / k_run_marker,
+                  to_json(run).dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  if (draw) draw(folder.path());
+  folder.publish();
 }
 
 Scenario scenario_of_run(const fs::path& folder) {
-  const fs::path file = folder / "run.json";
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read; expected the folder of a run", file.string()));
+  const fs::path file = folder / k_run_marker;
+  const auto [text, problem] = read_text_file(file, k_largest_run);
+  if (!problem.empty() || text.size() > k_largest_run) {
+    throw std::runtime_error(fmt::format("{}: {}; expected the folder of a run", file.string(),
+                                         problem.empty() ? "the file is too large" : problem));
+  }
   try {
-    const Json scenario = Json::parse(in).at("scenario");
-    // The tables are laid beside the scenario as they were. The depth is for those in folders further up.
-    const StagedFolder staged(fs::temp_directory_path() / "monograin-scenario");
-    const fs::path place = staged.path() / "a" / "b" / "c" / "d";
-    const Json files = scenario.value("files", Json::object());
-    for (const Json& table : files) {
-      const fs::path name = table.at("name").get<std::string>();
-      if (name.is_absolute()) continue;
-      fs::create_directories((place / name).parent_path());
-      write_file(place / name, [&](std::ostream& out) { out << table.at("text").get<std::string>(); });
+    const Json run = Json::parse(text);
+    if (const int format = run.value("format", k_run_format); format > k_run_format) {
+      throw std::runtime_error(fmt::format("{}: has format {}, of a later version of the program; this one knows {}",
+                                           file.string(), format, k_run_format));
     }
-    return parse_scenario(scenario.at("text").get<std::string>(),
-                          (place / (scenario.at("name").get<std::string>() + ".toml")).string(),
-                          scenario.at("overrides").get<std::vector<std::string>>());
+    const Json& scenario = run.at("scenario");
+    FileTexts files;
+    for (const Json& table : scenario.value("files", Json::object())) {
+      files.emplace(table.at("name").get<std::string>(), table.at("text").get<std::string>());
+    }
+    const std::string name = fs::path(scenario.at("name").get<std::string>()).filename().string();
+    return parse_recorded_scenario(scenario.at("text").get<std::string>(), on_one_line(name) + ".toml",
+                                   scenario.at("overrides").get<std::vector<std::string>>(), files);
   } catch (const Json::exception& error) {
     throw std::runtime_error(fmt::format("{}: is not what a run leaves ({})", file.string(), error.what()));
   }

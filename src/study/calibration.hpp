@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "history/staged_folder.hpp"
 #include "scenario/numbers.hpp"
 #include "scenario/scenario.hpp"
 #include "study/least_squares.hpp"
@@ -113,11 +114,12 @@ struct CalibrationResult {
 /// The file whose presence tells that a folder holds a calibration.
 inline constexpr const char* k_calibration_marker = "calibration.json";
 
-/// Writes fit.csv, fitted.toml with the tables it names, calibration.json and figure.svg with its script and data into
-/// a folder, which is replaced as a whole or not at all.
+/// Writes fit.csv, fitted.toml with the tables it names, calibration.json and figure.svg with its script and data, all
+/// of them or none.
+/// @param folder  made with k_calibration_marker
 /// @return why there is no figure; empty: there is
 /// @throws std::runtime_error naming what could not be written
 [[nodiscard]] std::string write_calibration(const Calibration& calibration, const CalibrationResult& result,
-                                            const std::filesystem::path& folder);
+                                            StagedFolder& folder);
 
 }  // namespace monograin

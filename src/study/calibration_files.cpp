@@ -13,7 +13,6 @@
 #include "figure/figure.hpp"
 #include "figure/page.hpp"
 #include "history/run.hpp"
-#include "history/run_files.hpp"
 #include "scenario/edit.hpp"
 #include "study/calibration.hpp"
 #include "study/calibration_language.hpp"
@@ -415,17 +414,16 @@ std::string calibration_text(const Calibration& calibration, const CalibrationRe
   return text + aligned(rows);
 }
 
-std::string write_calibration(const Calibration& calibration, const CalibrationResult& result, const fs::path& folder) {
-  StagedFolder staged(folder, k_calibration_marker);
-  write_csv_file(fit_table(calibration, result), staged.path() / "fit.csv");
-  figure::write_whole(staged.path() / "fitted.toml", fitted_scenario_text(calibration, result));
+std::string write_calibration(const Calibration& calibration, const CalibrationResult& result, StagedFolder& folder) {
+  write_csv_file(fit_table(calibration, result), folder.path() / "fit.csv");
+  figure::write_whole(folder.path() / "fitted.toml", fitted_scenario_text(calibration, result));
   for (const auto& [option, curve] : calibration.scenario.curves) {
-    figure::write_whole(staged.path() / table_name(option), curve.text);
+    figure::write_whole(folder.path() / table_name(option), curve.text);
   }
-  figure::write_whole(staged.path() / k_calibration_marker,
+  figure::write_whole(folder.path() / k_calibration_marker,
                       to_json(calibration, result).dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
-  const std::string problem = draw(calibration, result, staged.path());
-  staged.publish();
+  const std::string problem = draw(calibration, result, folder.path());
+  folder.publish();
   return problem;
 }
 

@@ -15,7 +15,7 @@
 #include <optional>
 #include <set>
 
-#include "history/run_files.hpp"
+#include "history/staged_folder.hpp"
 #include "scenario/text_file.hpp"
 #include "study/stress_checks.hpp"
 #include "study/stress_generator.hpp"

@@ -23,6 +23,7 @@
 #include <utility>
 
 #include "history/run.hpp"
+#include "history/staged_folder.hpp"
 #include "scenario/text_file.hpp"
 #include "study/sweep_journal.hpp"
 
@@ -33,6 +34,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* k_results = "results.csv";
 constexpr const char* k_journal_extension = ".journal";
+constexpr std::string_view k_program_line = "# program: monograin ";
+constexpr std::size_t k_largest_results = std::size_t{4} << 30U;
 constexpr const char* k_digest_line = "# sweep_digest: ";
 
 // --- one run
@@ -149,7 +152,14 @@ void prepare(const fs::path& folder) {
   if (fs::exists(folder / "run.json")) {
     throw std::runtime_error(fmt::format("{}: is the folder of a run; choose another folder with -o", folder.string()));
   }
-  fs::create_directories(folder);
+  const fs::path results = folder / k_results;
+  if (fs::exists(fs::symlink_status(results)) &&
+      !read_text_file(results, k_largest_results).text.starts_with(k_program_line)) {
+    throw std::runtime_error(
+        fmt::format("{}: is none that monograin has written, and would be replaced; choose another folder with -o",
+                    results.string()));
+  }
+  prepare_folder(folder);
 }
 
 /// Held by the process that makes results.csv of a folder's journals, so that no two do.
@@ -189,9 +199,8 @@ class Rows {
   /// The results, all runs being there.
   [[nodiscard]] std::string text() const {
     const std::vector<std::string> columns = all_columns();
-    std::string text =
-        fmt::format("# program: monograin {}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\n", version(),
-                    sweep_.name, k_digest_line, sweep_.digest, sweep_.design, sweep_.scenario_name);
+    std::string text = fmt::format("{}{}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\n", k_program_line, version(),
+                                   sweep_.name, k_digest_line, sweep_.digest, sweep_.design, sweep_.scenario_name);
     text += "run";
     for (const SweepFactor& factor : sweep_.factors) text += ',' + factor.heading();
     text += ",status,reason";
@@ -307,6 +316,8 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
   outcome.runs_missing = sweep.runs.size() - rows.count();
   if (outcome.runs_missing > 0) return outcome;
   write_text_file(options.folder / k_results, rows.text());
+  sync_to_disk(options.folder / k_results);
+  sync_to_disk(options.folder);
   for (const fs::path& file : journals_in(options.folder)) fs::remove(file);
   return outcome;
 }

@@ -68,7 +68,7 @@ TEST_F(Commands, RunAndPlotDrawTheCommittedFigureOfTheDefaultScene) {
 
 TEST_F(Commands, RunWritesWhatIsNeededToRepeatIt) {
   write_text(path("small.toml"), k_small);
-  ASSERT_EQ(monograin("run small.toml --set output.points=5").code, 0);
+  ASSERT_EQ(monograin("run small.toml -o runs/small --set output.points=5").code, 0);
   const auto json = nlohmann::json::parse(text("runs/small/run.json"));
   EXPECT_EQ(json["status"], "complete");
   EXPECT_EQ(json["classes"],
@@ -113,8 +113,9 @@ TEST_F(Commands, OverridesAreCheckedLikeTheFile) {
 
 TEST_F(Commands, ARunThatLeavesTheDomainKeepsItsHistory) {
   write_text(path("small.toml"), k_small);
-  const Outcome outcome =
-      monograin("run small.toml --set loading.configuration=hydrostatic --set loading.steps[0].displacement='0.35 R0'");
+  const Outcome outcome = monograin(
+      "run small.toml -o runs/small --set loading.configuration=hydrostatic --set loading.steps[0].displacement='0.35 "
+      "R0'");
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_NE(outcome.err.find("stopped"), std::string::npos) << outcome.err;
   const Table history = read_csv(path("runs/small/history.csv"));
@@ -132,7 +133,8 @@ TEST_F(Commands, TheReadyGranuleRunsAndStopsAtTheEndOfItsLaw) {
   EXPECT_FALSE(history.find("axial.contact_radius") || history.find("axial.pressure"));
   const auto run = nlohmann::json::parse(text("runs/compressible/run.json"));
   EXPECT_TRUE(run.at("scenario").at("files").contains("compressible.unloading_table")) << run.dump(2);
-  const Outcome beyond = monograin("run " + file + " --set loading.steps[2].displacement='0.6 R0'");
+  const Outcome beyond =
+      monograin("run " + file + " -o runs/compressible --set loading.steps[2].displacement='0.6 R0'");
   EXPECT_EQ(beyond.code, 3) << beyond.err;
   EXPECT_NE(beyond.err.find("half the radius"), std::string::npos) << beyond.err;
   const Table events = read_csv(path("runs/compressible/events.csv"));
@@ -471,7 +473,7 @@ TEST_F(Commands, RunAPackingWhichHasNeitherParticleNorWalls) {
 
 TEST_F(Commands, EndAPackingWithTheExitCodeOfItsEnd) {
   write_text(path("p.toml"), k_packing);
-  const Outcome full = monograin("run p.toml --set loading.steps[0].packing_fraction=1.05");
+  const Outcome full = monograin("run p.toml -o runs/p --set loading.steps[0].packing_fraction=1.05");
   EXPECT_EQ(full.code, 3);
   EXPECT_NE(full.err.find("no pores are left"), std::string::npos) << full.err;
   EXPECT_NE(text("runs/p/history.csv").find("# status: stopped"), std::string::npos);

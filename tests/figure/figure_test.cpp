@@ -166,8 +166,8 @@ TEST_F(Figure, OverlaysRunsUnderNamesThatDiffer) {
   write(in_folder("other/it's_a_run/history.csv"), k_mdr_history);
   EXPECT_EQ(fault_of({run(), in_folder("other/it's_a_run/history.csv")}, in_folder("both.svg")), "no fault");
   const std::string script = read_text(in_folder("both.gp"));
-  EXPECT_NE(script.find(R"(runs/it's\_a\_run")"), std::string::npos) << script;
-  EXPECT_NE(script.find(R"(other/it's\_a\_run/history.csv")"), std::string::npos) << script;
+  EXPECT_NE(script.find(R"(runs/it's\134_a\134_run")"), std::string::npos) << script;
+  EXPECT_NE(script.find(R"(other/it's\134_a\134_run/history.csv")"), std::string::npos) << script;
 }
 
 TEST_F(Figure, StaysInUnitsWhereARunHasNoScales) {

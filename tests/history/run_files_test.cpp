@@ -35,7 +35,8 @@ TEST(RunFiles, HoldTheTablesThatTheScenarioNames) {
   // A byte that is not UTF-8 in a comment must not cost the run.
   const std::string table = k_table + "# \xE9t\xE9\n";
   monograin::Run recorded = run_scenario(with_table(table));
-  write_run(recorded, folder.path() / "run");
+  StagedFolder staged(folder.path() / "run");
+  write_run(recorded, staged);
   std::ifstream in(folder.path() / "run" / "run.json");
   const auto file = nlohmann::json::parse(in).at("scenario").at("files").at("mdr.pressure_table");
   EXPECT_EQ(file.at("name"), "p.csv");

@@ -486,6 +486,11 @@ TEST_F(CalibrationTest, TheFittedScenarioIsTheOldOneWithTheNumbersPutIn) {
   EXPECT_EQ(fitted.loading.steps[0].target, 0.01 * k_radius);
 }
 
+std::string written(const Calibration& calibration, const CalibrationResult& result, const fs::path& target) {
+  StagedFolder staged(target, k_calibration_marker);
+  return write_calibration(calibration, result, staged);
+}
+
 TEST_F(CalibrationTest, TablesThatTheScenarioNamesGoWithIt) {
   write("s.toml", std::string(k_mdr) + "[mdr]\npressure_table = \"p.csv\"\n");
   write("p.csv", "x,p\n0,2.75\n0.1,2.5\n0.5,1.9\n2,1.5\n");
@@ -493,7 +498,7 @@ TEST_F(CalibrationTest, TablesThatTheScenarioNamesGoWithIt) {
   write("d.csv", "axial.displacement[m],axial.force[N]\n1e-4,150\n5e-4,1500\n1e-3,3500\n");
   const Calibration calibration = read();
   const CalibrationResult result = calibrate(calibration);
-  EXPECT_EQ(write_calibration(calibration, result, folder() / "out"), "");
+  EXPECT_EQ(written(calibration, result, folder() / "out"), "");
   fs::remove(folder() / "p.csv");
   const Scenario fitted = read_scenario(folder() / "out/fitted.toml");
   EXPECT_EQ(fitted.material.at("yield_stress"), result.solution.parameters[0]);
@@ -505,7 +510,7 @@ TEST_F(CalibrationTest, FilesHoldDataFitAndStatistics) {
   write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
   const Calibration calibration = read();
   const CalibrationResult result = calibrate(calibration);
-  EXPECT_EQ(write_calibration(calibration, result, folder() / "out"), "");
+  EXPECT_EQ(written(calibration, result, folder() / "out"), "");
   const Table fit = read_csv(folder() / "out/fit.csv");
   ASSERT_EQ(fit.row_count(), rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -526,16 +531,18 @@ TEST_F(CalibrationTest, FilesHoldDataFitAndStatistics) {
   }
 }
 
-TEST_F(CalibrationTest, ANewResultReplacesTheOldOneAsAWholeAndNothingElse) {
+TEST_F(CalibrationTest, ANewResultReplacesItsFilesAndNoOthers) {
   const Calibration calibration = read();
   const CalibrationResult result = calibrate(calibration);
-  static_cast<void>(write_calibration(calibration, result, folder() / "out"));
-  write("out/litter.txt", "old");
-  static_cast<void>(write_calibration(calibration, result, folder() / "out"));
-  EXPECT_FALSE(fs::exists(folder() / "out/litter.txt"));
+  static_cast<void>(written(calibration, result, folder() / "out"));
+  write("out/notes.txt", "keep me");
+  write("out/fit.csv", "old");
+  static_cast<void>(written(calibration, result, folder() / "out"));
+  EXPECT_EQ(text_of("out/notes.txt"), "keep me");
+  EXPECT_NE(text_of("out/fit.csv"), "old");
   fs::create_directory(folder() / "mine");
   write("mine/notes.txt", "keep me");
-  EXPECT_THROW(static_cast<void>(write_calibration(calibration, result, folder() / "mine")), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(written(calibration, result, folder() / "mine")), std::runtime_error);
   EXPECT_EQ(text_of("mine/notes.txt"), "keep me");
 }
 
@@ -758,7 +765,7 @@ TEST_F(CalibrationTest, FitsSeveralCurvesTogetherEachWithItsOverrides) {
   EXPECT_EQ(result.fit.y.size(), 5U);
   EXPECT_EQ(result.curves.size(), 2U);
   EXPECT_EQ(result.program_steps, 3U);  // the second curve turns
-  EXPECT_EQ(write_calibration(calibration, result, folder() / "out"), "");
+  EXPECT_EQ(written(calibration, result, folder() / "out"), "");
   const Table fit = read_csv(folder() / "out" / "fit.csv");
   EXPECT_EQ(fit.column("curve"), (std::vector<double>{1, 1, 1, 2, 2}));
   const auto json = nlohmann::json::parse(text_of("out/calibration.json"));

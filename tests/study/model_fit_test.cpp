@@ -163,7 +163,8 @@ TEST_F(CompressibleCalibration, IsReportedAndRunsAgain) {
   for (const char* word : {"nested", "joint", "this fit", "area error", "peak error", "0.0775"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
   }
-  static_cast<void>(write_calibration(calibration, result, folder_.path() / "out"));
+  StagedFolder out(folder_.path() / "out", k_calibration_marker);
+  static_cast<void>(write_calibration(calibration, result, out));
   std::ifstream file(folder_.path() / "out" / "calibration.json");
   const auto json = nlohmann::json::parse(file);
   EXPECT_EQ(json.at("fit").at("procedures").size(), 3u);

@@ -80,7 +80,8 @@ TEST(ContactProfiles, AreDrawnFromARunThatBringsItsScenarioAlong) {
   const TemporaryFolder folder;
   Scenario scenario = parse_scenario(default_scenario_text(), "die.toml", {"output.points=3"});
   monograin::Run recorded = run_scenario(scenario);
-  write_run(recorded, folder.path() / "die");
+  StagedFolder staged(folder.path() / "die");
+  write_run(recorded, staged);
   const Scenario again = scenario_of_run(folder.path() / "die");
   EXPECT_EQ(again.text, scenario.text);
   EXPECT_EQ(scenario_digest(again), scenario_digest(scenario));

@@ -12,9 +12,11 @@ namespace monograin {
 
 namespace fs = std::filesystem;
 
-Outcome CommandTest::monograin(const std::string& arguments) const {
-  const std::string command = "cd '" + folder().string() + "' && '" MONOGRAIN_PROGRAM "' " + arguments +
-                              " > stdout.txt 2> stderr.txt < /dev/null";
+Outcome CommandTest::monograin(const std::string& arguments) const { return shell("monograin " + arguments); }
+
+Outcome CommandTest::shell(const std::string& line) const {
+  const std::string command = "cd '" + folder().string() + "' && monograin() { '" MONOGRAIN_PROGRAM "' \"$@\"; }\n{ " +
+                              line + "\n} > stdout.txt 2> stderr.txt < /dev/null";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text("stdout.txt"), text("stderr.txt")};
 }

@@ -1,0 +1,302 @@
+#include "history/staged_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <ranges>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "history/run.hpp"
+#include "scenario/text_file.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view k_list = ".monograin";
+constexpr std::string_view k_list_head =
+    "# Files that monograin has written here, with their digests. A later result replaces or removes them.\n";
+constexpr std::string_view k_staged_infix = ".monograin-staged-";
+constexpr std::size_t k_random_length = 6;  ///< of mkdtemp
+constexpr std::size_t k_longest_name = 200;
+constexpr std::size_t k_largest_file = std::size_t{4} << 30U;
+constexpr std::size_t k_largest_marker = std::size_t{256} << 20U;
+
+[[noreturn]] void refuse(const fs::path& path, std::string_view problem) {
+  throw std::runtime_error(fmt::format("{}: {}", path.string(), problem));
+}
+
+[[noreturn]] void refuse(const fs::path& path, std::string_view what, int error) {
+  refuse(path, fmt::format("{}: {}", what, std::generic_category().message(error)));
+}
+
+/// Where a path leads, links followed; one that leads nowhere as far as it does.
+fs::path resolved(fs::path path) {
+  if (!path.has_filename()) path = path.parent_path();
+  constexpr int k_most_links = 40;
+  std::error_code ignored;
+  for (int k = 0; k < k_most_links && fs::is_symlink(path, ignored) && !fs::exists(path, ignored); ++k) {
+    path = path.parent_path() / fs::read_symlink(path);
+  }
+  fs::path result = fs::weakly_canonical(fs::absolute(path));
+  return result.has_filename() ? result : result.parent_path();
+}
+
+/// A folder that is open and locked, if nobody else has it locked.
+class LockedFolder {
+ public:
+  LockedFolder(const fs::path& folder, int operation)
+      : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)) {
+    if (descriptor_ >= 0) is_held_ = flock(descriptor_, operation) == 0;
+  }
+  ~LockedFolder() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  LockedFolder(const LockedFolder&) = delete;
+  LockedFolder& operator=(const LockedFolder&) = delete;
+
+  [[nodiscard]] bool is_held() const noexcept { return is_held_; }
+  /// Hands the lock over to the caller, who closes the descriptor.
+  [[nodiscard]] int release() { return std::exchange(descriptor_, -1); }
+
+ private:
+  int descriptor_;
+  bool is_held_ = false;
+};
+
+/// Keeps signals that end a process waiting.
+class SignalsHeld {
+ public:
+  SignalsHeld() {
+    sigset_t held;
+    sigemptyset(&held);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaddset(&held, signal);
+    pthread_sigmask(SIG_BLOCK, &held, &before_);
+  }
+  ~SignalsHeld() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsHeld(const SignalsHeld&) = delete;
+  SignalsHeld& operator=(const SignalsHeld&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+// --- the list of written files
+
+using FileList = std::map<std::string, std::string>;  ///< digests by name
+
+[[nodiscard]] std::string digest_of(const fs::path& file) {
+  return text_digest(read_text_file(file, k_largest_file).text);
+}
+
+[[nodiscard]] bool is_regular(const fs::path& file) {
+  std::error_code ignored;
+  return fs::symlink_status(file, ignored).type() == fs::file_type::regular;
+}
+
+/// The list in a folder; what is no name of a file in it is left out.
+[[nodiscard]] FileList read_list(const fs::path& folder) {
+  FileList list;
+  if (!is_regular(folder / k_list)) return list;
+  const std::string text = read_text_file(folder / k_list, k_largest_file).text;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    const std::size_t space = line.find(' ');
+    if (line.starts_with('#') || space == std::string_view::npos) continue;
+    const std::string name(line.substr(space + 1));
+    if (!name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos) {
+      list.emplace(name, line.substr(0, space));
+    }
+  }
+  return list;
+}
+
+void write_list(const fs::path& folder) {
+  std::string text(k_list_head);
+  FileList list;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    list.emplace(entry.path().filename().string(), digest_of(entry.path()));
+  }
+  for (const auto& [name, digest] : list) text += fmt::format("{} {}\n", digest, name);
+  write_text_file(folder / k_list, text);
+}
+
+// --- whose folder it is
+
+/// Whether a marker is one that this program has written: it says so, or the list in its folder does.
+[[nodiscard]] bool is_own_marker(const fs::path& folder, const std::string& marker) {
+  if (read_list(folder).contains(marker)) return true;
+  const Json json = Json::parse(read_text_file(folder / marker, k_largest_marker).text, nullptr, false);
+  if (!json.is_object()) return false;
+  const auto program = json.find("program");
+  if (program != json.end()) return *program == "monograin";
+  const auto versions = json.find("versions");  // before there was a program in it
+  return versions != json.end() && versions->is_object() && versions->contains("monograin");
+}
+
+[[nodiscard]] bool is_staged_name(std::string_view name, std::string_view prefix) {
+  return name.starts_with(prefix) && name.size() == prefix.size() + k_random_length &&
+         name.find('.', prefix.size()) == std::string_view::npos;
+}
+
+void check_target(const fs::path& target, const std::string& marker) {
+  if (fs::exists(fs::symlink_status(target / marker))) {
+    if (is_own_marker(target, marker)) return;
+    refuse(target,
+           fmt::format("its {} is none that monograin has written, and would be replaced; choose another folder "
+                       "with -o",
+                       marker));
+  }
+  const bool is_empty = std::ranges::all_of(fs::directory_iterator(target), [](const fs::directory_entry& entry) {
+    return is_staged_name(entry.path().filename().string(), k_staged_infix);
+  });
+  if (!is_empty) {
+    refuse(target, fmt::format("holds files but no earlier result of this kind (no {}), some of which a result might "
+                               "replace; choose another folder with -o",
+                               marker));
+  }
+}
+
+// --- putting a result in its place
+
+/// Names of what is to be moved, the marker after all others.
+[[nodiscard]] std::vector<std::string> names_in(const fs::path& staged, const std::string& marker) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(staged)) {
+    const std::string name = entry.path().filename().string();
+    if (name != k_list) names.push_back(name);
+  }
+  std::ranges::sort(names, {}, [&](const std::string& name) { return std::pair(name == marker, name); });
+  return names;
+}
+
+/// Moves a complete result, which has its list, from its hidden folder into the target. A process that is killed
+/// meanwhile leaves what another one goes on with: the list goes last.
+void move_files(const fs::path& staged, const fs::path& target, const std::string& marker) {
+  const std::vector<std::string> names = names_in(staged, marker);
+  for (const std::string& name : names) {
+    if (fs::is_directory(fs::symlink_status(target / name)))
+      refuse(target / name, "is a folder; a file is to go there");
+  }
+  const FileList list = read_list(staged);
+  const SignalsHeld held;
+  for (const auto& [name, digest] : read_list(target)) {
+    if (list.contains(name) || !is_regular(target / name) || digest_of(target / name) != digest) continue;
+    fs::remove(target / name);
+  }
+  for (const std::string& name : names) fs::rename(staged / name, target / name);
+  fs::rename(staged / k_list, target / k_list);
+}
+
+/// Deals with hidden folders that nobody works in any more.
+/// @param target  where complete results of these go; empty: nowhere
+void clear_leftovers(const fs::path& folder, std::string_view prefix, const fs::path& target,
+                     const std::string& marker) {
+  std::vector<fs::path> leftovers;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (is_staged_name(entry.path().filename().string(), prefix)) leftovers.push_back(entry.path());
+  }
+  for (const fs::path& leftover : leftovers) {
+    const LockedFolder lock(leftover, LOCK_EX | LOCK_NB);
+    if (!lock.is_held()) continue;
+    if (!target.empty() && fs::exists(leftover / k_list, ignored)) move_files(leftover, target, marker);
+    fs::remove_all(leftover, ignored);
+  }
+}
+
+[[nodiscard]] std::string prefix_beside(const fs::path& target) {
+  return fmt::format(".{}{}", target.filename().string().substr(0, k_longest_name), k_staged_infix);
+}
+
+}  // namespace
+
+StagedFolder::StagedFolder(const fs::path& target, std::string_view marker)
+    : target_(resolved(target)), marker_(marker) {
+  if (fs::exists(target_)) {
+    if (!fs::is_directory(target_)) refuse(target_, "is a file; expected a folder for the result");
+    {
+      const LockedFolder one_at_a_time(target_, LOCK_EX);
+      clear_leftovers(target_, k_staged_infix, target_, marker_);
+    }
+    check_target(target_, marker_);
+  } else {
+    make_parents();
+  }
+  clear_leftovers(target_.parent_path(), prefix_beside(target_), {}, marker_);
+  make_staged();
+}
+
+StagedFolder::~StagedFolder() {
+  std::error_code ignored;  // what cannot be removed stays hidden
+  fs::remove_all(staged_, ignored);
+  if (lock_ >= 0) close(lock_);
+  std::ranges::for_each(made_parents_ | std::views::reverse,
+                        [&](const fs::path& parent) { fs::remove(parent, ignored); });  // those that stayed empty
+}
+
+void StagedFolder::make_parents() {
+  for (fs::path parent = target_.parent_path(); !fs::exists(parent); parent = parent.parent_path()) {
+    made_parents_.insert(made_parents_.begin(), parent);
+  }
+  std::error_code error;
+  fs::create_directories(target_.parent_path(), error);
+  if (error) refuse(target_.parent_path(), "cannot be created: " + error.message());
+}
+
+void StagedFolder::make_staged() {
+  const bool is_new = !fs::exists(target_);
+  const std::string prefix =
+      (is_new ? target_.parent_path() / prefix_beside(target_) : target_ / k_staged_infix).string();
+  do {  // until nobody has taken it for a leftover
+    std::string pattern = prefix + std::string(k_random_length, 'X');
+    if (mkdtemp(pattern.data()) == nullptr) refuse(target_, "cannot be written", errno);
+    staged_ = pattern;
+    if (lock_ >= 0) close(lock_);
+    lock_ = LockedFolder(staged_, LOCK_EX).release();
+  } while (!fs::exists(staged_));
+  struct stat made = {};
+  const mode_t mask = umask(0);
+  umask(mask);
+  if (stat(staged_.c_str(), &made) == 0) chmod(staged_.c_str(), (made.st_mode & 07000U) | (0777U & ~mask));
+}
+
+void StagedFolder::publish() {
+  for (const auto& entry : fs::directory_iterator(staged_)) sync_to_disk(entry.path());
+  write_list(staged_);
+  sync_to_disk(staged_ / k_list);
+  sync_to_disk(staged_);
+  if (rename(staged_.c_str(), target_.c_str()) == 0) {  // to where there is nothing yet
+    sync_to_disk(target_.parent_path());
+    made_parents_.clear();
+    return;
+  }
+  {
+    const LockedFolder one_at_a_time(target_, LOCK_EX);
+    move_files(staged_, target_, marker_);
+  }
+  sync_to_disk(target_);
+}
+
+void prepare_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) refuse(folder, "cannot be created: " + error.message());
+  if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(folder, "cannot be written", errno);
+}
+
+}  // namespace monograin
