@@ -206,7 +206,7 @@ figure::Chart chart_of(const Calibration& calibration, const CalibrationResult& 
     const MeasuredCurve& measured = calibration.curves[c];
     const FittedCurve& fitted = result.curves[c];
     const bool is_only_one = calibration.curves.size() == 1;
-    const std::string suffix = is_only_one ? "" : ": " + name_of(measured);
+    const std::string suffix = is_only_one ? "" : ": " + figure::verbatim_text(name_of(measured));
     const auto own_colour = is_only_one ? std::nullopt : std::optional(c);
     const std::vector<double> curve_x = in_unit(fitted.x, calibration.x);
     const std::vector<double> curve_y = in_unit(fitted.y, calibration.y);
