@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -29,6 +30,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view k_list = ".monograin";
 constexpr std::string_view k_list_head =
     "# Files that monograin has written here, with their digests. A later result replaces or removes them.\n";
+/// In a hidden folder whose files are being moved.
+constexpr std::string_view k_moving = ".moving";
 constexpr std::string_view k_staged_infix = ".monograin-staged-";
 constexpr std::size_t k_random_length = 6;  ///< of mkdtemp
 constexpr std::size_t k_longest_name = 200;
@@ -173,37 +176,80 @@ void check_target(const fs::path& target, const std::string& marker) {
 
 // --- putting a result in its place
 
-/// Names of what is to be moved, the marker after all others.
+/// Names of what a result holds, the marker after all others, without the list.
 [[nodiscard]] std::vector<std::string> names_in(const fs::path& staged, const std::string& marker) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(staged)) {
     const std::string name = entry.path().filename().string();
-    if (name != k_list) names.push_back(name);
+    if (name != k_list && name != k_moving) names.push_back(name);
   }
   std::ranges::sort(names, {}, [&](const std::string& name) { return std::pair(name == marker, name); });
   return names;
 }
 
-/// Moves a complete result, which has its list, from its hidden folder into the target. A process that is killed
+/// What is left of an earlier result and has no place beside the new one.
+[[nodiscard]] std::vector<std::string> stale_names(const FileList& list, const fs::path& target) {
+  std::vector<std::string> names;
+  for (const auto& [name, digest] : read_list(target)) {
+    if (!list.contains(name) && is_regular(target / name) && digest_of(target / name) == digest) names.push_back(name);
+  }
+  return names;
+}
+
+/// Moves the files of a complete result from its hidden folder into the target, one by one. A process that is killed
 /// meanwhile leaves what another one goes on with: the list goes last.
 void move_files(const fs::path& staged, const fs::path& target, const std::string& marker) {
-  const std::vector<std::string> names = names_in(staged, marker);
-  for (const std::string& name : names) {
-    if (fs::is_directory(fs::symlink_status(target / name)))
-      refuse(target / name, "is a folder; a file is to go there");
-  }
-  const FileList list = read_list(staged);
   const SignalsHeld held;
-  for (const auto& [name, digest] : read_list(target)) {
-    if (list.contains(name) || !is_regular(target / name) || digest_of(target / name) != digest) continue;
-    fs::remove(target / name);
-  }
-  for (const std::string& name : names) fs::rename(staged / name, target / name);
+  for (const std::string& name : stale_names(read_list(staged), target)) fs::remove(target / name);
+  for (const std::string& name : names_in(staged, marker)) fs::rename(staged / name, target / name);
   fs::rename(staged / k_list, target / k_list);
 }
 
-/// Deals with hidden folders that nobody works in any more.
-/// @param target  where complete results of these go; empty: nowhere
+[[nodiscard]] bool is_within(const fs::path& path, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+/// Exchanges the hidden folder and the target in one step, after all that stays in the target has got a second name in
+/// the hidden folder. That cannot be done with folders, nor with a target that somebody else owns; and who works in the
+/// target, as this process may, would be left in the old one.
+/// @return whether that was done; if not, nothing has changed
+[[nodiscard]] bool exchange(const fs::path& staged, const fs::path& target) {
+  struct stat is = {};
+  if (stat(target.c_str(), &is) != 0 || is.st_uid != geteuid()) return false;
+  std::error_code error;
+  if (is_within(fs::current_path(error), target) || error || is_within(staged, target)) return false;
+  const FileList list = read_list(staged);
+  const std::vector<std::string> stale = stale_names(list, target);
+  std::vector<std::string> kept;
+  for (const auto& entry : fs::directory_iterator(target)) {
+    const std::string name = entry.path().filename().string();
+    if (name == k_list || list.contains(name) || std::ranges::find(stale, name) != stale.end()) continue;
+    if (entry.symlink_status().type() == fs::file_type::directory) return false;
+    kept.push_back(name);
+  }
+  std::size_t linked = 0;
+  while (linked < kept.size() && link((target / kept[linked]).c_str(), (staged / kept[linked]).c_str()) == 0) ++linked;
+  if (linked == kept.size() && chmod(staged.c_str(), is.st_mode & 07777U) == 0) {
+    sync_to_disk(staged);
+    const SignalsHeld held;
+    if (renameat2(AT_FDCWD, staged.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) return true;
+  }
+  while (linked > 0) fs::remove(staged / kept[--linked], error);
+  return false;
+}
+
+/// Moves what no list names, such as what came while folders were exchanged, from an old folder into the target.
+void rescue(const fs::path& old, const fs::path& target) {
+  const FileList list = read_list(old);
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(old, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name == k_list || list.contains(name) || fs::exists(fs::symlink_status(target / name, ignored))) continue;
+    fs::rename(entry.path(), target / name, ignored);
+  }
+}
+
+/// Deals with hidden folders of a target that nobody works in any more.
 void clear_leftovers(const fs::path& folder, std::string_view prefix, const fs::path& target,
                      const std::string& marker) {
   std::vector<fs::path> leftovers;
@@ -214,7 +260,14 @@ void clear_leftovers(const fs::path& folder, std::string_view prefix, const fs::
   for (const fs::path& leftover : leftovers) {
     const LockedFolder lock(leftover, LOCK_EX | LOCK_NB);
     if (!lock.is_held()) continue;
-    if (!target.empty() && fs::exists(leftover / k_list, ignored)) move_files(leftover, target, marker);
+    // Without its list the hidden folder is a part of a result, or one whose last file has been moved.
+    if (fs::exists(target) && fs::exists(leftover / k_list, ignored)) {
+      if (fs::exists(leftover / k_moving, ignored)) {
+        move_files(leftover, target, marker);
+      } else {
+        rescue(leftover, target);
+      }
+    }
     fs::remove_all(leftover, ignored);
   }
 }
@@ -232,12 +285,13 @@ StagedFolder::StagedFolder(const fs::path& target, std::string_view marker)
     {
       const LockedFolder one_at_a_time(target_, LOCK_EX);
       clear_leftovers(target_, k_staged_infix, target_, marker_);
+      clear_leftovers(target_.parent_path(), prefix_beside(target_), target_, marker_);
     }
     check_target(target_, marker_);
   } else {
     make_parents();
+    clear_leftovers(target_.parent_path(), prefix_beside(target_), target_, marker_);
   }
-  clear_leftovers(target_.parent_path(), prefix_beside(target_), {}, marker_);
   make_staged();
 }
 
@@ -259,9 +313,16 @@ void StagedFolder::make_parents() {
 }
 
 void StagedFolder::make_staged() {
-  const bool is_new = !fs::exists(target_);
+  // Beside the target, where folders can be exchanged; within it, where nothing can be moved from beside it.
+  struct stat target = {};
+  struct stat parent = {};
+  const bool exists = stat(target_.c_str(), &target) == 0;
+  const bool is_apart =
+      exists && (stat(target_.parent_path().c_str(), &parent) != 0 || target.st_dev != parent.st_dev ||
+                 access(target_.parent_path().c_str(), W_OK | X_OK) != 0);
   const std::string prefix =
-      (is_new ? target_.parent_path() / prefix_beside(target_) : target_ / k_staged_infix).string();
+      (is_apart ? target_ / k_staged_infix : target_.parent_path() / prefix_beside(target_)).string();
+  if (exists && access(target_.c_str(), W_OK | X_OK) != 0) refuse(target_, "cannot be written", errno);
   do {  // until nobody has taken it for a leftover
     std::string pattern = prefix + std::string(k_random_length, 'X');
     if (mkdtemp(pattern.data()) == nullptr) refuse(target_, "cannot be written", errno);
@@ -276,20 +337,28 @@ void StagedFolder::make_staged() {
 }
 
 void StagedFolder::publish() {
-  for (const auto& entry : fs::directory_iterator(staged_)) sync_to_disk(entry.path());
+  for (const std::string& name : names_in(staged_, marker_)) {
+    if (fs::is_directory(fs::symlink_status(target_ / name))) {
+      refuse(target_ / name, "is a folder; a file is to go there");
+    }
+    sync_to_disk(staged_ / name);
+  }
   write_list(staged_);
   sync_to_disk(staged_ / k_list);
   sync_to_disk(staged_);
-  if (rename(staged_.c_str(), target_.c_str()) == 0) {  // to where there is nothing yet
-    sync_to_disk(target_.parent_path());
-    made_parents_.clear();
-    return;
-  }
-  {
+  if (rename(staged_.c_str(), target_.c_str()) != 0) {  // not to where there is nothing yet
     const LockedFolder one_at_a_time(target_, LOCK_EX);
-    move_files(staged_, target_, marker_);
+    if (exchange(staged_, target_)) {
+      rescue(staged_, target_);
+    } else {
+      write_text_file(staged_ / k_moving, {});
+      move_files(staged_, target_, marker_);
+      sync_to_disk(target_);
+    }
   }
-  sync_to_disk(target_);
+  sync_to_disk(target_.parent_path());
+  made_parents_.clear();
+  close(std::exchange(lock_, -1));
 }
 
 void prepare_folder(const fs::path& folder) {

@@ -13,13 +13,15 @@ inline constexpr std::string_view k_run_marker = "run.json";
 
 /// A result that is written out of sight and then takes its place.
 ///
-/// Files go to path(), a hidden folder. A target that does not exist yet appears as a whole. In one that exists every
-/// written file replaces the one of its name, the marker last; all other files stay. Of an earlier result only those
-/// files are removed that this one does not have and that nobody has changed since, which the hidden list `.monograin`
-/// in the folder tells. Whatever happens before publish(), the target stays as it is.
+/// Files go to path(), a hidden folder. In the target every written file replaces the one of its name; all other files
+/// stay. Of an earlier result only those files are removed that this one does not have and that nobody has changed
+/// since, which the hidden list `.monograin` in the folder tells. Whatever happens before publish(), the target stays
+/// as it is.
 ///
-/// What a killed process has left is dealt with by the next one for the same target: a complete result takes its
-/// place, a part of one is removed. A link is followed, and stays.
+/// publish() changes all files in one step, by an exchange of folders. Where the target has folders in it, belongs to
+/// somebody else, is a file system of its own or has this process in it, the files are moved one by one, the marker
+/// last. What a killed process has left is dealt with by the next one for the same target: such moves are completed,
+/// all else is removed. A link is followed, and stays.
 class StagedFolder {
  public:
   /// Makes the hidden folder, so that a target that cannot be written is told before anything is computed.

@@ -47,7 +47,7 @@ TEST_F(MaterialPointCommand, RunsAndSaysWhyItIntegrates) {
 }
 
 TEST_F(MaterialPointCommand, KeepsTheHistoryUpToTheEndOfTheDomain) {
-  EXPECT_EQ(monograin("run point.toml --set loading.steps[0].strain=-0.4").code, 3);
+  EXPECT_EQ(monograin("run point.toml -o runs/point --set loading.steps[0].strain=-0.4").code, 3);
   EXPECT_NE(text("stderr.txt").find("the cap's centre has reached zero pressure"), std::string::npos);
   EXPECT_NE(text("runs/point/history.csv").find("# status: stopped"), std::string::npos);
   EXPECT_NE(text("runs/point/events.csv").find("cap-centre-tensile"), std::string::npos);

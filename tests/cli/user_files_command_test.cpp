@@ -241,20 +241,57 @@ TEST_F(UserFiles, LeftoversOfKilledRunsAreClearedUnlessSomebodyWorksThere) {
   EXPECT_EQ(names_in("runs/small"), k_run_files);
 }
 
-TEST_F(UserFiles, ACompleteResultOfAKilledRunTakesItsPlace) {
+TEST_F(UserFiles, WhatAKilledRunWasMovingIsMovedByTheNextOne) {
+  for (const char* name : {"r/.monograin-staged-abcdef", ".r.monograin-staged-abcdef"}) {
+    fs::remove_all(path("r"));
+    ASSERT_EQ(monograin("run small.toml -o r").code, 0);
+    ASSERT_EQ(monograin("run small.toml -o n --plot --set output.points=5").code, 0);
+    // Killed when the first file had been moved.
+    const fs::path staged = path(name);
+    fs::rename(path("n"), staged);
+    write_text(staged / ".moving", "");
+    fs::rename(staged / "events.csv", path("r/events.csv"));
+    const std::string history = read_text(staged / "history.csv");
+    write_text(path("r/notes.txt"), "mine");
+    // The next run has no room for its own result.
+    EXPECT_EQ(shell("ulimit -f 64; monograin run small.toml -o r --set output.points=2000").code, 2);
+    EXPECT_TRUE(text("r/history.csv") == history);
+    EXPECT_FALSE(fs::exists(staged));
+    EXPECT_EQ(names_in("r"), (Strings{".monograin", "events.csv", "figure.dat", "figure.gp", "figure.svg",
+                                      "history.csv", "notes.txt", "run.json"}));
+  }
+}
+
+TEST_F(UserFiles, AKilledRunThatHadMovedAllLeavesNothingToDo) {
+  for (const char* name : {"r/.monograin-staged-abcdef", ".r.monograin-staged-abcdef"}) {
+    ASSERT_EQ(monograin("run small.toml -o r").code, 0);
+    const std::string history = text("r/history.csv");
+    fs::create_directory(path(name));
+    write_text(path(name) / ".moving", "");
+    EXPECT_EQ(shell("ulimit -f 64; monograin run small.toml -o r --set output.points=2000").code, 2);
+    EXPECT_FALSE(fs::exists(path(name)));
+    EXPECT_EQ(names_in("r"), k_run_files);
+    EXPECT_TRUE(text("r/history.csv") == history);
+  }
+}
+
+TEST_F(UserFiles, AnOldFolderThatAKilledRunDidNotRemoveGivesBackWhatIsNotItsOwn) {
+  ASSERT_EQ(monograin("run small.toml -o r --plot").code, 0);
+  fs::rename(path("r"), path(".r.monograin-staged-abcdef"));
+  write_text(path(".r.monograin-staged-abcdef/late.txt"), "mine");
+  ASSERT_EQ(monograin("run small.toml -o n").code, 0);
+  fs::rename(path("n"), path("r"));
   ASSERT_EQ(monograin("run small.toml -o r").code, 0);
-  ASSERT_EQ(monograin("run small.toml -o n --plot --set output.points=5").code, 0);
-  // Killed when the first file had been moved.
-  const fs::path staged = path("r/.monograin-staged-abcdef");
-  fs::rename(path("n"), staged);
-  fs::rename(staged / "events.csv", path("r/events.csv"));
-  const std::string history = read_text(staged / "history.csv");
-  write_text(path("r/notes.txt"), "mine");
-  // The next run has no room for its own result.
-  EXPECT_EQ(shell("ulimit -f 64; monograin run small.toml -o r --set output.points=2000").code, 2);
-  EXPECT_TRUE(text("r/history.csv") == history);
-  EXPECT_EQ(names_in("r"), (Strings{".monograin", "events.csv", "figure.dat", "figure.gp", "figure.svg", "history.csv",
-                                    "notes.txt", "run.json"}));
+  EXPECT_EQ(text("r/late.txt"), "mine");
+  EXPECT_FALSE(fs::exists(path(".r.monograin-staged-abcdef")));
+  EXPECT_FALSE(fs::exists(path("r/figure.svg")));
+}
+
+TEST_F(UserFiles, ARepeatedRunKeepsTheModeOfItsFolder) {
+  ASSERT_EQ(monograin("run small.toml -o r").code, 0);
+  fs::permissions(path("r"), fs::perms::owner_all);
+  ASSERT_EQ(monograin("run small.toml -o r").code, 0);
+  EXPECT_EQ(fs::status(path("r")).permissions(), fs::perms::owner_all);
 }
 
 TEST_F(UserFiles, AFullDiskLeavesTheOldResult) {

@@ -225,7 +225,7 @@ TEST_F(CsvFile, SaysThatAFileOrItsNameIsWrong) {
     static_cast<void>(read_csv(file()));
     FAIL() << "no exception";
   } catch (const std::runtime_error& fault) {
-    EXPECT_EQ(std::string(fault.what()), file().string() + ":1: cannot be read: No such file or directory");
+    EXPECT_EQ(std::string(fault.what()), file().string() + ":1: cannot be read: there is no such file");
   }
   EXPECT_THROW(static_cast<void>(read_csv(file().parent_path())), std::runtime_error);
 }
