@@ -244,6 +244,9 @@ class HybridSystem {
   /// Whether the walls of a class do not touch the particle.
   [[nodiscard]] virtual bool is_open(int /*contact_class*/) const noexcept { return false; }
 
+  /// Whether a contact may pull: its force then passes through zero while it is closed.
+  [[nodiscard]] virtual bool contacts_adhere() const noexcept { return false; }
+
   /// What makes the equations hard where an integrator has given up, and what to do; empty where nothing is known.
   [[nodiscard]] virtual std::string_view difficulty(double /*xi*/, std::span<const double> /*y*/) { return {}; }
 

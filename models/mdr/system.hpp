@@ -88,6 +88,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
+  [[nodiscard]] bool contacts_adhere() const noexcept override { return adheres(); }
   [[nodiscard]] std::string_view difficulty(double xi, std::span<const double> y) override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
 

@@ -13,6 +13,7 @@
 #include "cli/commands.hpp"
 #include "figure/figure.hpp"
 #include "history/run_files.hpp"
+#include "scenario/remarks.hpp"
 
 namespace monograin {
 namespace {
@@ -166,7 +167,11 @@ void add_check_command(CLI::App& app, Action& action) {
   command->footer("Example: monograin check scenarios/die.toml");
   command->callback([options, &action] {
     action = [options] {
-      static_cast<void>(read_jobs(*options));
+      for (const Job& job : read_jobs(*options)) {
+        for (const auto& remark : {remark_on_points(job.scenario), remark_on_times(job.scenario)}) {
+          if (remark) fmt::print(stderr, "{}: warning: {}\n", job.scenario.name, *remark);
+        }
+      }
       return static_cast<int>(k_success);
     };
   });

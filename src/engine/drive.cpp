@@ -4,12 +4,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <numeric>
 #include <optional>
 #include <set>
+#include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "engine/watch.hpp"
 
@@ -32,35 +35,84 @@ constexpr int k_most_events = 1000;
 constexpr double k_surest_rtol = 1e-11;
 // Durations of walls that end their steps together (relative).
 constexpr double k_same_duration = 1e-9;
+// An output time that counts as the program's end (relative).
+constexpr double k_same_instant = 1e-12;
 
 /// The run has left the model's domain.
 struct Stop {
   std::string message;
 };
 
-Quantity to_quantity(Until::Quantity quantity) {
-  switch (quantity) {
-    case Until::Quantity::force:
-      return Quantity::force;
-    case Until::Quantity::displacement:
-      return Quantity::displacement;
-    case Until::Quantity::pressure:
-      return Quantity::pressure;
-    case Until::Quantity::contact_radius:
-      return Quantity::contact_radius;
-    case Until::Quantity::apparent_radius:
-      return Quantity::apparent_radius;
-    case Until::Quantity::stress_axial:
-      return Quantity::stress_axial;
-    case Until::Quantity::stress_lateral:
-      return Quantity::stress_lateral;
-    case Until::Quantity::relative_density:
-      return Quantity::relative_density;
-    case Until::Quantity::event:
-      break;
-  }
-  throw std::logic_error("an event is not a quantity");
+/// A quantity of a condition: its word in scenario files and its unit.
+struct QuantityWords {
+  Until::Quantity of_scenario;
+  Quantity quantity;
+  std::string_view name;
+  std::string_view unit;
+  bool is_of_contact;  ///< each contact class has its own
+};
+
+constexpr std::array k_quantities{
+    QuantityWords{Until::Quantity::force, Quantity::force, "force", "N", true},
+    QuantityWords{Until::Quantity::displacement, Quantity::displacement, "displacement", "m", true},
+    QuantityWords{Until::Quantity::pressure, Quantity::pressure, "pressure", "Pa", true},
+    QuantityWords{Until::Quantity::contact_radius, Quantity::contact_radius, "contact_radius", "m", true},
+    QuantityWords{Until::Quantity::apparent_radius, Quantity::apparent_radius, "apparent_radius", "m", false},
+    QuantityWords{Until::Quantity::stress_axial, Quantity::stress_axial, "stress_axial", "Pa", false},
+    QuantityWords{Until::Quantity::stress_lateral, Quantity::stress_lateral, "stress_lateral", "Pa", false},
+    QuantityWords{Until::Quantity::relative_density, Quantity::relative_density, "relative_density", "", false},
+};
+
+const QuantityWords& words_of(Quantity quantity) {
+  return *std::ranges::find(k_quantities, quantity, &QuantityWords::quantity);
 }
+
+Quantity to_quantity(Until::Quantity quantity) {
+  const auto found = std::ranges::find(k_quantities, quantity, &QuantityWords::of_scenario);
+  if (found == k_quantities.end()) throw std::logic_error("an event is not a quantity");
+  return found->quantity;
+}
+
+std::string with_unit(double value, Quantity quantity) {
+  const std::string_view unit = words_of(quantity).unit;
+  return fmt::format("{:.6g}{}{}", value, unit.empty() ? "" : " ", unit);
+}
+
+/// What the program asked for and did not get. Steps of which the same is to be said share one note.
+class ProgramNotes {
+ public:
+  /// @param step     from 1
+  /// @param what     the same for all steps that share the note
+  /// @param example  numbers of the first of them
+  void add(std::size_t step, std::string what, std::string example = {}) {
+    auto note = std::ranges::find(notes_, what, &Note::what);
+    if (note == notes_.end()) note = notes_.insert(notes_.end(), {std::move(what), std::move(example), {}});
+    if (note->steps.empty() || note->steps.back() != step) note->steps.push_back(step);
+  }
+
+  [[nodiscard]] std::vector<std::string> texts() const {
+    std::vector<std::string> result;
+    for (const Note& note : notes_) result.push_back(steps_of(note) + ": " + note.what + note.example);
+    return result;
+  }
+
+ private:
+  struct Note {
+    std::string what;
+    std::string example;
+    std::vector<std::size_t> steps;
+  };
+
+  static std::string steps_of(const Note& note) {
+    constexpr std::size_t k_most_named = 3;
+    const std::size_t count = note.steps.size();
+    const auto named = std::span(note.steps).first(std::min(count, k_most_named));
+    return fmt::format("step{} {}{}", count > 1 ? "s" : "", fmt::join(named, ", "),
+                       count > k_most_named ? fmt::format(", ... ({} times)", count) : "");
+  }
+
+  std::vector<Note> notes_;
+};
 
 std::string text_of(const Finding& finding) {
   return fmt::format("{} ({} = {:.9g})", finding.message, finding.quantity, finding.value);
@@ -129,6 +181,8 @@ class Drive {
     for (const Finding& warning : system_.warnings()) {
       result.warnings.push_back(fmt::format("{} ({} = {:.6g})", warning.message, warning.quantity, warning.value));
     }
+    for (std::string& note : notes_.texts()) result.warnings.push_back(std::move(note));
+    if (result.status == RunStatus::complete) note_unreached_times(result.warnings);
     return result;
   }
 
@@ -147,6 +201,7 @@ class Drive {
         begin_history(log);
       }
       const bool is_met = integrate_step(log);
+      if (!is_met) note_unmet_conditions();
       open_instant(xi_);
       log.clear();
       if (is_met) log.push_back({"until-met"});
@@ -235,6 +290,42 @@ class Drive {
     });
   }
 
+  /// A condition in the words of the scenario, e.g. "until axial.force = 1000 N".
+  [[nodiscard]] std::string condition_text(const Condition& condition) const {
+    const QuantityWords& words = words_of(condition.quantity);
+    const Channel& channel = scene_.channels[static_cast<std::size_t>(condition.channel)];
+    return fmt::format("until {}{}{} = {}", words.is_of_contact ? channel.name : "", words.is_of_contact ? "." : "",
+                       words.name, with_unit(condition.target, condition.quantity));
+  }
+
+  /// Notes of a step that none of its conditions has ended.
+  void note_unmet_conditions() {
+    for (std::size_t i = 0; i < plan_.conditions.size(); ++i) {
+      const Condition& condition = plan_.conditions[i];
+      const double begin = watch_.value_at_begin(i);
+      const double end = system_.quantity(condition.quantity, condition.channel, xi_, y_);
+      const bool has_gone_away = std::abs(end - condition.target) > std::abs(begin - condition.target);
+      notes_.add(step_ + 1,
+                 fmt::format("{} was never met{}", condition_text(condition),
+                             has_gone_away ? ": it lay behind where the step began" : ""),
+                 fmt::format(" ({} at its beginning, {} at its end)", with_unit(begin, condition.quantity),
+                             with_unit(end, condition.quantity)));
+    }
+    for (const std::string& event : plan_.ending_events) {
+      notes_.add(step_ + 1, fmt::format("until event = \"{}\" was never met: no such event happened", event));
+    }
+  }
+
+  /// Says which of the output times come after the last step has ended.
+  void note_unreached_times(std::vector<std::string>& warnings) const {
+    const double end = step_start_ * (1.0 + k_same_instant);
+    const auto count = std::ranges::count_if(output_.times, [end](double instant) { return instant > end; });
+    if (count == 0) return;
+    warnings.push_back(
+        fmt::format("{} of {} output times lie{} beyond the end of the program, t = {:.9g} s: no rows there", count,
+                    output_.times.size(), count == 1 ? "s" : "", step_start_));
+  }
+
   [[nodiscard]] bool is_detached() const {
     return !plan_.detaching.empty() && std::ranges::all_of(plan_.detaching, [&](int c) { return system_.is_open(c); });
   }
@@ -248,6 +339,11 @@ class Drive {
     xi_ = 0.0;
     watch_.begin_step(plan_.conditions, 0.0, y_);
     plan_outputs();
+    if (const auto held = watch_.held_at_begin()) {
+      notes_.add(step_ + 1,
+                 condition_text(plan_.conditions[*held]) + " holds where the step begins, and ends it there");
+      return true;
+    }
     if (has_ending_event(log)) return true;
     if (is_detached()) return false;
     int idle_events = 0;
@@ -300,7 +396,8 @@ class Drive {
       });
     }
     xi_ = 1.0;
-    return false;
+    watch_.note_met({}, xi_, y_);
+    return watch_.is_met(xi_, y_);
   }
 
   /// Changes the state wholly or, where that meets the end of the equations, not at all: the run ends in it.
@@ -338,7 +435,8 @@ class Drive {
       if (failure) std::rethrow_exception(failure);
       is_met = is_met || watch_.is_met(xi_, y_) || has_ending_event(log);
     }
-    watch_.renew(xi_, y_);
+    if (is_met) watch_.note_met(fired, xi_, y_);
+    watch_.renew();
     return is_met;
   }
 
@@ -501,6 +599,7 @@ class Drive {
   std::vector<double> y_;
   std::vector<double> output_state_;
   std::vector<Ramp> held_;  ///< where the program has taken the channels
+  ProgramNotes notes_;
 
   std::size_t step_ = 0;
   Plan plan_;

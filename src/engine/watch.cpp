@@ -2,45 +2,71 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace monograin {
 
-void Watch::begin_step(std::span<const Condition> conditions, double xi, std::span<const double> y) {
-  conditions_.clear();
-  for (const Condition& condition : conditions) {
-    Watched watched{.condition = condition};
-    const double distance = excess(watched, xi, y);
-    // The larger of target and starting distance makes the root function of order one.
-    const double scale = std::max(std::abs(condition.target), std::abs(distance));
-    if (scale > 0.0) watched.scale = scale;
-    watched.direction = distance < 0.0 ? 1 : distance > 0.0 ? -1 : 0;
-    conditions_.push_back(watched);
-  }
-  renew(xi, y);
+bool equals_target(double value, double target) noexcept {
+  constexpr double k_equal = 1e-9;
+  return std::abs(value - target) <= k_equal * std::max(std::abs(value), std::abs(target));
 }
 
-void Watch::renew(double xi, std::span<const double> y) {
+void Watch::begin_step(std::span<const Condition> conditions, double xi, std::span<const double> y) {
+  std::swap(conditions_, of_last_step_);
+  conditions_.clear();
+  for (const Condition& condition : conditions) {
+    const double begin = value(condition, xi, y);
+    const double distance = begin - condition.target;
+    const double scale = std::max(std::abs(condition.target), std::abs(distance));
+    conditions_.push_back({.condition = condition,
+                           .begin = begin,
+                           .scale = scale > 0.0 ? scale : 1.0,
+                           .direction = distance < 0.0 ? 1 : -1,
+                           .is_held = equals_target(begin, condition.target) || has_ended_last_step(condition)});
+  }
+  renew();
+}
+
+bool Watch::has_ended_last_step(const Condition& condition) const {
+  return std::ranges::any_of(
+      of_last_step_, [&](const Watched& watched) { return watched.has_ended && watched.condition == condition; });
+}
+
+std::optional<std::size_t> Watch::held_at_begin() const noexcept {
+  const auto held = std::ranges::find_if(conditions_, &Watched::is_held);
+  if (held == conditions_.end()) return std::nullopt;
+  return static_cast<std::size_t>(held - conditions_.begin());
+}
+
+void Watch::note_met(std::span<const std::size_t> fired, double xi, std::span<const double> y) {
+  for (const std::size_t guard : fired) {
+    if (guard >= system_count_) conditions_[rooted_[guard - system_count_]].has_ended = true;
+  }
+  for (Watched& watched : conditions_) {
+    watched.has_ended = watched.has_ended || equals_target(value(watched.condition, xi, y), watched.condition.target);
+  }
+}
+
+void Watch::renew() {
   directions_.clear();
   rooted_.clear();
   for (const Guard& guard : system_.guards()) directions_.push_back(guard.direction);
   system_count_ = directions_.size();
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
-    Watched& watched = conditions_[i];
-    if (watched.direction == 0) {
-      const double distance = excess(watched, xi, y);
-      watched.direction = distance < 0.0 ? 1 : distance > 0.0 ? -1 : 0;
-    }
-    // Force, pressure and contact radius reach zero where the contact is lost and stay there: no root function, but an
-    // event of the system, after which is_met() finds them.
-    const Quantity quantity = watched.condition.quantity;
-    const bool vanishes =
-        watched.condition.target == 0.0 &&
-        (quantity == Quantity::force || quantity == Quantity::pressure || quantity == Quantity::contact_radius);
-    if (vanishes) continue;
+    if (vanishes_with_contact(conditions_[i].condition)) continue;
     rooted_.push_back(i);
-    directions_.push_back(watched.direction);
+    directions_.push_back(conditions_[i].direction);
   }
   is_monotone_ = rooted_.empty() && std::ranges::all_of(system_.guards(), &Guard::is_monotone);
+}
+
+/// Force, pressure and contact radius reach zero where the contact is lost and stay there: no root function, but an
+/// event of the system, after which is_met() finds them. The force of an adhesive contact passes through zero before.
+bool Watch::vanishes_with_contact(const Condition& condition) const {
+  if (condition.target != 0.0) return false;
+  if (condition.quantity == Quantity::contact_radius) return true;
+  const bool is_force = condition.quantity == Quantity::force || condition.quantity == Quantity::pressure;
+  return is_force && !system_.contacts_adhere();
 }
 
 std::string Watch::name(std::size_t guard) const {
@@ -53,9 +79,12 @@ std::string Watch::name(std::size_t guard) const {
   return result;
 }
 
+double Watch::value(const Condition& condition, double xi, std::span<const double> y) {
+  return system_.quantity(condition.quantity, condition.channel, xi, y);
+}
+
 double Watch::excess(const Watched& watched, double xi, std::span<const double> y) {
-  const Condition& c = watched.condition;
-  return (system_.quantity(c.quantity, c.channel, xi, y) - c.target) / watched.scale;
+  return (value(watched.condition, xi, y) - watched.condition.target) / watched.scale;
 }
 
 void Watch::values(double xi, std::span<const double> y, std::span<double> out) {
@@ -65,7 +94,9 @@ void Watch::values(double xi, std::span<const double> y, std::span<double> out) 
 
 bool Watch::is_met(double xi, std::span<const double> y) {
   return std::ranges::any_of(conditions_, [&](const Watched& watched) {
-    return watched.direction != 0 && watched.direction * excess(watched, xi, y) >= 0.0;
+    const double now = value(watched.condition, xi, y);
+    const double target = watched.condition.target;
+    return watched.direction * (now - target) >= 0.0 || equals_target(now, target);
   });
 }
 

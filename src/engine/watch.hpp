@@ -10,12 +10,17 @@
 
 namespace monograin {
 
-/// Ends a step when a quantity of a channel reaches a value.
+/// Ends a step when a quantity of a channel reaches a value: equals it, or crosses it.
 struct Condition {
   Quantity quantity = Quantity::force;
   int channel = 0;
   double target = 0.0;  ///< SI
+
+  [[nodiscard]] bool operator==(const Condition&) const = default;
 };
+
+/// True if a quantity counts as equal to the target of a condition: within 1e-9 of the larger magnitude.
+[[nodiscard]] bool equals_target(double value, double target) noexcept;
 
 class Watch {
  public:
@@ -24,8 +29,19 @@ class Watch {
   /// Takes up the conditions of a step; which side of its target each one starts on is read from the state.
   void begin_step(std::span<const Condition> conditions, double xi, std::span<const double> y);
 
+  /// Index of the first condition that holds where the step began: its quantity equals its target there, or the step
+  /// before has ended by it. None if none holds.
+  [[nodiscard]] std::optional<std::size_t> held_at_begin() const noexcept;
+
+  /// Notes which conditions end the step: those among the guards that fired, and those whose quantities equal their
+  /// targets. One that was passed in a jump ends the step, too, but does not hold where the next one begins.
+  void note_met(std::span<const std::size_t> fired, double xi, std::span<const double> y);
+
+  /// Value of a condition's quantity where the step began.
+  [[nodiscard]] double value_at_begin(std::size_t condition) const { return conditions_[condition].begin; }
+
   /// Lists what is alive from here on. Call after every change of the system's mode.
-  void renew(double xi, std::span<const double> y);
+  void renew();
 
   [[nodiscard]] std::size_t size() const noexcept { return directions_.size(); }
   [[nodiscard]] std::span<const int> directions() const noexcept { return directions_; }
@@ -39,19 +55,26 @@ class Watch {
   /// Whether the values of all guards at two instants show what crosses between them.
   [[nodiscard]] bool is_monotone() const noexcept { return is_monotone_; }
 
-  /// Whether a condition is met by the present state, however it came about (a jump, a contact lost).
+  /// True if the present state meets a condition, however it came about (a ramp's end, a jump, a contact lost).
   [[nodiscard]] bool is_met(double xi, std::span<const double> y);
 
  private:
   struct Watched {
     Condition condition;
-    double scale = 1.0;
-    int direction = 0;  ///< in which the target is met; 0 while the quantity sits on it since the step began
+    double begin = 0.0;      ///< value of the quantity where the step began
+    double scale = 1.0;      ///< largest of target and distance: makes the root function of order one
+    int direction = 1;       ///< in which the target is met
+    bool is_held = false;    ///< where the step began
+    bool has_ended = false;  ///< the step
   };
+  [[nodiscard]] double value(const Condition& condition, double xi, std::span<const double> y);
   [[nodiscard]] double excess(const Watched& watched, double xi, std::span<const double> y);
+  [[nodiscard]] bool has_ended_last_step(const Condition& condition) const;
+  [[nodiscard]] bool vanishes_with_contact(const Condition& condition) const;
 
   HybridSystem& system_;
   std::vector<Watched> conditions_;
+  std::vector<Watched> of_last_step_;
   std::vector<std::size_t> rooted_;  ///< conditions with a root function of their own
   std::vector<int> directions_;
   std::size_t system_count_ = 0;

@@ -8,6 +8,7 @@
 #include "catalogue.hpp"
 #include "history/energy.hpp"
 #include "history/recorder.hpp"
+#include "scenario/remarks.hpp"
 
 namespace monograin {
 namespace {
@@ -98,6 +99,7 @@ Run run_scenario(const Scenario& scenario, const SystemWrapper& wrapped) {
   run.record =
       record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
   run.timings.integration = watch.lap();
+  if (auto remark = remark_on_points(scenario)) run.record.warnings.push_back(std::move(*remark));
 
   for (std::size_t c = 0; c < scene.classes.size(); ++c) run.classes.push_back({scene.classes[c].name, scene.walls[c]});
   run.skipped = std::move(scene.skipped);

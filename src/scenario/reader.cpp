@@ -153,8 +153,10 @@ void read_options(Reading& reading, const Section& root, const Language& languag
 
 void read_output(Reading& reading, const Section& root, const Language& language, Scenario& scenario) {
   const Section output(reading, root.table("output", "[output]"), language.output);
-  scenario.output.points = static_cast<int>(output.number("points").value_or(0.0));
   scenario.output.times = output.numbers("times");
+  // The default number of points is that of a scenario without times.
+  const bool has_points = scenario.output.times.empty() || output.has("points");
+  scenario.output.points = has_points ? static_cast<int>(output.number("points").value_or(0.0)) : 0;
 }
 
 void read_numerics(Reading& reading, const Section& root, const Language& language, Scenario& scenario) {

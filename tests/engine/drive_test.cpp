@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "elastic/hertz.hpp"
+#include "engine/integrator.hpp"
 #include "support/test_run.hpp"
 #include "support/toy_system.hpp"
 
@@ -34,6 +39,32 @@ std::vector<std::pair<double, int>> rows(const TestRun& result) {
 }
 
 using Rows = std::vector<std::pair<double, int>>;
+
+/// The forward Euler scheme at a tolerance that is its step.
+double accuracy(std::string_view integrator) { return integrator == "explicit" ? 1e-4 : 1e-7; }
+
+TestRun run_with(const Scenario& scenario, std::string_view integrator) {
+  return run(scenario, integrator, relative(integrator == "explicit" ? 1e-5 : 1e-8));
+}
+
+/// The warnings that speak of steps of the program.
+std::vector<std::string> notes(const TestRun& result) {
+  std::vector<std::string> list;
+  for (const std::string& warning : result.record.warnings) {
+    if (warning.starts_with("step")) list.push_back(warning);
+  }
+  return list;
+}
+
+/// When each step of the program has ended.
+std::vector<double> step_ends(const TestRun& result) {
+  std::vector<double> ends;
+  const Table& events = result.record.events;
+  for (std::size_t i = 0; i < events.row_count(); ++i) {
+    if (events.word(i, *events.find("event")) == "step-end") ends.push_back(events.at(i, *events.find("time")));
+  }
+  return ends;
+}
 
 // --- rows
 
@@ -106,6 +137,17 @@ TEST(Rows, DoNotChangeWhereARunEnds) {
       EXPECT_EQ(more.record.statistics.steps, two.record.statistics.steps) << integrator;
     }
   }
+}
+
+TEST(OutputTimes, BeyondTheEndOfTheProgramAreNoted) {
+  Scenario scenario = hertz_pair({ramp(0.2), until(ramp(0.0), force, hertz(0.1))});
+  scenario.output.times = {0.5, 1.25, 1.75, 3.0};
+  const TestRun result = run(scenario);
+  ASSERT_EQ(result.record.warnings.size(), 1U);
+  EXPECT_EQ(result.record.warnings[0],
+            "2 of 4 output times lie beyond the end of the program, t = 1.5 s: no rows there");
+  scenario.output.times = {0.5, result.last("time")};
+  EXPECT_TRUE(run(scenario).record.warnings.empty());
 }
 
 TEST(Events, CarryTheStateJustAfter) {
@@ -222,16 +264,75 @@ TEST(Conditions, OfAnEventEndTheStepThere) {
   }
 }
 
-TEST(Conditions, ThatHoldAtTheStartWaitUntilTheyAreMetAgain) {
-  // The force is above its target already: it is met on the way down, not at once and not on the way up.
-  const TestRun above =
-      run(hertz_pair({ramp(0.2), until(ramp(0.3), force, hertz(0.1)), until(ramp(0.0), force, hertz(0.1))}));
-  EXPECT_NEAR(above.last("axial.displacement"), 0.1, 1e-15);
-  EXPECT_NEAR(above.last("time"), 2.0 + 2.0 / 3.0, 1e-14);
-  // A step that begins on its target.
-  const TestRun on = run(hertz_pair({ramp(0.2), until(ramp(0.3), displacement, 0.2)}));
-  EXPECT_EQ(on.last("axial.displacement"), 0.3);
-  EXPECT_FALSE(on.has_event("until-met"));
+TEST(Conditions, ExceededWhereTheirStepBeginsAreMetWhenTheyAreCrossed) {
+  for (const std::string_view integrator : integrator_names()) {
+    const double target = hertz(0.1);
+    const TestRun result =
+        run_with(hertz_pair({ramp(0.2), until(ramp(0.3), force, target), until(ramp(0.0), force, target)}), integrator);
+    EXPECT_NEAR(result.last("axial.displacement"), 0.1, accuracy(integrator)) << integrator;
+    EXPECT_NEAR(result.last("time"), 2.0 + 2.0 / 3.0, 4.0 * accuracy(integrator)) << integrator;
+    const auto list = notes(result);
+    ASSERT_EQ(list.size(), 1U) << integrator;
+    EXPECT_EQ(list[0].find("step 2: until axial.force = 0.0463"), 0U) << list[0];
+    EXPECT_NE(list[0].find("was never met: it lay behind where the step began"), std::string::npos) << list[0];
+  }
+}
+
+TEST(Conditions, HoldingWhereTheirStepBeginsEndItThere) {
+  const std::vector<Step> programs[] = {
+      // Met at the end of the step before, by a crossing; by the loss of the contact; by the end of a ramp.
+      {until(ramp(0.3), force, hertz(0.1)), until(ramp(0.0), force, hertz(0.1)), hold()},
+      {ramp(0.2), until(ramp(-0.1), force, 0.0), until(ramp(0.1), force, 0.0), hold()},
+      {ramp(0.2), until(ramp(0.3), displacement, 0.2), hold()},
+      {until(ramp(0.2), displacement, 0.2), until(ramp(0.1), displacement, 0.2), hold()},
+      // Not met before, and no contact yet.
+      {until(ramp(0.2), force, 0.0), hold()}};
+  for (const std::vector<Step>& program : programs) {
+    const std::size_t held = program.size() - 1;  // the step before the last one
+    for (const std::string_view integrator : integrator_names()) {
+      const TestRun result = run_with(hertz_pair(program), integrator);
+      SCOPED_TRACE(integrator);
+      ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
+      const auto ends = step_ends(result);
+      ASSERT_EQ(ends.size(), program.size());
+      EXPECT_EQ(ends[held - 1], held > 1 ? ends[held - 2] : 0.0);
+      EXPECT_EQ(result.events().back(), "until-met");
+      const auto list = notes(result);
+      ASSERT_EQ(list.size(), 1U);
+      const std::string& note = list[0];
+      EXPECT_EQ(note.find(fmt::format("step {}: until axial.", held)), 0U) << note;
+      EXPECT_NE(note.find("holds where the step begins, and ends it there"), std::string::npos) << note;
+    }
+  }
+}
+
+TEST(Conditions, OfNoForceAreMetInMidAirWhereAContactAdheres) {
+  Scenario scenario = mdr_scenario(Configuration::simple, 20.0, 0.3, {ramp(0.05), until(ramp(0.0), force, 0.0)});
+  scenario.material["surface_energy"] = 1e-4;
+  for (const std::string_view integrator : integrator_names()) {
+    const TestRun result = run_with(scenario, integrator);
+    EXPECT_EQ(result.events().back(), "until-met") << integrator;
+    EXPECT_NEAR(result.last("axial.force"), 0.0, accuracy(integrator)) << integrator;
+    EXPECT_GT(result.last("axial.contact_radius"), 0.01) << integrator;
+  }
+}
+
+TEST(Conditions, NeverMetAreNotedOnceForAllSteps) {
+  const TestRun result = run(hertz_pair({ramp(0.1), until(ramp(0.2), force, 7.0), ramp(0.1),
+                                         until(until_event(ramp(0.2), "yield"), force, 7.0), ramp(0.1),
+                                         until(ramp(0.2), force, 7.0), ramp(0.1), until(ramp(0.2), force, 7.0)}));
+  ASSERT_EQ(result.record.warnings.size(), 2U);
+  EXPECT_EQ(result.record.warnings[0].find("steps 2, 4, 6, ... (4 times): until axial.force = 7 N was never met ("), 0U)
+      << result.record.warnings[0];
+  EXPECT_EQ(result.record.warnings[1], "step 4: until event = \"yield\" was never met: no such event happened");
+}
+
+TEST(Conditions, MetAtTheVeryEndOfARampAreMet) {
+  for (const std::string_view integrator : integrator_names()) {
+    const TestRun result = run_with(hertz_pair({until(ramp(0.1 + 0.2), displacement, 0.3)}), integrator);
+    EXPECT_EQ(result.events().back(), "until-met") << integrator;
+    EXPECT_TRUE(notes(result).empty()) << integrator;
+  }
 }
 
 TEST(Conditions, EndTheStepOfAllWalls) {

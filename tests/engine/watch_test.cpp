@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <vector>
 
 #include "engine/watch.hpp"
@@ -57,14 +58,50 @@ TEST_F(WatchTest, MeetsATargetFromTheSideWhereTheStepBegan) {
   EXPECT_TRUE(is_met_at(1.9));
 }
 
-TEST_F(WatchTest, DoesNotMeetATargetTheStepBeganOn) {
-  begin({{Quantity::displacement, 0, 2.0}}, 2.0);
-  EXPECT_EQ(watch_.directions()[2], 0);
-  EXPECT_FALSE(is_met_at(2.0));
-  // Once it has left, the way back counts.
-  watch_.renew(0.5, std::vector<double>{2.5});
+TEST_F(WatchTest, HoldsATargetTheStepBeganOn) {
+  begin({{Quantity::force, 0, 5.0}, {Quantity::displacement, 0, 2.0}}, 2.0);
+  EXPECT_EQ(watch_.held_at_begin(), 1u);
+  begin({{Quantity::displacement, 0, 0.0}}, 0.0);
+  EXPECT_EQ(watch_.held_at_begin(), 0u);
+  // Within a billionth of the larger magnitude, and no farther.
+  begin({{Quantity::displacement, 0, 2.0}}, 2.0 * (1.0 + 0.9e-9));
+  EXPECT_EQ(watch_.held_at_begin(), 0u);
+  begin({{Quantity::displacement, 0, 2.0}}, 2.0 * (1.0 + 1.1e-9));
+  EXPECT_FALSE(watch_.held_at_begin());
   EXPECT_EQ(watch_.directions()[2], -1);
-  EXPECT_TRUE(is_met_at(2.0));
+  begin({{Quantity::displacement, 0, 0.0}}, 1e-300);
+  EXPECT_FALSE(watch_.held_at_begin());
+}
+
+TEST_F(WatchTest, IsMetWithinATargetsTolerance) {
+  begin({{Quantity::displacement, 0, 2.0}}, 1.0);
+  EXPECT_TRUE(is_met_at(2.0 * (1.0 - 0.9e-9)));
+  EXPECT_FALSE(is_met_at(2.0 * (1.0 - 1.1e-9)));
+}
+
+TEST_F(WatchTest, HoldsATargetByWhichTheLastStepHasEnded) {
+  const std::vector<Condition> conditions{{Quantity::displacement, 0, 2.0}};
+  const std::vector<std::size_t> fired{2};
+  // Located no closer than the steps of an integrator are long.
+  begin(conditions, 1.0);
+  watch_.note_met(fired, 0.5, std::vector<double>{2.1});
+  begin(conditions, 2.1);
+  EXPECT_EQ(watch_.held_at_begin(), 0u);
+  // Another target, or the step after next, has nothing to do with it.
+  begin(conditions, 1.0);
+  watch_.note_met(fired, 0.5, std::vector<double>{2.1});
+  begin({{Quantity::displacement, 0, 2.05}}, 2.1);
+  EXPECT_FALSE(watch_.held_at_begin());
+  begin(conditions, 2.1);
+  EXPECT_FALSE(watch_.held_at_begin());
+}
+
+TEST_F(WatchTest, DoesNotHoldATargetThatAJumpHasPassed) {
+  begin({{Quantity::force, 0, -3.0}}, -4.0);
+  EXPECT_TRUE(is_met_at(0.0));
+  watch_.note_met({}, 0.5, std::vector<double>{0.0});
+  begin({{Quantity::force, 0, -3.0}}, 0.0);
+  EXPECT_FALSE(watch_.held_at_begin());
 }
 
 TEST_F(WatchTest, HasNoRootFunctionForWhatVanishesWithTheContact) {
@@ -72,6 +109,10 @@ TEST_F(WatchTest, HasNoRootFunctionForWhatVanishesWithTheContact) {
     begin({{quantity, 0, 0.0}}, 1.0);
     EXPECT_EQ(watch_.size(), 2u);
     EXPECT_TRUE(is_met_at(0.0));
+    toy_.adheres = true;
+    begin({{quantity, 0, 0.0}}, 1.0);
+    EXPECT_EQ(watch_.size(), quantity == Quantity::contact_radius ? 2u : 3u);
+    toy_.adheres = false;
   }
   begin({{Quantity::displacement, 0, 0.0}}, 1.0);
   EXPECT_EQ(watch_.size(), 3u);

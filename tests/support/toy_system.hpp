@@ -38,6 +38,7 @@ class ToySystem final : public HybridSystem {
       [](double start, View from, double xi, std::span<double> y) { y[0] = from[0] + xi - start; };
   std::vector<ToyGuard> watched;
   bool is_quadrature = false;  ///< y0: rates do not depend on it
+  bool adheres = false;        ///< whether a force may pass through zero
   int mode = 0;                ///< for transitions to set and rates to read
 
   // What the engine did.
@@ -103,6 +104,7 @@ class ToySystem final : public HybridSystem {
   [[nodiscard]] double controlled(Control control, int, double xi, View y) override {
     return control == Control::force ? y[0] : xi;
   }
+  [[nodiscard]] bool contacts_adhere() const noexcept override { return adheres; }
   [[nodiscard]] bool is_open(int) const noexcept override { return false; }
   [[nodiscard]] std::vector<Finding> warnings() const override { return {}; }
 

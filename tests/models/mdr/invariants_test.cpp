@@ -187,7 +187,7 @@ double largest_drift(const Scenario& scenario, std::string_view integrator, doub
     if (hit_guard) {
       const std::vector<std::size_t> fired(integrator_used->fired().begin(), integrator_used->fired().end());
       system.fire(fired, xi, y, log);
-      watch.renew(xi, y);
+      watch.renew();
     }
   }
   return worst;

@@ -1,0 +1,66 @@
+#include "scenario/remarks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace monograin {
+namespace {
+
+// An output time that counts as the program's end (relative).
+constexpr double k_same_instant = 1e-12;
+
+/// Programs of all walls, or the one of a model without walls.
+std::vector<std::vector<Step>> programs_of(const Scenario& scenario) {
+  std::vector<std::vector<Step>> programs{scenario.loading.steps};
+  for (const WallSpec& wall : scenario.loading.walls) programs.push_back(wall.steps);
+  return programs;
+}
+
+/// Seconds that a step takes where no condition ends it; none where that depends on the run.
+std::optional<double> duration_of(const std::vector<Step>& program, std::size_t index) {
+  const Step& step = program[index];
+  if (step.duration || !step.rate) return step.duration;
+  // A ramp by its rate takes as long as its way: from the target of the step before, if that has led there.
+  if (index == 0 || program[index - 1].kind != step.kind || !program[index - 1].until.empty()) return std::nullopt;
+  if (!control_of(step.kind)) return std::nullopt;
+  return std::abs(step.target - program[index - 1].target) / *step.rate;
+}
+
+/// Latest end of a program [s]: conditions may end its steps earlier. None where that depends on the run.
+std::optional<double> latest_end(const Scenario& scenario) {
+  const auto programs = programs_of(scenario);
+  std::size_t count = 0;
+  for (const auto& program : programs) count = std::max(count, program.size());
+  double end = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::optional<double> duration;
+    for (const auto& program : programs) {
+      if (k < program.size() && !duration) duration = duration_of(program, k);
+    }
+    if (!duration) return std::nullopt;
+    end += *duration;
+  }
+  return end;
+}
+
+}  // namespace
+
+std::optional<std::string> remark_on_points(const Scenario& scenario) {
+  if (scenario.output.times.empty() || scenario.output.points == 0) return std::nullopt;
+  return fmt::format("[output] points = {} is ignored: times say where the rows are", scenario.output.points);
+}
+
+std::optional<std::string> remark_on_times(const Scenario& scenario) {
+  const std::vector<double>& times = scenario.output.times;
+  const std::optional<double> end = latest_end(scenario);
+  if (!end) return std::nullopt;
+  const auto count = std::ranges::count_if(times, [&](double t) { return t > *end * (1.0 + k_same_instant); });
+  if (count == 0) return std::nullopt;
+  return fmt::format("{} of {} output times lie{} beyond the end of the program, t = {:.9g} s: no rows there", count,
+                     times.size(), count == 1 ? "s" : "", *end);
+}
+
+}  // namespace monograin
