@@ -17,6 +17,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -203,6 +204,10 @@ class HybridSystem {
 
   /// Whether solve() finds the state at any instant of the program. If not, the direct form is not offered.
   [[nodiscard]] virtual bool is_solvable() const noexcept { return true; }
+  /// A function that brings the system back to its present mode and memory, after a step has been rehearsed. Not to be
+  /// called when the system is gone.
+  [[nodiscard]] virtual std::function<void()> checkpoint() = 0;
+
   /// Solves for everything but the quadratures; the present values are the first guess. Of a system that is not
   /// solvable: for what jumps in a transition.
   /// @throws std::domain_error where there is no solution

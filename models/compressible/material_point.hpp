@@ -46,6 +46,9 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] bool is_semi_explicit() const noexcept override { return false; }
   void start(std::span<double> y) override;
   void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override;
+  [[nodiscard]] std::function<void()> checkpoint() override {
+    return [this, then = *this] { *this = then; };
+  }
   void complete(double xi, std::span<double> y) override;
   [[nodiscard]] bool has_corrections() const noexcept override { return true; }
   void rates(double xi, std::span<const double> y, std::span<double> dy) override;

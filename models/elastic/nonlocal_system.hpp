@@ -40,6 +40,9 @@ class System final : public HybridSystem {
   [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return classes_; }
   void start(std::span<double> y) override;
   void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override;
+  [[nodiscard]] std::function<void()> checkpoint() override {
+    return [this, then = *this] { *this = then; };
+  }
   void complete(double xi, std::span<double> y) override;
   void rates(double xi, std::span<const double> y, std::span<double> dy) override;
   void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }

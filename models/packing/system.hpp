@@ -38,6 +38,9 @@ class System final : public HybridSystem {
   void start(std::span<double> y) override;
   /// @throws std::domain_error where a plastic packing would be unloaded, or a full one compacted
   void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override;
+  [[nodiscard]] std::function<void()> checkpoint() override {
+    return [this, then = *this] { *this = then; };
+  }
   void complete(double xi, std::span<double> y) override;
   void rates(double xi, std::span<const double> y, std::span<double> dy) override;
   void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <functional>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -127,6 +129,9 @@ struct Plan {
   std::vector<int> detaching;  ///< classes that are withdrawn until they are open
 };
 
+// Step coordinate of the output point at the end of a step that may end early, wherever that will be.
+constexpr double k_at_end = std::numeric_limits<double>::infinity();
+
 /// An output point of the present step.
 struct OutputPoint {
   double xi = 0.0;
@@ -202,6 +207,7 @@ class Drive {
       }
       const bool is_met = integrate_step(log);
       if (!is_met) note_unmet_conditions();
+      if (next_output_ + 1 == outputs_.size() && outputs_.back().xi == k_at_end) outputs_.back().xi = xi_;
       open_instant(xi_);
       log.clear();
       if (is_met) log.push_back({"until-met"});
@@ -338,7 +344,7 @@ class Drive {
   bool integrate_step(const std::vector<Event>& log) {
     xi_ = 0.0;
     watch_.begin_step(plan_.conditions, 0.0, y_);
-    plan_outputs();
+    outputs_.clear();
     if (const auto held = watch_.held_at_begin()) {
       notes_.add(step_ + 1,
                  condition_text(plan_.conditions[*held]) + " holds where the step begins, and ends it there");
@@ -346,6 +352,39 @@ class Drive {
     }
     if (has_ending_event(log)) return true;
     if (is_detached()) return false;
+    plan_outputs(may_end_early() && has_interior_points() ? rehearse() : 1.0);
+    return integrate();
+  }
+
+  [[nodiscard]] bool may_end_early() const noexcept {
+    return !plan_.conditions.empty() || !plan_.ending_events.empty() || !plan_.detaching.empty();
+  }
+
+  /// Runs the step that has begun without recording it, and comes back to its beginning.
+  /// @return where it ends, if only by a limit of the model
+  double rehearse() {
+    const std::function<void()> restore = system_.checkpoint();
+    const std::vector<double> state = y_;
+    const long event_count = event_count_;
+    is_rehearsing_ = true;
+    try {
+      static_cast<void>(integrate());
+    } catch (const Stop&) {  // what ends the run will end it again
+    } catch (const std::domain_error&) {
+    } catch (const SolverError&) {
+    }
+    is_rehearsing_ = false;
+    restore();
+    const double end = std::exchange(xi_, 0.0);
+    y_ = state;
+    event_count_ = event_count;
+    idle_guards_.clear();
+    watch_.begin_step(plan_.conditions, 0.0, y_);
+    return end;
+  }
+
+  /// Integrates from the present state to where the step ends. Returns whether a condition ended it.
+  bool integrate() {
     int idle_events = 0;
     int events = 0;
     long steps = 0;
@@ -520,13 +559,16 @@ class Drive {
   // --- recording
   // ------------------------------------------------------------------------------------------------------------
 
-  void plan_outputs() {
-    outputs_.clear();
+  [[nodiscard]] bool has_interior_points() const noexcept { return output_.times.empty() && output_.points > 1; }
+
+  /// @param end  of the step: points divide what lies before it into equal intervals
+  void plan_outputs(double end) {
     next_output_ = 0;
     for (int j = 1; output_.times.empty() && j <= output_.points; ++j) {
-      const double xi = static_cast<double>(j) / output_.points;
+      const double xi = end * (static_cast<double>(j) / output_.points);
       outputs_.push_back({xi, time(xi)});
     }
+    if (may_end_early() && !outputs_.empty()) outputs_.back().xi = k_at_end;
     for (const double instant : output_.times) {
       if (plan_.duration == 0.0) break;
       const double xi = (instant - step_start_) / plan_.duration;
@@ -564,6 +606,7 @@ class Drive {
 
   /// Rows just before an event or corner, and its output point if one falls on it.
   void open_instant(double xi) {
+    if (is_rehearsing_) return;
     sink_.observe(time(xi), step_label(), xi, y_);
     sink_.append(RowSide::before);
     if (next_output_ < outputs_.size() && outputs_[next_output_].xi <= xi + k_round_off) {
@@ -584,6 +627,7 @@ class Drive {
 
   /// Row just after it, and the events that lie in between.
   void close_instant(double instant, double xi, const std::vector<Event>& log) {
+    if (is_rehearsing_) return;
     sink_.observe(instant, step_label(), xi, y_);
     sink_.append(RowSide::after);
     for (const Event& event : log) sink_.event(event);
@@ -607,6 +651,7 @@ class Drive {
   double xi_ = 0.0;          ///< present step coordinate
   std::vector<OutputPoint> outputs_;
   std::size_t next_output_ = 0;
+  bool is_rehearsing_ = false;  ///< nothing is recorded
   long event_count_ = 0;
   std::set<std::string> idle_guards_;  ///< that have fired since the last progress
 };

@@ -116,7 +116,7 @@ std::vector<KeySpec> particle_keys() {
 std::vector<KeySpec> output_keys() {
   return {
       {.name = "points",
-       .meaning = "equal intervals in time per step; 0: the integrator's own steps",
+       .meaning = "rows per step, at equal intervals of what it really covers; 0: the integrator's own steps",
        .kind = Kind::integer,
        .range = {.lower = 0.0, .upper = k_most_points},
        .default_value = 200.0},

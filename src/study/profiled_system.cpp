@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -40,6 +41,7 @@ class Wrapped : public HybridSystem {
   void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
     system_->begin_step(ramps, y, log);
   }
+  [[nodiscard]] std::function<void()> checkpoint() override { return system_->checkpoint(); }
   void complete(double xi, State y) override { system_->complete(xi, y); }
   void rates(double xi, View y, State dy) override { system_->rates(xi, y, dy); }
   void all_rates(double xi, View y, State dy) override { system_->all_rates(xi, y, dy); }

@@ -72,5 +72,15 @@ TEST_F(ProgramCommand, SaysThatPointsBesideTimesAreIgnored) {
   EXPECT_EQ(monograin("check s.toml").err, "");
 }
 
+TEST_F(ProgramCommand, RecordsAWithdrawalWithAsManyRowsAsAreAskedFor) {
+  ASSERT_EQ(run(R"({ displacement = "0.1 R0", duration = "1 s" }, { detach = true, rate = "1 mm/s" })").code, 0);
+  const Table history = read_csv(path("out/history.csv"));
+  int rows = 0;
+  for (std::size_t i = 0; i < history.row_count(); ++i) {
+    rows += history.at(i, *history.find("step")) == 2.0 && history.at(i, *history.find("row")) == 0.0 ? 1 : 0;
+  }
+  EXPECT_EQ(rows, 10);
+}
+
 }  // namespace
 }  // namespace monograin::program_command_test

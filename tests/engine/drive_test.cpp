@@ -139,6 +139,71 @@ TEST(Rows, DoNotChangeWhereARunEnds) {
   }
 }
 
+TEST(Rows, DivideIntoEqualIntervalsWhatAStepReallyCovers) {
+  constexpr int k_points = 10;
+  const std::vector<Step> programs[] = {{ramp(0.3), detach(0.5)},
+                                        {ramp(0.3), until(ramp(0.0), force, 0.0)},
+                                        {ramp(0.3), until(ramp(0.4), displacement, 0.33)},
+                                        {ramp(0.3), until_event(ramp(0.0), "contact-lost")}};
+  for (const std::vector<Step>& program : programs) {
+    for (const std::string_view integrator : integrator_names()) {
+      SCOPED_TRACE(integrator);
+      const TestRun result = run_with(with_points(die(program), k_points), integrator);
+      ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
+      const auto time = result.outputs("time");
+      ASSERT_EQ(time.size(), 1U + 2U * k_points);
+      const double end = step_ends(result).back();
+      EXPECT_EQ(time.back(), end);
+      for (int j = 1; j <= k_points; ++j) EXPECT_NEAR(time[k_points + j], 1.0 + (end - 1.0) * j / k_points, 1e-14);
+    }
+  }
+}
+
+TEST(Rows, OfAStepThatCouldHaveEndedEarlyButDidNotStandWhereTheyWould) {
+  for (const std::string_view integrator : integrator_names()) {
+    const TestRun plain = run_with(with_points(die({ramp(0.3), ramp(0.25)}), 7), integrator);
+    const TestRun watched = run_with(with_points(die({ramp(0.3), until(ramp(0.25), force, 1e3)}), 7), integrator);
+    EXPECT_EQ(rows(watched), rows(plain)) << integrator;
+    EXPECT_LE(difference(watched.outputs("axial.force"), plain.outputs("axial.force")), accuracy(integrator));
+  }
+}
+
+TEST(Rows, OfAStepThatALimitEndsBeforeItsConditionDivideWhatItCovers) {
+  constexpr int k_points = 5;
+  for (const char* integrator : k_integrators) {
+    auto toy = std::make_unique<ToySystem>();
+    toy->watched.push_back(
+        {.name = "limit", .value = [](double, ToySystem::View y) { return y[0] - 0.4; }, .ends_domain = true});
+    Scene scene = toy_scene(std::move(toy));
+    scene.channels[0].program[0].until.push_back({.quantity = force, .value = 2.0, .event = {}});
+    const RunRecord record = record_run(scene, integrator, {}, {.points = k_points, .times = {}});
+    EXPECT_EQ(record.status, RunStatus::stopped) << integrator;
+    const auto time = record.history.column("time");
+    const auto side = record.history.column("row");
+    std::vector<double> outputs;
+    for (std::size_t i = 0; i < time.size(); ++i) {
+      if (side[i] == 0.0) outputs.push_back(time[i]);
+    }
+    ASSERT_GE(outputs.size(), 1U + k_points - 1) << integrator;
+    for (std::size_t j = 0; j < k_points; ++j) EXPECT_NEAR(outputs[j], 0.4 * static_cast<double>(j) / k_points, 1e-7);
+  }
+}
+
+TEST(Rows, OfAnEarlyEndLeaveTheRunAsItIsWithoutThem) {
+  const Scenario scenario = die({ramp(0.3), until(ramp(0.0), force, 0.01), detach(0.5), ramp(0.4)});
+  for (const std::string_view integrator : integrator_names()) {
+    const TestRun few = run_with(with_points(scenario, 1), integrator);
+    const TestRun many = run_with(with_points(scenario, 50), integrator);
+    EXPECT_EQ(many.events(), few.events()) << integrator;
+    EXPECT_EQ(many.record.statistics.events, few.record.statistics.events) << integrator;
+    EXPECT_EQ(step_ends(many), step_ends(few)) << integrator;
+    // Its step control remembers steps from before the segment.
+    const double apart = integrator == "odeint-rosenbrock4" ? 1e-14 : 0.0;
+    for (const char* column : {"apparent_radius", "work", "axial.force", "lateral.force"})
+      EXPECT_NEAR(many.last(column), few.last(column), apart) << integrator << ", " << column;
+  }
+}
+
 TEST(OutputTimes, BeyondTheEndOfTheProgramAreNoted) {
   Scenario scenario = hertz_pair({ramp(0.2), until(ramp(0.0), force, hertz(0.1))});
   scenario.output.times = {0.5, 1.25, 1.75, 3.0};

@@ -65,6 +65,9 @@ class ToySystem final : public HybridSystem {
   [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return classes_; }
   void start(std::span<double> y) override { std::ranges::copy(initial, y.begin()); }
   void begin_step(std::span<const Ramp>, std::span<double> y, std::vector<Event>&) override { remember(0.0, y); }
+  [[nodiscard]] std::function<void()> checkpoint() override {
+    return [this, then = *this] { *this = then; };
+  }
   void complete(double, std::span<double>) override {}
   void rates(double xi, View y, std::span<double> dy) override {
     see(xi);
