@@ -185,10 +185,12 @@ void System::watch_contact(std::size_t i, double r, const Motion& now) {
     return;
   }
   if (may_come_in) add(k_reload, 1, "reload");
-  if (adheres())
+  if (adheres()) {
     watch_edge(i, r, may_come_in, may_go_out, may_turn);
-  else if (may_go_out)
+    watch_tension(i, now, may_go_out, may_turn);
+  } else if (may_go_out) {
     add(k_lost, -1, "contact-lost");
+  }
 }
 
 void System::watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_out, bool may_turn) {
@@ -212,6 +214,30 @@ void System::watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_o
       }
       if (may_turn) guards_.push_back({k_turn, index, 1, "stick"});
       break;
+  }
+}
+
+/// Rate of a contact's force with xi, over what the walls' motion makes of the force of an edge that sticks.
+double System::force_rate(std::size_t i, const Motion& now) const noexcept {
+  const Contact& c = now_[i].contact;
+  const double scale = unpeeled_stiffness(i) * speed_scale();
+  const double rate = c.by_overlap * (inward_rate(i, now) + now.growth) + c.by_radius * now.growth;
+  return scale > 0.0 ? rate / scale : 0.0;
+}
+
+/// Lists the guards of the extrema of a tensile force, in turns. A prescribed force has none within a step, nor has an
+/// edge that sticks where only the own wall moves.
+void System::watch_tension(std::size_t i, const Motion& now, bool may_go_out, bool may_turn) {
+  const int index = static_cast<int>(i);
+  const bool peels_alone = memory_[i].edge == Edge::peeling && may_go_out;
+  if (memory_[i].edge == Edge::following || is_loaded(i) || !(may_turn || peels_alone)) return;
+  const bool is_tensile = now_[i].contact.force < 0.0;
+  if (force_rate(i, now) <= 0.0 || !is_tensile) {
+    guards_.push_back({k_greatest_tension, index, 1, "force-extremum"});
+  } else if (may_turn) {
+    guards_.push_back({k_least_tension, index, -1, "force-extremum"});
+    // Once it presses, the next extremum is a greatest tension again.
+    guards_.push_back({.kind = k_released, .index = index, .is_silent = true});
   }
 }
 
@@ -268,6 +294,21 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         // What only touches is always near to that, and not lost together with others.
         if (memory_[i].is_virgin || rides(i)) values[g] /= k_shallow;
         break;
+      case k_greatest_tension: {
+        const double rate = force_rate(i, now);
+        values[g] = (now_[i].contact.force < 0.0 ? rate : -std::abs(rate)) - k_steady_force;
+        break;
+      }
+      case k_least_tension: {
+        const double rate = force_rate(i, now);
+        values[g] = (now_[i].contact.force < 0.0 ? rate : std::abs(rate)) + k_steady_force;
+        break;
+      }
+      case k_released: {
+        const double stiffness = unpeeled_stiffness(i);
+        values[g] = stiffness > 0.0 ? now_[i].contact.force / stiffness : 0.0;
+        break;
+      }
       case k_follow:
         values[g] = edge_guard(k_follow, i, xi, now_[i].overlap - rounding_of_edge(i, r), r);
         break;

@@ -14,6 +14,9 @@ enum GuardKind : int {
   k_peel,
   k_follow,
   k_pull_off,
+  k_greatest_tension,
+  k_least_tension,
+  k_released,
   k_unstable,
   k_spent,
   k_growth_on,
@@ -28,6 +31,8 @@ enum GuardKind : int {
 
 /// A guard this near to zero, and moving on, counts as crossed when a mode is decided.
 inline constexpr double k_touch = 1e-13;
+/// Rate of a contact's force, over what the motion of the walls makes of a sticking edge, that is round-off.
+inline constexpr double k_steady_force = 1e-9;
 /// An edge that has just turned is at rest, and near to where it turned from; integration errors there are no motion.
 inline constexpr double k_at_rest = 1e-8;
 /// With a free centre, contacts along its directions open and close together; their guards agree to the integration

@@ -92,6 +92,7 @@ constexpr std::array k_mdr_events{
     Term{"peel", "the springs at the edge of an adhesive contact tear, and the edge begins to recede"},
     Term{"follow", "no spring at the edge is stretched any more, and the edge advances with the load again"},
     Term{"pull-off", "the edge of an adhesive contact turns unstable and the contact opens at once"},
+    Term{"force-extremum", "the force of an adhesive contact that pulls is greatest or least: nothing changes there"},
     Term{"growth-on", "the apparent radius starts to grow"},
     Term{"growth-off", "the apparent radius stops growing"},
     Term{"caps-intersect", "the caps of two contacts meet: the source's limit of validity (warning; stop if strict)"},

@@ -396,6 +396,9 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   look_once(xi, y);
   const double r = y[k_radius];
   const Motion now = motion(is_growing_);
+  const auto is_observed_only = [this](std::size_t g) {
+    return guards_[g].kind == k_greatest_tension || guards_[g].kind == k_least_tension || guards_[g].kind == k_released;
+  };
   std::optional<bool> growth;
   bool others_fired = false;
   bool has_jumped = false;
@@ -481,6 +484,12 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
       case k_follow:
         memory_[i].edge = Edge::following;
         break;
+      case k_greatest_tension:
+      case k_least_tension:
+        if (touches(memory_[i].regime) && memory_[i].edge == edges_before_[i]) log.push_back(event);
+        continue;
+      case k_released:
+        continue;
       case k_growth_on:
       case k_growth_off:
         growth = guard.kind == k_growth_on;
@@ -511,6 +520,10 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   if (end) {
     if (log.empty() || log.back().name != end->event.name) log.push_back(end->event);
     return end;
+  }
+  if (std::ranges::all_of(fired, is_observed_only)) {
+    watch(xi, y);
+    return std::nullopt;
   }
   settle(xi, y, others_fired ? std::nullopt : growth, log, has_jumped);
   return meet_caps_at_once(xi, y, log);

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "elastic/hertz.hpp"
+#include "engine/integrator.hpp"
 #include "mdr/adhesion.hpp"
 #include "models/accuracy.hpp"
 #include "support/test_run.hpp"
@@ -61,6 +63,51 @@ std::vector<double> event_column(const TestRun& result, std::string_view column)
   return values;
 }
 
+// --- greatest tension
+
+TEST(MdrForceExtremum, IsLocatedAlikeByEveryIntegrator) {
+  for (const std::string_view integrator : integrator_names()) {
+    const bool is_fixed_step = integrator == "explicit";
+    const TestRun result = run(jkr(path({0.005, -0.01})), integrator, relative(is_fixed_step ? 1e-5 : 1e-8));
+    EXPECT_EQ(result.events(),
+              (Words{"axial:load-reversal", "axial:stick", "axial:peel", "axial:force-extremum", "axial:pull-off"}))
+        << integrator;
+    EXPECT_LE(relative_error(result.at_event("force-extremum", "axial.force"), -1.5 * pi * 1e-5),
+              is_fixed_step ? 1e-4 : 1e-10)
+        << integrator;
+  }
+}
+
+TEST(MdrForceExtremum, ComesWithEveryWithdrawalOfAPlasticContact) {
+  for (const char* integrator : k_integrators) {
+    const TestRun result =
+        run(adhering(mdr_scenario(Configuration::die, 50.0, 0.3, path({0.05, 0.0, 0.08, 0.0})), 1e-4), integrator);
+    ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
+    const Words events = result.events();
+    EXPECT_EQ(std::ranges::count(events, "axial:force-extremum"), 2) << integrator;
+    EXPECT_EQ(std::ranges::count(events, "axial:pull-off"), 2) << integrator;
+    // No row of the withdrawal lies below.
+    const auto force = result.column("axial.force");
+    const auto step = result.column("step");
+    double least = 0.0;
+    for (std::size_t k = 0; k < force.size(); ++k) least = step[k] == 2.0 ? std::min(least, force[k]) : least;
+    EXPECT_EQ(result.at_event("force-extremum", "axial.force"), least) << integrator;
+  }
+}
+
+TEST(MdrForceExtremum, IsNoneWhereTheForceStays) {
+  const double depth = 0.75 * std::cbrt(pi * 1e-5 / k_modulus * (pi * 1e-5 / k_modulus));
+  // Held between the greatest tension and pull-off; and driven back from there.
+  const std::vector<Step> held{ramp(0.005), ramp(-0.99 * depth), hold(), hold()};
+  for (const std::string_view integrator : integrator_names()) {
+    if (integrator == "explicit") continue;
+    const TestRun result = run(jkr(held), integrator);
+    EXPECT_EQ(result.events(),
+              (Words{"axial:load-reversal", "axial:stick", "axial:peel", "axial:force-extremum", "axial:stick"}))
+        << integrator;
+  }
+}
+
 // --- pull-off
 
 class MdrPullOff : public ::testing::TestWithParam<const char*> {};
@@ -76,6 +123,22 @@ TEST_P(MdrPullOff, UnderDisplacementIsThatOfJkr) {
         << "dg = " << dg;
     EXPECT_EQ(result.at_event("pull-off", "axial.force"), 0.0);
     EXPECT_EQ(result.last("axial.force"), 0.0);
+  }
+}
+
+TEST_P(MdrPullOff, FollowsTheGreatestTensionWhichIsThatOfJkr) {
+  for (const double dg : {1e-9, 1e-5, 1e-4}) {
+    const TestRun result = run(jkr(path({0.005, -0.01}), dg), GetParam());
+    EXPECT_EQ(result.events(),
+              (Words{"axial:load-reversal", "axial:stick", "axial:peel", "axial:force-extremum", "axial:pull-off"}));
+    const double a = std::cbrt(9.0 * pi * dg / (8.0 * k_modulus));
+    const double displacement = a * a - std::sqrt(2.0 * pi * a * dg / k_modulus);
+    EXPECT_LE(relative_error(result.at_event("force-extremum", "axial.force"), -1.5 * pi * dg), 1e-10) << "dg = " << dg;
+    EXPECT_LE(relative_error(result.at_event("force-extremum", "axial.displacement"), displacement), 1e-7);
+    // Nothing jumps there, and no row lies below.
+    EXPECT_EQ(before_event(result, "force-extremum", "axial.force"), result.at_event("force-extremum", "axial.force"));
+    const auto force = result.column("axial.force");
+    EXPECT_EQ(*std::ranges::min_element(force), result.at_event("force-extremum", "axial.force"));
   }
 }
 
