@@ -9,6 +9,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #include "history/staged_folder.hpp"
 #include "study/atlas.hpp"
 #include "study/bench.hpp"
@@ -35,8 +36,8 @@ constexpr const char* k_fe_figure = "laws-fe";
 /// Every law beside finite-element curves.
 int bench_against_fe(const BenchOptions& options) {
   const std::vector<AtlasFigure> figures = make_atlas(options.definitions, {k_fe_figure});
-  for (const fs::path& file : write_atlas(figures, options.output)) fmt::print(stderr, "-> {}\n", file.string());
-  for (const AtlasFigure& figure : figures) fmt::print("{}\n", tables_text(figure));
+  for (const fs::path& file : write_atlas(figures, options.output)) say("-> {}\n", file.string());
+  for (const AtlasFigure& figure : figures) print_data("{}\n", tables_text(figure));
   return exit_code_of(figures.front().status);
 }
 
@@ -100,9 +101,9 @@ int bench(const BenchOptions& options) {
   }
   std::vector<BenchSaving> savings;
   if (options.scenes.empty()) savings = measure_savings(settings);
-  fmt::print("{}", bench_text(scenes, profiles, savings));
+  print_data("{}", bench_text(scenes, profiles, savings));
   for (const fs::path& file : write_bench(scenes, profiles, savings, options.output)) {
-    fmt::print(stderr, "-> {}\n", file.string());
+    say("-> {}\n", file.string());
   }
   return k_success;
 }
@@ -115,7 +116,7 @@ void add_bench_command(CLI::App& app, Action& action) {
   command->add_option("SCENE", options->scenes, "Scenes of the list, or scenario files [all of the list]");
   command->add_option("--scenes", options->list, "List of scenes [scenarios/bench/scenes.toml]");
   command->add_option("--integrator", options->integrators, "Integrators to measure [auto and all there are]");
-  command->add_option("--rtol", options->tolerances, "Relative tolerances [1e-2 to 1e-13]")
+  command->add_option("--rtol", options->tolerances, "Relative tolerances, 1e-15 to 0.1 [1e-2 to 1e-13]")
       ->check(CLI::Range(1e-15, 0.1));
   command->add_flag("--profile", options->profiles, "Also tell where the time goes");
   command->add_flag("--against-fe", options->is_against_fe,

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "cli/commands.hpp"
+#include "cli/terminal.hpp"
 #include "history/staged_folder.hpp"
 #include "study/calibration.hpp"
 
@@ -30,7 +31,7 @@ class ProgressLine {
  public:
   explicit ProgressLine(bool is_wanted) : is_shown_(is_wanted && isatty(STDERR_FILENO) == 1) {}
   ~ProgressLine() {
-    if (percent_ >= 0) fmt::print(stderr, "\r{:20}\r", "");
+    if (percent_ >= 0) say("\r{:20}\r", "");
   }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
@@ -39,8 +40,7 @@ class ProgressLine {
     const int percent = static_cast<int>(std::floor(100.0 * done));
     if (!is_shown_ || percent == percent_) return;
     percent_ = percent;
-    fmt::print(stderr, "\rsearching {:3} %", percent);
-    std::fflush(stderr);
+    say("\rsearching {:3} %", percent);
   }
 
  private:
@@ -58,15 +58,14 @@ int run_calibration(const CalibrateOptions& options) {
     return calibrate(calibration, [&line](double done) { line.show(done); });
   }();
   const std::string no_figure = write_calibration(calibration, result, staged);
-  fmt::print("{}", calibration_text(calibration, result));
-  if (!no_figure.empty()) fmt::print(stderr, "warning: no figure: {}\n", no_figure);
+  print_data("{}", calibration_text(calibration, result));
+  if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
   if (options.is_quiet) return k_success;
-  for (const std::string& note : result.notes) fmt::print(stderr, "note: {}\n", note);
-  fmt::print(stderr,
-             "{}: the data drive the particle, in {} step{}; the scenario's own steps only stand in fitted.toml\n"
-             "{}: {} trial runs -> {}\n",
-             calibration.name, result.program_steps, result.program_steps == 1 ? "" : "s", calibration.name,
-             result.solution.evaluations, folder.string());
+  for (const std::string& note : result.notes) say("note: {}\n", note);
+  say("{}: the data drive the particle, in {} step{}; the scenario's own steps only stand in fitted.toml\n"
+      "{}: {} trial runs -> {}\n",
+      calibration.name, result.program_steps, result.program_steps == 1 ? "" : "s", calibration.name,
+      result.solution.evaluations, folder.string());
   return k_success;
 }
 
@@ -81,7 +80,7 @@ void add_calibrate_command(CLI::App& app, Action& action) {
   command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME]");
   command
       ->add_option("--confidence", options->confidence,
-                   "Level of the two-sided intervals, e.g. 0.99 [the file's, or 0.95]")
+                   "Level of the two-sided intervals, between 0 and 1, e.g. 0.99 [the file's, or 0.95]")
       ->check(CLI::Range(1e-6, 1.0 - 1e-6));
   command->add_flag("--quiet", options->is_quiet, "Say nothing but the result and errors");
   command->footer("Example: monograin calibrate scenarios/calibrate/uniaxial.toml");

@@ -1,51 +1,122 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <csignal>
-#include <cstdio>
 #include <exception>
+#include <new>
+#include <sstream>
 
 #include "cli/commands.hpp"
+#include "cli/terminal.hpp"
 #include "history/run.hpp"
 #include "scenario/scenario.hpp"
+#include "scenario/words.hpp"
 
 namespace {
 
 using namespace monograin;
 
+int fail_for_memory() {
+  say("monograin: there is not enough memory; nothing more was written. Ask for fewer output points, steps or runs\n");
+  return k_solver_failure;
+}
+
 int run_action(const Action& action) {
   try {
     return action();
   } catch (const ScenarioError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    say("{}\n", error.what());
     return k_usage;
   } catch (const UsageError& error) {
-    fmt::print(stderr, "monograin: {}\n", error.what());
+    say("monograin: {}\n", error.what());
     return k_usage;
+  } catch (const std::length_error&) {  // a container that cannot be that large
+    return fail_for_memory();
   } catch (const std::logic_error& error) {
-    fmt::print(stderr, "monograin: this is a bug, please report it with the command and its files: {}\n", error.what());
+    say("monograin: this is a bug, please report it with the command and its files: {}\n", error.what());
     return k_unexpected;
+  } catch (const std::bad_alloc&) {
+    return fail_for_memory();
   } catch (const std::exception& error) {  // a file, a folder, or gnuplot
-    fmt::print(stderr, "monograin: {}\n", error.what());
+    say("monograin: {}\n", in_own_words(error));
     return k_usage;
   }
 }
 
-/// Whether the first word is no command of this version; says so, which "a subcommand is required" would not.
+// --- the command line
+
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+std::string names_of(const std::vector<const CLI::App*>& commands) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands) names.push_back(command->get_name());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// What is wrong with a value; empty if no option of the command is at fault.
+std::string fault_of_option(const CLI::ParseError& error, const CLI::App& command) {
+  const std::string text = error.what();
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (option->get_required() && option->count() == 0 && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+      return fmt::format("{} is missing; expected: {}", name, option->get_description());
+    }
+    // The parser's message names the option and is not shown itself.
+    const std::size_t at = text.find(name);
+    if (at == std::string::npos || text.substr(0, at).ends_with('-') ||
+        text.substr(at + name.size()).starts_with('-')) {
+      continue;
+    }
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && option->count() <= 1) {
+      return fmt::format("{} needs a value; expected: {}", name, option->get_description());
+    }
+    return fmt::format("{} = {} is not what it takes; expected: {}", name,
+                       shown(fmt::format("{}", fmt::join(option->results(), " "))), option->get_description());
+  }
+  return {};
+}
+
+/// Says what is wrong with the command line in the program's own words.
+std::string fault_of_line(const CLI::ParseError& error, const CLI::App& app) {
+  const std::vector<CLI::App*> named = app.get_subcommands();
+  if (named.empty()) {
+    return fmt::format("a command is missing; there are {}. 'monograin --help' says what they do",
+                       names_of(commands_of(app)));
+  }
+  const CLI::App& command = *named.front();
+  std::string fault;
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    // The parser keeps the words only in its message, the last one first.
+    const std::string text = error.what();
+    const std::string first = text.substr(text.rfind(' ') + 1);
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    fault =
+        fmt::format("'{}' is not expected here{}", shown(first), did_you_mean(first.substr(0, first.find('=')), known));
+  } else {
+    fault = fault_of_option(error, command);
+  }
+  if (fault.empty()) fault = "the arguments do not go together";
+  return fmt::format("{}: {}. 'monograin {} --help' says more", command.get_name(), fault, command.get_name());
+}
+
+/// Whether the first word is no command of this version; says so, which "a command is missing" would not.
 bool names_no_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return false;
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (command->get_name() == argv[1]) return false;
-    names.push_back(command->get_name());
-  }
-  fmt::print(stderr, "monograin: this version has no command '{}'; it has {}\n", argv[1], fmt::join(names, ", "));
+  const std::vector<const CLI::App*> commands = commands_of(app);
+  if (std::ranges::find(commands, argv[1], [](const CLI::App* c) { return c->get_name(); }) != commands.end())
+    return false;
+  say("monograin: this version has no command '{}'; it has {}\n", shown(std::string_view(argv[1])), names_of(commands));
   return true;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of the system is a fault of writing like others
   CLI::App app("Workbench for the mechanics of a single particle under contact.", "monograin");
   app.set_version_flag("--version", fmt::format("monograin {}", version()));
@@ -70,10 +141,28 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version
-    return app.exit(request);
+    std::ostringstream text;
+    app.exit(request, text, text);
+    print_data("{}", text.str());
+    return k_success;
   } catch (const CLI::ParseError& error) {
-    app.exit(error);
+    say("monograin: {}\n", fault_of_line(error, app));
     return k_usage;
   }
   return run_action(action);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  prepare_standard_streams();
+  int code = k_unexpected;
+  try {
+    code = run_program(argc, argv);
+  } catch (const std::exception&) {  // too little memory to read the command line
+    code = k_solver_failure;
+  }
+  if (is_output_written()) return code;
+  write_stream(stderr, "monograin: standard output is closed or full; not everything was written to it\n");
+  return code == k_success ? k_usage : code;
 }

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "catalogue.hpp"
 #include "cli/commands.hpp"
+#include "cli/terminal.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/schema.hpp"
 #include "scene/parameters.hpp"
@@ -56,26 +56,26 @@ std::string to_text(const Range& range) {
 }
 
 void print_list() {
-  for (const ModelInfo& model : model_catalogue()) fmt::print("{:<16}{}\n", model.name, model.summary);
+  for (const ModelInfo& model : model_catalogue()) print_data("{:<16}{}\n", model.name, model.summary);
 }
 
 void print_terms(std::string_view title, std::span<const Term> terms) {
-  fmt::print("\n{}\n", title);
-  for (const Term& term : terms) fmt::print("  {:<25}{}\n", term.name, term.meaning);
+  print_data("\n{}\n", title);
+  for (const Term& term : terms) print_data("  {:<25}{}\n", term.name, term.meaning);
 }
 
 template <class Key>
 void print_quantity(const Key& key, const std::string& note) {
-  fmt::print("  {:<25}{} [{}], in {}; {}\n", key.name, key.meaning, si_unit(key.dimension), to_text(key.range), note);
+  print_data("  {:<25}{} [{}], in {}; {}\n", key.name, key.meaning, si_unit(key.dimension), to_text(key.range), note);
 }
 
 void print_steps(const ModelInfo& model) {
   const auto print_keys = [](std::span<const DriveKey> keys) {
     for (const DriveKey& key : keys) {
-      fmt::print("  {:<25}{} [{}], for example {}\n", key.name, key.meaning, si_unit(key.dimension), key.example);
+      print_data("  {:<25}{} [{}], for example {}\n", key.name, key.meaning, si_unit(key.dimension), key.example);
     }
   };
-  fmt::print("\nsteps\n");
+  print_data("\nsteps\n");
   print_keys(model.drives);
   print_keys(model.lateral_drives);
 }
@@ -84,14 +84,14 @@ void print_options(std::span<const OptionKey> options) {
   for (const OptionKey& key : options) {
     switch (key.kind) {
       case OptionKey::Kind::choice:
-        fmt::print("  {:<25}{}: {} (default {})\n", key.name, key.meaning, fmt::join(key.choices, ", "),
+        print_data("  {:<25}{}: {} (default {})\n", key.name, key.meaning, fmt::join(key.choices, ", "),
                    key.choices.front());
         break;
       case OptionKey::Kind::toggle:
-        fmt::print("  {:<25}{}: true, false (default {})\n", key.name, key.meaning, key.default_toggle);
+        print_data("  {:<25}{}: true, false (default {})\n", key.name, key.meaning, key.default_toggle);
         break;
       case OptionKey::Kind::file:
-        fmt::print("  {:<25}{}: a file (default none)\n", key.name, key.meaning);
+        print_data("  {:<25}{}: a file (default none)\n", key.name, key.meaning);
         break;
       case OptionKey::Kind::quantity:
         print_quantity(key, key.default_value ? fmt::format("default {}", *key.default_value) : "optional");
@@ -101,11 +101,11 @@ void print_options(std::span<const OptionKey> options) {
 }
 
 void print_model(const ModelInfo& model) {
-  fmt::print("{}: {}\nsource: {}\n\n[material]\n", model.name, model.summary, model.source);
+  print_data("{}: {}\nsource: {}\n\n[material]\n", model.name, model.summary, model.source);
   print_options(model.material_options);
   if (!model.presets.empty()) {
-    fmt::print("  {:<25}a material of the source's tables; keys beside it win. One of\n", "preset");
-    for (const Preset& preset : model.presets) fmt::print("  {:<27}{} ({})\n", "", preset.name, preset.source);
+    print_data("  {:<25}a material of the source's tables; keys beside it win. One of\n", "preset");
+    for (const Preset& preset : model.presets) print_data("  {:<27}{} ({})\n", "", preset.name, preset.source);
   }
   for (const QuantityKey& key : model.material) {
     const std::string default_text = key.default_value ? fmt::format("default {}", *key.default_value)
@@ -114,25 +114,25 @@ void print_model(const ModelInfo& model) {
     print_quantity(key, default_text);
   }
   if (model.takes_ludwik) {
-    fmt::print("  {:<25}{}\n", "ludwik",
+    print_data("  {:<25}{}\n", "ludwik",
                "instead of strength and hardening_exponent: { yield_stress, strength, exponent = 1/n, eps_max = 1, "
                "fit = \"both\" or \"exponent\" }");
   }
-  if (!model.options.empty()) fmt::print("\n[{}]\n", model.name);
+  if (!model.options.empty()) print_data("\n[{}]\n", model.name);
   print_options(model.options);
   if (!model.has_walls()) print_steps(model);
-  if (!model.configurations.empty()) fmt::print("\nconfigurations: {}\n", fmt::join(model.configurations, ", "));
-  if (model.has_walls()) fmt::print("centre: fixed{}\n", model.has_free_centre ? ", equilibrium" : "");
+  if (!model.configurations.empty()) print_data("\nconfigurations: {}\n", fmt::join(model.configurations, ", "));
+  if (model.has_walls()) print_data("centre: fixed{}\n", model.has_free_centre ? ", equilibrium" : "");
   print_terms("regimes", model.regimes);
   print_terms("events", model.events);
-  fmt::print("\nvalidity\n");
-  for (const std::string_view line : model.domain) fmt::print("  {}\n", line);
+  print_data("\nvalidity\n");
+  for (const std::string_view line : model.domain) print_data("  {}\n", line);
 }
 
 /// Derived constants of a scenario's material and particle.
 void print_parameters(const Scenario& scenario) {
   for (const auto& [name, value, unit, symbol] : derived_parameters(scenario)) {
-    fmt::print("{:<28}{:.17g} {}{}\n", name, value, unit, symbol.empty() ? "" : fmt::format("  {}", symbol));
+    print_data("{:<28}{:.17g} {}{}\n", name, value, unit, symbol.empty() ? "" : fmt::format("  {}", symbol));
   }
 }
 
@@ -175,7 +175,7 @@ void add_schema_command(CLI::App& app, Action& action) {
   command->footer("Example: monograin schema > monograin.schema.json");
   command->callback([&action] {
     action = [] {
-      fmt::print("{}\n", scenario_schema());
+      print_data("{}\n", scenario_schema());
       return static_cast<int>(k_success);
     };
   });

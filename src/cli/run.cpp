@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <set>
 
 #include "cli/commands.hpp"
+#include "cli/terminal.hpp"
 #include "figure/figure.hpp"
 #include "history/run_files.hpp"
 #include "scenario/remarks.hpp"
@@ -95,13 +95,13 @@ void draw_figure(const fs::path& folder) {
   try {
     draw_runs({folder}, folder / "figure.svg");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "warning: no figure: {}\n", error.what());
+    say("warning: no figure: {}\n", error.what());
   }
 }
 
 void report(const Run& run, const fs::path& folder) {
-  fmt::print(stderr, "{}: {}, {} rows, {} events -> {}\n", run.scenario.name, to_string(run.record.status),
-             run.record.history.row_count(), run.record.events.row_count(), folder.string());
+  say("{}: {}, {} rows, {} events -> {}\n", run.scenario.name, to_string(run.record.status),
+      run.record.history.row_count(), run.record.events.row_count(), folder.string());
 }
 
 int run(const RunOptions& options) {
@@ -113,11 +113,11 @@ int run(const RunOptions& options) {
     result.timings.parse = job.parse_time;
     write_run(result, *job.staged, options.draws_figure ? draw_figure : std::function<void(const fs::path&)>());
     if (!options.is_quiet) {
-      for (const std::string& warning : result.record.warnings) fmt::print(stderr, "warning: {}\n", warning);
+      for (const std::string& warning : result.record.warnings) say("warning: {}\n", warning);
       report(result, job.folder);
     }
     if (!result.record.message.empty()) {
-      fmt::print(stderr, "{}: {}: {}\n", result.scenario.name, to_string(result.record.status), result.record.message);
+      say("{}: {}: {}\n", result.scenario.name, to_string(result.record.status), result.record.message);
     }
     worst = std::max(worst, exit_code_of(result.record.status));
   }

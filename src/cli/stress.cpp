@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <string>
@@ -13,6 +12,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #include "study/stress_checks.hpp"
 
 namespace monograin {
@@ -36,9 +36,9 @@ int check_files(const std::vector<std::string>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     const StressVerdict verdict = check_scene(scenarios[i]);
     if (!verdict.violations.empty()) code = k_solver_failure;
-    if (verdict.violations.empty()) fmt::print("{}: passes ({})\n", files[i], verdict.end);
+    if (verdict.violations.empty()) print_data("{}: passes ({})\n", files[i], verdict.end);
     for (const Violation& violation : verdict.violations) {
-      fmt::print("{}: {}: {}\n", files[i], violation.check, violation.detail);
+      print_data("{}: {}: {}\n", files[i], violation.check, violation.detail);
     }
   }
   return code;
@@ -56,9 +56,9 @@ int stress(const CommandOptions& options) {
                        .folder = options.output,
                        .progress = [&](auto done, auto of) { bar.show(done, of); }});
   }();
-  fmt::print("{}", report.text());
-  fmt::print(stderr, "{} scenes, {} failures -> {}; the slowest, {}, took {:.1f} s\n", report.scenes,
-             report.failures.size(), options.output, report.slowest, report.slowest_seconds);
+  print_data("{}", report.text());
+  say("{} scenes, {} failures -> {}; the slowest, {}, took {:.1f} s\n", report.scenes, report.failures.size(),
+      options.output, report.slowest, report.slowest_seconds);
   return report.failures.empty() ? k_success : k_solver_failure;
 }
 
@@ -77,7 +77,7 @@ void add_stress_command(CLI::App& app, Action& action) {
   command->add_option("--seed", options->seed, "Which sequence of scenes [1]");
   command->add_option("-n,--scenes", options->scenes, "End after so many scenes [none: when the time is up]");
   command->add_option("--first", options->first, "Index of the scene to begin with [0]");
-  command->add_option("-j,--jobs", options->threads, "Number of threads [one for each core]")
+  command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core]")
       ->check(CLI::Range(1, 1024));
   command->add_option("-o,--output", options->output, "Folder of the report and the failing scenes [runs/stress]");
   command->footer("Example: monograin stress --time 20s --seed 7");

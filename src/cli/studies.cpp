@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <memory>
 
 #include "cli/commands.hpp"
+#include "cli/terminal.hpp"
 #include "figure/figure.hpp"
 #include "history/compare.hpp"
 #include "history/run_files.hpp"
@@ -41,7 +41,7 @@ int plot_profile(const PlotOptions& options) {
     }
   }();
   const fs::path csv = draw_profiles(profiles, output);
-  fmt::print(stderr, "figure -> {}\nprofiles -> {}\n", output.string(), csv.string());
+  say("figure -> {}\nprofiles -> {}\n", output.string(), csv.string());
   return k_success;
 }
 
@@ -54,7 +54,7 @@ int plot(const PlotOptions& options) {
   const fs::path first = fs::is_directory(runs.front()) ? runs.front() : runs.front().parent_path();
   const fs::path output = options.output.empty() ? first / "figure.svg" : fs::path(options.output);
   draw_runs(runs, output);
-  fmt::print(stderr, "figure -> {}\n", output.string());
+  say("figure -> {}\n", output.string());
   return k_success;
 }
 
@@ -71,7 +71,7 @@ int list(const AtlasOptions& options) {
   const std::vector<AtlasEntry> entries = list_atlas(options.definitions);
   std::size_t width = 0;
   for (const AtlasEntry& entry : entries) width = std::max(width, entry.name.size());
-  for (const AtlasEntry& entry : entries) fmt::print("{:<{}}  {}\n", entry.name, width, entry.title);
+  for (const AtlasEntry& entry : entries) print_data("{:<{}}  {}\n", entry.name, width, entry.title);
   return k_success;
 }
 
@@ -79,11 +79,11 @@ int draw_atlas(const AtlasOptions& options) {
   if (options.only_lists) return list(options);
   const std::vector<AtlasFigure> figures = make_atlas(options.definitions, options.names);
   const fs::path folder = options.output.empty() ? options.definitions : options.output;
-  for (const fs::path& file : write_atlas(figures, folder)) fmt::print(stderr, "-> {}\n", file.string());
+  for (const fs::path& file : write_atlas(figures, folder)) say("-> {}\n", file.string());
   auto status = RunStatus::complete;
   for (const AtlasFigure& figure : figures) {
-    if (const std::string tables = tables_text(figure); !tables.empty()) fmt::print("{}\n", tables);
-    for (const std::string& stop : figure.stops) fmt::print(stderr, "{}: {}\n", figure.name, stop);
+    if (const std::string tables = tables_text(figure); !tables.empty()) print_data("{}\n", tables);
+    for (const std::string& stop : figure.stops) say("{}: {}\n", figure.name, stop);
     status = std::max(status, figure.status);
   }
   return exit_code_of(status);
@@ -107,16 +107,16 @@ int compare(const CompareOptions& options) {
       throw UsageError(error.what());
     }
   }();
-  fmt::print("{:<28}{:>12}{:>14}{:>12}{:>12}{:>12}{:>10}\n", "column", "L-infinity", "at " + options.x, "L2",
+  print_data("{:<28}{:>12}{:>14}{:>12}{:>12}{:>12}{:>10}\n", "column", "L-infinity", "at " + options.x, "L2",
              "area error", "peak error", "covered");
   bool is_above = false;
   for (const CurveDifference& d : differences) {
-    fmt::print("{:<28}{:>12.4e}{:>14.6g}{:>12.4e}{:>12.4e}{:>12.4e}{:>9.1f}%\n", d.y, d.linf, d.linf_at, d.l2,
+    print_data("{:<28}{:>12.4e}{:>14.6g}{:>12.4e}{:>12.4e}{:>12.4e}{:>9.1f}%\n", d.y, d.linf, d.linf_at, d.l2,
                d.area_error, d.peak_error, 100.0 * d.coverage);
     is_above = is_above || !(d.linf <= options.tolerance);
   }
   if (!is_above) return k_success;
-  fmt::print(stderr, "monograin: the largest difference is above {:g}\n", options.tolerance);
+  say("monograin: the largest difference is above {:g}\n", options.tolerance);
   return k_differs;
 }
 
@@ -131,17 +131,16 @@ struct RegressOptions {
 int run_regress(const RegressOptions& options) {
   const std::vector<RegressionResult> results =
       options.accepts ? accept_curves(options.scenarios, options.curves) : regress(options.scenarios, options.curves);
-  fmt::print("{:<24}{:<14}{:>12}{:>12}{:>12}  {}\n", "scenario", "integrator", "curve", "event time", "tolerance", "");
+  print_data("{:<24}{:<14}{:>12}{:>12}{:>12}  {}\n", "scenario", "integrator", "curve", "event time", "tolerance", "");
   bool all_pass = true;
   for (const RegressionResult& r : results) {
     const std::string note = !r.fault.empty() ? r.fault : r.passes() ? "" : "differs in " + r.column;
-    fmt::print("{:<24}{:<14}{:>12.2e}{:>12.2e}{:>12.0e}  {}\n", r.scenario, r.integrator, r.difference, r.event_time,
+    print_data("{:<24}{:<14}{:>12.2e}{:>12.2e}{:>12.0e}  {}\n", r.scenario, r.integrator, r.difference, r.event_time,
                r.tolerance, note);
     all_pass = all_pass && r.passes();
   }
   if (options.accepts) {
-    fmt::print(stderr, "{} curves stored in {}; the differences above are to what was there before\n", results.size(),
-               options.curves);
+    say("{} curves stored in {}; the differences above are to what was there before\n", results.size(), options.curves);
     return k_success;
   }
   return all_pass ? k_success : k_differs;
@@ -157,8 +156,9 @@ void add_plot_command(CLI::App& app, Action& action) {
   command->add_option("-o,--output", options->output,
                       "Figure to write: .svg, .pdf or .png [figure.svg in the first run's folder]");
   command
-      ->add_option("--profile", options->profile,
-                   "Instant [s]: draw pressure and surface under the contacts instead, and write them as CSV")
+      ->add_option(
+          "--profile", options->profile,
+          "Instant [s], 0 or later: draw pressure and surface under the contacts instead, and write them as CSV")
       ->check(CLI::NonNegativeNumber);
   command->footer("Example: monograin plot runs/die -o die.pdf");
   command->callback([options, &action] { action = [options] { return plot(*options); }; });
@@ -178,11 +178,13 @@ void add_atlas_command(CLI::App& app, Action& action) {
 void add_compare_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command = app.add_subcommand("compare", "Error measures of one curve against another");
-  command->add_option("A", options->reference, "Reference (CSV)")->required()->check(CLI::ExistingFile);
-  command->add_option("B", options->other, "Curve to hold against it (CSV)")->required()->check(CLI::ExistingFile);
+  command->add_option("A", options->reference, "Reference (CSV)")->required();
+  command->add_option("B", options->other, "Curve to hold against it (CSV)")->required();
   command->add_option("--x", options->x, "Column to compare over [time]");
   command->add_option("--y", options->y, "Column to compare [all that both have]");
-  command->add_option("--tol", options->tolerance, "Exit with 5 when a largest difference is above this")
+  command
+      ->add_option("--tol", options->tolerance,
+                   "Exit with 5 when a largest difference is above this (0 or more), or something is missing in B")
       ->check(CLI::NonNegativeNumber);
   command->footer("Example: monograin compare a/history.csv b/history.csv --y axial.force --tol 1e-6");
   command->callback([options, &action] { action = [options] { return compare(*options); }; });

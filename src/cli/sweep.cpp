@@ -6,12 +6,12 @@
 
 #include <charconv>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "cli/commands.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #include "scenario/text_file.hpp"
 
 namespace monograin {
@@ -47,10 +47,10 @@ int make_design(const Sweep& sweep, const fs::path& folder) {
   if (sweep.points.size() > 0) {
     Design continuous = sweep.points;
     continuous.level_count = 0;
-    fmt::print("psi: {:.10g}\n", maxpro_criterion(sweep.points));
-    if (sweep.points.level_count > 0) fmt::print("psi_continuous: {:.10g}\n", maxpro_criterion(continuous));
+    print_data("psi: {:.10g}\n", maxpro_criterion(sweep.points));
+    if (sweep.points.level_count > 0) print_data("psi_continuous: {:.10g}\n", maxpro_criterion(continuous));
   }
-  fmt::print(stderr, "{}: {} runs -> {}\n", sweep.name, sweep.runs.size(), file.string());
+  say("{}: {} runs -> {}\n", sweep.name, sweep.runs.size(), file.string());
   return k_success;
 }
 
@@ -63,7 +63,7 @@ void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds, con
   text += outcome.runs_missing > 0
               ? fmt::format("; {} of {} are left to other shards", outcome.runs_missing, sweep.runs.size())
               : fmt::format(" -> {}", (folder / "results.csv").string());
-  fmt::print(stderr, "{}\n", text);
+  say("{}\n", text);
 }
 
 int sweep(const CommandOptions& options) {
@@ -71,7 +71,7 @@ int sweep(const CommandOptions& options) {
   const Sweep plan = read_sweep(options.file);
   const fs::path folder = options.output.empty() ? fs::path("runs") / plan.name : fs::path(options.output);
   if (plan.left_out > 0) {
-    fmt::print(stderr, "{}: {} points of the grid do not meet the constraints\n", plan.name, plan.left_out);
+    say("{}: {} points of the grid do not meet the constraints\n", plan.name, plan.left_out);
   }
   if (options.makes_design_only) return make_design(plan, folder);
   const auto start = std::chrono::steady_clock::now();
@@ -94,7 +94,7 @@ void add_sweep_command(CLI::App& app, Action& action) {
       "sweep",
       "Run one scenario many times over a grid, a table or a space-filling design; goes on where it was stopped");
   command->add_option("FILE", options->file, "Sweep file (TOML)")->required();
-  command->add_option("-j,--jobs", options->threads, "Number of threads [one for each core]")
+  command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core]")
       ->check(CLI::Range(1, 1024));
   command->add_option("--shard", options->shard, "Do every n-th run only, from the i-th; the last shard to end merges")
       ->type_name("i/n");

@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
+#include <new>
+#include <stdexcept>
+#include <system_error>
 #include <vector>
 
 namespace monograin {
@@ -72,6 +76,19 @@ std::string shown(std::string_view text) {
   while (length < text.size() && length > 0 && is_utf8_continuation(text[length])) --length;
   const std::string_view dots = length < text.size() ? "..." : "";
   return on_one_line(text.substr(0, length)).append(dots);
+}
+
+std::string in_own_words(const std::exception& error) {
+  if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
+    const auto& path = file->path2().empty() ? file->path1() : file->path2();
+    return fmt::format("{}: cannot be used: {}", on_one_line(path.string()), file->code().message());
+  }
+  if (const auto* system = dynamic_cast<const std::system_error*>(&error)) {
+    return fmt::format("the system refuses what is needed: {}", system->code().message());
+  }
+  const bool is_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+                         dynamic_cast<const std::length_error*>(&error) != nullptr;
+  return is_memory ? "there is not enough memory" : error.what();
 }
 
 }  // namespace monograin

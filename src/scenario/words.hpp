@@ -1,6 +1,7 @@
 /// Words in messages: what a misspelt one was meant to be, lists of them, and showing a user's text safely.
 #pragma once
 
+#include <exception>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,5 +23,9 @@ namespace monograin {
 
 /// The same, and cut where it is long.
 [[nodiscard]] std::string shown(std::string_view text);
+
+/// What an exception says, in words of this program where a library threw it: a path and why the system refuses it, or
+/// that memory is short.
+[[nodiscard]] std::string in_own_words(const std::exception& error);
 
 }  // namespace monograin

@@ -24,9 +24,9 @@ class CommandTest : public ::testing::Test {
  protected:
   /// Runs `monograin ARGUMENTS` in the test's folder.
   [[nodiscard]] Outcome monograin(const std::string& arguments) const;
-  /// Runs a line of the shell there, in which `monograin` is the program.
-  [[nodiscard]] Outcome shell(const std::string& line) const;
-  /// Starts the program and kills it after some time; whether it was still running.
+  /// Runs a shell script in the test's folder, in which `monograin` and $M are the program; the exit code is the script's.
+  [[nodiscard]] Outcome shell(const std::string& script) const;
+  /// Starts `monograin ARGUMENTS` and kills it after some time; whether it was still running.
   bool start_and_kill(const std::vector<std::string>& arguments, std::chrono::microseconds delay) const;
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }

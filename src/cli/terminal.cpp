@@ -1,0 +1,24 @@
+#include "cli/terminal.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+namespace monograin {
+
+void prepare_standard_streams() noexcept {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(descriptor, F_GETFD) != -1) continue;
+    // The lowest free descriptor is this one. The opposite direction makes every use of the stream fail.
+    static_cast<void>(open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+  }
+  static_cast<void>(signal(SIGPIPE, SIG_IGN));
+}
+
+bool is_output_written() noexcept { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
+
+void write_stream(std::FILE* stream, std::string_view text) noexcept {
+  static_cast<void>(std::fwrite(text.data(), 1, text.size(), stream));
+}
+
+}  // namespace monograin

@@ -1,0 +1,34 @@
+/// Standard output and standard error. Writing never throws: a stream that is closed or full does not end a run.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string_view>
+#include <utility>
+
+namespace monograin {
+
+/// Keeps descriptors 0 to 2 for the standard streams: no file that is opened later can take the place of a closed one,
+/// and reading or writing a closed one fails. Also turns SIGPIPE into a failed write. To be called first.
+void prepare_standard_streams() noexcept;
+
+/// False if anything that was printed has not reached standard output. Flushes it.
+[[nodiscard]] bool is_output_written() noexcept;
+
+/// Writes a text as it is; a failure only leaves its mark on the stream.
+void write_stream(std::FILE* stream, std::string_view text) noexcept;
+
+/// Data, on standard output.
+template <class... Args>
+void print_data(fmt::format_string<Args...> format, Args&&... args) {
+  write_stream(stdout, fmt::format(format, std::forward<Args>(args)...));
+}
+
+/// Everything else, on standard error.
+template <class... Args>
+void say(fmt::format_string<Args...> format, Args&&... args) {
+  write_stream(stderr, fmt::format(format, std::forward<Args>(args)...));
+}
+
+}  // namespace monograin
