@@ -1,8 +1,10 @@
 // `monograin plot`, `monograin atlas`, `monograin compare` and `monograin regress`: figures and comparisons.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 
@@ -11,6 +13,7 @@
 #include "figure/figure.hpp"
 #include "history/compare.hpp"
 #include "history/run_files.hpp"
+#include "scenario/words.hpp"
 #include "study/atlas.hpp"
 #include "study/profile.hpp"
 #include "study/regress.hpp"
@@ -96,28 +99,52 @@ struct CompareOptions {
   std::string other;
   std::string x = "time";
   std::string y;
-  double tolerance = std::numeric_limits<double>::infinity();
+  std::optional<double> tolerance;
 };
 
+/// The history of a run folder, or the table that a CSV file holds.
+Table read_curves(const fs::path& path) { return read_csv(fs::is_directory(path) ? path / "history.csv" : path); }
+
+/// Of two run folders the histories and the events, of files the tables.
+Comparison compare_files(const CompareOptions& options) {
+  Comparison result = compare_tables(read_curves(options.reference), read_curves(options.other), options.x, options.y);
+  const bool has_events = fs::is_directory(options.reference) && fs::is_directory(options.other);
+  if (!has_events || !options.y.empty()) return result;
+  const Comparison events = compare_events(read_csv(fs::path(options.reference) / "events.csv"),
+                                           read_csv(fs::path(options.other) / "events.csv"));
+  result.curves.insert(result.curves.end(), events.curves.begin(), events.curves.end());
+  result.gaps.insert(result.gaps.end(), events.gaps.begin(), events.gaps.end());
+  return result;
+}
+
 int compare(const CompareOptions& options) {
-  const auto differences = [&] {
+  const Comparison comparison = [&] {
     try {
-      return compare_tables(read_csv(options.reference), read_csv(options.other), options.x, options.y);
+      return compare_files(options);
     } catch (const std::exception& error) {
-      throw UsageError(error.what());
+      throw UsageError(in_own_words(error));
     }
   }();
   print_data("{:<28}{:>12}{:>14}{:>12}{:>12}{:>12}{:>10}\n", "column", "L-infinity", "at " + options.x, "L2",
              "area error", "peak error", "covered");
   bool is_above = false;
-  for (const CurveDifference& d : differences) {
+  for (const CurveDifference& d : comparison.curves) {
     print_data("{:<28}{:>12.4e}{:>14.6g}{:>12.4e}{:>12.4e}{:>12.4e}{:>9.1f}%\n", d.y, d.linf, d.linf_at, d.l2,
                d.area_error, d.peak_error, 100.0 * d.coverage);
-    is_above = is_above || !(d.linf <= options.tolerance);
+    is_above = is_above || !(d.linf <= options.tolerance.value_or(std::numeric_limits<double>::infinity()));
   }
-  if (!is_above) return k_success;
-  say("monograin: the largest difference is above {:g}\n", options.tolerance);
-  return k_differs;
+  for (const Gap& gap : comparison.gaps) print_data("{}: {} {}\n", options.other, gap.column, gap.problem);
+  if (!options.tolerance) {
+    if (comparison.curves.empty() && !comparison.gaps.empty()) throw UsageError("no column could be compared");
+    return k_success;
+  }
+  if (is_above) say("monograin: the largest difference is above {:g}\n", *options.tolerance);
+  if (!comparison.gaps.empty()) {
+    say("monograin: {} does not have all of {}: {} {}{}\n", options.other, options.reference,
+        comparison.gaps.front().column, comparison.gaps.front().problem,
+        comparison.gaps.size() > 1 ? fmt::format(", and {} more", comparison.gaps.size() - 1) : "");
+  }
+  return is_above || !comparison.gaps.empty() ? k_differs : k_success;
 }
 
 // --- regress
@@ -132,15 +159,21 @@ int run_regress(const RegressOptions& options) {
   const std::vector<RegressionResult> results =
       options.accepts ? accept_curves(options.scenarios, options.curves) : regress(options.scenarios, options.curves);
   print_data("{:<24}{:<14}{:>12}{:>12}{:>12}  {}\n", "scenario", "integrator", "curve", "event time", "tolerance", "");
+  const auto measure = [](double value) { return std::isnan(value) ? "-" : fmt::format("{:.2e}", value); };
   bool all_pass = true;
+  std::size_t stored = 0;
   for (const RegressionResult& r : results) {
-    const std::string note = !r.fault.empty() ? r.fault : r.passes() ? "" : "differs in " + r.column;
-    print_data("{:<24}{:<14}{:>12.2e}{:>12.2e}{:>12.0e}  {}\n", r.scenario, r.integrator, r.difference, r.event_time,
-               r.tolerance, note);
+    std::vector<std::string> notes;
+    if (r.difference > r.tolerance) notes.push_back("differs in " + r.column);
+    if (r.event_time > r.tolerance) notes.emplace_back("differs in event times");
+    if (!r.fault.empty()) notes.push_back(r.fault);
+    print_data("{:<24}{:<14}{:>12}{:>12}{:>12.0e}  {}\n", r.scenario, r.integrator, measure(r.difference),
+               measure(r.event_time), r.tolerance, fmt::join(notes, "; "));
     all_pass = all_pass && r.passes();
+    if (!r.integrator.empty()) ++stored;
   }
   if (options.accepts) {
-    say("{} curves stored in {}; the differences above are to what was there before\n", results.size(), options.curves);
+    say("{} curves stored in {}; the differences above are to what was there before\n", stored, options.curves);
     return k_success;
   }
   return all_pass ? k_success : k_differs;
@@ -177,16 +210,16 @@ void add_atlas_command(CLI::App& app, Action& action) {
 
 void add_compare_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command = app.add_subcommand("compare", "Error measures of one curve against another");
-  command->add_option("A", options->reference, "Reference (CSV)")->required();
-  command->add_option("B", options->other, "Curve to hold against it (CSV)")->required();
+  CLI::App* command = app.add_subcommand("compare", "Error measures of one curve, or run, against another");
+  command->add_option("A", options->reference, "Reference: a CSV file or the folder of a run")->required();
+  command->add_option("B", options->other, "What to hold against it: a CSV file or the folder of a run")->required();
   command->add_option("--x", options->x, "Column to compare over [time]");
-  command->add_option("--y", options->y, "Column to compare [all that both have]");
+  command->add_option("--y", options->y, "Column to compare [all of A, and the events of runs]");
   command
       ->add_option("--tol", options->tolerance,
                    "Exit with 5 when a largest difference is above this (0 or more), or something is missing in B")
       ->check(CLI::NonNegativeNumber);
-  command->footer("Example: monograin compare a/history.csv b/history.csv --y axial.force --tol 1e-6");
+  command->footer("Example: monograin compare runs/die runs/softer --tol 1e-6");
   command->callback([options, &action] { action = [options] { return compare(*options); }; });
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -23,6 +25,7 @@ struct Sample {
   double x;
   double reference;
   double difference;
+  bool counts;  ///< at least one of the curves is defined here
 };
 
 /// One value of x in a monotone piece, with what the curve comes from and goes on to.
@@ -116,6 +119,11 @@ class PieceReader {
 
   [[nodiscard]] double left_limit(double along) const noexcept { return read(along, &Knot::left); }
   [[nodiscard]] double right_limit(double along) const noexcept { return read(along, &Knot::right); }
+  /// True if the curve has a row exactly there, so that nothing is interpolated.
+  [[nodiscard]] bool has_row(double along) const noexcept {
+    const auto knot = first_not_before(along);
+    return knot != knots_.end() && knot->along == along;
+  }
 
   /// The jump that is taken for one at this place, or nullptr.
   [[nodiscard]] const Knot* jump_near(double along) const noexcept {
@@ -147,10 +155,14 @@ class PieceReader {
   double reach_;
 };
 
-/// Of the two sides of b at a place where a has only one value, the one that is nearer.
-[[nodiscard]] double nearer_difference(double reference, double left, double right) noexcept {
-  const double from_left = left - reference;
-  const double from_right = right - reference;
+/// Difference of two values that were both recorded. One that is undefined in one curve only is infinite.
+[[nodiscard]] double recorded_difference(double reference, double other) noexcept {
+  if (std::isnan(reference) != std::isnan(other)) return std::numeric_limits<double>::infinity();
+  return reference == other ? 0.0 : other - reference;  // equal infinities do not differ
+}
+
+/// Difference to the nearer of the two sides of b, where a has one value only.
+[[nodiscard]] double nearer_difference(double from_left, double from_right) noexcept {
   return std::abs(from_right) < std::abs(from_left) ? from_right : from_left;
 }
 
@@ -161,15 +173,20 @@ void sample_piece(const Piece& a, const Piece& b, double range, std::vector<Samp
     if (!knot.is_jump) {
       const double left = reader.left_limit(knot.along);
       const double right = reader.right_limit(knot.along);
-      samples.push_back({x, knot.left, nearer_difference(knot.left, left, right)});
+      const double difference = reader.has_row(knot.along) ? nearer_difference(recorded_difference(knot.left, left),
+                                                                               recorded_difference(knot.left, right))
+                                                           : nearer_difference(left - knot.left, right - knot.left);
+      samples.push_back({x, knot.left, difference, !std::isnan(knot.left) || !std::isnan(left)});
       continue;
     }
     // A jump a little earlier or later in b is read on the same side of it as in a.
     const Knot* const jump = reader.jump_near(knot.along);
     const double before = jump ? std::min(knot.along, jump->along) : knot.along;
     const double after = jump ? std::max(knot.along, jump->along) : knot.along;
-    samples.push_back({x, knot.left, reader.left_limit(before) - knot.left});
-    samples.push_back({x, knot.right, reader.right_limit(after) - knot.right});
+    const double left = reader.left_limit(before);
+    const double right = reader.right_limit(after);
+    samples.push_back({x, knot.left, left - knot.left, !std::isnan(knot.left) || !std::isnan(left)});
+    samples.push_back({x, knot.right, right - knot.right, !std::isnan(knot.right) || !std::isnan(right)});
   }
 }
 
@@ -211,9 +228,8 @@ void sample_piece(const Piece& a, const Piece& b, double range, std::vector<Samp
   std::vector<Sample> samples;
   samples.reserve(a.x.size());
   for (std::size_t k = 0; k < a.x.size(); ++k) {
-    const bool in_one_only = std::isnan(a.y[k]) != std::isnan(b.y[k]);
-    const double same = a.y[k] == b.y[k] ? 0.0 : b.y[k] - a.y[k];  // equal infinities do not differ
-    samples.push_back({a.x[k], a.y[k], in_one_only ? std::numeric_limits<double>::infinity() : same});
+    samples.push_back(
+        {a.x[k], a.y[k], recorded_difference(a.y[k], b.y[k]), !std::isnan(a.y[k]) || !std::isnan(b.y[k])});
   }
   return samples;
 }
@@ -237,7 +253,7 @@ struct PathIntegrals {
     const Sample& from = samples[k - 1];
     const Sample& to = samples[k];
     const double dx = std::abs(to.x - from.x);
-    if (!(dx > 0.0)) continue;
+    if (!(dx > 0.0) || !from.counts || !to.counts) continue;
     sums.length += dx;
     if (std::isnan(from.difference) || std::isnan(to.difference)) continue;
     sums.compared_length += dx;
@@ -256,7 +272,7 @@ struct PathIntegrals {
   double largest_reference = 0.0;
   double peak_place = -std::numeric_limits<double>::infinity();
   double reference_at_peak = 0.0;
-  for (const auto& [x, reference, difference] : samples) {
+  for (const auto& [x, reference, difference, counts] : samples) {
     if (std::abs(difference) > largest) {
       largest = std::abs(difference);
       result.linf_at = x;
@@ -279,39 +295,72 @@ struct PathIntegrals {
 
 // --- tables
 
-[[nodiscard]] std::size_t numeric_column(const Table& table, const std::string& name, const char* which) {
-  const auto index = table.find(name);
-  if (!index) throw std::runtime_error(fmt::format("the {} table has no column '{}'", which, name));
-  if (table.columns()[*index].holds_words()) {
-    throw std::runtime_error(fmt::format("column '{}' of the {} table holds words, not numbers", name, which));
-  }
-  return *index;
-}
-
-/// The column's heading, after making sure that both tables have it, with numbers in the same unit.
-[[nodiscard]] std::string shared_heading(const Table& a, const Table& b, const std::string& name) {
-  std::string heading = a.columns()[numeric_column(a, name, "first")].heading();
-  const std::string other = b.columns()[numeric_column(b, name, "second")].heading();
-  if (heading != other) {
-    throw std::runtime_error(
-        fmt::format("'{}' is '{}' in the first table and '{}' in the second", name, heading, other));
-  }
-  return heading;
+/// The heading of a column of the reference that is asked for.
+[[nodiscard]] std::string heading_of(const Table& a, const std::string& name) {
+  const auto index = a.find(name);
+  if (!index) throw std::runtime_error(fmt::format("the first table has no column '{}'", name));
+  return a.columns()[*index].heading();
 }
 
 /// step and row number the rows; they are not results.
 [[nodiscard]] bool is_counter(const Column& column) { return column.name == "step" || column.name == "row"; }
 
-[[nodiscard]] std::vector<std::string> shared_results(const Table& a, const Table& b, const std::string& x) {
+[[nodiscard]] std::vector<std::string> result_headings(const Table& a, const std::string& x) {
   std::vector<std::string> headings;
   for (const Column& column : a.columns()) {
-    const std::string heading = column.heading();
-    const auto in_b = b.find(heading);
-    const bool is_shared = in_b && b.columns()[*in_b].heading() == heading && !b.columns()[*in_b].holds_words();
-    if (is_shared && !column.holds_words() && !is_counter(column) && heading != x) headings.push_back(heading);
+    if (!is_counter(column) && column.heading() != x) headings.push_back(column.heading());
   }
-  if (headings.empty()) throw std::runtime_error(fmt::format("the tables share no numeric column besides '{}'", x));
+  if (headings.empty()) throw std::runtime_error(fmt::format("the first table has no column besides '{}'", x));
   return headings;
+}
+
+/// Why b has nothing to set against a column of a; empty if it has the column with the same unit and kind.
+[[nodiscard]] std::string missing_column(const Table& a, const Table& b, const std::string& heading) {
+  const Column& in_a = a.columns()[*a.find(heading)];
+  const auto index = b.find(in_a.name);
+  if (!index) return "is missing";
+  const Column& in_b = b.columns()[*index];
+  const auto named = [](const std::string& unit) { return unit.empty() ? "without unit" : fmt::format("in {}", unit); };
+  if (in_a.unit != in_b.unit) return fmt::format("is {} instead of {}", named(in_b.unit), named(in_a.unit));
+  const auto kind = [](const Column& column) { return column.holds_words() ? "words" : "numbers"; };
+  if (in_a.holds_words() != in_b.holds_words()) {
+    return fmt::format("holds {} instead of {}", kind(in_b), kind(in_a));
+  }
+  return {};
+}
+
+/// The rows of a column of words: all of them, or those where the word changes.
+[[nodiscard]] std::vector<std::size_t> word_rows(const Table& table, std::size_t column, bool only_changes) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const bool is_new = rows.empty() || table.word(row, column) != table.word(rows.back(), column);
+    if (is_new || !only_changes) rows.push_back(row);
+  }
+  return rows;
+}
+
+/// Where words differ first; empty if they do not. Tables that share their x are compared row by row; of others the
+/// order in which words follow each other counts.
+[[nodiscard]] std::string word_difference(const Table& a, const Table& b, const std::string& heading,
+                                          const std::string& x) {
+  const std::size_t x_a = *a.find(x);
+  const std::size_t column_a = *a.find(heading);
+  const std::size_t column_b = *b.find(heading);
+  const bool only_changes = !share_places({a.column(x), {}}, {b.column(x), {}});
+  const auto rows_a = word_rows(a, column_a, only_changes);
+  const auto rows_b = word_rows(b, column_b, only_changes);
+  const auto word = [](const Table& table, const auto& rows, std::size_t k, std::size_t column) {
+    return k < rows.size() ? fmt::format("'{}'", table.word(rows[k], column)) : std::string("nothing");
+  };
+  for (std::size_t k = 0; k < std::max(rows_a.size(), rows_b.size()); ++k) {
+    const std::string expected = word(a, rows_a, k, column_a);
+    const std::string found = word(b, rows_b, k, column_b);
+    if (expected == found) continue;
+    if (rows_a.empty()) return fmt::format("has {} where nothing is expected", found);
+    return fmt::format("has {} instead of {} at {} = {:.6g}", found, expected, x,
+                       a.at(rows_a[std::min(k, rows_a.size() - 1)], x_a));
+  }
+  return {};
 }
 
 }  // namespace
@@ -327,23 +376,67 @@ CurveDifference compare_curves(std::span<const double> x_a, std::span<const doub
   return measures(share_places(a, b) ? row_samples(a, b) : interpolated_samples(a, b));
 }
 
-std::vector<CurveDifference> compare_tables(const Table& a, const Table& b, const std::string& x,
-                                            const std::string& y) {
-  if (a.columns().empty() || b.columns().empty()) throw std::runtime_error("one of the tables has no columns");
-  const std::string place = shared_heading(a, b, x.empty() ? a.columns().front().heading() : x);
-  const auto headings = y.empty() ? shared_results(a, b, place) : std::vector{shared_heading(a, b, y)};
+Comparison compare_tables(const Table& a, const Table& b, const std::string& x, const std::string& y) {
+  if (a.columns().empty()) throw std::runtime_error("the first table has no columns");
+  const std::string place = heading_of(a, x.empty() ? a.columns().front().heading() : x);
+  if (a.columns()[*a.find(place)].holds_words()) {
+    throw std::runtime_error(fmt::format("column '{}' of the first table holds words, not numbers", place));
+  }
+  const auto headings = y.empty() ? result_headings(a, place) : std::vector{heading_of(a, y)};
+  Comparison result;
+  if (std::string problem = missing_column(a, b, place); !problem.empty()) {
+    result.gaps.push_back({place, std::move(problem)});
+    return result;
+  }
   const auto x_a = a.column(place);
   const auto x_b = b.column(place);
-  std::vector<CurveDifference> differences;
   for (const std::string& heading : headings) {
-    try {
-      differences.push_back(compare_curves(x_a, a.column(heading), x_b, b.column(heading)));
-    } catch (const std::runtime_error& fault) {
-      throw std::runtime_error(fmt::format("{}: {}", heading, fault.what()));
+    std::string problem = missing_column(a, b, heading);
+    if (problem.empty() && a.columns()[*a.find(heading)].holds_words()) {
+      problem = word_difference(a, b, heading, place);
+    } else if (problem.empty()) {
+      try {
+        result.curves.push_back(compare_curves(x_a, a.column(heading), x_b, b.column(heading)));
+        result.curves.back().y = heading;
+        const double coverage = result.curves.back().coverage;
+        if (coverage < k_least_coverage) problem = fmt::format("covers only {:.4g} % of the curve", 100.0 * coverage);
+      } catch (const std::runtime_error& fault) {
+        problem = fault.what();
+      }
     }
-    differences.back().y = heading;
+    if (!problem.empty()) result.gaps.push_back({heading, std::move(problem)});
   }
-  return differences;
+  return result;
+}
+
+Comparison compare_events(const Table& a, const Table& b) {
+  Comparison result;
+  for (const char* column : {"time", "class", "event"}) {
+    if (!a.find(column)) throw std::runtime_error(fmt::format("the first events have no column '{}'", column));
+    if (!b.find(column)) result.gaps.push_back({column, "is missing"});
+  }
+  if (!result.gaps.empty() || (a.row_count() == 0 && b.row_count() == 0)) return result;
+  const auto name = [](const Table& events, std::size_t row) -> std::string {
+    if (row >= events.row_count()) return "nothing";
+    const std::string_view of_class = events.word(row, *events.find("class"));
+    return fmt::format("'{}'{}{}", events.word(row, *events.find("event")), of_class.empty() ? "" : " of ", of_class);
+  };
+  for (std::size_t k = 0; k < std::max(a.row_count(), b.row_count()); ++k) {
+    const std::string expected = name(a, k);
+    const std::string found = name(b, k);
+    if (expected == found) continue;
+    const Table& longer = k < a.row_count() ? a : b;
+    result.gaps.push_back({"event", fmt::format("number {} is {} instead of {} at {:.6g} s", k + 1, found, expected,
+                                                longer.at(k, *longer.find("time")))});
+    return result;
+  }
+  std::vector<double> number(a.row_count());
+  for (std::size_t k = 0; k < number.size(); ++k) number[k] = static_cast<double>(k);
+  const auto times = a.column("time");
+  result.curves.push_back(compare_curves(number, times, number, b.column("time")));
+  result.curves.back().y = "event time[s]";
+  result.curves.back().linf_at = times[static_cast<std::size_t>(result.curves.back().linf_at)];
+  return result;
 }
 
 }  // namespace monograin

@@ -27,8 +27,8 @@ struct CurveDifference {
   /// max |b - a| / |a(x_max)|, a where it first reaches its largest x (max |a| if it is zero there):
   /// 001_3cd85d3b0dc520cf.txt, eq. 8, which lacks the absolute value.
   double peak_error = 0.0;
-  /// Share of the path of a, measured along x, on which b could be compared; below 1 where b ends early or is
-  /// undefined.
+  /// Share of the path of a, measured along x, on which b could be compared; below 1 where b ends early, or where only
+  /// one of the two is defined.
   double coverage = 1.0;
 };
 
@@ -40,19 +40,38 @@ struct CurveDifference {
 /// right. Beyond the ends of b (by more than that share) nothing is compared.
 ///
 /// An undefined value (nan) matches an undefined one. A value that is undefined in one curve only is an infinite
-/// difference where the curves share their x, and is left out (see coverage) where b is interpolated.
+/// difference where both have a row, and is not covered where b is interpolated.
 /// @throws std::runtime_error when the curves cannot be brought together (no common range, different number of pieces)
 /// @throws std::invalid_argument when a curve has fewer or more y than x
 [[nodiscard]] CurveDifference compare_curves(std::span<const double> x_a, std::span<const double> y_a,
                                              std::span<const double> x_b, std::span<const double> y_b);
 
-/// Compares every numeric column the tables share (but x, and but the counting columns step and row), or the one named.
+/// Share of the reference below which a curve does not cover it: events at its ends may be a rounding error apart.
+inline constexpr double k_least_coverage = 0.999;
+
+/// A column of the reference that the other table lacks, does not cover, or has with other words.
+struct Gap {
+  std::string column;
+  std::string problem;  ///< follows the column's name in a sentence: "is missing"
+};
+
+struct Comparison {
+  std::vector<CurveDifference> curves;  ///< of the columns of numbers that both tables have
+  std::vector<Gap> gaps;
+};
+
+/// Compares every column of table a (the reference) but x and the counting columns step and row, or the one named.
+/// Words are compared row by row where the tables share their x, otherwise by the order in which they follow each
+/// other.
 ///
-/// @param x  name or heading of a column of both; empty: the first column of a
-/// @param y  name or heading of a column of both; empty: every numeric column with the same heading in both
-/// @throws std::runtime_error when a column is missing, holds words or has another unit in b, when there is nothing to
-/// compare, or when the curves cannot be brought together (naming the column)
-[[nodiscard]] std::vector<CurveDifference> compare_tables(const Table& a, const Table& b, const std::string& x,
-                                                          const std::string& y);
+/// @param x  name or heading of a column of a; empty: the first column
+/// @param y  name or heading of a column of a; empty: every column
+/// @throws std::runtime_error when a does not have these columns
+[[nodiscard]] Comparison compare_tables(const Table& a, const Table& b, const std::string& x, const std::string& y);
+
+/// Compares the events of two runs: their names and classes in their order, and their times as one curve over their
+/// number, called "event time[s]".
+/// @throws std::runtime_error when a has no columns time, class and event
+[[nodiscard]] Comparison compare_events(const Table& a, const Table& b);
 
 }  // namespace monograin

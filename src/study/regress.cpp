@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "history/compare.hpp"
 #include "history/run.hpp"
@@ -25,8 +27,8 @@ constexpr double k_rtol_multiple = 50.0;
 // Of that, what a stored curve may be wrong that had to be integrated itself.
 constexpr double k_tighter = 1e-2;
 
-// Share of a curve that has to be there; events at its ends may be a rounding error apart.
-constexpr double k_whole = 0.999;
+constexpr std::size_t k_most_faults = 4;  // of one run: one change may touch every column
+constexpr std::string_view k_events_suffix = ".events.csv";
 
 constexpr std::array<std::string_view, 4> k_integrators{"direct", "cvode-adams", "cvode-bdf", "ida"};
 
@@ -41,6 +43,7 @@ std::vector<fs::path> scenario_files(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
+  if (files.empty()) throw std::runtime_error(fmt::format("{}: holds no scenario (.toml) to run", folder.string()));
   std::ranges::sort(files);
   return files;
 }
@@ -48,25 +51,6 @@ std::vector<fs::path> scenario_files(const fs::path& folder) {
 Run run_with(Scenario scenario, std::string_view integrator) {
   scenario.numerics.integrator = integrator;
   return run_scenario(scenario);
-}
-
-/// Names of the events in their order; event tables of different runs number their words differently.
-std::vector<std::string> event_names(const Table& events) {
-  std::vector<std::string> names;
-  const auto class_column = *events.find("class");
-  const auto event = *events.find("event");
-  for (std::size_t i = 0; i < events.row_count(); ++i) {
-    names.push_back(fmt::format("{} {}", events.word(i, event), events.word(i, class_column)));
-  }
-  return names;
-}
-
-double event_time_difference(const Table& stored, const Table& now) {
-  const std::vector<double> a = stored.column("time");
-  const std::vector<double> b = now.column("time");
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return a.empty() || a.back() == 0.0 ? largest : largest / a.back();
 }
 
 /// A history with the squares of contact radii: they begin like a root, of which an overlap that is wrong by 1e-12
@@ -84,6 +68,29 @@ Table with_smooth_columns(const Table& history) {
   return smooth;
 }
 
+/// What keeps a run from being held against its curve, as one sentence.
+class FaultText {
+ public:
+  void add(std::string fault) {
+    if (++count_ <= k_most_faults) text_ += (text_.empty() ? "" : "; ") + fault;
+  }
+  [[nodiscard]] std::string text() const {
+    return count_ <= k_most_faults ? text_ : fmt::format("{}; and {} more", text_, count_ - k_most_faults);
+  }
+
+ private:
+  std::string text_;
+  std::size_t count_ = 0;
+};
+
+void add_gaps(const Comparison& run_to_stored, const Comparison& stored_to_run, FaultText& faults) {
+  for (const Gap& gap : run_to_stored.gaps) faults.add(fmt::format("{} {}", gap.column, gap.problem));
+  for (const Gap& gap : stored_to_run.gaps) {
+    if (std::ranges::find(run_to_stored.gaps, gap.column, &Gap::column) != run_to_stored.gaps.end()) continue;
+    faults.add(fmt::format("stored {} {}", gap.column, gap.problem));
+  }
+}
+
 void compare_with_stored(const Run& run, const fs::path& curves, RegressionResult& result) {
   const fs::path curve = curves / (run.scenario.name + ".csv");
   if (!fs::exists(curve)) {
@@ -91,30 +98,26 @@ void compare_with_stored(const Run& run, const fs::path& curves, RegressionResul
     return;
   }
   const Table history = read_csv(curve);
-  const Table events = read_csv(curves / (run.scenario.name + ".events.csv"));
+  const Table events = read_csv(curves / (run.scenario.name + std::string(k_events_suffix)));
+  FaultText faults;
   if (history.header_value("scenario_digest") != scenario_digest(run.scenario)) {
-    result.fault = "the scenario has changed since its curve was stored";
-  } else if (run.record.status != RunStatus::complete) {
-    result.fault = run.record.message;
-  } else if (event_names(events) != event_names(run.record.events)) {
-    result.fault = "other events, or in another order, than stored";
+    faults.add("the scenario has changed since its curve was stored");
   }
-  if (!result.fault.empty()) return;
-  result.event_time = event_time_difference(events, run.record.events);
-  // Some columns are blank in parts where a law says nothing.
+  if (run.record.status != RunStatus::complete) faults.add(run.record.message);
+  const Comparison of_events = compare_events(events, run.record.events);
+  for (const Gap& gap : of_events.gaps) faults.add(fmt::format("{} {}", gap.column, gap.problem));
+  if (of_events.gaps.empty()) result.event_time = of_events.curves.empty() ? 0.0 : of_events.curves.front().linf;
   const Table expected = with_smooth_columns(history);
-  const auto of_stored = compare_tables(expected, expected, "time", "");
-  const auto differences = compare_tables(expected, with_smooth_columns(run.record.history), "time", "");
-  for (std::size_t i = 0; i < differences.size(); ++i) {
-    const CurveDifference& difference = differences[i];
-    if (difference.coverage < k_whole * of_stored[i].coverage) {
-      result.fault = fmt::format("{} is not as long as stored", difference.y);
-    }
-    if (!(difference.linf <= result.difference)) {
-      result.difference = difference.linf;
-      result.column = difference.y;
-    }
+  const Table now = with_smooth_columns(run.record.history);
+  const Comparison of_run = compare_tables(expected, now, "time", "");
+  // The other way round: what the run has and the stored curve lacks.
+  add_gaps(of_run, compare_tables(now, expected, "time", ""), faults);
+  for (const CurveDifference& difference : of_run.curves) {
+    if (difference.linf <= result.difference) continue;
+    result.difference = difference.linf;
+    result.column = difference.y;
   }
+  result.fault = faults.text();
 }
 
 RegressionResult compare(const Run& run, const fs::path& curves) {
@@ -129,6 +132,29 @@ RegressionResult compare(const Run& run, const fs::path& curves) {
   return result;
 }
 
+/// Stored curves that no scenario stands for any more.
+std::vector<RegressionResult> orphaned_curves(const std::vector<fs::path>& scenarios, const fs::path& curves) {
+  std::set<std::string> names;
+  for (const fs::path& file : scenarios) names.insert(file.stem().string());
+  std::vector<RegressionResult> results;
+  std::vector<fs::path> files;
+  if (fs::is_directory(curves)) files.assign(fs::directory_iterator(curves), fs::directory_iterator());
+  std::ranges::sort(files);
+  for (const fs::path& file : files) {
+    std::string name = file.filename().string();
+    if (!name.ends_with(".csv")) continue;
+    const std::size_t suffix = name.ends_with(k_events_suffix) ? k_events_suffix.size() : 4;
+    name.resize(name.size() - suffix);
+    if (!names.insert(name).second) continue;
+    results.push_back(
+        {.scenario = name,
+         .integrator = {},
+         .column = {},
+         .fault = fmt::format("{} has no scenario; remove it, or bring {}.toml back", file.string(), name)});
+  }
+  return results;
+}
+
 void store(const fs::path& file, const Table& table) {
   std::ostringstream text;
   write_csv(table, text);
@@ -138,8 +164,9 @@ void store(const fs::path& file, const Table& table) {
 }  // namespace
 
 std::vector<RegressionResult> regress(const fs::path& scenarios, const fs::path& curves) {
-  std::vector<RegressionResult> results;
-  for (const fs::path& file : scenario_files(scenarios)) {
+  const std::vector<fs::path> files = scenario_files(scenarios);
+  std::vector<RegressionResult> results = orphaned_curves(files, curves);
+  for (const fs::path& file : files) {
     const Scenario scenario = read_scenario(file);
     const bool has_direct = has_direct_form(scenario);
     for (const std::string_view integrator : k_integrators) {
@@ -151,8 +178,9 @@ std::vector<RegressionResult> regress(const fs::path& scenarios, const fs::path&
 
 std::vector<RegressionResult> accept_curves(const fs::path& scenarios, const fs::path& curves) {
   fs::create_directories(curves);
-  std::vector<RegressionResult> results;
-  for (const fs::path& file : scenario_files(scenarios)) {
+  const std::vector<fs::path> files = scenario_files(scenarios);
+  std::vector<RegressionResult> results = orphaned_curves(files, curves);
+  for (const fs::path& file : files) {
     Scenario scenario = read_scenario(file);
     const bool has_direct = has_direct_form(scenario);
     if (!has_direct) {
@@ -170,7 +198,7 @@ std::vector<RegressionResult> accept_curves(const fs::path& scenarios, const fs:
                                              k_rtol_multiple * scenario.numerics.rtol)};
     for (Table* table : {&run.record.history, &run.record.events}) table->header.push_back(claim);
     store(curves / (run.scenario.name + ".csv"), run.record.history);
-    store(curves / (run.scenario.name + ".events.csv"), run.record.events);
+    store(curves / (run.scenario.name + std::string(k_events_suffix)), run.record.events);
   }
   return results;
 }

@@ -5,17 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "undefined.hpp"
+
 namespace monograin {
 
-/// One scenario run by one integrator, against its stored curve.
+/// One scenario run by one integrator, against its stored curve; measures are NaN where nothing could be compared.
 struct RegressionResult {
   std::string scenario;
-  std::string integrator;
-  double difference = 0.0;  ///< largest of any column over its largest magnitude; of contact radii, of their squares
-  std::string column;       ///< where that is
-  double event_time = 0.0;  ///< largest difference of an event's time, over the run's length
-  double tolerance = 0.0;   ///< that both were held against
-  std::string fault;        ///< why they cannot be compared; empty: they can
+  std::string integrator;     ///< empty: a stored curve that has no scenario
+  double difference = k_nan;  ///< largest of any column over its largest magnitude; of contact radii, of their squares
+  std::string column;         ///< where that is
+  double event_time = k_nan;  ///< largest difference of an event's time, over the run's length
+  double tolerance = 0.0;     ///< that both were held against
+  std::string fault;          ///< what differs beside numbers, or keeps them from being compared; empty: nothing
 
   [[nodiscard]] bool passes() const noexcept {
     return fault.empty() && difference <= tolerance && event_time <= tolerance;
@@ -23,7 +25,9 @@ struct RegressionResult {
 };
 
 /// Runs every scenario of a folder with every integrator that it can be run with, and compares with NAME.csv and
-/// NAME.events.csv of another folder.
+/// NAME.events.csv of another folder: columns, words and events must be the same, and each curve must cover the other.
+/// A stored curve without a scenario is a result with a fault.
+/// @throws std::runtime_error where there is no scenario
 [[nodiscard]] std::vector<RegressionResult> regress(const std::filesystem::path& scenarios,
                                                     const std::filesystem::path& curves);
 

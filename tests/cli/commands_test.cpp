@@ -209,6 +209,63 @@ TEST_F(Commands, CompareExitsWithFiveAboveTheTolerance) {
   EXPECT_EQ(monograin("compare a/history.csv missing.csv").code, 2);
 }
 
+TEST_F(Commands, CompareExitsWithFiveWhereTheReferenceIsNotCovered) {
+  write_text(path("a.csv"), "time[s],force[N],regime\n0,0,open\n0.1,1,elastic\n0.2,4,elastic\n");
+  write_text(path("row.csv"), "time[s],force[N]\n0,0\n");
+  const Outcome outcome = monograin("compare a.csv row.csv --x time --y force --tol 1e-9");
+  EXPECT_EQ(outcome.code, 5);
+  EXPECT_NE(outcome.err.find("row.csv does not have all of a.csv: force[N] covers only 0 % of the curve"),
+            std::string::npos)
+      << outcome.err;
+  const Outcome measured = monograin("compare a.csv row.csv --x time --y force");
+  EXPECT_EQ(measured.code, 0) << measured.err;
+  EXPECT_NE(measured.out.find("row.csv: force[N] covers only 0 % of the curve"), std::string::npos) << measured.out;
+}
+
+TEST_F(Commands, CompareExitsWithFiveWhereColumnsUnitsOrWordsAreOthers) {
+  write_text(path("a.csv"), "time[s],area[m2],force[N],regime\n0,2,0,open\n1,2,1,elastic\n");
+  const auto code = [&](const std::string& other) {
+    write_text(path("b.csv"), other);
+    EXPECT_EQ(monograin("compare a.csv b.csv").code, 0) << other;  // without a tolerance it only measures
+    return monograin("compare a.csv b.csv --tol 1").code;
+  };
+  EXPECT_EQ(code("time[s],area[m2],force[N],regime,more\n0,2,0,open,1\n1,2,1,elastic,1\n"), 0);
+  EXPECT_EQ(code("time[s],regime,area[m2],force[N]\n0,open,2,0\n1,elastic,2,1\n"), 0);
+  EXPECT_EQ(code("time[s],regime,area[m2]\n0,open,2\n1,elastic,2\n"), 5);
+  EXPECT_EQ(code("time[s],area[m2],force[kN],regime\n0,2,0,open\n1,2,1,elastic\n"), 5);
+  EXPECT_EQ(code("time[s],area[m2],force[N],regime\n0,2,0,open\n1,2,1,yielded\n"), 5);
+  EXPECT_EQ(code("time[s],area[m2],force[N],regime\n0,2,0,open\n1,2,nan,elastic\n"), 5);
+  write_text(path("c.csv"), "s,f\n0,0\n1,1\n");
+  EXPECT_EQ(monograin("compare a.csv c.csv").code, 2);  // nothing was measured
+  EXPECT_EQ(monograin("compare a.csv c.csv --tol 1").code, 5);
+  EXPECT_EQ(monograin("compare a.csv a.csv --y forc --tol 1").code, 2);
+}
+
+TEST_F(Commands, CompareTakesRunFoldersWithTheirEvents) {
+  write_text(path("small.toml"), k_small);
+  ASSERT_EQ(monograin("run small.toml -o a").code, 0);
+  ASSERT_EQ(monograin("run small.toml -o b --set numerics.integrator=cvode-bdf").code, 0);
+  ASSERT_EQ(monograin("run small.toml -o c --set loading.steps[1].displacement='0.19 R0'").code, 0);
+  const Outcome same = monograin("compare a b --tol 1e-5");
+  EXPECT_EQ(same.code, 0) << same.out << same.err;
+  EXPECT_NE(same.out.find("event time[s]"), std::string::npos) << same.out;
+  // The curves are alike within half of their size; an event less is a difference whatever the tolerance.
+  const Table events = read_csv(path("a/events.csv"));
+  Table fewer(events.columns());
+  for (std::size_t k = 0; k + 1 < events.row_count(); ++k) fewer.append(events.row(k));
+  fs::copy(path("a"), path("d"), fs::copy_options::recursive);
+  std::ofstream out(path("d/events.csv"), std::ios::binary);
+  write_csv(fewer, out);
+  out.close();
+  const Outcome lost = monograin("compare a d --tol 1");
+  EXPECT_EQ(lost.code, 5);
+  EXPECT_NE(lost.err.find("is nothing instead of"), std::string::npos) << lost.err;
+  EXPECT_EQ(monograin("compare d a --tol 1").code, 5);
+  EXPECT_EQ(monograin("compare a c --tol 1e-3").code, 5);
+  EXPECT_EQ(monograin("compare a/history.csv b --y axial.force --tol 1e-5").code, 0);
+  EXPECT_EQ(monograin("compare a .").code, 2);
+}
+
 TEST_F(Commands, PlotDrawsRecordedRunsInEveryFormat) {
   write_text(path("small.toml"), k_small);
   ASSERT_EQ(monograin("run small.toml").code, 0);
@@ -256,6 +313,72 @@ TEST_F(Commands, RegressFindsAMovedCurve) {
   write_csv(moved, out);
   out.close();
   EXPECT_EQ(monograin("regress --curves curves").code, 5);
+}
+
+TEST_F(Commands, RegressExitsWithFiveWhereCurvesDoNotBelongTogether) {
+  fs::create_directory(path("scenarios"));
+  write_text(path("scenarios/small.toml"), k_small);
+  ASSERT_EQ(monograin("regress --accept --curves curves").code, 0);
+  const std::string history = text("curves/small.csv");
+  const std::string events = text("curves/small.events.csv");
+  const auto expect_fault = [&](const std::string& fault) {
+    const Outcome outcome = monograin("regress --curves curves");
+    EXPECT_EQ(outcome.code, 5) << fault;
+    EXPECT_NE(outcome.out.find(fault), std::string::npos) << fault << '\n' << outcome.out;
+    write_text(path("curves/small.csv"), history);
+    write_text(path("curves/small.events.csv"), events);
+  };
+  const auto lines_of = [](const std::string& whole, std::size_t rows) {
+    std::size_t end = whole.find("\ntime[s]") + 1;
+    for (std::size_t k = 0; k <= rows; ++k) end = whole.find('\n', end) + 1;
+    return whole.substr(0, end);
+  };
+  const auto replaced = [](std::string whole, const std::string& word, const std::string& by) {
+    const std::size_t at = whole.rfind(word);
+    EXPECT_NE(at, std::string::npos) << word;
+    return whole.replace(at, word.size(), by);
+  };
+  write_text(path("curves/small.csv"), lines_of(history, 3));
+  expect_fault("stored apparent_radius[m] covers only ");
+  write_text(path("curves/small.csv"), lines_of(history, 0));
+  expect_fault("one of them has no points");
+  write_text(path("curves/small.csv"), replaced(history, "axial.force[N]", "axial.push[N]"));
+  expect_fault("stored axial.force[N] is missing");
+  write_text(path("curves/small.csv"), replaced(history, "unloading", "elastic"));
+  expect_fault("axial.regime has 'unloading' instead of 'elastic'");
+  write_text(path("curves/small.events.csv"), replaced(events, "step-end", "reload"));
+  expect_fault("instead of 'reload'");
+  write_text(path("curves/small.events.csv"), lines_of(events, 1));
+  expect_fault("instead of nothing");
+  write_text(path("curves/other.csv"), history);
+  expect_fault("other.csv has no scenario; remove it, or bring other.toml back");
+  fs::remove(path("curves/other.csv"));
+  write_text(path("curves/ghost.events.csv"), events);
+  expect_fault("ghost.events.csv has no scenario");
+  fs::remove(path("curves/ghost.events.csv"));
+  write_text(path("scenarios/small.toml"), std::string(k_small) + "\n[numerics]\nrtol = 1e-7\n");
+  expect_fault("the scenario has changed since its curve was stored");
+  fs::remove(path("curves/small.csv"));
+  expect_fault("'monograin regress --accept' stores it");
+  fs::remove(path("scenarios/small.toml"));
+  EXPECT_EQ(monograin("regress --curves curves").code, 2);  // no scenario at all
+}
+
+TEST_F(Commands, RegressSaysWhatItsAcceptingChanges) {
+  fs::create_directory(path("scenarios"));
+  write_text(path("scenarios/small.toml"), k_small);
+  const Outcome first = monograin("regress --accept --curves curves");
+  EXPECT_EQ(first.code, 0);
+  EXPECT_NE(first.out.find("is missing"), std::string::npos) << first.out;
+  std::string softer = k_small;
+  softer.replace(softer.find("20 MPa"), 6, "19 MPa");
+  write_text(path("scenarios/small.toml"), softer);
+  const Outcome second = monograin("regress --accept --curves curves");
+  EXPECT_EQ(second.code, 0);
+  EXPECT_NE(second.out.find("differs in "), std::string::npos) << second.out;
+  EXPECT_NE(second.out.find("the scenario has changed"), std::string::npos) << second.out;
+  EXPECT_NE(second.err.find("1 curves stored"), std::string::npos) << second.err;
+  EXPECT_EQ(monograin("regress --curves curves").code, 0);
 }
 
 TEST_F(Commands, WrongUseExitsWithTwo) {

@@ -94,7 +94,7 @@ TEST_F(Terminal, AFaultOfTheCommandLineIsNamedWithWhatIsExpected) {
     return outcome.err;
   };
   EXPECT_TRUE(contains(fault(""), "a command is missing; there are run, check, "));
-  EXPECT_TRUE(contains(fault("compare a.csv"), "compare: B is missing; expected: Curve to hold against it"));
+  EXPECT_TRUE(contains(fault("compare a.csv"), "compare: B is missing; expected: What to hold against it"));
   EXPECT_TRUE(contains(fault("compare a.csv a.csv --tol x"), "--tol = x is not what it takes; expected: Exit with 5"));
   EXPECT_TRUE(contains(fault("compare a.csv a.csv --tol=-1"), "--tol = -1 is not what it takes"));
   EXPECT_TRUE(contains(fault("run --outptu=x"), "'--outptu=x' is not expected here; did you mean '--output'?"));

@@ -147,6 +147,21 @@ TEST(CompareCurves, IsInfinitelyApartWhereOnlyOneIsDefined) {
   EXPECT_TRUE(std::isinf(compare_curves(x, Values{1, k_nan, 1}, x, Values{1, 1, 1}).linf));
 }
 
+TEST(CompareCurves, IsInfinitelyApartAtARowThatOnlyOneCurveDefinesWhereTheOtherRowsDiffer) {
+  const auto difference =
+      compare_curves(Values{0, 1, 2, 3}, Values{1, 1, k_nan, 1}, Values{0, 0.5, 2, 3}, Values{1, 1, 1, 1});
+  EXPECT_TRUE(std::isinf(difference.linf));
+}
+
+TEST(CompareCurves, CountsAsCoveredOnlyWhereAtLeastOneCurveIsDefined) {
+  const Values x{0, 1, 2, 3};
+  EXPECT_EQ(compare_curves(x, Values{1, 1, k_nan, k_nan}, x, Values{1, 1, k_nan, k_nan}).coverage, 1.0);
+  const auto cut = compare_curves(x, Values{1, 1, 1, 1}, Values{0, 0.5, 1.5, 3}, Values{1, 1, k_nan, k_nan});
+  EXPECT_DOUBLE_EQ(cut.coverage, 0.0);
+  const auto extra = compare_curves(x, Values{1, 1, k_nan, k_nan}, Values{0, 0.5, 2.5, 3}, Values{1, 1, 1, 1});
+  EXPECT_DOUBLE_EQ(extra.coverage, 1.0 / 3.0);
+}
+
 TEST(CompareCurves, LeavesOutUndefinedValuesWhereItInterpolates) {
   const auto difference =
       compare_curves(Values{0, 1, 2, 3}, Values{1, 1, k_nan, 1}, Values{0, 0.5, 3}, Values{1, 1, 1});
@@ -179,39 +194,109 @@ std::string fault_of(const Table& a, const Table& b, const std::string& x, const
   return "no fault";
 }
 
-TEST(CompareTables, TakesEveryResultTheyShare) {
-  const auto differences = compare_tables(history(2.0), history(3.0), "time", "");
-  ASSERT_EQ(differences.size(), 2u);
-  EXPECT_EQ(differences[0].y, "force[N]");
-  EXPECT_DOUBLE_EQ(differences[0].linf, 0.5);
-  EXPECT_EQ(differences[1].y, "area[m2]");
-  EXPECT_EQ(differences[1].linf, 0.0);
+/// All gaps, as sentences.
+std::vector<std::string> sentences(const Comparison& comparison) {
+  std::vector<std::string> result;
+  for (const Gap& gap : comparison.gaps) result.push_back(gap.column + ' ' + gap.problem);
+  return result;
+}
+
+std::vector<std::string> gaps(const Table& a, const Table& b, const std::string& y = "") {
+  return sentences(compare_tables(a, b, "time", y));
+}
+
+using Sentences = std::vector<std::string>;
+
+TEST(CompareTables, TakesEveryResultOfTheReference) {
+  const auto [curves, missing] = compare_tables(history(2.0), history(3.0), "time", "");
+  ASSERT_EQ(curves.size(), 2u);
+  EXPECT_EQ(curves[0].y, "force[N]");
+  EXPECT_DOUBLE_EQ(curves[0].linf, 0.5);
+  EXPECT_EQ(curves[1].y, "area[m2]");
+  EXPECT_EQ(curves[1].linf, 0.0);
+  EXPECT_TRUE(missing.empty());
 }
 
 TEST(CompareTables, TakesTheColumnThatIsNamed) {
-  const auto differences = compare_tables(history(2.0), history(3.0), "", "force[N]");
-  ASSERT_EQ(differences.size(), 1u);
-  EXPECT_EQ(differences[0].y, "force[N]");
+  const auto comparison = compare_tables(history(2.0), history(3.0), "", "force[N]");
+  ASSERT_EQ(comparison.curves.size(), 1u);
+  EXPECT_EQ(comparison.curves[0].y, "force[N]");
 }
 
-TEST(CompareTables, SaysWhichColumnIsMissingOrWrong) {
-  Table other({{"time", "s", {}}, {"force", "kN", {}}});
-  other.append(std::array{0.0, 0.0});
-  EXPECT_EQ(fault_of(history(1), other, "time", "area"), "the second table has no column 'area'");
+TEST(CompareTables, RefusesWhatTheReferenceDoesNotHave) {
   EXPECT_EQ(fault_of(history(1), history(1), "tme", ""), "the first table has no column 'tme'");
-  EXPECT_EQ(fault_of(history(1), history(1), "time", "regime"),
+  EXPECT_EQ(fault_of(history(1), history(1), "time", "forc"), "the first table has no column 'forc'");
+  EXPECT_EQ(fault_of(history(1), history(1), "regime", ""),
             "column 'regime' of the first table holds words, not numbers");
-  EXPECT_EQ(fault_of(history(1), other, "time", "force"),
-            "'force' is 'force[N]' in the first table and 'force[kN]' in the second");
-  EXPECT_EQ(fault_of(history(1), other, "time", ""), "the tables share no numeric column besides 'time[s]'");
+  EXPECT_EQ(fault_of(Table(std::vector<Column>{{"time", "s", {}}}), history(1), "time", ""),
+            "the first table has no column besides 'time[s]'");
 }
 
-TEST(CompareTables, NamesTheColumnThatCannotBeCompared) {
+TEST(CompareTables, NamesEveryColumnThatTheOtherLacksOrHasInAnotherUnit) {
+  Table other({{"time", "s", {}}, {"force", "kN", {}}, {"regime", "", {}}});
+  other.append(std::array{0.0, 0.0, 0.0});
+  EXPECT_EQ(gaps(history(1), other), (Sentences{"force[N] is in kN instead of in N", "area[m2] is missing",
+                                                "regime holds numbers instead of words"}));
+  EXPECT_EQ(gaps(history(1), other, "area"), Sentences{"area[m2] is missing"});
+  const Table without_x(std::vector<Column>{{"force", "N", {}}});
+  EXPECT_EQ(gaps(history(1), without_x), Sentences{"time[s] is missing"});
+}
+
+TEST(CompareTables, NamesTheColumnThatIsNotCovered) {
+  Table shorter({{"time", "s", {}}, {"force", "N", {}}});
+  shorter.append(std::array{0.0, 0.0});
+  EXPECT_EQ(gaps(history(1), shorter, "force"), Sentences{"force[N] covers only 0 % of the curve"});
   Table later({{"time", "s", {}}, {"force", "N", {}}});
   later.append(std::array{5.0, 0.0});
   later.append(std::array{6.0, 0.0});
-  EXPECT_EQ(fault_of(history(1), later, "time", "force"),
-            "force[N]: the curves cannot be compared: there is no x at which both are defined");
+  EXPECT_EQ(gaps(history(1), later, "force"),
+            Sentences{"force[N] the curves cannot be compared: there is no x at which both are defined"});
+}
+
+Table regimes(const std::vector<double>& times, const std::vector<double>& words) {
+  Table table({{"time", "s", {}}, {"regime", "", {"open", "elastic", "yielded"}}});
+  for (std::size_t k = 0; k < times.size(); ++k) table.append(std::array{times[k], words[k]});
+  return table;
+}
+
+TEST(CompareTables, ComparesWordsRowByRowWhereTheRowsAreAtTheSamePlaces) {
+  EXPECT_EQ(gaps(regimes({0, 1, 2}, {0, 1, 2}), regimes({0, 1, 2}, {0, 1, 2})), Sentences{});
+  EXPECT_EQ(gaps(regimes({0, 1, 2}, {0, 1, 2}), regimes({0, 1, 2}, {0, 0, 2})),
+            Sentences{"regime has 'open' instead of 'elastic' at time[s] = 1"});
+}
+
+TEST(CompareTables, ComparesTheOrderOfWordsWhereTheRowsDiffer) {
+  EXPECT_EQ(gaps(regimes({0, 1, 2}, {0, 1, 2}), regimes({0, 0.5, 1.5, 2}, {0, 0, 1, 2})), Sentences{});
+  EXPECT_EQ(gaps(regimes({0, 1, 2}, {0, 1, 2}), regimes({0, 0.5, 2}, {0, 1, 1})),
+            Sentences{"regime has nothing instead of 'yielded' at time[s] = 2"});
+  EXPECT_EQ(gaps(regimes({0, 1}, {0, 1}), regimes({0, 0.5, 2}, {0, 1, 2})),
+            Sentences{"regime has 'yielded' instead of nothing at time[s] = 1"});
+}
+
+Table events(const std::vector<double>& times, const std::vector<double>& names) {
+  Table table({{"time", "s", {}}, {"class", "", {"axial"}}, {"event", "", {"yield", "reload"}}});
+  for (std::size_t k = 0; k < times.size(); ++k) table.append(std::array{times[k], 0.0, names[k]});
+  return table;
+}
+
+TEST(CompareEvents, TakesTheirTimesAsOneCurve) {
+  const auto [curves, missing] = compare_events(events({1, 4}, {0, 1}), events({1, 3}, {0, 1}));
+  EXPECT_TRUE(missing.empty());
+  ASSERT_EQ(curves.size(), 1u);
+  EXPECT_DOUBLE_EQ(curves[0].linf, 0.25);
+  EXPECT_EQ(curves[0].linf_at, 4.0);
+}
+
+TEST(CompareEvents, NamesTheFirstThatIsAnotherMissingOrExtra) {
+  const auto difference = [](const Table& a, const Table& b) { return sentences(compare_events(a, b)); };
+  EXPECT_EQ(difference(events({1, 4}, {0, 1}), events({1, 4}, {0, 0})),
+            Sentences{"event number 2 is 'yield' of axial instead of 'reload' of axial at 4 s"});
+  EXPECT_EQ(difference(events({1, 4}, {0, 1}), events({1}, {0})),
+            Sentences{"event number 2 is nothing instead of 'reload' of axial at 4 s"});
+  EXPECT_EQ(difference(events({1}, {0}), events({1, 4}, {0, 1})),
+            Sentences{"event number 2 is 'reload' of axial instead of nothing at 4 s"});
+  EXPECT_EQ(difference(events({}, {}), events({}, {})), Sentences{});
+  EXPECT_EQ(difference(events({1}, {0}), history(1)), (Sentences{"class is missing", "event is missing"}));
 }
 
 }  // namespace
