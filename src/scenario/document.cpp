@@ -11,7 +11,6 @@ namespace monograin {
 namespace {
 
 constexpr std::size_t k_most_key_parts = 32;
-constexpr std::size_t k_longest_description = 200;
 
 /// Finds keys of very many parts. The parser makes one table per part, and tables nested without bound would overflow
 /// the stack when they are destroyed; for values it has a limit of its own.
@@ -75,21 +74,82 @@ class KeyScanner {
   std::size_t dots_ = 0;
 };
 
-/// The parser's description without its own preamble and the names of its macros.
-std::string tidy(std::string_view description) {
-  constexpr std::string_view preamble = "Error while parsing ";
-  std::string context;
-  if (description.starts_with(preamble)) {
-    const std::size_t colon = description.find(": ");
-    if (colon != std::string_view::npos) {
-      context = fmt::format(" (reading {})", description.substr(preamble.size(), colon - preamble.size()));
-      description.remove_prefix(colon + 2);
+/// A kind of fault of the syntax: what the parser's description has in it, and what is said instead.
+struct SyntaxFault {
+  std::string_view clue;
+  std::string_view sentence;
+};
+
+constexpr std::string_view k_end_of_text = "encountered end-of-file";
+
+/// What the text ends in the middle of.
+constexpr SyntaxFault k_open_parts[] = {
+    {"inline table", "the braces are not closed; expected '}'"},
+    {"array", "the array is not closed; expected ']'"},
+    {"string", "the text is not closed; expected a quote at its end"},
+    {"table", "the name of the table is not closed; expected [name] or [[name]]"},
+};
+
+// The first clue that is met counts.
+constexpr SyntaxFault k_syntax_faults[] = {
+    {"nested value depth", "arrays or braces are nested too deeply; expected at most 256 levels"},
+    {"into existing inline table", "a table in braces cannot be added to; expected all of its keys in the braces"},
+    {"cannot insert", "this key has a value already, which is no table; expected another name"},
+    {"unexpected control character", "the value is missing; expected for example 3.5, \"10 mm\" or true"},
+    {"control characters other than TAB",
+     "the text is not closed before a line break or a control character; expected a quote at its end"},
+    {"expected a comment or whitespace",
+     "there is more after the value; expected the end of the line, and quotes around a number with a unit: \"10 mm\""},
+    {"dangling comma", "a comma before the closing brace; expected another key = value, or no comma"},
+    {"saw comma", "a comma without an entry before it; expected one comma between two entries"},
+    {"expected comma or closing", "the entries are not separated; expected ',' or a closing bracket"},
+    {"expected '='", "'=' is missing after the key; expected key = value"},
+    {"expected ']'", "the name of the table is not closed; expected [name] or [[name]]"},
+    {"brackets must be contiguous", "there are blanks between the brackets; expected [[name]]"},
+    {"bare key", "this is no key; expected key = value, [table] or # comment"},
+    {"expected key", "this is no key; expected key = value, [table] or # comment"},
+    {"escape sequence",
+     "no such escape in quotes; expected \\n, \\t, \\\", \\\\ or \\uXXXX, or single quotes around it all"},
+    {"backslashes", "a backslash in the text; expected \\\\, or single quotes around it all"},
+    {"surrogates", "this is no character; expected UTF-8"},
+    {"U+10FFFF", "this is no character; expected UTF-8"},
+    {"utf-8", "this is no character; expected UTF-8"},
+    {R"(expected value, saw '\n')", "the value is missing; expected for example 3.5, \"10 mm\" or true"},
+    {"expected value", "this is no value; expected for example 3.5, \"10 mm\", true, [1, 2] or { key = 1 }"},
+    {"determine value type", "this is no value; expected for example 3.5, \"10 mm\", true, [1, 2] or { key = 1 }"},
+    {"interpreted as a value", "this is no value; expected for example 3.5, \"10 mm\", true, [1, 2] or { key = 1 }"},
+    {"year", "this is no date; expected a number, or a text in quotes"},
+    {"month", "this is no date; expected a number, or a text in quotes"},
+    {"hour", "this is no time of day; expected a number, or a text in quotes"},
+    {"minute", "this is no time of day; expected a number, or a text in quotes"},
+    {"underscore", "this is no number; expected for example 3, 0.5 or 1e-3"},
+    {"digit", "this is no number; expected for example 3, 0.5 or 1e-3"},
+    {"zeroes", "a number begins with a zero; expected for example 3, 0.5 or 1e-3"},
+    {"exponent", "this is no number; expected for example 3, 0.5 or 1e-3"},
+    {"representable", "the number is too large; expected one that fits, for example 1e30"},
+    {"length", "the number is too long; expected at most 17 digits"},
+};
+
+/// A fault of the syntax in the program's words. The parser's description only says which.
+std::string sentence_of(std::string_view description) {
+  constexpr std::string_view k_redefined = "cannot redefine existing ";
+  if (const auto at = description.find(k_redefined); at != std::string_view::npos) {
+    const std::size_t open = description.find('\'', at);
+    const std::size_t close = description.rfind('\'');
+    const bool is_named = open != std::string_view::npos && open < close;
+    return fmt::format("'{}' is there already; expected each key and table once",
+                       is_named ? shown(description.substr(open + 1, close - open - 1)) : "the key");
+  }
+  if (description.find(k_end_of_text) != std::string_view::npos) {
+    for (const auto& [clue, sentence] : k_open_parts) {
+      if (description.find(clue) != std::string_view::npos) return std::string(sentence);
     }
+    return "the text ends too early; expected key = value";
   }
-  if (const auto macro = description.find(" (TOML_"); macro != std::string_view::npos) {
-    description = description.substr(0, macro);
+  for (const auto& [clue, sentence] : k_syntax_faults) {
+    if (description.find(clue) != std::string_view::npos) return std::string(sentence);
   }
-  return on_one_line(description.substr(0, k_longest_description)) + context;
+  return "expected key = value, [table] or # comment";
 }
 
 }  // namespace
@@ -102,7 +162,7 @@ toml::table parse_document(std::string_view text, const std::string& origin) {
   try {
     return toml::parse(text, std::string_view(origin));
   } catch (const toml::parse_error& error) {
-    throw_fault(place_of(error.source(), {origin}), "not valid TOML: " + tidy(error.description()));
+    throw_fault(place_of(error.source(), {origin}), "not valid TOML: " + sentence_of(error.description()));
   }
 }
 

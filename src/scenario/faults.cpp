@@ -11,12 +11,19 @@
 namespace monograin {
 namespace {
 
+constexpr std::size_t k_most_shown = 20;  // nobody reads on
+
+std::string one_line(const Fault& fault) {
+  return fmt::format("{}:{}:{}: {}", fault.where.file, fault.where.line, fault.where.column, fault.message);
+}
+
 std::string one_line_each(const std::vector<Fault>& faults) {
   std::string text;
-  for (const Fault& fault : faults) {
-    if (!text.empty()) text += '\n';
-    text += fmt::format("{}:{}:{}: {}", fault.where.file, fault.where.line, fault.where.column, fault.message);
-  }
+  // A line that counts one fault could as well show it.
+  const std::size_t shown = faults.size() <= k_most_shown + 1 ? faults.size() : k_most_shown;
+  for (std::size_t k = 0; k < shown; ++k) text += (k == 0 ? "" : "\n") + one_line(faults[k]);
+  const std::size_t left = faults.size() - shown;
+  if (left > 0) text += fmt::format("\nand {} more faults", left);
   return text;
 }
 
@@ -31,11 +38,8 @@ ScenarioError::ScenarioError(std::vector<Fault> faults)
     : std::runtime_error(one_line_each(faults)), faults_(std::move(faults)) {}
 
 void FaultList::add(SourceLocation where, std::string message) {
-  const auto is_same = [&](const Fault& fault) {
-    return std::tie(fault.message, fault.where.file, fault.where.line, fault.where.column) ==
-           std::tie(message, where.file, where.line, where.column);
-  };
-  if (std::ranges::none_of(faults_, is_same)) faults_.push_back({std::move(where), std::move(message)});
+  Fault fault{std::move(where), std::move(message)};
+  if (lines_.insert(one_line(fault)).second) faults_.push_back(std::move(fault));
 }
 
 void FaultList::throw_if_any() const {

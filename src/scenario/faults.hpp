@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "scenario/scenario.hpp"
@@ -10,7 +11,7 @@ namespace monograin {
 
 class FaultList {
  public:
-  /// What has been found at the same place before is not said again.
+  /// What has been found at the same place before is not said again. Takes the same time however many there are.
   void add(SourceLocation where, std::string message);
   [[nodiscard]] std::size_t size() const noexcept { return faults_.size(); }
 
@@ -19,6 +20,7 @@ class FaultList {
 
  private:
   std::vector<Fault> faults_;
+  std::unordered_set<std::string> lines_;  ///< each fault as it is printed
 };
 
 /// @throws ScenarioError with this one fault

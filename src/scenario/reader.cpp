@@ -157,6 +157,16 @@ void read_output(Reading& reading, const Section& root, const Language& language
   // The default number of points is that of a scenario without times.
   const bool has_points = scenario.output.times.empty() || output.has("points");
   scenario.output.points = has_points ? static_cast<int>(output.number("points").value_or(0.0)) : 0;
+  std::size_t steps = scenario.loading.steps.size();
+  for (const WallSpec& wall : scenario.loading.walls) steps = std::max(steps, wall.steps.size());
+  const double rows = static_cast<double>(scenario.output.points) * static_cast<double>(steps);
+  if (rows > k_most_rows && !output.has("times")) {
+    reading.faults.add(
+        output.value_place("points"),
+        fmt::format("points = {} in each of {} steps are {:.3g} rows; expected at most {:.0f} million: take fewer "
+                    "points, or name the instants with 'times'",
+                    scenario.output.points, steps, rows, k_most_rows / 1e6));
+  }
 }
 
 void read_numerics(Reading& reading, const Section& root, const Language& language, Scenario& scenario) {

@@ -81,8 +81,9 @@ INSTANTIATE_TEST_SUITE_P(
                     "1:15: rtol = nan: out of range; expected a number from 1e-14 to 0.1"},
         OverrideRow{"MisspeltKey", "particle.raduis=3",
                     "1:1: unknown key 'raduis' in [particle]; did you mean 'radius'?"},
-        OverrideRow{"BrokenArray", "output.times=[1,", "1:17: not valid TOML: encountered end-of-file (reading array)"},
-        OverrideRow{"BrokenString", "title=\"x", "1:9: not valid TOML: encountered end-of-file (reading string)"},
+        OverrideRow{"BrokenArray", "output.times=[1,", "1:17: not valid TOML: the array is not closed; expected ']'"},
+        OverrideRow{"BrokenString", "title=\"x",
+                    "1:9: not valid TOML: the text is not closed; expected a quote at its end"},
         OverrideRow{"ValueOfTheWrongKind", "loading.steps=3",
                     "1:15: steps = 3: expected an array of tables, written [[loading.steps]]"}),
     [](const auto& row) { return std::string(row.param.name); });
@@ -95,7 +96,9 @@ TEST(Overrides, AreReportedAfterTheFile) {
 }
 
 TEST(Overrides, StayOnOneLineInMessages) {
-  for (const std::string& fault : faults_of(k_good_scenario, {"title=3\nx=4", "particle.radius=1\n2"})) {
+  const std::vector<std::string> faults = faults_of(k_good_scenario, {"title=3\nx=4", "particle.radius=1\n2"});
+  EXPECT_FALSE(faults.empty());
+  for (const std::string& fault : faults) {
     EXPECT_TRUE(fault.starts_with("--set 'particle.radius=1?2':1:17: ")) << fault;
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <stdexcept>
 
 #include "scenario/scenario.hpp"
 
@@ -37,6 +38,7 @@ std::vector<std::filesystem::path> toml_files(std::string_view folder) {
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(MONOGRAIN_SOURCE_DIR) / folder)) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
+  if (files.empty()) throw std::runtime_error("no files to test in " + std::string(folder));
   std::ranges::sort(files);
   return files;
 }
