@@ -138,6 +138,7 @@ struct ModelInfo {
   std::span<const std::string_view> configurations;  ///< empty: there is nothing to choose from
   bool has_free_centre = false;                      ///< `[loading] centre = "equilibrium"` is defined
   bool has_contact_area = true;  ///< there are contact radii, pressures, and a surface that may move
+  bool has_profile = false;      ///< pressure and surface under a contact are known
   std::span<const Term> regimes;
   std::span<const Term> events;
   std::span<const std::string_view> domain;       ///< limits of validity, a sentence each

@@ -81,6 +81,7 @@ ModelInfo nonlocal_info() noexcept {
           .options = k_options,
           .configurations = k_configurations,
           .has_free_centre = true,
+          .has_profile = true,
           .regimes = k_regimes,
           .events = k_events,
           .domain = k_domain,

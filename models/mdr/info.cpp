@@ -133,6 +133,7 @@ ModelInfo hertz_info() noexcept {
           .options = {},
           .configurations = k_wall_configurations,
           .has_free_centre = true,
+          .has_profile = true,
           .regimes = k_hertz_regimes,
           .events = k_hertz_events,
           .domain = k_hertz_domain};
@@ -146,6 +147,7 @@ ModelInfo mdr_info() noexcept {
           .options = k_mdr_options,
           .configurations = k_wall_configurations,
           .has_free_centre = true,
+          .has_profile = true,
           .regimes = k_mdr_regimes,
           .events = k_mdr_events,
           .domain = k_mdr_domain};

@@ -8,8 +8,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "catalogue.hpp"
 #include "figure/chart.hpp"
 #include "history/run.hpp"
+#include "scenario/words.hpp"
 
 namespace monograin {
 namespace {
@@ -78,6 +80,14 @@ std::vector<double> of_class(const Table& profiles, std::size_t c, std::string_v
 }  // namespace
 
 Table contact_profiles(const Scenario& scenario, double time) {
+  if (!find_model(scenario.model)->has_profile) {
+    std::vector<std::string_view> names;
+    for (const ModelInfo& model : model_catalogue()) {
+      if (model.has_profile) names.push_back(model.name);
+    }
+    throw std::runtime_error(fmt::format("model '{}' has no profile under its contacts; those of {} have one",
+                                         scenario.model, listed(names)));
+  }
   Scene scene = make_scene(scenario);
   ProfileSink sink(*scene.system, time);
   const Output output{.points = 0, .times = {time}};

@@ -13,7 +13,8 @@ namespace monograin {
 /// @param time  [s], within the run
 /// @return columns class, radius[m], pressure[Pa], displacement[m], relaxed_height[m]: one row per class and point,
 ///         none of contacts that are open then
-/// @throws std::runtime_error where the run does not come to that instant, or no contact is closed then
+/// @throws std::runtime_error where the model has no profile, the run does not come to that instant, or no contact is
+/// closed then
 [[nodiscard]] Table contact_profiles(const Scenario& scenario, double time);
 
 /// Draws them: pressure over the yield stress where there is one, and the surface, loaded and relaxed. Beside the

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
+#include "catalogue.hpp"
 #include "history/run_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_run.hpp"
@@ -74,6 +78,24 @@ TEST(ContactProfiles, SayWhyThereAreNone) {
   EXPECT_EQ(message_at({0.1, -0.1}, 1.9), "there is no profile at t = 1.9 s: no contact is closed then");
   const std::string used_up = message_at({0.6}, 0.999, Configuration::die);
   EXPECT_NE(used_up.find("the run ended before, at step 1"), std::string::npos) << used_up;
+}
+
+TEST(ContactProfiles, AreThereForTheModelsThatClaimThem) {
+  std::size_t with_profile = 0;
+  for (const ModelInfo& model : model_catalogue()) {
+    const std::filesystem::path file =
+        fmt::format(MONOGRAIN_SOURCE_DIR "/scenarios/{}.toml", model.name == "mdr" ? "die" : model.name);
+    ASSERT_TRUE(std::filesystem::exists(file)) << file;
+    const Scenario ready = read_scenario(file);
+    ASSERT_EQ(ready.model, model.name);
+    if (model.has_profile) {
+      ++with_profile;
+      EXPECT_GT(contact_profiles(ready, 0.1).row_count(), 0U) << model.name;
+    } else {
+      EXPECT_THROW(static_cast<void>(contact_profiles(ready, 0.1)), std::runtime_error) << model.name;
+    }
+  }
+  EXPECT_GE(with_profile, 3U);
 }
 
 TEST(ContactProfiles, AreDrawnFromARunThatBringsItsScenarioAlong) {
