@@ -55,7 +55,7 @@ std::vector<Scenario> chosen_scenes(const BenchOptions& options) {
     if (found != listed.end()) {
       chosen.push_back(*found);
     } else if (fs::path(name).extension() == ".toml") {
-      chosen.push_back(read_scenario(name));
+      chosen.push_back(read_scenario(name, {}, FileKind::any));
     } else {
       std::string names;
       for (const Scenario& scene : listed) names += (names.empty() ? "" : ", ") + scene.name;

@@ -56,7 +56,7 @@ std::string names_of(const std::vector<const CLI::App*>& commands) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// What is wrong with a value; empty if no option of the command is at fault.
+/// Names the option that is at fault, and what it expects; empty if there is none.
 std::string fault_of_option(const CLI::ParseError& error, const CLI::App& command) {
   const std::string text = error.what();
   for (const CLI::Option* option : command.get_options()) {

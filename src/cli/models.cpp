@@ -150,7 +150,7 @@ int run_models(const ModelsOptions& options) {
       print_model(*model);
     return k_success;
   }
-  const Scenario scenario = read_scenario(options.file);
+  const Scenario scenario = read_scenario(options.file, {}, FileKind::any);
   if (model != nullptr && scenario.model != model->name) {
     throw UsageError(fmt::format("{}: its model is '{}', not '{}'", options.file, scenario.model, model->name));
   }

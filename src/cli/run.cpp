@@ -14,6 +14,7 @@
 #include "figure/figure.hpp"
 #include "history/run_files.hpp"
 #include "scenario/remarks.hpp"
+#include "scenario/words.hpp"
 
 namespace monograin {
 namespace {
@@ -95,7 +96,7 @@ void draw_figure(const fs::path& folder) {
   try {
     draw_runs({folder}, folder / "figure.svg");
   } catch (const std::exception& error) {
-    say("warning: no figure: {}\n", error.what());
+    say("warning: no figure: {}\n", in_own_words(error));
   }
 }
 

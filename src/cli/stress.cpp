@@ -32,7 +32,7 @@ struct CommandOptions {
 int check_files(const std::vector<std::string>& files) {
   int code = k_success;
   std::vector<Scenario> scenarios;
-  for (const std::string& file : files) scenarios.push_back(read_scenario(file));
+  for (const std::string& file : files) scenarios.push_back(read_scenario(file, {}, FileKind::any));
   for (std::size_t i = 0; i < files.size(); ++i) {
     const StressVerdict verdict = check_scene(scenarios[i]);
     if (!verdict.violations.empty()) code = k_solver_failure;
@@ -59,6 +59,7 @@ int stress(const CommandOptions& options) {
   print_data("{}", report.text());
   say("{} scenes, {} failures -> {}; the slowest, {}, took {:.1f} s\n", report.scenes, report.failures.size(),
       options.output, report.slowest, report.slowest_seconds);
+  if (report.scenes == 0) throw UsageError("no scene was checked; give it more time with --time");
   return report.failures.empty() ? k_success : k_solver_failure;
 }
 

@@ -314,7 +314,7 @@ struct PathIntegrals {
   return headings;
 }
 
-/// Why b has nothing to set against a column of a; empty if it has the column with the same unit and kind.
+/// Says how b lacks a column of a; empty if it has the column with the same unit and kind.
 [[nodiscard]] std::string missing_column(const Table& a, const Table& b, const std::string& heading) {
   const Column& in_a = a.columns()[*a.find(heading)];
   const auto index = b.find(in_a.name);
@@ -339,8 +339,8 @@ struct PathIntegrals {
   return rows;
 }
 
-/// Where words differ first; empty if they do not. Tables that share their x are compared row by row; of others the
-/// order in which words follow each other counts.
+/// Names the first place where words differ; empty if they do not. Tables that share their x are compared row by row;
+/// of others the order in which words follow each other counts.
 [[nodiscard]] std::string word_difference(const Table& a, const Table& b, const std::string& heading,
                                           const std::string& x) {
   const std::size_t x_a = *a.find(x);

@@ -114,8 +114,11 @@ Scenario scenario_of_run(const fs::path& folder) {
     const std::string name = fs::path(scenario.at("name").get<std::string>()).filename().string();
     return parse_recorded_scenario(scenario.at("text").get<std::string>(), on_one_line(name) + ".toml",
                                    scenario.at("overrides").get<std::vector<std::string>>(), files);
-  } catch (const Json::exception& error) {
-    throw std::runtime_error(fmt::format("{}: is not what a run leaves ({})", file.string(), error.what()));
+  } catch (const Json::exception&) {
+    throw std::runtime_error(
+        fmt::format("{}: is not what a run leaves; expected a scenario with name, text and overrides in it, so run it "
+                    "again",
+                    file.string()));
   }
 }
 

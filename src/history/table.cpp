@@ -13,6 +13,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "scenario/text_file.hpp"
+
 namespace monograin {
 namespace {
 
@@ -20,7 +22,10 @@ namespace {
 constexpr int k_digits = std::numeric_limits<double>::max_digits10;
 /// Longest text of one number: sign, 17 digits, point, exponent such as e-308.
 constexpr std::size_t k_longest_number = 32;
-constexpr std::size_t k_largest_csv = std::size_t{4} << 30U;
+// Of tables that are read: some two million rows of a history of a die.
+constexpr std::size_t k_largest_csv = std::size_t{1} << 30U;
+constexpr std::size_t k_longest_line = std::size_t{1} << 20U;
+constexpr std::size_t k_most_cells = 100'000'000;
 
 // --- writing
 
@@ -130,11 +135,17 @@ void append_row(std::string& text, const Table& table, std::size_t row) {
 class CsvText {
  public:
   CsvText(std::string name, std::string_view text) : name_(std::move(name)) {
+    if (text.size() > k_largest_csv) {
+      fail(fmt::format("the file is too large; expected at most {} MiB", k_largest_csv >> 20U));
+    }
     constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
     if (text.starts_with(k_byte_order_mark)) text.remove_prefix(k_byte_order_mark.size());
     while (!text.empty()) {
       const std::size_t end = std::min(text.find('\n'), text.size());
       ++line_;
+      if (end > k_longest_line) {
+        fail(fmt::format("the line is too long; expected at most {} MiB", k_longest_line >> 20U), k_longest_line + 1);
+      }
       take_line(trimmed(text.substr(0, end)));
       text.remove_prefix(std::min(end + 1, text.size()));
     }
@@ -155,8 +166,8 @@ class CsvText {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& fault) const {
-    throw std::runtime_error(fmt::format("{}:{}: {}", name_, std::max<std::size_t>(line_, 1), fault));
+  [[noreturn]] void fail(const std::string& fault, std::size_t column = 1) const {
+    throw std::runtime_error(fmt::format("{}:{}:{}: {}", name_, std::max<std::size_t>(line_, 1), column, fault));
   }
 
   void take_line(std::string_view line) {
@@ -188,6 +199,9 @@ class CsvText {
     const std::size_t width = cells_.size() - before;
     if (width != columns_.size()) {
       fail(fmt::format("the row has {} cells, but there are {} headings", width, columns_.size()));
+    }
+    if (cells_.size() > k_most_cells) {
+      fail(fmt::format("the table is too large; expected at most {} million cells", k_most_cells / 1'000'000));
     }
   }
 
@@ -236,15 +250,6 @@ class CsvText {
   if (name.empty()) return true;
   return !column.unit.empty() && name.starts_with('[') && name.ends_with(']') &&
          name.substr(1, name.size() - 2) == column.unit;
-}
-
-[[nodiscard]] std::string file_contents(const std::filesystem::path& file, FileKind kind) {
-  auto [text, problem] = read_text_file(file, k_largest_csv, kind);
-  if (problem.empty() && text.size() > k_largest_csv) {
-    problem = fmt::format("the file is too large; expected at most {} GiB", k_largest_csv >> 30U);
-  }
-  if (!problem.empty()) throw std::runtime_error(fmt::format("{}:1: cannot be read: {}", file.string(), problem));
-  return std::move(text);
 }
 
 }  // namespace
@@ -306,18 +311,26 @@ std::string csv_number(double value) {
 }
 
 void write_csv(const Table& table, std::ostream& out) {
-  constexpr std::size_t k_usual_cell = 22;
+  constexpr std::size_t k_chunk = std::size_t{1} << 20U;  // of text that is kept before it is written
   std::string text;
-  text.reserve((table.row_count() + 1) * table.columns().size() * k_usual_cell);
+  const auto write = [&] {
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+    text.clear();
+  };
   append_header(text, table);
   append_headings(text, table.columns());
-  for (std::size_t row = 0; row < table.row_count(); ++row) append_row(text, table, row);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    append_row(text, table, row);
+    if (text.size() >= k_chunk) write();
+  }
+  write();
 }
 
 Table read_csv(const std::filesystem::path& file, FileKind kind) {
-  const std::string text = file_contents(file, kind);
-  return CsvText(file.string(), text).table();
+  const std::string name = name_of_file(file, kind).string();
+  const auto [text, problem] = read_text_file(file, k_largest_csv, kind);
+  if (!problem.empty()) throw std::runtime_error(fmt::format("{}:1:1: {}; expected a table (CSV)", name, problem));
+  return CsvText(name, text).table();
 }
 
 }  // namespace monograin

@@ -71,11 +71,11 @@ class Table {
 /// @throws std::invalid_argument when a heading or a word contains a comma, a quote or a line break
 void write_csv(const Table& table, std::ostream& out);
 
-/// Reads what write_csv writes, and any CSV with one row of headings and optional `#` lines. Blank lines, blanks around
-/// cells, a byte order mark and CRLF line ends do no harm; quotes have no meaning.
-/// A column in which any cell is not a number becomes a column of words (an empty cell is the empty word).
-/// @throws std::runtime_error `file:line: what is wrong` for a missing or empty file, ragged rows, no header row, two
-/// columns with the same heading
+/// Reads what write_csv writes, and any CSV with one row of headings and optional `#` lines.
+/// Blank lines, blanks around cells, a byte order mark and CRLF line ends do no harm; quotes have no meaning. A column
+/// in which any cell is not a number becomes a column of words (an empty cell is the empty word).
+/// @throws std::runtime_error `file:line:column: what is wrong` for a missing or empty file, ragged rows, no header
+/// row, two columns with the same heading, a file of more than 1 GiB or 100 million cells, a line of more than 1 MiB
 [[nodiscard]] Table read_csv(const std::filesystem::path& file, FileKind kind = FileKind::any);
 
 }  // namespace monograin

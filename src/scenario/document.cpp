@@ -82,7 +82,7 @@ struct SyntaxFault {
 
 constexpr std::string_view k_end_of_text = "encountered end-of-file";
 
-/// What the text ends in the middle of.
+/// Parts that the end of the text leaves open.
 constexpr SyntaxFault k_open_parts[] = {
     {"inline table", "the braces are not closed; expected '}'"},
     {"array", "the array is not closed; expected ']'"},

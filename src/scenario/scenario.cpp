@@ -16,7 +16,7 @@ std::string read_file(const std::filesystem::path& file, FileKind kind) {
   // A text beyond the limit is refused by the parser.
   auto [text, problem] = read_text_file(file, k_largest_text, kind);
   if (problem.empty()) return std::move(text);
-  throw_fault({file.string()}, problem + "; expected a scenario file");
+  throw_fault({name_of_file(file, kind).string()}, problem + "; expected a scenario file");
 }
 
 std::string name_of(const std::string& origin) {
@@ -110,7 +110,7 @@ Step::Kind ramp_of(Control control) noexcept {
 }
 
 Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides, FileKind kind) {
-  return parse_scenario(read_file(file, kind), file.string(), overrides);
+  return parse_scenario(read_file(file, kind), name_of_file(file, kind).string(), overrides);
 }
 
 Scenario parse_scenario(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides) {

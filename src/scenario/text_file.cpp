@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cerrno>
 #include <fstream>
+#include <iostream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -15,6 +16,8 @@ namespace monograin {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view k_standard_input = "-";
 
 [[noreturn]] void fail(const fs::path& file, int error) {
   throw std::runtime_error(file.string() + ": cannot be written: " + std::generic_category().message(error));
@@ -62,23 +65,33 @@ class PartialFile {
   int descriptor_ = -1;
 };
 
-}  // namespace
-
-FileText read_text_file(const fs::path& file, std::size_t largest, FileKind kind) {
-  std::error_code error;
-  const auto status = fs::status(file, error);
-  if (!fs::exists(status)) return {{}, "there is no such file"};
-  if (fs::is_directory(status)) return {{}, "this is a directory"};
-  if (kind == FileKind::regular && !fs::is_regular_file(status)) return {{}, "this is a device or a pipe"};
-  std::ifstream stream(file, std::ios::binary);
+FileText read_stream(std::istream& stream, std::size_t largest) {
   std::string text;
   std::array<char, 65536> chunk{};
   while (stream && text.size() <= largest) {
     stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
     text.append(chunk.data(), static_cast<std::size_t>(stream.gcount()));
   }
-  if (!stream.is_open() || stream.bad()) return {{}, "the file cannot be read, perhaps for want of permission"};
+  if (stream.bad()) return {{}, "it cannot be read"};
   return {std::move(text), {}};
+}
+
+}  // namespace
+
+FileText read_text_file(const fs::path& file, std::size_t largest, FileKind kind) {
+  if (kind == FileKind::any && file == k_standard_input) return read_stream(std::cin, largest);
+  std::error_code error;
+  const auto status = fs::status(file, error);
+  if (!fs::exists(status)) return {{}, "there is no such file"};
+  if (fs::is_directory(status)) return {{}, "this is a directory"};
+  if (kind == FileKind::regular && !fs::is_regular_file(status)) return {{}, "this is a device or a pipe"};
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.is_open()) return {{}, "the file cannot be read, perhaps for want of permission"};
+  return read_stream(stream, largest);
+}
+
+fs::path name_of_file(const fs::path& file, FileKind kind) {
+  return kind == FileKind::any && file == k_standard_input ? fs::path("stdin") : file;
 }
 
 void write_text_file(const fs::path& file, std::string_view text) {

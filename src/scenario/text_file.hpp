@@ -15,7 +15,7 @@ struct FileText {
 
 /// What may be opened.
 enum class FileKind {
-  any,      ///< pipes too: for files named on the command line
+  any,      ///< pipes too, and `-` for standard input: for files named on the command line
   regular,  ///< for files named by other files, which could name a device or a pipe that nobody writes to
 };
 
@@ -23,6 +23,9 @@ enum class FileKind {
 /// end.
 [[nodiscard]] FileText read_text_file(const std::filesystem::path& file, std::size_t largest,
                                       FileKind kind = FileKind::regular);
+
+/// The name of a file in messages and of what is made from it: `stdin` for standard input.
+[[nodiscard]] std::filesystem::path name_of_file(const std::filesystem::path& file, FileKind kind = FileKind::any);
 
 /// Writes a file whole or not at all: under a hidden name beside its place first. A link of that name is replaced, not
 /// followed.

@@ -24,7 +24,7 @@ namespace monograin {
 /// The same, and cut where it is long.
 [[nodiscard]] std::string shown(std::string_view text);
 
-/// What an exception says, in words of this program where a library threw it: a path and why the system refuses it, or
+/// Message of an exception, in words of this program where a library threw it: a path and why the system refuses it, or
 /// that memory is short.
 [[nodiscard]] std::string in_own_words(const std::exception& error);
 

@@ -40,6 +40,7 @@ constexpr std::size_t k_parameter_values = 201;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
+  if (files.empty()) throw std::runtime_error(fmt::format("{}: holds no definition (.toml)", folder.string()));
   std::ranges::sort(files);
   return files;
 }

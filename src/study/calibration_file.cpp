@@ -49,10 +49,10 @@ struct ColumnSpec {
 
 class CalibrationReader {
  public:
-  explicit CalibrationReader(const fs::path& file) : file_(file), reading_{faults_} {}
+  explicit CalibrationReader(const fs::path& file) : named_(file), file_(name_of_file(file)), reading_{faults_} {}
 
   Calibration read() {
-    auto [text, problem] = read_text_file(file_, k_largest_text, FileKind::any);
+    auto [text, problem] = read_text_file(named_, k_largest_text, FileKind::any);
     if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a calibration file");
     made_.text = std::move(text);
     made_.file = file_.string();
@@ -503,6 +503,7 @@ class CalibrationReader {
                             made_.free.size(), points, points == 1 ? "" : "s"));
   }
 
+  fs::path named_;  ///< as on the command line
   fs::path file_;
   FaultList faults_;
   Reading reading_;

@@ -68,7 +68,7 @@ Table with_smooth_columns(const Table& history) {
   return smooth;
 }
 
-/// What keeps a run from being held against its curve, as one sentence.
+/// Collects the faults of one run as one sentence.
 class FaultText {
  public:
   void add(std::string fault) {

@@ -25,6 +25,7 @@
 #include "history/run.hpp"
 #include "history/staged_folder.hpp"
 #include "scenario/text_file.hpp"
+#include "scenario/words.hpp"
 #include "study/sweep_journal.hpp"
 
 namespace monograin {
@@ -113,7 +114,7 @@ void keep_history(const Table& history, const fs::path& file) {
     outcome.row.reason = plain(messages_of(error));
   } catch (const std::exception& error) {  // a bug of the program costs this run, not the sweep
     outcome.row.status = to_string(RunStatus::failed);
-    outcome.row.reason = plain(error.what());
+    outcome.row.reason = plain(in_own_words(error));
   }
   if (!run) return outcome;
   outcome.row.status = to_string(run->record.status);

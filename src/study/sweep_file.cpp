@@ -84,10 +84,10 @@ std::vector<KeySpec> root_keys(bool contains_scenario) {
 
 class SweepReader {
  public:
-  explicit SweepReader(const fs::path& file) : file_(file), reading_{faults_} {}
+  explicit SweepReader(const fs::path& file) : named_(file), file_(name_of_file(file)), reading_{faults_} {}
 
   [[nodiscard]] Sweep read() {
-    auto [text, problem] = read_text_file(file_, k_largest_text, FileKind::any);
+    auto [text, problem] = read_text_file(named_, k_largest_text, FileKind::any);
     if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a sweep file");
     digested_ = text;
     const toml::table tree = parse_document(text, file_.string());
@@ -588,6 +588,7 @@ class SweepReader {
     SourceLocation where;
   };
 
+  fs::path named_;  ///< as on the command line
   fs::path file_;
   FaultList faults_;
   Reading reading_;

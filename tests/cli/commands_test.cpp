@@ -453,6 +453,13 @@ TEST_F(Commands, AtlasWritesNothingWhereADefinitionIsAtFault) {
   EXPECT_EQ(files(), before);
 }
 
+TEST_F(Commands, AtlasRefusesAFolderWithoutDefinitions) {
+  fs::create_directory(path("none"));
+  const Outcome outcome = monograin("atlas --plots none");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("none: holds no definition (.toml)"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Commands, AtlasKnowsTheReadyDefinitions) {
   const Outcome outcome = monograin("atlas --list --plots '" MONOGRAIN_SOURCE_DIR "/plots'");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -586,7 +593,12 @@ TEST_F(Commands, RunAPackingWhichHasNeitherParticleNorWalls) {
   EXPECT_EQ(run.at("status"), "complete");
   EXPECT_TRUE(fs::exists(path("runs/p/figure.svg")));
   EXPECT_EQ(monograin("plot runs/p -o p.pdf").code, 0);
-  EXPECT_EQ(monograin("plot runs/p --profile 0.1").code, 2);
+  const Outcome profile = monograin("plot runs/p --profile 0.1");
+  EXPECT_EQ(profile.code, 2);
+  EXPECT_NE(
+      profile.err.find("model 'packing' has no profile under its contacts; those of hertz, mdr, nonlocal have one"),
+      std::string::npos)
+      << profile.err;
   const Outcome models = monograin("models packing --parameters p.toml");
   EXPECT_EQ(models.code, 0) << models.err;
   EXPECT_NE(models.out.find("jamming_stress              10772.0222293"), std::string::npos) << models.out;

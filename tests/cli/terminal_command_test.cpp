@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
@@ -100,6 +101,109 @@ TEST_F(Terminal, AFaultOfTheCommandLineIsNamedWithWhatIsExpected) {
   EXPECT_TRUE(contains(fault("run --outptu=x"), "'--outptu=x' is not expected here; did you mean '--output'?"));
   EXPECT_TRUE(contains(fault("compare a.csv a.csv c.csv"), "'c.csv' is not expected here"));
   EXPECT_TRUE(contains(fault("run -o"), "--output needs a value; expected: Folder of the run"));
+}
+
+// --- standard input
+
+TEST_F(Terminal, AHyphenIsStandardInputWhereAFileIsExpected) {
+  ASSERT_EQ(monograin("run small.toml").code, 0);
+  const Outcome run = shell("$M run - < small.toml");
+  EXPECT_EQ(run.code, 0) << run.err;
+  const auto rows = [](const std::string& csv) { return csv.substr(csv.find("\ntime[s]")); };
+  EXPECT_EQ(rows(text("runs/stdin/history.csv")), rows(text("runs/small/history.csv")));
+  EXPECT_EQ(shell("$M check - < small.toml").code, 0);
+  const Outcome broken = shell("echo 'model = ' | $M check -");
+  EXPECT_EQ(broken.code, 2);
+  EXPECT_TRUE(broken.err.starts_with("stdin:1:9: ")) << broken.err;
+  EXPECT_EQ(shell("$M models --parameters - < small.toml").out, monograin("models --parameters small.toml").out);
+  EXPECT_EQ(shell("$M compare a.csv - --tol 0 < a.csv").code, 0);
+  EXPECT_EQ(shell("$M compare - a.csv --tol 0 < a.csv").code, 0);
+  EXPECT_EQ(shell("sed 's/1,2/1,3/' a.csv | $M compare a.csv - --tol 0").code, 5);
+  write_text(path("sweep.toml"),
+             "scenario = \"small.toml\"\ndesign = \"grid\"\n[vary]\n"
+             "\"material.poisson_ratio\" = { from = 0.2, to = 0.4, points = 3 }\n");
+  EXPECT_EQ(shell("$M sweep - -o swept < sweep.toml").code, 0);
+  EXPECT_TRUE(fs::exists(path("swept/results.csv")));
+  EXPECT_EQ(shell("$M run - <&-").code, 2);
+}
+
+// --- sizes
+
+TEST_F(Terminal, TwentyFaultsAreShownAndTheOthersCounted) {
+  std::string keys;
+  for (int k = 0; k < 30000; ++k) keys += "unknown_key_" + std::to_string(k) + " = 1\n";
+  write_text(path("keys.toml"), keys + k_small);
+  const Outcome outcome = monograin("check keys.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 21);
+  EXPECT_TRUE(contains(outcome.err, "keys.toml:20:1: unknown key 'unknown_key_19' in the scenario")) << outcome.err;
+  EXPECT_TRUE(outcome.err.ends_with("\nand 29980 more faults\n")) << outcome.err;
+}
+
+TEST_F(Terminal, SizesBeyondAllUseAreRefusedAtTheirPlace) {
+  const auto refusal_of = [&](const std::string& arguments) {
+    const Outcome outcome = monograin(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    return outcome.err;
+  };
+  const std::string small = k_small;
+  const std::string head = small.substr(0, small.find("[[loading.steps]]"));
+  const std::string cycle =
+      "[[loading.steps]]\ncycle = 50000\nsteps = [{ displacement = \"0.1 R0\", duration = 1 }, "
+      "{ displacement = 0, duration = 1 }]\n";
+  write_text(path("rows.toml"), head + cycle + "[output]\npoints = 1000\n");
+  EXPECT_TRUE(refusal_of("run rows.toml")
+                  .starts_with("rows.toml:13:10: points = 1000 in each of 100000 steps are 1e+08 "
+                               "rows; expected at most 20 million"))
+      << text("stderr.txt");
+  EXPECT_TRUE(refusal_of("run rows.toml --set loading.steps[0].cycle=1000000000")
+                  .ends_with("cycle = 1000000000: expected a whole number from 1 to 100000\n"))
+      << text("stderr.txt");
+  write_text(path("deep.toml"), "x = " + std::string(1000, '[') + std::string(1000, ']') + '\n');
+  EXPECT_EQ(refusal_of("check deep.toml"),
+            "deep.toml:1:261: not valid TOML: arrays or braces are nested too deeply; expected at most 256 levels\n");
+  write_text(path("long.csv"), "time[s],force[N]\n0,0\n" + std::string(std::size_t{2} << 20U, '1') + ",1\n");
+  EXPECT_EQ(refusal_of("compare a.csv long.csv"),
+            "monograin: long.csv:3:1048577: the line is too long; expected at most 1 MiB\n");
+}
+
+// Sanitizers reserve more address space than any limit.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(Terminal, TooLittleMemoryIsAMessageAndExitFour) {
+  // A million rows of about ten columns do not fit, whether the limit is met at set-up, in the run or at its output.
+  for (const char* kilobytes : {"60000", "80000", "120000"}) {
+    const Outcome outcome =
+        shell(std::string("ulimit -v ") + kilobytes + "; $M run small.toml -o out --set output.points=1000000");
+    EXPECT_EQ(outcome.code, 4) << kilobytes << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "there is not enough memory")) << kilobytes << outcome.err;
+    EXPECT_FALSE(fs::exists(path("out"))) << kilobytes;
+  }
+}
+#endif
+
+// --- messages of libraries
+
+TEST_F(Terminal, FilesThatTheSystemRefusesAreNamedInOwnWords) {
+  write_text(path("file"), "");
+  for (const std::string& arguments :
+       {std::string("run small.toml -o file/out"), std::string("sweep sweep.toml -o file/out"),
+        std::string("regress --accept --scenarios . --curves file/out"), std::string("compare a.csv file/out"),
+        std::string("compare a.csv ."), std::string("plot file/out")}) {
+    if (arguments.starts_with("sweep")) {
+      write_text(path("sweep.toml"),
+                 "scenario = \"small.toml\"\ndesign = \"grid\"\n[vary]\n"
+                 "\"material.poisson_ratio\" = { from = 0.2, to = 0.4, points = 2 }\n");
+    } else {
+      fs::remove(path("sweep.toml"));
+    }
+    const Outcome outcome = monograin(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments << outcome.err;
+    for (const char* raw : {"filesystem error", "basic_", "std::", "json.exception", "toml"}) {
+      if (std::string(raw) == "toml" && contains(outcome.err, "small.toml")) continue;
+      EXPECT_FALSE(contains(outcome.err, raw)) << arguments << outcome.err;
+    }
+    EXPECT_FALSE(outcome.err.empty()) << arguments;
+  }
 }
 
 }  // namespace

@@ -197,7 +197,8 @@ TEST_F(Figure, RefusesAnUnknownFormatAndListsTheKnown) {
 }
 
 TEST_F(Figure, SaysWhichRunCannotBeRead) {
-  EXPECT_NE(fault_of({in_folder("none")}, in_folder("a.svg")).find("none:1: cannot be read"), std::string::npos);
+  EXPECT_NE(fault_of({in_folder("none")}, in_folder("a.svg")).find("none:1:1: there is no such file"),
+            std::string::npos);
   write(in_folder("packing/history.csv"), "time[s],stress[Pa]\n0,1\n");
   EXPECT_NE(fault_of({in_folder("packing")}, in_folder("a.svg")).find("no contacts to draw"), std::string::npos);
   write(in_folder("short/history.csv"), "time[s],axial.displacement[m],axial.force[N]\n0,0,0\n");

@@ -206,18 +206,18 @@ TEST_F(CsvFile, TakesNumbersBeyondTheRangeOfDoubleAsStrtodDoes) {
 }
 
 TEST_F(CsvFile, SaysWhichLineIsRagged) {
-  EXPECT_EQ(fault_of("# R0: 1\n\na,b\n1,2\n1,2,3\n"), "history.csv:5: the row has 3 cells, but there are 2 headings");
+  EXPECT_EQ(fault_of("# R0: 1\n\na,b\n1,2\n1,2,3\n"), "history.csv:5:1: the row has 3 cells, but there are 2 headings");
 }
 
 TEST_F(CsvFile, SaysThatHeadingsAreMissing) {
-  EXPECT_EQ(fault_of(""), "history.csv:1: no row of headings");
-  EXPECT_EQ(fault_of("# R0: 1\n"), "history.csv:1: no row of headings");
-  EXPECT_EQ(fault_of("0,1\n2,3\n"), "history.csv:1: numbers where a row of headings is expected");
-  EXPECT_EQ(fault_of("a,,c\n"), "history.csv:1: column 2 has no heading");
+  EXPECT_EQ(fault_of(""), "history.csv:1:1: no row of headings");
+  EXPECT_EQ(fault_of("# R0: 1\n"), "history.csv:1:1: no row of headings");
+  EXPECT_EQ(fault_of("0,1\n2,3\n"), "history.csv:1:1: numbers where a row of headings is expected");
+  EXPECT_EQ(fault_of("a,,c\n"), "history.csv:1:1: column 2 has no heading");
 }
 
 TEST_F(CsvFile, SaysThatAHeadingComesTwice) {
-  EXPECT_EQ(fault_of("x[m],y,x[m]\n1,2,3\n"), "history.csv:1: two columns are called 'x[m]'");
+  EXPECT_EQ(fault_of("x[m],y,x[m]\n1,2,3\n"), "history.csv:1:1: two columns are called 'x[m]'");
 }
 
 TEST_F(CsvFile, SaysThatAFileOrItsNameIsWrong) {
@@ -225,7 +225,7 @@ TEST_F(CsvFile, SaysThatAFileOrItsNameIsWrong) {
     static_cast<void>(read_csv(file()));
     FAIL() << "no exception";
   } catch (const std::runtime_error& fault) {
-    EXPECT_EQ(std::string(fault.what()), file().string() + ":1: cannot be read: there is no such file");
+    EXPECT_EQ(std::string(fault.what()), file().string() + ":1:1: there is no such file; expected a table (CSV)");
   }
   EXPECT_THROW(static_cast<void>(read_csv(file().parent_path())), std::runtime_error);
 }

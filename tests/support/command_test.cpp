@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 Outcome CommandTest::monograin(const std::string& arguments) const { return shell("monograin " + arguments); }
 
 Outcome CommandTest::shell(const std::string& script) const {
-  const std::string command = "cd '" + folder().string() + "' && M='" MONOGRAIN_PROGRAM
-                              "' && monograin() { \"$M\" \"$@\"; }\n(" +
-                              script + "\n) > stdout.txt 2> stderr.txt < /dev/null";
+  const std::string command = "cd '" + folder().string() +
+                              "' && M='" MONOGRAIN_PROGRAM "' && monograin() { \"$M\" \"$@\"; }\n(" + script +
+                              "\n) > stdout.txt 2> stderr.txt < /dev/null";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text("stdout.txt"), text("stderr.txt")};
 }

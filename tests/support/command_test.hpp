@@ -24,7 +24,8 @@ class CommandTest : public ::testing::Test {
  protected:
   /// Runs `monograin ARGUMENTS` in the test's folder.
   [[nodiscard]] Outcome monograin(const std::string& arguments) const;
-  /// Runs a shell script in the test's folder, in which `monograin` and $M are the program; the exit code is the script's.
+  /// Runs a shell script in the test's folder, in which `monograin` and $M are the program; the exit code is the
+  /// script's.
   [[nodiscard]] Outcome shell(const std::string& script) const;
   /// Starts `monograin ARGUMENTS` and kills it after some time; whether it was still running.
   bool start_and_kill(const std::vector<std::string>& arguments, std::chrono::microseconds delay) const;

@@ -299,6 +299,7 @@ std::vector<std::size_t> plastic_rows(const TestRun& run) {
   for (std::size_t i = 0; i < table.row_count(); ++i) {
     if (table.word(i, *table.find("regime")).starts_with("plastic")) rows.push_back(i);
   }
+  EXPECT_FALSE(rows.empty());
   return rows;
 }
 
