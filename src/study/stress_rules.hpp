@@ -26,8 +26,8 @@ inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::
 
 /// What a run alone has to keep: it ends complete, where its program leads, or at a stated limit, which no walls that
 /// touch gainsay where it says that nothing holds the centre; every number is one, forces do not pull without
-/// adhesion, energy is neither made nor lost, what only grows does not shrink, events do not go on without end, and the
-/// identities of the model's own columns.
+/// adhesion, the dissipation never falls unless the run warns of it, what only grows does not shrink, events do not go
+/// on without end, and the identities of the model's own columns.
 [[nodiscard]] std::vector<Violation> check_run(const Run& run);
 
 /// How a run has ended: "complete", or the limit of the model that its message states; empty: neither.
