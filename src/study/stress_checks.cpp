@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
@@ -20,6 +22,7 @@
 #include "study/profiled_system.hpp"
 #include "study/stress_distance.hpp"
 #include "study/stress_events.hpp"
+#include "study/stress_turn.hpp"
 #include "study/stress_variants.hpp"
 #include "undefined.hpp"
 
@@ -36,7 +39,11 @@ constexpr double k_resolution = 1e-12;
 // Sum of the squares of normals along a direction that they do not span: rounding.
 constexpr double k_same_directions = 1e-9;
 constexpr double k_slower = 1e6;
-constexpr Magnification k_magnification{.length = 1e3, .stress = 1e-5};
+constexpr Magnification k_magnification{.length = 731.0585, .stress = 1.618034e-5};
+// Turned copies of a scene that a limit has ended, and by how many more their distance from each other is measured.
+constexpr std::uint64_t k_rotations = 4;
+// Of the integrated forms that the direct one is held against.
+constexpr double k_form_rtol = 1e-8;
 
 /// The larger of two, of which not a number is the largest.
 double worse(double a, double b) { return a > b || std::isnan(a) ? a : b; }
@@ -45,12 +52,51 @@ std::string quoted(const Run& run) {
   return fmt::format("'{}'", run.record.status == RunStatus::complete ? "complete" : run.record.message);
 }
 
+double end_time(const Run& run) { return run.record.history.at(run.record.history.row_count() - 1, 0); }
+
 /// Whether two runs end at one instant, to a tolerance, where plastic strain grows without bound: the strain runs
 /// through other limits there, and either may be the one that is met.
 bool run_away_together(const Run& a, const Run& b, double tolerance) {
   if (stated_end(a) != k_uniqueness && stated_end(b) != k_uniqueness) return false;
-  const auto end = [](const Run& run) { return run.record.history.at(run.record.history.row_count() - 1, 0); };
-  return std::abs(end(a) - end(b)) <= tolerance * std::max(end(a), end(b));
+  return std::abs(end_time(a) - end_time(b)) <= tolerance * std::max(end_time(a), end_time(b));
+}
+
+/// How long the step in which a run has ended takes: as its program says, or where that gives a rate, as a ramp of the
+/// largest value that was recorded of what it controls.
+double seconds_of_last_step(const Run& run) {
+  const Table& table = run.record.history;
+  const auto index = static_cast<std::size_t>(table.at(table.row_count() - 1, *table.find("step"))) - 1;
+  double seconds = 0.0;
+  for (const Channel& channel : make_scene(run.scenario).channels) {
+    if (index >= channel.program.size()) continue;
+    const Step& step = channel.program[index];
+    if (step.duration) return *step.duration;
+    if (!step.rate) continue;
+    const bool is_length = step.kind == Step::Kind::displacement || step.kind == Step::Kind::detach;
+    const double least = is_length ? run.scenario.radius : 0.0;
+    const double largest = largest_of_kind(table, is_length ? "displacement" : "force");
+    seconds = std::max(seconds, std::max({least, largest, std::abs(step.target)}) / *step.rate);
+  }
+  return seconds;
+}
+
+/// How far apart the ends of two runs are, over the step in which the first has ended.
+double ends_apart(const Run& a, const Run& b) {
+  const double apart = std::abs(end_time(a) - end_time(b));
+  return apart <= k_stress_rounding * end_time(a) ? 0.0 : apart / seconds_of_last_step(a);
+}
+
+/// Whether a limit ends a run where another one that goes on has a corner of the program: where that leads to a limit
+/// and no farther, rounding decides.
+bool stops_at_corner(const Run& run, const Run& other, double tolerance) {
+  if (run.record.status == RunStatus::complete) return false;
+  const Table& events = other.record.events;
+  const auto name = *events.find("event");
+  const double near = tolerance * seconds_of_last_step(run) + k_stress_rounding * end_time(run);
+  for (std::size_t row = 0; row < events.row_count(); ++row) {
+    if (events.word(row, name) == "step-end" && std::abs(events.at(row, 0) - end_time(run)) <= near) return true;
+  }
+  return false;
 }
 
 /// Where the first of those runs that a limit has ended stands.
@@ -58,8 +104,7 @@ double first_end(const std::vector<Run>& runs) {
   double first = std::numeric_limits<double>::infinity();
   for (const Run& run : runs) {
     if (run.record.status == RunStatus::complete) continue;
-    const Table& table = run.record.history;
-    first = std::min(first, table.at(table.row_count() - 1, 0));
+    first = std::min(first, end_time(run));
   }
   return first;
 }
@@ -102,13 +147,8 @@ bool is_held(const Run& run, std::span<const ContactClass> classes, std::size_t 
   return solver.eigenvalues()[0] > k_same_directions;
 }
 
-/// Whether an integrator has given up at a stated limit, which says nothing of how the scene goes on: as does a trial
-/// step beyond a fold, before the pull-off there is found.
-bool has_given_up(const Run& run) {
-  const std::string end = stated_end(run);
-  if (run.record.status == RunStatus::failed) return !end.empty();
-  return end == k_fold && run.integrator.used != "direct";
-}
+/// Whether an integrator has given up for a stated reason, which says nothing of how the scene goes on.
+bool has_given_up(const Run& run) { return run.record.status == RunStatus::failed && !stated_end(run).empty(); }
 
 /// The softest of a material's moduli and strengths.
 double softest(const Scenario& scenario) {
@@ -129,7 +169,8 @@ bool is_below_resolution(const Run& run) {
 
 class SceneCheck {
  public:
-  SceneCheck(const Scenario& scenario, double seconds) : scenario_(scenario), seconds_(seconds) {}
+  SceneCheck(const Scenario& scenario, const StressEffort& effort)
+      : scenario_(scenario), effort_(effort), end_(thread_seconds() + effort.seconds) {}
 
   StressVerdict verdict() {
     try {
@@ -138,7 +179,8 @@ class SceneCheck {
       // Where the scene itself or its reference has taken much of the time, what they would be compared with does, too.
       verdict_.is_cut_short = seconds_of_run() < k_patience * own_seconds_;
       if (!verdict_.is_cut_short) {
-        report(k_time_rule, fmt::format("{} runs have not come to an end within {:g} s", verdict_.runs, seconds_));
+        report(k_time_rule,
+               fmt::format("{} runs have not come to an end within {:g} s", verdict_.runs, effort_.seconds));
       }
     }
     return std::move(verdict_);
@@ -153,12 +195,20 @@ class SceneCheck {
     verdict_.end = stated_end(*run);
     verdict_.violations = check_run(*run);
     // What is broken already would be found again by every comparison.
-    if (!verdict_.violations.empty() || run->record.status == RunStatus::failed) return;
-    // The scheme without error control says nothing of how near it comes; rows at an integrator's own steps have none
-    // beside them in other runs.
-    if (run->integrator.used == "explicit" || scenario_.output.points == 0) return;
-
-    if (is_below_resolution(*run)) return;
+    if (!verdict_.violations.empty()) return;
+    // The scheme without error control says nothing of how near it comes; its copies take the same steps.
+    if (run->integrator.used == "explicit") {
+      reference_ = run;
+      compares_curves_ = false;
+      tolerance_ = own_tolerance(*run);
+      share_ = k_stress_rounding;
+      return check_copies(*run);
+    }
+    const bool has_ended = run->record.status != RunStatus::complete;
+    // Rows at an integrator's own steps have none beside them in other runs, and contacts of rounding have no curves.
+    // Where a limit has ended them, others have to end there, too.
+    compares_curves_ = scenario_.output.points > 0 && !is_below_resolution(*run);
+    if (!compares_curves_ && !has_ended) return;
 
     const bool is_direct = run->integrator.used == "direct";
     reference_ = is_direct ? run : try_run(as_reference(scenario_), "reference form");
@@ -167,23 +217,110 @@ class SceneCheck {
     own_seconds_ = std::max(own_seconds_, seconds_of_run());
     if (!is_direct) verdict_.violations = check_run(*reference_);
     if (!verdict_.violations.empty()) return;
+    measure_tolerance();
+    if (!is_direct) compare("agreement", *reference_, *run);
+    if (scenario_.output.points > 0 && !has_given_up(*run)) {
+      check_rate(*run);
+      check_restart(*run);
+      check_retrace(*run);
+    }
+    check_copies(*run);
+  }
+
+  /// What the scene's own run may be wrong by.
+  void measure_tolerance() {
+    const bool is_direct = own_->integrator.used == "direct";
     share_ = is_direct ? k_stress_rounding : std::max(scenario_.numerics.rtol, k_finest_rtol);
-    tolerance_ = std::max(own_tolerance(*run), own_tolerance(*reference_));
+    tolerance_ = std::max(own_tolerance(*own_), own_tolerance(*reference_));
     // Errors of the steps add up, whichever of the two tolerances is the larger one; and neither is held to be finer
     // than integrators are.
     const double adding_up = tolerance_ / scenario_.numerics.rtol;
     nothing_ = {.unit = {.length = scenario_.radius, .stress = softest(scenario_)},
                 .share = is_direct ? k_stress_rounding : adding_up * scenario_.numerics.atol,
-                .energy_share = direct_work_tolerance(*run),
+                .energy_share = direct_work_tolerance(*own_),
                 .step_share = tolerance_,
                 .length = k_stress_rounding * scenario_.radius};
-    if (!is_direct) compare("agreement", *reference_, *run);
-    check_rate(*run);
-    if (const auto other = try_run(magnified(scenario_, k_magnification), "larger and softer")) {
-      compare("scale", *run, *other, k_magnification);
+  }
+
+  // --- copies of the scene that must do what it does
+
+  /// All copies of a scene that a limit has ended; of a complete one those that the effort asks for.
+  void check_copies(const Run& run) {
+    constexpr std::uint64_t k_kinds = 4;
+    const bool needs_all = run.record.status != RunStatus::complete || effort_.copies == StressEffort::k_all_copies;
+    const std::uint64_t kind = effort_.copies % k_kinds;
+    const std::uint64_t which = effort_.copies / k_kinds;
+    if (needs_all || kind == 0) check_scale(run);
+    if (needs_all || kind == 1) check_order(run);
+    for (std::uint64_t sample = 0; sample < k_rotations; ++sample) {
+      if (needs_all || (kind == 2 && which % k_rotations == sample)) check_turned(run, sample);
     }
-    check_restart(*run);
-    check_retrace(*run);
+    if (run.integrator.used == "explicit") return;
+    const bool is_direct = run.integrator.used == "direct";
+    if ((needs_all || (kind == 3 && which % 2 == 0)) && run.integrator.used != "ida") check_form(run, "ida");
+    if ((needs_all || (kind == 3 && which % 2 == 1)) && (is_direct || run.integrator.used == "ida")) {
+      check_form(run, "cvode-bdf");
+    }
+  }
+
+  void check_scale(const Run& run) {
+    if (const auto other = try_run(magnified(scenario_, k_magnification), "larger and softer")) {
+      compare("scale", run, *other, {.larger = k_magnification, .is_same_form = true});
+    }
+  }
+
+  void check_order(const Run& run) {
+    const std::optional<Scenario> copy = reordered(scenario_);
+    const std::optional<Run> other = copy ? try_run(*copy, "reordered") : std::nullopt;
+    if (other) compare("order", by_wall(run), by_wall(*other), {.is_same_form = true, .copies = turned_copies(0)});
+  }
+
+  /// The run of a turned copy, turned back; nothing where there is none.
+  std::optional<Run> turned_back(std::uint64_t sample) {
+    const Eigen::Matrix3d rotation = stress_rotation(sample);
+    const std::optional<Scenario> copy = turned(scenario_, rotation);
+    const std::optional<Run> run = copy ? try_run(*copy, "turned") : std::nullopt;
+    return run ? std::optional(by_wall(*run, rotation)) : std::nullopt;
+  }
+
+  /// Turned copies beside one of them: normals are rounded, too, and how far such copies are from each other shows what
+  /// that does to the scene.
+  std::function<std::vector<Run>()> turned_copies(std::uint64_t sample) {
+    return [this, sample] {
+      std::vector<Run> copies;
+      for (std::uint64_t k = 1; k <= k_rotations; ++k) {
+        if (auto copy = turned_back(sample + k)) copies.push_back(std::move(*copy));
+      }
+      return copies;
+    };
+  }
+
+  void check_turned(const Run& run, std::uint64_t sample) {
+    const std::optional<Run> other = turned_back(sample);
+    if (other) compare("turned", by_wall(run), *other, {.is_same_form = true, .copies = turned_copies(sample)});
+  }
+
+  /// The direct form against an integrated one, an explicit form against the implicit one.
+  void check_form(const Run& run, const char* integrator) {
+    Scenario other = with_integrator(scenario_, integrator);
+    if (run.integrator.used == "direct") {
+      other.numerics.rtol = k_form_rtol;
+      other.numerics.atol = 1e-4 * k_form_rtol;
+    }
+    SceneCheck check(other, effort_);
+    check.end_ = end_;
+    check.reference_ = reference_;
+    check.compares_curves_ = compares_curves_;
+    const std::optional<Run> integrated = check.try_run(other, "another form");
+    if (integrated) {
+      check.own_ = &*integrated;
+      for (const Violation& violation : check_run(*integrated)) check.report(violation.check, violation.detail);
+      check.measure_tolerance();
+      if (check.verdict_.violations.empty()) check.compare("form", *reference_, *integrated);
+    }
+    verdict_.runs += check.verdict_.runs;
+    verdict_.is_ill_conditioned |= check.verdict_.is_ill_conditioned;
+    std::ranges::move(check.verdict_.violations, std::back_inserter(verdict_.violations));
   }
 
   [[nodiscard]] double seconds_of_run() const { return thread_seconds() - run_begin_; }
@@ -270,8 +407,12 @@ class SceneCheck {
     return std::ranges::all_of(neighbours(), has_it) && std::ranges::all_of(*far_neighbours_, has_it);
   }
 
+  [[nodiscard]] Distance distance_of(const Run& a, const Run& b, const Magnification& larger, double last) const {
+    if (!compares_curves_) return {};
+    return distance_between(a.record.history, b.record.history, nothing_, larger, last);
+  }
   [[nodiscard]] Distance between(const Run& a, const Run& b, const Magnification& larger = {}) const {
-    return distance_between(a.record.history, b.record.history, nothing_, larger);
+    return distance_of(a, b, larger, std::numeric_limits<double>::infinity());
   }
 
   /// At the last rows of two runs; not a number where either has not come to its end.
@@ -282,21 +423,35 @@ class SceneCheck {
     return distance_at(first, second, {{first.row_count() - 1, second.row_count() - 1}}, nothing_);
   }
 
-  void compare(const char* check, const Run& expected, const Run& actual, const Magnification& larger = {}) {
-    const bool is_cut_short = has_given_up(actual) || has_given_up(expected);
-    const bool has_same_end =
-        is_cut_short || stated_end(actual) == stated_end(expected) || run_away_together(actual, expected, tolerance_);
-    const Distance apart = between(expected, actual, larger);
+  /// What two runs that are compared have to do with each other.
+  struct Kinship {
+    Magnification larger = {};  ///< the second by the first
+    bool is_same_form = false;  ///< whether the first gives up where the second does
+    std::function<std::vector<Run>()> copies = [] { return std::vector<Run>(); };  ///< as good as the second
+  };
+
+  void compare(const char* check, const Run& expected, const Run& actual) {
+    compare(check, expected, actual, Kinship());
+  }
+
+  void compare(const char* check, const Run& expected, const Run& actual, const Kinship& kinship) {
+    const bool is_cut_short = !kinship.is_same_form && (has_given_up(actual) || has_given_up(expected));
+    const bool has_limit = expected.record.status != RunStatus::complete;
+    const bool runs_away = run_away_together(actual, expected, tolerance_);
+    const bool has_same_end = is_cut_short || stated_end(actual) == stated_end(expected) || runs_away;
+    const double ends = is_cut_short || runs_away || !has_limit || !has_same_end ? 0.0 : ends_apart(expected, actual);
+    const Distance apart = between(expected, actual, kinship.larger);
     const EventNames expected_events = is_cut_short ? EventNames{} : sorted_events(expected);
     const EventNames events = is_cut_short ? EventNames{} : sorted_events(actual);
-    if (has_same_end && events == expected_events && apart.value <= tolerance_) return;
+    if (has_same_end && ends <= tolerance_ && events == expected_events && apart.value <= tolerance_) return;
 
     // A spread that is no number is without bounds: an empty column, or data that cannot be changed.
-    const double widest =
-        spread(*reference_, neighbours(), [this](const Run& a, const Run& b) { return between(a, b).value; });
+    const std::vector<Run> copies = kinship.copies();
+    const auto curves_apart = [this](const Run& a, const Run& b) { return between(a, b).value; };
+    double widest = spread(*reference_, neighbours(), curves_apart);
+    if (!copies.empty()) widest = worse(widest, spread(actual, copies, curves_apart));
     // Where changed data have met a limit already, a state is not determined.
-    const Distance known =
-        distance_between(expected.record.history, actual.record.history, nothing_, larger, first_end(neighbours()));
+    const Distance known = distance_of(expected, actual, kinship.larger, first_end(neighbours()));
     const auto is_beyond = [&](double spread) { return !(known.value <= tolerance_ + k_sample_multiple * spread); };
     const bool is_apart = is_beyond(widest) && is_beyond(spread_of_states());
     // Where a decision is as near as errors are large, either way is right.
@@ -306,9 +461,21 @@ class SceneCheck {
                                 known.column, known.value, tolerance_, widest, share_, known.time));
       return;
     }
-    if (!has_same_end && all_share(stated_end)) {
+    // A copy does what the scene does but for rounding, which decides only of limits that the program just reaches.
+    const bool is_met_at_corner =
+        stops_at_corner(expected, actual, tolerance_) || stops_at_corner(actual, expected, tolerance_);
+    if (!has_same_end && ((kinship.is_same_form && !is_met_at_corner) || all_share(stated_end))) {
       report(check, fmt::format("ends {} against {}", quoted(actual), quoted(expected)));
       return;
+    }
+    if (ends > tolerance_ && all_share(stated_end)) {
+      double of_ends = spread(*reference_, neighbours(), ends_apart);
+      if (!copies.empty()) of_ends = worse(of_ends, spread(actual, copies, ends_apart));
+      if (ends > tolerance_ + k_sample_multiple * of_ends) {
+        report(check, fmt::format("ends {:.3g} of a step apart, above {:.3g} ({:.3g} with changed data): {} against {}",
+                                  ends, tolerance_, of_ends, quoted(actual), quoted(expected)));
+        return;
+      }
     }
     const bool is_complete = has_same_end && stated_end(actual) == "complete";
     const bool are_crowded = have_company(actual, missing_from(expected_events, events), tolerance_) &&
@@ -396,14 +563,15 @@ class SceneCheck {
   }
 
   const Scenario& scenario_;
-  double seconds_;
-  double end_ = thread_seconds() + seconds_;
+  StressEffort effort_;
+  double end_;
   double run_begin_ = thread_seconds();  ///< of the last run
   double own_seconds_ = 0.0;             ///< that the scene's own run, or its reference, has taken
   const Run* own_ = nullptr;             ///< the scene's run, while all is checked
   std::optional<Run> reference_;
   double tolerance_ = 0.0;
   Negligible nothing_;
+  bool compares_curves_ = true;
   double share_ = 0.0;  ///< of the data, that errors of the runs amount to
   std::optional<std::vector<Run>> neighbours_, far_neighbours_;
   StressVerdict verdict_;
@@ -417,8 +585,12 @@ double most_seconds_of(const Scenario& scenario) {
   return std::max(k_of_scene, k_of_step * static_cast<double>(step_count(scenario)));
 }
 
-StressVerdict check_scene(const Scenario& scenario, double seconds) { return SceneCheck(scenario, seconds).verdict(); }
+StressVerdict check_scene(const Scenario& scenario, const StressEffort& effort) {
+  return SceneCheck(scenario, effort).verdict();
+}
 
-StressVerdict check_scene(const Scenario& scenario) { return check_scene(scenario, most_seconds_of(scenario)); }
+StressVerdict check_scene(const Scenario& scenario) {
+  return check_scene(scenario, {.seconds = most_seconds_of(scenario)});
+}
 
 }  // namespace monograin

@@ -1,6 +1,7 @@
 /// What runs of one scene have to do with each other.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,16 @@ namespace monograin {
 /// The rule of that.
 inline constexpr const char* k_time_rule = "time";
 
+/// How much is done to check a scene.
+struct StressEffort {
+  static constexpr std::uint64_t k_all_copies = ~std::uint64_t{0};
+  /// Of a processor that all runs have together; a scene that takes longer breaks the rule "time", unless its own run
+  /// is so slow that the runs it would be compared with are no slower.
+  double seconds = 0.0;
+  /// Which copy of a complete scene is run, counted around; one that a limit has ended is held against all of them.
+  std::uint64_t copies = k_all_copies;
+};
+
 /// All that was found of one scene.
 struct StressVerdict {
   std::string end;  ///< as of stated_end
@@ -24,8 +35,12 @@ struct StressVerdict {
   bool is_cut_short = false;        ///< the scene itself is so slow that not all comparisons were made
 };
 
-/// Runs a scene, and others that must agree with it: by the reference form, slower, of a larger and stiffer particle,
-/// with a step cut in two, and for elastic laws forth and back. Never throws for what a run does.
+/// Runs a scene, and others that must agree with it: by the reference form, slower, with a step cut in two, for elastic
+/// laws forth and back; and its copies: of a larger and softer particle, with all walls turned, with walls in another
+/// order, by another form of the equations. Never throws for what a run does.
+///
+/// Ends. A limit, or an integrator that gives up for a stated reason, is accepted where all copies end there too: at
+/// the same limit, within what is tolerated of the time. An integrated form may give up where another form goes on.
 ///
 /// Agreement. The direct form is exact but for rounding, its work to a hundredth of rtol; a controlled integrator is to
 /// be within k rtol of it, k = 100 (README: "the error of a curve stays below 100 rtol"). A scene can magnify errors by
@@ -33,10 +48,8 @@ struct StressVerdict {
 /// scene does with data changed by rtol (by rounding, where two runs of the same form are compared) is measured, and
 /// allowed.
 ///
-/// @param seconds  of a processor that all runs have together; a scene that takes longer breaks the rule "time", unless
-///                 its own run is so slow that the runs it would be compared with are no slower
-[[nodiscard]] StressVerdict check_scene(const Scenario& scenario, double seconds);
-/// Has as long as `most_seconds_of` says.
+[[nodiscard]] StressVerdict check_scene(const Scenario& scenario, const StressEffort& effort);
+/// With all copies, and as long as `most_seconds_of` says.
 [[nodiscard]] StressVerdict check_scene(const Scenario& scenario);
 
 }  // namespace monograin

@@ -20,10 +20,13 @@ bool is_stress(const Column& column) {
   return column.unit == "Pa" && kind_of(column) != "pressure" && column.name != "youngs_modulus";
 }
 
+/// Of a free centre: components of one vector, of which an axis is only a choice.
+bool is_centre(const Column& column) { return column.name.starts_with("centre_"); }
+
 /// Against what differences of a column count: magnitudes of one kind may cancel in one of them.
 double scale_of(const Table& table, std::size_t column) {
   const Column& own = table.columns()[column];
-  for (const auto is_kin : {is_energy, is_strain, is_stress}) {
+  for (const auto is_kin : {is_energy, is_strain, is_stress, is_centre}) {
     if (!is_kin(own)) continue;
     double largest = 0.0;
     for (std::size_t c = 0; c < table.columns().size(); ++c) {
@@ -42,7 +45,7 @@ bool is_compared(const Column& column) {
 
 /// Where a free centre lies, and where walls are by it; one under no force goes along.
 bool is_place(const Column& column) {
-  return column.name.starts_with("centre_") || kind_of(column) == "overlap" || kind_of(column) == "displacement";
+  return is_centre(column) || kind_of(column) == "overlap" || kind_of(column) == "displacement";
 }
 
 /// Where a column is empty on one side of an event, its value on the other side of the one that a row lies beside.

@@ -45,7 +45,7 @@ TEST_P(StressFinding, IsCured) {
     verdict = {.end = stated_end(run), .violations = check_run(run)};
   } else {
     // Others may share the machine.
-    verdict = check_scene(scenario, 4.0 * most_seconds_of(scenario));
+    verdict = check_scene(scenario, {.seconds = 4.0 * most_seconds_of(scenario)});
   }
   for (const Violation& violation : verdict.violations) ADD_FAILURE() << violation.check << ": " << violation.detail;
   EXPECT_FALSE(verdict.end.empty());

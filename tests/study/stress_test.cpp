@@ -212,7 +212,7 @@ TEST_F(StressScenes, ShrinkToWhatIsFaulty) {
 TEST_F(StressScenes, ThatTakeTooLongBreakARule) {
   const Scenario scenario = parse_stress_text(scenario_text(draw_stress_scene(5, 0, tables())), tables());
   EXPECT_TRUE(check_scene(scenario).violations.empty());
-  const StressVerdict verdict = check_scene(scenario, 0.0);
+  const StressVerdict verdict = check_scene(scenario, {.seconds = 0.0});
   ASSERT_EQ(verdict.violations.size(), 1U);
   EXPECT_EQ(verdict.violations.front().check, k_time_rule);
 }
