@@ -45,7 +45,8 @@ void draw_loading(Dice& dice, StressScene& scene, const StressBounds& bounds) {
   }
   const bool are_free = scene.configuration == "walls";
   const bool have_own = are_free && dice.happens(0.5);
-  if (scene.model->has_free_centre && dice.happens(0.2)) scene.centre_is_free = true;
+  const bool is_cell = are_free && dice.happens(0.2);
+  if (scene.model->has_free_centre && dice.happens(is_cell ? 0.5 : 0.2)) scene.centre_is_free = true;
   if (scene.configuration == "oblique-die") {
     const double least = std::max(scene.model->least_wall_angle, 1e-6);
     if (dice.happens(0.5)) scene.oblique_angle = dice.uniform(least, k_right_angle - least);
@@ -62,12 +63,15 @@ void draw_loading(Dice& dice, StressScene& scene, const StressBounds& bounds) {
     draw_cycles(dice, scene, bounds);
   }
   if (!are_free) return;
-  const double shared_gap = dice.happens(0.5) ? 0.0 : dice.log_uniform(1e-12, 0.1);
+  // No wall touches a loose particle.
+  const bool is_loose = scene.centre_is_free && dice.happens(0.1);
+  const double shared_gap = dice.happens(0.5) && !is_loose ? 0.0 : dice.log_uniform(1e-12, 0.1);
   // Steps end together, so that all walls take the durations of the first.
   std::vector<double> durations;
-  for (const std::array<double, 3>& normal : draw_normals(dice, scene.model->least_wall_angle)) {
+  for (const std::array<double, 3>& normal :
+       is_cell ? draw_cell(dice) : draw_normals(dice, scene.model->least_wall_angle)) {
     StressWall wall{.name = fmt::format("w{}", scene.walls.size()), .normal = normal, .gap = 0.0, .steps = {}};
-    if (dice.happens(0.4)) wall.gap = dice.happens(0.5) ? shared_gap : dice.uniform(0.0, 0.05);
+    if (is_loose || dice.happens(0.4)) wall.gap = dice.happens(0.5) ? shared_gap : dice.uniform(0.0, 0.05);
     wall.is_fixed = !scene.walls.empty() && dice.happens(0.3);
     if (have_own && !wall.is_fixed) {
       wall.steps = draw_program(dice, scene, bounds, count, wall.gap, false, false);

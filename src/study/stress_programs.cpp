@@ -28,6 +28,17 @@ double draw_duration(Dice& dice, double usual) {
   return dice.happens(0.1) ? dice.log_uniform(1e-12, 1e12) : usual * dice.log_uniform(0.1, 10.0);
 }
 
+/// Waits for what an earlier step of the program waits for; false where none does.
+bool repeat_condition(StressStep& step, const std::vector<StressStep>& program) {
+  const auto earlier = std::ranges::find_if(
+      program.rbegin(), program.rend(), [](const StressStep& s) { return !s.until.empty() || !s.until_event.empty(); });
+  if (earlier == program.rend()) return false;
+  step.until = earlier->until;
+  step.until_value = earlier->until_value;
+  step.until_event = earlier->until_event;
+  return true;
+}
+
 /// A step with its duration, one in twelve a hold.
 StressStep draw_step(Dice& dice, double usual) {
   StressStep step;
@@ -53,10 +64,13 @@ std::vector<StressStep> draw_program(Dice& dice, const StressScene& scene, const
   const bool takes_forces = dice.happens(0.4);
   std::vector<StressStep> program;
   double present = -gap;
+  double present_force = 0.0;
   double least_force = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     StressStep step;
     step.pace = draw_duration(dice, usual);
+    const double before = present;
+    const double force_before = present_force;
     const double what = dice.uniform(0.0, 1.0);
     if (what < 0.08) {
       step.kind = Step::Kind::hold;
@@ -65,8 +79,9 @@ std::vector<StressStep> draw_program(Dice& dice, const StressScene& scene, const
       give_rate(step);
     } else if (takes_forces && what < 0.5) {
       step.kind = Step::Kind::force;
-      step.target = draw_force(dice, bounds);
+      step.target = dice.happens(0.1) ? present_force : draw_force(dice, bounds);
       if (bounds.only_loads) step.target = least_force = std::max(least_force, step.target);
+      present_force = step.target;
     } else {
       step.target = draw_depth(dice, bounds);
       const double back = dice.one_of({1e-14, 1e-9, 1e-5, 0.003, 0.03, 0.2, 1.0});
@@ -77,7 +92,8 @@ std::vector<StressStep> draw_program(Dice& dice, const StressScene& scene, const
     }
     const bool is_ramp = step.kind == Step::Kind::displacement || step.kind == Step::Kind::force;
     if (is_ramp && takes_rates && dice.happens(0.3)) give_rate(step);
-    if (is_ramp && dice.happens(0.12)) {
+    const bool repeats = is_ramp && dice.happens(0.3) && repeat_condition(step, program);
+    if (is_ramp && !repeats && dice.happens(0.12)) {
       const bool has_area = scene.model->has_contact_area;
       const std::string_view key = dice.one_of<std::string_view>(
           {"force", "displacement", "event", has_area ? "pressure" : "force", has_area ? "contact_radius" : "event"});
@@ -87,6 +103,9 @@ std::vector<StressStep> draw_program(Dice& dice, const StressScene& scene, const
         step.until = key;
         step.until_value = key == "force" || key == "pressure" ? draw_force(dice, bounds) : draw_depth(dice, bounds);
         if (key == "contact_radius") step.until_value = std::abs(step.until_value);
+        // A step may begin where its condition is met.
+        if (key == "displacement" && dice.happens(0.2)) step.until_value = before;
+        if (key == "force" && dice.happens(0.2)) step.until_value = force_before;
       }
     }
     program.push_back(step);

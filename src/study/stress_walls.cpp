@@ -32,6 +32,13 @@ std::array<double, 3> beside(const std::array<double, 3>& normal, double angle) 
 
 }  // namespace
 
+std::vector<std::array<double, 3>> draw_cell(Dice& dice) {
+  std::vector<std::array<double, 3>> normals{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}};
+  if (dice.happens(0.5)) normals.insert(normals.end(), {{0.0, 0.0, 1.0}, {0.0, 0.0, -1.0}});
+  if (dice.happens(0.2)) normals.erase(normals.begin() + static_cast<std::ptrdiff_t>(dice.below(normals.size())));
+  return normals;
+}
+
 std::vector<std::array<double, 3>> draw_normals(Dice& dice, double least_angle) {
   // Not so many where they may not stand close.
   const std::size_t count = 2 + dice.below(k_most_walls - 1);
