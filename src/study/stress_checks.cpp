@@ -150,18 +150,6 @@ bool is_held(const Run& run, std::span<const ContactClass> classes, std::size_t 
 /// Whether an integrator has given up for a stated reason, which says nothing of how the scene goes on.
 bool has_given_up(const Run& run) { return run.record.status == RunStatus::failed && !stated_end(run).empty(); }
 
-/// The softest of a material's moduli and strengths.
-double softest(const Scenario& scenario) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const QuantityKey& key : find_model(scenario.model)->material) {
-    const auto found = scenario.material.find(std::string(key.name));
-    if (key.dimension == Dimension::stress && found != scenario.material.end() && found->second > 0.0) {
-      least = std::min(least, found->second);
-    }
-  }
-  return least;
-}
-
 /// Whether contacts are nowhere deeper than what is rounding in lengths of the order of R0.
 bool is_below_resolution(const Run& run) {
   return run.scenario.radius > 0.0 && deepest_overlap(run.record.history) < k_resolution * run.scenario.radius;
@@ -232,11 +220,8 @@ class SceneCheck {
     const bool is_direct = own_->integrator.used == "direct";
     share_ = is_direct ? k_stress_rounding : std::max(scenario_.numerics.rtol, k_finest_rtol);
     tolerance_ = std::max(own_tolerance(*own_), own_tolerance(*reference_));
-    // Errors of the steps add up, whichever of the two tolerances is the larger one; and neither is held to be finer
-    // than integrators are.
-    const double adding_up = tolerance_ / scenario_.numerics.rtol;
     nothing_ = {.unit = {.length = scenario_.radius, .stress = softest(scenario_)},
-                .share = is_direct ? k_stress_rounding : adding_up * scenario_.numerics.atol,
+                .share = is_direct ? k_stress_rounding : own_absolute_tolerance(*own_),
                 .energy_share = direct_work_tolerance(*own_),
                 .step_share = tolerance_,
                 .length = k_stress_rounding * scenario_.radius};
@@ -314,20 +299,20 @@ class SceneCheck {
     const std::optional<Run> integrated = check.try_run(other, "another form");
     if (integrated) {
       check.own_ = &*integrated;
-      for (const Violation& violation : check_run(*integrated)) check.report(violation.check, violation.detail);
+      check.verdict_.violations = check_run(*integrated);
       check.measure_tolerance();
       if (check.verdict_.violations.empty()) check.compare("form", *reference_, *integrated);
     }
     verdict_.runs += check.verdict_.runs;
     verdict_.is_ill_conditioned |= check.verdict_.is_ill_conditioned;
-    std::ranges::move(check.verdict_.violations, std::back_inserter(verdict_.violations));
+    for (Violation& violation : check.verdict_.violations) report(violation.check, std::move(violation.detail));
   }
 
   [[nodiscard]] double seconds_of_run() const { return thread_seconds() - run_begin_; }
 
   [[nodiscard]] Run run_limited(const Scenario& scenario, const SystemWrapper& wrap = {}) {
     run_begin_ = thread_seconds();
-    return run_scenario(scenario, [&](std::unique_ptr<HybridSystem> system) {
+    return effort_.make_run(scenario, [&](std::unique_ptr<HybridSystem> system) {
       return limited(wrap ? wrap(std::move(system)) : std::move(system), end_);
     });
   }
@@ -376,7 +361,8 @@ class SceneCheck {
   /// How far the scene's own form carries on errors of its states, which a reference in closed form does not have. One
   /// that is integrated carries on those of its own, but may know its states better than to what is tolerated of a
   /// step.
-  double spread_of_states() {
+  template <class Measure>
+  double spread_of_states(Measure&& measure) {
     if (own_->integrator.used == "direct") return 0.0;
     double widest = 0.0;
     // By as much as they may be off, less what the samples are counted by.
@@ -386,7 +372,7 @@ class SceneCheck {
       try {
         const Run run = run_limited(
             scenario_, [&](std::unique_ptr<HybridSystem> system) { return disturbed(std::move(system), shares); });
-        const double apart = between(*own_, run).value;
+        const double apart = measure(*own_, run);
         if (std::isfinite(apart)) widest = std::max(widest, apart);
       } catch (const OutOfTime&) {
         throw;
@@ -427,7 +413,8 @@ class SceneCheck {
   struct Kinship {
     Magnification larger = {};  ///< the second by the first
     bool is_same_form = false;  ///< whether the first gives up where the second does
-    std::function<std::vector<Run>()> copies = [] { return std::vector<Run>(); };  ///< as good as the second
+    /// Runs whose distance from each other is allowed.
+    std::function<std::vector<Run>()> copies = [] { return std::vector<Run>(); };
   };
 
   void compare(const char* check, const Run& expected, const Run& actual) {
@@ -449,11 +436,11 @@ class SceneCheck {
     const std::vector<Run> copies = kinship.copies();
     const auto curves_apart = [this](const Run& a, const Run& b) { return between(a, b).value; };
     double widest = spread(*reference_, neighbours(), curves_apart);
-    if (!copies.empty()) widest = worse(widest, spread(actual, copies, curves_apart));
+    if (!copies.empty()) widest = worse(widest, spread(copies.front(), copies, curves_apart));
     // Where changed data have met a limit already, a state is not determined.
     const Distance known = distance_of(expected, actual, kinship.larger, first_end(neighbours()));
     const auto is_beyond = [&](double spread) { return !(known.value <= tolerance_ + k_sample_multiple * spread); };
-    const bool is_apart = is_beyond(widest) && is_beyond(spread_of_states());
+    const bool is_apart = is_beyond(widest) && is_beyond(spread_of_states(curves_apart));
     // Where a decision is as near as errors are large, either way is right.
     const bool is_toss = events != expected_events && !all_share(sorted_events);
     if (is_apart && !std::isnan(widest) && !is_toss) {
@@ -470,7 +457,8 @@ class SceneCheck {
     }
     if (ends > tolerance_ && all_share(stated_end)) {
       double of_ends = spread(*reference_, neighbours(), ends_apart);
-      if (!copies.empty()) of_ends = worse(of_ends, spread(actual, copies, ends_apart));
+      if (!copies.empty()) of_ends = worse(of_ends, spread(copies.front(), copies, ends_apart));
+      of_ends = std::max(of_ends, spread_of_states(ends_apart));
       if (ends > tolerance_ + k_sample_multiple * of_ends) {
         report(check, fmt::format("ends {:.3g} of a step apart, above {:.3g} ({:.3g} with changed data): {} against {}",
                                   ends, tolerance_, of_ends, quoted(actual), quoted(expected)));
@@ -487,7 +475,9 @@ class SceneCheck {
     verdict_.is_ill_conditioned = true;
   }
 
+  /// Of a rule that several copies break the first says enough.
   void report(std::string check, std::string detail) {
+    if (std::ranges::count(verdict_.violations, check, &Violation::check) > 0) return;
     verdict_.violations.push_back({std::move(check), std::move(detail)});
   }
 
@@ -516,7 +506,8 @@ class SceneCheck {
         spread(*reference_, neighbours(), [this](const Run& a, const Run& b) { return between_ends(a, b).value; });
     const auto is_within = [&](double spread) { return apart.value <= tolerance_ + k_sample_multiple * spread; };
     // Two runs each have errors of their own, which the scene carries on.
-    if (std::isnan(widest) || is_within(widest) || is_within(spread_of_states())) {
+    if (std::isnan(widest) || is_within(widest) ||
+        is_within(spread_of_states([this](const Run& a, const Run& b) { return between(a, b).value; }))) {
       verdict_.is_ill_conditioned = true;
       return;
     }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "history/run.hpp"
 #include "scenario/scenario.hpp"
 #include "study/stress_rules.hpp"
 
@@ -16,7 +18,10 @@ namespace monograin {
 /// The rule of that.
 inline constexpr const char* k_time_rule = "time";
 
-/// How much is done to check a scene.
+/// From a scenario to its run, with something around its system: run_scenario.
+using RunMaker = std::function<Run(const Scenario&, const SystemWrapper&)>;
+
+/// How much is done to check a scene, and by what.
 struct StressEffort {
   static constexpr std::uint64_t k_all_copies = ~std::uint64_t{0};
   /// Of a processor that all runs have together; a scene that takes longer breaks the rule "time", unless its own run
@@ -24,6 +29,7 @@ struct StressEffort {
   double seconds = 0.0;
   /// Which copy of a complete scene is run, counted around; one that a limit has ended is held against all of them.
   std::uint64_t copies = k_all_copies;
+  RunMaker make_run = run_scenario;
 };
 
 /// All that was found of one scene.

@@ -43,6 +43,11 @@ constexpr double k_tolerated_loss = 1e-6;
 constexpr std::size_t k_most_events_per_step = 200;
 // Where growth ends again and again, events between.
 constexpr std::size_t k_most_events_between_ends = 10;
+// Evaluations of equations and guards for each row, event and step of the program. Of 1,761 drawn scenes half of the
+// direct runs need 3 or fewer, 99 % 102, the worst 159. Of the integrated ones half need 7 to 162, by integrator, 99 %
+// 103 to 2,214, the worst 3,566.
+constexpr long k_most_work_direct = 1000;
+constexpr double k_most_work_integrated = 20000.0;
 constexpr std::string_view k_endless = "endless events";
 constexpr std::string_view k_chattering = "chattering";
 constexpr std::string_view k_too_much_work = "too much work";
@@ -96,7 +101,7 @@ constexpr StatedLimit k_stated_limits[] = {
     {"outside the pressure table", "outside the pressure table"},
     {"there is no mode in which every contact's branch agrees", "no mode agrees"},
     {k_free_centre, k_free_centre},
-    {"beyond a fold no forces on it balance", k_fold},
+    {"beyond a fold no forces on it balance", "fold of the free centre"},
     {"beyond their greatest force its place is not determined", "greatest force on the free centre"},
     // plastic laws
     {"the walls meet", "the walls meet"},
@@ -105,7 +110,7 @@ constexpr StatedLimit k_stated_limits[] = {
     {"is not below", "the walls meet"},
     {"would go back at gamma/2R", "no unloading"},
     {"leads to gamma/2R", "the walls meet"},
-    {"the law of low compressibility demands", k_fills},
+    {"the law of low compressibility", k_fills},
     // nonlocal; the branch of equilibria ends where the margin does, and has no definite end where walls only touch
     {k_applicability, k_applicability},
     {"where the margin is 0.000", k_applicability},
@@ -159,9 +164,11 @@ double stiffest_modulus(const Run& run) {
   return stiffest;
 }
 
-/// Rounding of an energy: overlaps are differences of lengths of the order of R0.
+/// Rounding of an energy, overlaps being differences of lengths of the order of R0; or what an integrator takes for
+/// nothing.
 double energy_floor(const Run& run) {
-  return k_stress_rounding * stiffest_modulus(run) * std::pow(run.scenario.radius, 3);
+  const double negligible = run.integrator.used == "direct" ? 0.0 : own_absolute_tolerance(run) * softest(run.scenario);
+  return std::max(k_stress_rounding * stiffest_modulus(run), negligible) * std::pow(run.scenario.radius, 3);
 }
 
 /// Rounding of the force of a contact that goes back, for the same reason: how stiff that is does not show in a curve
@@ -385,6 +392,9 @@ void check_energy(const Run& run, Violations& found) {
   // Fixed steps control no error.
   if (run.integrator.used == "explicit") return;
   const bool is_conservative = is_elastic(run.scenario);
+  // What integrators make of a law that keeps its energy is found where they are compared with the direct form, with
+  // what the scene magnifies.
+  if (is_conservative && run.integrator.used != "direct") return;
   // A law that gives back more than was put in has to say so.
   const bool is_warned = std::ranges::any_of(run.record.warnings, [](const std::string& warning) {
     return warning.find("creates energy") != std::string::npos;
@@ -489,6 +499,21 @@ void check_events(const Run& run, Violations& found) {
     found.push_back({"time", fmt::format("goes back from {} s to {} s", before, now)});
     return;
   }
+}
+
+/// That a run takes work in proportion to what it shows. Fixed steps are as many as the tolerance says.
+void check_work(const Run& run, Violations& found) {
+  if (run.integrator.used == "explicit") return;
+  // As a method of order 4 needs more at a finer tolerance.
+  const double finer = std::pow(std::max(1.0, 1e-8 / run.scenario.numerics.rtol), 0.25);
+  const long most = run.integrator.used == "direct" ? k_most_work_direct : std::lround(k_most_work_integrated * finer);
+  const Statistics& done = run.record.statistics;
+  const long work = done.rhs_evaluations + done.guard_evaluations;
+  const auto shown =
+      static_cast<long>(run.record.history.row_count() + run.record.events.row_count() + step_count(run.scenario));
+  if (work <= most * shown) return;
+  found.push_back({"work", fmt::format("{} evaluations, {} for each of {} rows, events and steps, above {}", work,
+                                       work / shown, shown, most)});
 }
 
 /// That a column's values only grow.
@@ -596,6 +621,17 @@ void check_material_point(const Run& run, Violations& found) {
 
 }  // namespace
 
+double softest(const Scenario& scenario) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const QuantityKey& key : find_model(scenario.model)->material) {
+    const auto found = scenario.material.find(std::string(key.name));
+    if (key.dimension == Dimension::stress && found != scenario.material.end() && found->second > 0.0) {
+      least = std::min(least, found->second);
+    }
+  }
+  return least;
+}
+
 bool is_elastic(const Scenario& scenario) {
   if (scenario.model == "packing") return !scenario.material.contains("hardening_modulus");
   return scenario.model == "hertz" || scenario.model == "nonlocal";
@@ -628,6 +664,11 @@ double own_tolerance(const Run& run) {
          std::max(run.scenario.numerics.rtol, k_finest_rtol);
 }
 
+double own_absolute_tolerance(const Run& run) {
+  if (run.integrator.used == "direct") return k_stress_rounding;
+  return own_tolerance(run) / run.scenario.numerics.rtol * run.scenario.numerics.atol;
+}
+
 std::vector<Violation> check_run(const Run& run) {
   Violations found;
   check_end(run, found);
@@ -637,6 +678,7 @@ std::vector<Violation> check_run(const Run& run) {
   check_energy(run, found);
   check_ratchet(run, found);
   check_events(run, found);
+  check_work(run, found);
   // Fixed steps control no error, and have none of these.
   if (run.integrator.used == "explicit") return found;
   check_program(run, found);

@@ -27,14 +27,12 @@ inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::
 /// What a run alone has to keep: it ends complete, where its program leads, or at a stated limit, which no walls that
 /// touch gainsay where it says that nothing holds the centre; every number is one, forces do not pull without
 /// adhesion, the dissipation never falls unless the run warns of it, what only grows does not shrink, events do not go
-/// on without end, and the identities of the model's own columns.
+/// on without end, work is in proportion to rows, events and steps of the program, and the identities of the model's
+/// own columns.
 [[nodiscard]] std::vector<Violation> check_run(const Run& run);
 
 /// How a run has ended: "complete", or the limit of the model that its message states; empty: neither.
 [[nodiscard]] std::string stated_end(const Run& run);
-
-/// The stated end where peeling contacts hold a free centre no longer.
-inline constexpr std::string_view k_fold = "fold of the free centre";
 
 /// The stated end where plastic strain grows without bound.
 inline constexpr std::string_view k_uniqueness = "loss of uniqueness";
@@ -47,6 +45,13 @@ inline constexpr std::string_view k_uniqueness = "loss of uniqueness";
 
 /// Error of a run's own that its rules have to grant, over the largest values.
 [[nodiscard]] double own_tolerance(const Run& run);
+
+/// Error of a run's own that has no largest value, over units of the particle: adds up as the relative one does, and is
+/// held to be no finer.
+[[nodiscard]] double own_absolute_tolerance(const Run& run);
+
+/// The softest of a material's moduli and strengths.
+[[nodiscard]] double softest(const Scenario& scenario);
 
 /// Whether the law of a scenario goes back the way it came.
 [[nodiscard]] bool is_elastic(const Scenario& scenario);

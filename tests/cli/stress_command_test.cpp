@@ -14,18 +14,18 @@ namespace fs = std::filesystem;
 class StressCommand : public CommandTest {};
 
 TEST_F(StressCommand, PrintsTheReportThatItLeaves) {
-  ASSERT_EQ(monograin("stress --seed 32 --scenes 10 --time 2min -j 2 -o out").code, 0) << text("stdout.txt");
+  ASSERT_EQ(monograin("stress --seed 33 --scenes 10 --time 2min -j 2 -o out").code, 0) << text("stdout.txt");
   EXPECT_EQ(text("stdout.txt"), text("out/report.txt"));
-  EXPECT_NE(text("stdout.txt").find("seed 32: 10 scenes"), std::string::npos);
+  EXPECT_NE(text("stdout.txt").find("seed 33: 10 scenes"), std::string::npos);
   EXPECT_EQ(text("stderr.txt").find('\r'), std::string::npos) << "no progress bar where there is no terminal";
 }
 
 TEST_F(StressCommand, ReplacesAnEarlierReportButNothingElse) {
-  ASSERT_EQ(monograin("stress --seed 32 --scenes 1 --time 1min -o out").code, 0);
-  ASSERT_EQ(monograin("stress --seed 32 --scenes 1 --time 1min -o out").code, 0);
+  ASSERT_EQ(monograin("stress --seed 33 --scenes 1 --time 1min -o out").code, 0);
+  ASSERT_EQ(monograin("stress --seed 33 --scenes 1 --time 1min -o out").code, 0);
   fs::create_directories(path("mine"));
   write_text(path("mine/notes.txt"), "keep");
-  EXPECT_EQ(monograin("stress --seed 32 --scenes 1 --time 1min -o mine").code, 2);
+  EXPECT_EQ(monograin("stress --seed 33 --scenes 1 --time 1min -o mine").code, 2);
   EXPECT_EQ(text("mine/notes.txt"), "keep");
 }
 
