@@ -149,7 +149,8 @@ class Drive {
         sink_(sink),
         output_(output),
         y_(system_.unknowns().size()),
-        output_state_(y_.size()) {
+        output_state_(y_.size()),
+        open_since_(scene.channels.size()) {
     if (integrator != "direct") rtol_ = tolerances.rtol;
     for (const Channel& channel : scene.channels) held_.push_back(channel.at_rest);
     outputs_.reserve(output.times.empty() ? static_cast<std::size_t>(output.points) : output.times.size());
@@ -207,6 +208,7 @@ class Drive {
       }
       const bool is_met = integrate_step(log);
       if (!is_met) note_unmet_conditions();
+      note_forces_not_borne();
       if (next_output_ + 1 == outputs_.size() && outputs_.back().xi == k_at_end) outputs_.back().xi = xi_;
       open_instant(xi_);
       log.clear();
@@ -322,6 +324,28 @@ class Drive {
     }
   }
 
+  /// Keeps since when each channel's contact is open in this step.
+  void note_open_contacts() {
+    for (std::size_t c = 0; c < open_since_.size(); ++c) {
+      const bool is_open = system_.is_open(static_cast<int>(c));
+      if (!is_open) open_since_[c].reset();
+      if (is_open && !open_since_[c]) open_since_[c] = xi_;
+    }
+  }
+
+  /// Notes the forces that the step has prescribed to contacts which were open before it ended: they bear none.
+  void note_forces_not_borne() {
+    for (std::size_t c = 0; c < open_since_.size(); ++c) {
+      const Ramp& ramp = plan_.ramps[c];
+      const double force = std::lerp(ramp.start, ramp.end, xi_);
+      const bool was_open = open_since_[c] && xi_ - *open_since_[c] > k_round_off;
+      if (ramp.control != Control::force || force == 0.0 || !was_open) continue;
+      notes_.add(step_ + 1,
+                 fmt::format("no contact bears the force that is prescribed to '{}'", scene_.channels[c].name),
+                 fmt::format(" ({:.6g} N at its end; open since t = {:.9g} s)", force, time(*open_since_[c])));
+    }
+  }
+
   /// Says which of the output times come after the last step has ended.
   void note_unreached_times(std::vector<std::string>& warnings) const {
     const double end = step_start_ * (1.0 + k_same_instant);
@@ -385,6 +409,8 @@ class Drive {
 
   /// Integrates from the present state to where the step ends. Returns whether a condition ended it.
   bool integrate() {
+    std::ranges::fill(open_since_, std::nullopt);
+    note_open_contacts();
     int idle_events = 0;
     int events = 0;
     long steps = 0;
@@ -476,6 +502,7 @@ class Drive {
     }
     if (is_met) watch_.note_met(fired, xi_, y_);
     watch_.renew();
+    note_open_contacts();
     return is_met;
   }
 
@@ -642,6 +669,7 @@ class Drive {
   const Output& output_;
   std::vector<double> y_;
   std::vector<double> output_state_;
+  std::vector<std::optional<double>> open_since_;  ///< of each channel, step coordinate; none while it is closed
   std::vector<Ramp> held_;  ///< where the program has taken the channels
   ProgramNotes notes_;
 

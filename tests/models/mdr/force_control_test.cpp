@@ -285,6 +285,33 @@ TEST(HertzForceControl, FollowsTheClosedForm) {
 
 // --- beside other walls
 
+bool says_that_none_bears(const TestRun& result) {
+  return std::ranges::any_of(result.record.warnings, [](const std::string& text) {
+    return text.find("no contact bears the force that is prescribed to 'axial'") != std::string::npos;
+  });
+}
+
+TEST(ForceControl, SaysThatNoContactBearsATension) {
+  for (const char* integrator : k_integrators) {
+    const auto pulled_to = [&](double force) {
+      return run(hertz_scenario(Configuration::simple, {force_ramp(0.001), force_ramp(force)}), integrator);
+    };
+    EXPECT_TRUE(says_that_none_bears(pulled_to(-0.001))) << integrator;
+    EXPECT_FALSE(says_that_none_bears(pulled_to(0.0))) << integrator << ": nothing is to be borne";
+    EXPECT_FALSE(says_that_none_bears(pulled_to(0.0005))) << integrator;
+  }
+}
+
+TEST(ForceControl, SaysNothingOfATensionThatIsBorneUntilTheStepEnds) {
+  Scenario scenario = mdr_scenario(Configuration::simple, 50.0, 0.3, {});
+  scenario.material["surface_energy"] = 1e-5;
+  const Step pull = force_ramp(-0.01);
+  scenario.loading.steps = {force_ramp(0.01), until_event(pull, "pull-off")};
+  EXPECT_FALSE(says_that_none_bears(run(scenario)));
+  scenario.loading.steps = {force_ramp(0.01), pull};
+  EXPECT_TRUE(says_that_none_bears(run(scenario)));
+}
+
 TEST(MdrMixedControl, MeetsThePrescribedForcesInEveryRow) {
   const std::vector<double> x{0.01, 0.01, 0.015, 0.002};
   const std::vector<double> y{0.004, 0.012, 0.012, 0.012};
