@@ -52,6 +52,8 @@ struct Guard {
   std::string_view name;  ///< of the event it stands for
   /// Changes the form of the equations and nothing that is seen: leaves no rows in the history.
   bool is_silent = false;
+  /// Marks an instant and changes nothing: neither mode nor state. Shown if fire() logs an event.
+  bool is_mark = false;
   /// Depends on what the program tells alone: no error of an integrator moves it.
   bool is_told = false;
   /// Rates, or their slopes, grow without bound towards it: just before it other guards may cross and come back within

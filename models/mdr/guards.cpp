@@ -225,20 +225,34 @@ double System::force_rate(std::size_t i, const Motion& now) const noexcept {
   return scale > 0.0 ? rate / scale : 0.0;
 }
 
-/// Lists the guards of the extrema of a tensile force, in turns. A prescribed force has none within a step, nor has an
-/// edge that sticks where only the own wall moves.
+/// Lists the guards of the extrema of a tensile force, in turns: after a least force comes a greatest. A prescribed
+/// force has none within a step, nor has an edge that sticks where only the own wall moves.
 void System::watch_tension(std::size_t i, const Motion& now, bool may_go_out, bool may_turn) {
-  const int index = static_cast<int>(i);
   const bool peels_alone = memory_[i].edge == Edge::peeling && may_go_out;
   if (memory_[i].edge == Edge::following || is_loaded(i) || !(may_turn || peels_alone)) return;
+  const auto add = [&](int kind, int direction) {
+    guards_.push_back({.kind = kind,
+                       .index = static_cast<int>(i),
+                       .direction = direction,
+                       .name = "force-extremum",
+                       .is_mark = true});
+  };
   const bool is_tensile = now_[i].contact.force < 0.0;
-  if (force_rate(i, now) <= 0.0 || !is_tensile) {
-    guards_.push_back({k_greatest_tension, index, 1, "force-extremum"});
-  } else if (may_turn) {
-    guards_.push_back({k_least_tension, index, -1, "force-extremum"});
-    // Once it presses, the next extremum is a greatest tension again.
-    guards_.push_back({.kind = k_released, .index = index, .is_silent = true});
-  }
+  const double rate = force_rate(i, now);
+  if (!is_tensile || rate < -0.5 * k_steady_force) return add(k_greatest_tension, 1);
+  if (!may_turn) return;
+  if (rate > 0.5 * k_steady_force) return add(k_least_tension, -1);
+  // A force at rest is at no extremum where it begins to move.
+  add(k_tension_falls, 1);
+  add(k_tension_rises, -1);
+}
+
+/// Whether the force of a contact that pulls goes through an extremum where the guard has fired. One that presses has
+/// come back from that with a rate.
+bool System::is_extremum(int kind, std::size_t i, const Motion& now) const noexcept {
+  if (memory_[i].edge != edges_before_[i] || !touches(memory_[i].regime) || !(now_[i].contact.force < 0.0))
+    return false;
+  return kind == k_greatest_tension || (kind == k_least_tension && force_rate(i, now) > -2.0 * k_steady_force);
 }
 
 void System::guard_values(double xi, std::span<const double> y, std::span<double> values) {
@@ -304,11 +318,12 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = (now_[i].contact.force < 0.0 ? rate : std::abs(rate)) + k_steady_force;
         break;
       }
-      case k_released: {
-        const double stiffness = unpeeled_stiffness(i);
-        values[g] = stiffness > 0.0 ? now_[i].contact.force / stiffness : 0.0;
+      case k_tension_falls:
+        values[g] = force_rate(i, now) - k_steady_force;
         break;
-      }
+      case k_tension_rises:
+        values[g] = force_rate(i, now) + k_steady_force;
+        break;
       case k_follow:
         values[g] = edge_guard(k_follow, i, xi, now_[i].overlap - rounding_of_edge(i, r), r);
         break;

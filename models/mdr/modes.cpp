@@ -396,9 +396,6 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   look_once(xi, y);
   const double r = y[k_radius];
   const Motion now = motion(is_growing_);
-  const auto is_observed_only = [this](std::size_t g) {
-    return guards_[g].kind == k_greatest_tension || guards_[g].kind == k_least_tension || guards_[g].kind == k_released;
-  };
   std::optional<bool> growth;
   bool others_fired = false;
   bool has_jumped = false;
@@ -486,9 +483,9 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         break;
       case k_greatest_tension:
       case k_least_tension:
-        if (touches(memory_[i].regime) && memory_[i].edge == edges_before_[i]) log.push_back(event);
-        continue;
-      case k_released:
+      case k_tension_falls:
+      case k_tension_rises:
+        if (is_extremum(guard.kind, i, now)) log.push_back(event);
         continue;
       case k_growth_on:
       case k_growth_off:
@@ -521,7 +518,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     if (log.empty() || log.back().name != end->event.name) log.push_back(end->event);
     return end;
   }
-  if (std::ranges::all_of(fired, is_observed_only)) {
+  if (std::ranges::all_of(fired, [this](std::size_t g) { return guards_[g].is_mark; })) {
     watch(xi, y);
     return std::nullopt;
   }

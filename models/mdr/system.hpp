@@ -368,6 +368,7 @@ class System final : public HybridSystem {
   [[nodiscard]] bool goes_one_way(double r, const Motion& now) const;
   void watch_contact(std::size_t i, double r, const Motion& now);
   [[nodiscard]] double force_rate(std::size_t i, const Motion& now) const noexcept;
+  [[nodiscard]] bool is_extremum(int kind, std::size_t i, const Motion& now) const noexcept;
   void watch_tension(std::size_t i, const Motion& now, bool may_go_out, bool may_turn);
   void watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_out, bool may_turn);
   [[nodiscard]] double contact_guard(int kind, std::size_t i, double xi, double overlap, double r);

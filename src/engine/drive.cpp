@@ -94,7 +94,7 @@ class ProgramNotes {
 
   [[nodiscard]] std::vector<std::string> texts() const {
     std::vector<std::string> result;
-    for (const Note& note : notes_) result.push_back(steps_of(note) + ": " + note.what + note.example);
+    for (const Note& note : notes_) result.push_back(fmt::format("{}: {}{}", steps_of(note), note.what, note.example));
     return result;
   }
 
@@ -390,16 +390,19 @@ class Drive {
     const std::function<void()> restore = system_.checkpoint();
     const std::vector<double> state = y_;
     const long event_count = event_count_;
-    is_rehearsing_ = true;
+    is_rehearsing_ = stops_in_step_ = true;
     try {
       static_cast<void>(integrate());
+      stops_in_step_ = false;
     } catch (const Stop&) {  // what ends the run will end it again
     } catch (const std::domain_error&) {
     } catch (const SolverError&) {
     }
     is_rehearsing_ = false;
     restore();
-    const double end = std::exchange(xi_, 0.0);
+    // An end that is round-off leaves no room for rows.
+    const double end = xi_ > output_.points * k_round_off ? xi_ : 0.0;
+    xi_ = 0.0;
     y_ = state;
     event_count_ = event_count;
     idle_guards_.clear();
@@ -482,7 +485,15 @@ class Drive {
       if (guard < watch_.system_guards()) of_system.push_back(guard);
     }
     bool is_met = of_system.size() < fired.size();
-    if (!of_system.empty()) {
+    if (!of_system.empty() && are_marks(of_system)) {
+      std::vector<Event> log;
+      static_cast<void>(system_.fire(of_system, xi_, y_, log));
+      if (!log.empty()) {
+        open_instant(xi_);
+        close_instant(time(xi_), xi_, log);
+      }
+      is_met = is_met || has_ending_event(log);
+    } else if (!of_system.empty()) {
       const bool is_seen =
           std::ranges::any_of(of_system, [this](std::size_t guard) { return !system_.guards()[guard].is_silent; });
       if (is_seen) open_instant(xi_);
@@ -506,10 +517,18 @@ class Drive {
     return is_met;
   }
 
+  /// True if all of these guards mark an instant and change nothing.
+  [[nodiscard]] bool are_marks(std::span<const std::size_t> guards) const {
+    return std::ranges::all_of(guards, [this](std::size_t guard) {
+      return guard < watch_.system_guards() && system_.guards()[guard].is_mark;
+    });
+  }
+
   /// Guards that fire at xi_: those the integrator found, and those that reach zero within its accuracy at the same
   /// instant.
   [[nodiscard]] std::vector<std::size_t> collect_fired(double last) {
     std::vector<std::size_t> fired(integrator_->fired().begin(), integrator_->fired().end());
+    if (are_marks(fired)) return fired;
     std::vector<double> now(watch_.size());
     watch_.values(xi_, y_, now);
     const auto tolerance_of = [&](std::size_t g) {
@@ -591,11 +610,12 @@ class Drive {
   /// @param end  of the step: points divide what lies before it into equal intervals
   void plan_outputs(double end) {
     next_output_ = 0;
-    for (int j = 1; output_.times.empty() && j <= output_.points; ++j) {
+    const int first = end > 0.0 ? 1 : output_.points;
+    for (int j = first; output_.times.empty() && j <= output_.points; ++j) {
       const double xi = end * (static_cast<double>(j) / output_.points);
       outputs_.push_back({xi, time(xi)});
     }
-    if (may_end_early() && !outputs_.empty()) outputs_.back().xi = k_at_end;
+    if (may_end_early() && !stops_in_step_ && !outputs_.empty()) outputs_.back().xi = k_at_end;
     for (const double instant : output_.times) {
       if (plan_.duration == 0.0) break;
       const double xi = (instant - step_start_) / plan_.duration;
@@ -680,6 +700,7 @@ class Drive {
   std::vector<OutputPoint> outputs_;
   std::size_t next_output_ = 0;
   bool is_rehearsing_ = false;  ///< nothing is recorded
+  bool stops_in_step_ = false;  ///< the run, as its rehearsal has shown
   long event_count_ = 0;
   std::set<std::string> idle_guards_;  ///< that have fired since the last progress
 };

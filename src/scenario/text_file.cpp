@@ -1,6 +1,7 @@
 #include "scenario/text_file.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>
@@ -30,7 +31,7 @@ class PartialFile {
   explicit PartialFile(const fs::path& file) {
     static std::atomic<unsigned> count{0};
     do {  // O_EXCL: nothing that lies there already is opened, be it a link
-      path_ = file.parent_path() / ("." + std::to_string(getpid()) + "-" + std::to_string(count++) + ".partial");
+      path_ = file.parent_path() / fmt::format(".{}-{}.partial", getpid(), count++);
       descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     } while (descriptor_ < 0 && errno == EEXIST);
     if (descriptor_ < 0) fail(file, errno);

@@ -153,13 +153,14 @@ void move_out(WallSpec& wall, double distance, const std::vector<Step>& common) 
 }
 
 /// Changes what ends a step. Overlaps are differences of lengths of the order of R0, and areas of contacts go with
-/// them.
+/// them. An area below zero is never met, as one is that a contact has passed by round-off where it is made.
 void change(Until& until, double share, double radius) {
   double& value = until.value;
   value *= 1.0 + share;
   if (until.quantity == Until::Quantity::displacement) value += share * radius;
   if (until.quantity != Until::Quantity::contact_radius) return;
-  value = std::sqrt(std::max(0.0, value * value + share * radius * radius));
+  const double area = value * value + share * radius * radius;
+  value = std::copysign(std::sqrt(std::abs(area)), area);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ using std::string_view;
 constexpr auto k_contract_events = std::to_array<string_view>(
     {// contacts
      "contact-made", "contact-lost", "pull-off", "stick", "peel", "follow", "dent-touched", "impingement",
-     "caps-intersect",
+     "caps-intersect", "force-extremum",
      // material
      "yield", "fully-plastic", "low-compressibility", "zero-porosity", "secondary-onset", "load-reversal", "reload",
      "retreat", "transition", "plastic-off", "segment-change", "plastic-softening",

@@ -26,6 +26,7 @@ class ToySystem final : public HybridSystem {
     std::function<void(std::span<double> y)> transition = {};
     bool ends_domain = false;
     bool is_silent = false;
+    bool is_mark = false;
   };
 
   State initial{0.0};
@@ -57,7 +58,8 @@ class ToySystem final : public HybridSystem {
       observables_.push_back({std::string(k_names[k]), "m", {}});
     }
     for (std::size_t g = 0; g < watched.size(); ++g) {
-      guards_.push_back({static_cast<int>(g), 0, watched[g].direction, watched[g].name, watched[g].is_silent});
+      guards_.push_back(
+          {static_cast<int>(g), 0, watched[g].direction, watched[g].name, watched[g].is_silent, watched[g].is_mark});
     }
   }
 
