@@ -37,9 +37,6 @@ constexpr int k_most_events = 1000;
 constexpr double k_surest_rtol = 1e-11;
 // Durations of walls that end their steps together (relative).
 constexpr double k_same_duration = 1e-9;
-// How far beyond the last state of an integrator the equations still have one, where no limit has ended the run (step
-// coordinates): farther than integrators stop short of a limit.
-constexpr double k_well_beyond = 1e-3;
 // An output time that counts as the program's end (relative).
 constexpr double k_same_instant = 1e-12;
 
@@ -171,19 +168,15 @@ class Drive {
       result.message = where(0.0) + text_of(error.end().finding);
       close_instant(step_start_, 0.0, {error.end().event});
     } catch (const std::domain_error& error) {
+      result.status = RunStatus::stopped;
       result.message = where(xi_) + error.what();
-      if (equations_go_on()) {
-        result.status = RunStatus::failed;
-        result.message += "; the equations go on from there, but the integrator does not find how";
-        add_difficulty(result.message);
-      } else {
-        result.status = RunStatus::stopped;
-        record_limit();
-      }
+      record_limit();
     } catch (const SolverError& error) {
       result.status = RunStatus::failed;
       result.message = where(error.xi()) + error.what();
-      add_difficulty(result.message);
+      if (const std::string_view difficulty = difficulty_here(); !difficulty.empty()) {
+        result.message += fmt::format("; {}", difficulty);
+      }
       if (rtol_ && *rtol_ < k_surest_rtol) {
         result.message += fmt::format("; rtol = {:.3g} asks for errors of the size of rounding, expected {:g} or more",
                                       *rtol_, k_surest_rtol);
@@ -226,24 +219,6 @@ class Drive {
     }
     --step_;
     close_instant(step_start_, xi_, log);
-  }
-
-  /// True if the direct form finds a state well beyond the present one: an integrator has left the domain of the
-  /// equations in its trials, and no limit of the model is met.
-  [[nodiscard]] bool equations_go_on() {
-    if (!rtol_ || !system_.is_solvable() || xi_ == 1.0) return false;
-    output_state_ = y_;
-    try {
-      system_.solve(std::min(1.0, xi_ + k_well_beyond), output_state_);
-    } catch (const std::domain_error&) {
-      return false;
-    }
-    return true;
-  }
-
-  void add_difficulty(std::string& message) {
-    const std::string_view difficulty = difficulty_here();
-    if (!difficulty.empty()) message += fmt::format("; {}", difficulty);
   }
 
   [[nodiscard]] std::string_view difficulty_here() {
@@ -510,7 +485,7 @@ class Drive {
       if (guard < watch_.system_guards()) of_system.push_back(guard);
     }
     bool is_met = of_system.size() < fired.size();
-    if (are_marks(of_system)) {
+    if (!of_system.empty() && are_marks(of_system)) {
       std::vector<Event> log;
       static_cast<void>(system_.fire(of_system, xi_, y_, log));
       if (!log.empty()) {
@@ -542,9 +517,9 @@ class Drive {
     return is_met;
   }
 
-  /// True if there are guards, and all of them mark an instant and change nothing.
+  /// True if all of these guards mark an instant and change nothing.
   [[nodiscard]] bool are_marks(std::span<const std::size_t> guards) const {
-    return !guards.empty() && std::ranges::all_of(guards, [this](std::size_t guard) {
+    return std::ranges::all_of(guards, [this](std::size_t guard) {
       return guard < watch_.system_guards() && system_.guards()[guard].is_mark;
     });
   }
@@ -715,7 +690,7 @@ class Drive {
   std::vector<double> y_;
   std::vector<double> output_state_;
   std::vector<std::optional<double>> open_since_;  ///< of each channel, step coordinate; none while it is closed
-  std::vector<Ramp> held_;                         ///< where the program has taken the channels
+  std::vector<Ramp> held_;  ///< where the program has taken the channels
   ProgramNotes notes_;
 
   std::size_t step_ = 0;
