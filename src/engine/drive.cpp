@@ -690,7 +690,7 @@ class Drive {
   std::vector<double> y_;
   std::vector<double> output_state_;
   std::vector<std::optional<double>> open_since_;  ///< of each channel, step coordinate; none while it is closed
-  std::vector<Ramp> held_;  ///< where the program has taken the channels
+  std::vector<Ramp> held_;                         ///< where the program has taken the channels
   ProgramNotes notes_;
 
   std::size_t step_ = 0;

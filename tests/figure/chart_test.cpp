@@ -200,7 +200,7 @@ TEST(Chart, KeepsItsNoteBesideThePowerOfTenOfItsAbscissa) {
   Chart chart = chart_of({series("a")});
   chart.panels[0].series[0].x = {0.0, 1e-7, 0.5e-7};
   const std::string script = script_of(chart);
-  EXPECT_NE(script.find("'it''s a note'"), std::string::npos) << script;
+  EXPECT_NE(script.find("\"it's a note\""), std::string::npos) << script;
   EXPECT_NE(script.find("'×10^{−7}'"), std::string::npos) << script;
 }
 

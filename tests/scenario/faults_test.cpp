@@ -299,7 +299,7 @@ const std::vector<FaultRow> k_rows{
     FaultRow{"UnknownChoice",
              13,
              "duration = 1\n[mdr]\nradius_rule = \"seeds\"",
-             {"die.toml:15:15: radius_rule = \"seeds\": expected one of gated, yielded, seed; did you mean 'seed'?"}},
+             {"die.toml:15:15: radius_rule = \"seeds\": expected one of yielded, gated, seed; did you mean 'seed'?"}},
     FaultRow{"StrictIsText",
              13,
              "duration = 1\n[mdr]\nstrict = \"yes\"",
