@@ -109,7 +109,7 @@ UnloadingRule interpolated_rule(std::span<const UnloadingRow> rows, double stiff
     for (const UnloadingNode& node : rule.nodes()) places.push_back(node.largest);
   }
   std::ranges::sort(places);
-  places.erase(std::ranges::unique(places).begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
   const double share = std::log(stiffness_over_shear / below->first) / std::log(above->first / below->first);
   std::vector<UnloadingNode> nodes;
   for (const double place : places) nodes.push_back({place, between(first.at(place), second.at(place), share)});

@@ -146,7 +146,9 @@ double cell_slope(Configuration configuration, double x) noexcept {
 
 double least_pressure_approach(Configuration configuration, const RadiusSeries& series) {
   const bool is_hydrostatic = configuration == Configuration::hydrostatic;
-  const auto& [d1, d3, d5] = series;
+  const double d1 = series.first;
+  const double d3 = series.third;
+  const double d5 = series.fifth;
   // pi^2 (a/R)^2 - 144 Gamma (1-x)^n, n = 1 or 5, rises from below 0 to above it.
   const auto excess = [=](double x) {
     const double root_free = d1 - x * (d3 - d5 * x);

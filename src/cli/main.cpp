@@ -2,7 +2,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <sstream>
@@ -18,7 +20,10 @@ namespace {
 using namespace monograin;
 
 int fail_for_memory() {
-  say("monograin: there is not enough memory; nothing more was written. Ask for fewer output points, steps or runs\n");
+  // Without an allocation of its own.
+  write_stream(stderr,
+               "monograin: there is not enough memory; nothing more was written. Ask for fewer output points, steps or "
+               "runs\n");
   return k_solver_failure;
 }
 
@@ -116,6 +121,20 @@ bool names_no_command(const CLI::App& app, int argc, char** argv) {
   return true;
 }
 
+std::atomic<bool> has_run_out_of_memory{false};
+
+/// Called where an allocation fails.
+[[noreturn]] void fail_allocation() {
+  has_run_out_of_memory = true;
+  throw std::bad_alloc();
+}
+
+/// Ends the process where a library lets an exception go no further: a failed allocation is what it is elsewhere.
+[[noreturn]] void end_at_once() {
+  if (!has_run_out_of_memory) std::abort();
+  std::_Exit(fail_for_memory());
+}
+
 int run_program(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of the system is a fault of writing like others
   CLI::App app("Workbench for the mechanics of a single particle under contact.", "monograin");
@@ -156,11 +175,13 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   prepare_standard_streams();
+  std::set_new_handler(fail_allocation);
+  std::set_terminate(end_at_once);
   int code = k_unexpected;
   try {
     code = run_program(argc, argv);
   } catch (const std::exception&) {  // too little memory to read the command line
-    code = k_solver_failure;
+    code = fail_for_memory();
   }
   if (is_output_written()) return code;
   write_stream(stderr, "monograin: standard output is closed or full; not everything was written to it\n");

@@ -13,7 +13,6 @@
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <ranges>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -299,8 +298,9 @@ StagedFolder::~StagedFolder() {
   std::error_code ignored;  // what cannot be removed stays hidden
   fs::remove_all(staged_, ignored);
   if (lock_ >= 0) close(lock_);
-  std::ranges::for_each(made_parents_ | std::views::reverse,
-                        [&](const fs::path& parent) { fs::remove(parent, ignored); });  // those that stayed empty
+  for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) {
+    fs::remove(*parent, ignored);  // those that stayed empty
+  }
 }
 
 void StagedFolder::make_parents() {

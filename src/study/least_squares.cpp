@@ -159,8 +159,8 @@ class Search {
     }
     std::erase_if(best, [](const Place& slice) { return slice.cost == k_no_cost; });
     std::ranges::stable_sort(best, {}, &Place::cost);
-    const auto repeated = std::ranges::unique(best, {}, &Place::z);
-    best.erase(repeated.begin(), repeated.end());
+    const auto is_repeated = [](const Place& a, const Place& b) { return a.z == b.z; };
+    best.erase(std::unique(best.begin(), best.end(), is_repeated), best.end());
     return best;
   }
 

@@ -266,7 +266,8 @@ class Rows {
         if (std::ranges::find(columns, heading) == columns.end()) columns.emplace_back(heading);
       }
     }
-    std::ranges::stable_partition(columns, [](const std::string& column) { return column.starts_with("end."); });
+    std::stable_partition(columns.begin(), columns.end(),
+                          [](const std::string& column) { return column.starts_with("end."); });
     return columns;
   }
 

@@ -1,0 +1,52 @@
+// What the program does where memory ends, wherever that is.
+
+#ifdef MONOGRAIN_FAILING_NEW
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "support/command_test.hpp"
+
+namespace monograin::failing_allocation_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FailingAllocation : public CommandTest {};
+
+TEST_F(FailingAllocation, EndsWithAMessageAndLeavesTheOldRunWhole) {
+  write_text(path("small.toml"), R"(model = "hertz"
+particle = { radius = 0.01 }
+material = { youngs_modulus = 1e9, poisson_ratio = 0.3 }
+loading = { configuration = "simple", steps = [{ displacement = 1e-4, duration = 1 }] }
+output = { points = 3 }
+)");
+  ASSERT_EQ(monograin("run small.toml -o out").code, 0) << text("stderr.txt");
+  const std::string history = text("out/history.csv");
+  const auto whole = files();
+  // Each of the first twenty allocations, then one of every twentieth part: a run makes some thousands.
+  bool has_failed = false;
+  for (long at = 1; at < 1'000'000; at += 1 + at / 20) {
+    setenv("LD_PRELOAD", MONOGRAIN_FAILING_NEW, 1);
+    setenv("MONOGRAIN_FAILING_ALLOCATION", std::to_string(at).c_str(), 1);
+    const Outcome outcome = monograin("run small.toml -o out");
+    unsetenv("LD_PRELOAD");
+    unsetenv("MONOGRAIN_FAILING_ALLOCATION");
+    EXPECT_EQ(text("out/history.csv"), history) << "allocation " << at;
+    EXPECT_EQ(files(), whole) << "allocation " << at;
+    if (outcome.err.find("no allocation has failed") != std::string::npos) break;
+    has_failed = true;
+    EXPECT_EQ(outcome.code, 4) << "allocation " << at << ": " << outcome.err;
+    EXPECT_FALSE(outcome.err.empty()) << "allocation " << at;
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_TRUE(has_failed);
+}
+
+}  // namespace
+}  // namespace monograin::failing_allocation_test
+
+#endif
