@@ -1,6 +1,6 @@
-# Draws 'die.svg'; run it in its own folder.
-if (!exists("output")) output = 'die.svg'
-data = 'die.dat'
+# Draws './die.svg'. To be run in its own folder, as gnuplot ./NAME.gp
+if (!exists("output")) output = './die.svg'
+data = './die.dat'
 
 set encoding utf8
 set minussign
@@ -17,7 +17,7 @@ set multiplot
 set lmargin at screen 0.1294; set rmargin at screen 0.4735
 set bmargin at screen 0.6921; set tmargin at screen 0.9603
 set xrange [0:0.4326]; set xtics 0.1
-set yrange [0:0.170762]; set ytics 0.05
+set yrange [0:0.16934]; set ytics 0.05
 set xlabel 'Displacement {/:Italic δ}_o / {/:Italic R}_0{/=1   }'
 set label 1 '(a)' at graph 0.02, 1.06 left
 set label 2 'Force {/:Italic F} / ({/:Italic E R}_0^2){/=1   }' at screen 0.0235, 0.8262 center rotate by 90
@@ -29,8 +29,8 @@ plot data index 'run 1 axial loading' using 1:2 with lines lc rgb '#0072B2' lw 2
   data index 'run 1 lateral loading' using 1:2 with lines lc rgb '#D55E00' lw 2 dt 1, \
   data index 'run 1 lateral unloading' using 1:2 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
   data index 'run 1 lateral reloading' using 1:2 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
-  data index 'event contact-made.' using 1:2 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event yield.' using 1:2 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event yield.' using 1:2 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event contact-made.' using 1:2 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event load-reversal.' using 1:2 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event contact-lost.' using 1:2 with points pt 14 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event dent-touched.' using 1:2 with points pt 2 ps 0.9 lw 1.1 lc rgb '#000000', \
@@ -51,8 +51,8 @@ plot data index 'run 1 axial loading' using 1:3 with lines lc rgb '#0072B2' lw 2
   data index 'run 1 lateral loading' using 1:3 with lines lc rgb '#D55E00' lw 2 dt 1, \
   data index 'run 1 lateral unloading' using 1:3 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
   data index 'run 1 lateral reloading' using 1:3 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
-  data index 'event contact-made.' using 1:3 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event yield.' using 1:3 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event yield.' using 1:3 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event contact-made.' using 1:3 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event load-reversal.' using 1:3 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event contact-lost.' using 1:3 with points pt 14 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event dent-touched.' using 1:3 with points pt 2 ps 0.9 lw 1.1 lc rgb '#000000', \
@@ -61,7 +61,7 @@ plot data index 'run 1 axial loading' using 1:3 with lines lc rgb '#0072B2' lw 2
 set lmargin at screen 0.1294; set rmargin at screen 0.4735
 set bmargin at screen 0.2947; set tmargin at screen 0.5629
 set xrange [0:0.4326]; set xtics 0.1
-set yrange [0:0.900716]; set ytics 0.2
+set yrange [0:0.892051]; set ytics 0.2
 set xlabel 'Displacement {/:Italic δ}_o / {/:Italic R}_0{/=1   }'
 set label 1 '(c)' at graph 0.02, 1.06 left
 set label 2 'Contact area {/:Italic A}_c / (π{/:Italic R}_0^2){/=1   }' at screen 0.0235, 0.4288 center rotate by 90
@@ -73,8 +73,8 @@ plot data index 'run 1 axial loading' using 1:4 with lines lc rgb '#0072B2' lw 2
   data index 'run 1 lateral loading' using 1:4 with lines lc rgb '#D55E00' lw 2 dt 1, \
   data index 'run 1 lateral unloading' using 1:4 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
   data index 'run 1 lateral reloading' using 1:4 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
-  data index 'event contact-made.' using 1:4 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event yield.' using 1:4 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event yield.' using 1:4 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event contact-made.' using 1:4 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event load-reversal.' using 1:4 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event contact-lost.' using 1:4 with points pt 14 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event dent-touched.' using 1:4 with points pt 2 ps 0.9 lw 1.1 lc rgb '#000000', \
@@ -83,7 +83,7 @@ plot data index 'run 1 axial loading' using 1:4 with lines lc rgb '#0072B2' lw 2
 set lmargin at screen 0.6294; set rmargin at screen 0.9735
 set bmargin at screen 0.2947; set tmargin at screen 0.5629
 set xrange [0:0.4326]; set xtics 0.1
-set yrange [0.996199:1.1305]; set ytics 0.05
+set yrange [0.996312:1.12662]; set ytics 0.05
 set xlabel 'Displacement {/:Italic δ}_o / {/:Italic R}_0{/=1   }'
 set label 1 '(d)' at graph 0.02, 1.06 left
 set label 2 'Apparent radius {/:Italic R} / {/:Italic R}_0{/=1   }' at screen 0.5235, 0.4288 center rotate by 90
@@ -92,7 +92,7 @@ unset label 4
 plot data index 'run 1 axial loading' using 1:5 with lines lc rgb '#303030' lw 2 dt 1, \
   data index 'run 1 axial unloading' using 1:5 with lines lc rgb '#303030' lw 2 dt (7,4), \
   data index 'run 1 axial reloading' using 1:5 with lines lc rgb '#303030' lw 4.4 dt (0.8,2.6), \
-  data index 'event growth-on.' using 1:5 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event growth-on.' using 1:5 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event growth-off.' using 1:5 with points pt 12 ps 0.9 lw 1.1 lc rgb '#000000'
 
 # The legend: empty plots that show nothing but a key, each in its place; a terminal's own spacing of several
@@ -115,12 +115,12 @@ set key at screen 0.5071, 0.1523 left top horizontal Left reverse enhanced spaci
 plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#303030' lw 4.4 dt (0.8,2.6) title 'reloading'
 set label 1 'Events' at screen 0.0176, 0.1026 left
 set key at screen 0.1176, 0.1192 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000' title 'growth-on'
+plot [0:1] [0:1] NaN, keyentry with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000' title 'yield'
 unset label 1
 set key at screen 0.3571, 0.1192 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-made'
+plot [0:1] [0:1] NaN, keyentry with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000' title 'growth-on'
 set key at screen 0.5965, 0.1192 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000' title 'yield'
+plot [0:1] [0:1] NaN, keyentry with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-made'
 set key at screen 0.1176, 0.0861 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000' title 'load-reversal'
 set key at screen 0.3571, 0.0861 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
