@@ -346,7 +346,8 @@ void StagedFolder::publish() {
   write_list(staged_);
   sync_to_disk(staged_ / k_list);
   sync_to_disk(staged_);
-  if (rename(staged_.c_str(), target_.c_str()) != 0) {  // not to where there is nothing yet
+  // An empty folder is not renamed over: whoever works in it would be left in one that is gone.
+  if (fs::exists(target_) || rename(staged_.c_str(), target_.c_str()) != 0) {
     const LockedFolder one_at_a_time(target_, LOCK_EX);
     if (exchange(staged_, target_)) {
       rescue(staged_, target_);

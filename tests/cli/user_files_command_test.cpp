@@ -201,6 +201,9 @@ TEST_F(UserFiles, EveryWayToNameAFolderLeadsThere) {
   Strings expected = k_run_files;
   expected.emplace_back("sub");
   EXPECT_EQ(names_in("plain"), expected);
+  // Who works in the folder sees the result there, the first one and the next.
+  EXPECT_EQ(shell("mkdir here && cd here && monograin run ../small.toml -o . && cat run.json").code, 0);
+  EXPECT_EQ(shell("cd here && monograin run ../small.toml -o . && cat run.json").code, 0);
   EXPECT_EQ(names_in("new/deep/folder"), k_run_files);
   EXPECT_EQ(names_in("new2"), k_run_files);
 }
