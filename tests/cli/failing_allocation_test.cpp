@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "support/command_test.hpp"
 
@@ -27,6 +28,12 @@ output = { points = 3 }
   ASSERT_EQ(monograin("run small.toml -o out").code, 0) << text("stderr.txt");
   const std::string history = text("out/history.csv");
   const auto whole = files();
+  // A process that ends where a library lets no exception through leaves a hidden folder, which the next run clears.
+  const auto seen_files = [this] {
+    auto names = files();
+    std::erase_if(names, [](const std::string& name) { return name.starts_with(".out."); });
+    return names;
+  };
   // Each of the first twenty allocations, then one of every twentieth part: a run makes some thousands.
   bool has_failed = false;
   for (long at = 1; at < 1'000'000; at += 1 + at / 20) {
@@ -36,7 +43,7 @@ output = { points = 3 }
     unsetenv("LD_PRELOAD");
     unsetenv("MONOGRAIN_FAILING_ALLOCATION");
     EXPECT_EQ(text("out/history.csv"), history) << "allocation " << at;
-    EXPECT_EQ(files(), whole) << "allocation " << at;
+    EXPECT_EQ(seen_files(), whole) << "allocation " << at;
     if (outcome.err.find("no allocation has failed") != std::string::npos) break;
     has_failed = true;
     EXPECT_EQ(outcome.code, 4) << "allocation " << at << ": " << outcome.err;
@@ -44,6 +51,8 @@ output = { points = 3 }
     ASSERT_FALSE(HasFailure());
   }
   EXPECT_TRUE(has_failed);
+  ASSERT_EQ(monograin("run small.toml -o out").code, 0) << text("stderr.txt");
+  EXPECT_EQ(files().size(), whole.size());
 }
 
 }  // namespace
