@@ -144,7 +144,7 @@ std::vector<RegressionResult> orphaned_curves(const std::vector<fs::path>& scena
     std::string name = file.filename().string();
     if (!name.ends_with(".csv")) continue;
     const std::size_t suffix = name.ends_with(k_events_suffix) ? k_events_suffix.size() : 4;
-    name.resize(name.size() - suffix);
+    name.erase(name.size() - suffix);
     if (!names.insert(name).second) continue;
     results.push_back(
         {.scenario = name,
