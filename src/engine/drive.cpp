@@ -485,7 +485,7 @@ class Drive {
       if (guard < watch_.system_guards()) of_system.push_back(guard);
     }
     bool is_met = of_system.size() < fired.size();
-    if (!of_system.empty() && are_marks(of_system)) {
+    if (are_marks(of_system)) {
       std::vector<Event> log;
       static_cast<void>(system_.fire(of_system, xi_, y_, log));
       if (!log.empty()) {
@@ -517,9 +517,9 @@ class Drive {
     return is_met;
   }
 
-  /// True if all of these guards mark an instant and change nothing.
+  /// True if there are guards, and all of them mark an instant and change nothing.
   [[nodiscard]] bool are_marks(std::span<const std::size_t> guards) const {
-    return std::ranges::all_of(guards, [this](std::size_t guard) {
+    return !guards.empty() && std::ranges::all_of(guards, [this](std::size_t guard) {
       return guard < watch_.system_guards() && system_.guards()[guard].is_mark;
     });
   }
