@@ -16,15 +16,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class FailingAllocation : public CommandTest {};
-
-TEST_F(FailingAllocation, EndsWithAMessageAndLeavesTheOldRunWhole) {
-  write_text(path("small.toml"), R"(model = "hertz"
+constexpr const char* k_small = R"(model = "hertz"
 particle = { radius = 0.01 }
 material = { youngs_modulus = 1e9, poisson_ratio = 0.3 }
 loading = { configuration = "simple", steps = [{ displacement = 1e-4, duration = 1 }] }
 output = { points = 3 }
-)");
+)";
+
+class FailingAllocation : public CommandTest {
+ protected:
+  void SetUp() override { write_text(path("small.toml"), k_small); }
+};
+
+// Sanitizers reserve more address space than any limit.
+TEST_F(FailingAllocation, OfALimitedProcessIsAMessageAndExitFour) {
+  // A million rows of about ten columns do not fit, whether the limit is met at set-up, in the run or at its output.
+  for (const char* kilobytes : {"60000", "80000", "120000"}) {
+    const Outcome outcome =
+        shell(std::string("ulimit -v ") + kilobytes + "; $M run small.toml -o out --set output.points=1000000");
+    EXPECT_EQ(outcome.code, 4) << kilobytes << outcome.err;
+    EXPECT_NE(outcome.err.find("there is not enough memory"), std::string::npos) << kilobytes << outcome.err;
+    EXPECT_FALSE(fs::exists(path("out"))) << kilobytes;
+  }
+}
+
+TEST_F(FailingAllocation, EndsWithAMessageAndLeavesTheOldRunWhole) {
   ASSERT_EQ(monograin("run small.toml -o out").code, 0) << text("stderr.txt");
   const std::string history = text("out/history.csv");
   const auto whole = files();

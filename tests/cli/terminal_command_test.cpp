@@ -167,20 +167,6 @@ TEST_F(Terminal, SizesBeyondAllUseAreRefusedAtTheirPlace) {
             "monograin: long.csv:3:1048577: the line is too long; expected at most 1 MiB\n");
 }
 
-// Sanitizers reserve more address space than any limit.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-TEST_F(Terminal, TooLittleMemoryIsAMessageAndExitFour) {
-  // A million rows of about ten columns do not fit, whether the limit is met at set-up, in the run or at its output.
-  for (const char* kilobytes : {"60000", "80000", "120000"}) {
-    const Outcome outcome =
-        shell(std::string("ulimit -v ") + kilobytes + "; $M run small.toml -o out --set output.points=1000000");
-    EXPECT_EQ(outcome.code, 4) << kilobytes << outcome.err;
-    EXPECT_TRUE(contains(outcome.err, "there is not enough memory")) << kilobytes << outcome.err;
-    EXPECT_FALSE(fs::exists(path("out"))) << kilobytes;
-  }
-}
-#endif
-
 // --- messages of libraries
 
 TEST_F(Terminal, FilesThatTheSystemRefusesAreNamedInOwnWords) {
