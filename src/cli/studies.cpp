@@ -105,7 +105,7 @@ struct CompareOptions {
 /// The history of a run folder, or the table that a CSV file holds.
 Table read_curves(const fs::path& path) { return read_csv(fs::is_directory(path) ? path / "history.csv" : path); }
 
-/// Of two run folders the histories and the events, of files the tables.
+/// Compares the histories and the events of two run folders, or the tables of two files.
 Comparison compare_files(const CompareOptions& options) {
   Comparison result = compare_tables(read_curves(options.reference), read_curves(options.other), options.x, options.y);
   const bool has_events = fs::is_directory(options.reference) && fs::is_directory(options.other);

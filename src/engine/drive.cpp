@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "engine/program_notes.hpp"
 #include "engine/watch.hpp"
 
 namespace monograin {
@@ -79,42 +80,6 @@ std::string with_unit(double value, Quantity quantity) {
   const std::string_view unit = words_of(quantity).unit;
   return fmt::format("{:.6g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
-
-/// What the program asked for and did not get. Steps of which the same is to be said share one note.
-class ProgramNotes {
- public:
-  /// @param step     from 1
-  /// @param what     the same for all steps that share the note
-  /// @param example  numbers of the first of them
-  void add(std::size_t step, std::string what, std::string example = {}) {
-    auto note = std::ranges::find(notes_, what, &Note::what);
-    if (note == notes_.end()) note = notes_.insert(notes_.end(), {std::move(what), std::move(example), {}});
-    if (note->steps.empty() || note->steps.back() != step) note->steps.push_back(step);
-  }
-
-  [[nodiscard]] std::vector<std::string> texts() const {
-    std::vector<std::string> result;
-    for (const Note& note : notes_) result.push_back(fmt::format("{}: {}{}", steps_of(note), note.what, note.example));
-    return result;
-  }
-
- private:
-  struct Note {
-    std::string what;
-    std::string example;
-    std::vector<std::size_t> steps;
-  };
-
-  static std::string steps_of(const Note& note) {
-    constexpr std::size_t k_most_named = 3;
-    const std::size_t count = note.steps.size();
-    const auto named = std::span(note.steps).first(std::min(count, k_most_named));
-    return fmt::format("step{} {}{}", count > 1 ? "s" : "", fmt::join(named, ", "),
-                       count > k_most_named ? fmt::format(", ... ({} times)", count) : "");
-  }
-
-  std::vector<Note> notes_;
-};
 
 std::string text_of(const Finding& finding) {
   return fmt::format("{} ({} = {:.9g})", finding.message, finding.quantity, finding.value);

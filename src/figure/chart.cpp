@@ -143,7 +143,7 @@ struct PanelAxes {
   std::vector<double> y;
   for (const ChartSeries& series : panel.series) {
     for (std::size_t row = 0; row < series.x.size(); ++row) {
-      // What is beyond one axis does not stretch the other.
+      // A point beyond one axis does not stretch the other.
       const bool is_beyond =
           (panel.x.lowest && series.x[row] < *panel.x.lowest) || (panel.x.highest && series.x[row] > *panel.x.highest);
       if (is_beyond || !std::isfinite(series.x[row]) || !std::isfinite(series.y[row])) continue;

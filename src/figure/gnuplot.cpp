@@ -136,7 +136,7 @@ void run_gnuplot(const fs::path& gnuplot, const fs::path& script, const fs::path
 }
 
 std::string plain_text(std::string_view text) {
-  // What is not UTF-8 would make an SVG that no reader opens; the round trip replaces it.
+  // The round trip replaces bytes that are not UTF-8: no reader opens an SVG that holds them.
   using Json = nlohmann::json;
   std::string result = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
   std::ranges::replace_if(result, is_control, ' ');

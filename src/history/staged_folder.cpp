@@ -186,7 +186,7 @@ void check_target(const fs::path& target, const std::string& marker) {
   return names;
 }
 
-/// What is left of an earlier result and has no place beside the new one.
+/// Names of the files of an earlier result that have no place beside the new one.
 [[nodiscard]] std::vector<std::string> stale_names(const FileList& list, const fs::path& target) {
   std::vector<std::string> names;
   for (const auto& [name, digest] : read_list(target)) {

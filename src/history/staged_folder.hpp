@@ -24,7 +24,7 @@ inline constexpr std::string_view k_run_marker = "run.json";
 /// all else is removed. A link is followed, and stays.
 class StagedFolder {
  public:
-  /// Makes the hidden folder, so that a target that cannot be written is told before anything is computed.
+  /// Makes the hidden folder, so that a target that cannot be written is reported before anything is computed.
   /// @param marker  a file that every result of the kind has
   /// @throws std::runtime_error if the target is a file, cannot be written, or holds files but no result of this
   /// program of that kind

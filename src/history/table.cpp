@@ -22,7 +22,7 @@ namespace {
 constexpr int k_digits = std::numeric_limits<double>::max_digits10;
 /// Longest text of one number: sign, 17 digits, point, exponent such as e-308.
 constexpr std::size_t k_longest_number = 32;
-// Of tables that are read: some two million rows of a history of a die.
+// Bounds of tables that are read: the largest file holds some two million rows of a history of a die.
 constexpr std::size_t k_largest_csv = std::size_t{1} << 30U;
 constexpr std::size_t k_longest_line = std::size_t{1} << 20U;
 constexpr std::size_t k_most_cells = 100'000'000;

@@ -11,7 +11,7 @@ namespace monograin {
 
 class FaultList {
  public:
-  /// What has been found at the same place before is not said again. Takes the same time however many there are.
+  /// Adds a fault, unless it was found at the same place before. Takes the same time however many there are.
   void add(SourceLocation where, std::string message);
   [[nodiscard]] std::size_t size() const noexcept { return faults_.size(); }
 

@@ -110,7 +110,7 @@ void compare_with_stored(const Run& run, const fs::path& curves, RegressionResul
   const Table expected = with_smooth_columns(history);
   const Table now = with_smooth_columns(run.record.history);
   const Comparison of_run = compare_tables(expected, now, "time", "");
-  // The other way round: what the run has and the stored curve lacks.
+  // The run may have something that the stored curve lacks, too.
   add_gaps(of_run, compare_tables(now, expected, "time", ""), faults);
   for (const CurveDifference& difference : of_run.curves) {
     if (difference.linf <= result.difference) continue;

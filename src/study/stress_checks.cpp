@@ -42,7 +42,7 @@ constexpr double k_slower = 1e6;
 constexpr Magnification k_magnification{.length = 731.0585, .stress = 1.618034e-5};
 // Turned copies of a scene that a limit has ended, and by how many more their distance from each other is measured.
 constexpr std::uint64_t k_rotations = 4;
-// Of the integrated forms that the direct one is held against.
+// Relative tolerance of the integrated forms that the direct one is held against.
 constexpr double k_form_rtol = 1e-8;
 
 /// The larger of two, of which not a number is the largest.
@@ -475,7 +475,7 @@ class SceneCheck {
     verdict_.is_ill_conditioned = true;
   }
 
-  /// Of a rule that several copies break the first says enough.
+  /// Reports a broken rule once: the first of several copies that break it says enough.
   void report(std::string check, std::string detail) {
     if (std::ranges::count(verdict_.violations, check, &Violation::check) > 0) return;
     verdict_.violations.push_back({std::move(check), std::move(detail)});

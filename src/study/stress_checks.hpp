@@ -24,8 +24,8 @@ using RunMaker = std::function<Run(const Scenario&, const SystemWrapper&)>;
 /// How much is done to check a scene, and by what.
 struct StressEffort {
   static constexpr std::uint64_t k_all_copies = ~std::uint64_t{0};
-  /// Of a processor that all runs have together; a scene that takes longer breaks the rule "time", unless its own run
-  /// is so slow that the runs it would be compared with are no slower.
+  /// Processor time [s] of all runs of a scene together; one that takes longer breaks the rule "time", unless its own
+  /// run is so slow that the runs it would be compared with are no slower.
   double seconds = 0.0;
   /// Which copy of a complete scene is run, counted around; one that a limit has ended is held against all of them.
   std::uint64_t copies = k_all_copies;

@@ -20,7 +20,7 @@ bool is_stress(const Column& column) {
   return column.unit == "Pa" && kind_of(column) != "pressure" && column.name != "youngs_modulus";
 }
 
-/// Of a free centre: components of one vector, of which an axis is only a choice.
+/// True for a column of a free centre: the components of one vector, whose axes are only a choice.
 bool is_centre(const Column& column) { return column.name.starts_with("centre_"); }
 
 /// Against what differences of a column count: magnitudes of one kind may cancel in one of them.

@@ -81,8 +81,8 @@ Table history_by_wall(const Run& run, const Eigen::Matrix3d& rotation) {
     columns.push_back(table.columns()[source.column]);
     columns.back().name = source.name;
   }
-  Table told(columns);
-  told.header = table.header;
+  Table result(columns);
+  result.header = table.header;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     std::vector<double> values;
     for (const Source& source : sources) values.push_back(table.at(row, source.column));
@@ -91,9 +91,9 @@ Table history_by_wall(const Run& run, const Eigen::Matrix3d& rotation) {
           rotation.transpose() * Eigen::Vector3d(values[*centre[0]], values[*centre[1]], values[*centre[2]]);
       for (std::size_t axis = 0; axis < 3; ++axis) values[*centre[axis]] = place[static_cast<Eigen::Index>(axis)];
     }
-    told.append(values);
+    result.append(values);
   }
-  return told;
+  return result;
 }
 
 Table events_by_wall(const Run& run) {
@@ -111,10 +111,10 @@ Table events_by_wall(const Run& run) {
     std::ranges::sort(groups);
     label = fmt::format("{}", fmt::join(groups, "/"));
   }
-  Table told(std::move(columns));
-  told.header = events.header;
-  for (std::size_t row = 0; row < events.row_count(); ++row) told.append(events.row(row));
-  return told;
+  Table result(std::move(columns));
+  result.header = events.header;
+  for (std::size_t row = 0; row < events.row_count(); ++row) result.append(events.row(row));
+  return result;
 }
 
 }  // namespace
@@ -143,10 +143,10 @@ std::optional<Scenario> reordered(Scenario scenario) {
 }
 
 Run by_wall(const Run& run, const Eigen::Matrix3d& rotation) {
-  Run told = run;
-  told.record.history = history_by_wall(run, rotation);
-  told.record.events = events_by_wall(run);
-  return told;
+  Run result = run;
+  result.record.history = history_by_wall(run, rotation);
+  result.record.events = events_by_wall(run);
+  return result;
 }
 
 }  // namespace monograin

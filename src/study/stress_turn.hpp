@@ -1,4 +1,5 @@
-/// Copies of a scene whose walls stand elsewhere or come in another order, and runs told by wall so that they compare.
+/// Copies of a scene whose walls stand elsewhere or come in another order, and runs listed by wall so that they
+/// compare.
 #pragma once
 
 #include <Eigen/Core>
