@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "walls.hpp"
+#include "system/walls.hpp"
 
 namespace monograin {
 

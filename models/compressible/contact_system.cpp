@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin::compressible {
 namespace {
@@ -24,8 +24,6 @@ constexpr double k_same_place = 1e-12;
 
 // Share of a displacement that is rounding.
 constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
-
-constexpr const char* k_beyond = "the law ends where the source's data do, at a displacement of half the radius";
 
 bool reaches(double d, double place) noexcept { return d >= place * (1.0 - k_same_place); }
 
@@ -113,7 +111,7 @@ void ContactSystem::settle(std::size_t i, double d, std::vector<Event>& log) {
     pass_boundaries(i, d, log);
     if (memory.regime != Regime::unloading && reaches(d, k_largest_displacement) &&
         goes_beyond(i, k_largest_displacement))
-      throw std::domain_error(k_beyond);
+      throw DomainError({Limit::source_data_end, static_cast<int>(i), "displacement/R0", k_largest_displacement});
   }
 }
 
@@ -385,7 +383,9 @@ void ContactSystem::guard_values(double xi, std::span<const double> /*y*/, std::
 std::optional<DomainEnd> ContactSystem::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                              std::vector<Event>& log) {
   std::optional<DomainEnd> end;
-  const auto end_at = [&](double place) { end = DomainEnd{log.back(), {k_beyond, "displacement over R0", place}}; };
+  const auto end_at = [&](double place) {
+    end = DomainEnd{log.back(), {Limit::source_data_end, log.back().contact_class, "displacement/R0", place}};
+  };
   for (const std::size_t g : fired) {
     const Guard guard = guards_[g];
     const double place = guard_places_[g];

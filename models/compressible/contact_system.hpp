@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "compressible/contact_law.hpp"
-#include "hybrid_system.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin::compressible {
 

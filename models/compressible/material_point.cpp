@@ -111,7 +111,9 @@ double MaterialPoint::prescribed_rate(std::size_t channel) const noexcept {
 /// p = K (e_v - e_v^p), s = 3G (g - g^p), with the strains that are not prescribed from the stresses that are.
 MaterialPoint::Response MaterialPoint::response(double xi, std::span<const double> y) const {
   Response now{.at = properties_at(settings_.parameters, y[k_phi])};
-  if (!(now.at.poisson_ratio.value < 0.5)) throw std::domain_error("Poisson's ratio has passed 1/2");
+  if (!(now.at.poisson_ratio.value < 0.5)) {
+    throw DomainError({Limit::poisson_half, -1, "Poisson's ratio", now.at.poisson_ratio.value});
+  }
   const double bulk = now.at.bulk_modulus.value;
   const double shear = now.at.shear_modulus.value;
   const double swelling = is_compressible(settings_.parameters.model) ? -y[k_phi] : 0.0;  // e_v^p
@@ -214,7 +216,9 @@ double MaterialPoint::cosine(const Flow& flow) noexcept {
 }
 
 void MaterialPoint::require_unique(const Flow& flow) {
-  if (!(flow.stiffness > 0.0)) throw std::domain_error("the strain that follows from the program is not unique");
+  if (!(flow.stiffness > 0.0)) {
+    throw DomainError({Limit::loss_of_uniqueness, -1, "stiffness along the flow", flow.stiffness});
+  }
 }
 
 /// Plastic strain for a unit of the multiplier, which is integrated times this: by itself it goes like the reciprocal
@@ -304,7 +308,8 @@ void MaterialPoint::go_on_plastic(const Response& now, std::vector<Event>& log) 
   pass_ends(now, log);
   const Flow flow_now = flow(now);
   const bool stands_still = flow_now.elastic.p == 0.0 && flow_now.elastic.s == 0.0;
-  if (!stands_still && margin(Limit::uniqueness, now) <= 0.0) throw CannotBegin(domain_end(Limit::uniqueness, now));
+  if (!stands_still && margin(Limit::loss_of_uniqueness, now) <= 0.0)
+    throw CannotBegin(domain_end(Limit::loss_of_uniqueness, now));
   watch_plastic(now);
 }
 
@@ -422,15 +427,15 @@ void MaterialPoint::watch_plastic(const Response& now) {
   const auto watch = [&](Limit limit, string_view name) {
     guards_.push_back({domain_end_guard, static_cast<int>(limit), -1, name});
   };
-  watch(Limit::uniqueness, "loss-of-uniqueness");
+  watch(Limit::loss_of_uniqueness, "loss-of-uniqueness");
   const bool is_frozen = parameters.model == YieldModel::vmdc && branch_.segment == Segment::shear;
   if (is_frozen) return;
-  if (parameters.xi1 != 0.0) watch(Limit::poisson, "poisson-half");
-  if (parameters.xi != 0.0 || parameters.xi1 != 0.0) watch(Limit::stiffness, "limit");
+  if (parameters.xi1 != 0.0) watch(Limit::poisson_half, "poisson-half");
+  if (parameters.xi != 0.0 || parameters.xi1 != 0.0) watch(Limit::too_stiff, "limit");
   if (!is_compressible(parameters.model)) return;
-  watch(Limit::density, "density-limit");
-  watch(Limit::cap_centre, "cap-centre-tensile");
-  if (parameters.xi2 != 0.0) watch(Limit::cap_axis, "cap-axis-nonpositive");
+  watch(Limit::pores_closed, "density-limit");
+  watch(Limit::cap_centre_at_zero_pressure, "cap-centre-tensile");
+  if (parameters.xi2 != 0.0) watch(Limit::cap_axis_ratio_zero, "cap-axis-nonpositive");
 }
 
 void MaterialPoint::guard_values(double xi, std::span<const double> y, std::span<double> values) {
@@ -461,17 +466,17 @@ void MaterialPoint::guard_values(double xi, std::span<const double> y, std::span
 /// How far the state is from the end of the equations' domain; negative beyond it.
 double MaterialPoint::margin(Limit limit, const Response& now) const {
   switch (limit) {
-    case Limit::density:
+    case Limit::pores_closed:
       return 1.0 - now.at.relative_density;
-    case Limit::cap_centre:
+    case Limit::cap_centre_at_zero_pressure:
       return now.at.cap_centre.value / now.at.yield_pressure.value;
-    case Limit::cap_axis:
+    case Limit::cap_axis_ratio_zero:
       return now.at.axis_ratio.value;
-    case Limit::poisson:
+    case Limit::poisson_half:
       return 0.5 - now.at.poisson_ratio.value - k_least_compressibility;
-    case Limit::stiffness:
+    case Limit::too_stiff:
       return 1.0 - stiffness_over_strength(now.at) / k_stiffest;
-    case Limit::uniqueness:
+    default:
       break;
   }
   const Flow flow_now = flow(now);
@@ -490,30 +495,24 @@ double MaterialPoint::margin(Limit limit, const Response& now) const {
 }
 
 DomainEnd MaterialPoint::domain_end(Limit limit, const Response& now) const {
+  const auto at = [limit](std::string_view event, std::string_view quantity, double value) {
+    return DomainEnd{{event}, {limit, -1, quantity, value}};
+  };
   switch (limit) {
-    case Limit::density:
-      return {{"density-limit"}, {"no pores are left", "relative density", now.at.relative_density}};
-    case Limit::cap_centre:
-      return {{"cap-centre-tensile"},
-              {"the cap's centre has reached zero pressure, beyond which the segments of the yield surface overlap",
-               "pi3 over the yield pressure", now.at.cap_centre.value / now.at.yield_pressure.value}};
-    case Limit::cap_axis:
-      return {{"cap-axis-nonpositive"},
-              {"the linear law of the cap's axis ratio ends: the cap has shrunk to a line", "axis ratio",
-               now.at.axis_ratio.value}};
-    case Limit::poisson:
-      return {{"poisson-half"},
-              {"the linear law of Poisson's ratio ends: the material cannot be compressed elastically",
-               "Poisson's ratio", now.at.poisson_ratio.value}};
-    case Limit::stiffness:
-      return {{"limit"},
-              {"the material has become too stiff for its strength: stresses are what rounding leaves of the strains",
-               "modulus over the yield pressure", stiffness_over_strength(now.at)}};
-    case Limit::uniqueness:
-      break;
+    case Limit::pores_closed:
+      return at("density-limit", "relative density", now.at.relative_density);
+    case Limit::cap_centre_at_zero_pressure:
+      return at("cap-centre-tensile", "pi3 over the yield pressure",
+                now.at.cap_centre.value / now.at.yield_pressure.value);
+    case Limit::cap_axis_ratio_zero:
+      return at("cap-axis-nonpositive", "axis ratio", now.at.axis_ratio.value);
+    case Limit::poisson_half:
+      return at("poisson-half", "Poisson's ratio", now.at.poisson_ratio.value);
+    case Limit::too_stiff:
+      return at("limit", "modulus over the yield pressure", stiffness_over_strength(now.at));
+    default:
+      return at("loss-of-uniqueness", "stiffness along the flow", flow(now).stiffness);
   }
-  return {{"loss-of-uniqueness"},
-          {"the program no longer determines one plastic strain", "stiffness along the flow", flow(now).stiffness}};
 }
 
 std::optional<DomainEnd> MaterialPoint::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
@@ -534,9 +533,9 @@ std::optional<DomainEnd> MaterialPoint::fire(std::span<const std::size_t> fired,
       case yielding:
         turn_plastic(exit_branch_, now);
         pass_ends(now, log);
-        if (margin(Limit::uniqueness, now) <= 0.0) {
+        if (margin(Limit::loss_of_uniqueness, now) <= 0.0) {
           log.push_back({"loss-of-uniqueness"});
-          return domain_end(Limit::uniqueness, now);
+          return domain_end(Limit::loss_of_uniqueness, now);
         }
         break;
       case end_of_segment:
@@ -597,15 +596,11 @@ void MaterialPoint::observe(double xi, std::span<const double> y, std::span<doub
   std::ranges::copy(all, values.begin());
 }
 
-std::string_view MaterialPoint::difficulty(double xi, std::span<const double> y) {
+std::optional<Difficulty> MaterialPoint::difficulty(double xi, std::span<const double> y) {
   const Response now = response(xi, y);
-  if (is_plastic_ && margin(Limit::uniqueness, now) < k_hardly_unique) {
-    return "the program hardly determines the plastic strain any more, and rounding shows in it; expected integrator = "
-           "\"cvode-bdf\"";
-  }
-  if (now.at.bulk_modulus.value < k_stiff * now.at.yield_pressure.value) return {};
-  return "the bulk modulus is above 1e5 yield pressures, and stresses are what rounding leaves of the strains; "
-         "expected integrator = \"cvode-bdf\"";
+  if (is_plastic_ && margin(Limit::loss_of_uniqueness, now) < k_hardly_unique) return Difficulty::hardly_unique;
+  if (now.at.bulk_modulus.value < k_stiff * now.at.yield_pressure.value) return std::nullopt;
+  return Difficulty::stiff_material;
 }
 
 std::vector<Finding> MaterialPoint::warnings() const {

@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "compressible/yield_surface.hpp"
-#include "hybrid_system.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin::compressible {
 
@@ -65,7 +65,7 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] double quantity(Quantity quantity, int channel, double xi, std::span<const double> y) override;
   [[nodiscard]] double controlled(Control control, int channel, double xi, std::span<const double> y) override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
-  [[nodiscard]] std::string_view difficulty(double xi, std::span<const double> y) override;
+  [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
 
  private:
   // Places in y.
@@ -77,7 +77,6 @@ class MaterialPoint final : public HybridSystem {
   static constexpr std::size_t k_lateral = 1;
 
   enum GuardKind { yielding, end_of_segment, apex, domain_end_guard };
-  enum class Limit { density, cap_centre, cap_axis, poisson, stiffness, uniqueness };
 
   /// Stress and strain that belong to an instant and the plastic state.
   struct Response {

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "compressible/material_point.hpp"
+#include "system/limit.hpp"
 
 namespace monograin::compressible {
 namespace {
@@ -54,7 +55,7 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
     y[k_deviatoric] = deviatoric;
   }
   if (!has_flow_alone && is_brought_back(xi, y, Way::shortest)) return;
-  throw std::domain_error("no plastic strain brings the stress back to the yield surface");
+  throw DomainError(Limit::loss_of_uniqueness, "no plastic strain brings the stress back to the yield surface");
 }
 
 /// Of a guess on the far side of a cap that the program does not leave: the tangent of f at its mirror image, which

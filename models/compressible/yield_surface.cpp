@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "system/limit.hpp"
+
 namespace monograin::compressible {
 namespace {
 
@@ -110,7 +112,8 @@ CapConstants cap_constants(const Parameters& parameters, const Properties& prope
   const Evolving& centre = properties.cap_centre;
   const double reach = tensile.value + centre.value;
   if (!(reach > 0.0)) {
-    throw std::domain_error("the tensile strength is beyond the cap's centre: the shear line has no slope");
+    throw DomainError(Limit::cap_centre_at_zero_pressure,
+                      "the tensile strength is beyond the cap's centre: the shear line has no slope");
   }
   const double tangent = shear.value / reach;
   const Evolving friction{tangent, (shear.slope - tangent * (tensile.slope + centre.slope)) / reach};
@@ -118,12 +121,14 @@ CapConstants cap_constants(const Parameters& parameters, const Properties& prope
   const Evolving sine{tangent / secant, friction.slope / (secant * secant * secant)};
   const Evolving a{width * secant, width * sine.value * friction.slope};
   const double room = 1.0 + width - a.value;
-  if (!(room > 0.0)) throw std::domain_error("transition_width is too large for the slope of the shear line");
+  if (!(room > 0.0)) {
+    throw DomainError(Limit::cap_arc_too_wide, "transition_width is too large for the slope of the shear line");
+  }
   const double stretch = 1.0 / room;
   const Evolving arc_radius{width * shear.value, width * shear.slope};
   const Evolving arc_centre = product({1.0 - a.value, -a.slope}, shear);
   if (!(arc_centre.value + arc_radius.value / secant > 0.0)) {
-    throw std::domain_error("transition_width is too large: the arc reaches the axis of pressure");
+    throw DomainError(Limit::cap_arc_too_wide, "transition_width is too large: the arc reaches the axis of pressure");
   }
   const Evolving arc_reach = product(arc_radius, sine);
   return {friction,

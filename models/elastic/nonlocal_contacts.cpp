@@ -8,6 +8,7 @@
 #include <string>
 
 #include "elastic/hertz.hpp"
+#include "system/limit.hpp"
 
 namespace monograin::nonlocal {
 namespace {
@@ -28,8 +29,10 @@ constexpr double k_share_of_depth = 0.5;
 // How fast an error of the balance is drawn back where a force shrinks, over how fast that does.
 constexpr double k_hurry = 2.0;
 
-constexpr const char* k_nothing_holds =
-    "no contact holds the centre of the particle where the forces of the others drive it";
+// Margin, and contact radius over R, of a path of states that ends at the limit of applicability, or where the contacts
+// open: as near as a search comes to either.
+constexpr double k_no_margin = 5e-4;
+constexpr double k_no_contact = 5e-7;
 
 double require_poisson_ratio(double nu) {
   if (nu >= 0.0 && nu <= 0.5) return nu;
@@ -448,8 +451,7 @@ void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y
 void Contacts::approach_in_steps(std::span<double> y) {
   const double pivot = least_pivot(y);
   if (!(pivot > 0.0)) {
-    throw std::domain_error("start beyond the limit of applicability of the nonlocal formulation: pivot of " +
-                            std::to_string(pivot));
+    throw DomainError({Limit::applicability, -1, "pivot", pivot});
   }
   std::copy(y.begin(), y.end(), state_.begin());
   std::copy(targets_.begin(), targets_.end(), last_targets_.begin());
@@ -479,15 +481,17 @@ void Contacts::approach_in_steps(std::span<double> y) {
       break;
     }
     if (may_go_on) continue;
-    if (is_on_branch || !may_balance(last_targets_, state_)) throw std::domain_error(k_nothing_holds);
+    if (is_on_branch || !may_balance(last_targets_, state_)) throw DomainError(Limit::centre_driven_away);
     look(state_);
     const auto widest = std::max_element(
         now_.begin(), now_.end(), [](const auto& a, const auto& b) { return a.contact_radius < b.contact_radius; });
-    throw std::domain_error("no equilibrium on the branch of the unloaded state beyond " +
-                            std::to_string(100.0 * done) +
-                            " % of the way to the prescribed displacements and forces, where the margin is " +
-                            std::to_string(margin(state_)) + " and the largest contact radius over R " +
-                            std::to_string(widest->contact_radius));
+    if (margin(state_) < k_no_margin) throw DomainError({Limit::applicability, -1, "margin", margin(state_)});
+    if (widest->contact_radius < k_no_contact) throw DomainError(Limit::centre_not_held);
+    throw DomainError(Limit::no_solution,
+                      "no equilibrium on the branch of the unloaded state beyond " + std::to_string(100.0 * done) +
+                          " % of the path to the prescribed displacements and forces, where the largest contact "
+                          "radius over R is " +
+                          std::to_string(widest->contact_radius));
   }
   std::copy(state_.begin(), state_.end(), y.begin());
 }
@@ -512,8 +516,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     }
   }
   if (!eliminate()) {
-    throw std::domain_error("no rates beyond the limit of applicability of the nonlocal formulation: margin of " +
-                            std::to_string(margin(y)));
+    throw DomainError({Limit::applicability, -1, "margin", margin(y)});
   }
   if (free_count() > 0) {
     regularise_first_touch(
@@ -551,7 +554,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     if (has_bystanders()) take_along(ramps, y, touch, touches, dy);
     // Walls that just touch hold the centre at once, if they can bear; and those that are as near as a force is deep,
     // as errors take them off just before it ends.
-    if (left > k_balance * pressing && !may_be_held(ramps, y, near)) throw std::domain_error(k_nothing_holds);
+    if (left > k_balance * pressing && !may_be_held(ramps, y, near)) throw DomainError(Limit::centre_driven_away);
   }
   for (std::size_t j = 0; j < n; ++j) {
     dy[j] = entry(j, n) / now_[j].approach_slope;

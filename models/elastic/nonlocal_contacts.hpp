@@ -29,7 +29,7 @@
 #include "elastic/nonlocal_coupling.hpp"
 #include "elastic/nonlocal_law.hpp"
 #include "elastic/nonlocal_modes.hpp"
-#include "walls.hpp"
+#include "system/walls.hpp"
 
 namespace monograin::nonlocal {
 

@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "system/limit.hpp"
+
 namespace monograin::nonlocal {
 namespace {
 
@@ -64,8 +66,7 @@ constexpr double k_last_decay = 40.0;  // exp(-2 y) is far below rounding there
 
 void require_inside(double x) {
   if (x <= k_widest) return;
-  throw std::domain_error("contact radius of R or more: a/R = " + std::to_string(x) +
-                          " is beyond the formulas of the deformed contact radius");
+  throw DomainError({Limit::contact_as_wide_as_particle, -1, "contact radius/R0", x});
 }
 
 /// sqrt(1 - x^2), which ends at x = 1 but for rounding.

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "system/limit.hpp"
+
 namespace monograin::nonlocal {
 namespace {
 
@@ -62,8 +64,7 @@ LocalLaw::LocalLaw(Terms terms) noexcept
 
 LocalContact LocalLaw::at(double s) const {
   if (!(s < end_)) {
-    throw std::domain_error("contact radius of R or more: (a/R)^2 = " + std::to_string(s) +
-                            " is beyond the law with all terms");
+    throw DomainError({Limit::contact_as_wide_as_particle, -1, "(contact radius/R0)^2", s});
   }
   if (s <= 0.0) return {.approach = s, .approach_slope = 1.0, .force = 0.0, .contact_radius = 0.0};
   const double a = std::sqrt(s);
@@ -107,10 +108,10 @@ double LocalLaw::signed_square(double approach) const {
 }
 
 double LocalLaw::signed_square_under(double force) const {
-  if (!(force >= 0.0)) throw std::domain_error("a wall cannot pull: force over E* R^2 of " + std::to_string(force));
+  if (!(force >= 0.0)) throw DomainError({Limit::wall_would_pull, -1, "force/(E* R0^2)", force});
   if (force == 0.0) return 0.0;
   if (force > greatest_force_) {
-    throw std::domain_error("contact radius of R or more under a force over E* R^2 of " + std::to_string(force));
+    throw DomainError({Limit::contact_as_wide_as_particle, -1, "force/(E* R0^2)", force});
   }
   double bound = std::cbrt(0.75 * force);  // Hertz's contact radius; all further terms are positive
   if (terms_ == Terms::all) {

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "difficulties.hpp"
-#include "undefined.hpp"
+#include "system/difficulty.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin::nonlocal {
 namespace {
@@ -31,10 +31,9 @@ enum Kind : int {
   k_limit
 };
 
-// The last pivot goes like the root of the distance from the limit: this is 1e-10 of R0 before it.
-constexpr double k_least_pivot = 1e-5;
-// The margin below which an integrator may find no more steps. The last pivot may be many times larger: by how little
-// its wall has to do with the critical mode.
+// The margin at which a run ends. It goes like the root of the distance from the limit: this is 1e-10 of R0 before it.
+constexpr double k_least_margin = 1e-5;
+// The margin below which an integrator may find no more steps.
 constexpr double k_hard_margin = 1e-3;
 // Walls this near to opposite never meet on the surface.
 constexpr double k_opposite = 1e-9;
@@ -215,26 +214,27 @@ double System::limit_value(const Guard& guard, double xi) {
     return greatest_approach_ ? 1.0 - now_[index].approach / *greatest_approach_ : widest_ - now_[index].contact_radius;
   }
   if (guard.kind == k_centre) return 1.0 - depth(index, xi);
-  return contacts_.least_pivot(state_) - k_least_pivot;
+  // Zero where the margin is that, in whatever order the walls are eliminated.
+  return contacts_.least_pivot(state_, k_least_margin);
 }
 
 /// What a limit's guard says.
 DomainEnd System::end_at(const Guard& guard, double xi, std::span<const double> y) {
   const Event event{guard.name, guard.index};
-  if (guard.kind == k_radius) return {event, {"a contact is as wide as the particle", "contact radius/R0", widest_}};
-  if (guard.kind == k_centre) return {event, {"a wall has reached the centre of the particle", "displacement/R0", 1.0}};
+  if (guard.kind == k_radius) {
+    return {event, {Limit::contact_as_wide_as_particle, guard.index, "contact radius/R0", widest_}};
+  }
+  if (guard.kind == k_centre) return {event, {Limit::wall_at_centre, guard.index, "displacement/R0", 1.0}};
   look_closely(xi, y);
   double largest = 0.0;
   for (std::size_t i = 0; i < classes_.size(); ++i) largest = std::max(largest, depth(i, xi));
-  return {event,
-          {"limit of applicability: the stiffness becomes infinite and the path would turn back",
-           "largest displacement/R0", largest}};
+  return {event, {Limit::applicability, -1, "largest displacement/R0", largest}};
 }
 
 double System::told(std::size_t i, double xi) const noexcept { return std::lerp(ramps_[i].start, ramps_[i].end, xi); }
 
 void System::throw_pull(std::size_t i) const {
-  throw std::domain_error("a wall of class '" + classes_[i].name + "' would have to pull");
+  throw DomainError({.limit = Limit::wall_would_pull, .contact_class = static_cast<int>(i)});
 }
 
 /// Where a force ends, contacts leave the centre at the same instant: that the wall would have to pull is said of
@@ -671,15 +671,11 @@ bool System::is_open(int contact_class) const noexcept {
   return regimes_[static_cast<std::size_t>(contact_class)] == Regime::open;
 }
 
-std::string_view System::difficulty(double xi, std::span<const double> y) {
-  if (is_shallow_) return k_closes_nothing;  // of the whole program
-  if (contacts_.margin(look(xi, y)) < k_hard_margin) {
-    return "the limit of applicability is so near that the stiffness magnifies the errors that are tolerated; "
-           "expected a larger rtol, or integrator = \"direct\"";
-  }
-  if (contacts_.free_count() == 0 || !contacts_.is_held_softly(ramps_, look(xi, y), idle_)) return {};
-  return "the balance of the free centre is singular, because nothing but contacts that only touch keeps it from "
-         "moving; expected integrator = \"direct\"";
+std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
+  if (is_shallow_) return Difficulty::below_resolution;  // of the whole program
+  if (contacts_.margin(look(xi, y)) < k_hard_margin) return Difficulty::near_applicability_limit;
+  if (contacts_.free_count() == 0 || !contacts_.is_held_softly(ramps_, look(xi, y), idle_)) return std::nullopt;
+  return Difficulty::singular_balance;
 }
 
 }  // namespace monograin::nonlocal

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "elastic/nonlocal_contacts.hpp"
-#include "hybrid_system.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin::nonlocal {
 
@@ -62,7 +62,7 @@ class System final : public HybridSystem {
   [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
-  [[nodiscard]] std::string_view difficulty(double xi, std::span<const double> y) override;
+  [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
 
  private:
   enum class Regime { open, elastic };

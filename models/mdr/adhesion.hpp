@@ -8,7 +8,7 @@
 #pragma once
 
 #include "mdr/contact.hpp"
-#include "walls.hpp"
+#include "system/walls.hpp"
 
 namespace monograin::mdr {
 

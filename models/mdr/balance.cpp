@@ -63,8 +63,6 @@ double look_for_hold(double a, double b, double& best, Function&& function) {
   return largest;
 }
 
-constexpr const char* k_beyond_fold =
-    "the contacts hold the free centre no longer: beyond a fold no forces on it balance";
 // Stiffness over the greatest one that is rounding.
 constexpr double k_no_stiffness = 1e-12;
 
@@ -287,7 +285,7 @@ System::Motion System::motion(bool growing) const {
 
 System::Motion System::growing_motion() const {
   Motion result = motion(true);
-  if (!(result.slope > 0.0)) throw std::domain_error(k_singular_growth);
+  if (!(result.slope > 0.0)) throw DomainError(Limit::free_surface_used_up);
   return result;
 }
 
@@ -355,7 +353,7 @@ void System::check_hold() const {
   if (free_count_ == 0 || weakest_contact() || std::ranges::none_of(now_, softens)) return;
   const Small stiffnesses = Eigen::SelfAdjointEigenSolver<SmallMatrix>(sums_.stiffness).eigenvalues();
   if (stiffnesses.minCoeff() < -k_no_stiffness * stiffnesses.cwiseAbs().maxCoeff()) {
-    throw std::domain_error(k_beyond_greatest_force);
+    throw DomainError(Limit::centre_softening);
   }
 }
 
@@ -376,7 +374,7 @@ void System::find_balance(double xi, std::span<double> y) {
     if (step.norm() > k_out_of_bounds) step = balance_step(&Line::firmness, &Line::force);
     if (step.norm() == 0.0) {
       if (error <= noise) return;
-      throw std::domain_error("no contact holds the free centre of the particle");
+      throw DomainError(Limit::centre_not_held);
     }
     if (step.norm() >= 0.5 * step_size) {
       if (step.norm() < k_rounding_step) return;
@@ -409,8 +407,8 @@ void System::find_balance(double xi, std::span<double> y) {
   // Where edges peel, the search may also end beyond a fold, where the force is least.
   const double rounding = rounding_of_forces() + k_no_force * magnitude_of_forces();
   if (is_only_one ? way < 2.0 * k_round_off : sums_.force.norm() <= rounding) return;
-  if (std::abs(least_firmness()) < k_at_fold) throw std::domain_error(k_beyond_fold);
-  throw std::domain_error("the balance of forces on the free centre was not found");
+  if (std::abs(least_firmness()) < k_at_fold) throw DomainError(Limit::centre_fold);
+  throw DomainError(Limit::no_solution, "the balance of forces on the free centre was not found");
 }
 
 /// Next to a fold there is, beside the equilibrium that holds the centre, another one that does not, to which a search
@@ -479,7 +477,7 @@ bool System::leave_saddle(double xi, std::span<double> y, bool is_balanced) {
   go(beyond && firmest ? *firmest : 0.0);
   if (beyond && firmest) move_centre(xi, y);
   look(xi, y);
-  if (contact_beyond_pull_off(y[k_radius])) throw std::domain_error(k_beyond_fold);
+  if (contact_beyond_pull_off(y[k_radius])) throw DomainError(Limit::centre_fold);
   return false;
 }
 
@@ -555,7 +553,7 @@ void System::grow(double xi, std::span<double> y) {
       slope += sums_.by_centre.dot(by_radius);
       defect += sums_.by_centre.dot(to_balance);
     }
-    if (!(slope > 0.0)) throw std::domain_error(k_singular_growth);
+    if (!(slope > 0.0)) throw DomainError(Limit::free_surface_used_up);
     double step = std::clamp(-defect / slope, -0.1, 0.1);
     // The balance rises with the radius, but has a kink where a wall under force pulls off: a step over that, and one
     // back, may lead to and fro without end. What has been seen on either side bounds the next place.
@@ -577,7 +575,7 @@ void System::grow(double xi, std::span<double> y) {
     if (size >= 0.5 * step_size && (size < k_rounding_step || is_balanced)) return;
     step_size = size;
   }
-  throw std::domain_error("the volume balance of the growing radius has no solution nearby");
+  throw DomainError(Limit::free_surface_used_up);
 }
 
 }  // namespace monograin::mdr

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "elastic/hertz.hpp"
+#include "system/limit.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -45,7 +46,7 @@ double angle_from_versine(double y) noexcept { return 2.0 * std::asin(std::sqrt(
 
 double elastic_versine(double radius, double overlap) {
   const double y = overlap / (2.0 * radius);
-  if (y > 1.0) throw std::domain_error("overlap above twice the apparent radius");
+  if (y > 1.0) throw DomainError(Limit::overlap_of_diameter);
   return y;
 }
 
@@ -89,7 +90,7 @@ IndenterLeft indenter_left(double composite_modulus, double poisson_ratio, doubl
   const double a = contact_radius;
   const double height = 4.0 * pressure * a / composite_modulus;
   const double depth = radius - overlap_max + 0.5 * height;
-  if (!(depth > 0.0)) throw std::domain_error("the wall has reached the centre of the particle");
+  if (!(depth > 0.0)) throw DomainError(Limit::wall_at_centre);
   const double zeta = depth / a;
   const double s = std::sqrt(1.0 + zeta * zeta);
   const double k = 1.0 / (2.0 * (1.0 - poisson_ratio));
@@ -311,7 +312,7 @@ double elastic_overlap(ElasticProfile profile, double composite_modulus, double 
   switch (profile) {
     case ElasticProfile::ellipse: {
       const double value = force / (2.0 * composite_modulus * radius * radius);
-      if (value > 0.5 * pi) throw std::domain_error("overlap above twice the apparent radius");
+      if (value > 0.5 * pi) throw DomainError(Limit::overlap_of_diameter);
       const double sine = std::sin(0.5 * inverse_phi(value));
       return 4.0 * radius * sine * sine;
     }
@@ -348,7 +349,7 @@ double plastic_overlap(const Material& material, double radius, double force, do
     if (is_outside && missing > k_force_rounding * force) break;
     return overlap;
   }
-  throw std::domain_error("the force is above the largest that a plastic contact bears");
+  throw DomainError(Limit::greatest_force);
 }
 
 double recompressed_share(const UnloadingShape& shape, double force) {

@@ -70,16 +70,17 @@ double System::rounding_of_edge(std::size_t i, double r) {
 }
 
 double System::cap_guard(const CapPair& pair, double r) const {
-  // How far the cosine of the sum of their half angles is below that of the angle between their normals.
-  // What only touches has no cap: that of its rounding would be a millionth of R0 wide.
-  const auto cosine = [&](int i) {
+  // A cap of overlap d covers an angle a on either side of its normal with sin(a/2)^2 = d/(2 R). Caps meet where their
+  // angles add up to that between the normals; half of each, because the cosines of small angles have no digits left.
+  // An idle contact has no cap; a round-off overlap of 1e-12 R0 would give one 1e-6 R0 wide.
+  const double scale = 0.5 / (1.0 + r);
+  const auto square = [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    return rides(at) ? 1.0 : std::min(1.0, (1.0 - now_[at].displacement) / (1.0 + r));
+    return rides(at) ? 0.0 : std::clamp(now_[at].overlap * scale, 0.0, 1.0);
   };
-  const double first = cosine(pair.first);
-  const double second = cosine(pair.second);
-  const double sines = std::sqrt((1.0 - first) * (1.0 + first) * (1.0 - second) * (1.0 + second));
-  return pair.cosine - (first * second - sines);
+  const double first = square(pair.first);
+  const double second = square(pair.second);
+  return std::sqrt(first * (1.0 - second)) + std::sqrt(second * (1.0 - first)) - pair.half_sine;
 }
 
 /// Lists the guards that can fire before the step ends.

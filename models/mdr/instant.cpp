@@ -47,7 +47,7 @@ void System::look_at_forces(double xi, std::span<const double> y) {
 }
 
 void System::keep_look(double xi, std::span<const double> y) {
-  if (!(sums_.under_root > 0.0)) throw std::domain_error("elastic compression to less than half the volume");
+  if (!(sums_.under_root > 0.0)) throw DomainError(Limit::half_volume);
   seen_xi_ = xi;
   std::ranges::copy(y, seen_.begin());
 }

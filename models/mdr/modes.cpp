@@ -230,11 +230,11 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
   return false;
 }
 
-/// Of the contacts the row that ends the run shows what they have changed to last, and have not been looked at as yet.
+/// Ends the run when no consistent mode exists. Drops the cached evaluation, so that the last row shows the regimes
+/// that were tried last.
 void System::throw_unsettled() {
   forget_look();
-  throw std::domain_error(
-      "there is no mode in which every contact's branch agrees with its motion: the regimes do not settle");
+  throw DomainError(Limit::no_consistent_regimes);
 }
 
 /// Centre and walls where they belong in the present mode. Where a contact has pulled off, a free centre springs to
@@ -334,7 +334,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
       round = 0;
     }
     // Where it would run away in a mode that has been tried, the radius goes to and fro with a contact.
-    if (round == most_rounds() && runs_away) throw std::domain_error(k_singular_growth);
+    if (round == most_rounds() && runs_away) throw DomainError(Limit::free_surface_used_up);
     if (round == most_rounds()) throw_unsettled();
     is_growing_ = growth ? *growth : wants_growth(xi, y);
     look_once(xi, y);
@@ -381,11 +381,11 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
   // Past already, its guard would not be met.
   if (is_growing_ &&
       std::min(free_surface(motion(true), y[k_radius]), free_surface_at_rest(y[k_radius])) < k_least_slope) {
-    throw std::domain_error(k_singular_growth);
+    throw DomainError(Limit::free_surface_used_up);
   }
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (has_greatest_force(i) && stiffness_left(i) < k_last_stiffness)
-      throw std::domain_error(k_greatest_force_reached);
+      throw DomainError({Limit::greatest_force, static_cast<int>(i), "stiffness left", stiffness_left(i)});
   }
   hold_centre(y);
   watch(xi, y);
@@ -475,8 +475,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         others_fired = true;
         continue;
       case k_spent:
-        end = DomainEnd{event,
-                        {k_beyond_greatest_force, "their stiffness over that of shallow contacts", least_firmness()}};
+        end = DomainEnd{
+            event, {Limit::centre_softening, -1, "their stiffness over that of shallow contacts", least_firmness()}};
         continue;
       case k_follow:
         memory_[i].edge = Edge::following;
@@ -496,15 +496,13 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         continue;
       case k_singular:
       case k_covered:
-        end = DomainEnd{event,
-                        {"the free surface of the particle is used up and the apparent radius would run away",
-                         "growth slope D_eff/(4 pi R^2)", k_least_slope}};
+        end = DomainEnd{event, {Limit::free_surface_used_up, -1, "growth slope D_eff/(4 pi R^2)", k_least_slope}};
         continue;
       case k_greatest_force:
-        end = DomainEnd{event, {k_greatest_force_reached, "stiffness left", stiffness_left(i)}};
+        end = DomainEnd{event, {Limit::greatest_force, guard.index, "stiffness left", stiffness_left(i)}};
         continue;
       case k_volume:
-        end = DomainEnd{event, {"the particle is compressed elastically to half its volume", "V/V0", 0.5}};
+        end = DomainEnd{event, {Limit::half_volume, -1, "V/V0", 0.5}};
         continue;
       default:
         end = centre_reached(guard.index);
@@ -535,7 +533,7 @@ std::optional<DomainEnd> System::meet_caps(CapPair& pair, double r, std::vector<
   const Event caps{"caps-intersect", pair.first, pair.first == pair.second ? -1 : pair.second};
   log.push_back(caps);
   if (!settings_.stops_at_cap_intersection) return std::nullopt;
-  return DomainEnd{caps, {"contact caps intersect, the source's limit of validity (strict = true)", "R/R0", 1.0 + r}};
+  return DomainEnd{caps, {Limit::caps_intersect, -1, "R/R0", 1.0 + r}};
 }
 
 /// A contact may be made within the cap of another one, which no guard meets.
@@ -555,7 +553,7 @@ std::optional<DomainEnd> System::meet_caps_at_once(double xi, std::span<const do
 }
 
 DomainEnd System::centre_reached(int contact_class) {
-  return {{"limit", contact_class}, {"a wall has reached the centre of the particle", "distance/R0", k_least_distance}};
+  return {{"limit", contact_class}, {Limit::wall_at_centre, contact_class, "distance/R0", k_least_distance}};
 }
 
 /// A wall that stands at the limit already, and goes on from there, which no guard meets.

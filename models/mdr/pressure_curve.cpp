@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "system/limit.hpp"
+
 namespace monograin::mdr {
 namespace {
 
@@ -89,8 +91,9 @@ PressureCurve::PressureCurve(std::span<const double> overlaps_over_radius, std::
 
 std::size_t PressureCurve::piece_at(double overlap_over_radius) const {
   if (!(overlap_over_radius >= 0.0 && overlap_over_radius <= knots_.back())) {
-    throw std::domain_error("overlap over apparent radius outside the pressure table, which ends at " +
-                            std::to_string(knots_.back()));
+    throw DomainError(
+        Limit::pressure_table_end,
+        "overlap over apparent radius outside the pressure table, which ends at " + std::to_string(knots_.back()));
   }
   // The last knot belongs to the piece before it.
   const auto next = std::upper_bound(knots_.begin() + 1, knots_.end() - 1, overlap_over_radius);

@@ -6,13 +6,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "difficulties.hpp"
 #include "elastic/hertz.hpp"
+#include "system/difficulty.hpp"
 
 namespace monograin::mdr {
 namespace {
 
 using std::numbers::pi;
+
+// By how much the squared sine of half the angle between opposite walls falls short of 1 for round-off.
+constexpr double k_opposite = 5e-13;
 
 // In the order of Regime, then what replaces them where the edge of an adhesive contact sticks or peels.
 constexpr std::array<std::string_view, 7> k_regime_words{"open",      "elastic",  "fully-plastic", "unloading",
@@ -95,15 +98,15 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   const bool grows = settings_.radius_rule != RadiusRule::fixed;
   for (std::size_t i = 0; grows && i < count; ++i) {
     for (std::size_t j = i; j < count; ++j) {
-      double closest = -1.0;
+      double half_sine = 1.0;
       for (std::size_t m = 0; m < classes_[i].normals.size(); ++m) {
         for (std::size_t n = (i == j ? m + 1 : 0); n < classes_[j].normals.size(); ++n) {
-          closest = std::max(closest, classes_[i].normals[m].dot(classes_[j].normals[n]));
+          half_sine = std::min(half_sine, 0.5 * (classes_[i].normals[m] - classes_[j].normals[n]).norm());
         }
       }
       // Two caps on opposite sides meet only where the particle is squeezed to nothing.
-      if (closest > -1.0 + 1e-12) {
-        cap_pairs_.push_back({static_cast<int>(i), static_cast<int>(j), std::min(closest, 1.0)});
+      if (half_sine * half_sine < 1.0 - k_opposite) {
+        cap_pairs_.push_back({static_cast<int>(i), static_cast<int>(j), half_sine});
       }
     }
   }
@@ -203,14 +206,13 @@ bool System::is_open(int contact_class) const noexcept {
   return !touches(memory_[static_cast<std::size_t>(contact_class)].regime);
 }
 
-std::string_view System::difficulty(double xi, std::span<const double> y) {
+std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
   // Of the whole program: every contact is as shallow when it is made.
-  if (!(largest_overlap_expected() > k_shallow)) return k_closes_nothing;
-  if (free_count_ == 0 || !weakest_contact()) return {};
+  if (!(largest_overlap_expected() > k_shallow)) return Difficulty::below_resolution;
+  if (free_count_ == 0 || !weakest_contact()) return std::nullopt;
   look(xi, y);
-  if (least_firmness() >= k_hardly_firm) return {};
-  return "the contacts hardly hold the free centre any more, and what is tolerated is magnified next to the fold where "
-         "they end to; expected integrator = \"direct\"";
+  if (least_firmness() >= k_hardly_firm) return std::nullopt;
+  return Difficulty::soft_centre;
 }
 
 double System::largest_overlap(const Memory& memory, double r) const noexcept {

@@ -15,10 +15,10 @@
 #include <optional>
 #include <vector>
 
-#include "hybrid_system.hpp"
 #include "mdr/adhesion.hpp"
 #include "mdr/contact.hpp"
-#include "undefined.hpp"
+#include "system/hybrid_system.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin::mdr {
 
@@ -92,7 +92,7 @@ class System final : public HybridSystem {
   [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
   [[nodiscard]] bool contacts_adhere() const noexcept override { return adheres(); }
-  [[nodiscard]] std::string_view difficulty(double xi, std::span<const double> y) override;
+  [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
 
   /// Volume balance V_geo,Q - V_Q - C over 4 pi R0^3, the drift of an integrated solution; 0 while the radius is held.
@@ -109,11 +109,6 @@ class System final : public HybridSystem {
   /// Below this a class of walls does not act along any free direction of the centre: the stiffness by which it would
   /// hold it there goes with the square of this, and is rounding beside that of the same contact along its normal.
   static constexpr double k_no_direction = 1e-6;
-  static constexpr const char* k_singular_growth = "singular growth of the apparent radius";
-  static constexpr const char* k_greatest_force_reached =
-      "the force is next to the largest that a plastic contact bears: the wider it is, the softer it becomes";
-  static constexpr const char* k_beyond_greatest_force =
-      "the contacts hold the free centre no longer: beyond their greatest force its place is not determined";
   /// Firmness by which contacts hold a free centre so little that they are at a fold: a search for the balance of
   /// forces ends there with a force that is least, and not zero, and rates of the centre change sign through infinity.
   static constexpr double k_at_fold = 1e-2;
@@ -217,8 +212,8 @@ class System final : public HybridSystem {
   struct CapPair {
     int first = 0;
     int second = 0;
-    double cosine = 0.0;    ///< of the smallest angle between two of their normals
-    bool have_met = false;  ///< and not parted since
+    double half_sine = 0.0;  ///< sine of half the smallest angle between two of their normals
+    bool have_met = false;   ///< and not parted since
   };
 
   [[nodiscard]] static bool touches(Regime regime) noexcept {

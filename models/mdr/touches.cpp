@@ -311,7 +311,8 @@ void System::check_support() {
   for (std::size_t i = 0; !adheres() && i < memory_.size(); ++i) {
     const bool pushes = touches(memory_[i].regime) && !is_loaded(i) && ramps_[i].end - ramps_[i].start > least;
     if (pushes && directions_[i].norm() > k_no_direction && !is_backed(i)) {
-      throw std::domain_error("no contact holds the free centre of the particle against a wall that pushes it");
+      throw DomainError(Limit::centre_not_held,
+                        "no contact holds the free centre of the particle against a wall that pushes it");
     }
   }
   const double largest = largest_prescribed_force();
@@ -319,7 +320,7 @@ void System::check_support() {
   const SmallMatrix unheld = unheld_directions();
   const double left = std::max((unheld * prescribed_push(0.0)).norm(), (unheld * prescribed_push(1.0)).norm());
   if (left > k_no_force * largest) {
-    throw std::domain_error("no contact holds the free centre of the particle against the forces on it");
+    throw DomainError(Limit::centre_driven_away);
   }
 }
 

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "system/limit.hpp"
+
 namespace monograin::packing {
 namespace {
 
@@ -60,8 +62,7 @@ double coordination_slope(const Law& law, double phi) noexcept {
 double give(const Law& law, double modulus, double coordination, double phi) {
   const double result = law.sign * modulus / (law.given.coupling_factor * law.bulk_modulus * coordination * phi);
   if (!(1.0 + result > 0.0)) {
-    throw std::domain_error(
-        "the particles give way as much as the packing, M_eff = c1 K Z Phi: its stress is infinite");
+    throw DomainError(Limit::infinite_stress);
   }
   return result;
 }

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "packing/info.hpp"
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin::packing {
 namespace {
@@ -40,10 +40,9 @@ constexpr int k_full = 5;
 constexpr int k_limit = 6;
 
 /// Why a branch ends before the packing is full.
-const char* end_of_branch(Control control) {
-  if (control == Control::strain) return "the packing's strain does not grow any further";
-  if (control == Control::stress) return "the packing's stress does not grow any further";
-  return "the particles give way as much as the packing, whose stress becomes infinite";
+Limit end_of_branch(Control control) {
+  if (control == Control::strain) return Limit::greatest_strain;
+  return control == Control::stress ? Limit::greatest_stress : Limit::infinite_stress;
 }
 
 /// Of the closed form.
@@ -117,18 +116,18 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   if (is_other) take_branch();
   if (law_.given.plasticity && direction() < 0) {
     if (ramp_.start - ramp_.end > k_same * ramp_.start) {
-      throw std::domain_error("a packing of plastic particles is unloaded, for which there is no law");
+      throw DomainError(Limit::no_unloading_law);
     }
     ramp_.end = ramp_.start;
   }
   const auto require_pores = [&] {
     const bool is_pressed_on = direction() > 0 || told(0.0) > branch_.greatest * (1.0 + k_same);
-    if (is_jammed_ && is_pressed_on && y[k_fraction] >= 1.0) throw std::domain_error("no pores are left");
+    if (is_jammed_ && is_pressed_on && y[k_fraction] >= 1.0) throw DomainError(Limit::pores_closed);
   };
   require_pores();
   // Another control may find the packing where what it prescribes falls as the packing is compacted.
   if (is_jammed_ && y[k_fraction] > branch_.end * (1.0 + k_margin)) {
-    throw std::domain_error(end_of_branch(ramp_.control));
+    throw DomainError(end_of_branch(ramp_.control));
   }
   if (!is_jammed_) at_rest_ = y[k_fraction];
   const Mode before = mode_;
@@ -194,12 +193,12 @@ bool System::is_at_limit(double xi) const noexcept {
 }
 
 DomainEnd System::limit() const {
-  return {{"limit"}, {end_of_branch(ramp_.control), "greatest value", branch_.greatest}};
+  return {{"limit"}, {end_of_branch(ramp_.control), -1, "greatest value", branch_.greatest}};
 }
 
 /// Beyond a greatest strain or stress there is no state, but rates of neighbouring ones that look as if there were.
 void System::require_state(double xi) const {
-  if (branch_.end < 1.0 && told(xi) > branch_.greatest) throw std::domain_error(end_of_branch(ramp_.control));
+  if (branch_.end < 1.0 && told(xi) > branch_.greatest) throw DomainError(end_of_branch(ramp_.control));
 }
 
 /// Mode at the start of a step.
@@ -379,7 +378,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
   const double phi = near[k_fraction];
   const Slopes s = slopes(law_, phi, strain_of(near), piece_);
   const double growth = growth_of(s);
-  if (!(growth > 0.0) || has_passed_end(phi, growth)) throw std::domain_error(end_of_branch(ramp_.control));
+  if (!(growth > 0.0) || has_passed_end(phi, growth)) throw DomainError(end_of_branch(ramp_.control));
   dy[k_fraction] = (ramp_.end - ramp_.start) / growth;
   dy[k_particles] = s.particle_strain * dy[k_fraction];
 }
@@ -523,7 +522,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         is_fully_plastic_ = true;
         break;
       case k_full:
-        if (ramp_.end > places_[g]) end = DomainEnd{event, {"no pores are left", "packing fraction", 1.0}};
+        if (ramp_.end > places_[g]) end = DomainEnd{event, {Limit::pores_closed, -1, "packing fraction", 1.0}};
         break;
       default:
         end = limit();

@@ -22,8 +22,8 @@
 #include <optional>
 #include <vector>
 
-#include "hybrid_system.hpp"
 #include "packing/law.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin::packing {
 

@@ -237,9 +237,10 @@ std::string text(double number) {
   return {buffer.data(), result.ptr};
 }
 
-void require_approach_below(double x, double limit, std::string_view reason) {
+void require_approach_below(double x, double limit, Limit reason) {
   if (x < limit) return;
-  throw std::domain_error("gamma/2R = " + text(x) + " is not below " + text(limit) + ", " + std::string(reason));
+  throw DomainError(
+      reason, "displacement/R0 = " + text(x) + " is not below " + text(limit) + ": " + std::string(sentence(reason)));
 }
 
 }  // namespace monograin::plastic

@@ -22,6 +22,8 @@
 #include <string_view>
 #include <utility>
 
+#include "system/limit.hpp"
+
 namespace monograin::plastic {
 
 /// Which walls move: two opposite ones (nothing else touches), two with four fixed ones beside the particle, all six.
@@ -236,6 +238,6 @@ template <class Force>
 [[nodiscard]] std::string text(double number);
 
 /// @throws std::domain_error unless x is below the limit; NaN is not
-void require_approach_below(double x, double limit, std::string_view reason);
+void require_approach_below(double x, double limit, Limit reason);
 
 }  // namespace monograin::plastic

@@ -17,8 +17,8 @@ constexpr double k_rate = 14.1819;  // q of eq. 2.39 for lambda -> infinity; r o
 
 bool is_enclosed(const HardeningLaw& law) noexcept { return law.configuration != Configuration::simple; }
 
-std::string_view reason_of_limit(const HardeningLaw& law) noexcept {
-  return is_enclosed(law) ? "where the particle fills its cell" : "where the walls meet";
+Limit reason_of_limit(const HardeningLaw& law) noexcept {
+  return is_enclosed(law) ? Limit::cell_filled : Limit::walls_meet;
 }
 
 /// d_i (eq. 3.47, whose indices are 1, 3, 5).
@@ -36,8 +36,9 @@ ValueAndSlope reduced_low_compressibility_pressure(const HardeningLaw& law, doub
   const double y = cell_shrinkage(law.configuration, law.fall.end, x) / span;
   const double argument = rest * (1.0 + y);
   if (!(argument > 0.0)) {
-    throw std::domain_error("gamma/2R = " + text(x) + " is not between the least pressure and zero porosity at " +
-                            text(law.zero_porosity) + " as the law of low compressibility demands");
+    throw DomainError(Limit::cell_filled, "displacement/R0 = " + text(x) +
+                                              " is not between the least pressure and zero porosity at " +
+                                              text(law.zero_porosity) + " as the law of low compressibility demands");
   }
   return {.value = law.fall.least - law.pressure_scale * std::log(argument),
           .slope = -2.0 * law.pressure_scale * y / argument * cell_slope(law.configuration, x) / span};
@@ -125,9 +126,9 @@ double approach_under(const HardeningLaw& law, double force, double near) {
     greatest = stiffening(last).force;
     if (force <= greatest) return approach_between(stiffening, end, last, force, end);
   }
-  throw std::domain_error("a force of " + text(force) + " kappa R^2 is above the greatest, " + text(greatest) +
-                          " kappa R^2 just below gamma/2R = " + text(law.limit) + ", " +
-                          std::string(reason_of_limit(law)));
+  throw DomainError(reason_of_limit(law), "a force of " + text(force) + " kappa R0^2 is above the greatest, " +
+                                              text(greatest) + " kappa R0^2 just below displacement/R0 = " +
+                                              text(law.limit) + ": " + std::string(sentence(reason_of_limit(law))));
 }
 
 double impingement_approach(const HardeningLaw& law) { return impingement_approach(law.configuration, law.radius); }

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "difficulties.hpp"
 #include "plastic/system.hpp"
-#include "undefined.hpp"
+#include "system/difficulty.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin::plastic {
 namespace {
@@ -84,8 +84,8 @@ bool System::is_open(int contact_class) const noexcept {
 }
 
 /// Of the whole program: every contact is as shallow when it is made.
-std::string_view System::difficulty(double /*xi*/, std::span<const double> /*y*/) {
-  return is_shallow_ ? k_closes_nothing : std::string_view();
+std::optional<Difficulty> System::difficulty(double /*xi*/, std::span<const double> /*y*/) {
+  return is_shallow_ ? std::optional(Difficulty::below_resolution) : std::nullopt;
 }
 
 std::vector<Finding> System::warnings() const {

@@ -78,8 +78,8 @@ ValueAndSlope low_compressibility_pressure(const SemimechLaw& law, double x) {  
   const Stiffening& c = law.stiffening;
   const double within = std::min(x, c.zero_porosity);
   if (x - within > k_little_beyond) {
-    throw std::domain_error("gamma/2R = " + text(x) + " is too far above zero porosity at " + text(c.zero_porosity) +
-                            " for the law of low compressibility");
+    throw DomainError(Limit::cell_filled, "displacement/R0 = " + text(x) + " is too far above zero porosity at " +
+                                              text(c.zero_porosity) + " for the law of low compressibility");
   }
   const double span = cell_shrinkage(law.configuration, law.fall.end, c.zero_porosity);
   const double y = cell_shrinkage(law.configuration, law.fall.end, within) / span;
@@ -225,7 +225,7 @@ Regime regime_at(const SemimechLaw& law, double x) noexcept {
 }
 
 ContactState state_at(const SemimechLaw& law, double x) {
-  require_approach_below(x, SemimechLaw::limit, "where the walls meet");
+  require_approach_below(x, SemimechLaw::limit, Limit::walls_meet);
   return state_in(law, regime_at(law, x), x);
 }
 
@@ -260,8 +260,9 @@ double approach_under(const SemimechLaw& law, double force, double near) {
     const auto found = approach_near(state, lower, last, force, near);
     return found ? *found : approach_between(state, lower, last, force, lower);
   }
-  throw std::domain_error("a force of " + text(force) + " Y R^2 is above the greatest, " + text(greatest) +
-                          " Y R^2 just below gamma/2R = 1, where the walls meet");
+  throw DomainError(Limit::walls_meet, "a force of " + text(force) + " Y R0^2 is above the greatest, " +
+                                           text(greatest) +
+                                           " Y R0^2 just below displacement/R0 = 1, where the walls meet");
 }
 
 double impingement_approach(const SemimechLaw& law) { return impingement_approach(law.configuration, law.radius); }
@@ -301,7 +302,7 @@ double work_in(const SemimechLaw& law, Regime regime, double x) {
 }
 
 double work(const SemimechLaw& law, double x) {
-  require_approach_below(x, SemimechLaw::limit, "where the walls meet");
+  require_approach_below(x, SemimechLaw::limit, Limit::walls_meet);
   if (x <= 0.0) return 0.0;
   double sum = 0.0;
   Regime regime = Regime::elastic;
@@ -392,7 +393,7 @@ ContactState lateral_state_in(const SemimechLaw& law, const LateralLaw& lateral,
 }
 
 ContactState lateral_state_at(const SemimechLaw& law, const LateralLaw& lateral, double x) {
-  require_approach_below(x, SemimechLaw::limit, "where the walls meet");
+  require_approach_below(x, SemimechLaw::limit, Limit::walls_meet);
   return lateral_state_in(law, lateral, lateral_regime_at(law, lateral, x), x);
 }
 

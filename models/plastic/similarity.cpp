@@ -116,7 +116,7 @@ ContactState contact_of(const SimilarityLaw& law, double x) noexcept {
 }
 
 ContactState state_at(const SimilarityLaw& law, double x) {
-  require_approach_below(x, k_similarity_limit, "where the walls meet");
+  require_approach_below(x, k_similarity_limit, Limit::walls_meet);
   return contact_of(law, x);
 }
 
@@ -124,12 +124,12 @@ double approach_under(const SimilarityLaw& law, double force) {
   if (std::isnan(force)) throw std::domain_error("the force is not a number");
   const double x = 0.5 * similarity_approach(law, k_equal_pair, equal_strength(law), force);
   if (x < k_similarity_limit) return x;
-  throw std::domain_error("a force of " + text(force) + " kappa R^2 leads to gamma/2R = " + text(x) +
-                          ", not below 1, where the walls meet");
+  throw DomainError(Limit::walls_meet, "a force of " + text(force) + " kappa R0^2 leads to displacement/R0 = " +
+                                           text(x) + ", not below 1, where the walls meet");
 }
 
 double work_per_wall(const SimilarityLaw& law, double x) {
-  require_approach_below(x, k_similarity_limit, "where the walls meet");
+  require_approach_below(x, k_similarity_limit, Limit::walls_meet);
   // The pair's work is that of its two walls.
   return 0.5 * similarity_work(law, k_equal_pair, equal_strength(law), 2.0 * x);
 }

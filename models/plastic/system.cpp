@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "difficulties.hpp"
-#include "undefined.hpp"
+#include "system/difficulty.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin::plastic {
 namespace {

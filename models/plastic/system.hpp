@@ -15,9 +15,9 @@
 
 #include <vector>
 
-#include "hybrid_system.hpp"
 #include "mdr/contact.hpp"
 #include "plastic/law.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin::plastic {
 
@@ -64,7 +64,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
-  [[nodiscard]] std::string_view difficulty(double xi, std::span<const double> y) override;
+  [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
   [[nodiscard]] std::vector<Finding> warnings() const override;
 
  private:

@@ -15,11 +15,10 @@ enum GuardKind : int { k_made, k_touched, k_boundary, k_lateral_boundary, k_impi
 // Guards a rounding error beyond the end of a ramp are watched too.
 constexpr double k_reach_margin = 1e-9;
 
-DomainEnd filled(const Event& event, double x) {
-  return {event, {"the particle fills its cell, where its pressure would be infinite", "gamma/2R", x}};
+/// @param x  displacement over R0 at which the law ends
+DomainEnd ended(Limit limit, const Event& event, double x) {
+  return {event, {limit, event.contact_class, "displacement/R0", x}};
 }
-
-DomainEnd met(const Event& event, double x) { return {event, {"the walls meet", "gamma/2R", x}}; }
 
 }  // namespace
 
@@ -39,8 +38,7 @@ void System::turn_back(std::size_t i, double x, std::vector<Event>& log) {
   Memory& memory = memory_[i];
   memory.largest_force = is_loaded(i) ? ramps_[i].start : contact(i, x).force;
   if (settings_.unloading == Unloading::none) {
-    throw std::domain_error("the walls of class '" + classes_[i].name + "' would go back at gamma/2R = " + text(x) +
-                            ", for which the law has no branch; unloading = \"mdr\" adds one");
+    throw DomainError({Limit::no_unloading_law, static_cast<int>(i), "displacement/R0", x});
   }
   if (memory.regime != Regime::elastic) {
     memory.indenter = indenter_at(i, x);
@@ -90,7 +88,7 @@ std::optional<DomainEnd> System::end_passed(std::size_t i, double x, std::vector
   const bool ends_before = !boundaries_.empty() && boundaries_.back().beyond == Regime::undefined;
   if (x < (ends_before ? boundaries_.back().approach : limit(settings_.law))) return std::nullopt;
   log.push_back({ends_before ? boundaries_.back().event : std::string_view("limit"), static_cast<int>(i)});
-  return ends_before ? filled(log.back(), x) : met(log.back(), x);
+  return ended(ends_before ? Limit::cell_filled : Limit::walls_meet, log.back(), x);
 }
 
 /// Elastic indenter that the contact would leave if it were unloaded from this displacement.
@@ -229,7 +227,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         break;
       case k_boundary:
         if (boundaries_[memory.next].beyond == Regime::undefined) {
-          end = filled(event, x);
+          end = ended(Limit::cell_filled, event, x);
           break;
         }
         memory.regime = boundaries_[memory.next++].beyond;
@@ -249,7 +247,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         lose_contact(i);
         break;
       default:
-        end = met(event, x);
+        end = ended(Limit::walls_meet, event, x);
         break;
     }
     if (classes_[i].takes_force) y[places_[i]] = coordinate(i, x);

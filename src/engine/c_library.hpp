@@ -3,10 +3,12 @@
 
 #include <exception>
 #include <memory>
+#include <optional>
 #include <stdexcept>
-#include <string>
 #include <type_traits>
 #include <utility>
+
+#include "system/limit.hpp"
 
 namespace monograin {
 
@@ -29,7 +31,7 @@ class Pending {
     try {
       return function() ? 0 : 1;
     } catch (const std::domain_error& error) {
-      domain_end_ = error.what();
+      domain_end_ = as_domain_error(error);
       return 1;
     } catch (...) {
       exception_ = std::current_exception();
@@ -44,29 +46,29 @@ class Pending {
     try {
       function();
     } catch (const std::domain_error& error) {
-      end_beside_ = error.what();
+      end_beside_ = as_domain_error(error);
       throw;
     }
   }
 
   void forget() noexcept {
     exception_ = nullptr;
-    domain_end_.clear();
-    end_beside_.clear();
+    domain_end_.reset();
+    end_beside_.reset();
   }
   void rethrow() {
     if (exception_) std::rethrow_exception(std::exchange(exception_, nullptr));
   }
-  /// Why the equations ended at some trial since the last forget(); empty if they did not.
-  [[nodiscard]] const std::string& domain_end() const noexcept { return domain_end_; }
-  /// The same, of a trial or beside one.
-  [[nodiscard]] const std::string& nearest_domain_end() const noexcept {
-    return domain_end_.empty() ? end_beside_ : domain_end_;
+  /// Why the equations ended at some trial since the last forget(); none if they did not.
+  [[nodiscard]] const std::optional<DomainError>& domain_end() const noexcept { return domain_end_; }
+  /// Why they ended at a trial or, failing that, at a state beside one.
+  [[nodiscard]] const std::optional<DomainError>& nearest_domain_end() const noexcept {
+    return domain_end_ ? domain_end_ : end_beside_;
   }
 
  private:
   std::exception_ptr exception_;
-  std::string domain_end_, end_beside_;
+  std::optional<DomainError> domain_end_, end_beside_;
 };
 
 }  // namespace monograin

@@ -43,6 +43,7 @@ constexpr double k_same_instant = 1e-12;
 
 /// The run has left the model's domain.
 struct Stop {
+  LimitPoint point;
   std::string message;
 };
 
@@ -79,10 +80,6 @@ Quantity to_quantity(Until::Quantity quantity) {
 std::string with_unit(double value, Quantity quantity) {
   const std::string_view unit = words_of(quantity).unit;
   return fmt::format("{:.6g}{}{}", value, unit.empty() ? "" : " ", unit);
-}
-
-std::string text_of(const Finding& finding) {
-  return fmt::format("{} ({} = {:.9g})", finding.message, finding.quantity, finding.value);
 }
 
 /// One step of the program, worked out from where its channels stand when it begins.
@@ -126,22 +123,19 @@ class Drive {
     try {
       run_program();
     } catch (const Stop& stop) {
-      result.status = RunStatus::stopped;
-      result.message = stop.message;
+      stop_at(stop.point, stop.message, result);
     } catch (const CannotBegin& error) {
-      result.status = RunStatus::stopped;
-      result.message = where(0.0) + text_of(error.end().finding);
+      stop_at(error.point(), where(0.0) + error.what(), result);
       close_instant(step_start_, 0.0, {error.end().event});
     } catch (const std::domain_error& error) {
-      result.status = RunStatus::stopped;
-      result.message = where(xi_) + error.what();
+      stop_at(as_domain_error(error).point(), where(xi_) + error.what(), result);
       record_limit();
     } catch (const SolverError& error) {
       result.status = RunStatus::failed;
+      result.failure = error.failure();
       result.message = where(error.xi()) + error.what();
-      if (const std::string_view difficulty = difficulty_here(); !difficulty.empty()) {
-        result.message += fmt::format("; {}", difficulty);
-      }
+      result.difficulty = difficulty_here();
+      if (result.difficulty) result.message += fmt::format("; {}", advice(*result.difficulty));
       if (rtol_ && *rtol_ < k_surest_rtol) {
         result.message += fmt::format("; rtol = {:.3g} asks for errors of the size of rounding, expected {:g} or more",
                                       *rtol_, k_surest_rtol);
@@ -186,11 +180,21 @@ class Drive {
     close_instant(step_start_, xi_, log);
   }
 
-  [[nodiscard]] std::string_view difficulty_here() {
+  /// Says at which limit the run ends, and at which contact if it is one of a single contact.
+  void stop_at(const LimitPoint& point, std::string message, DriveResult& result) const {
+    result.status = RunStatus::stopped;
+    result.limit = point.limit;
+    result.message = std::move(message);
+    const auto classes = system_.classes();
+    if (point.contact_class < 0 || static_cast<std::size_t>(point.contact_class) >= classes.size()) return;
+    result.message += fmt::format(", at '{}'", classes[static_cast<std::size_t>(point.contact_class)].name);
+  }
+
+  [[nodiscard]] std::optional<Difficulty> difficulty_here() {
     try {
       return system_.difficulty(xi_, y_);
     } catch (const std::domain_error&) {
-      return {};
+      return std::nullopt;
     }
   }
 
@@ -241,6 +245,7 @@ class Drive {
     if (plan.duration >= 0.0 &&
         std::abs(duration - plan.duration) > k_same_duration * std::max(duration, plan.duration)) {
       throw Stop{
+          {.limit = Limit::unequal_durations},
           fmt::format("step {}: the walls of class '{}' need {:.6g} s where others need {:.6g} s, and steps end "
                       "together; give equal durations",
                       step_ + 1, scene_.channels[static_cast<std::size_t>(channel)].name, duration, plan.duration)};
@@ -472,7 +477,7 @@ class Drive {
       }
       // The row after the events shows what has jumped; that a state was not found does not undo them.
       if (is_seen) close_instant(time(xi_), xi_, log);
-      if (end) throw Stop{where(xi_) + text_of(end->finding)};
+      if (end) throw Stop{end->point, where(xi_) + text_of(end->point)};
       if (failure) std::rethrow_exception(failure);
       is_met = is_met || watch_.is_met(xi_, y_) || has_ending_event(log);
     }
@@ -545,7 +550,7 @@ class Drive {
   }
 
   [[nodiscard]] SolverError too_much_work(long steps, long of_equations) const {
-    return {"integration", "too much work", xi_, integrator_->statistics().last_step,
+    return {Failure::too_much_work, xi_, integrator_->statistics().last_step,
             fmt::format(
                 "{} internal steps and {} evaluations of the equations have not brought this step of the program to "
                 "its end; where the equations are stiff, expected cvode-bdf or ida",
@@ -553,18 +558,16 @@ class Drive {
   }
 
   [[nodiscard]] SolverError stalled(int steps) const {
-    return {"integration", "no progress", xi_, integrator_->statistics().last_step,
+    return {Failure::no_progress, xi_, integrator_->statistics().last_step,
             fmt::format("{} internal steps in a row are shorter than the rounding of the step coordinate", steps)};
   }
 
   [[nodiscard]] SolverError chattering() const {
-    return {"event location", "chattering", xi_, 0.0,
-            fmt::format("events without progress: {}", fmt::join(idle_guards_, ", "))};
+    return {Failure::chattering, xi_, 0.0, fmt::format("{}", fmt::join(idle_guards_, ", "))};
   }
 
   [[nodiscard]] SolverError endless() const {
-    return {"event location", "endless events", xi_, 0.0,
-            fmt::format("{} events in one step of the program", k_most_events)};
+    return {Failure::endless_events, xi_, 0.0, fmt::format("{} events in one step of the program", k_most_events)};
   }
 
   // --- recording

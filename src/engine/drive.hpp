@@ -1,6 +1,7 @@
 /// Drives a scene through its program: steps, segments, events, output points.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,10 @@ class HistorySink {
 /// How a drive has ended, and what it took.
 struct DriveResult {
   RunStatus status = RunStatus::complete;
-  std::string message;  ///< why it stopped or failed
+  std::string message;                     ///< why it stopped or failed
+  std::optional<Limit> limit{};            ///< of a stopped run
+  std::optional<Failure> failure{};        ///< of a failed run
+  std::optional<Difficulty> difficulty{};  ///< of a failed run, where the model knows one
   Statistics statistics;
   std::vector<std::string> warnings;
 };

@@ -144,7 +144,7 @@ class GslStepper final : public Stepper {
       pending_.rethrow();
       // Where the equations end the library halves its step by itself: one as short as this has arrived there, and
       // those after it would never come to that.
-      const bool has_arrived = at - begin_ < least_progress(begin_) && !pending_.domain_end().empty();
+      const bool has_arrived = at - begin_ < least_progress(begin_) && pending_.domain_end();
       // A step that ends where the equations do not hold is none, however small its error.
       const bool is_accepted = status == GSL_SUCCESS && at > begin_ && !has_arrived &&
                                rates(at, now_.data(), rates_.data(), this) == GSL_SUCCESS && !leads_elsewhere(at);
@@ -162,9 +162,8 @@ class GslStepper final : public Stepper {
       step_ = 0.1 * std::min(step_, 1.0 - begin_);
       ++rejections;
       if (step_ >= least_progress(begin_)) continue;
-      if (!pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
-      if (step_ < k_smallest_step * least_progress(begin_))
-        throw SolverError("gsl_odeiv2_evolve_apply", gsl_strerror(status), begin_, step_, {});
+      if (pending_.domain_end()) throw *pending_.domain_end();
+      if (step_ < k_smallest_step * least_progress(begin_)) throw SolverError(Failure::no_step, begin_, step_, {});
     }
   }
 
@@ -182,8 +181,8 @@ class GslStepper final : public Stepper {
     if (xi > begin_) {
       const int status = gsl_odeiv2_driver_apply(reaching_.get(), &at, xi, between_.data());
       pending_.rethrow();
-      if (status != GSL_SUCCESS && !pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
-      if (status != GSL_SUCCESS) throw SolverError("gsl_odeiv2_driver_apply", gsl_strerror(status), at, 0.0, {});
+      if (status != GSL_SUCCESS && pending_.domain_end()) throw *pending_.domain_end();
+      if (status != GSL_SUCCESS) throw SolverError(Failure::no_step, at, 0.0, "a state within the step is not reached");
     }
     std::ranges::copy(between_, z.begin());
   }

@@ -54,7 +54,7 @@ class Ida final : public Integrator {
       view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
     }
     memory_.reset(IDACreate(context_));
-    check("IDASetErrHandlerFn", IDASetErrHandlerFn(memory_.get(), keep_message, &message_));
+    check("IDASetErrHandlerFn", IDASetErrHandlerFn(memory_.get(), ignore_message, nullptr));
     check("IDAInit", IDAInit(memory_.get(), residual, 0.0, y_.get(), dy_.get()));
     check("IDASetUserData", IDASetUserData(memory_.get(), this));
     check("IDAWFtolerances", IDAWFtolerances(memory_.get(), error_weights));
@@ -126,7 +126,7 @@ class Ida final : public Integrator {
     }
     check("IDASolve", flag);
     if (flag != IDA_ROOT_RETURN && is_stuck_at_end(pending_, begin, end_, last_length_)) {
-      throw std::domain_error(pending_.nearest_domain_end());
+      throw *pending_.nearest_domain_end();
     }
     last_length_ = end_ - begin;
     int order = 0;
@@ -312,19 +312,19 @@ class Ida final : public Integrator {
   }
 
   void check(const char* call, int flag) {
-    if (flag < 0) throw failure(call, flag_name(IDAGetReturnFlagName(flag)));
+    if (flag < 0) throw failure(Failure::no_step, fmt::format("{}: {}", call, flag_name(IDAGetReturnFlagName(flag))));
   }
 
-  [[nodiscard]] SolverError failure(const char* call, std::string flag) {
+  [[nodiscard]] SolverError failure(Failure why, const std::string& library) {
     double step = 0.0;
-    std::string details = message_;
+    std::string details;
     // Weights and errors are there once a step has been tried.
     if (memory_ && IDAGetCurrentStep(memory_.get(), &step) == IDA_SUCCESS &&
         IDAGetErrWeights(memory_.get(), weights_.get()) == IDA_SUCCESS &&
         IDAGetEstLocalErrors(memory_.get(), errors_.get()) == IDA_SUCCESS) {
-      details += worst_components(system_.unknowns(), view(weights_.get()), view(errors_.get()));
+      details = worst_components(system_.unknowns(), view(weights_.get()), view(errors_.get()));
     }
-    return {call, std::move(flag), end_, step, details};
+    return {why, end_, step, details, library};
   }
 
   HybridSystem& system_;
@@ -332,7 +332,6 @@ class Ida final : public Integrator {
   Tolerances tolerances_;
   SegmentQuadratures quadratures_;
   std::vector<double> complete_;
-  std::string message_;
   Pending pending_;
   RootList roots_;
   double end_ = 0.0;

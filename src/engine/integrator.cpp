@@ -11,9 +11,32 @@
 
 namespace monograin {
 
-SolverError::SolverError(std::string call, std::string flag, double xi, double step, std::string details)
-    : std::runtime_error(fmt::format("{} failed with {} at {:.6g} of the step (step size {:.3g}){}{}", call, flag, xi,
-                                     step, details.empty() ? "" : ": ", details)),
+namespace {
+
+std::string_view sentence(Failure failure) noexcept {
+  switch (failure) {
+    case Failure::no_step:
+      return "no step, however short, meets the tolerances";
+    case Failure::too_much_work:
+      return "too much work";
+    case Failure::no_progress:
+      return "no progress";
+    case Failure::chattering:
+      return "chattering: events without progress";
+    case Failure::endless_events:
+      return "endless events";
+    case Failure::set_up:
+      return "the integrator did not start";
+  }
+  return {};
+}
+
+}  // namespace
+
+SolverError::SolverError(Failure failure, double xi, double step, std::string_view details, std::string_view library)
+    : std::runtime_error(fmt::format("{} at {:.6g} of the step (step size {:.3g}{}{}){}{}", sentence(failure), xi, step,
+                                     library.empty() ? "" : "; ", library, details.empty() ? "" : ": ", details)),
+      failure_(failure),
       xi_(xi) {}
 
 Statistics& Statistics::operator+=(const Statistics& other) noexcept {
@@ -35,19 +58,25 @@ constexpr double k_least_rtol = 1e-14;
 
 using Method = std::variant<OdeMethod, OdeintMethod, GslMethod>;
 
+struct NamedMethod {
+  std::string_view name;
+  Method method;
+  bool suits_stiff;  ///< an implicit method
+};
+
 /// Integrators of the explicit form with error control.
-constexpr std::array<std::pair<std::string_view, Method>, 11> k_of_explicit_form{{
-    {"cvode-adams", OdeMethod::cvode_adams},
-    {"cvode-bdf", OdeMethod::cvode_bdf},
-    {"arkode-erk", OdeMethod::arkode_erk},
-    {"arkode-dirk", OdeMethod::arkode_dirk},
-    {"odeint-dopri5", OdeintMethod::dopri5},
-    {"odeint-fehlberg78", OdeintMethod::fehlberg78},
-    {"odeint-bulirsch-stoer", OdeintMethod::bulirsch_stoer},
-    {"odeint-rosenbrock4", OdeintMethod::rosenbrock4},
-    {"gsl-rk8pd", GslMethod::rk8pd},
-    {"gsl-msadams", GslMethod::msadams},
-    {"gsl-msbdf", GslMethod::msbdf},
+constexpr std::array<NamedMethod, 11> k_of_explicit_form{{
+    {"cvode-adams", OdeMethod::cvode_adams, false},
+    {"cvode-bdf", OdeMethod::cvode_bdf, true},
+    {"arkode-erk", OdeMethod::arkode_erk, false},
+    {"arkode-dirk", OdeMethod::arkode_dirk, true},
+    {"odeint-dopri5", OdeintMethod::dopri5, false},
+    {"odeint-fehlberg78", OdeintMethod::fehlberg78, false},
+    {"odeint-bulirsch-stoer", OdeintMethod::bulirsch_stoer, false},
+    {"odeint-rosenbrock4", OdeintMethod::rosenbrock4, true},
+    {"gsl-rk8pd", GslMethod::rk8pd, false},
+    {"gsl-msadams", GslMethod::msadams, false},
+    {"gsl-msbdf", GslMethod::msbdf, true},
 }};
 
 constexpr std::string_view k_switching = "odeint-dopri5, cvode-bdf where stiff";
@@ -57,10 +86,15 @@ constexpr std::string_view k_switching = "odeint-dopri5, cvode-bdf where stiff";
 std::span<const std::string_view> integrator_names() noexcept {
   static const auto k_names = [] {
     std::array<std::string_view, k_of_explicit_form.size() + 3> names{"direct", "ida", "explicit"};
-    std::ranges::transform(k_of_explicit_form, names.begin() + 3, [](const auto& named) { return named.first; });
+    std::ranges::transform(k_of_explicit_form, names.begin() + 3, &NamedMethod::name);
     return names;
   }();
   return k_names;
+}
+
+bool suits_stiff_equations(std::string_view name) noexcept {
+  const auto found = std::ranges::find(k_of_explicit_form, name, &NamedMethod::name);
+  return found == k_of_explicit_form.end() ? name != "explicit" : found->suits_stiff;
 }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
@@ -74,7 +108,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem&
   const Tolerances tolerances{rtol, std::min(asked.atol, std::max(asked.atol / gain, 0.1 * rtol))};
   if (name == "ida") return make_ida(system, watch, tolerances);
   if (name == k_switching) return make_switching(system, watch, tolerances);
-  for (const auto& [word, method] : k_of_explicit_form) {
+  for (const auto& [word, method, suits_stiff] : k_of_explicit_form) {
     if (word != name) continue;
     return std::visit(
         [&](auto chosen) {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/watch.hpp"
-#include "hybrid_system.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin {
 
@@ -37,13 +37,29 @@ struct Statistics {
   Statistics& operator+=(const Statistics& other) noexcept;
 };
 
-/// An integrator gave up. Carries its own words, where it was, and the unknowns with the largest local errors.
+/// Why an integration was given up.
+enum class Failure {
+  no_step,         ///< no step, however short, meets the tolerances
+  too_much_work,   ///< more steps or evaluations than a step of the program may take
+  no_progress,     ///< steps below the round-off of the step coordinate
+  chattering,      ///< regimes that answer each other at one instant
+  endless_events,  ///< more events than a step of the program may have
+  set_up           ///< a library did not start
+};
+
+/// An integrator gave up: why, and where.
 class SolverError : public std::runtime_error {
  public:
-  SolverError(std::string call, std::string flag, double xi, double step, std::string details);
+  /// @param xi       step coordinate
+  /// @param step     last step size, in step coordinates; 0 where there was none
+  /// @param details  numbers that show it, such as the unknowns with the largest local errors; may be empty
+  /// @param library  function of a library and the code it has returned, e.g. "CVode: CV_ERR_FAILURE"; may be empty
+  SolverError(Failure failure, double xi, double step, std::string_view details, std::string_view library = {});
+  [[nodiscard]] Failure failure() const noexcept { return failure_; }
   [[nodiscard]] double xi() const noexcept { return xi_; }
 
  private:
+  Failure failure_;
   double xi_;
 };
 
@@ -92,6 +108,9 @@ class Integrator {
 
 /// What make_integrator makes: the names of scenario files but "auto".
 [[nodiscard]] std::span<const std::string_view> integrator_names() noexcept;
+
+/// False for methods that have to take short steps where the equations are stiff, however smooth their solution.
+[[nodiscard]] bool suits_stiff_equations(std::string_view name) noexcept;
 
 /// @param name  as in scenario files but "auto", or as choose_integrator() has chosen it
 /// @throws std::logic_error for another name, or where direct is asked of a system that is not solvable

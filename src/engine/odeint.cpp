@@ -61,7 +61,7 @@ double controlled_step(double xi, double& step, long& rejections, Try&& attempt)
     ++rejections;
     if (step < k_smallest_step * least_progress(xi)) break;
   }
-  throw SolverError("try_step", "no step passes the error test", xi, step, {});
+  throw SolverError(Failure::no_step, xi, step, {});
 }
 
 /// What is tolerated of each unknown. Where a contact lasts hardly longer than the step coordinate is rounded, so are
@@ -300,7 +300,8 @@ class ExplicitStepper final : public Stepper {
       double at = begin_;
       double step = xi - begin_;
       for (int tries = 0; xi - at > k_smallest_step * least_progress(at); ++tries) {
-        if (tries == k_most_tries) throw SolverError("try_step", "a state in a step is not reached", at, step, {});
+        if (tries == k_most_tries)
+          throw SolverError(Failure::no_step, at, step, "a state within the step is not reached");
         step = std::min(step, xi - at);
         rule_errors_.begin(0);
         try {

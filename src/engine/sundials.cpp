@@ -135,8 +135,7 @@ std::string worst_components(std::span<const Unknown> unknowns, std::span<const 
   std::ranges::sort(ranking, std::greater<>{});
   std::string text;
   for (std::size_t k = 0; k < std::min<std::size_t>(3, ranking.size()); ++k) {
-    text +=
-        fmt::format("{}{} ({:.2g})", k == 0 ? "; largest local errors: " : ", ", ranking[k].second, ranking[k].first);
+    text += fmt::format("{}{} ({:.2g})", k == 0 ? "largest local errors: " : ", ", ranking[k].second, ranking[k].first);
   }
   return text;
 }

@@ -52,10 +52,8 @@ struct RootList {
   return name;
 }
 
-/// Keeps the last message instead of printing it.
-inline void keep_message(int, const char*, const char*, char* message, void* sink) {
-  *static_cast<std::string*>(sink) = message;
-}
+/// Keeps a library from printing its own messages; its return codes say the same.
+inline void ignore_message(int, const char*, const char*, char*, void*) {}
 
 /// A solver of small dense systems; timed where a LinearAlgebraClock runs.
 [[nodiscard]] LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context);
@@ -77,11 +75,11 @@ template <class Evolve, class CurrentStep, class Restart>
 int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentStep&& current_step, Restart&& restart) {
   pending.forget();
   int flag = evolve();
-  for (double step = 0.0; flag < 0 && !pending.nearest_domain_end().empty(); flag = evolve()) {
+  for (double step = 0.0; flag < 0 && pending.nearest_domain_end(); flag = evolve()) {
     // Before its first step the library has none.
     if (step == 0.0 && (current_step(&step) != 0 || !(step > 0.0))) step = 1.0;
     step = k_retreat * std::min(step, 1.0 - begin);
-    if (!(step > least_progress(begin))) throw std::domain_error(pending.nearest_domain_end());
+    if (!(step > least_progress(begin))) throw *pending.nearest_domain_end();
     restart(step);
   }
   return flag;
@@ -93,7 +91,7 @@ int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentS
 /// @param previous  length of the step before; 0 for a segment's first one
 [[nodiscard]] inline bool is_stuck_at_end(const Pending& pending, double begin, double end, double previous) {
   if (end - begin >= least_progress(begin)) return false;
-  return !pending.domain_end().empty() || (!pending.nearest_domain_end().empty() && end - begin < previous);
+  return pending.domain_end() || (pending.nearest_domain_end() && end - begin < previous);
 }
 
 /// Where a step has to end that a library has ended at fired guards. Just before a branch ends, others may cross and

@@ -2,6 +2,7 @@
 
 #include <arkode/arkode_arkstep.h>
 #include <cvode/cvode.h>
+#include <fmt/format.h>
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
@@ -197,7 +198,7 @@ class SundialsOde final : public Integrator {
     }
     check(Library::name, flag);
     if (flag != Library::root_return && is_stuck_at_end(pending_, begin, end_, last_length_)) {
-      throw std::domain_error(pending_.nearest_domain_end());
+      throw *pending_.nearest_domain_end();
     }
     last_length_ = end_ - begin;
     if (flag == Library::root_return) {
@@ -250,7 +251,7 @@ class SundialsOde final : public Integrator {
 
   void set_up() {
     create();
-    check("SetErrHandlerFn", Library::set_error_handler(memory_.get(), keep_message, &message_));
+    check("SetErrHandlerFn", Library::set_error_handler(memory_.get(), ignore_message, nullptr));
     check("SetUserData", Library::set_user_data(memory_.get(), this));
     check("WFtolerances", Library::set_weights(memory_.get(), error_weights));
     check("SetMaxNumSteps", Library::set_most_steps(memory_.get(), k_most_internal_steps));
@@ -304,7 +305,7 @@ class SundialsOde final : public Integrator {
       // An interpolation asks for rates beside the curve, where there may be none.
       pending_.forget();
       const int flag = Library::derivative(memory_.get(), xi, 0, errors_.get());
-      if (flag < 0 && !pending_.domain_end().empty()) throw std::domain_error(pending_.domain_end());
+      if (flag < 0 && pending_.domain_end()) throw *pending_.domain_end();
       check("GetDky", flag);
       ++roots_.evaluations;
       watch_.values(xi, form_.complete(xi, view(errors_.get())), values);
@@ -450,19 +451,19 @@ class SundialsOde final : public Integrator {
   }
 
   void check(const char* call, int flag) {
-    if (flag < 0) throw failure(call, flag_name(Library::flag_name(flag)));
+    if (flag < 0) throw failure(Failure::no_step, fmt::format("{}: {}", call, flag_name(Library::flag_name(flag))));
   }
 
-  [[nodiscard]] SolverError failure(const char* call, std::string flag) {
+  [[nodiscard]] SolverError failure(Failure why, const std::string& library) {
     double step = 0.0;
-    std::string details = message_;
+    std::string details;
     // Weights and errors are there once a step has been tried.
     if (memory_ && Library::current_step(memory_.get(), &step) == 0 &&
         Library::error_weights(memory_.get(), weights_.get()) == 0 &&
         Library::local_errors(memory_.get(), errors_.get()) == 0) {
-      details += worst_components(system_.unknowns(), view(weights_.get()), view(errors_.get()));
+      details = worst_components(system_.unknowns(), view(weights_.get()), view(errors_.get()));
     }
-    return {call, std::move(flag), end_, step, details};
+    return {why, end_, step, details, library};
   }
 
   HybridSystem& system_;
@@ -470,7 +471,6 @@ class SundialsOde final : public Integrator {
   OdeMethod method_;
   Tolerances tolerances_, of_step_;
   ExplicitForm form_;
-  std::string message_;
   Pending pending_;
   RootList roots_;
   bool follows_root_ = false;  ///< an earlier call ended at one, since memory_ is new
@@ -509,7 +509,7 @@ void SundialsOde<ArkodeLibrary>::create() {
   const bool is_implicit = method_ == OdeMethod::arkode_dirk;
   memory_.reset(ARKStepCreate(is_implicit ? nullptr : right_hand_side, is_implicit ? right_hand_side : nullptr, 0.0,
                               y_.get(), context_));
-  if (!memory_) throw failure("ARKStepCreate", "no memory");
+  if (!memory_) throw failure(Failure::set_up, "ARKStepCreate: no memory");
   check("ARKStepSetOrder", ARKStepSetOrder(memory_.get(), ArkodeLibrary::order));
   if (form_.has_corrections()) {
     check("ARKStepSetPostprocessStepFn", ARKStepSetPostprocessStepFn(memory_.get(), corrected));

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hybrid_system.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin {
 

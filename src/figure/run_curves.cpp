@@ -10,7 +10,7 @@
 
 #include "figure/figure.hpp"
 #include "history/table.hpp"
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin::figure {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "engine/drive.hpp"
 #include "history/table.hpp"
-#include "hybrid_system.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin {
 

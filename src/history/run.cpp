@@ -107,6 +107,7 @@ Run run_scenario(const Scenario& scenario, const SystemWrapper& wrapped) {
   const double rtol = run.integrator.used == "direct" ? 0.0 : scenario.numerics.rtol;
   if (auto warning = energy_warning(run.record.history, scenario.radius, scenario.model, rtol)) {
     run.record.warnings.push_back(std::move(*warning));
+    run.record.creates_energy = true;
   }
   run.record.history.header = header_of(run);
   run.record.events.header = run.record.history.header;

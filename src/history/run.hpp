@@ -17,6 +17,7 @@ namespace monograin {
 struct RunRecord : DriveResult {
   Table history;
   Table events;
+  bool creates_energy = false;  ///< the dissipation falls, and a warning says so
 };
 
 /// Drives a scene and records it.

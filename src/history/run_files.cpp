@@ -49,6 +49,7 @@ Json to_json(const Run& run) {
           {"format", k_run_format},
           {"status", to_string(record.status)},
           {"message", record.message},
+          {"limit", record.limit ? Json(code(*record.limit)) : Json()},
           {"model", scenario.model},
           {"classes", classes},
           {"skipped", run.skipped},

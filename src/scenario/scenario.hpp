@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "scenario/text_file.hpp"
-#include "walls.hpp"
+#include "system/walls.hpp"
 
 namespace monograin {
 

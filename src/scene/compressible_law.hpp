@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "compressible/contact_law.hpp"
-#include "hybrid_system.hpp"
 #include "scenario/scenario.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin {
 

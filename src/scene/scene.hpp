@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "hybrid_system.hpp"
 #include "scenario/scenario.hpp"
-#include "walls.hpp"
+#include "system/hybrid_system.hpp"
+#include "system/walls.hpp"
 
 namespace monograin {
 

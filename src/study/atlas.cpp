@@ -21,7 +21,7 @@
 #include "study/adhesion_panels.hpp"
 #include "study/definition.hpp"
 #include "study/profile.hpp"
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin {
 namespace {

@@ -10,7 +10,7 @@
 #include "figure/page.hpp"
 #include "study/atlas.hpp"
 #include "study/markdown.hpp"
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin {
 namespace {

@@ -17,7 +17,7 @@
 #include "scenario/text_file.hpp"
 #include "scene/scene.hpp"
 #include "study/profiled_system.hpp"
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin {
 namespace {

@@ -16,7 +16,7 @@
 #include "history/table.hpp"
 #include "study/bench.hpp"
 #include "study/markdown.hpp"
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin {
 namespace {

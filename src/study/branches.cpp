@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "engine/drive.hpp"
 #include "scenario/faults.hpp"
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin {
 namespace {

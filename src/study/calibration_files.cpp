@@ -16,7 +16,7 @@
 #include "scenario/edit.hpp"
 #include "study/calibration.hpp"
 #include "study/calibration_language.hpp"
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin {
 namespace {

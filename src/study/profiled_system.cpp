@@ -74,7 +74,7 @@ class Wrapped : public HybridSystem {
   }
   [[nodiscard]] bool is_open(int contact_class) const noexcept override { return system_->is_open(contact_class); }
   [[nodiscard]] bool contacts_adhere() const noexcept override { return system_->contacts_adhere(); }
-  [[nodiscard]] std::string_view difficulty(double xi, View y) override { return system_->difficulty(xi, y); }
+  [[nodiscard]] std::optional<Difficulty> difficulty(double xi, View y) override { return system_->difficulty(xi, y); }
   [[nodiscard]] std::vector<Finding> warnings() const override { return system_->warnings(); }
   void branch_reach(View y, State reach) const override { system_->branch_reach(y, reach); }
 

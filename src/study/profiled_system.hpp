@@ -5,7 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "hybrid_system.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin {
 

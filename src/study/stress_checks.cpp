@@ -24,7 +24,7 @@
 #include "study/stress_events.hpp"
 #include "study/stress_turn.hpp"
 #include "study/stress_variants.hpp"
-#include "undefined.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin {
 namespace {
@@ -57,7 +57,8 @@ double end_time(const Run& run) { return run.record.history.at(run.record.histor
 /// Whether two runs end at one instant, to a tolerance, where plastic strain grows without bound: the strain runs
 /// through other limits there, and either may be the one that is met.
 bool run_away_together(const Run& a, const Run& b, double tolerance) {
-  if (stated_end(a) != k_uniqueness && stated_end(b) != k_uniqueness) return false;
+  const auto runs_away = [](const Run& run) { return run.record.limit == Limit::loss_of_uniqueness; };
+  if (!runs_away(a) && !runs_away(b)) return false;
   return std::abs(end_time(a) - end_time(b)) <= tolerance * std::max(end_time(a), end_time(b));
 }
 

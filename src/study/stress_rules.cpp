@@ -48,31 +48,6 @@ constexpr std::size_t k_most_events_between_ends = 10;
 // 103 to 2,214, the worst 3,566.
 constexpr long k_most_work_direct = 1000;
 constexpr double k_most_work_integrated = 20000.0;
-constexpr std::string_view k_endless = "endless events";
-constexpr std::string_view k_chattering = "chattering";
-constexpr std::string_view k_too_much_work = "too much work";
-constexpr std::string_view k_stiff_material = "the bulk modulus is above 1e5 yield pressures";
-constexpr std::string_view k_hardly_unique = "the program hardly determines the plastic strain any more";
-constexpr std::string_view k_singular_balance = "the balance of the free centre is singular";
-constexpr std::string_view k_near_applicability = "the limit of applicability is so near";
-constexpr std::string_view k_hardly_held = "the contacts hardly hold the free centre any more";
-constexpr std::string_view k_no_depth = "the program closes no contact by more than 1e-12";
-
-/// A limit of a model, as its messages name it.
-struct StatedLimit {
-  std::string_view words;  ///< in a message
-  std::string_view end;    ///< the limit; one limit may be met in a trial step or by its event
-};
-
-constexpr std::string_view k_used_up = "the free surface of the particle is used up";
-constexpr std::string_view k_applicability = "limit of applicability";
-constexpr std::string_view k_fills = "the particle fills its cell";
-constexpr std::string_view k_free_centre = "no contact holds the free centre of the particle";
-
-/// Of these, what speaks of forces on the centre.
-constexpr std::string_view k_driven_away[] = {
-    "no contact holds the free centre of the particle against the forces on it",
-    "no contact holds the centre of the particle where the forces of the others drive it"};
 // Resultant of unit normals below which a class of walls does not act on the centre.
 constexpr double k_no_direction = 1e-6;
 // Of what is left of a force's way; of the largest force, what is small beside it.
@@ -81,64 +56,6 @@ constexpr double k_little = 1e-3;
 constexpr double k_touch = 1e-9;
 // What laws leave of forces that balance, over these: walls that align but for more than that balance no others.
 constexpr double k_left_over = 1e-9;
-
-constexpr std::string_view k_full = "no pores are left";
-constexpr std::string_view k_poisson = "Poisson's ratio at 1/2";
-
-// The models' domains (`monograin models NAME`) say the reasons.
-constexpr StatedLimit k_stated_limits[] = {
-    // mdr and hertz
-    {k_used_up, k_used_up},
-    {"singular growth of the apparent radius", k_used_up},
-    {"the volume balance of the growing radius has no solution nearby", k_used_up},
-    {"the particle is compressed elastically to half its volume", "half the volume"},
-    {"elastic compression to less than half the volume", "half the volume"},
-    {"a wall has reached the centre of the particle", "a wall at the centre"},
-    {"the wall has reached the centre of the particle", "a wall at the centre"},
-    {"the largest that a plastic contact bears", "largest force"},
-    {"overlap above twice the apparent radius", "overlap of the diameter"},
-    {"contact caps intersect", "contact caps intersect"},
-    {"outside the pressure table", "outside the pressure table"},
-    {"there is no mode in which every contact's branch agrees", "no mode agrees"},
-    {k_free_centre, k_free_centre},
-    {"beyond a fold no forces on it balance", "fold of the free centre"},
-    {"beyond their greatest force its place is not determined", "greatest force on the free centre"},
-    // plastic laws
-    {"the walls meet", "the walls meet"},
-    {k_fills, k_fills},
-    {"above the greatest", "largest force"},
-    {"is not below", "the walls meet"},
-    {"would go back at gamma/2R", "no unloading"},
-    {"leads to gamma/2R", "the walls meet"},
-    {"the law of low compressibility", k_fills},
-    // nonlocal; the branch of equilibria ends where the margin does, and has no definite end where walls only touch
-    {k_applicability, k_applicability},
-    {"where the margin is 0.000", k_applicability},
-    {"a contact is as wide as the particle", "contact as wide as the particle"},
-    {"contact radius of R or more", "contact as wide as the particle"},
-    {"would have to pull", "a wall would have to pull"},
-    {"no contact holds the centre of the particle", k_free_centre},
-    {"the largest contact radius over R 0.000000", k_free_centre},
-    {"a wall cannot pull", "a wall would have to pull"},
-    // compressible
-    {"the law ends where the source's data do", "end of the data"},
-    // material-point
-    {"no pores are left", k_full},
-    {"the cap's centre has reached zero pressure", "cap's centre at zero pressure"},
-    {"the linear law of the cap's axis ratio ends", "cap's axis ratio at zero"},
-    {"the linear law of Poisson's ratio ends", k_poisson},
-    {"the program no longer determines one plastic strain", k_uniqueness},
-    {"the strain that follows from the program is not unique", k_uniqueness},
-    {"no plastic strain brings the stress back to the yield surface", k_uniqueness},
-    {"Poisson's ratio has passed 1/2", k_poisson},
-    {"the material has become too stiff for its strength", "moduli beyond rounding"},
-    {"transition_width is too large", "the arc ends above the axis"},
-    // packing
-    {"the packing's strain does not grow any further", "greatest strain"},
-    {"the packing's stress does not grow any further", "greatest stress"},
-    {"the particles give way as much as the packing", "infinite stress"},
-    {"a packing of plastic particles is unloaded", "no unloading"},
-};
 
 double material(const Scenario& scenario, const char* key) {
   const auto found = scenario.material.find(key);
@@ -337,8 +254,7 @@ double deepest_asked_for(const Scenario& scenario, const Scene& scene) {
 
 /// That forces drive the centre away holds only where no contacts that touch could balance them.
 void check_hold(const Run& run, Violations& found) {
-  const auto is_said = [&run](std::string_view words) { return run.record.message.find(words) != std::string::npos; };
-  if (std::ranges::none_of(k_driven_away, is_said) || material(run.scenario, "surface_energy") > 0.0) return;
+  if (run.record.limit != Limit::centre_driven_away || material(run.scenario, "surface_energy") > 0.0) return;
   const Table& table = run.record.history;
   const std::size_t last = table.row_count() - 1;
   const auto step = static_cast<std::size_t>(table.at(last, *table.find("step"))) - 1;
@@ -396,9 +312,7 @@ void check_energy(const Run& run, Violations& found) {
   // what the scene magnifies.
   if (is_conservative && run.integrator.used != "direct") return;
   // A law that gives back more than was put in has to say so.
-  const bool is_warned = std::ranges::any_of(run.record.warnings, [](const std::string& warning) {
-    return warning.find("creates energy") != std::string::npos;
-  });
+  const bool is_warned = run.record.creates_energy;
   const double of_run = run.integrator.used == "direct" ? direct_work_tolerance(run) : own_tolerance(run);
   const double share = is_conservative ? k_direct_tolerance : k_tolerated_loss;
   const double most = (share + of_run) * scale + energy_floor(run);
@@ -478,6 +392,23 @@ bool may_go_on(const Run& run) {
   return ends * k_most_events_between_ends >= k_most_events_per_step;
 }
 
+/// The reason of a failed run, if README's limits name it; else empty.
+std::string stated_failure(const Run& run) {
+  const RunRecord& record = run.record;
+  if (!record.failure) return "";
+  const Failure failure = *record.failure;
+  if (run.integrator.used != "direct" && run.scenario.numerics.rtol < k_finest_rtol) return "tolerance of round-off";
+  if (failure == Failure::endless_events || failure == Failure::chattering) {
+    return may_go_on(run) ? "events without end" : "";
+  }
+  const bool is_too_much_work = failure == Failure::too_much_work;
+  // A material by itself may be so stiff that no method is quick.
+  const bool may_be_stiff = !suits_stiff_equations(run.integrator.used) || !find_model(run.scenario.model)->has_walls();
+  if (is_too_much_work && may_be_stiff) return "stiff equations";
+  if (!record.difficulty || (is_too_much_work && record.difficulty == Difficulty::soft_centre)) return "";
+  return std::string(advice(*record.difficulty));
+}
+
 void check_events(const Run& run, Violations& found) {
   std::map<double, std::size_t> counts;
   const Table& events = run.record.events;
@@ -501,9 +432,10 @@ void check_events(const Run& run, Violations& found) {
   }
 }
 
-/// That a run takes work in proportion to what it shows. Fixed steps are as many as the tolerance says.
+/// A run takes work in proportion to what it shows. Fixed steps are as many as the tolerance says, and methods that are
+/// not made for stiff equations take many where these are; the program itself says when they are too many.
 void check_work(const Run& run, Violations& found) {
-  if (run.integrator.used == "explicit") return;
+  if (!suits_stiff_equations(run.integrator.used)) return;
   // As a method of order 4 needs more at a finer tolerance.
   const double finer = std::pow(std::max(1.0, 1e-8 / run.scenario.numerics.rtol), 0.25);
   const long most = run.integrator.used == "direct" ? k_most_work_direct : std::lround(k_most_work_integrated * finer);
@@ -689,28 +621,13 @@ std::vector<Violation> check_run(const Run& run) {
 }
 
 std::string stated_end(const Run& run) {
-  if (run.record.status == RunStatus::complete) return "complete";
-  const auto says = [&run](std::string_view words) { return run.record.message.find(words) != std::string::npos; };
-  if (run.record.status == RunStatus::failed) {
-    if (says("errors of the size of rounding")) return "tolerance of the size of rounding";
-    if (says(k_singular_balance)) return std::string(k_singular_balance);
-    if (says(k_near_applicability)) return "tolerance next to the limit of applicability";
-    // Rounding makes steps ever shorter, until there are none or too many; events do not follow from it.
-    const bool gave_up_on_steps = !says(k_endless) && !says(k_chattering);
-    if (gave_up_on_steps && says(k_no_depth)) return "no contact above rounding";
-    if (gave_up_on_steps && !says(k_too_much_work) && says(k_hardly_held)) return std::string(k_hardly_held);
-    if (run.scenario.model == "material-point" && says(k_too_much_work)) return std::string(k_too_much_work);
-    for (const std::string_view words : {k_stiff_material, k_hardly_unique}) {
-      if (says(words)) return std::string(words);
-    }
-    for (const std::string_view words : {k_endless, k_chattering}) {
-      if (may_go_on(run) && says(words)) return std::string(words);
-    }
-    return "";
-  }
-  const auto names_it = [&](const StatedLimit& l) { return says(l.words); };
-  const auto found = std::ranges::find_if(k_stated_limits, names_it);
-  return found == std::end(k_stated_limits) ? std::string() : std::string(found->end);
+  const RunRecord& record = run.record;
+  if (record.status == RunStatus::complete) return "complete";
+  if (record.status == RunStatus::failed) return stated_failure(run);
+  // Two sentences for one place: walls push the centre where forces do.
+  if (record.limit == Limit::centre_driven_away) return std::string(code(Limit::centre_not_held));
+  const bool is_stated = record.limit && record.limit != Limit::no_solution && record.limit != Limit::unequal_durations;
+  return is_stated ? std::string(code(*record.limit)) : std::string();
 }
 
 }  // namespace monograin

@@ -31,11 +31,9 @@ inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::
 /// own columns.
 [[nodiscard]] std::vector<Violation> check_run(const Run& run);
 
-/// How a run has ended: "complete", or the limit of the model that its message states; empty: neither.
+/// How a run has ended: "complete", the code of the model's limit, or the reason of a failure; empty where none is
+/// stated.
 [[nodiscard]] std::string stated_end(const Run& run);
-
-/// The stated end where plastic strain grows without bound.
-inline constexpr std::string_view k_uniqueness = "loss of uniqueness";
 
 /// Steps of the longest program, cycles written out.
 [[nodiscard]] std::size_t step_count(const Scenario& scenario);

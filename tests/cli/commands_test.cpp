@@ -133,10 +133,12 @@ TEST_F(Commands, TheReadyGranuleRunsAndStopsAtTheEndOfItsLaw) {
   EXPECT_FALSE(history.find("axial.contact_radius") || history.find("axial.pressure"));
   const auto run = nlohmann::json::parse(text("runs/compressible/run.json"));
   EXPECT_TRUE(run.at("scenario").at("files").contains("compressible.unloading_table")) << run.dump(2);
+  EXPECT_TRUE(run.at("limit").is_null()) << run.dump(2);
   const Outcome beyond =
       monograin("run " + file + " -o runs/compressible --set loading.steps[2].displacement='0.6 R0'");
   EXPECT_EQ(beyond.code, 3) << beyond.err;
-  EXPECT_NE(beyond.err.find("half the radius"), std::string::npos) << beyond.err;
+  EXPECT_NE(beyond.err.find("half the radius (displacement/R0 = 0.5), at 'axial'"), std::string::npos) << beyond.err;
+  EXPECT_EQ(nlohmann::json::parse(text("runs/compressible/run.json")).at("limit"), "source-data-end");
   const Table events = read_csv(path("runs/compressible/events.csv"));
   EXPECT_EQ(events.word(events.row_count() - 1, *events.find("event")), "limit");
   const Outcome refused = monograin("run " + file + " --set material.stiffness_ratio=2");

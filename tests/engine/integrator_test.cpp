@@ -182,7 +182,7 @@ TEST_P(EveryIntegrator, StopsWhereASystemSaysItEnds) {
   const TestRun result = run_toy(std::move(toy), GetParam());
   EXPECT_EQ(result.record.status, RunStatus::stopped);
   EXPECT_EQ(result.events(), std::vector<std::string>{"edge"});
-  EXPECT_NE(result.record.message.find("the toy ends here (xi = 0.5)"), std::string::npos) << result.record.message;
+  EXPECT_NE(result.record.message.find("the walls meet (xi = 0.5)"), std::string::npos) << result.record.message;
 }
 
 TEST_P(EveryIntegrator, NeverLooksBeyondACorner) {

@@ -93,7 +93,7 @@ TEST(StressLimits, AToleranceOfTheSizeOfRoundingIsNamed) {
     if (fine.record.status == RunStatus::failed) {
       ++failures;
       EXPECT_NE(fine.record.message.find("errors of the size of rounding"), std::string::npos) << fine.record.message;
-      EXPECT_EQ(stated_end(fine), "tolerance of the size of rounding");
+      EXPECT_EQ(stated_end(fine), "tolerance of round-off");
     }
     scenario.numerics.rtol = 1e-8;
     scenario.numerics.atol = 1e-12;

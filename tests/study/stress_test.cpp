@@ -108,7 +108,7 @@ TEST_F(BrokenHistory, IsFoundWhereTheDissipationFallsWithoutAWarning) {
   monograin::Run fell =
       with_number(with_number(run_, "dissipation", last, fallen), "stored_energy", last, work - fallen);
   EXPECT_TRUE(breaks(check_run(fell), "energy-made"));
-  fell.record.warnings.emplace_back("the growing apparent radius creates energy");
+  fell.record.creates_energy = true;
   EXPECT_FALSE(breaks(check_run(fell), "energy-made"));
 }
 
@@ -121,16 +121,17 @@ TEST_F(BrokenHistory, IsFoundWhereARunEndsWithoutReason) {
   run_.record.status = RunStatus::failed;
   EXPECT_TRUE(breaks(check_run(run_), "solver"));
   run_.record.status = RunStatus::stopped;
-  run_.record.message = "the iteration got lost";
+  run_.record.limit = monograin::Limit::no_solution;
   EXPECT_TRUE(breaks(check_run(run_), "unstated-limit"));
-  run_.record.message = "step 1, t = 1 s: a wall has reached the centre of the particle (distance/R0 = 0)";
+  run_.record.limit = monograin::Limit::wall_at_centre;
   EXPECT_TRUE(check_run(run_).empty());
-  // Rounding makes an integrator give up on a step; other ends do not follow from it.
+  // Round-off makes an integrator give up on a step; other ends do not follow from it.
   run_.record.status = RunStatus::failed;
-  const std::string of_rounding = "; the program closes no contact by more than 1e-12 of the particle's radius";
-  run_.record.message = "try_step failed with no step passes the error test" + of_rounding;
+  run_.record.limit.reset();
+  run_.record.difficulty = monograin::Difficulty::below_resolution;
+  run_.record.failure = monograin::Failure::no_step;
   EXPECT_TRUE(check_run(run_).empty());
-  run_.record.message = "event location failed with chattering" + of_rounding;
+  run_.record.failure = monograin::Failure::chattering;
   EXPECT_TRUE(breaks(check_run(run_), "solver"));
 }
 
@@ -157,11 +158,11 @@ fixed = true
   monograin::Run held = pressed_against("normal = [0, 0, -1]");
   ASSERT_EQ(held.record.status, RunStatus::complete) << held.record.message;
   held.record.status = RunStatus::stopped;
-  held.record.message = "no contact holds the free centre of the particle against the forces on it";
+  held.record.limit = monograin::Limit::centre_driven_away;
   EXPECT_TRUE(breaks(check_run(held), "held-centre"));
   for (const char* other : {"normal = [1, 0, 0]", "normal = [0, 0, -1]\ngap = 1e-3"}) {
     const monograin::Run driven = pressed_against(other);
-    EXPECT_EQ(stated_end(driven), "no contact holds the free centre of the particle") << driven.record.message;
+    EXPECT_EQ(stated_end(driven), "centre-not-held") << driven.record.message;
     EXPECT_TRUE(check_run(driven).empty()) << other;
   }
 }
@@ -227,7 +228,7 @@ TEST_F(CopiesOfAScene, BreakARuleWhereAStopIsNotShared) {
   };
   const auto stopped = [](monograin::Run run) {
     run.record.status = RunStatus::stopped;
-    run.record.message = "a wall has reached the centre of the particle";
+    run.record.limit = monograin::Limit::wall_at_centre;
     return run;
   };
   const auto checks_with = [&](const RunMaker& make_run) {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hybrid_system.hpp"
 #include "scene/scene.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin {
 
@@ -98,7 +98,7 @@ class ToySystem final : public HybridSystem {
     for (const std::size_t g : fired) {
       if (watched[g].transition) watched[g].transition(y);
       log.push_back({watched[g].name});
-      if (watched[g].ends_domain) end = DomainEnd{log.back(), {"the toy ends here", "xi", xi}};
+      if (watched[g].ends_domain) end = DomainEnd{log.back(), {Limit::walls_meet, -1, "xi", xi}};
     }
     remember(xi, y);
     return end;

@@ -17,7 +17,7 @@
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
 #include "support/refusal.hpp"
-#include "walls.hpp"
+#include "system/walls.hpp"
 
 namespace monograin::nonlocal {
 

@@ -177,7 +177,7 @@ TEST(NonlocalLawOfAllTerms, EndsWhereTheContactIsAsWideAsTheSphere) {
     for (const std::string& message : {refusal<std::domain_error>([&] { return law.at(s); }),
                                        refusal<std::domain_error>([&] { return law.energy(s); }),
                                        refusal<std::domain_error>([&] { return law.pressure(s, 0.0); })}) {
-      EXPECT_TRUE(contains(message, std::isnan(s) ? "nan" : s == 1.0 ? "1.000000" : "1.250000")) << message;
+      EXPECT_TRUE(contains(message, std::isnan(s) ? "nan" : s == 1.0 ? "= 1)" : "= 1.25)")) << message;
     }
   }
   EXPECT_NO_THROW(static_cast<void>(law.signed_square(15.0)));
@@ -187,8 +187,8 @@ TEST(NonlocalLawOfAllTerms, EndsWhereTheContactIsAsWideAsTheSphere) {
 
 TEST_P(NonlocalLaw, RefusesForcesThatPull) {
   for (const double force : {-1e-3, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_TRUE(
-        contains(refusal<std::domain_error>([&] { return law.signed_square_under(force); }), std::to_string(force)));
+    EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return law.signed_square_under(force); }),
+                         std::isnan(force) ? "nan" : "-0.001"));
   }
 }
 

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
+#include "scenario/scenario.hpp"
 #include "support/test_run.hpp"
 
 namespace monograin::limits_test {
@@ -31,6 +35,39 @@ TEST(MdrCaps, IntersectWhereTheTableSays) {
   constexpr double k_printed = 1e-12;  // digits of the table
   EXPECT_NEAR(run(die_to(0.45)).at_event("caps-intersect", "axial.displacement"), 0.438125765118, k_printed);
   EXPECT_NEAR(run(hydrostatic_to(0.2026)).at_event("caps-intersect", "axial.displacement"), 0.202502982795, k_printed);
+}
+
+/// Two rigid walls whose normals are `angle` apart, and one from the other side, against a particle of R0 = 1 that
+/// yields too late to grow before their caps meet.
+Scenario walls_apart_by(double angle, double displacement) {
+  return parse_scenario(fmt::format(R"(model = "mdr"
+particle = {{ radius = 1 }}
+material = {{ youngs_modulus = 1e9, poisson_ratio = 0.3, yield_stress = 1e9 }}
+mdr = {{ strict = true }}
+[loading]
+configuration = "walls"
+[[loading.wall]]
+name = "first"
+normal = [{:.17g}, 0, {:.17g}]
+steps = [{{ displacement = {:.17g}, duration = 1 }}]
+[[loading.wall]]
+name = "second"
+normal = [{:.17g}, 0, {:.17g}]
+steps = [{{ displacement = {:.17g}, duration = 1 }}]
+)",
+                                    std::sin(0.5 * angle), std::cos(0.5 * angle), displacement, -std::sin(0.5 * angle),
+                                    std::cos(0.5 * angle), displacement),
+                        "apart.toml");
+}
+
+// Each cap covers half the angle between the normals: sin(angle/4)^2 = overlap/(2 R).
+TEST(MdrCaps, IntersectWhereTheirAnglesAddUpToThatOfTheWallsHoweverSmall) {
+  for (const double angle : {1.0, 1e-1, 1e-2, 1e-3, 1e-4}) {
+    const double overlap = 2.0 * std::pow(std::sin(0.25 * angle), 2);
+    const TestRun result = run(walls_apart_by(angle, 1.5 * overlap));
+    EXPECT_EQ(result.record.limit, Limit::caps_intersect) << angle << ": " << result.record.message;
+    EXPECT_NEAR(result.last("first.overlap") / overlap, 1.0, 1e-12 + 1e-15 / overlap) << angle;
+  }
 }
 
 TEST(MdrCaps, WarnAndGoOn) {

@@ -6,7 +6,7 @@
 
 #include "history/table.hpp"
 #include "support/reference_case.hpp"
-#include "walls.hpp"
+#include "system/walls.hpp"
 
 namespace monograin::mdr {
 

@@ -26,7 +26,9 @@
 #include <string_view>
 #include <vector>
 
-#include "walls.hpp"
+#include "system/difficulty.hpp"
+#include "system/limit.hpp"
+#include "system/walls.hpp"
 
 namespace monograin {
 
@@ -77,16 +79,16 @@ struct Finding {
   double value = 0.0;
 };
 
-/// Why a system cannot go on: the limit, and by how much it is met.
+/// Why a system cannot go on: the event that ends the run, and the limit that is met.
 struct DomainEnd {
   Event event;
-  Finding finding;
+  LimitPoint point;
 };
 
 /// The system cannot take up the step that begins.
-class CannotBegin : public std::domain_error {
+class CannotBegin : public DomainError {
  public:
-  explicit CannotBegin(const DomainEnd& end) : std::domain_error(std::string(end.finding.message)), end_(end) {}
+  explicit CannotBegin(const DomainEnd& end) : DomainError(end.point), end_(end) {}
   [[nodiscard]] const DomainEnd& end() const noexcept { return end_; }
 
  private:
@@ -254,8 +256,10 @@ class HybridSystem {
   /// Whether a contact may pull: its force then passes through zero while it is closed.
   [[nodiscard]] virtual bool contacts_adhere() const noexcept { return false; }
 
-  /// What makes the equations hard where an integrator has given up, and what to do; empty where nothing is known.
-  [[nodiscard]] virtual std::string_view difficulty(double /*xi*/, std::span<const double> /*y*/) { return {}; }
+  /// What makes the equations hard where an integrator has given up; none where nothing is known.
+  [[nodiscard]] virtual std::optional<Difficulty> difficulty(double /*xi*/, std::span<const double> /*y*/) {
+    return std::nullopt;
+  }
 
   /// What the user should know about this run, collected so far.
   [[nodiscard]] virtual std::vector<Finding> warnings() const = 0;

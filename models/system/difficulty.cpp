@@ -1,0 +1,29 @@
+#include "system/difficulty.hpp"
+
+namespace monograin {
+
+std::string_view advice(Difficulty difficulty) noexcept {
+  switch (difficulty) {
+    case Difficulty::below_resolution:
+      return "the program closes no contact by more than 1e-12 of the particle's radius, which is rounding; expected a "
+             "deeper one, or integrator = \"direct\"";
+    case Difficulty::stiff_material:
+      return "the bulk modulus is above 1e5 yield pressures, and stresses are what rounding leaves of the strains; "
+             "expected integrator = \"cvode-bdf\"";
+    case Difficulty::hardly_unique:
+      return "the program hardly determines the plastic strain any more, and rounding shows in it; expected integrator "
+             "= \"cvode-bdf\"";
+    case Difficulty::singular_balance:
+      return "the balance of the free centre is singular, because nothing but contacts that only touch keeps it from "
+             "moving; expected integrator = \"direct\"";
+    case Difficulty::near_applicability_limit:
+      return "the limit of applicability is so near that the stiffness magnifies the errors that are tolerated; "
+             "expected a larger rtol, or integrator = \"direct\"";
+    case Difficulty::soft_centre:
+      return "the contacts hardly hold the free centre any more, and what is tolerated is magnified next to the fold "
+             "where they end to; expected integrator = \"direct\"";
+  }
+  return {};
+}
+
+}  // namespace monograin
