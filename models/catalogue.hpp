@@ -112,7 +112,7 @@ struct PlannedStep {
 };
 
 /// What a scenario says, each value right by itself.
-struct Given {
+struct ModelInput {
   const std::map<std::string, double>& material;      ///< [SI]
   const std::map<std::string, std::string>& choices;  ///< options of kinds choice and file
   const std::map<std::string, double>& numbers;       ///< options of kind quantity [SI]
@@ -148,7 +148,7 @@ struct ModelInfo {
   std::span<const Preset> presets{};
   /// `strength` and `hardening_exponent` may be given by Ludwik's law instead.
   bool takes_ludwik = false;
-  std::vector<Objection> (*objections)(const Given& given) = nullptr;  ///< null: none
+  std::vector<Objection> (*objections)(const ModelInput& given) = nullptr;  ///< null: none
   std::string_view sign{};  ///< convention of stresses and strains, where it is not that compression is positive
   /// How steps are told of a model that has neither particle nor walls; empty: it has both.
   std::span<const DriveKey> drives{};

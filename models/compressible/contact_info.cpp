@@ -105,7 +105,7 @@ std::optional<double> value_of(const std::map<std::string, double>& values, cons
   return found == values.end() ? std::nullopt : std::optional(found->second);
 }
 
-std::vector<Objection> objections(const Given& given) {
+std::vector<Objection> objections(const ModelInput& given) {
   const auto number = [&](const char* key) { return value_of(given.numbers, key); };
   const auto shear_ratio = value_of(given.material, "shear_ratio");
   std::vector<Objection> found = regression_objections({number("k"), number("delta_t"), number("a")},

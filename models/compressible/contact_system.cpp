@@ -75,18 +75,18 @@ void ContactSystem::begin_step(std::span<const Ramp> ramps, std::span<double> y,
     const double stood = classes_[i].takes_force ? displacement_at(i, y[places_[i]]) : 0.0;
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
     const double d = takes_force ? stood : ramps_[i].start;
-    settle(i, d, log);
+    resolve_mode(i, d, log);
     if (!touches(i)) memory_[i].resting = d;
     if (!classes_[i].takes_force) continue;
     // A force is told; on a steep curve it would not come back from the place of its wall.
     y[places_[i]] = takes_force && touches(i) ? coordinate_under(i, std::max(ramps_[i].start, 0.0)) : coordinate(i, d);
   }
   has_begun_ = true;
-  watch();
+  arm_guards();
 }
 
 /// Decides the regime of a contact at the start of a step.
-void ContactSystem::settle(std::size_t i, double d, std::vector<Event>& log) {
+void ContactSystem::resolve_mode(std::size_t i, double d, std::vector<Event>& log) {
   Memory& memory = memory_[i];
   const auto tell = [&](std::string_view event) { log.push_back({event, static_cast<int>(i)}); };
   if (!touches(i)) {
@@ -120,7 +120,7 @@ int ContactSystem::direction(std::size_t i) const noexcept {
 }
 
 /// Displacement or force as the program says.
-double ContactSystem::told(std::size_t i, double xi) const noexcept {
+double ContactSystem::prescribed(std::size_t i, double xi) const noexcept {
   return std::lerp(ramps_[i].start, ramps_[i].end, xi);
 }
 
@@ -154,7 +154,7 @@ double ContactSystem::displacement_at(std::size_t i, double u) const noexcept {
 }
 
 double ContactSystem::displacement(std::size_t i, double xi, std::span<const double> y) const noexcept {
-  return is_loaded(i) ? displacement_at(i, y[places_[i]]) : told(i, xi);
+  return is_loaded(i) ? displacement_at(i, y[places_[i]]) : prescribed(i, xi);
 }
 
 double ContactSystem::displacement_under_force(std::size_t i, double force) const noexcept {
@@ -225,7 +225,7 @@ double ContactSystem::power(std::size_t i, double xi, std::span<const double> y)
   if (!touches(i)) return 0.0;
   const double speed = ramps_[i].end - ramps_[i].start;
   // F d' = F F'/(df/dd)
-  return is_loaded(i) ? speed * state(i, y[places_[i]]).compliance : speed * force_at(i, told(i, xi));
+  return is_loaded(i) ? speed * state(i, y[places_[i]]).compliance : speed * force_at(i, prescribed(i, xi));
 }
 
 void ContactSystem::complete(double xi, std::span<double> y) {
@@ -233,7 +233,7 @@ void ContactSystem::complete(double xi, std::span<double> y) {
     if (!classes_[i].takes_force) continue;
     // What a wall bears is told as well as where it stands: the least error of a force that ends at nothing would be a
     // way to go, where the curve ends like a power.
-    y[places_[i]] = is_loaded(i) ? coordinate_under(i, told(i, xi)) : told(i, xi);
+    y[places_[i]] = is_loaded(i) ? coordinate_under(i, prescribed(i, xi)) : prescribed(i, xi);
   }
 }
 
@@ -261,9 +261,9 @@ void ContactSystem::residual(double xi, std::span<const double> y, std::span<con
     if (is_loaded(i) && touches(i)) {
       // In units of u, as the integrator weighs it.
       const State now = state(i, u);
-      res[places_[i]] = (now.force - told(i, xi)) / now.by_coordinate;
+      res[places_[i]] = (now.force - prescribed(i, xi)) / now.by_coordinate;
     } else {
-      res[places_[i]] = u - (is_loaded(i) ? memory_[i].resting : told(i, xi));
+      res[places_[i]] = u - (is_loaded(i) ? memory_[i].resting : prescribed(i, xi));
     }
   }
   res[work_place_] = dy[work_place_] - sum;
@@ -325,7 +325,7 @@ void ContactSystem::turn_back(std::size_t i, double d, std::vector<Event>& log) 
 void ContactSystem::add_guard(int kind, std::size_t i, int direction, std::string_view name, double place) {
   // A force is told as a displacement is.
   guards_.push_back(
-      {.kind = kind, .index = static_cast<int>(i), .direction = direction, .name = name, .is_told = true});
+      {.kind = kind, .index = static_cast<int>(i), .direction = direction, .name = name, .is_exact = true});
   guard_places_.push_back(place);
 }
 
@@ -336,7 +336,7 @@ bool ContactSystem::goes_beyond(std::size_t i, double place) const noexcept {
 }
 
 /// The guards that may fire before the end of the step.
-void ContactSystem::watch() {
+void ContactSystem::arm_guards() {
   guards_.clear();
   guard_places_.clear();
   for (std::size_t i = 0; i < classes_.size(); ++i) {
@@ -376,7 +376,7 @@ void ContactSystem::guard_values(double xi, std::span<const double> /*y*/, std::
     // The law is in closed form: where it is under a force follows from that force, free of an integrator's error.
     const double place = is_loaded(i) ? force_at(i, guard_places_[g]) : guard_places_[g];
     // Ramps are as short as contacts are shallow.
-    values[g] = (told(i, xi) - place) / std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
+    values[g] = (prescribed(i, xi) - place) / std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
   }
 }
 
@@ -394,7 +394,8 @@ std::optional<DomainEnd> ContactSystem::fire(std::span<const std::size_t> fired,
     log.push_back({guard.name, guard.index});
     // A wall that goes on has passed what begins within rounding of here, or within one step of fixed length.
     const auto pass_on = [&](double from) {
-      const double d = std::max(from, is_loaded(i) ? displacement_under(settings_.law, told(i, xi)) : told(i, xi));
+      const double d =
+          std::max(from, is_loaded(i) ? displacement_under(settings_.law, prescribed(i, xi)) : prescribed(i, xi));
       pass_boundaries(i, d, log);
       if (memory.regime == Regime::unloading || !reaches(d, k_largest_displacement)) return;
       if (!goes_beyond(i, k_largest_displacement)) return;
@@ -425,7 +426,7 @@ std::optional<DomainEnd> ContactSystem::fire(std::span<const std::size_t> fired,
     }
     if (classes_[i].takes_force) y[places_[i]] = coordinate(i, place);
   }
-  if (!end) watch();
+  if (!end) arm_guards();
   return end;
 }
 
@@ -486,8 +487,8 @@ bool ContactSystem::is_open(int contact_class) const noexcept {
   return !touches(static_cast<std::size_t>(contact_class));
 }
 
-std::vector<Finding> ContactSystem::warnings() const {
-  std::vector<Finding> found = settings_.reservations;
+std::vector<Diagnostic> ContactSystem::warnings() const {
+  std::vector<Diagnostic> found = settings_.reservations;
   double loaded = 0.0;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (memory_[i].has_been_loaded) loaded += classes_[i].multiplicity();

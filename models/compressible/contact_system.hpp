@@ -20,9 +20,9 @@ struct ContactSettings {
   LoadingLaw law;
   double hertz_stiffness = 1.0;  ///< k_H > 0
   UnloadingRule unloading;
-  double initial_radius = 1.0;        ///< R0 [m]
-  double yield_pressure = 1.0;        ///< sigma_y0 [Pa]
-  std::vector<Finding> reservations;  ///< what the user should know of these numbers
+  double initial_radius = 1.0;           ///< R0 [m]
+  double yield_pressure = 1.0;           ///< sigma_y0 [Pa]
+  std::vector<Diagnostic> reservations;  ///< what the user should know of these numbers
   /// Largest displacement [m] and force [N] the program asks of a wall: how large the unknowns become, which absolute
   /// tolerances are relative to. 0: not said.
   double largest_displacement = 0.0;
@@ -57,7 +57,7 @@ class ContactSystem final : public HybridSystem {
   [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
-  [[nodiscard]] std::vector<Finding> warnings() const override;
+  [[nodiscard]] std::vector<Diagnostic> warnings() const override;
 
  private:
   enum class Regime { open, linear, exponential, unloading };
@@ -81,7 +81,7 @@ class ContactSystem final : public HybridSystem {
   [[nodiscard]] bool touches(std::size_t i) const noexcept { return memory_[i].regime != Regime::open; }
   [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return ramps_[i].control == Control::force; }
   [[nodiscard]] int direction(std::size_t i) const noexcept;
-  [[nodiscard]] double told(std::size_t i, double xi) const noexcept;
+  [[nodiscard]] double prescribed(std::size_t i, double xi) const noexcept;
   [[nodiscard]] double opening(std::size_t i) const noexcept;
   [[nodiscard]] double unit_force(std::size_t i) const noexcept;
   [[nodiscard]] bool counts_force(std::size_t i) const noexcept;
@@ -101,8 +101,8 @@ class ContactSystem final : public HybridSystem {
   void go_on_loading(std::size_t i, double d);
   void pass_boundaries(std::size_t i, double d, std::vector<Event>& log);
   void turn_back(std::size_t i, double d, std::vector<Event>& log);
-  void settle(std::size_t i, double d, std::vector<Event>& log);
-  void watch();
+  void resolve_mode(std::size_t i, double d, std::vector<Event>& log);
+  void arm_guards();
   void add_guard(int kind, std::size_t i, int direction, std::string_view name, double place);
 
   ContactSettings settings_;

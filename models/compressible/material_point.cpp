@@ -330,7 +330,7 @@ void MaterialPoint::turn_plastic(Branch branch, const Response& now) {
   choose_side(now);
 }
 
-/// Of s, where that is zero, or beyond zero by what is error: the one it goes to; none, where it stays.
+/// Chooses the sign of s where s is zero to within error: that of its elastic rate, or 0 if s stays.
 void MaterialPoint::choose_side(const Response& now) {
   if (branch_.side * now.s > 0.0) return;
   const double rate = elastic_rate(now.at).s;
@@ -603,7 +603,7 @@ std::optional<Difficulty> MaterialPoint::difficulty(double xi, std::span<const d
   return Difficulty::stiff_material;
 }
 
-std::vector<Finding> MaterialPoint::warnings() const {
+std::vector<Diagnostic> MaterialPoint::warnings() const {
   if (least_work_ > -k_negligible_work) return {};
   return {{"flow that is not associated (dpc) does negative plastic work: it lives on the elastic energy",
            "least work rate over the strength", least_work_}};

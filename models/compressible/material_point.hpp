@@ -64,7 +64,7 @@ class MaterialPoint final : public HybridSystem {
   void observe(double xi, std::span<const double> y, std::span<double> values) override;
   [[nodiscard]] double quantity(Quantity quantity, int channel, double xi, std::span<const double> y) override;
   [[nodiscard]] double controlled(Control control, int channel, double xi, std::span<const double> y) override;
-  [[nodiscard]] std::vector<Finding> warnings() const override;
+  [[nodiscard]] std::vector<Diagnostic> warnings() const override;
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
 
  private:

@@ -157,7 +157,7 @@ std::string text_of(double value) {
   return {buffer, end};
 }
 
-void check_needed(const Given& given, std::vector<Objection>& found) {
+void check_needed(const ModelInput& given, std::vector<Objection>& found) {
   for (const char* key : {"tensile_ratio", "eps0", "reference_density"}) {
     if (given.material.contains(key)) continue;
     found.push_back({key, std::string("yield_model = \"") + given.choices.at("yield_model") + "\" needs " + key +
@@ -165,7 +165,7 @@ void check_needed(const Given& given, std::vector<Objection>& found) {
   }
 }
 
-void check_program(const Given& given, std::vector<Objection>& found) {
+void check_program(const ModelInput& given, std::vector<Objection>& found) {
   const string_view configuration = given.configuration;
   const bool is_path = configuration == "strain-path";
   const bool is_triaxial = configuration == "triaxial";
@@ -188,7 +188,7 @@ void check_program(const Given& given, std::vector<Objection>& found) {
   }
 }
 
-std::vector<Objection> objections(const Given& given) {
+std::vector<Objection> objections(const ModelInput& given) {
   std::vector<Objection> found;
   const string_view yield_model = given.choices.at("yield_model");
   const double width = given.material.at("transition_width");

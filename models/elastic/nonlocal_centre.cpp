@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "backing.hpp"
 #include "elastic/nonlocal_contacts.hpp"
+#include "reaction_cone.hpp"
 
 namespace monograin::nonlocal {
 namespace {
@@ -70,32 +70,32 @@ bool Contacts::lend_stiffness(double gap, std::span<const double> y) {
   return true;
 }
 
-/// Finds the walls that only take a free centre along: of those that may bear, no forces balance of which one is on
-/// such a wall. Exactly then the centre has a way on which it leaves that wall and comes nearer to no other.
-void Contacts::find_bystanders() {
+/// Finds redundant walls: candidates that carry no force in any equilibrium, because no non-negative combination of
+/// normals that includes theirs vanishes. The centre can then leave such a wall without approaching another one.
+void Contacts::find_redundant_walls() {
   const std::size_t n = class_count();
   if (std::ranges::equal(may_bear_, sorted_)) return;
   std::ranges::copy(may_bear_, sorted_.begin());
   for (std::size_t j = 0; j < n; ++j) {
-    is_bystander_[j] = false;
+    is_redundant_[j] = false;
     if (!may_bear_[j] || free_count() == 0) continue;
     for (std::size_t h = 0; h < n; ++h) free_displacements_[h] = !may_bear_[h] ? k_no_wall : h == j ? 1.0 : 0.0;
     Eigen::Vector3d way = Eigen::Vector3d::Zero();
-    is_bystander_[j] = clear_walls(n, Eigen::Matrix3d::Identity(), way, k_same_surroundings);
+    is_redundant_[j] = clear_walls(n, Eigen::Matrix3d::Identity(), way, k_same_surroundings);
   }
 }
 
-bool Contacts::has_bystanders() const {
-  return std::ranges::any_of(is_bystander_, [](char is) { return is != 0; });
+bool Contacts::has_redundant_walls() const {
+  return std::ranges::any_of(is_redundant_, [](char is) { return is != 0; });
 }
 
 /// Sorts those that may bear into the walls that hold a free centre, and bystanders. A force holds it nowhere.
 void Contacts::find_holding_among(const auto& is_force) {
-  find_bystanders();
-  for (std::size_t j = 0; j < class_count(); ++j) holds_[j] = may_bear_[j] && !is_bystander_[j] && !is_force(j);
+  find_redundant_walls();
+  for (std::size_t j = 0; j < class_count(); ++j) holds_[j] = may_bear_[j] && !is_redundant_[j] && !is_force(j);
 }
 
-/// The same of walls that are nearer to a state than that, or whose force grows from or falls to nothing there.
+/// Classifies walls with a gap below `near`, and walls whose prescribed force starts from zero or ends there.
 void Contacts::sort_near(std::span<const Ramp> ramps, std::span<const double> y, double near) {
   const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
   for (std::size_t j = 0; j < class_count(); ++j) {
@@ -112,7 +112,7 @@ bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> 
   if (!do_some_touch) return false;
   // A little later, as forces may have yet to begin; but not beyond the end of the step, where what is left of them may
   // point the other way.
-  look(y);
+  evaluate(y);
   for (std::size_t j = 0; j < class_count(); ++j) {
     const bool is_force = ramps[j].control == Control::force;
     const double force = std::max(0.0, std::lerp(forces_[j], ramps[j].end, k_little));
@@ -121,9 +121,8 @@ bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> 
   return may_balance(targets_, y, near);
 }
 
-/// Whether any forces of walls that near, under displacement control, could balance those of the others. Beside large
-/// ones it is not seen whether the small ones can be balanced: they are asked for by themselves, and where contacts of
-/// a state bear, these may also give way.
+/// True if walls under displacement control with a gap below `near` can balance the prescribed forces. Small forces are
+/// asked for by themselves, because beside large ones round-off hides them; loaded contacts may also give way to them.
 bool Contacts::may_balance(std::span<const Target> targets, std::span<const double> y, double near) const {
   const auto push_of = [&](std::size_t j) -> Eigen::Vector3d { return weights_[j] * targets[j].value * arm_of(j); };
   double largest = 0.0;
@@ -146,7 +145,7 @@ bool Contacts::may_balance(std::span<const Target> targets, std::span<const doub
       push += push_of(j);
       sum += weights_[j] * targets[j].value;
     }
-    return push.norm() <= k_resolved * sum || can_back(push, others);
+    return push.norm() <= k_resolved * sum || in_reaction_cone(push, others);
   };
   if (!can_be_borne(false)) return false;
   others.insert(others.end(), giving_way.begin(), giving_way.end());
@@ -188,7 +187,7 @@ bool Contacts::find_holding(std::span<const double> y, double gap) {
 /// Whether prescribed forces act on the centre along such directions, where only the others could bear them. Beside
 /// large forces the balance of all does not tell a small one from nothing.
 bool Contacts::leaves_forces(const Eigen::Matrix3d& projector, std::span<const double> y) {
-  look(y);
+  evaluate(y);
   Eigen::Vector3d push = Eigen::Vector3d::Zero();
   double sum = 0.0;
   for (std::size_t j = 0; j < class_count(); ++j) {
@@ -198,11 +197,10 @@ bool Contacts::leaves_forces(const Eigen::Matrix3d& projector, std::span<const d
   return (projector * push).norm() > k_resolved * sum;
 }
 
-/// Where contacts bear a free centre in some directions only, others may take it along in the rest without bearing: as
-/// soft as they are shallow, so that no step towards the targets is short against that. The bearing ones are balanced
-/// by themselves, and the centre goes out of the way of the others where that changes nothing for them. Where M is
-/// positive definite with every contact as deep as in the one or the other state, no other state balances that is no
-/// deeper.
+/// Moves a free centre that loaded contacts constrain in some directions only. Idle walls move it in the others; their
+/// stiffness vanishes, so that Newton steps are unbounded. The constrained part is solved by itself, and the centre
+/// then moves out of the way of the idle walls where that changes no load. Where M is positive definite for every depth
+/// between the two states, no other state that is no deeper is in equilibrium.
 bool Contacts::let_others_go(std::span<double> y) {
   const std::size_t n = class_count();
   std::copy(targets_.begin(), targets_.end(), last_targets_.begin());
@@ -235,11 +233,11 @@ bool Contacts::let_bystanders_go(std::span<const char> is_closed, std::span<doub
     may_bear_[j] = targets_[j].is_force ? targets_[j].value > 0.0 : is_closed[j] || y[j] > 0.0;
   }
   find_holding_among([this](std::size_t j) { return targets_[j].is_force; });
-  if (!has_bystanders()) return false;
+  if (!has_redundant_walls()) return false;
   forget();
-  for (std::size_t j = 0; j < n; ++j) forces_[j] = is_bystander_[j] ? 0.0 : modulus_ * law_.at(y[j]).force;
+  for (std::size_t j = 0; j < n; ++j) forces_[j] = is_redundant_[j] ? 0.0 : modulus_ * law_.at(y[j]).force;
   for (std::size_t j = 0; j < n; ++j) {
-    const bool may_go = is_bystander_[j] && !targets_[j].is_force;
+    const bool may_go = is_redundant_[j] && !targets_[j].is_force;
     free_displacements_[j] = may_go ? targets_[j].value + lift_by_forces(j) : k_no_wall;
   }
   Eigen::Vector3d place = place_of(y);
@@ -274,7 +272,7 @@ void Contacts::take_along(std::span<const Ramp> ramps, std::span<const double> y
   const std::size_t n = class_count();
   const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
   const auto takes_along = [&](std::size_t j) {
-    return is_bystander_[j] && !is_force(j) && (touches.empty() || touches[j]);
+    return is_redundant_[j] && !is_force(j) && (touches.empty() || touches[j]);
   };
   for (std::size_t j = 0; j < n; ++j) {
     free_displacements_[j] = takes_along(j) ? entry(j, n) - closing(y[j], touch) : k_no_wall;
@@ -406,7 +404,7 @@ void Contacts::clear_centre(std::span<const Ramp> ramps, double xi, std::span<co
 /// Puts open walls where their displacements and the forces of the others leave them: a force far away may lift them by
 /// less than errors of their gaps.
 void Contacts::close_gaps(std::span<const char> is_closed, std::span<double> y) {
-  look(y);
+  evaluate(y);
   for (std::size_t j = 0; j < class_count(); ++j) {
     if (is_closed[j] || targets_[j].is_force) continue;
     const double approach = targets_[j].value + lift_by_forces(j);

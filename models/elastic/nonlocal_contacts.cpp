@@ -130,7 +130,7 @@ Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Ce
   stiffness_.resize(n);
   seen_.resize(n);
   free_displacements_.resize(n);
-  for (auto* marks : {&may_bear_, &sorted_, &is_bystander_, &holds_}) marks->resize(n);
+  for (auto* marks : {&may_bear_, &sorted_, &is_redundant_, &holds_}) marks->resize(n);
   forget();
   matrix_.resize(n * stride_);
   for (auto* targets : {&targets_, &first_targets_, &last_targets_, &way_start_, &way_end_}) targets->resize(n);
@@ -153,7 +153,7 @@ void Contacts::set_targets(std::span<const Ramp> ramps, double xi) {
 
 /// Of what the ends prescribe, where a state is.
 void Contacts::find_start(std::span<const Target> ends, std::span<const double> y, std::span<Target> starts) {
-  look(y);
+  evaluate(y);
   for (std::size_t j = 0; j < class_count(); ++j) {
     const bool is_force = ends[j].is_force;
     starts[j] = {is_force, is_force ? forces_[j] : now_[j].approach - lift(j, y), y[j]};
@@ -168,7 +168,7 @@ void Contacts::set_targets_between(std::span<const Target> starts, std::span<con
 }
 
 /// Contacts, forces and stiffnesses of a state.
-void Contacts::look(std::span<const double> y) {
+void Contacts::evaluate(std::span<const double> y) {
   const auto squares = y.first(class_count());
   if (std::ranges::equal(squares, seen_)) return;
   forget();
@@ -396,7 +396,7 @@ bool Contacts::has_left_branch(std::span<const double> y) {
 
 bool Contacts::is_balanced(std::span<const double> y) {
   if (free_count() == 0) return true;
-  look(y);
+  evaluate(y);
   double sum = 0.0;
   for (std::size_t j = 0; j < class_count(); ++j) sum += weights_[j] * forces_[j];
   for (std::size_t k = 0; k < free_count(); ++k) {
@@ -412,7 +412,7 @@ bool Contacts::is_balanced(std::span<const double> y) {
 /// Contacts of a centre that only goes along are no deeper than rounding: what the resolved displacement makes of their
 /// forces need not balance.
 bool Contacts::is_balanced_but_for_rounding(std::span<const double> y) {
-  look(y);
+  evaluate(y);
   double widest = 0.0;
   for (std::size_t j = 0; j < class_count(); ++j) widest = std::max(widest, std::abs(y[j]));
   const double rounding = k_resolved * widest;
@@ -482,7 +482,7 @@ void Contacts::approach_in_steps(std::span<double> y) {
     }
     if (may_go_on) continue;
     if (is_on_branch || !may_balance(last_targets_, state_)) throw DomainError(Limit::centre_driven_away);
-    look(state_);
+    evaluate(state_);
     const auto widest = std::max_element(
         now_.begin(), now_.end(), [](const auto& a, const auto& b) { return a.contact_radius < b.contact_radius; });
     if (margin(state_) < k_no_margin) throw DomainError({Limit::applicability, -1, "margin", margin(state_)});
@@ -500,14 +500,14 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
                      double pull, std::span<const char> touches) {
   const std::size_t n = class_count();
   if (let_go_on(ramps, y, dy, touch, touches)) return;
-  look(y);
+  evaluate(y);
   const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
   const auto slope = [&](std::size_t j) { return ramps[j].end - ramps[j].start; };
   forget();
   // What bystanders bear is error: two of them would hold the centre in their corner.
   if (free_count() > 0) sort_near(ramps, y, 2.0 * touch);
   for (std::size_t j = 0; j < n; ++j) {
-    if (is_force(j) || (free_count() > 0 && is_bystander_[j])) stiffness_[j] = 0.0;
+    if (is_force(j) || (free_count() > 0 && is_redundant_[j])) stiffness_[j] = 0.0;
   }
   for (std::size_t j = 0; j < n; ++j) {
     entry(j, n) = is_force(j) ? 0.0 : slope(j);
@@ -520,7 +520,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
   }
   if (free_count() > 0) {
     regularise_first_touch(
-        1.0, [&](std::size_t j) { return !is_force(j) && y[j] == 0.0 && entry(j, n) >= 0.0 && !is_bystander_[j]; });
+        1.0, [&](std::size_t j) { return !is_force(j) && y[j] == 0.0 && entry(j, n) >= 0.0 && !is_redundant_[j]; });
     const auto force_rate = [&](std::size_t j) { return is_force(j) ? slope(j) : stiffness_[j] * entry(j, n); };
     Eigen::Vector3d net = Eigen::Vector3d::Zero();
     double pressing = 0.0;
@@ -536,7 +536,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     }
     Eigen::Vector3d error = Eigen::Vector3d::Zero();
     for (std::size_t j = 0; j < n; ++j) {
-      if (is_forced && !is_bystander_[j]) error += weights_[j] * forces_[j] * arm_of(j);
+      if (is_forced && !is_redundant_[j]) error += weights_[j] * forces_[j] * arm_of(j);
       net += weights_[j] * force_rate(j) * arm_of(j);
       // What walls under displacements leave is rounding of all that they would change; where none is to change, that
       // of the forces.
@@ -551,7 +551,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     move_centre(net + hurry * error, centre);
     // So much of an error says nothing of what drives the centre where no contact holds it.
     const double left = (directions_of_nothing() * (net + pull * error)).norm();
-    if (has_bystanders()) take_along(ramps, y, touch, touches, dy);
+    if (has_redundant_walls()) take_along(ramps, y, touch, touches, dy);
     // Walls that just touch hold the centre at once, if they can bear; and those that are as near as a force is deep,
     // as errors take them off just before it ends.
     if (left > k_balance * pressing && !may_be_held(ramps, y, near)) throw DomainError(Limit::centre_driven_away);
@@ -567,7 +567,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
 
 void Contacts::residual(std::span<const Ramp> ramps, double xi, std::span<const double> y, std::span<double> residual) {
   const std::size_t n = class_count();
-  look(y);
+  evaluate(y);
   for (std::size_t j = 0; j < n; ++j) {
     const Target goal = target(ramps[j].control == Control::force, std::lerp(ramps[j].start, ramps[j].end, xi));
     residual[j] = goal.is_force ? y[j] - goal.signed_square : now_[j].approach - goal.value - lift(j, y);
@@ -577,7 +577,7 @@ void Contacts::residual(std::span<const Ramp> ramps, double xi, std::span<const 
 
 void Contacts::jacobian(std::span<const Ramp> ramps, std::span<const double> y, Eigen::MatrixXd& jacobian) {
   const std::size_t n = class_count();
-  look(y);
+  evaluate(y);
   jacobian.setZero(at(unknown_count()), at(unknown_count()));
   for (std::size_t j = 0; j < n; ++j) {
     const double force_slope = stiffness_[j] * now_[j].approach_slope;
@@ -596,12 +596,12 @@ void Contacts::jacobian(std::span<const Ramp> ramps, std::span<const double> y, 
 }
 
 double Contacts::margin(std::span<const double> y) {
-  look(y);
+  evaluate(y);
   return modes_.margin(stiffness_);
 }
 
 double Contacts::least_pivot(std::span<const double> y, double shift) {
-  look(y);
+  evaluate(y);
   return modes_.least_pivot(stiffness_, shift);
 }
 
@@ -610,7 +610,7 @@ double Contacts::branch_reach(std::size_t index, double signed_square) const noe
 }
 
 bool Contacts::is_held_softly(std::span<const Ramp> ramps, std::span<const double> y, double s) {
-  look(y);
+  evaluate(y);
   const Eigen::Index count = directions_.cols();
   Eigen::MatrixXd reach = Eigen::MatrixXd::Zero(count, count);
   Eigen::MatrixXd hold = reach;
@@ -629,7 +629,7 @@ bool Contacts::is_held_softly(std::span<const Ramp> ramps, std::span<const doubl
 }
 
 void Contacts::contacts(std::span<const double> y, std::span<ContactState> states) {
-  look(y);
+  evaluate(y);
   for (std::size_t j = 0; j < class_count(); ++j) {
     states[j] = {.displacement = now_[j].approach - lift(j, y),
                  .approach = now_[j].approach,
@@ -641,7 +641,7 @@ void Contacts::contacts(std::span<const double> y, std::span<ContactState> state
 }
 
 double Contacts::deformed_radius(RadiusRule rule, std::size_t index, std::span<const double> y) {
-  look(y);
+  evaluate(y);
   const double a = now_[index].contact_radius;
   if (a == 0.0 || rule == RadiusRule::none) return a;
   double sum = a + forces_[index] * local_radius_influence(poisson_ratio_, a);
@@ -654,7 +654,7 @@ double Contacts::deformed_radius(RadiusRule rule, std::size_t index, std::span<c
 }
 
 double Contacts::energy(std::span<const double> y) {
-  look(y);
+  evaluate(y);
   double sum = 0.0;
   for (std::size_t j = 0; j < class_count(); ++j) {
     double approach = 0.0;

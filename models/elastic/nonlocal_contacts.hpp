@@ -166,7 +166,7 @@ class Contacts {
   void set_targets(std::span<const Ramp> ramps, double xi);
   void find_start(std::span<const Target> ends, std::span<const double> y, std::span<Target> starts);
   void set_targets_between(std::span<const Target> starts, std::span<const Target> ends, double share);
-  void look(std::span<const double> y);
+  void evaluate(std::span<const double> y);
   void forget() noexcept;
   [[nodiscard]] double lift(std::size_t index, std::span<const double> y) const noexcept;
   [[nodiscard]] double net_force(std::size_t direction) const noexcept;
@@ -178,8 +178,8 @@ class Contacts {
   [[nodiscard]] double unborne_force() const;
   bool lend_stiffness(double gap, std::span<const double> y);
   [[nodiscard]] bool newton(std::span<double> y, double imbalance, bool do_hold_centre = false);
-  void find_bystanders();
-  [[nodiscard]] bool has_bystanders() const;
+  void find_redundant_walls();
+  [[nodiscard]] bool has_redundant_walls() const;
   [[nodiscard]] bool may_balance(std::span<const Target> targets, std::span<const double> y,
                                  double near = std::numeric_limits<double>::infinity()) const;
   void find_holding_among(const auto& is_force);
@@ -243,7 +243,7 @@ class Contacts {
   std::vector<double> free_displacements_;  ///< of the walls that a centre goes out of the way of
   std::vector<char> may_bear_;              ///< among which bystanders are sought
   std::vector<char> sorted_;                ///< that these are of
-  std::vector<char> is_bystander_;
+  std::vector<char> is_redundant_;
   std::vector<char> holds_;     ///< bears a free centre under displacement control
   std::vector<double> matrix_;  ///< a row per class: 1 - G dF/dg, right-hand side, arms
   std::vector<Target> targets_, first_targets_, last_targets_;

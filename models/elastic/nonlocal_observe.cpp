@@ -11,7 +11,7 @@ namespace monograin::nonlocal {
 using std::numbers::pi;
 
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
-  look_closely(xi, y);
+  evaluate_closely(xi, y);
   const double length = settings_.initial_radius;
   const double force_unit = settings_.youngs_modulus * length * length;
   const double energy_unit = force_unit * length;
@@ -25,7 +25,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const ContactState c = now_[i];
     const double a = c.contact_radius;
-    *out++ = (is_loaded(i) ? c.displacement : told(i, xi)) * length;
+    *out++ = (is_loaded(i) ? c.displacement : prescribed(i, xi)) * length;
     *out++ = depth(i, xi) * length;
     *out++ = c.force * force_unit;
     *out++ = a * length;
@@ -45,7 +45,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
 }
 
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
-  look_closely(xi, y);
+  evaluate_closely(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
   ContactState c = now_[i];
   // A contact that is lost bears nothing, even where the exact state has it for as long as the error of that instant.
@@ -53,7 +53,7 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
   const double length = settings_.initial_radius;
   const double area = pi * c.contact_radius * c.contact_radius;
   return quantity_of({.force = c.force * settings_.youngs_modulus * length * length,
-                      .displacement = (is_loaded(i) ? c.displacement : told(i, xi)) * length,
+                      .displacement = (is_loaded(i) ? c.displacement : prescribed(i, xi)) * length,
                       .pressure = area > 0.0 ? c.force / area * settings_.youngs_modulus : 0.0,
                       .contact_radius = c.contact_radius * length,
                       .apparent_radius = length},
@@ -63,7 +63,7 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
 /// Pressure under the contact, and its surface, which is the wall's plane.
 std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {
   constexpr int k_points = 128;
-  look_closely(xi, y);
+  evaluate_closely(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
   const ContactState c = now_[i];
   if (!(c.contact_radius > 0.0)) return {};
@@ -81,8 +81,8 @@ std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::spa
   return points;
 }
 
-std::vector<Finding> System::warnings() const {
-  std::vector<Finding> result;
+std::vector<Diagnostic> System::warnings() const {
+  std::vector<Diagnostic> result;
   if (has_stiffened_ || least_margin_ < k_stiff_margin) {
     result.push_back(
         {"the formulation stiffens as it nears its limit of applicability", "least margin", least_margin_});

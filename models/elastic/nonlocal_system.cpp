@@ -67,7 +67,7 @@ constexpr double k_nowhere = std::numeric_limits<double>::infinity();
 // gathered would grow with 1/margin towards the limit of applicability.
 constexpr double k_pull = 20.0;
 
-/// Of a class under force control, in whose place its power stands.
+/// Signed square of a force-controlled class from its unknown, the power 3/2 of it.
 double square_of(double power) { return std::pow(std::max(power, 0.0), 1.0 / k_force_power); }
 
 }  // namespace
@@ -176,15 +176,15 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     if (!was_loaded && is_loaded(i)) y[i] = std::pow(std::max(y[i], 0.0), k_force_power);
   }
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
-    if (is_loaded(i) && told(i, k_ahead) < 0.0) throw_pull(i);
+    if (is_loaded(i) && prescribed(i, k_ahead) < 0.0) throw_pull(i);
   }
   // A force closes a gap at once; everything else is where it was.
   solve(0.0, y);
-  look(0.0, y);
-  settle(0.0, log);
+  evaluate(0.0, y);
+  resolve_mode(0.0, log);
   mark_touching();
   has_begun_ = true;
-  watch();
+  arm_guards();
   if (const auto end = limit_at_start(y)) throw CannotBegin(*end);
 }
 
@@ -192,7 +192,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
 std::optional<DomainEnd> System::limit_at_start(std::span<const double> y) {
   for (const Guard& guard : guards_) {
     if (guard.kind < k_radius) continue;
-    look_closely(0.0, y);
+    evaluate_closely(0.0, y);
     const double now = limit_value(guard, 0.0);
     if (now > 0.0) continue;
     std::vector<double> ahead(y.begin(), y.end());
@@ -201,13 +201,13 @@ std::optional<DomainEnd> System::limit_at_start(std::span<const double> y) {
     } catch (const std::domain_error&) {
       return end_at(guard, 0.0, y);
     }
-    look_closely(k_ahead, ahead);
+    evaluate_closely(k_ahead, ahead);
     if (limit_value(guard, k_ahead) < now) return end_at(guard, 0.0, y);
   }
   return std::nullopt;
 }
 
-/// How far the state that look_closely() found is from a limit; negative beyond it.
+/// How far the state that evaluate_closely() found is from a limit; negative beyond it.
 double System::limit_value(const Guard& guard, double xi) {
   const auto index = static_cast<std::size_t>(std::max(0, guard.index));
   if (guard.kind == k_radius) {
@@ -225,13 +225,15 @@ DomainEnd System::end_at(const Guard& guard, double xi, std::span<const double> 
     return {event, {Limit::contact_as_wide_as_particle, guard.index, "contact radius/R0", widest_}};
   }
   if (guard.kind == k_centre) return {event, {Limit::wall_at_centre, guard.index, "displacement/R0", 1.0}};
-  look_closely(xi, y);
+  evaluate_closely(xi, y);
   double largest = 0.0;
   for (std::size_t i = 0; i < classes_.size(); ++i) largest = std::max(largest, depth(i, xi));
   return {event, {Limit::applicability, -1, "largest displacement/R0", largest}};
 }
 
-double System::told(std::size_t i, double xi) const noexcept { return std::lerp(ramps_[i].start, ramps_[i].end, xi); }
+double System::prescribed(std::size_t i, double xi) const noexcept {
+  return std::lerp(ramps_[i].start, ramps_[i].end, xi);
+}
 
 void System::throw_pull(std::size_t i) const {
   throw DomainError({.limit = Limit::wall_would_pull, .contact_class = static_cast<int>(i)});
@@ -257,13 +259,13 @@ double System::end_of_force(std::size_t i) const noexcept {
 }
 
 double System::square_under_force(std::size_t i, double xi) const {
-  const double force = told(i, xi);
+  const double force = prescribed(i, xi);
   if (force < 0.0) throw_pull(i);
   return contacts_.law().signed_square_under(force / contacts_.composite_modulus());
 }
 
 /// The unknowns as contacts_ wants them, in state_.
-std::span<double> System::look(double xi, std::span<const double> y) {
+std::span<double> System::evaluate(double xi, std::span<const double> y) {
   std::ranges::copy(y.first(state_.size()), state_.begin());
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_loaded(i)) state_[i] = square_under_force(i, xi);
@@ -272,13 +274,13 @@ std::span<double> System::look(double xi, std::span<const double> y) {
 }
 
 /// The same, and all contacts in that state in now_.
-void System::look_closely(double xi, std::span<const double> y) { contacts_.contacts(look(xi, y), now_); }
+void System::evaluate_closely(double xi, std::span<const double> y) { contacts_.contacts(evaluate(xi, y), now_); }
 
 void System::mark_closed() {
   for (std::size_t i = 0; i < classes_.size(); ++i) is_closed_[i] = regimes_[i] == Regime::elastic;
 }
 
-/// The other way.
+/// Copies state_ to y, as its power 3/2 where a force is prescribed.
 void System::note(std::span<double> y) const {
   std::ranges::copy(state_, y.begin());
   for (std::size_t i = 0; i < classes_.size(); ++i) {
@@ -288,7 +290,7 @@ void System::note(std::span<double> y) const {
 
 void System::complete(double xi, std::span<double> y) {
   // The gaps themselves, and the place of a free centre: errors of them would close walls that only touch.
-  look(xi, y);
+  evaluate(xi, y);
   mark_closed();
   contacts_.clear_centre(ramps_, xi, is_closed_, state_);
   note(y);
@@ -304,7 +306,7 @@ void System::branch_reach(std::span<const double> y, std::span<double> reach) co
 }
 
 void System::solve(double xi, std::span<double> y) {
-  look(xi, y);
+  evaluate(xi, y);
   // Under forces, too, the way begins where y is: the centre would be carried along another one.
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_loaded(i)) state_[i] = square_of(y[i]);
@@ -322,20 +324,20 @@ void System::solve(double xi, std::span<double> y) {
 /// force begins, and where it ends.
 double System::leave_singularity(double xi, std::span<double> y) {
   if (contacts_.free_count() == 0) return xi;
-  look(xi, y);
+  evaluate(xi, y);
   const double ahead = std::min(xi + k_ahead, 1.0);
   double later = xi;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (!is_loaded(i)) continue;
     const double end = end_of_force(i);
-    const bool begins = state_[i] <= touch_ && told(i, ahead) > told(i, xi);
+    const bool begins = state_[i] <= touch_ && prescribed(i, ahead) > prescribed(i, xi);
     if (begins && contacts_.may_be_held(ramps_, state_, k_just_lost * touch_)) later = ahead;
     if (end > xi && end - xi < 2.0 * k_end_of_force) later = end;
   }
   if (later == xi) return xi;
   const double energy = contacts_.energy(state_);
   try {
-    contacts_.solve(ramps_, later, look(later, y));
+    contacts_.solve(ramps_, later, evaluate(later, y));
   } catch (const std::domain_error&) {
     return xi;  // whoever goes on from here is told
   }
@@ -345,10 +347,10 @@ double System::leave_singularity(double xi, std::span<double> y) {
 }
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
-  look_closely(xi, y);
+  evaluate_closely(xi, y);
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     drawn_ramps_[i] = ramps_[i];
-    if (!is_loaded(i)) drawn_ramps_[i].end += k_pull * (told(i, xi) - now_[i].displacement);
+    if (!is_loaded(i)) drawn_ramps_[i].end += k_pull * (prescribed(i, xi) - now_[i].displacement);
   }
   or_pull_that_follows(xi, [&] { contacts_.rates(drawn_ramps_, state_, rates_, touch_, k_pull, touches_); });
   std::ranges::copy(rates_, dy.begin());
@@ -381,7 +383,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
 }
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
-  look(xi, y);
+  evaluate(xi, y);
   or_pull_that_follows(xi, [&] { contacts_.residual(ramps_, xi, state_, res.first(state_.size())); });
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_loaded(i)) res[i] = y[i] - std::pow(state_[i], k_force_power);
@@ -400,7 +402,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
 }
 
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
-  return contacts_.energy(look(xi, y));
+  return contacts_.energy(evaluate(xi, y));
 }
 
 // --- transitions
@@ -422,9 +424,9 @@ std::optional<double> System::square_ahead(std::size_t i, double xi) {
   return 0.0;
 }
 
-/// Regimes from the state that look() found. Walls that just touch belong to the side to which they go. At a fixed
+/// Regimes from the state that evaluate() found. Walls that just touch belong to the side to which they go. At a fixed
 /// centre an open one is where it is but for rounding: its guard says when it is made, which may be much later.
-void System::settle(double xi, std::vector<Event>& log) {
+void System::resolve_mode(double xi, std::vector<Event>& log) {
   const bool are_exact = has_begun_ && contacts_.free_count() == 0;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const bool was_open = regimes_[i] == Regime::open;
@@ -449,7 +451,7 @@ void System::add_guard(int kind, std::size_t index, int direction, std::string_v
   guards_.push_back({kind, static_cast<int>(index), direction, name});
 }
 
-/// Walls that touch in the state that look() found, until they are well off.
+/// Walls that touch in the state that evaluate() found, until they are well off.
 void System::mark_touching() {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const bool is_off = regimes_[i] == Regime::open && state_[i] < -idle_;
@@ -457,7 +459,7 @@ void System::mark_touching() {
   }
 }
 
-void System::watch() {
+void System::arm_guards() {
   guards_.clear();
   const bool is_at_rest = std::ranges::all_of(ramps_, [](const Ramp& ramp) { return ramp.start == ramp.end; });
   if (is_at_rest) return;
@@ -493,7 +495,7 @@ void System::watch() {
                        .direction = -1,
                        .name = "force-ends",
                        .is_silent = true,
-                       .is_told = true});
+                       .is_exact = true});
   }
   // The formulation stiffens before it comes to its limit.
   const bool will_stiffen = !has_stiffened_ && contacts_.least_pivot(state_, k_stiff_margin) > 0.0;
@@ -510,7 +512,7 @@ void System::watch() {
 
 /// How far a wall has come towards the centre, wherever that is.
 double System::depth(std::size_t i, double xi) {
-  return (is_loaded(i) ? now_[i].displacement : told(i, xi)) + shift(i, state_);
+  return (is_loaded(i) ? now_[i].displacement : prescribed(i, xi)) + shift(i, state_);
 }
 
 /// What the displacement of the centre adds to that.
@@ -536,7 +538,7 @@ double System::angle_between_edges(const Pair& pair, double xi) {
 }
 
 void System::guard_values(double xi, std::span<const double> y, std::span<double> values) {
-  look_closely(xi, y);
+  evaluate_closely(xi, y);
   edge_angles_.assign(classes_.size(), k_nan);
   for (std::size_t g = 0; g < guards_.size(); ++g) {
     const auto index = static_cast<std::size_t>(std::max(0, guards_[g].index));
@@ -571,9 +573,9 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
 
 std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                       std::vector<Event>& log) {
-  look_closely(xi, y);
+  evaluate_closely(xi, y);
   std::optional<DomainEnd> end;
-  // What has yet to touch a free centre bears nothing at that instant, and may only take it along.
+  // A wall whose touch guard fires now carries no load yet; it may only move a free centre.
   const auto only_touches = [&](int wall) {
     return std::ranges::any_of(fired,
                                [&](std::size_t g) { return guards_[g].kind == k_touched && guards_[g].index == wall; });
@@ -615,12 +617,12 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   if (end) return end;
   try {
     solve(xi, y);
-    settle_others(xi, fired, log);
+    resolve_others(xi, fired, log);
     mark_touching();
   } catch (const std::domain_error&) {
     // Where there is no state, whoever goes on from here is told.
   }
-  watch();
+  arm_guards();
   return std::nullopt;
 }
 
@@ -639,7 +641,7 @@ bool System::only_stands(std::size_t i, double xi, std::span<const double> y) {
 
 /// Contacts that the exact state has on another side than an integrator had, whose guards would not cross any more. At
 /// a fixed centre a wall at which the surface ends to stand bears nothing, as before it was pressed.
-void System::settle_others(double xi, std::span<const std::size_t> fired, std::vector<Event>& log) {
+void System::resolve_others(double xi, std::span<const std::size_t> fired, std::vector<Event>& log) {
   const bool is_fixed = contacts_.free_count() == 0;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const bool was_open = regimes_[i] == Regime::open;
@@ -673,8 +675,8 @@ bool System::is_open(int contact_class) const noexcept {
 
 std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
   if (is_shallow_) return Difficulty::below_resolution;  // of the whole program
-  if (contacts_.margin(look(xi, y)) < k_hard_margin) return Difficulty::near_applicability_limit;
-  if (contacts_.free_count() == 0 || !contacts_.is_held_softly(ramps_, look(xi, y), idle_)) return std::nullopt;
+  if (contacts_.margin(evaluate(xi, y)) < k_hard_margin) return Difficulty::near_applicability_limit;
+  if (contacts_.free_count() == 0 || !contacts_.is_held_softly(ramps_, evaluate(xi, y), idle_)) return std::nullopt;
   return Difficulty::singular_balance;
 }
 

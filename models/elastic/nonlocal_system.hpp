@@ -61,7 +61,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
-  [[nodiscard]] std::vector<Finding> warnings() const override;
+  [[nodiscard]] std::vector<Diagnostic> warnings() const override;
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
 
  private:
@@ -75,15 +75,15 @@ class System final : public HybridSystem {
   };
 
   [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return ramps_[i].control == Control::force; }
-  [[nodiscard]] double told(std::size_t i, double xi) const noexcept;
+  [[nodiscard]] double prescribed(std::size_t i, double xi) const noexcept;
   [[noreturn]] void throw_pull(std::size_t i) const;
   void or_pull_that_follows(double xi, auto&& ask) const;
   [[nodiscard]] double end_of_force(std::size_t i) const noexcept;
   [[nodiscard]] double square_under_force(std::size_t i, double xi) const;
-  std::span<double> look(double xi, std::span<const double> y);
+  std::span<double> evaluate(double xi, std::span<const double> y);
   [[nodiscard]] bool only_stands(std::size_t i, double xi, std::span<const double> y);
-  void settle_others(double xi, std::span<const std::size_t> fired, std::vector<Event>& log);
-  void look_closely(double xi, std::span<const double> y);
+  void resolve_others(double xi, std::span<const std::size_t> fired, std::vector<Event>& log);
+  void evaluate_closely(double xi, std::span<const double> y);
   void mark_closed();
   void note(std::span<double> y) const;
   [[nodiscard]] double depth(std::size_t i, double xi);
@@ -93,9 +93,9 @@ class System final : public HybridSystem {
   [[nodiscard]] DomainEnd end_at(const Guard& guard, double xi, std::span<const double> y);
   [[nodiscard]] double angle_between_edges(const Pair& pair, double xi);
   [[nodiscard]] std::optional<double> square_ahead(std::size_t i, double xi);
-  void settle(double xi, std::vector<Event>& log);
+  void resolve_mode(double xi, std::vector<Event>& log);
   void mark_touching();
-  void watch();
+  void arm_guards();
   void add_guard(int kind, std::size_t index, int direction, std::string_view name);
 
   /// The margin from which on the source's formulation is seen to stiffen.

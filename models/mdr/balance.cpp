@@ -68,7 +68,7 @@ constexpr double k_no_stiffness = 1e-12;
 
 }  // namespace
 
-/// Volume balance, power and force balance of what look() found. Equations (37) and (38) in the form that can be
+/// Volume balance, power and force balance of what evaluate() found. Equations (37) and (38) in the form that can be
 /// integrated.
 void System::sum_up(double xi, double r) {
   const double radius = 1.0 + r;
@@ -321,7 +321,7 @@ double System::shallow() const noexcept {
                   elastic_overlap(ElasticProfile::parabola, material_.composite_modulus, 1.0, rounding_of_forces()));
 }
 
-/// The same asked of an overlap, without finding that one.
+/// True if an overlap is below the resolution; cheaper than comparing it with shallow().
 bool System::is_shallow(double overlap) const noexcept {
   return overlap < k_shallow || hertz_force(material_.composite_modulus, 1.0, overlap) < rounding_of_forces();
 }
@@ -342,7 +342,7 @@ std::optional<std::size_t> System::contact_beyond_pull_off(double r) {
 void System::move_centre(double xi, std::span<double> y) {
   find_balance(xi, y);
   check_hold();
-  keep_look(xi, y);
+  keep_evaluation(xi, y);
 }
 
 /// Beyond its greatest force a plastic contact that gives way bears less: where several do, one of them may go in while
@@ -359,7 +359,7 @@ void System::check_hold() const {
 
 /// Newton on the balance of forces at a given radius; the force grows with the overlap, so damping is all it needs.
 void System::find_balance(double xi, std::span<double> y) {
-  look_at_forces(xi, y);
+  evaluate_forces(xi, y);
   const bool is_only_one = !weakest_contact();
   double way = std::numeric_limits<double>::infinity();
   double step_size = std::numeric_limits<double>::infinity();
@@ -390,7 +390,7 @@ void System::find_balance(double xi, std::span<double> y) {
     for (int halving = 0; halving < k_most_halvings; ++halving) {
       for (int k = 0; k < free_count_; ++k) y[centre_place(k)] = before[k] + step[k];
       try {
-        look_at_forces(xi, y);
+        evaluate_forces(xi, y);
         if (sums_.force.norm() < std::max(error, noise) || step.norm() < k_round_off) break;
         // Stiff contacts may bear more on a way along which soft ones balance: the way that is left says more. Where an
         // edge peels there are other equilibria, to which that might lead.
@@ -417,7 +417,7 @@ void System::find_balance(double xi, std::span<double> y) {
 /// @param is_balanced  whether y is such an equilibrium, and not merely where a search has got stuck
 /// @return whether it has found the equilibrium sought
 bool System::leave_saddle(double xi, std::span<double> y, bool is_balanced) {
-  look_once(xi, y);
+  evaluate_cached(xi, y);
   const auto is_sought = [&] { return least_firmness() >= 0.0 && !contact_beyond_pull_off(y[k_radius]); };
   if (is_balanced && is_sought()) return true;
   const std::optional<std::size_t> beyond = contact_beyond_pull_off(y[k_radius]);
@@ -428,7 +428,7 @@ bool System::leave_saddle(double xi, std::span<double> y, bool is_balanced) {
   for (int k = 0; k < free_count_; ++k) saddle[k] = y[centre_place(k)];
   const auto go = [&](double way) {
     for (int k = 0; k < free_count_; ++k) y[centre_place(k)] = saddle[k] + way * weakest[k];
-    look(xi, y);
+    evaluate(xi, y);
   };
   // How firmly the centre is held there, along that direction.
   const auto hold = [&](double way) {
@@ -462,7 +462,7 @@ bool System::leave_saddle(double xi, std::span<double> y, bool is_balanced) {
         try {
           go(place * way);
           move_centre(xi, y);
-          look(xi, y);
+          evaluate(xi, y);
           if (is_sought()) return true;
         } catch (const std::domain_error&) {
           continue;  // the search leads astray from there
@@ -476,7 +476,7 @@ bool System::leave_saddle(double xi, std::span<double> y, bool is_balanced) {
   // Any balance short of pull-off shows that they hold it no more.
   go(beyond && firmest ? *firmest : 0.0);
   if (beyond && firmest) move_centre(xi, y);
-  look(xi, y);
+  evaluate(xi, y);
   if (contact_beyond_pull_off(y[k_radius])) throw DomainError(Limit::centre_fold);
   return false;
 }
@@ -484,14 +484,14 @@ bool System::leave_saddle(double xi, std::span<double> y, bool is_balanced) {
 /// Moves the centre towards the balance of forces, as far as the present branches of the contacts lead.
 /// @return false where they do not lead anywhere
 bool System::approach_balance(double xi, std::span<double> y) {
-  look(xi, y);
+  evaluate(xi, y);
   Small step = balance_step(&Line::stiffness, &Line::force);
   Small before = Small::Zero();
   for (int k = 0; k < free_count_; ++k) before[k] = y[centre_place(k)];
   for (; step.norm() > k_round_off; step *= 0.5) {
     for (int k = 0; k < free_count_; ++k) y[centre_place(k)] = before[k] + step[k];
     try {
-      look(xi, y);
+      evaluate(xi, y);
       return true;
     } catch (const std::domain_error&) {
       continue;
@@ -521,13 +521,13 @@ void System::hold_centre(std::span<const double> y) {
   unheld_ = unheld_directions();
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     const bool may_pull = memory_[i].edge != Edge::following;
-    bears_[i] = directions_[i].norm() < k_no_direction || is_backed(i) || (may_pull && is_backed(i, -1.0));
+    bears_[i] = directions_[i].norm() < k_no_direction || is_supported(i) || (may_pull && is_supported(i, -1.0));
   }
-  forget_look();
+  drop_evaluation();
 }
 
 double System::balance_residual(double xi, std::span<const double> y) {
-  look(xi, y);
+  evaluate(xi, y);
   return is_growing_ ? sums_.balance - frozen_balance_ : 0.0;
 }
 
@@ -542,7 +542,7 @@ void System::grow(double xi, std::span<double> y) {
   const double last_step = free_count_ == 0 && !peels ? k_last_step : 2.0 * k_round_off;
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     move_walls(xi, y);
-    look(xi, y);
+    evaluate(xi, y);
     double slope = sums_.by_radius;
     double defect = sums_.balance - frozen_balance_;
     Small to_balance = Small::Zero();

@@ -28,12 +28,12 @@ double System::contact_guard(int kind, std::size_t i, double xi, double overlap,
     case k_yield: {
       const double at = (1.0 + r) * material_.yield_overlap_ratio;
       // What only touches may be as deep as that by the rounding of others.
-      return overlap / (rides(i) ? std::max(at, shallow()) : at) - 1.0;
+      return overlap / (is_idle_contact(i) ? std::max(at, shallow()) : at) - 1.0;
     }
     case k_reload:
       return overlap - largest_overlap(memory_[i], r) - k_same_overlap;
     case k_lost:
-      if (rides(i)) overlap += shallow();
+      if (is_idle_contact(i)) overlap += shallow();
       if (memory_[i].regime == Regime::elastic) return overlap;
       return 1.0 - unloading_fraction(shape(i, r), overlap);
     case k_dent_touched:
@@ -76,7 +76,7 @@ double System::cap_guard(const CapPair& pair, double r) const {
   const double scale = 0.5 / (1.0 + r);
   const auto square = [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    return rides(at) ? 0.0 : std::clamp(now_[at].overlap * scale, 0.0, 1.0);
+    return is_idle_contact(at) ? 0.0 : std::clamp(now_[at].overlap * scale, 0.0, 1.0);
   };
   const double first = square(pair.first);
   const double second = square(pair.second);
@@ -84,12 +84,12 @@ double System::cap_guard(const CapPair& pair, double r) const {
 }
 
 /// Lists the guards that can fire before the step ends.
-void System::watch(double xi, std::span<const double> y) {
+void System::arm_guards(double xi, std::span<const double> y) {
   guards_.clear();
-  look_once(xi, y);
+  evaluate_cached(xi, y);
   const double r = y[k_radius];
   const Motion now = motion(is_growing_);
-  for (std::size_t i = 0; i < memory_.size(); ++i) watch_contact(i, r, now);
+  for (std::size_t i = 0; i < memory_.size(); ++i) arm_contact_guards(i, r, now);
   const auto is_plastic = [](const Memory& memory) { return memory.regime == Regime::fully_plastic; };
   if (free_count_ > 0 && weakest_contact()) {
     guards_.push_back({.kind = k_unstable, .index = -1, .direction = -1, .name = "pull-off", .is_branch_end = true});
@@ -144,7 +144,7 @@ bool System::goes_one_way(double r, const Motion& now) const {
   return !(goes_in && goes_out);
 }
 
-void System::watch_contact(std::size_t i, double r, const Motion& now) {
+void System::arm_contact_guards(std::size_t i, double r, const Motion& now) {
   const Memory& memory = memory_[i];
   const int index = static_cast<int>(i);
   const bool is_free = !is_loaded(i) && free_count_ > 0 && directions_[i].norm() > k_no_direction;
@@ -178,7 +178,7 @@ void System::watch_contact(std::size_t i, double r, const Motion& now) {
     guards_.push_back(
         {.kind = k_greatest_force, .index = index, .direction = -1, .name = "limit", .is_branch_end = true});
   }
-  if (memory.is_virgin) {
+  if (memory.is_on_primary_branch) {
     const bool is_shifted = settings_.delta_max_rule == DeltaMaxRule::shifted;
     const bool may_retreat = is_free || (may_turn && (is_loaded(i) || (wall_rate(i, now) < 0.0 && !is_shifted)));
     if (may_retreat) guards_.push_back({k_retreat, index, -1, "retreat"});
@@ -257,7 +257,7 @@ bool System::is_extremum(int kind, std::size_t i, const Motion& now) const noexc
 }
 
 void System::guard_values(double xi, std::span<const double> y, std::span<double> values) {
-  look_once(xi, y);
+  evaluate_cached(xi, y);
   const double r = y[k_radius];
   const Motion now = motion(is_growing_);
   for (std::size_t g = 0; g < guards_.size(); ++g) {
@@ -296,10 +296,10 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
           values[g] = rate_if_turned(i, xi, y);
           break;
         }
-        values[g] = virgin_rate(i, now);
+        values[g] = primary_branch_rate(i, now);
         // What rests beside a centre that moves has rates of either sign.
         values[g] += 2.0 * k_touch;
-        if (rides(i)) values[g] = 1.0;
+        if (is_idle_contact(i)) values[g] = 1.0;
         break;
       case k_turn:
         values[g] = edge_rate(i, r, now);
@@ -307,7 +307,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
       case k_lost:
         values[g] = contact_guard(k_lost, i, xi, now_[i].overlap, r);
         // What only touches is always near to that, and not lost together with others.
-        if (memory_[i].is_virgin || rides(i)) values[g] /= k_shallow;
+        if (memory_[i].is_on_primary_branch || is_idle_contact(i)) values[g] /= k_shallow;
         break;
       case k_greatest_tension: {
         const double rate = force_rate(i, now);

@@ -41,9 +41,9 @@ inline constexpr double k_at_rest = 1e-8;
 inline constexpr double k_together = 1e-6;
 /// Growth ends where the free surface is used up to this share.
 inline constexpr double k_least_slope = 1e-3;
-/// Where several contacts hold a free centre between them, their equilibrium turns back where they hold it no more; the
-/// root of a guard that is zero there would lie within the rounding of states that are found no more. What is left of
-/// the way is the square of this.
+/// Stiffness of a free centre at which a fold counts as reached. At the fold the equilibrium ceases to exist: a guard
+/// that vanished there could not be located, because no state lies beyond. The remaining distance goes with the square
+/// of this.
 inline constexpr double k_least_firmness = 1e-5;
 /// Stiffness of a plastic contact under force, over that of a shallow one, at which it counts as bearing the largest
 /// force that it can. At less its overlap would magnify errors of the radius a hundredfold and more.

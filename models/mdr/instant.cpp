@@ -27,36 +27,37 @@ const UnloadingShape& System::shape(std::size_t i, double r) {
 
 /// Contacts of all classes at an instant.
 /// @throws std::domain_error where the volume of the particle is not defined
-void System::look(double xi, std::span<const double> y) {
-  look_at_forces(xi, y);
-  keep_look(xi, y);
+void System::evaluate(double xi, std::span<const double> y) {
+  evaluate_forces(xi, y);
+  keep_evaluation(xi, y);
 }
 
-/// The same where only the forces matter.
-void System::look_at_forces(double xi, std::span<const double> y) {
-  forget_look();
+/// Evaluates all contacts without asking whether the volume of the particle is defined.
+void System::evaluate_forces(double xi, std::span<const double> y) {
+  drop_evaluation();
   const double r = y[k_radius];
   longest_ = 1.0;
   for (int k = 0; k < free_count_; ++k) longest_ = std::max(longest_, std::abs(y[centre_place(k)]));
   for (std::size_t i = 0; i < now_.size(); ++i) {
     const double carried = carried_by_centre(i, y);
     now_[i].position = is_loaded(i) ? y[wall_places_[i]] - carried : prescribed_position(i, xi);
-    look_at(i, is_loaded(i) ? y[wall_places_[i]] : now_[i].position + carried, r);
+    evaluate_contact(i, is_loaded(i) ? y[wall_places_[i]] : now_[i].position + carried, r);
   }
   sum_up(xi, r);
 }
 
-void System::keep_look(double xi, std::span<const double> y) {
+void System::keep_evaluation(double xi, std::span<const double> y) {
   if (!(sums_.under_root > 0.0)) throw DomainError(Limit::half_volume);
   seen_xi_ = xi;
   std::ranges::copy(y, seen_.begin());
 }
 
-/// The same, unless they were looked at there last: right-hand side, guards and observables are asked for in turn.
-void System::look_once(double xi, std::span<const double> y) {
+/// Evaluates all contacts at a state, or keeps the cached evaluation if it is for the same state: right-hand side,
+/// guards and observables are asked for in turn.
+void System::evaluate_cached(double xi, std::span<const double> y) {
   bool is_seen = seen_xi_ == xi && seen_[k_radius] == y[k_radius];
   for (std::size_t k = k_centre; is_seen && k < y.size(); ++k) is_seen = seen_[k] == y[k];
-  if (!is_seen) look(xi, y);
+  if (!is_seen) evaluate(xi, y);
 }
 
 /// An elastic contact. Where the centre is free, a trial that opens it would find a particle that nothing holds there,
@@ -97,7 +98,7 @@ Contact System::unloaded_contact(const UnloadingShape& shape, double overlap) co
   return contact;
 }
 
-void System::look_at(std::size_t i, double displacement, double r) {
+void System::evaluate_contact(std::size_t i, double displacement, double r) {
   now_[i].displacement = displacement;
   now_[i].overlap = displacement + r;
   now_[i].contact = contact_at(i, now_[i].overlap, r);
@@ -140,11 +141,11 @@ Contact System::contact_at(std::size_t i, double overlap, double r) {
 
 /// Force times displacement of the contacts under force.
 double System::force_work(std::span<const double> y) {
-  forget_look();
+  drop_evaluation();
   double sum = 0.0;
   for (std::size_t i = 0; i < now_.size(); ++i) {
     if (!is_loaded(i)) continue;
-    look_at(i, y[wall_places_[i]], y[k_radius]);
+    evaluate_contact(i, y[wall_places_[i]], y[k_radius]);
     const double position = now_[i].displacement - carried_by_centre(i, y);
     sum += counts_[i] * now_[i].contact.force * position;
   }

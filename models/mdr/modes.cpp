@@ -35,12 +35,12 @@ bool System::gate_is_open(const Motion& now) const noexcept {
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (!is_member(memory_[i])) continue;
     // Beside stiff contacts the rate of what only touches has fewer digits.
-    const double least = (rides(i) ? k_at_rest : k_touch) * speed_scale();
+    const double least = (is_idle_contact(i) ? k_at_rest : k_touch) * speed_scale();
     // What keeps up with its wall displaces nothing.
     const bool is_idle = !is_loaded(i) && std::abs(inward_rate(i, now)) <= least;
     if (settings_.radius_rule == RadiusRule::seed && !is_idle) return true;
     const bool is_driven = is_loaded(i) ? ramps_[i].end > ramps_[i].start : inward_rate(i, now) > least;
-    if (memory_[i].is_virgin && is_driven) return true;
+    if (memory_[i].is_on_primary_branch && is_driven) return true;
   }
   return false;
 }
@@ -48,7 +48,7 @@ bool System::gate_is_open(const Motion& now) const noexcept {
 /// Whether the radius starts to grow, or goes on growing, at this instant.
 bool System::wants_growth(double xi, std::span<double> y) {
   if (settings_.radius_rule == RadiusRule::fixed) return false;
-  look_once(xi, y);
+  evaluate_cached(xi, y);
   const Motion now = motion(false);
   if (!gate_is_open(now)) return false;
   double drive = growth_drive(now);
@@ -61,10 +61,10 @@ bool System::wants_growth(double xi, std::span<double> y) {
   if (is_singular || std::abs(drive) <= k_touch) {
     // Balanced to round-off, or undefined: the sign just after decides.
     move_walls(xi + 1e-9, y);
-    look(xi + 1e-9, y);
+    evaluate(xi + 1e-9, y);
     drive = growth_drive(motion(false));
     move_walls(xi, y);
-    look(xi, y);
+    evaluate(xi, y);
   }
   return drive > 0.0;
 }
@@ -97,8 +97,8 @@ double System::nearness_of_yield(std::size_t i) const noexcept {
 }
 
 /// Fires the guards of one contact that are past already and moving on. Returns whether anything changed.
-bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log,
-                            std::vector<Event>& made) {
+bool System::resolve_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log,
+                             std::vector<Event>& made) {
   const double r = y[k_radius];
   const double overlap = now_[i].overlap;
   const double of_wall = wall_rate(i, now);
@@ -135,19 +135,19 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
       log.push_back(event("dent-touched"));
       return true;
     case Regime::elastic:
-      if (rides(i)) {
+      if (is_idle_contact(i)) {
         if (!opens || !is_past(k_lost, -1.0)) return false;
         lose_contact(i);
         log.push_back(event("contact-lost"));
         return true;
       }
       // Where its force is about to pull before a contact has borne any, there is no edge that could stick.
-      if (memory.is_virgin && retreats && is_loaded(i) && !is_pressed && overlap < k_shallow) {
+      if (memory.is_on_primary_branch && retreats && is_loaded(i) && !is_pressed && overlap < k_shallow) {
         lose_contact(i);
         log.push_back(event("contact-lost"));
         return true;
       }
-      if (memory.is_virgin && retreats) {
+      if (memory.is_on_primary_branch && retreats) {
         start_unloading(i, r, why, log);
         return true;
       }
@@ -164,10 +164,10 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
     case Regime::unloading:
       break;
   }
-  if (memory.is_virgin) return false;
+  if (memory.is_on_primary_branch) return false;
   if (advances && is_past(k_reload, 1.0)) {
     // What has turned at this instant rests where it is: from one look to the next the sign of its rate is another one.
-    const double rate = virgin_rate(i, now);
+    const double rate = primary_branch_rate(i, now);
     const double passed = contact_guard(k_reload, i, xi, overlap, r);
     if (!has_turned_[i] || rate > k_at_rest || passed > k_touch) {
       has_resumed_[i] = has_turned_[i];
@@ -178,7 +178,7 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
     // Passed by rounding, the guard would not be met.
     if (passed > 0.0) set_largest(i, r);
   }
-  if (adheres()) return settle_edge(i, xi, y, now, is_carried, log);
+  if (adheres()) return resolve_edge(i, xi, y, now, is_carried, log);
   // No force presses a wall on what is left of its contact: whether that ends does not wait for the radius to grow.
   const bool is_let_go = is_loaded(i) && ramps_[i].start <= 0.0 && ramps_[i].end <= 0.0;
   if ((opens || is_let_go) && is_past(k_lost, -1.0)) {
@@ -190,8 +190,8 @@ bool System::settle_contact(std::size_t i, double xi, std::span<double> y, const
 }
 
 /// The same for the edge of an adhesive contact below its largest overlap.
-bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_carried,
-                         std::vector<Event>& log) {
+bool System::resolve_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_carried,
+                          std::vector<Event>& log) {
   const double r = y[k_radius];
   const double rate = edge_rate(i, r, now);
   const bool moves_in = rate > k_at_rest || is_carried;
@@ -233,7 +233,7 @@ bool System::settle_edge(std::size_t i, double xi, std::span<double> y, const Mo
 /// Ends the run when no consistent mode exists. Drops the cached evaluation, so that the last row shows the regimes
 /// that were tried last.
 void System::throw_unsettled() {
-  forget_look();
+  drop_evaluation();
   throw DomainError(Limit::no_consistent_regimes);
 }
 
@@ -245,7 +245,7 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
     complete(xi, y);
     return;
   }
-  look(xi, y);
+  evaluate(xi, y);
   for (std::size_t i = 0; i < now_.size(); ++i) overlaps_before_[i] = now_[i].overlap;
   memory_before_ = memory_;
   const std::size_t logged_before = log.size();
@@ -262,7 +262,7 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
       if (!approach_balance(xi, y)) throw;
       has_arrived = false;
     }
-    look(xi, y);
+    evaluate(xi, y);
     const double r = y[k_radius];
     bool has_changed = false;
     for (std::size_t i = 0; i < memory_.size(); ++i) {
@@ -272,10 +272,11 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
       // anew how far it has come from where it was.
       const Memory& before = memory_before_[i];
       const Memory last = memory_[i];
-      const bool has_entered = last.is_virgin && (!before.is_virgin || last.regime != before.regime);
+      const bool has_entered =
+          last.is_on_primary_branch && (!before.is_on_primary_branch || last.regime != before.regime);
       if (has_entered) {
         memory_[i] = before;
-        look_at(i, now_[i].displacement, r);
+        evaluate_contact(i, now_[i].displacement, r);
         forget_events(i, logged_before, log);
         forget_events(i, made_before, made);
       }
@@ -285,21 +286,22 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
       }
       // What turns back turns where it came from.
       const bool turns = gone < 0.0 && touches(memory_[i].regime) && memory_[i].edge == Edge::following;
-      if (turns) look_at(i, overlaps_before_[i] - r, r);
+      if (turns) evaluate_contact(i, overlaps_before_[i] - r, r);
       now_[i].rate_by_time = gone;
       now_[i].rate_by_growth = 0.0;
       // A dent may be touched and passed at once: looked at in between it would have no force.
-      for (std::size_t change = 0; settle_contact(i, xi, y, Motion{}, log, made); ++change) {
+      for (std::size_t change = 0; resolve_contact(i, xi, y, Motion{}, log, made); ++change) {
         if (change == most_rounds()) throw_unsettled();
         has_changed = has_changed || !has_entered;
       }
-      const bool is_as_last = memory_[i].regime == last.regime && memory_[i].is_virgin == last.is_virgin;
+      const bool is_as_last =
+          memory_[i].regime == last.regime && memory_[i].is_on_primary_branch == last.is_on_primary_branch;
       has_changed = has_changed || (has_entered && !is_as_last);
     }
     if (!has_changed && !has_arrived) throw_unsettled();
     if (!has_changed) break;
   }
-  forget_look();  // what turns was looked at where it came from
+  drop_evaluation();  // what turns was looked at where it came from
 }
 
 /// Decides the mode: branch of every contact and growth depend on each other, so assume, look, correct, and repeat.
@@ -307,10 +309,10 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
 /// @param has_jumped  the force of a contact has jumped, and its wall has not given way yet: the balance is frozen as
 /// it
 ///                    is now, and when the wall gives way the radius follows it, if need be back by a little
-void System::settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log,
-                    bool has_jumped) {
+void System::resolve_mode(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log,
+                          bool has_jumped) {
   const bool was_growing = is_growing_;
-  forget_look();
+  drop_evaluation();
   std::vector<Event> made;
   goes_on_.assign(memory_.size(), false);
   has_resumed_.assign(memory_.size(), false);
@@ -337,12 +339,12 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
     if (round == most_rounds() && runs_away) throw DomainError(Limit::free_surface_used_up);
     if (round == most_rounds()) throw_unsettled();
     is_growing_ = growth ? *growth : wants_growth(xi, y);
-    look_once(xi, y);
+    evaluate_cached(xi, y);
     const std::size_t events_before = log.size();
     if (leave_behind(xi, y, log)) {
       // What it leaves has drawn the centre along in the search for the balance.
       if (!has_jumped) complete(xi, y);
-      forget_look();
+      drop_evaluation();
       growth.reset();
       continue;
     }
@@ -352,7 +354,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
     std::vector<std::size_t> just_loaded;
     for (std::size_t i = 0; i < memory_.size(); ++i) {
       const bool was_open = !touches(memory_[i].regime);
-      has_changed = settle_contact(i, xi, y, now, log, made) || has_changed;
+      has_changed = resolve_contact(i, xi, y, now, log, made) || has_changed;
       if (was_open && is_loaded(i) && touches(memory_[i].regime)) just_loaded.push_back(i);
     }
     if (!has_changed) {
@@ -363,7 +365,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
       if (hold_guard(y[k_radius]) >= 0.0) break;
       separate(*weakest, y[k_radius], y, log);
     }
-    forget_look();
+    drop_evaluation();
     // No guard is met by a wall that a force presses on from the start.
     for (const std::size_t i : just_loaded) meet_balanced(i, true, y[k_radius], made);
     // Where a contact has pulled off, the others have to balance anew.
@@ -376,7 +378,7 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
   if (is_growing_ != was_growing) log.push_back({is_growing_ ? "growth-on" : "growth-off"});
   log.insert(log.end(), made.begin(), made.end());
 
-  look_once(xi, y);
+  evaluate_cached(xi, y);
   frozen_balance_ = is_growing_ ? sums_.balance : 0.0;
   // Past already, its guard would not be met.
   if (is_growing_ &&
@@ -388,12 +390,12 @@ void System::settle(double xi, std::span<double> y, std::optional<bool> growth, 
       throw DomainError({Limit::greatest_force, static_cast<int>(i), "stiffness left", stiffness_left(i)});
   }
   hold_centre(y);
-  watch(xi, y);
+  arm_guards(xi, y);
 }
 
 std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                       std::vector<Event>& log) {
-  look_once(xi, y);
+  evaluate_cached(xi, y);
   const double r = y[k_radius];
   const Motion now = motion(is_growing_);
   std::optional<bool> growth;
@@ -412,12 +414,14 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     // Closed or opened already, together with the contact it balances.
     if ((is_making && touches(memory_[i].regime)) || (is_losing && !touches(memory_[i].regime))) continue;
     // What only takes the centre along has nothing to unload from, nor to yield by.
-    if ((guard.kind == k_retreat || guard.kind == k_yield) && rides(i)) continue;
+    if ((guard.kind == k_retreat || guard.kind == k_yield) && is_idle_contact(i)) continue;
     // Another guard of the same edge has changed it at this instant, or its contact is back at its largest overlap,
     // where edges only follow.
     const bool is_of_edge = guard.kind == k_peel || guard.kind == k_follow || guard.kind == k_turn;
     // Asked of the guards of edges alone: that of intersecting caps carries the number of their pair, not of a wall.
-    const auto has_edge = [this](const Memory& memory) { return touches(memory.regime) && !memory.is_virgin; };
+    const auto has_edge = [this](const Memory& memory) {
+      return touches(memory.regime) && !memory.is_on_primary_branch;
+    };
     if (is_of_edge && (!has_edge(memory_[i]) || edges_before_[i] != memory_[i].edge)) continue;
     // Nor is a branch at its end that is as short as what counts as zero.
     if (guard.kind == k_reload && memory_[i].regime == Regime::unloading) {
@@ -490,7 +494,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
       case k_growth_on:
       case k_growth_off:
         growth = guard.kind == k_growth_on;
-        continue;  // settle() logs it
+        continue;  // resolve_mode() logs it
       case k_caps:
         if (const auto limit = meet_caps(cap_pairs_[i], r, log)) end = limit;
         continue;
@@ -517,10 +521,10 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     return end;
   }
   if (std::ranges::all_of(fired, [this](std::size_t g) { return guards_[g].is_mark; })) {
-    watch(xi, y);
+    arm_guards(xi, y);
     return std::nullopt;
   }
-  settle(xi, y, others_fired ? std::nullopt : growth, log, has_jumped);
+  resolve_mode(xi, y, others_fired ? std::nullopt : growth, log, has_jumped);
   return meet_caps_at_once(xi, y, log);
 }
 
@@ -538,7 +542,7 @@ std::optional<DomainEnd> System::meet_caps(CapPair& pair, double r, std::vector<
 
 /// A contact may be made within the cap of another one, which no guard meets.
 std::optional<DomainEnd> System::meet_caps_at_once(double xi, std::span<const double> y, std::vector<Event>& log) {
-  look_once(xi, y);
+  evaluate_cached(xi, y);
   const double r = y[k_radius];
   std::optional<DomainEnd> end;
   for (CapPair& pair : cap_pairs_) {
@@ -558,7 +562,7 @@ DomainEnd System::centre_reached(int contact_class) {
 
 /// A wall that stands at the limit already, and goes on from there, which no guard meets.
 std::optional<DomainEnd> System::reach_centre_at_once(double xi, std::span<const double> y) {
-  look_once(xi, y);
+  evaluate_cached(xi, y);
   for (std::size_t i = 0; i < now_.size(); ++i) {
     if (1.0 - now_[i].displacement > k_least_distance) continue;
     if (wall_rate(i, motion(is_growing_)) > k_at_rest) return centre_reached(static_cast<int>(i));

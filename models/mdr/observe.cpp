@@ -22,7 +22,7 @@ constexpr double k_roundings = 4.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
-/// Energy of the contacts that look() found. A row of the history asks for both parts of it, which differ where a
+/// Energy of the contacts that evaluate() found. A row of the history asks for both parts of it, which differ where a
 /// contact is at its largest overlap, and by the surface energy where an edge follows.
 double System::energy(double r, PlasticPart plastic_part) {
   const bool is_either = std::ranges::none_of(memory_, [this](const Memory& memory) {
@@ -64,7 +64,7 @@ double System::contact_energy(std::size_t i, double r, PlasticPart plastic_part)
 }
 
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
-  look_once(xi, y);
+  evaluate_cached(xi, y);
   const double r = y[k_radius];
   const double length = settings_.initial_radius;
   const double force_unit = stress_unit_ * length * length;
@@ -115,7 +115,7 @@ Contact System::visible_contact(std::size_t i) const noexcept {
 }
 
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
-  look_once(xi, y);
+  evaluate_cached(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
   const Contact contact = visible_contact(i);
   const double length = settings_.initial_radius;
@@ -131,7 +131,7 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
 std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {
   constexpr int k_points = 128;    // within the contact, and as many around it
   constexpr double k_reach = 2.0;  // as far as this many contact radii
-  look(xi, y);
+  evaluate(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
   const double a = now_[i].contact.contact_radius;
   if (!touches(memory_[i].regime) || !(a > 0.0)) return {};
@@ -159,12 +159,12 @@ std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::spa
 
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
   if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
-  look(xi, y);
+  evaluate(xi, y);
   return now_[static_cast<std::size_t>(contact_class)].position * settings_.initial_radius;
 }
 
-std::vector<Finding> System::warnings() const {
-  std::vector<Finding> result;
+std::vector<Diagnostic> System::warnings() const {
+  std::vector<Diagnostic> result;
   if (settings_.radius_rule != RadiusRule::fixed) {
     const double ratio = settings_.youngs_modulus / settings_.yield_stress;
     if (!std::isfinite(material_.yield_overlap_ratio)) {

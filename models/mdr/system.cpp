@@ -83,7 +83,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
                          .kind = Unknown::Kind::algebraic,
                          .scale = reach,
                          .is_implicitly_algebraic = true,
-                         .is_slaved = true,
+                         .is_dependent = true,
                          .may_rest = true});
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -191,13 +191,13 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   has_turned_.assign(memory_.size(), false);
   is_left_.assign(memory_.size(), false);
   find_slight_forces();
-  if (free_count_ > 0) look(0.0, y);
+  if (free_count_ > 0) evaluate(0.0, y);
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     // The nearest walls close with it, as no guard is met by one that touches already.
     const bool begins_to_press = is_loaded(i) && ramps_[i].start == 0.0 && ramps_[i].end > 0.0;
     if (begins_to_press && touches(memory_[i].regime)) meet_balanced(i, true, y[k_radius], log);
   }
-  settle(0.0, y, std::nullopt, log);
+  resolve_mode(0.0, y, std::nullopt, log);
   if (const auto end = meet_caps_at_once(0.0, y, log)) throw CannotBegin(*end);
   if (const auto end = reach_centre_at_once(0.0, y)) throw CannotBegin(*end);
 }
@@ -210,7 +210,7 @@ std::optional<Difficulty> System::difficulty(double xi, std::span<const double> 
   // Of the whole program: every contact is as shallow when it is made.
   if (!(largest_overlap_expected() > k_shallow)) return Difficulty::below_resolution;
   if (free_count_ == 0 || !weakest_contact()) return std::nullopt;
-  look(xi, y);
+  evaluate(xi, y);
   if (least_firmness() >= k_hardly_firm) return std::nullopt;
   return Difficulty::soft_centre;
 }
@@ -236,14 +236,14 @@ void System::complete(double xi, std::span<double> y) {
 }
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
-  look_once(xi, y);
+  evaluate_cached(xi, y);
   const Motion now = is_growing_ ? growing_motion() : Motion{};
   dy[k_radius] = now.growth;
   dy[k_work] = sums_.power;
 }
 
 void System::all_rates(double xi, std::span<const double> y, std::span<double> dy) {
-  look(xi, y);
+  evaluate(xi, y);
   const Motion now = is_growing_ ? growing_motion() : motion(false);
   dy[k_radius] = now.growth;
   dy[k_work] = sums_.power;
@@ -265,7 +265,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
     }
   }
   place(xi, trial_);
-  look(xi, trial_);
+  evaluate(xi, trial_);
   // Beyond where growth would run away there is no balance to be found; the rates end there, too.
   if (is_growing_) static_cast<void>(growing_motion());
   res[k_radius] = is_growing_ ? sums_.balance - frozen_balance_ : y[k_radius] - held_radius_;
@@ -286,7 +286,7 @@ void System::solve(double xi, std::span<double> y) {
 
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
   if (is_growing_) return std::nullopt;
-  look_once(xi, y);
+  evaluate_cached(xi, y);
   return energy(y[k_radius], PlasticPart::work_done) - sums_.force_work;
 }
 

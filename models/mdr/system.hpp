@@ -93,7 +93,7 @@ class System final : public HybridSystem {
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
   [[nodiscard]] bool contacts_adhere() const noexcept override { return adheres(); }
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
-  [[nodiscard]] std::vector<Finding> warnings() const override;
+  [[nodiscard]] std::vector<Diagnostic> warnings() const override;
 
   /// Volume balance V_geo,Q - V_Q - C over 4 pi R0^3, the drift of an integrated solution; 0 while the radius is held.
   [[nodiscard]] double balance_residual(double xi, std::span<const double> y);
@@ -106,8 +106,8 @@ class System final : public HybridSystem {
   [[nodiscard]] static constexpr std::size_t centre_place(int k) noexcept {
     return k_centre + static_cast<std::size_t>(k);
   }
-  /// Below this a class of walls does not act along any free direction of the centre: the stiffness by which it would
-  /// hold it there goes with the square of this, and is rounding beside that of the same contact along its normal.
+  /// Smallest mean normal of a contact class, along the free directions of the centre, that counts. The stiffness along
+  /// them goes with its square, and is round-off below this.
   static constexpr double k_no_direction = 1e-6;
   /// Firmness by which contacts hold a free centre so little that they are at a fold: a search for the balance of
   /// forces ends there with a force that is least, and not zero, and rates of the centre change sign through infinity.
@@ -126,7 +126,7 @@ class System final : public HybridSystem {
   /// What a contact class remembers: changed by transitions only.
   struct Memory {
     Regime regime = Regime::open;
-    bool is_virgin = true;       ///< at its largest overlap, and not decreasing
+    bool is_on_primary_branch = true;  ///< at its largest overlap, and not decreasing
     double largest = 0.0;        ///< largest overlap (running maximum) or wall displacement (shifted), while not virgin
     double area_constant = 0.0;  ///< c, set once at yield
     Edge edge = Edge::following;
@@ -247,15 +247,15 @@ class System final : public HybridSystem {
   void move_walls(double xi, std::span<double> y);
   void note_walls(double xi, std::span<double> y) const noexcept;
 
-  void look(double xi, std::span<const double> y);
-  void look_at_forces(double xi, std::span<const double> y);
-  void keep_look(double xi, std::span<const double> y);
-  void look_once(double xi, std::span<const double> y);
-  void forget_look() noexcept { seen_xi_ = k_nan; }
+  void evaluate(double xi, std::span<const double> y);
+  void evaluate_forces(double xi, std::span<const double> y);
+  void keep_evaluation(double xi, std::span<const double> y);
+  void evaluate_cached(double xi, std::span<const double> y);
+  void drop_evaluation() noexcept { seen_xi_ = k_nan; }
   [[nodiscard]] Contact touching_contact(double radius, double overlap) const;
   [[nodiscard]] Contact unloaded_contact(const UnloadingShape& shape, double overlap) const;
   [[nodiscard]] Contact visible_contact(std::size_t i) const noexcept;
-  void look_at(std::size_t i, double displacement, double r);
+  void evaluate_contact(std::size_t i, double displacement, double r);
   [[nodiscard]] Contact contact_at(std::size_t i, double overlap, double r);
   [[nodiscard]] Contact firm_contact(std::size_t i, double r);
   [[nodiscard]] double force_work(std::span<const double> y);
@@ -300,8 +300,8 @@ class System final : public HybridSystem {
   void grow(double xi, std::span<double> y);
 
   // Modes (modes.cpp) and transitions (transitions.cpp).
-  void settle(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log,
-              bool has_jumped = false);
+  void resolve_mode(double xi, std::span<double> y, std::optional<bool> growth, std::vector<Event>& log,
+                    bool has_jumped = false);
   void balance_anew(double xi, std::span<double> y, std::vector<Event>& log, std::vector<Event>& made);
   [[noreturn]] void throw_unsettled();
   /// After which a mode is taken to have none that agrees with it.
@@ -310,19 +310,19 @@ class System final : public HybridSystem {
   [[nodiscard]] double growth_drive(const Motion& now) const noexcept;
   [[nodiscard]] SmallMatrix unheld_directions();
   void hold_centre(std::span<const double> y);
-  bool settle_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log,
-                      std::vector<Event>& made);
-  bool settle_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_carried,
-                   std::vector<Event>& log);
+  bool resolve_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log,
+                       std::vector<Event>& made);
+  bool resolve_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_carried,
+                    std::vector<Event>& log);
   [[nodiscard]] bool gate_is_open(const Motion& now) const noexcept;
   [[nodiscard]] double speed_scale() const noexcept;
   [[nodiscard]] double wall_rate(std::size_t i, const Motion& now) const noexcept;
   [[nodiscard]] double overlap_rate(std::size_t i, const Motion& now) const noexcept;
-  [[nodiscard]] double virgin_rate(std::size_t i, const Motion& now) const noexcept;
+  [[nodiscard]] double primary_branch_rate(std::size_t i, const Motion& now) const noexcept;
   [[nodiscard]] double rate_if_turned(std::size_t i, double xi, std::span<const double> y);
   [[nodiscard]] double edge_rate(std::size_t i, double r, const Motion& now);
   [[nodiscard]] double loaded_rate(double loading, double by_radius, double growth) const noexcept;
-  [[nodiscard]] bool is_backed(std::size_t i, double side = 1.0);
+  [[nodiscard]] bool is_supported(std::size_t i, double side = 1.0);
   [[nodiscard]] bool leave_behind(double xi, std::span<const double> y, std::vector<Event>& log);
   [[nodiscard]] bool leave_what_is_not_pressed(std::span<const Drive> drives, double xi, std::vector<Event>& log);
   [[nodiscard]] bool touches_have_to_bear(double xi) const;
@@ -333,7 +333,7 @@ class System final : public HybridSystem {
   [[nodiscard]] bool is_slight(std::size_t contact);
   [[nodiscard]] std::optional<Small> velocity_of(std::span<Drive> drives, double xi, std::span<const double> y);
   bool drive_out(std::span<const Drive> drives, const SmallMatrix& along, Small& velocity) const;
-  [[nodiscard]] bool rides(std::size_t i) const noexcept;
+  [[nodiscard]] bool is_idle_contact(std::size_t i) const noexcept;
   void check_support();
   void set_largest(std::size_t i, double r) noexcept;
   void turn(std::size_t i, double r) noexcept;
@@ -359,9 +359,9 @@ class System final : public HybridSystem {
   void meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log);
   [[nodiscard]] double way_to_touch(std::size_t i, double r);
   [[nodiscard]] bool may_be_backed(std::size_t i, double r);
-  void watch(double xi, std::span<const double> y);
+  void arm_guards(double xi, std::span<const double> y);
   [[nodiscard]] bool goes_one_way(double r, const Motion& now) const;
-  void watch_contact(std::size_t i, double r, const Motion& now);
+  void arm_contact_guards(std::size_t i, double r, const Motion& now);
   [[nodiscard]] double force_rate(std::size_t i, const Motion& now) const noexcept;
   [[nodiscard]] bool is_extremum(int kind, std::size_t i, const Motion& now) const noexcept;
   void watch_tension(std::size_t i, const Motion& now, bool may_go_out, bool may_turn);
@@ -422,7 +422,7 @@ class System final : public HybridSystem {
   std::vector<Instant> now_;
   std::vector<Small> backing_;  ///< directions of what may back a contact
   double longest_ = 1.0;        ///< of the lengths, over R0, that overlaps are differences of
-  double seen_xi_ = k_nan;      ///< where look() was last
+  double seen_xi_ = k_nan;      ///< where evaluate() was last
   std::vector<double> seen_;
   std::vector<UnloadingShape> shapes_;
   std::vector<PullOff> pull_offs_;
@@ -434,7 +434,7 @@ class System final : public HybridSystem {
   std::vector<double> overlaps_before_;
   std::vector<Memory> memory_before_;
   Sums sums_;
-  std::optional<Finding> validity_;  ///< of the first adhesive contact to unload for which the model is not valid
+  std::optional<Diagnostic> validity_;  ///< of the first adhesive contact to unload for which the model is not valid
   bool caps_have_met_ = false;
   double radius_at_caps_ = 0.0;
 };

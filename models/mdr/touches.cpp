@@ -6,9 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "backing.hpp"
 #include "mdr/guards.hpp"
 #include "mdr/system.hpp"
+#include "reaction_cone.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -78,7 +78,7 @@ void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Ev
   if (free_count_ == 0 || directions_[i].norm() < k_no_direction || adheres()) return;
   // Walls that cannot balance it have not met the particle with it, however near they are.
   if (is_made && !may_be_backed(i, r)) return;
-  while (!is_made || !is_backed(i)) {
+  while (!is_made || !is_supported(i)) {
     std::optional<std::size_t> next;
     double nearest = k_together;
     bool next_is_dent = false;
@@ -87,7 +87,7 @@ void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Ev
       if (touches(memory_[j].regime) == is_made) continue;
       const double distance =
           is_made ? way_to_touch(j, r) : std::abs(contact_guard(k_lost, j, 0.0, now_[j].overlap, r));
-      if (distance > nearest || (!is_made && is_backed(j))) continue;
+      if (distance > nearest || (!is_made && is_supported(j))) continue;
       next = j;
       nearest = distance;
       next_is_dent = memory_[j].regime == Regime::separated;
@@ -116,16 +116,16 @@ bool System::may_be_backed(std::size_t i, double r) {
     if (!touches(memory_[j].regime) && (is_loaded(j) || way_to_touch(j, r) > k_together)) continue;
     others.push_back(directions_[j].normalized());
   }
-  return can_back(directions_[i], others);
+  return in_reaction_cone(directions_[i], others);
 }
 
-/// Whether a touch, of the fresh particle or of a dent, is all that a wall has of a free centre: nothing presses the
-/// particle against it, and it takes the centre along. Its overlap and the rate of that are rounding; what is that
-/// shallow remembers nothing, and is lost when it has been left by more.
-bool System::rides(std::size_t i) const noexcept {
+/// True for an idle contact: the wall touches a particle with a free centre and carries no load. Its overlap and the
+/// rate of that are round-off; it leaves no dent, and is lost when the gap exceeds the resolution.
+bool System::is_idle_contact(std::size_t i) const noexcept {
   if (free_count_ == 0 || is_loaded(i) || !(directions_[i].norm() > k_no_direction)) return false;
   const Memory& memory = memory_[i];
-  if (memory.regime == Regime::elastic) return (memory.is_virgin || !adheres()) && is_shallow(now_[i].overlap);
+  if (memory.regime == Regime::elastic)
+    return (memory.is_on_primary_branch || !adheres()) && is_shallow(now_[i].overlap);
   const UnloadingShape& dent = shapes_[i];
   return memory.regime == Regime::unloading && !adheres() &&
          is_shallow(now_[i].overlap - (dent.overlap_max - dent.recovery));
@@ -139,11 +139,11 @@ bool System::rides(std::size_t i) const noexcept {
 bool System::leave_behind(double xi, std::span<const double> y, std::vector<Event>& log) {
   std::vector<Drive> drives;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (rides(i)) drives.push_back({i});
+    if (is_idle_contact(i)) drives.push_back({i});
   }
   if (drives.empty()) return false;
   std::vector<Drive> unopposed = drives;
-  std::erase_if(unopposed, [this](const Drive& drive) { return is_backed(drive.contact); });
+  std::erase_if(unopposed, [this](const Drive& drive) { return is_supported(drive.contact); });
   std::optional<Small> velocity;
   if (touches_have_to_bear(xi)) {
     if (leave_what_is_not_pressed(drives, xi, log)) return true;
@@ -188,7 +188,7 @@ bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi,
   for (const Small& normal : normals) {
     if (normal.norm() > k_no_direction) units.push_back(normal.normalized());
   }
-  if (!can_back(push, units)) return false;
+  if (!in_reaction_cone(push, units)) return false;
   std::vector<double> weights;
   for (const Drive& drive : drives) weights.push_back(counts_[drive.contact] * firmness(drive.contact));
   const std::vector<double> overlaps = overlaps_under_push(push, normals, weights);
@@ -209,12 +209,13 @@ bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi,
 bool System::touches_have_to_bear(double xi) const {
   std::vector<Small> bearing;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (!touches(memory_[i].regime) || is_loaded(i) || rides(i) || directions_[i].norm() < k_no_direction) continue;
+    if (!touches(memory_[i].regime) || is_loaded(i) || is_idle_contact(i) || directions_[i].norm() < k_no_direction)
+      continue;
     bearing.push_back(directions_[i].normalized());
     if (memory_[i].edge != Edge::following) bearing.emplace_back(-directions_[i].normalized());
   }
   const double least = k_no_force * largest_prescribed_force();
-  const auto is_borne = [&](const Small& push) { return push.norm() <= least || can_back(push, bearing); };
+  const auto is_borne = [&](const Small& push) { return push.norm() <= least || in_reaction_cone(push, bearing); };
   return !is_borne(prescribed_push(xi)) || !is_borne(prescribed_push(1.0));
 }
 
@@ -253,20 +254,20 @@ void System::find_slight_forces() {
 }
 
 /// Whether a force is as small and nothing bears it: a wall that only touches would be left for it, and come back.
-bool System::is_slight(std::size_t i) { return may_be_slight_[i] && !is_backed(i); }
+bool System::is_slight(std::size_t i) { return may_be_slight_[i] && !is_supported(i); }
 
 /// Velocity of the centre that such walls add to what it has without them, if they leave it a way out; and the rates of
 /// their overlaps without it.
 std::optional<System::Small> System::velocity_of(std::span<Drive> drives, double xi, std::span<const double> y) {
   memory_before_ = memory_;
   for (const Drive& drive : drives) lose_contact(drive.contact);
-  look(xi, y);
+  evaluate(xi, y);
   const Motion now = motion(is_growing_);
   for (Drive& drive : drives) drive.rate = overlap_rate(drive.contact, now);
   Small velocity = Small::Zero();
   const bool is_free = drive_out(drives, unheld_directions(), velocity);
   memory_ = memory_before_;
-  look(xi, y);
+  evaluate(xi, y);
   return is_free ? std::optional(velocity) : std::nullopt;
 }
 
@@ -292,14 +293,14 @@ bool System::drive_out(std::span<const Drive> drives, const SmallMatrix& along, 
 
 /// Whether the other touching contacts can balance a push of one of them on the free centre, or a pull where the side
 /// is -1; those whose edges do not follow pull, too.
-bool System::is_backed(std::size_t i, double side) {
+bool System::is_supported(std::size_t i, double side) {
   backing_.clear();
   for (std::size_t j = 0; j < memory_.size(); ++j) {
     if (j == i || !touches(memory_[j].regime) || directions_[j].norm() < k_no_direction) continue;
     backing_.push_back(directions_[j].normalized());
     if (memory_[j].edge != Edge::following) backing_.emplace_back(-directions_[j].normalized());
   }
-  return can_back(side * directions_[i], backing_);
+  return in_reaction_cone(side * directions_[i], backing_);
 }
 
 /// A wall that pushes a particle which nothing holds from the other side has no equilibrium, unless others adhere; nor
@@ -310,7 +311,7 @@ void System::check_support() {
   const double least = k_touch * speed_scale();
   for (std::size_t i = 0; !adheres() && i < memory_.size(); ++i) {
     const bool pushes = touches(memory_[i].regime) && !is_loaded(i) && ramps_[i].end - ramps_[i].start > least;
-    if (pushes && directions_[i].norm() > k_no_direction && !is_backed(i)) {
+    if (pushes && directions_[i].norm() > k_no_direction && !is_supported(i)) {
       throw DomainError(Limit::centre_not_held,
                         "no contact holds the free centre of the particle against a wall that pushes it");
     }

@@ -33,22 +33,23 @@ double System::overlap_rate(std::size_t i, const Motion& now) const noexcept {
   return loaded_rate(ramps_[i].end - ramps_[i].start, now_[i].contact.by_radius, now.growth);
 }
 
-/// How fast what makes a largest overlap goes up, likewise: the overlap, or the wall where that moves with the radius.
-double System::virgin_rate(std::size_t i, const Motion& now) const noexcept {
+/// Rate of the quantity that defines the largest overlap: the overlap itself, or the displacement of the wall with
+/// delta_max_rule = shifted.
+double System::primary_branch_rate(std::size_t i, const Motion& now) const noexcept {
   return settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate(i, now) : overlap_rate(i, now);
 }
 
-/// The same of a contact that turned here, times by how much stiffer it would be. One that goes back, but once it has
-/// turned would be pressed on, does both in turns without end: it goes on as it does at its largest overlap, until this
-/// falls below zero.
+/// Rate of the largest overlap if this contact began to unload here, times the ratio of stiffnesses. A contact that
+/// would load again as soon as it unloads alternates between the two without end: it stays on its loading branch until
+/// this rate is negative.
 double System::rate_if_turned(std::size_t i, double xi, std::span<const double> y) {
   const Memory before = memory_[i];
   turn(i, y[k_radius]);
-  look(xi, y);
+  evaluate(xi, y);
   const double stiffer = std::max(1.0, now_[i].contact.by_overlap / stiffness_of_shallow());
-  const double rate = stiffer * virgin_rate(i, motion(is_growing_));
+  const double rate = stiffer * primary_branch_rate(i, motion(is_growing_));
   memory_[i] = before;
-  look(xi, y);
+  evaluate(xi, y);
   return rate;
 }
 
@@ -90,14 +91,14 @@ double System::loaded_rate(double loading, double by_radius, double growth) cons
 
 /// Where a contact is becomes its largest overlap.
 void System::set_largest(std::size_t i, double r) noexcept {
-  forget_look();
+  drop_evaluation();
   memory_[i].largest = now_[i].overlap - (settings_.delta_max_rule == DeltaMaxRule::shifted ? r : 0.0);
 }
 
 /// From its largest overlap, which is where it is, to the branch below that.
 void System::turn(std::size_t i, double r) noexcept {
   Memory& memory = memory_[i];
-  memory.is_virgin = false;
+  memory.is_on_primary_branch = false;
   set_largest(i, r);
   if (memory.regime == Regime::fully_plastic) memory.regime = Regime::unloading;
 }
@@ -262,7 +263,7 @@ double System::hold_guard(double r) {
 }
 
 void System::resume_loading(std::size_t i) {
-  memory_[i].is_virgin = true;
+  memory_[i].is_on_primary_branch = true;
   memory_[i].edge = Edge::following;
   if (memory_[i].regime == Regime::unloading) memory_[i].regime = Regime::fully_plastic;
 }
@@ -282,7 +283,7 @@ void System::lose_contact(std::size_t i) {
 /// with the radius, as growth may then have pressed the contact in beyond anything it has borne while its wall went
 /// back, or have left it with a largest overlap that it never had.
 bool System::may_yield(const Memory& memory) const noexcept {
-  const bool is_at_largest = memory.is_virgin || settings_.delta_max_rule == DeltaMaxRule::shifted;
+  const bool is_at_largest = memory.is_on_primary_branch || settings_.delta_max_rule == DeltaMaxRule::shifted;
   return is_at_largest && std::isfinite(material_.yield_overlap_ratio);
 }
 

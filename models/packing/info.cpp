@@ -150,7 +150,7 @@ class Destinations {
 };
 
 /// Steps of a plastic packing that go back. What a step leaves open by its condition is the run's to find out.
-void check_only_compaction(const Law& law, double initial, const Given& given, std::vector<Objection>& found) {
+void check_only_compaction(const Law& law, double initial, const ModelInput& given, std::vector<Objection>& found) {
   Destinations destinations(law);
   double least = initial;
   for (std::size_t k = 0; k < given.program.size(); ++k) {
@@ -178,7 +178,7 @@ const char* culprit(const Parameters& p) {
   return "jamming_fraction";
 }
 
-std::vector<Objection> objections(const Given& given) {
+std::vector<Objection> objections(const ModelInput& given) {
   const auto value = [&given](const char* key) -> std::optional<double> {
     for (const auto* table : {&given.material, &given.numbers}) {
       if (const auto found = table->find(key); found != table->end()) return found->second;

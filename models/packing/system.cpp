@@ -95,7 +95,7 @@ void System::start(std::span<double> y) {
 
 // --- what is prescribed
 
-double System::told(double xi) const noexcept { return std::lerp(ramp_.start, ramp_.end, xi); }
+double System::prescribed(double xi) const noexcept { return std::lerp(ramp_.start, ramp_.end, xi); }
 
 int System::direction() const noexcept { return (ramp_.end > ramp_.start) - (ramp_.end < ramp_.start); }
 
@@ -105,7 +105,7 @@ double System::prescribed_at(double packing_fraction) const {
   return measured(law_, branch_.measure, packing_fraction);
 }
 
-/// The same of one that jams, where that is no stress.
+/// Controlled quantity at jamming, a packing fraction or a strain.
 double System::prescribed_at_jamming() const noexcept {
   return ramp_.control == Control::strain ? at_jamming_.strain : law_.jamming;
 }
@@ -121,7 +121,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     ramp_.end = ramp_.start;
   }
   const auto require_pores = [&] {
-    const bool is_pressed_on = direction() > 0 || told(0.0) > branch_.greatest * (1.0 + k_same);
+    const bool is_pressed_on = direction() > 0 || prescribed(0.0) > branch_.greatest * (1.0 + k_same);
     if (is_jammed_ && is_pressed_on && y[k_fraction] >= 1.0) throw DomainError(Limit::pores_closed);
   };
   require_pores();
@@ -131,7 +131,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   }
   if (!is_jammed_) at_rest_ = y[k_fraction];
   const Mode before = mode_;
-  settle(0.0, log);
+  resolve_mode(0.0, log);
   // An integrated state goes on; elsewhere the law says what it is: a packing that jams beyond its closed start, too,
   // and one that stands where what is prescribed falls at first, which gives way to where it grows.
   const bool goes_on = mode_ == before && !(mode_ == Mode::jammed && y[k_fraction] < branch_.begin);
@@ -144,7 +144,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   require_pores();  // it may have given way until it is full
   if (is_at_limit(0.0)) throw CannotBegin(limit());
   if (goes_on) complete(0.0, y);
-  watch(0.0);
+  arm_guards(0.0);
   resting_ = y[k_fraction];
 }
 
@@ -165,11 +165,10 @@ void System::take_branch() {
   start_end_ = std::max(start_end_, packing_fraction_at(law_, branch_, end));
 }
 
-/// What is prescribed where a run ends before a branch does that ends before the packing is full: at the end itself the
-/// rates are infinite.
+/// Controlled quantity at which a run stops short of the end of a branch, where the rates are infinite.
 double System::last_place() const noexcept { return branch_.greatest - k_margin * (branch_.greatest - branch_.least); }
 
-/// Of what is prescribed, with the packing fraction.
+/// Derivative of the controlled quantity with respect to the packing fraction.
 double System::growth_of(const Slopes& slopes) const noexcept {
   if (ramp_.control == Control::packing_fraction) return 1.0;
   return ramp_.control == Control::strain ? slopes.strain : slopes.stress;
@@ -189,7 +188,7 @@ bool System::has_passed_end(double packing_fraction, double growth) const {
 
 /// Whether a program that goes on is there already.
 bool System::is_at_limit(double xi) const noexcept {
-  return is_jammed_ && branch_.end < 1.0 && direction() > 0 && told(xi) >= last_place();
+  return is_jammed_ && branch_.end < 1.0 && direction() > 0 && prescribed(xi) >= last_place();
 }
 
 DomainEnd System::limit() const {
@@ -198,12 +197,12 @@ DomainEnd System::limit() const {
 
 /// Beyond a greatest strain or stress there is no state, but rates of neighbouring ones that look as if there were.
 void System::require_state(double xi) const {
-  if (branch_.end < 1.0 && told(xi) > branch_.greatest) throw DomainError(end_of_branch(ramp_.control));
+  if (branch_.end < 1.0 && prescribed(xi) > branch_.greatest) throw DomainError(end_of_branch(ramp_.control));
 }
 
 /// Mode at the start of a step.
-void System::settle(double xi, std::vector<Event>& log) {
-  const double value = told(xi);
+void System::resolve_mode(double xi, std::vector<Event>& log) {
+  const double value = prescribed(xi);
   const int d = direction();
   const bool was_jammed = is_jammed_;
   if (ramp_.control == Control::stress) {
@@ -232,7 +231,7 @@ System::Mode System::mode_of_jammed(double value) const {
 
 /// State by the closed form, for what is prescribed.
 System::Seen System::by_law(double xi) const {
-  const double value = told(xi);
+  const double value = prescribed(xi);
   if (mode_ == Mode::unjammed) {
     double phi = at_rest_;
     if (ramp_.control == Control::packing_fraction) phi = value;
@@ -271,10 +270,10 @@ System::Seen System::seen(double xi, std::span<const double> y) const {
 /// guard ends it.
 double System::excess(double xi, std::span<const double> y) const {
   const double phi = y[k_fraction];
-  if (ramp_.control == Control::packing_fraction) return phi - told(xi);
-  if (ramp_.control == Control::strain) return strain_of(y) - told(xi);
+  if (ramp_.control == Control::packing_fraction) return phi - prescribed(xi);
+  if (ramp_.control == Control::strain) return strain_of(y) - prescribed(xi);
   const double stress = total_stress(law_, phi, strain_of(y) * effective_modulus(law_, phi), piece_);
-  return (stress - std::min(told(xi), branch_.greatest)) / law_.given.youngs_modulus;
+  return (stress - std::min(prescribed(xi), branch_.greatest)) / law_.given.youngs_modulus;
 }
 
 /// Its derivatives by the unknowns over their scales.
@@ -302,13 +301,13 @@ void System::complete(double xi, std::span<double> y) {
   if (mode_ != Mode::jammed) return solve(xi, y);
   require_state(xi);
   if (ramp_.control == Control::packing_fraction) {
-    y[k_fraction] = told(xi);
+    y[k_fraction] = prescribed(xi);
     return;
   }
   if (ramp_.control == Control::strain) {
     // A first guess of an implicit stage leaves the particles as they were, and so takes the packing below jamming or
     // beyond a pole.
-    const double with_particles = law_.zero_stress * std::exp(told(xi) + law_.sign * y[k_particles]);
+    const double with_particles = law_.zero_stress * std::exp(prescribed(xi) + law_.sign * y[k_particles]);
     y[k_fraction] = std::max(std::min(with_particles, branch_.end), least_fraction());
     return;
   }
@@ -318,7 +317,7 @@ void System::complete(double xi, std::span<double> y) {
   const std::array<double, 2> guess{y[k_particles], y[k_fraction]};
   if (is_brought_back(xi, y)) return;
   std::ranges::copy(guess, y.begin());  // the next trial begins there
-  const double stress = std::min(told(xi), branch_.greatest);
+  const double stress = std::min(prescribed(xi), branch_.greatest);
   const auto found = packing_fraction_under(law_, stress, y[k_particles], least_fraction(), branch_.end, piece_);
   if (!found) throw std::domain_error("no packing fraction bears the stress");
   y[k_fraction] = *found;
@@ -362,11 +361,11 @@ void System::solve(double xi, std::span<double> y) {
   y[k_particles] = mode_ == Mode::unjammed ? 0.0 : particle_strain(law_, now.packing_fraction);
   if (ramp_.control == Control::packing_fraction || mode_ == Mode::unjammed) return;
   // Elsewhere digits would cancel: beside a greater strain, or in a stress that is plastic for the most part.
-  const bool is_told = ramp_.control == Control::strain;
+  const bool is_prescribed = ramp_.control == Control::strain;
   const bool gives_way_as_much = y[k_particles] > 0.5 * now.strain;
   const double elastic_part = now.stress_elastic * total_stress_slope(law_, now.packing_fraction);
-  if (!gives_way_as_much || (!is_told && elastic_part < 0.5 * now.stress)) return;
-  const double strain = is_told ? now.strain : now.stress_elastic / effective_modulus(law_, now.packing_fraction);
+  if (!gives_way_as_much || (!is_prescribed && elastic_part < 0.5 * now.stress)) return;
+  const double strain = is_prescribed ? now.strain : now.stress_elastic / effective_modulus(law_, now.packing_fraction);
   y[k_particles] = law_.sign * (total_strain(law_, now.packing_fraction) - strain);
 }
 
@@ -411,12 +410,12 @@ void System::add_guard(int kind, std::string_view name, double place) {
 }
 
 /// Lists what is ahead on the way to the ramp's end.
-void System::watch(double xi) {
+void System::arm_guards(double xi) {
   guards_.clear();
   places_.clear();
   const int d = direction();
   if (d == 0) return;
-  const double value = told(xi);
+  const double value = prescribed(xi);
   const auto is_ahead = [&](double place) { return d > 0 ? place <= ramp_.end : place >= ramp_.end; };
   const auto watch_place = [&](int kind, std::string_view name, double place) {
     if (is_ahead(place)) add_guard(kind, name, place);
@@ -466,7 +465,7 @@ void System::watch(double xi) {
 void System::pass_places(double xi, std::vector<Event>& log) {
   const auto is_passed = [&](double place) {
     if (!is_jammed_ || place > branch_.end) return false;
-    return place <= branch_.begin || prescribed_at(place) <= told(xi);
+    return place <= branch_.begin || prescribed_at(place) <= prescribed(xi);
   };
   if (!is_softer_ && is_passed(softening_)) {
     is_softer_ = true;
@@ -487,7 +486,7 @@ void System::end_branch_at_jamming() noexcept {
 
 void System::guard_values(double xi, std::span<const double> /*y*/, std::span<double> values) {
   const double length = std::abs(ramp_.end - ramp_.start);
-  for (std::size_t g = 0; g < guards_.size(); ++g) values[g] = (told(xi) - places_[g]) / length;
+  for (std::size_t g = 0; g < guards_.size(); ++g) values[g] = (prescribed(xi) - places_[g]) / length;
 }
 
 void System::set_mode(Mode mode, double xi, std::span<double> y) {
@@ -506,8 +505,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     switch (guards_[g].kind) {
       case k_jams:
         is_jammed_ = is_up;
-        if (is_up && told(xi) > branch_.greatest) end_branch_at_jamming();
-        set_mode(is_up ? mode_of_jammed(told(xi)) : Mode::unjammed, xi, y);
+        if (is_up && prescribed(xi) > branch_.greatest) end_branch_at_jamming();
+        set_mode(is_up ? mode_of_jammed(prescribed(xi)) : Mode::unjammed, xi, y);
         break;
       case k_grips:
         set_mode(is_up ? Mode::starting : Mode::held, xi, y);
@@ -531,7 +530,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   }
   // Other places may lie where the one that has been met does.
   if (is_up && is_jammed_) {
-    if (const Mode onward = mode_of_jammed(told(xi)); onward > mode_) set_mode(onward, xi, y);
+    if (const Mode onward = mode_of_jammed(prescribed(xi)); onward > mode_) set_mode(onward, xi, y);
     pass_places(xi, log);
   }
   if (!end && is_at_limit(xi)) {  // it jams there
@@ -539,7 +538,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     log.push_back(end->event);
   }
   take_piece(xi);
-  if (!end) watch(xi);
+  if (!end) arm_guards(xi);
   resting_ = y[k_fraction];
   return end;
 }

@@ -58,7 +58,7 @@ class System final : public HybridSystem {
   /// @throws std::logic_error always: the language offers no condition but events
   [[nodiscard]] double quantity(Quantity quantity, int channel, double xi, std::span<const double> y) override;
   [[nodiscard]] double controlled(Control control, int channel, double xi, std::span<const double> y) override;
-  [[nodiscard]] std::vector<Finding> warnings() const override { return {}; }
+  [[nodiscard]] std::vector<Diagnostic> warnings() const override { return {}; }
 
  private:
   enum class Mode {
@@ -76,7 +76,7 @@ class System final : public HybridSystem {
     double stress = 0.0;  ///< [Pa]
   };
 
-  [[nodiscard]] double told(double xi) const noexcept;
+  [[nodiscard]] double prescribed(double xi) const noexcept;
   [[nodiscard]] int direction() const noexcept;
   [[nodiscard]] Seen by_law(double xi) const;
   [[nodiscard]] Seen seen(double xi, std::span<const double> y) const;
@@ -99,10 +99,10 @@ class System final : public HybridSystem {
   [[nodiscard]] bool is_at_limit(double xi) const noexcept;
   [[nodiscard]] DomainEnd limit() const;
   void require_state(double xi) const;
-  void settle(double xi, std::vector<Event>& log);
+  void resolve_mode(double xi, std::vector<Event>& log);
   [[nodiscard]] Mode mode_of_jammed(double value) const;
   void set_mode(Mode mode, double xi, std::span<double> y);
-  void watch(double xi);
+  void arm_guards(double xi);
   void pass_places(double xi, std::vector<Event>& log);
   void end_branch_at_jamming() noexcept;
   void add_guard(int kind, std::string_view name, double place);

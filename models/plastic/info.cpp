@@ -202,7 +202,7 @@ constexpr std::array<string_view, 6> k_hardening_domain{
 
 // --- objections
 
-void require_elastic_constants(const Given& given, std::vector<Objection>& found) {
+void require_elastic_constants(const ModelInput& given, std::vector<Objection>& found) {
   if (given.choices.at("unloading") != "mdr") return;
   for (const char* key : {"youngs_modulus", "poisson_ratio"}) {
     if (given.material.contains(key)) continue;
@@ -211,13 +211,13 @@ void require_elastic_constants(const Given& given, std::vector<Objection>& found
   }
 }
 
-std::vector<Objection> power_law_objections(const Given& given) {
+std::vector<Objection> power_law_objections(const ModelInput& given) {
   std::vector<Objection> found;
   require_elastic_constants(given, found);
   return found;
 }
 
-std::vector<Objection> semimech_objections(const Given& given) {
+std::vector<Objection> semimech_objections(const ModelInput& given) {
   const auto& constants = given.material;
   const Configuration configuration = configuration_named(given.configuration);
   try {

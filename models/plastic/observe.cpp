@@ -76,7 +76,7 @@ double System::controlled(Control control, int contact_class, double xi, std::sp
   // A ramp of displacement begins where the force of the last one has taken the wall, without an integrator's error.
   const auto i = static_cast<std::size_t>(contact_class);
   const double x = displacement(i, xi, y);
-  return (presses(i) ? displacement_under_force(i, told(i, xi), x) : x) * settings_.initial_radius;
+  return (presses(i) ? displacement_under_force(i, prescribed(i, xi), x) : x) * settings_.initial_radius;
 }
 
 bool System::is_open(int contact_class) const noexcept {
@@ -88,8 +88,8 @@ std::optional<Difficulty> System::difficulty(double /*xi*/, std::span<const doub
   return is_shallow_ ? std::optional(Difficulty::below_resolution) : std::nullopt;
 }
 
-std::vector<Finding> System::warnings() const {
-  std::vector<Finding> result;
+std::vector<Diagnostic> System::warnings() const {
+  std::vector<Diagnostic> result;
   for (std::size_t k = 0; k < range_messages_.size(); ++k) {
     result.push_back({range_messages_[k], settings_.out_of_range[k].quantity, settings_.out_of_range[k].value});
   }

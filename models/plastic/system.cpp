@@ -145,7 +145,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     if (touches(memory_[i].regime)) {
       // A wall that has only touched leaves no dent.
       const bool has_pressed = x > (is_loaded(i) ? 0.0 : k_least_depth);
-      if (direction(i) < 0 && memory_[i].is_virgin && has_pressed) {
+      if (direction(i) < 0 && memory_[i].is_on_primary_branch && has_pressed) {
         // By the law: with an integrator's error in it, the force that it had would not bring the wall back to there.
         if (is_loaded(i)) x = displacement_under_force(i, ramps_[i].start, x);
         // Where the law has no branch for that, the run ends in this state.
@@ -153,11 +153,11 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
         turn_back(i, x, log);
       }
       // From there, and where a force ends at nothing or has so far to go below that it does so at once.
-      const bool is_left = memory_[i].is_virgin ? !has_pressed
-                           : is_loaded(i)       ? told(i, k_instant) <= 0.0
-                                                : x <= origin(i);
+      const bool is_left = memory_[i].is_on_primary_branch ? !has_pressed
+                           : is_loaded(i)                  ? prescribed(i, k_instant) <= 0.0
+                                                           : x <= origin(i);
       if (direction(i) < 0 && is_left) {
-        if (!memory_[i].is_virgin) {
+        if (!memory_[i].is_on_primary_branch) {
           y[work_place_] -= classes_[i].multiplicity() * stored_energy(i, x);
           if (is_loaded(i)) x = origin(i);
         }
@@ -172,8 +172,8 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     if (classes_[i].takes_force) y[places_[i]] = coordinate(i, is_loaded(i) ? now : x);
   }
   has_begun_ = true;
-  settle_lateral();
-  watch(0.0, y);
+  resolve_lateral();
+  arm_guards(0.0, y);
 }
 
 /// A ramp that rounding has left between two equal values goes nowhere. A force under which a wall stands has the
@@ -195,13 +195,15 @@ int System::direction_of_ramp(std::size_t i, double x) const {
 /// Whether a contact that comes in is at its largest displacement, or nearer to it than a ramp can tell.
 bool System::is_reloaded(std::size_t i, double x) const {
   const Memory& memory = memory_[i];
-  if (direction(i) <= 0 || memory.is_virgin) return false;
-  if (is_loaded(i)) return x >= memory.largest || told(i, k_instant) >= memory.largest_force;
+  if (direction(i) <= 0 || memory.is_on_primary_branch) return false;
+  if (is_loaded(i)) return x >= memory.largest || prescribed(i, k_instant) >= memory.largest_force;
   return x >= memory.largest - k_instant * (ramps_[i].end - ramps_[i].start);
 }
 
 /// Displacement or force as the program says.
-double System::told(std::size_t i, double xi) const noexcept { return std::lerp(ramps_[i].start, ramps_[i].end, xi); }
+double System::prescribed(std::size_t i, double xi) const noexcept {
+  return std::lerp(ramps_[i].start, ramps_[i].end, xi);
+}
 
 bool System::is_on_indenter(std::size_t i) const noexcept {
   return memory_[i].regime == Regime::unloading || memory_[i].regime == Regime::separated;
@@ -237,7 +239,7 @@ double System::displacement_at(std::size_t i, double u) const noexcept {
 }
 
 double System::displacement(std::size_t i, double xi, std::span<const double> y) const noexcept {
-  return is_loaded(i) ? displacement_at(i, y[places_[i]]) : told(i, xi);
+  return is_loaded(i) ? displacement_at(i, y[places_[i]]) : prescribed(i, xi);
 }
 
 double System::displacement_under_force(std::size_t i, double force, double near) const {
@@ -257,7 +259,7 @@ double System::displacement_under_force(std::size_t i, double force, double near
 System::Contact System::seen(std::size_t i, double xi, std::span<const double> y) const {
   Contact c = contact(i, displacement(is_lateral(i) ? first_primary_ : i, xi, y));
   if (presses(i) && c.contact_radius > 0.0) {
-    c.force = told(i, xi);
+    c.force = prescribed(i, xi);
     c.pressure = c.force / (pi * c.contact_radius * c.contact_radius);
   }
   return c;
@@ -321,7 +323,7 @@ bool System::is_known(std::size_t i) const noexcept {
 
 /// Coordinate of such a wall.
 double System::known_coordinate(std::size_t i, double xi, std::span<const double> y) const {
-  const double control = told(i, xi);
+  const double control = prescribed(i, xi);
   if (!is_loaded(i)) return control;
   if (memory_[i].regime != Regime::unloading) {
     return coordinate(i, displacement_under_force(i, control, displacement(i, xi, y)));
@@ -341,7 +343,7 @@ void System::solve(double xi, std::span<double> y) {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (!classes_[i].takes_force) continue;
     const double now = displacement(i, xi, y);
-    y[places_[i]] = coordinate(i, is_loaded(i) ? displacement_under_force(i, told(i, xi), now) : now);
+    y[places_[i]] = coordinate(i, is_loaded(i) ? displacement_under_force(i, prescribed(i, xi), now) : now);
   }
 }
 
@@ -364,8 +366,8 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
 /// Rate of the work of the walls of a class; where they press under a force, with the slope of that.
 double System::power(std::size_t i, double xi, const Slope& now) const {
   const double rate = classes_[i].multiplicity() * (ramps_[i].end - ramps_[i].start);
-  if (!is_loaded(i)) return rate * contact(i, told(i, xi)).force;
-  return now.by_displacement > 0.0 ? rate * told(i, xi) / now.by_displacement : 0.0;
+  if (!is_loaded(i)) return rate * contact(i, prescribed(i, xi)).force;
+  return now.by_displacement > 0.0 ? rate * prescribed(i, xi) / now.by_displacement : 0.0;
 }
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
@@ -378,7 +380,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
     total += power(i, xi, now);
     if (!classes_[i].takes_force) continue;
     // In units of u, as the integrator weighs it.
-    res[places_[i]] = is_known(i) ? u - place : (now.force - told(i, xi)) / now.by_coordinate;
+    res[places_[i]] = is_known(i) ? u - place : (now.force - prescribed(i, xi)) / now.by_coordinate;
   }
   res[work_place_] = dy[work_place_] - total;
 }

@@ -65,19 +65,19 @@ class System final : public HybridSystem {
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override;
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
-  [[nodiscard]] std::vector<Finding> warnings() const override;
+  [[nodiscard]] std::vector<Diagnostic> warnings() const override;
 
  private:
   /// What a contact class remembers: changed by transitions only.
   struct Memory {
     Regime regime = Regime::open;
-    bool is_virgin = true;           ///< at its largest displacement
-    double largest = 0.0;            ///< largest displacement, while not virgin
-    double largest_force = 0.0;      ///< there
-    double resting = 0.0;            ///< displacement at which an open wall without load was left
-    std::size_t next = 0;            ///< boundary ahead of a virgin contact
-    bool has_impinged = false;       ///< has met its neighbours
-    mdr::UnloadingShape indenter{};  ///< of a contact that has been unloaded since it yielded
+    bool is_on_primary_branch = true;  ///< at its largest displacement
+    double largest = 0.0;              ///< largest displacement, while not virgin
+    double largest_force = 0.0;        ///< there
+    double resting = 0.0;              ///< displacement at which an open wall without load was left
+    std::size_t next = 0;              ///< boundary ahead of a virgin contact
+    bool has_impinged = false;         ///< has met its neighbours
+    mdr::UnloadingShape indenter{};    ///< of a contact that has been unloaded since it yielded
   };
 
   /// What the history shows of a contact.
@@ -110,11 +110,11 @@ class System final : public HybridSystem {
     return regime != Regime::open && regime != Regime::separated;
   }
   [[nodiscard]] bool presses(std::size_t i) const noexcept { return is_loaded(i) && touches(memory_[i].regime); }
-  /// Of the present ramp: 1 inwards, -1 back, 0 nowhere.
+  /// Direction of the present ramp: 1 loading, -1 unloading, 0 holding.
   [[nodiscard]] int direction(std::size_t i) const noexcept { return directions_[i]; }
   [[nodiscard]] int direction_of_ramp(std::size_t i, double x) const;
   [[nodiscard]] bool is_reloaded(std::size_t i, double x) const;
-  [[nodiscard]] double told(std::size_t i, double xi) const noexcept;
+  [[nodiscard]] double prescribed(std::size_t i, double xi) const noexcept;
   [[nodiscard]] bool is_on_indenter(std::size_t i) const noexcept;
   [[nodiscard]] double origin(std::size_t i) const noexcept;
   [[nodiscard]] Chart chart(std::size_t i) const noexcept;
@@ -140,8 +140,8 @@ class System final : public HybridSystem {
   void turn_back(std::size_t i, double x, std::vector<Event>& log);
   void lose_contact(std::size_t i);
   void resume_loading(std::size_t i, double x, std::vector<Event>& log);
-  void settle_lateral();
-  void watch(double xi, std::span<const double> y);
+  void resolve_lateral();
+  void arm_guards(double xi, std::span<const double> y);
   void watch_primary(std::size_t i, double x, double target);
   void add_guard(int kind, std::size_t i, int direction, std::string_view name, double place);
 

@@ -48,7 +48,7 @@ void System::turn_back(std::size_t i, double x, std::vector<Event>& log) {
       overshooting_ = std::max(overshooting_.value_or(ratio), ratio);
     }
   }
-  memory.is_virgin = false;
+  memory.is_on_primary_branch = false;
   memory.largest = x;
   log.push_back({"load-reversal", static_cast<int>(i)});
 }
@@ -70,7 +70,7 @@ void System::resume_loading(std::size_t i, double x, std::vector<Event>& log) {
     }
   };
   Memory& memory = memory_[i];
-  memory.is_virgin = true;
+  memory.is_on_primary_branch = true;
   log.push_back({"reload", static_cast<int>(i)});
   pass(boundaries_, i);
   memory.regime = memory.next == 0 ? first_regime(settings_.law) : boundaries_[memory.next - 1].beyond;
@@ -98,7 +98,7 @@ mdr::UnloadingShape System::indenter_at(std::size_t i, double x) const {
 }
 
 /// Lateral contacts follow the axial ones while those are loaded, and while nothing has yielded.
-void System::settle_lateral() {
+void System::resolve_lateral() {
   const Regime primary = memory_[first_primary_].regime;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (!is_lateral(i)) continue;
@@ -118,12 +118,12 @@ void System::add_guard(int kind, std::size_t i, int direction, std::string_view 
                      .index = static_cast<int>(i),
                      .direction = direction,
                      .name = name,
-                     .is_told = kind == k_reload || !is_loaded(is_lateral(i) ? first_primary_ : i)});
+                     .is_exact = kind == k_reload || !is_loaded(is_lateral(i) ? first_primary_ : i)});
   guard_places_.push_back(place);
 }
 
 /// The guards that may fire before the end of the step.
-void System::watch(double xi, std::span<const double> y) {
+void System::arm_guards(double xi, std::span<const double> y) {
   guards_.clear();
   guard_places_.clear();
   for (std::size_t i = 0; i < memory_.size(); ++i) {
@@ -160,7 +160,7 @@ void System::watch_primary(std::size_t i, double x, double target) {
       add_guard(k_touched, i, 1, "dent-touched", origin(i));
     return;
   }
-  if (!memory.is_virgin) {
+  if (!memory.is_on_primary_branch) {
     if (is_ahead(memory.largest)) add_guard(k_reload, i, 1, "reload", memory.largest);
     return;
   }
@@ -187,19 +187,19 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
     const auto own = static_cast<std::size_t>(guards_[g].index);
     const std::size_t i = is_lateral(own) ? first_primary_ : own;
     if (guards_[g].kind == k_lost && is_loaded(i)) {
-      values[g] = told(i, xi) / ramps_[i].start;
+      values[g] = prescribed(i, xi) / ramps_[i].start;
       continue;
     }
     // To the last digit: a force may end where it was before.
     if (guards_[g].kind == k_reload && is_loaded(i)) {
-      values[g] = told(i, xi) / memory_[i].largest_force - 1.0;
+      values[g] = prescribed(i, xi) / memory_[i].largest_force - 1.0;
       continue;
     }
     // Ramps are as short as contacts are shallow.
     const double scale = is_loaded(i) ? guard_places_[g] : std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
     // A place that follows from the force has no error of its own.
     const double near = displacement(i, xi, y);
-    const double x = is_loaded(i) && is_known(i) ? displacement_under_force(i, told(i, xi), near) : near;
+    const double x = is_loaded(i) && is_known(i) ? displacement_under_force(i, prescribed(i, xi), near) : near;
     values[g] = (x - guard_places_[g]) / scale;
   }
 }
@@ -253,8 +253,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     if (classes_[i].takes_force) y[places_[i]] = coordinate(i, x);
   }
   if (end) return end;
-  settle_lateral();
-  watch(xi, y);
+  resolve_lateral();
+  arm_guards(xi, y);
   return std::nullopt;
 }
 

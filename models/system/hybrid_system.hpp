@@ -37,11 +37,11 @@ struct Unknown {
   std::string_view name;
   Kind kind = Kind::differential;
   double scale = 1.0;  ///< typical magnitude; absolute tolerances are relative to it
-  /// Its rate stands in residual() at most where nothing else determines it.
+  /// residual() contains its rate only where no equation determines the unknown itself.
   bool is_implicitly_algebraic = false;
   /// Its row of residual() gives it outright as a function of xi and the other unknowns, and so does complete(): it has
   /// no error of its own, and may be singular in xi where those are smooth.
-  bool is_slaved = false;
+  bool is_dependent = false;
   bool may_rest = false;   ///< nothing may determine it: then it stays where it was
   double sum_scale = 0.0;  ///< typical magnitude of the sums it stands in, whose rounding residual() shows as its own
 };
@@ -56,8 +56,8 @@ struct Guard {
   bool is_silent = false;
   /// Marks an instant and changes nothing: neither mode nor state. Shown if fire() logs an event.
   bool is_mark = false;
-  /// Depends on what the program tells alone: no error of an integrator moves it.
-  bool is_told = false;
+  /// A function of the program only, without any error of integration.
+  bool is_exact = false;
   /// Rates, or their slopes, grow without bound towards it: just before it other guards may cross and come back within
   /// no time.
   bool is_branch_end = false;
@@ -73,7 +73,7 @@ struct Event {
 };
 
 /// Something the user should know, with the number that shows it.
-struct Finding {
+struct Diagnostic {
   std::string_view message;
   std::string_view quantity;  ///< what the value is, e.g. "E/Y"
   double value = 0.0;
@@ -170,7 +170,9 @@ class HybridSystem {
   [[nodiscard]] virtual std::span<const Unknown> unknowns() const noexcept = 0;
 
   /// Whether there are unknowns that may be singular where a segment begins, and rates with them.
-  [[nodiscard]] bool has_slaves() const noexcept { return std::ranges::any_of(unknowns(), &Unknown::is_slaved); }
+  [[nodiscard]] bool has_dependent_unknowns() const noexcept {
+    return std::ranges::any_of(unknowns(), &Unknown::is_dependent);
+  }
   /// Empty where the model knows no walls.
   [[nodiscard]] virtual std::span<const ContactClass> classes() const noexcept { return {}; }
 
@@ -217,8 +219,8 @@ class HybridSystem {
   /// @throws std::domain_error where there is no solution
   virtual void solve(double xi, std::span<double> y) = 0;
 
-  /// Where rates are infinite in a state, or become so before the step coordinate tells a difference, takes it along
-  /// its solution to beyond that.
+  /// Takes the state past a point where its rates are infinite, or become so within the round-off of the step
+  /// coordinate.
   /// @return where it then is: no farther than no integrator need resolve
   virtual double leave_singularity(double xi, std::span<double> /*y*/) { return xi; }
 
@@ -262,11 +264,10 @@ class HybridSystem {
   }
 
   /// What the user should know about this run, collected so far.
-  [[nodiscard]] virtual std::vector<Finding> warnings() const = 0;
+  [[nodiscard]] virtual std::vector<Diagnostic> warnings() const = 0;
 
-  /// How far each unknown may have gone from a state where solve() is asked for the next one, if the two are to show
-  /// all that happens between them: where equations have several solutions, of which one may end and others go on.
-  /// Infinite where they have not.
+  /// Largest change of each unknown between two calls of solve() that cannot skip a branch of solutions; infinite where
+  /// there is only one.
   virtual void branch_reach(std::span<const double> /*y*/, std::span<double> reach) const {
     std::ranges::fill(reach, std::numeric_limits<double>::infinity());
   }

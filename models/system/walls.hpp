@@ -22,8 +22,7 @@ struct ContactClass {
 /// compression positive [N]; elsewhere a strain, a stress [Pa] or a packing fraction, with the signs of their model.
 enum class Control { displacement, force, strain, stress, packing_fraction };
 
-/// What a step of the program does to one channel, the class of walls or the direction whose one value it prescribes:
-/// that goes linearly from start to end.
+/// Linear ramp of the controlled quantity of one channel, a contact class or a direction, during a step.
 struct Ramp {
   double start = 0.0;
   double end = 0.0;

@@ -15,7 +15,7 @@ namespace {
 // Pieces of a step of the program for each of their nodes, at which guards are looked at; shorter where the state or
 // the quadrature needs it, and as long as the step where guards go one way and nothing is integrated.
 constexpr double k_longest_per_node = 1.0 / 24.0;
-// What is left of a step is not split off where it is no more than this share of a piece.
+// A remainder of the step up to this share of a piece is merged into the piece.
 constexpr double k_rest = 0.25;
 // The first piece where there are slaved unknowns, and how fast pieces grow from there; the same of looks before a
 // step's first node, where a guard is not zero by rounding, but so near that it may cross and come back before that.
@@ -94,12 +94,12 @@ class RateRounding {
 
 class Direct final : public EventLocator {
  public:
-  Direct(HybridSystem& system, double rtol, Watch& watch)
-      : EventLocator(system, watch, k_most_nodes), work_accuracy_(std::max(k_rounding_of_work, rtol * rtol)) {
+  Direct(HybridSystem& system, double rtol, GuardSet& guard_set)
+      : EventLocator(system, guard_set, k_most_nodes), work_accuracy_(std::max(k_rounding_of_work, rtol * rtol)) {
     const auto unknowns = system.unknowns();
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
     if (found != unknowns.end()) quadrature_ = static_cast<std::size_t>(found - unknowns.begin());
-    has_slaves_ = system.has_slaves();
+    has_slaves_ = system.has_dependent_unknowns();
     may_rest_ = std::ranges::any_of(unknowns, &Unknown::may_rest);
     trial_.resize(unknowns.size());
     branch_reach_.resize(unknowns.size());
@@ -211,7 +211,7 @@ class Direct final : public EventLocator {
       guess_ahead(j);
       ++statistics_.rhs_evaluations;
       system_.solve(xi, trial_);
-      if (piece_length() > k_smallest_looked_into && !watch_.is_monotone()) look_inside(xi, trial_);
+      if (piece_length() > k_smallest_looked_into && !guard_set_.is_monotone()) look_inside(xi, trial_);
       for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
       if (has_branches_ && piece_length() > least_progress(begin_)) {
         if (const double share = share_of_reach(trial_); share > 1.0) {
@@ -255,7 +255,7 @@ class Direct final : public EventLocator {
   }
 
   [[nodiscard]] double longest() const noexcept {
-    return is_closed_ && watch_.is_monotone() ? 1.0 : k_longest_per_node * static_cast<double>(nodes_->count);
+    return is_closed_ && guard_set_.is_monotone() ? 1.0 : k_longest_per_node * static_cast<double>(nodes_->count);
   }
   [[nodiscard]] double piece_length() const noexcept { return piece_end_ - begin_; }
 
@@ -339,7 +339,7 @@ class Direct final : public EventLocator {
         }
       } else if (j > 0) {
         gain = gone(0);
-        if (system_.unknowns()[k].is_slaved) gain += ahead.onward * (gone(0) - gone(1));
+        if (system_.unknowns()[k].is_dependent) gain += ahead.onward * (gone(0) - gone(1));
       }
       trial_[k] = begin_state_[k] + gain;
     }
@@ -386,8 +386,8 @@ class Direct final : public EventLocator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_direct(HybridSystem& system, double rtol, Watch& watch) {
-  return std::make_unique<Direct>(system, rtol, watch);
+std::unique_ptr<Integrator> make_direct(HybridSystem& system, double rtol, GuardSet& guard_set) {
+  return std::make_unique<Direct>(system, rtol, guard_set);
 }
 
 }  // namespace monograin

@@ -16,8 +16,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "engine/guard_set.hpp"
 #include "engine/program_notes.hpp"
-#include "engine/watch.hpp"
 
 namespace monograin {
 namespace {
@@ -106,8 +106,8 @@ class Drive {
         HistorySink& sink)
       : scene_(scene),
         system_(*scene.system),
-        watch_(system_),
-        integrator_(make_integrator(integrator, system_, watch_, tolerances)),
+        guard_set_(system_),
+        integrator_(make_integrator(integrator, system_, guard_set_, tolerances)),
         sink_(sink),
         output_(output),
         y_(system_.unknowns().size()),
@@ -143,7 +143,7 @@ class Drive {
     }
     result.statistics = integrator_->statistics();
     result.statistics.events = event_count_;
-    for (const Finding& warning : system_.warnings()) {
+    for (const Diagnostic& warning : system_.warnings()) {
       result.warnings.push_back(fmt::format("{} ({} = {:.6g})", warning.message, warning.quantity, warning.value));
     }
     for (std::string& note : notes_.texts()) result.warnings.push_back(std::move(note));
@@ -280,7 +280,7 @@ class Drive {
   void note_unmet_conditions() {
     for (std::size_t i = 0; i < plan_.conditions.size(); ++i) {
       const Condition& condition = plan_.conditions[i];
-      const double begin = watch_.value_at_begin(i);
+      const double begin = guard_set_.value_at_begin(i);
       const double end = system_.quantity(condition.quantity, condition.channel, xi_, y_);
       const bool has_gone_away = std::abs(end - condition.target) > std::abs(begin - condition.target);
       notes_.add(step_ + 1,
@@ -337,9 +337,9 @@ class Drive {
   /// @param log  events at its beginning, which may be what it waits for
   bool integrate_step(const std::vector<Event>& log) {
     xi_ = 0.0;
-    watch_.begin_step(plan_.conditions, 0.0, y_);
+    guard_set_.begin_step(plan_.conditions, 0.0, y_);
     outputs_.clear();
-    if (const auto held = watch_.held_at_begin()) {
+    if (const auto held = guard_set_.held_at_begin()) {
       notes_.add(step_ + 1,
                  condition_text(plan_.conditions[*held]) + " holds where the step begins, and ends it there");
       return true;
@@ -376,7 +376,7 @@ class Drive {
     y_ = state;
     event_count_ = event_count;
     idle_guards_.clear();
-    watch_.begin_step(plan_.conditions, 0.0, y_);
+    guard_set_.begin_step(plan_.conditions, 0.0, y_);
     return end;
   }
 
@@ -417,14 +417,14 @@ class Drive {
         idle_events = 0;
         idle_guards_.clear();
       } else {
-        for (const std::size_t guard : integrator_->fired()) idle_guards_.insert(watch_.name(guard));
+        for (const std::size_t guard : integrator_->fired()) idle_guards_.insert(guard_set_.name(guard));
       }
       if (++idle_events > k_most_idle_events) throw chattering();
       if (++events > k_most_events) throw endless();
       if (handle_event(last)) return true;
       if (is_detached()) return false;
     }
-    // An event may leave a rest of the step that is rounding, but not beside a contact that is as shallow.
+    // What an event leaves of the step may be round-off. It is solved for, because a contact may be as shallow.
     if (plan_.duration > 0.0 && xi_ < 1.0) {
       change_state([this](std::span<double> y) {
         if (system_.is_solvable())
@@ -434,8 +434,8 @@ class Drive {
       });
     }
     xi_ = 1.0;
-    watch_.note_met({}, xi_, y_);
-    return watch_.is_met(xi_, y_);
+    guard_set_.note_met({}, xi_, y_);
+    return guard_set_.is_met(xi_, y_);
   }
 
   /// Changes the state wholly or, where that meets the end of the equations, not at all: the run ends in it.
@@ -452,7 +452,7 @@ class Drive {
     const std::vector<std::size_t> fired = collect_fired(last);
     std::vector<std::size_t> of_system;
     for (const std::size_t guard : fired) {
-      if (guard < watch_.system_guards()) of_system.push_back(guard);
+      if (guard < guard_set_.system_guards()) of_system.push_back(guard);
     }
     bool is_met = of_system.size() < fired.size();
     if (are_marks(of_system)) {
@@ -479,10 +479,10 @@ class Drive {
       if (is_seen) close_instant(time(xi_), xi_, log);
       if (end) throw Stop{end->point, where(xi_) + text_of(end->point)};
       if (failure) std::rethrow_exception(failure);
-      is_met = is_met || watch_.is_met(xi_, y_) || has_ending_event(log);
+      is_met = is_met || guard_set_.is_met(xi_, y_) || has_ending_event(log);
     }
-    if (is_met) watch_.note_met(fired, xi_, y_);
-    watch_.renew();
+    if (is_met) guard_set_.note_met(fired, xi_, y_);
+    guard_set_.renew();
     note_open_contacts();
     return is_met;
   }
@@ -490,7 +490,7 @@ class Drive {
   /// True if there are guards, and all of them mark an instant and change nothing.
   [[nodiscard]] bool are_marks(std::span<const std::size_t> guards) const {
     return !guards.empty() && std::ranges::all_of(guards, [this](std::size_t guard) {
-      return guard < watch_.system_guards() && system_.guards()[guard].is_mark;
+      return guard < guard_set_.system_guards() && system_.guards()[guard].is_mark;
     });
   }
 
@@ -499,33 +499,34 @@ class Drive {
   [[nodiscard]] std::vector<std::size_t> collect_fired(double last) {
     std::vector<std::size_t> fired(integrator_->fired().begin(), integrator_->fired().end());
     if (are_marks(fired)) return fired;
-    std::vector<double> now(watch_.size());
-    watch_.values(xi_, y_, now);
+    std::vector<double> now(guard_set_.size());
+    guard_set_.values(xi_, y_, now);
     const auto tolerance_of = [&](std::size_t g) {
-      const bool is_told = g < watch_.system_guards() && system_.guards()[g].is_told;
-      return is_told ? k_round_off : integrator_->guard_tolerance();
+      const bool is_exact = g < guard_set_.system_guards() && system_.guards()[g].is_exact;
+      return is_exact ? k_round_off : integrator_->guard_tolerance();
     };
     const auto may_be_met = [&](std::size_t g) {
-      const int direction = watch_.directions()[g];
+      const int direction = guard_set_.directions()[g];
       return (direction == 0 || direction * now[g] >= -tolerance_of(g)) && std::ranges::find(fired, g) == fired.end();
     };
     std::vector<std::size_t> others;
-    for (std::size_t g = 0; g < watch_.size(); ++g) {
+    for (std::size_t g = 0; g < guard_set_.size(); ++g) {
       if (may_be_met(g)) others.push_back(g);
     }
     if (!others.empty()) {
-      std::vector<double> before(watch_.size());
+      std::vector<double> before(guard_set_.size());
       const double middle = std::midpoint(last, xi_);
       integrator_->dense_output(middle, output_state_);
-      watch_.values(middle, output_state_, before);
+      guard_set_.values(middle, output_state_, before);
       for (const std::size_t g : others) {
         const double side = before[g] < 0.0 ? 1.0 : -1.0;
-        const bool counts = watch_.directions()[g] == 0 || watch_.directions()[g] == static_cast<int>(side);
+        const bool counts = guard_set_.directions()[g] == 0 || guard_set_.directions()[g] == static_cast<int>(side);
         // At its pace it arrives within as long again: a branch may be no longer than what counts as zero.
         const double way = side * (now[g] - before[g]);
         const bool has_arrived = way > 0.0 && -side * now[g] <= std::min(tolerance_of(g), std::max(k_round_off, way));
         if (!counts || before[g] == 0.0 || !has_arrived) continue;
-        if (g < watch_.system_guards() || -side * now[g] <= 0.0 || !goes_away(g, now[g], middle)) fired.push_back(g);
+        if (g < guard_set_.system_guards() || -side * now[g] <= 0.0 || !goes_away(g, now[g], middle))
+          fired.push_back(g);
       }
     }
     std::ranges::sort(fired);
@@ -538,12 +539,12 @@ class Drive {
   [[nodiscard]] bool goes_away(std::size_t guard, double now, double from) {
     constexpr double k_approach = 0.25;
     constexpr int k_looks = 12;
-    std::vector<double> before(watch_.size());
+    std::vector<double> before(guard_set_.size());
     double distance = xi_ - from;
     for (int look = 0; look < k_looks; ++look) {
       distance *= k_approach;
       integrator_->dense_output(xi_ - distance, output_state_);
-      watch_.values(xi_ - distance, output_state_, before);
+      guard_set_.values(xi_ - distance, output_state_, before);
       if (std::abs(before[guard]) < std::abs(now) - k_round_off) return true;
     }
     return false;
@@ -650,7 +651,7 @@ class Drive {
 
   Scene& scene_;
   HybridSystem& system_;
-  Watch watch_;
+  GuardSet guard_set_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<double> rtol_;  ///< none of the direct form, which has no tolerance
   HistorySink& sink_;

@@ -35,8 +35,8 @@ bool crosses(int direction, double before, double after) noexcept {
 
 }  // namespace
 
-EventLocator::EventLocator(HybridSystem& system, Watch& watch, std::size_t looks)
-    : system_(system), watch_(watch), most_looks_(looks + k_looks_before_end) {
+EventLocator::EventLocator(HybridSystem& system, GuardSet& guard_set, std::size_t looks)
+    : system_(system), guard_set_(guard_set), most_looks_(looks + k_looks_before_end) {
   for (auto* state : {&begin_state_, &end_state_, &guess_}) state->resize(system.unknowns().size());
 }
 
@@ -44,10 +44,10 @@ void EventLocator::begin_segment(double xi, std::span<const double> y) {
   ++statistics_.segments;
   begin_ = end_ = xi;
   std::ranges::copy(y, end_state_.begin());
-  for (auto* values : {&values_, &extremum_values_, &begin_values_, &end_values_}) values->resize(watch_.size());
+  for (auto* values : {&values_, &extremum_values_, &begin_values_, &end_values_}) values->resize(guard_set_.size());
   looks_.reserve(most_looks_);
-  look_values_.reserve(most_looks_ * watch_.size());
-  fired_.reserve(watch_.size());
+  look_values_.reserve(most_looks_ * guard_set_.size());
+  fired_.reserve(guard_set_.size());
   look(end_, end_state_, end_values_);
   read_sides();
 }
@@ -61,8 +61,8 @@ void EventLocator::begin_piece() {
 }
 
 void EventLocator::look_inside(double xi, std::span<const double> y) {
-  look_values_.resize((looks_.size() + 1) * watch_.size());
-  const auto values = std::span(look_values_).last(watch_.size());
+  look_values_.resize((looks_.size() + 1) * guard_set_.size());
+  const auto values = std::span(look_values_).last(guard_set_.size());
   look(xi, y, values);
   // A guard that is zero but for rounding is on the side where it was.
   const View last = seen(looks_.size());
@@ -74,13 +74,13 @@ void EventLocator::look_inside(double xi, std::span<const double> y) {
 
 void EventLocator::look(double xi, std::span<const double> y, std::span<double> values) {
   ++statistics_.guard_evaluations;
-  watch_.values(xi, y, values);
+  guard_set_.values(xi, y, values);
 }
 
 /// A guard that is zero, or just past it, where the segment begins (first touch) is on the side to which it leaves.
 void EventLocator::read_sides() {
   const auto is_open = [this](std::size_t g) {
-    return std::abs(end_values_[g]) <= guard_tolerance() && watch_.directions()[g] * end_values_[g] >= 0.0;
+    return std::abs(end_values_[g]) <= guard_tolerance() && guard_set_.directions()[g] * end_values_[g] >= 0.0;
   };
   bool any = false;
   for (std::size_t g = 0; g < end_values_.size(); ++g) any = any || is_open(g);
@@ -102,11 +102,11 @@ void EventLocator::read_sides() {
 EventLocator::View EventLocator::seen(std::size_t place) const {
   if (place == 0) return {begin_, begin_values_};
   if (place > looks_.size()) return {end_, end_values_};
-  return {looks_[place - 1], std::span(look_values_).subspan((place - 1) * watch_.size(), watch_.size())};
+  return {looks_[place - 1], std::span(look_values_).subspan((place - 1) * guard_set_.size(), guard_set_.size())};
 }
 
 bool EventLocator::any_crosses(const View& before, const View& after) const {
-  const auto directions = watch_.directions();
+  const auto directions = guard_set_.directions();
   for (std::size_t g = 0; g < directions.size(); ++g) {
     if (crosses(directions[g], before.values[g], after.values[g])) return true;
   }
@@ -130,7 +130,7 @@ double EventLocator::hidden_extremum(std::size_t place) const {
   if (place < looks_.size()) add(seen(place + 2));
   if (place > 0) add(seen(place - 1));
 
-  const auto directions = watch_.directions();
+  const auto directions = guard_set_.directions();
   const double per_length = 1.0 / (b.xi - a.xi);
   double extremum = b.xi;
   for (std::size_t g = 0; g < directions.size(); ++g) {
@@ -191,7 +191,7 @@ void EventLocator::locate_event() {
     }
     fired_.clear();
     bool has_earlier = false;
-    const auto directions = watch_.directions();
+    const auto directions = guard_set_.directions();
     const View last = seen(place);
     for (std::size_t g = 0; g < directions.size(); ++g) {
       if (g == first) {
@@ -221,7 +221,7 @@ std::size_t EventLocator::shorten(double xi, std::size_t looks) {
 }
 
 bool EventLocator::is_branch_end(std::size_t guard) const {
-  return guard < watch_.system_guards() && system_.guards()[guard].is_branch_end;
+  return guard < guard_set_.system_guards() && system_.guards()[guard].is_branch_end;
 }
 
 /// Looks between the last one and the end that a root has given the piece, ever nearer to it.
@@ -241,7 +241,7 @@ void EventLocator::look_up_to(double last) {
 
 /// The first of the roots between two looks, and the guard whose it is.
 double EventLocator::first_root(const View& before, const View& after, std::size_t& guard) {
-  const auto directions = watch_.directions();
+  const auto directions = guard_set_.directions();
   double first = std::numeric_limits<double>::infinity();
   for (std::size_t g = 0; g < directions.size(); ++g) {
     if (!crosses(directions[g], before.values[g], after.values[g])) continue;

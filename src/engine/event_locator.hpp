@@ -19,7 +19,7 @@ class EventLocator : public Integrator {
 
  protected:
   /// @param looks  inside of a piece, that there is room for without an allocation
-  EventLocator(HybridSystem& system, Watch& watch, std::size_t looks = 0);
+  EventLocator(HybridSystem& system, GuardSet& guard_set, std::size_t looks = 0);
 
   /// Shorter pieces are not looked into: guards near zero are rounding there.
   static constexpr double k_smallest_looked_into = 1e-6;
@@ -39,7 +39,7 @@ class EventLocator : public Integrator {
   void look(double xi, std::span<const double> y, std::span<double> values);
 
   HybridSystem& system_;
-  Watch& watch_;
+  GuardSet& guard_set_;
   double begin_ = 0.0;  ///< of the piece
   double end_ = 0.0;
   std::vector<double> begin_state_, end_state_;

@@ -17,7 +17,7 @@ namespace monograin {
 /// Share of a curve's tolerance that a step may take. Work and radius only ever grow, so the errors of the steps have
 /// one sign and add up; a tenth keeps the curve's error within a few rtol over some hundred steps.
 inline constexpr double k_usual_share = 0.1;
-/// The same for methods whose orders or estimates let more add up: keeps it within some ten rtol.
+/// Share for methods whose global error exceeds the local one by more (variable order): keeps it within some ten rtol.
 inline constexpr double k_share_of_many = 0.01;
 
 /// What is tolerated of one step. Finer than that of an rtol of 1e-13, round-off keeps a corrector from converging.
@@ -103,7 +103,7 @@ class ExplicitForm {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] const Unknown& unknown(std::size_t k) const noexcept { return system_.unknowns()[k]; }
 
-  [[nodiscard]] bool has_slaves() const noexcept { return system_.has_slaves(); }
+  [[nodiscard]] bool has_dependent_unknowns() const noexcept { return system_.has_dependent_unknowns(); }
   [[nodiscard]] bool has_corrections() const noexcept { return system_.has_corrections(); }
 
   /// Takes up a segment's first complete state; the integrated part of it goes to `integrated`.

@@ -37,8 +37,8 @@ constexpr double k_above_rounding = 64.0 * std::numeric_limits<double>::epsilon(
 
 class Ida final : public Integrator {
  public:
-  Ida(HybridSystem& system, Watch& watch, const Tolerances& tolerances)
-      : system_(system), watch_(watch), tolerances_(tolerances), quadratures_(system.unknowns()) {
+  Ida(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances)
+      : system_(system), guard_set_(guard_set), tolerances_(tolerances), quadratures_(system.unknowns()) {
     const auto unknowns = system.unknowns();
     const auto size = static_cast<sunindextype>(unknowns.size());
     for (NVector* vector : {&y_, &dy_, &begin_state_, &begin_rates_, &id_, &least_atol_, &atol_, &weights_, &errors_}) {
@@ -49,7 +49,7 @@ class Ida final : public Integrator {
     N_VConst(0.0, dy_.get());
     for (std::size_t k = 0; k < unknowns.size(); ++k) {
       // A slaved unknown has no error of its own: hardly weighted, and completed wherever it is used.
-      const double absolute = unknowns[k].is_slaved ? k_slave_tolerance : of_step(tolerances).atol;
+      const double absolute = unknowns[k].is_dependent ? k_slave_tolerance : of_step(tolerances).atol;
       view(least_atol_.get())[k] = std::max(absolute * unknowns[k].scale, k_above_rounding * unknowns[k].sum_scale);
       view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
     }
@@ -226,10 +226,10 @@ class Ida final : public Integrator {
     check("IDASetInitStep", IDASetInitStep(memory_.get(), step));
     check("IDASetStopTime", IDASetStopTime(memory_.get(), 1.0));
     check("IDARootInit", IDARootInit(memory_.get(), 0, nullptr));
-    roots_.found.assign(watch_.size(), 0);
-    if (watch_.size() == 0) return;
-    check("IDARootInit", IDARootInit(memory_.get(), static_cast<int>(watch_.size()), guards));
-    roots_.directions.assign(watch_.directions().begin(), watch_.directions().end());
+    roots_.found.assign(guard_set_.size(), 0);
+    if (guard_set_.size() == 0) return;
+    check("IDARootInit", IDARootInit(memory_.get(), static_cast<int>(guard_set_.size()), guards));
+    roots_.directions.assign(guard_set_.directions().begin(), guard_set_.directions().end());
     check("IDASetRootDirection", IDASetRootDirection(memory_.get(), roots_.directions.data()));
     check("IDASetNoInactiveRootWarn", IDASetNoInactiveRootWarn(memory_.get()));
   }
@@ -239,9 +239,9 @@ class Ida final : public Integrator {
     const auto values_at = [this](double xi, std::span<double> values) {
       ++roots_.evaluations;
       dense_output(xi, complete_);
-      watch_.values(xi, complete_, values);
+      guard_set_.values(xi, complete_, values);
     };
-    end_ = root_of_step(system_, watch_, roots_.fired, begin, end_, guard_tolerance_of(tolerances_), values_at);
+    end_ = root_of_step(system_, guard_set_, roots_.fired, begin, end_, guard_tolerance_of(tolerances_), values_at);
   }
 
   int evolve() {
@@ -306,7 +306,7 @@ class Ida final : public Integrator {
       std::ranges::copy(view(y), ida.complete_.begin());
       // A centre that walls take along would lag behind them: of errors alone they would come into contact.
       ida.system_.complete(xi, ida.complete_);
-      ida.watch_.values(xi, ida.complete_, {values, ida.watch_.size()});
+      ida.guard_set_.values(xi, ida.complete_, {values, ida.guard_set_.size()});
       return true;
     });
   }
@@ -328,7 +328,7 @@ class Ida final : public Integrator {
   }
 
   HybridSystem& system_;
-  Watch& watch_;
+  GuardSet& guard_set_;
   Tolerances tolerances_;
   SegmentQuadratures quadratures_;
   std::vector<double> complete_;
@@ -349,8 +349,8 @@ class Ida final : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_ida(HybridSystem& system, Watch& watch, const Tolerances& tolerances) {
-  return std::make_unique<Ida>(system, watch, tolerances);
+std::unique_ptr<Integrator> make_ida(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances) {
+  return std::make_unique<Ida>(system, guard_set, tolerances);
 }
 
 }  // namespace monograin

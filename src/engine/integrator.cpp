@@ -97,25 +97,25 @@ bool suits_stiff_equations(std::string_view name) noexcept {
   return found == k_of_explicit_form.end() ? name != "explicit" : found->suits_stiff;
 }
 
-std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
+std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, GuardSet& guard_set,
                                             const Tolerances& asked) {
   if (name == "direct" && !system.is_solvable()) throw std::logic_error("the system has no direct form");
-  if (name == "direct") return make_direct(system, asked.rtol, watch);
-  if (name == "explicit") return make_fixed_step(system, watch, asked);
+  if (name == "direct") return make_direct(system, asked.rtol, guard_set);
+  if (name == "explicit") return make_fixed_step(system, guard_set, asked);
   const double gain = system.error_gain();
   const double rtol = std::max(asked.rtol / gain, std::min(asked.rtol, k_least_rtol));
   // No smaller than it takes to let the relative one count: equations without rates have round-off.
   const Tolerances tolerances{rtol, std::min(asked.atol, std::max(asked.atol / gain, 0.1 * rtol))};
-  if (name == "ida") return make_ida(system, watch, tolerances);
-  if (name == k_switching) return make_switching(system, watch, tolerances);
+  if (name == "ida") return make_ida(system, guard_set, tolerances);
+  if (name == k_switching) return make_switching(system, guard_set, tolerances);
   for (const auto& [word, method, suits_stiff] : k_of_explicit_form) {
     if (word != name) continue;
     return std::visit(
         [&](auto chosen) {
           if constexpr (std::is_same_v<decltype(chosen), OdeMethod>)
-            return make_sundials_ode(chosen, system, watch, tolerances);
+            return make_sundials_ode(chosen, system, guard_set, tolerances);
           else
-            return make_stepped(chosen, system, watch, tolerances);
+            return make_stepped(chosen, system, guard_set, tolerances);
         },
         method);
   }

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/watch.hpp"
+#include "engine/guard_set.hpp"
 #include "system/hybrid_system.hpp"
 
 namespace monograin {
@@ -63,8 +63,9 @@ class SolverError : public std::runtime_error {
   double xi_;
 };
 
-/// A step from xi this short that has met the end of the equations has arrived there (step coordinates). Where a step
-/// of the program begins, shorter ones are still told apart: a contact may be that much shallower than the ramp.
+/// Length (step coordinates) below which a step that leaves the domain of the equations counts as having reached its
+/// boundary. At the beginning of a step of the program it is shorter: a contact may be that much shallower than the
+/// ramp.
 [[nodiscard]] inline double least_progress(double xi) noexcept { return 1e-13 * std::max(xi, 1e-7); }
 
 /// Of the step coordinate: nothing is told more exactly than that, times its rate.
@@ -89,7 +90,7 @@ class Integrator {
   /// One internal step. @throws SolverError, or std::domain_error where the equations end
   virtual Advance advance() = 0;
 
-  /// Guards that fired at the end of the last step, by index into the watch.
+  /// Guards that fired at the end of the last step, by index into the guard_set.
   [[nodiscard]] virtual std::span<const std::size_t> fired() const noexcept = 0;
 
   /// The complete state anywhere in the last internal step.
@@ -114,8 +115,8 @@ class Integrator {
 
 /// @param name  as in scenario files but "auto", or as choose_integrator() has chosen it
 /// @throws std::logic_error for another name, or where direct is asked of a system that is not solvable
-[[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, Watch& watch,
-                                                          const Tolerances& tolerances);
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system,
+                                                          GuardSet& guard_set, const Tolerances& tolerances);
 
 /// Which integrator runs, and why that one.
 struct IntegratorChoice {
@@ -131,22 +132,23 @@ struct IntegratorChoice {
 [[nodiscard]] std::string sundials_version();
 
 // One adapter per library.
-[[nodiscard]] std::unique_ptr<Integrator> make_direct(HybridSystem& system, double rtol, Watch& watch);
+[[nodiscard]] std::unique_ptr<Integrator> make_direct(HybridSystem& system, double rtol, GuardSet& guard_set);
 enum class OdeMethod { cvode_adams, cvode_bdf, arkode_erk, arkode_dirk };
-[[nodiscard]] std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, HybridSystem& system, Watch& watch,
+[[nodiscard]] std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, HybridSystem& system, GuardSet& guard_set,
                                                             const Tolerances& tolerances);
 enum class OdeintMethod { dopri5, fehlberg78, bulirsch_stoer, rosenbrock4 };
-[[nodiscard]] std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, Watch& watch,
+[[nodiscard]] std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, GuardSet& guard_set,
                                                        const Tolerances& tolerances);
 enum class GslMethod { rk8pd, msadams, msbdf };
-[[nodiscard]] std::unique_ptr<Integrator> make_stepped(GslMethod method, HybridSystem& system, Watch& watch,
+[[nodiscard]] std::unique_ptr<Integrator> make_stepped(GslMethod method, HybridSystem& system, GuardSet& guard_set,
                                                        const Tolerances& tolerances);
 /// Forward Euler with 1/rtol steps in each step of the program, at most 1e7; transitions at the ends of steps.
-[[nodiscard]] std::unique_ptr<Integrator> make_fixed_step(HybridSystem& system, Watch& watch,
+[[nodiscard]] std::unique_ptr<Integrator> make_fixed_step(HybridSystem& system, GuardSet& guard_set,
                                                           const Tolerances& tolerances);
 /// Odeint's dopri5, and CVODE's BDF from where that takes too many steps; what "auto" integrates with.
-[[nodiscard]] std::unique_ptr<Integrator> make_switching(HybridSystem& system, Watch& watch,
+[[nodiscard]] std::unique_ptr<Integrator> make_switching(HybridSystem& system, GuardSet& guard_set,
                                                          const Tolerances& tolerances);
-[[nodiscard]] std::unique_ptr<Integrator> make_ida(HybridSystem& system, Watch& watch, const Tolerances& tolerances);
+[[nodiscard]] std::unique_ptr<Integrator> make_ida(HybridSystem& system, GuardSet& guard_set,
+                                                   const Tolerances& tolerances);
 
 }  // namespace monograin

@@ -365,7 +365,7 @@ class RosenbrockStepper final : public Stepper {
     start_[size_] = xi;
     method_.begin(start_.data());
     begin_ = end_ = xi;
-    step_ = std::min(form_.has_slaves() ? k_first_step_of_slaves : k_first_step, 1.0 - xi);
+    step_ = std::min(form_.has_dependent_unknowns() ? k_first_step_of_slaves : k_first_step, 1.0 - xi);
   }
 
   void correct(std::span<const double> z) override {

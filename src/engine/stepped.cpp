@@ -20,8 +20,8 @@ constexpr double k_pieces = 32.0;
 class Stepped final : public EventLocator {
  public:
   template <class Make>
-  Stepped(HybridSystem& system, Watch& watch, const Tolerances& tolerances, Make&& make)
-      : EventLocator(system, watch),
+  Stepped(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances, Make&& make)
+      : EventLocator(system, guard_set),
         tolerances_(tolerances),
         form_(system),
         stepper_(make(form_)),
@@ -47,7 +47,7 @@ class Stepped final : public EventLocator {
     }
     const double end = std::min(std::min(1.0, (std::floor(begin_ * k_pieces + 1e-9) + 1.0) / k_pieces), step_end_);
     move_end(end);
-    if (watch_.size() > 0) look_into_middle();
+    if (guard_set_.size() > 0) look_into_middle();
     locate_event();
     return {.xi = end_, .hit_guard = !fired_.empty()};
   }
@@ -140,8 +140,8 @@ constexpr double k_least_size = 1e-2;  // of an unknown over its scale
 /// first step's end that finds them past.
 class FixedStep final : public Integrator {
  public:
-  FixedStep(HybridSystem& system, Watch& watch, const Tolerances& tolerances)
-      : watch_(watch),
+  FixedStep(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances)
+      : guard_set_(guard_set),
         form_(system),
         complete_(system.unknowns().size()),
         begin_state_(form_.size()),
@@ -155,10 +155,10 @@ class FixedStep final : public Integrator {
     ++statistics_.segments;
     begin_ = end_ = xi;
     form_.begin(y, end_state_);
-    values_.resize(watch_.size());
-    before_.resize(watch_.size());
-    fired_.reserve(watch_.size());
-    watch_.values(xi, y, values_);
+    values_.resize(guard_set_.size());
+    before_.resize(guard_set_.size());
+    fired_.reserve(guard_set_.size());
+    guard_set_.values(xi, y, values_);
   }
 
   /// Where a step ends is not asked for its rates before the next one begins: the mode may end there, and the errors of
@@ -174,10 +174,10 @@ class FixedStep final : public Integrator {
     ++statistics_.guard_evaluations;
     statistics_.last_step = end_ - begin_;
     form_.complete(end_, end_state_, complete_);
-    watch_.values(end_, complete_, values_);
+    guard_set_.values(end_, complete_, values_);
     fired_.clear();
     for (std::size_t g = 0; g < values_.size(); ++g) {
-      const int direction = watch_.directions()[g];
+      const int direction = guard_set_.directions()[g];
       const bool rises = before_[g] < 0.0 && values_[g] >= 0.0 && direction >= 0;
       const bool falls = before_[g] > 0.0 && values_[g] <= 0.0 && direction <= 0;
       if (rises || falls) fired_.push_back(g);
@@ -208,7 +208,7 @@ class FixedStep final : public Integrator {
  private:
   static constexpr double k_least_step = 1e-7;  // of a step of the program
 
-  Watch& watch_;
+  GuardSet& guard_set_;
   ScaledForm form_;
   double step_;
   double begin_ = 0.0;
@@ -279,20 +279,20 @@ double DifferenceJacobian::look_beside(double xi, std::size_t j, double wanted) 
   return step;
 }
 
-std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, Watch& watch,
+std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, GuardSet& guard_set,
                                          const Tolerances& tolerances) {
-  return std::make_unique<Stepped>(system, watch, tolerances,
+  return std::make_unique<Stepped>(system, guard_set, tolerances,
                                    [&](ScaledForm& form) { return make_odeint(method, form, tolerances); });
 }
 
-std::unique_ptr<Integrator> make_stepped(GslMethod method, HybridSystem& system, Watch& watch,
+std::unique_ptr<Integrator> make_stepped(GslMethod method, HybridSystem& system, GuardSet& guard_set,
                                          const Tolerances& tolerances) {
-  return std::make_unique<Stepped>(system, watch, tolerances,
+  return std::make_unique<Stepped>(system, guard_set, tolerances,
                                    [&](ScaledForm& form) { return make_gsl(method, form, tolerances); });
 }
 
-std::unique_ptr<Integrator> make_fixed_step(HybridSystem& system, Watch& watch, const Tolerances& tolerances) {
-  return std::make_unique<FixedStep>(system, watch, tolerances);
+std::unique_ptr<Integrator> make_fixed_step(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances) {
+  return std::make_unique<FixedStep>(system, guard_set, tolerances);
 }
 
 }  // namespace monograin

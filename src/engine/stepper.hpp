@@ -26,7 +26,7 @@ class ScaledForm {
   [[nodiscard]] bool is_quadrature(std::size_t k) const noexcept {
     return form_.unknown(k).kind == Unknown::Kind::quadrature;
   }
-  [[nodiscard]] bool has_slaves() const noexcept { return form_.has_slaves(); }
+  [[nodiscard]] bool has_dependent_unknowns() const noexcept { return form_.has_dependent_unknowns(); }
   [[nodiscard]] bool has_corrections() const noexcept { return form_.has_corrections(); }
   [[nodiscard]] long evaluations() const noexcept { return evaluations_; }
 

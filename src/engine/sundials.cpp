@@ -33,16 +33,18 @@ struct Crossing {
 };
 
 /// The first crossing within a step that ends with a branch, if there is one: looked for ever nearer to its end.
-std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, const Watch& watch,
+std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, const GuardSet& guard_set,
                                                    std::span<const std::size_t> fired, double begin, double end,
                                                    double tolerance,
                                                    const std::function<void(double, std::span<double>)>& values_at) {
-  const auto ends_branch = [&](std::size_t g) { return g < watch.system_guards() && system.guards()[g].is_branch_end; };
+  const auto ends_branch = [&](std::size_t g) {
+    return g < guard_set.system_guards() && system.guards()[g].is_branch_end;
+  };
   if (std::ranges::none_of(fired, ends_branch)) return std::nullopt;
-  const auto directions = watch.directions();
-  std::vector<double> before(watch.size());
-  std::vector<double> after(watch.size());
-  std::vector<double> values(watch.size());
+  const auto directions = guard_set.directions();
+  std::vector<double> before(guard_set.size());
+  std::vector<double> after(guard_set.size());
+  std::vector<double> values(guard_set.size());
   std::optional<Crossing> first;
   try {
     values_at(begin, before);
@@ -75,12 +77,12 @@ std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, c
 
 /// Where a guard of the system goes beyond what counts as zero within the roundings of the end, its place is looked for
 /// among them. Conditions of the program are met wherever in them: no mode begins there that has to go on from it.
-double polished_root(const Watch& watch, std::span<const std::size_t> fired, double begin, double end, double tolerance,
-                     const std::function<void(double, std::span<double>)>& values_at) {
-  std::vector<double> values(watch.size());
+double polished_root(const GuardSet& guard_set, std::span<const std::size_t> fired, double begin, double end,
+                     double tolerance, const std::function<void(double, std::span<double>)>& values_at) {
+  std::vector<double> values(guard_set.size());
   try {
     values_at(end, values);
-    const auto is_far = [&](std::size_t g) { return g < watch.system_guards() && std::abs(values[g]) > tolerance; };
+    const auto is_far = [&](std::size_t g) { return g < guard_set.system_guards() && std::abs(values[g]) > tolerance; };
     if (std::ranges::none_of(fired, is_far)) return end;
     const std::vector<double> beyond = values;
     const auto is_beyond = [&](double xi) {
@@ -118,13 +120,14 @@ LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context)
   return solver;
 }
 
-double root_of_step(const HybridSystem& system, const Watch& watch, std::vector<std::size_t>& fired, double begin,
-                    double end, double tolerance, const std::function<void(double, std::span<double>)>& values_at) {
-  if (const auto hidden = crossing_before_branch_end(system, watch, fired, begin, end, tolerance, values_at)) {
+double root_of_step(const HybridSystem& system, const GuardSet& guard_set, std::vector<std::size_t>& fired,
+                    double begin, double end, double tolerance,
+                    const std::function<void(double, std::span<double>)>& values_at) {
+  if (const auto hidden = crossing_before_branch_end(system, guard_set, fired, begin, end, tolerance, values_at)) {
     fired.assign(1, hidden->guard);
     return hidden->xi;
   }
-  return polished_root(watch, fired, begin, end, tolerance, values_at);
+  return polished_root(guard_set, fired, begin, end, tolerance, values_at);
 }
 
 std::string worst_components(std::span<const Unknown> unknowns, std::span<const double> weights,

@@ -17,7 +17,7 @@
 
 #include "engine/c_library.hpp"
 #include "engine/explicit_form.hpp"
-#include "engine/watch.hpp"
+#include "engine/guard_set.hpp"
 
 namespace monograin::sundials_boundary {
 
@@ -101,8 +101,8 @@ int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentS
 /// @param begin, end  of the step
 /// @param tolerance   what of a guard counts as zero
 /// @param values_at   xi, values: the guards at a place of the step
-[[nodiscard]] double root_of_step(const HybridSystem& system, const Watch& watch, std::vector<std::size_t>& fired,
-                                  double begin, double end, double tolerance,
+[[nodiscard]] double root_of_step(const HybridSystem& system, const GuardSet& guard_set,
+                                  std::vector<std::size_t>& fired, double begin, double end, double tolerance,
                                   const std::function<void(double, std::span<double>)>& values_at);
 
 /// The unknowns with the largest weighted local errors, worst first, as "name (weighted error)".

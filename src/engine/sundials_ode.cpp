@@ -137,9 +137,9 @@ struct ArkodeLibrary {
 template <class Library>
 class SundialsOde final : public Integrator {
  public:
-  SundialsOde(OdeMethod method, HybridSystem& system, Watch& watch, const Tolerances& tolerances)
+  SundialsOde(OdeMethod method, HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances)
       : system_(system),
-        watch_(watch),
+        guard_set_(guard_set),
         method_(method),
         tolerances_(tolerances),
         of_step_(of_step(tolerances, method == OdeMethod::cvode_bdf ? k_share_of_many : k_usual_share)),
@@ -276,10 +276,10 @@ class SundialsOde final : public Integrator {
     check("SetStopTime", Library::set_stop_time(memory_.get(), 1.0));
     // Unlisting all guards first makes the library forget which ones it had switched off.
     check("RootInit", Library::init_roots(memory_.get(), 0, nullptr));
-    roots_.found.assign(watch_.size(), 0);
-    if (watch_.size() == 0) return;
-    check("RootInit", Library::init_roots(memory_.get(), static_cast<int>(watch_.size()), guards));
-    roots_.directions.assign(watch_.directions().begin(), watch_.directions().end());
+    roots_.found.assign(guard_set_.size(), 0);
+    if (guard_set_.size() == 0) return;
+    check("RootInit", Library::init_roots(memory_.get(), static_cast<int>(guard_set_.size()), guards));
+    roots_.directions.assign(guard_set_.directions().begin(), guard_set_.directions().end());
     check("SetRootDirection", Library::set_root_direction(memory_.get(), roots_.directions.data()));
     check("SetNoInactiveRootWarn", Library::set_no_inactive_root_warning(memory_.get()));
   }
@@ -308,10 +308,10 @@ class SundialsOde final : public Integrator {
       if (flag < 0 && pending_.domain_end()) throw *pending_.domain_end();
       check("GetDky", flag);
       ++roots_.evaluations;
-      watch_.values(xi, form_.complete(xi, view(errors_.get())), values);
+      guard_set_.values(xi, form_.complete(xi, view(errors_.get())), values);
     };
     const double root =
-        root_of_step(system_, watch_, roots_.fired, begin, end_, guard_tolerance_of(tolerances_), values_at);
+        root_of_step(system_, guard_set_, roots_.fired, begin, end_, guard_tolerance_of(tolerances_), values_at);
     if (root == end_) return;
     end_ = root;
     check("GetDky", Library::derivative(memory_.get(), end_, 0, y_.get()));
@@ -445,7 +445,7 @@ class SundialsOde final : public Integrator {
     return ode.pending_.guard([&] {
       const std::span<const double> state =
           xi == ode.segment_begin_ ? std::span<const double>(ode.first_state_) : ode.form_.complete(xi, view(y));
-      ode.watch_.values(xi, state, {values, ode.watch_.size()});
+      ode.guard_set_.values(xi, state, {values, ode.guard_set_.size()});
       return true;
     });
   }
@@ -467,7 +467,7 @@ class SundialsOde final : public Integrator {
   }
 
   HybridSystem& system_;
-  Watch& watch_;
+  GuardSet& guard_set_;
   OdeMethod method_;
   Tolerances tolerances_, of_step_;
   ExplicitForm form_;
@@ -531,12 +531,12 @@ void SundialsOde<ArkodeLibrary>::create() {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, HybridSystem& system, Watch& watch,
+std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, HybridSystem& system, GuardSet& guard_set,
                                               const Tolerances& tolerances) {
   if (method == OdeMethod::cvode_adams || method == OdeMethod::cvode_bdf) {
-    return std::make_unique<SundialsOde<CvodeLibrary>>(method, system, watch, tolerances);
+    return std::make_unique<SundialsOde<CvodeLibrary>>(method, system, guard_set, tolerances);
   }
-  return std::make_unique<SundialsOde<ArkodeLibrary>>(method, system, watch, tolerances);
+  return std::make_unique<SundialsOde<ArkodeLibrary>>(method, system, guard_set, tolerances);
 }
 
 }  // namespace monograin

@@ -10,9 +10,9 @@ constexpr long k_most_explicit_steps = 400;
 
 class Switching final : public Integrator {
  public:
-  Switching(HybridSystem& system, Watch& watch, const Tolerances& tolerances)
-      : explicit_(make_stepped(OdeintMethod::dopri5, system, watch, tolerances)),
-        implicit_(make_sundials_ode(OdeMethod::cvode_bdf, system, watch, tolerances)),
+  Switching(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances)
+      : explicit_(make_stepped(OdeintMethod::dopri5, system, guard_set, tolerances)),
+        implicit_(make_sundials_ode(OdeMethod::cvode_bdf, system, guard_set, tolerances)),
         state_(system.unknowns().size()) {}
 
   void begin(double xi, std::span<const double> y) override {
@@ -56,8 +56,8 @@ class Switching final : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_switching(HybridSystem& system, Watch& watch, const Tolerances& tolerances) {
-  return std::make_unique<Switching>(system, watch, tolerances);
+std::unique_ptr<Integrator> make_switching(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances) {
+  return std::make_unique<Switching>(system, guard_set, tolerances);
 }
 
 }  // namespace monograin

@@ -69,13 +69,13 @@ void check_objections(Reading& reading, const toml::table& tree, const std::stri
   std::vector<PlannedStep> program;
   if (!model.has_walls()) std::ranges::transform(steps, std::back_inserter(program), planned);
   const bool has_configuration = !model.configurations.empty();
-  const Given given{.material = scenario.material,
-                    .choices = choices,
-                    .numbers = numbers,
-                    .toggles = toggles,
-                    .configuration = has_configuration ? configuration_word(scenario.loading.configuration) : "",
-                    .program = program,
-                    .integrator = scenario.numerics.integrator};
+  const ModelInput given{.material = scenario.material,
+                         .choices = choices,
+                         .numbers = numbers,
+                         .toggles = toggles,
+                         .configuration = has_configuration ? configuration_word(scenario.loading.configuration) : "",
+                         .program = program,
+                         .integrator = scenario.numerics.integrator};
   for (const Objection& objection : model.objections(given)) {
     reading.faults.add(
         objection.step ? steps[*objection.step].where : place_of_key(tree, origin, model.name, objection.key),

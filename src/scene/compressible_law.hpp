@@ -13,7 +13,7 @@ struct CompressibleLaw {
   compressible::LoadingLaw loading;
   double hertz_stiffness = 1.0;  ///< k_H
   compressible::UnloadingRule unloading;
-  std::vector<Finding> reservations;  ///< what the user should know of it
+  std::vector<Diagnostic> reservations;  ///< what the user should know of it
 };
 
 /// @throws std::invalid_argument for a material that the source has no law for

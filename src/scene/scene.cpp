@@ -149,9 +149,9 @@ double largest_target(const Scenario& scenario, const Scene& scene, Step::Kind k
         if (until.quantity == Until::Quantity::event && &step != &channel.program.front()) continue;
         const Reach end = end_of(scenario, centre_moves, until);
         const double place = is_displacement ? end.displacement : end.force;
-        const bool is_told =
+        const bool is_exact =
             until.quantity == (is_displacement ? Until::Quantity::displacement : Until::Quantity::force);
-        if (place > (is_told ? 1.0 : k_known_within) * before) reach = std::min(reach, place);
+        if (place > (is_exact ? 1.0 : k_known_within) * before) reach = std::min(reach, place);
       }
       before = is_withdrawal ? 0.0 : reach;
       largest = std::max(largest, reach);

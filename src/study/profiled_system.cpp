@@ -75,7 +75,7 @@ class Wrapped : public HybridSystem {
   [[nodiscard]] bool is_open(int contact_class) const noexcept override { return system_->is_open(contact_class); }
   [[nodiscard]] bool contacts_adhere() const noexcept override { return system_->contacts_adhere(); }
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, View y) override { return system_->difficulty(xi, y); }
-  [[nodiscard]] std::vector<Finding> warnings() const override { return system_->warnings(); }
+  [[nodiscard]] std::vector<Diagnostic> warnings() const override { return system_->warnings(); }
   void branch_reach(View y, State reach) const override { system_->branch_reach(y, reach); }
 
  private:
@@ -231,7 +231,7 @@ class Disturbed final : public Wrapped {
   void disturb(State y) const {
     for (std::size_t k = 0; k < y.size(); ++k) {
       const Unknown& unknown = unknowns()[k];
-      if (unknown.kind == Unknown::Kind::differential && !unknown.is_slaved) y[k] *= 1.0 + shares_[k % 2];
+      if (unknown.kind == Unknown::Kind::differential && !unknown.is_dependent) y[k] *= 1.0 + shares_[k % 2];
     }
   }
 

@@ -467,8 +467,8 @@ class SceneCheck {
       }
     }
     const bool is_complete = has_same_end && stated_end(actual) == "complete";
-    const bool are_crowded = have_company(actual, missing_from(expected_events, events), tolerance_) &&
-                             have_company(expected, missing_from(events, expected_events), tolerance_);
+    const bool are_crowded = coincide_with_others(actual, missing_from(expected_events, events), tolerance_) &&
+                             coincide_with_others(expected, missing_from(events, expected_events), tolerance_);
     if (is_complete && events != expected_events && !are_crowded && !is_toss) {
       report(fmt::format("{}-events", check), first_difference(events, expected_events));
       return;

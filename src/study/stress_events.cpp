@@ -29,7 +29,7 @@ EventNames missing_from(const EventNames& other, const EventNames& names) {
   return only;
 }
 
-bool have_company(const Run& run, const EventNames& names, double share) {
+bool coincide_with_others(const Run& run, const EventNames& names, double share) {
   const Table& events = run.record.events;
   const auto time = *events.find("time");
   const auto event = *events.find("event");

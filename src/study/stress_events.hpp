@@ -16,11 +16,10 @@ using EventNames = std::vector<std::string>;
 /// Events of one list that the other does not have.
 [[nodiscard]] EventNames missing_from(const EventNames& other, const EventNames& names);
 
-/// Whether events of those names each have another event, or a corner of the program, within that share of their step:
-/// where contacts open together, one that is a rounding error late may keep the force of a rounding error, and what a
-/// program nearly reaches at a corner may be left out. A contact that was lost in company, and should not have been, is
-/// made in company whenever that is.
-[[nodiscard]] bool have_company(const Run& run, const EventNames& names, double share);
+/// True if every named event coincides, to within a share of its step, with another event or with a corner of the
+/// program, so that round-off decides their order. Contacts that open together may keep the force of a round-off where
+/// one of them is late, and a program may nearly reach an event at a corner.
+[[nodiscard]] bool coincide_with_others(const Run& run, const EventNames& names, double share);
 
 /// In words.
 [[nodiscard]] std::string first_difference(const EventNames& a, const EventNames& b);

@@ -11,13 +11,13 @@
 #include <optional>
 #include <span>
 
-#include "backing.hpp"
 #include "catalogue.hpp"
 #include "compressible/material_point_info.hpp"
 #include "compressible/yield_surface.hpp"
 #include "elastic/hertz.hpp"
 #include "mdr/contact.hpp"
 #include "packing/law.hpp"
+#include "reaction_cone.hpp"
 #include "scene/mdr_law.hpp"
 #include "scene/packing_law.hpp"
 #include "scene/scene.hpp"
@@ -30,7 +30,7 @@ constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 
 // Error of a controlled integrator over its rtol; README, "Accuracy and speed".
 constexpr double k_rtol_multiple = 100.0;
-// The same of every step of a long program: errors of work have one sign, and add up (measured: 16).
+// The multiple for each step of a long program: errors of work have one sign, and add up (measured: 16).
 constexpr double k_rtol_multiple_of_step = 25.0;
 // Two runs of the direct form: each is polished to 1e-12 of the largest values (README), and work is a sum of
 // quadratures.
@@ -288,11 +288,11 @@ void check_hold(const Run& run, Violations& found) {
   Eigen::Vector3d push = Eigen::Vector3d::Zero();
   Eigen::Vector3d small_push = Eigen::Vector3d::Zero();
   for (const auto& [force, normals] : pushes) (force < k_little * largest ? small_push : push) += force * normals;
-  if (!(push.norm() > 0.0) || !can_back(push, others, k_left_over)) return;
+  if (!(push.norm() > 0.0) || !in_reaction_cone(push, others, k_left_over)) return;
   // Beside forces so much larger it is not seen whether the small ones can be balanced. Where contacts bear, they may
   // also give way.
   for (const Eigen::Vector3d& normal : bearing) others.push_back(-normal);
-  if (small_push.norm() > 0.0 && !can_back(small_push, others, k_left_over)) return;
+  if (small_push.norm() > 0.0 && !in_reaction_cone(small_push, others, k_left_over)) return;
   found.push_back(
       {"held-centre", fmt::format("contacts that touch could balance the forces of '{}'", run.record.message)});
 }

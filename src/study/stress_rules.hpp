@@ -24,11 +24,10 @@ struct Violation {
 /// Changes of a scene's data that stand for rounding on the way from a text to a state.
 inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-/// What a run alone has to keep: it ends complete, where its program leads, or at a stated limit, which no walls that
-/// touch gainsay where it says that nothing holds the centre; every number is one, forces do not pull without
-/// adhesion, the dissipation never falls unless the run warns of it, what only grows does not shrink, events do not go
-/// on without end, work is in proportion to rows, events and steps of the program, and the identities of the model's
-/// own columns.
+/// What must hold of a run by itself: it completes, or stops at a stated limit that no touching wall contradicts; every
+/// value is finite; contacts without adhesion do not pull; the dissipation never falls without a warning; monotone
+/// quantities do not shrink; events come to an end; work is in proportion to rows, events and steps; the identities of
+/// the columns hold.
 [[nodiscard]] std::vector<Violation> check_run(const Run& run);
 
 /// How a run has ended: "complete", the code of the model's limit, or the reason of a failure; empty where none is

@@ -109,7 +109,7 @@ TEST(Direct, RefinesARootAndAKinkHoweverSmall) {
 TEST(Direct, StateDoesNotDependOnWhatWasAskedBefore) {
   auto toy = decaying_toy();
   toy->finish();
-  Watch watch(*toy);
+  GuardSet watch(*toy);
   std::vector<double> y{1.0};
   std::vector<Event> log;
   toy->begin_step({}, y, log);

@@ -224,7 +224,7 @@ INSTANTIATE_TEST_SUITE_P(Engine, EveryIntegrator, ::testing::ValuesIn(k_integrat
 TEST(MakeIntegrator, RefusesUnknownNames) {
   auto toy = decaying_toy();
   toy->finish();
-  Watch watch(*toy);
+  GuardSet watch(*toy);
   EXPECT_THROW(static_cast<void>(make_integrator("euler", *toy, watch, {})), std::logic_error);
 }
 

@@ -111,7 +111,7 @@ class ToySystem final : public HybridSystem {
   }
   [[nodiscard]] bool contacts_adhere() const noexcept override { return adheres; }
   [[nodiscard]] bool is_open(int) const noexcept override { return false; }
-  [[nodiscard]] std::vector<Finding> warnings() const override { return {}; }
+  [[nodiscard]] std::vector<Diagnostic> warnings() const override { return {}; }
 
  private:
   void see(double xi) {

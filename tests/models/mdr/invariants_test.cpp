@@ -169,7 +169,7 @@ double largest_drift(const Scenario& scenario, std::string_view integrator, doub
   }
   system.start(y);
   system.begin_step(ramps, y, log);
-  Watch watch(system);
+  GuardSet watch(system);
   watch.begin_step({}, 0.0, y);
   const auto integrator_used = make_integrator(integrator, system, watch, relative(rtol));
   double worst = 0.0;

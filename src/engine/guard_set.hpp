@@ -22,9 +22,9 @@ struct Condition {
 /// True if a quantity counts as equal to the target of a condition: within 1e-9 of the larger magnitude.
 [[nodiscard]] bool equals_target(double value, double target) noexcept;
 
-class Watch {
+class GuardSet {
  public:
-  explicit Watch(HybridSystem& system) : system_(system) {}
+  explicit GuardSet(HybridSystem& system) : system_(system) {}
 
   /// Takes up the conditions of a step; which side of its target each one starts on is read from the state.
   void begin_step(std::span<const Condition> conditions, double xi, std::span<const double> y);

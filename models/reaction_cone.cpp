@@ -1,4 +1,4 @@
-#include "backing.hpp"
+#include "reaction_cone.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -14,7 +14,7 @@ constexpr int k_most_bearing = 8;
 
 }  // namespace
 
-bool can_back(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> directions, double nothing) {
+bool in_reaction_cone(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> directions, double nothing) {
   const Eigen::Vector3d unit = push.normalized();
   Eigen::Vector3d left_over = unit;
   boost::container::static_vector<Eigen::Vector3d, k_most_bearing> bearing;

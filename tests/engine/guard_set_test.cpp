@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "engine/watch.hpp"
+#include "engine/guard_set.hpp"
 #include "support/toy_system.hpp"
 
 namespace monograin::watch_test {
@@ -26,7 +26,7 @@ class WatchTest : public ::testing::Test {
   [[nodiscard]] bool is_met_at(double value) { return watch_.is_met(0.5, std::vector<double>{value}); }
 
   ToySystem toy_;
-  Watch watch_{toy_};
+  GuardSet watch_{toy_};
   std::vector<double> y_;
 };
 

@@ -1,4 +1,4 @@
-#include "backing.hpp"
+#include "reaction_cone.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,17 +13,17 @@ using Eigen::Vector3d;
 
 TEST(Backing, IsThereWhereThePushGoesIntoTheWallsAndNotBesideThem) {
   const std::vector<Vector3d> wedge{Vector3d(1, 0, -1).normalized(), Vector3d(-1, 0, -1).normalized()};
-  EXPECT_TRUE(can_back({0, 0, 1}, wedge));
-  EXPECT_TRUE(can_back({0.9, 0, 1}, wedge));
-  EXPECT_FALSE(can_back({1.1, 0, 1}, wedge));
-  EXPECT_FALSE(can_back({0, 0, -1}, wedge));
-  EXPECT_FALSE(can_back({0, 1e-3, 1}, wedge));
-  EXPECT_FALSE(can_back({0, 0, 1}, {}));
+  EXPECT_TRUE(in_reaction_cone({0, 0, 1}, wedge));
+  EXPECT_TRUE(in_reaction_cone({0.9, 0, 1}, wedge));
+  EXPECT_FALSE(in_reaction_cone({1.1, 0, 1}, wedge));
+  EXPECT_FALSE(in_reaction_cone({0, 0, -1}, wedge));
+  EXPECT_FALSE(in_reaction_cone({0, 1e-3, 1}, wedge));
+  EXPECT_FALSE(in_reaction_cone({0, 0, 1}, {}));
 }
 
 TEST(Backing, IsNotThatOfWallsThatAlignButForRounding) {
   const auto is_backed_at = [](double angle) {
-    return can_back({-1, 0, 0}, std::vector<Vector3d>{{0, 0, -1}, Vector3d(angle, 0, 1).normalized()});
+    return in_reaction_cone({-1, 0, 0}, std::vector<Vector3d>{{0, 0, -1}, Vector3d(angle, 0, 1).normalized()});
   };
   EXPECT_TRUE(is_backed_at(1e-5));
   EXPECT_FALSE(is_backed_at(1e-8));
@@ -40,7 +40,7 @@ TEST(Backing, IsFoundForAnyPushThatPressingForcesMake) {
       directions.push_back(Vector3d(normal(random), normal(random), normal(random)).normalized());
       sum += share(random) * directions.back();
     }
-    EXPECT_TRUE(can_back(-1e3 * sum, directions)) << sample;
+    EXPECT_TRUE(in_reaction_cone(-1e3 * sum, directions)) << sample;
   }
 }
 
@@ -54,7 +54,7 @@ TEST(Backing, IsNotThereBeyondAPlaneThatNoDirectionCrosses) {
       direction.z() = -std::abs(direction.z());
       directions.push_back(direction.normalized());
     }
-    EXPECT_FALSE(can_back({normal(random), normal(random), -0.1}, directions)) << sample;
+    EXPECT_FALSE(in_reaction_cone({normal(random), normal(random), -0.1}, directions)) << sample;
   }
 }
 

@@ -1,4 +1,4 @@
-#include "engine/watch.hpp"
+#include "engine/guard_set.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ bool equals_target(double value, double target) noexcept {
   return std::abs(value - target) <= k_equal * std::max(std::abs(value), std::abs(target));
 }
 
-void Watch::begin_step(std::span<const Condition> conditions, double xi, std::span<const double> y) {
+void GuardSet::begin_step(std::span<const Condition> conditions, double xi, std::span<const double> y) {
   std::swap(conditions_, of_last_step_);
   conditions_.clear();
   for (const Condition& condition : conditions) {
@@ -27,18 +27,18 @@ void Watch::begin_step(std::span<const Condition> conditions, double xi, std::sp
   renew();
 }
 
-bool Watch::has_ended_last_step(const Condition& condition) const {
+bool GuardSet::has_ended_last_step(const Condition& condition) const {
   return std::ranges::any_of(
       of_last_step_, [&](const Watched& watched) { return watched.has_ended && watched.condition == condition; });
 }
 
-std::optional<std::size_t> Watch::held_at_begin() const noexcept {
+std::optional<std::size_t> GuardSet::held_at_begin() const noexcept {
   const auto held = std::ranges::find_if(conditions_, &Watched::is_held);
   if (held == conditions_.end()) return std::nullopt;
   return static_cast<std::size_t>(held - conditions_.begin());
 }
 
-void Watch::note_met(std::span<const std::size_t> fired, double xi, std::span<const double> y) {
+void GuardSet::note_met(std::span<const std::size_t> fired, double xi, std::span<const double> y) {
   for (const std::size_t guard : fired) {
     if (guard >= system_count_) conditions_[rooted_[guard - system_count_]].has_ended = true;
   }
@@ -47,7 +47,7 @@ void Watch::note_met(std::span<const std::size_t> fired, double xi, std::span<co
   }
 }
 
-void Watch::renew() {
+void GuardSet::renew() {
   directions_.clear();
   rooted_.clear();
   for (const Guard& guard : system_.guards()) directions_.push_back(guard.direction);
@@ -62,14 +62,14 @@ void Watch::renew() {
 
 /// Force, pressure and contact radius reach zero where the contact is lost and stay there: no root function, but an
 /// event of the system, after which is_met() finds them. The force of an adhesive contact passes through zero before.
-bool Watch::vanishes_with_contact(const Condition& condition) const {
+bool GuardSet::vanishes_with_contact(const Condition& condition) const {
   if (condition.target != 0.0) return false;
   if (condition.quantity == Quantity::contact_radius) return true;
   const bool is_force = condition.quantity == Quantity::force || condition.quantity == Quantity::pressure;
   return is_force && !system_.contacts_adhere();
 }
 
-std::string Watch::name(std::size_t guard) const {
+std::string GuardSet::name(std::size_t guard) const {
   if (guard >= system_count_) return "until";
   const Guard& of_system = system_.guards()[guard];
   std::string result(of_system.name);
@@ -79,20 +79,20 @@ std::string Watch::name(std::size_t guard) const {
   return result;
 }
 
-double Watch::value(const Condition& condition, double xi, std::span<const double> y) {
+double GuardSet::value(const Condition& condition, double xi, std::span<const double> y) {
   return system_.quantity(condition.quantity, condition.channel, xi, y);
 }
 
-double Watch::excess(const Watched& watched, double xi, std::span<const double> y) {
+double GuardSet::excess(const Watched& watched, double xi, std::span<const double> y) {
   return (value(watched.condition, xi, y) - watched.condition.target) / watched.scale;
 }
 
-void Watch::values(double xi, std::span<const double> y, std::span<double> out) {
+void GuardSet::values(double xi, std::span<const double> y, std::span<double> out) {
   system_.guard_values(xi, y, out.first(system_count_));
   for (std::size_t i = 0; i < rooted_.size(); ++i) out[system_count_ + i] = excess(conditions_[rooted_[i]], xi, y);
 }
 
-bool Watch::is_met(double xi, std::span<const double> y) {
+bool GuardSet::is_met(double xi, std::span<const double> y) {
   return std::ranges::any_of(conditions_, [&](const Watched& watched) {
     const double now = value(watched.condition, xi, y);
     const double target = watched.condition.target;

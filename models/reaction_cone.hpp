@@ -1,0 +1,18 @@
+/// What walls that only press can balance.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+namespace monograin {
+
+/// True if non-negative multiples of the directions, none above a million times the push, add up to its opposite to
+/// within a tolerance: the push lies in the negative cone of the directions. Found by non-negative least squares with
+/// active sets (Lawson and Hanson, 1974).
+/// @param push        not zero
+/// @param directions  unit vectors
+/// @param nothing     what may be left over, of the push
+[[nodiscard]] bool in_reaction_cone(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> directions,
+                                    double nothing = 1e-6);
+
+}  // namespace monograin
