@@ -68,7 +68,7 @@ struct OptionKey {
   std::span<const QuantityKey> columns{};
 };
 
-/// A ramp that a step can be told as, of a model without walls; its name is the step's key.
+/// A ramp that a step of a model without walls may prescribe; its name is the step's key.
 struct DriveKey {
   std::string_view name;
   std::string_view meaning;
@@ -150,7 +150,7 @@ struct ModelInfo {
   bool takes_ludwik = false;
   std::vector<Objection> (*objections)(const ModelInput& given) = nullptr;  ///< null: none
   std::string_view sign{};  ///< convention of stresses and strains, where it is not that compression is positive
-  /// How steps are told of a model that has neither particle nor walls; empty: it has both.
+  /// What steps prescribe of a model that has neither particle nor walls; empty: it has both.
   std::span<const DriveKey> drives{};
   /// What such a step can prescribe besides, in a second channel, under keys of their own.
   std::span<const DriveKey> lateral_drives{};

@@ -1,4 +1,4 @@
-/// What users are told of the contact law of this folder.
+/// Catalogue entry of the contact law: keys, regimes, limits.
 #pragma once
 
 #include "catalogue.hpp"

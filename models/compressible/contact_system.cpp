@@ -78,7 +78,7 @@ void ContactSystem::begin_step(std::span<const Ramp> ramps, std::span<double> y,
     resolve_mode(i, d, log);
     if (!touches(i)) memory_[i].resting = d;
     if (!classes_[i].takes_force) continue;
-    // A force is told; on a steep curve it would not come back from the place of its wall.
+    // The program prescribes the force; on a steep curve it would not come back from the place of its wall.
     y[places_[i]] = takes_force && touches(i) ? coordinate_under(i, std::max(ramps_[i].start, 0.0)) : coordinate(i, d);
   }
   has_begun_ = true;
@@ -231,7 +231,7 @@ double ContactSystem::power(std::size_t i, double xi, std::span<const double> y)
 void ContactSystem::complete(double xi, std::span<double> y) {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (!classes_[i].takes_force) continue;
-    // What a wall bears is told as well as where it stands: the least error of a force that ends at nothing would be a
+    // The force of a wall is as exact as its displacement: the least error of a force that ends at nothing would be a
     // way to go, where the curve ends like a power.
     y[places_[i]] = is_loaded(i) ? coordinate_under(i, prescribed(i, xi)) : prescribed(i, xi);
   }
@@ -323,7 +323,7 @@ void ContactSystem::turn_back(std::size_t i, double d, std::vector<Event>& log) 
 }
 
 void ContactSystem::add_guard(int kind, std::size_t i, int direction, std::string_view name, double place) {
-  // A force is told as a displacement is.
+  // A force is prescribed as a displacement is.
   guards_.push_back(
       {.kind = kind, .index = static_cast<int>(i), .direction = direction, .name = name, .is_exact = true});
   guard_places_.push_back(place);

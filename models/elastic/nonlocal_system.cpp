@@ -339,7 +339,7 @@ double System::leave_singularity(double xi, std::span<double> y) {
   try {
     contacts_.solve(ramps_, later, evaluate(later, y));
   } catch (const std::domain_error&) {
-    return xi;  // whoever goes on from here is told
+    return xi;  // the next evaluation from here throws again
   }
   note(y);
   y[work_place_] += contacts_.energy(state_) - energy;
@@ -620,7 +620,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     resolve_others(xi, fired, log);
     mark_touching();
   } catch (const std::domain_error&) {
-    // Where there is no state, whoever goes on from here is told.
+    // Where there is no state, the next evaluation from here throws again.
   }
   arm_guards();
   return std::nullopt;
@@ -634,7 +634,7 @@ bool System::only_stands(std::size_t i, double xi, std::span<const double> y) {
   try {
     solve(xi, exact);
   } catch (const std::domain_error&) {
-    return false;  // whoever goes on from here is told
+    return false;  // the next evaluation from here throws again
   }
   return state_[i] <= touch_ && square_ahead(i, xi).value_or(touch_) <= 0.0;
 }
@@ -664,7 +664,7 @@ double System::controlled(Control control, int contact_class, double xi, std::sp
   try {
     solve(xi, exact);
   } catch (const std::domain_error&) {
-    std::ranges::copy(y, exact.begin());  // whoever goes on from here is told
+    std::ranges::copy(y, exact.begin());  // the next evaluation from here throws again
   }
   return quantity(control == Control::force ? Quantity::force : Quantity::displacement, contact_class, xi, exact);
 }

@@ -127,7 +127,7 @@ class System final : public HybridSystem {
   struct Memory {
     Regime regime = Regime::open;
     bool is_on_primary_branch = true;  ///< at its largest overlap, and not decreasing
-    double largest = 0.0;        ///< largest overlap (running maximum) or wall displacement (shifted), while not virgin
+    double largest = 0.0;  ///< largest overlap (running maximum) or wall displacement (shifted), off the primary branch
     double area_constant = 0.0;  ///< c, set once at yield
     Edge edge = Edge::following;
     double edge_radius = 0.0;  ///< of a sticking edge
@@ -181,7 +181,7 @@ class System final : public HybridSystem {
     double firmness = 0.0;
     double last_stiffness = 0.0;  ///< of the last step towards the balance
     double held = 0.0;            ///< work space: what holds the centre, such as the stiffness that is left; and
-    double unspent = 0.0;         ///< what it would be if no edge peeled and no contact had spent its strength
+    double unspent = 0.0;         ///< what it would be if no edge peeled and no contact were past its peak
   };
 
   /// Mean normal of a class as a multiple of the direction of a line.

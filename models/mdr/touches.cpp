@@ -169,7 +169,7 @@ bool System::leave_behind(double xi, std::span<const double> y, std::vector<Even
 }
 
 /// Loses the walls that only touch a free centre and that it leaves where forces begin to press it: contacts give way
-/// with the force to the 2/3, beside which walls stand still at first. Which of them will bear is not to be told one by
+/// with the force to the 2/3, beside which walls stand still at first. Which of them will bear cannot be decided one by
 /// one, nor where those to be left still pull in the search for the balance.
 /// @return whether there are any
 bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi, std::vector<Event>& log) {

@@ -196,7 +196,7 @@ double System::unpeeled_stiffness(std::size_t i) const noexcept {
 /// Of a plastic contact, which is the less stiff the wider it is.
 double System::stiffness_of_shallow() const noexcept { return 2.0 * std::numbers::pi * material_.yield_stress; }
 
-/// Whether a plastic contact has spent so much of its strength that it may hold a free centre no more.
+/// True if a plastic contact is softened past its peak so far that it may no longer constrain a free centre.
 bool System::is_any_spent() const noexcept {
   constexpr double k_spent_share = 0.1;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
@@ -207,7 +207,7 @@ bool System::is_any_spent() const noexcept {
 }
 
 /// How firmly the contacts hold a free centre in the direction in which they do so least: their stiffness over what it
-/// would be if no edge peeled and no contact had spent its strength. Zero where the equilibrium turns back.
+/// would be if no edge peeled and no contact were past its peak. Zero where the equilibrium turns back.
 System::Hold System::weakest_hold() {
   for (Line& line : lines_) line.held = line.unspent = 0.0;
   for (std::size_t i = 0; i < memory_.size(); ++i) {

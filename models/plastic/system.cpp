@@ -132,8 +132,8 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     if (memory_[i].regime == Regime::separated && !is_loaded(i) && stands_at_dent) ramps_[i].start = origin(i);
     const double x = is_loaded(i) ? stood : ramps_[i].start;
     directions_[i] = direction_of_ramp(i, x);
-    // A wall that goes nowhere stays, for as long as it is told to: from the end of such a ramp a force might have it
-    // go back. A force is what it is told, however stiff the contact.
+    // A wall that goes nowhere stays, for as long as the program says: from the end of such a ramp a force might have
+    // it go back. A force is the prescribed one, however stiff the contact.
     if (directions_[i] == 0 && !is_loaded(i)) ramps_[i].end = ramps_[i].start;
     begins[i] = x;
     // A step that cannot begin is shown where it would have, in its own coordinates.

@@ -72,10 +72,10 @@ class System final : public HybridSystem {
   struct Memory {
     Regime regime = Regime::open;
     bool is_on_primary_branch = true;  ///< at its largest displacement
-    double largest = 0.0;              ///< largest displacement, while not virgin
+    double largest = 0.0;              ///< largest displacement, off the primary branch
     double largest_force = 0.0;        ///< there
     double resting = 0.0;              ///< displacement at which an open wall without load was left
-    std::size_t next = 0;              ///< boundary ahead of a virgin contact
+    std::size_t next = 0;              ///< boundary ahead on the primary branch
     bool has_impinged = false;         ///< has met its neighbours
     mdr::UnloadingShape indenter{};    ///< of a contact that has been unloaded since it yielded
   };

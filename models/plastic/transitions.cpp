@@ -38,7 +38,8 @@ void System::turn_back(std::size_t i, double x, std::vector<Event>& log) {
   Memory& memory = memory_[i];
   memory.largest_force = is_loaded(i) ? ramps_[i].start : contact(i, x).force;
   if (settings_.unloading == Unloading::none) {
-    throw DomainError({Limit::no_unloading_law, static_cast<int>(i), "displacement/R0", x});
+    throw DomainError({Limit::no_unloading_law, static_cast<int>(i), "displacement/R0", x},
+                      "unloading = \"mdr\" adds one");
   }
   if (memory.regime != Regime::elastic) {
     memory.indenter = indenter_at(i, x);

@@ -15,7 +15,7 @@ enum class Difficulty {
   soft_centre                ///< the tangent stiffness of the free centre nearly vanishes
 };
 
-/// What a user is told of a difficulty, and what to do; no full stop.
+/// The message for a difficulty, and what to do; no full stop.
 [[nodiscard]] std::string_view advice(Difficulty difficulty) noexcept;
 
 }  // namespace monograin

@@ -1,6 +1,5 @@
 #include "system/limit.hpp"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -61,7 +60,15 @@ constexpr std::array k_words{
     Words{Limit::unequal_durations, "unequal-durations", "steps end together; give equal durations"},
 };
 
-const Words& words_of(Limit limit) noexcept { return *std::ranges::find(k_words, limit, &Words::limit); }
+constexpr bool stand_in_order() {
+  for (std::size_t k = 0; k < k_words.size(); ++k) {
+    if (k_words[k].limit != static_cast<Limit>(k)) return false;
+  }
+  return true;
+}
+static_assert(stand_in_order() && k_words.back().limit == Limit::unequal_durations);
+
+const Words& words_of(Limit limit) noexcept { return k_words[static_cast<std::size_t>(limit)]; }
 
 }  // namespace
 
@@ -69,8 +76,9 @@ std::string_view code(Limit limit) noexcept { return words_of(limit).code; }
 
 std::string_view sentence(Limit limit) noexcept { return words_of(limit).sentence; }
 
-std::string text_of(const LimitPoint& point) {
+std::string text_of(const LimitPoint& point, std::string_view remark) {
   std::string text(sentence(point.limit));
+  if (!remark.empty()) text.append("; ").append(remark);
   if (point.quantity.empty()) return text;
   std::array<char, 32> number{};
   const auto [end, error] =
@@ -79,6 +87,9 @@ std::string text_of(const LimitPoint& point) {
 }
 
 DomainError::DomainError(const LimitPoint& point) : std::domain_error(text_of(point)), point_(point) {}
+
+DomainError::DomainError(const LimitPoint& point, std::string_view remark)
+    : std::domain_error(text_of(point, remark)), point_(point) {}
 
 DomainError::DomainError(Limit limit, const std::string& message)
     : std::domain_error(message), point_{.limit = limit} {}

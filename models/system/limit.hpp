@@ -50,19 +50,20 @@ enum class Limit {
 /// Name of a limit in run.json, e.g. "walls-meet".
 [[nodiscard]] std::string_view code(Limit limit) noexcept;
 
-/// What a user is told of a limit; no full stop.
+/// The message for a limit; no full stop.
 [[nodiscard]] std::string_view sentence(Limit limit) noexcept;
 
 /// A limit of a model, and the number that shows that it is met.
 struct LimitPoint {
   Limit limit = Limit::no_solution;
   int contact_class = -1;       ///< -1: the particle
-  std::string_view quantity{};  ///< what the value is, e.g. "displacement / R0"; empty: there is none
+  std::string_view quantity{};  ///< what the value is, e.g. "displacement/R0"; empty: there is none
   double value = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The sentence of a limit, with its value where there is one, e.g. "the walls meet (displacement/R0 = 1)".
-[[nodiscard]] std::string text_of(const LimitPoint& point);
+/// The sentence of a limit, with a remark and its value where there are such, e.g. "the walls meet (displacement/R0 =
+/// 1)".
+[[nodiscard]] std::string text_of(const LimitPoint& point, std::string_view remark = {});
 
 /// The equations have no value beyond a limit. Thrown by trials as well as by states; a caller comes nearer by smaller
 /// steps, or ends.
@@ -70,6 +71,8 @@ class DomainError : public std::domain_error {
  public:
   explicit DomainError(const LimitPoint& point);
   explicit DomainError(Limit limit) : DomainError(LimitPoint{.limit = limit}) {}
+  /// @param remark  stands behind the sentence of the limit: what to do
+  DomainError(const LimitPoint& point, std::string_view remark);
   /// @param message  says more than sentence(limit) does
   DomainError(Limit limit, const std::string& message);
 

@@ -182,7 +182,7 @@ class Ida final : public Integrator {
     return failures;
   }
 
-  /// Nothing is told more exactly than the step coordinate: what goes through zero on a long way would be, and what
+  /// Nothing is known better than the step coordinate: what goes through zero on a long way would be, and what
   /// grows ever faster towards the end of its equations. A residual has that rounding, too: the share that the
   /// corrector may leave is no less.
   void raise_tolerances() {

@@ -68,7 +68,7 @@ class SolverError : public std::runtime_error {
 /// ramp.
 [[nodiscard]] inline double least_progress(double xi) noexcept { return 1e-13 * std::max(xi, 1e-7); }
 
-/// Of the step coordinate: nothing is told more exactly than that, times its rate.
+/// Round-off of the step coordinate: no quantity is known better than its rate times this.
 inline constexpr double k_rounding_of_xi = 4.0 * std::numeric_limits<double>::epsilon();
 
 /// Internal steps of one step of the program after which it is given up.

@@ -28,10 +28,11 @@ constexpr double k_longest_implicit_step = 1.0 / 32.0;
 constexpr double k_interpolated_rtol = 1e-6;
 constexpr double k_order_between_steps = 6.0;
 
-// The rate at which the implicit method's corrections converge, as told from earlier ones, falls no lower than this. By
-// itself it falls with every stage while steps are alike, and after a change of their length a first correction far
-// larger than what is tolerated is then taken for the last: the estimate of the error sees nothing of that. With 1 the
-// last correction itself is as small as that. Beside a Jacobian of an earlier step the library's 3 may be too few.
+// The rate at which the implicit method's corrections converge, as estimated from earlier ones, falls no lower than
+// this. By itself it falls with every stage while steps are alike, and after a change of their length a first
+// correction far larger than what is tolerated is then taken for the last: the estimate of the error sees nothing of
+// that. With 1 the last correction itself is as small as that. Beside a Jacobian of an earlier step the library's 3 may
+// be too few.
 constexpr double k_least_convergence_rate = 1.0;
 constexpr int k_most_corrections = 10;
 

@@ -26,7 +26,7 @@ struct Shown {
   bool has_sign = false;   ///< recorded with tension positive, and drawn as the abscissa begins
 };
 
-/// What is drawn of a model: told by the column of its abscissa.
+/// What is drawn of a model, chosen by the column of its abscissa.
 struct BodyFigure {
   Shown x;
   std::span<const Shown> panels;

@@ -59,7 +59,7 @@ struct ForeignKey {
   std::string reason;  ///< goes on from "key 'x' ..."
 };
 
-/// One form of a step: the key it is told by and the keys it may have.
+/// One form of a step: the key that marks it and the keys it may have.
 struct StepForm {
   std::optional<Step::Kind> kind;  ///< none: a cycle
   std::string_view key;

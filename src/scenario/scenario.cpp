@@ -69,7 +69,7 @@ Scenario ScenarioTemplate::with(const std::vector<std::string>& overrides) const
     toml::table copy = root;
     return parse_tree(copy, text, origin, overrides);
   } catch (const ScenarioError&) {
-    // A copy does not know its places, so that faults are told from the text itself.
+    // A copy does not know its places, so that faults are located in the text itself.
     return key.empty() ? parse_scenario(text, origin, overrides) : parse_scenario_table(text, key, origin, overrides);
   }
 }

@@ -45,7 +45,7 @@ json exactly_one_of(std::string_view a, std::string_view b) {
   return json::array({{{"required", {a}}}, {{"required", {b}}}});
 }
 
-/// What a fixed wall is told by.
+/// The key that marks a fixed wall.
 json is_fixed_wall() { return {{"properties", {{"fixed", {{"const", true}}}}}, {"required", {"fixed"}}}; }
 
 /// The definitions of one model and where they refer to one another.

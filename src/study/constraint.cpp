@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 4> k_relations{"<=", ">=", "<", ">"};
   return relation == "<" ? left < right : left > right;
 }
 
-/// Calls `action`; what it finds wrong is told at its place in the constraint.
+/// Calls `action`; what it finds wrong is located in the constraint.
 template <class Action>
 auto shifted(std::size_t offset, Action action) {
   try {

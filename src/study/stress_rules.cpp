@@ -179,10 +179,10 @@ void check_contacts(const Run& run, Violations& found) {
 std::optional<double> prescribed_force(const Channel& channel, std::size_t step) {
   std::optional<double> force;
   for (std::size_t k = 0; k <= step && k < channel.program.size(); ++k) {
-    const Step& told = channel.program[k];
-    if (told.kind == Step::Kind::force)
-      force = told.target;
-    else if (told.kind != Step::Kind::hold)
+    const Step& planned = channel.program[k];
+    if (planned.kind == Step::Kind::force)
+      force = planned.target;
+    else if (planned.kind != Step::Kind::hold)
       force.reset();
   }
   return force;

@@ -253,7 +253,7 @@ TEST(MdrAdhesiveContact, KeepsItsDentWhenItIsOff) {
     EXPECT_NEAR(sticky.at_event("reload", "axial.force"), sticky.at_event("load-reversal", "axial.force"),
                 1e-7 * sticky.at_event("reload", "axial.force"))
         << integrator;
-    // On the virgin branch adhesion does not show.
+    // On the primary branch adhesion does not show.
     EXPECT_LE(relative_error(sticky.last("axial.force"), dry.last("axial.force")), 1e-7) << integrator;
   }
 }

@@ -147,7 +147,7 @@ TEST(MdrInvariance, UnloadingAndReloadingIsAClosedLoopWhileTheRadiusRests) {
     const auto work = result.outputs("work");
     const std::size_t top = 50;
     for (std::size_t k = 1; k <= 50; ++k) {
-      // A displacement of one rounding error over a steep branch: 8.5 times the virgin slope of order 1.
+      // A displacement of one rounding error over a steep branch: 8.5 times the slope of the primary branch of order 1.
       EXPECT_NEAR(force[top + 50 + k], force[top + 50 - k], 20 * k_epsilon * force[top]) << rule << ", row " << k;
     }
     EXPECT_NEAR(work[top + 100], work[top], 20 * k_epsilon * work[top]) << rule;

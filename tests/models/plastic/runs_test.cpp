@@ -293,7 +293,7 @@ TEST(PlasticEnds, StopWhereAProgramGoesBackAfterACondition) {
   // Which way the second step goes is known only when the first has ended.
   const TestRun now = run(steel(Walls::simple, {until(ramp(0.3), Until::Quantity::displacement, 0.2), ramp(0.1)}));
   EXPECT_EQ(now.record.status, RunStatus::stopped);
-  EXPECT_TRUE(contains(now.record.message, "unloading")) << now.record.message;
+  EXPECT_TRUE(contains(now.record.message, "unloading = \"mdr\" adds one")) << now.record.message;
 }
 
 // --- contacts for themselves
