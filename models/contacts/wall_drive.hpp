@@ -1,0 +1,49 @@
+/// What a step of the program does to one wall.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "system/walls.hpp"
+
+namespace monograin::contacts {
+
+/// Linear ramp of a wall's displacement over R0, or of its force over the law's unit, during one step. All its values
+/// are exact: no error of an integrator is in them.
+class WallDrive {
+ public:
+  WallDrive() = default;
+  /// @param unit  of displacements or of forces, as the ramp controls
+  WallDrive(const Ramp& ramp, double unit) : ramp_{ramp.start / unit, ramp.end / unit, ramp.control} {}
+
+  [[nodiscard]] bool is_force_controlled() const noexcept { return ramp_.control == Control::force; }
+  [[nodiscard]] double start() const noexcept { return ramp_.start; }
+  [[nodiscard]] double end() const noexcept { return ramp_.end; }
+  /// Prescribed value at a step coordinate; exact at both ends.
+  [[nodiscard]] double value(double xi) const noexcept {
+    return xi == 1.0 ? ramp_.end : ramp_.start + xi * (ramp_.end - ramp_.start);
+  }
+  /// Its rate with the step coordinate.
+  [[nodiscard]] double rate() const noexcept { return ramp_.end - ramp_.start; }
+  /// 1 loading, -1 unloading, 0 holding.
+  [[nodiscard]] int direction() const noexcept { return rate() > 0.0 ? 1 : rate() < 0.0 ? -1 : 0; }
+  /// Largest magnitude on the ramp.
+  [[nodiscard]] double size() const noexcept { return std::max(std::abs(ramp_.start), std::abs(ramp_.end)); }
+
+  /// True if a rising ramp has reached a value at a step coordinate, but for round-off.
+  [[nodiscard]] bool has_reached(double target, double xi) const noexcept {
+    return value(xi) >= target - k_same_value * std::abs(target);
+  }
+  /// True if a rising ramp ends beyond a value by more than round-off.
+  [[nodiscard]] bool goes_beyond(double target) const noexcept {
+    return ramp_.end > target + k_same_value * std::abs(target);
+  }
+
+ private:
+  /// Values this near to each other, relative to themselves, are the same.
+  static constexpr double k_same_value = 1e-12;
+
+  Ramp ramp_;
+};
+
+}  // namespace monograin::contacts

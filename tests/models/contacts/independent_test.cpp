@@ -1,0 +1,248 @@
+// What all laws share whose contacts depend on their own wall alone, seen with two laws of a few lines: a linear
+// spring, and one that is stiffer on the way back.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "contacts/independent.hpp"
+#include "support/test_run.hpp"
+
+namespace monograin::contacts_test {
+namespace {
+
+constexpr double k_end = 0.8;  // of both laws
+
+/// F = k R0 d, up to a largest displacement.
+struct Spring {
+  struct Branch {};
+  static constexpr std::array<std::string_view, 2> k_regimes{"open", "pressed"};
+  double stiffness = 1.0;  ///< k [Pa]
+
+  [[nodiscard]] double unit_force(double radius) const { return stiffness * radius * radius; }
+  [[nodiscard]] double force(Branch, double d) const { return d; }
+  [[nodiscard]] double slope(Branch, double) const { return 1.0; }
+  [[nodiscard]] double displacement(Branch, double force) const { return force; }
+  [[nodiscard]] double opening(Branch) const { return 0.0; }
+  [[nodiscard]] double work(Branch, double d) const { return 0.5 * d * d; }
+  [[nodiscard]] double stored(Branch b, double d) const { return work(b, d); }
+  [[nodiscard]] int regime(Branch, bool touches) const { return touches ? 1 : 0; }
+};
+
+/// The law of Walton and Braun: F = d on the way in; on the way back stiffer by a ratio, from the largest displacement.
+/// It hardens at a knee, and ends.
+struct Hysteretic {
+  struct Branch {
+    bool is_past_knee = false;
+    bool unloads = false;
+    double largest = 0.0;
+    double force = 0.0;  ///< there
+  };
+  static constexpr std::array<std::string_view, 4> k_regimes{"open", "loading", "hardened", "unloading"};
+  static constexpr double k_knee = 0.3;
+  static constexpr double k_hardening = 2.0;  ///< slope beyond the knee
+  static constexpr double k_ratio = 4.0;      ///< slope on the way back
+
+  [[nodiscard]] double unit_force(double radius) const { return radius * radius; }
+  [[nodiscard]] double opening(const Branch& b) const { return b.unloads ? b.largest - b.force / k_ratio : 0.0; }
+  [[nodiscard]] double slope(const Branch& b, double) const {
+    return b.unloads ? k_ratio : b.is_past_knee ? k_hardening : 1.0;
+  }
+  [[nodiscard]] double force(const Branch& b, double d) const {
+    if (b.unloads) return k_ratio * (d - opening(b));
+    return b.is_past_knee ? k_knee + k_hardening * (d - k_knee) : d;
+  }
+  [[nodiscard]] double displacement(const Branch& b, double force) const {
+    if (b.unloads) return opening(b) + force / k_ratio;
+    return b.is_past_knee ? k_knee + (force - k_knee) / k_hardening : force;
+  }
+  [[nodiscard]] double stored(const Branch& b, double d) const { return 0.5 * force(b, d) * force(b, d) / k_ratio; }
+  [[nodiscard]] std::optional<contacts::Boundary> next(const Branch& b) const {
+    if (!b.is_past_knee) return contacts::Boundary{k_knee, "knee"};
+    return contacts::Boundary{k_end, "limit", LimitPoint{Limit::walls_meet, -1, "displacement/R0", k_end}};
+  }
+  void pass(Branch& b) const { b.is_past_knee = true; }
+  void turn(Branch& b, double d) const { b = {b.is_past_knee, true, d, force(b, d)}; }
+  void reload(Branch& b) const { b.unloads = false; }
+  [[nodiscard]] int regime(const Branch& b, bool touches) const {
+    return !touches ? 0 : b.unloads ? 3 : b.is_past_knee ? 2 : 1;
+  }
+};
+
+/// The same with its work in closed form.
+struct HystereticInClosedForm : Hysteretic {
+  [[nodiscard]] double work(const Branch& b, double d) const {
+    if (b.unloads) return stored(b, d);
+    return b.is_past_knee ? 0.5 * (force(b, d) * force(b, d) - k_knee * k_knee) / k_hardening : 0.5 * d * d;
+  }
+};
+
+constexpr const char* k_all_forms[] = {"direct", "cvode-adams",   "cvode-bdf",
+                                       "ida",    "odeint-dopri5", "odeint-rosenbrock4"};
+
+/// Runs a law in the scene of another model.
+template <class Law>
+TestRun run_law(const Scenario& scenario, std::string_view integrator, const Law& law = {},
+                const Tolerances& tolerances = {}) {
+  TestRun result{make_scene(scenario), {}};
+  const contacts::Settings settings{.initial_radius = scenario.radius};
+  result.scene.system = std::make_unique<contacts::IndependentContacts<Law>>(law, settings, result.scene.classes);
+  result.record = record_run(result.scene, integrator, tolerances, scenario.output);
+  return result;
+}
+
+Scenario pair_of_walls(std::vector<Step> steps) { return hertz_scenario(Configuration::simple, std::move(steps)); }
+
+using Names = std::vector<std::string>;
+
+TEST(IndependentContacts, BearTheForceOfTheLawUnderBothControls) {
+  for (const char* form : k_all_forms) {
+    for (const auto& steps : {path({0.2, 0.1, 0.3}), std::vector<Step>{force_ramp(2.0), ramp(0.1), force_ramp(3.0)}}) {
+      const TestRun now = run_law<Spring>(pair_of_walls(steps), form, {10.0});
+      ASSERT_EQ(now.record.status, RunStatus::complete) << form << ": " << now.record.message;
+      const auto d = now.column("axial.displacement");
+      const auto force = now.column("axial.force");
+      for (std::size_t k = 0; k < d.size(); ++k) EXPECT_NEAR(force[k], 10.0 * d[k], 1e-14) << form;
+      EXPECT_NEAR(now.last("axial.displacement"), 0.3, 1e-15) << form;
+      // Two walls, each of which has pressed its spring.
+      EXPECT_NEAR(now.last("work"), 10.0 * 0.3 * 0.3, 1e-7) << form;
+      EXPECT_NEAR(now.last("dissipation"), 0.0, 1e-7) << form;
+    }
+  }
+}
+
+TEST(IndependentContacts, ScaleWithRadiusAndUnitForce) {
+  Scenario scenario = pair_of_walls({ramp(1e-3)});
+  scenario.radius = 0.01;
+  const TestRun now = run_law<Spring>(scenario, "direct", {2e6});
+  EXPECT_DOUBLE_EQ(now.last("axial.force"), 2e6 * 0.01 * 1e-3);
+  EXPECT_DOUBLE_EQ(now.last("work"), 2e6 * 0.01 * 1e-6);
+  EXPECT_DOUBLE_EQ(now.last("stored_energy"), 2e6 * 0.01 * 1e-6);
+}
+
+TEST(IndependentContacts, TouchAcrossAGapAreLostAndTouchedAgain) {
+  const auto steps = path({0.3, -0.2, 0.2});
+  const Scenario scenario = between(pair_of_walls({}), {wall("a", {0, 0, 1}, steps, 0.1), wall("b", {0, 0, -1})});
+  for (const char* form : k_all_forms) {
+    const TestRun now = run_law<Spring>(scenario, form);
+    EXPECT_EQ(now.events(), (Names{"a:contact-made", "a:load-reversal", "a:contact-lost", "a:contact-made"})) << form;
+    EXPECT_NEAR(now.time_of("contact-made"), 0.25, 1e-13) << form;
+    EXPECT_NEAR(now.time_of("contact-lost"), 1.6, 1e-13) << form;
+    EXPECT_EQ(now.outputs("a.displacement").front(), -0.1);
+    EXPECT_EQ(now.outputs("b.force"), std::vector<double>(now.outputs("b.force").size(), 0.0));
+  }
+}
+
+TEST(IndependentContacts, UnloadFromTheLargestDisplacementAndReloadThere) {
+  const double dent = 0.2 - 0.2 / Hysteretic::k_ratio;
+  const Names events{"axial:load-reversal", "axial:contact-lost", "axial:contact-made", "axial:reload", "axial:knee"};
+  for (const char* form : k_all_forms) {
+    const TestRun now = run_law<Hysteretic>(pair_of_walls(path({0.2, 0.1, 0.4})), form);
+    EXPECT_EQ(now.events(), events) << form;
+    EXPECT_NEAR(now.at_event("contact-lost", "axial.displacement"), dent, 1e-13) << form;
+    EXPECT_NEAR(now.at_event("contact-made", "axial.displacement"), dent, 1e-13) << form;
+    EXPECT_NEAR(now.at_event("reload", "axial.displacement"), 0.2, 1e-13) << form;
+    EXPECT_NEAR(now.at_event("knee", "axial.displacement"), Hysteretic::k_knee, 1e-13) << form;
+    EXPECT_NEAR(now.last("axial.force"), 0.3 + 2.0 * 0.1, 1e-14) << form;
+  }
+}
+
+TEST(IndependentContacts, FollowAPrescribedForceInTheSameWay) {
+  const std::vector<Step> steps{force_ramp(0.2), force_ramp(-0.1), force_ramp(0.5), hold(), force_ramp(0.4)};
+  const Names events{"axial:load-reversal", "axial:contact-lost", "axial:contact-made",
+                     "axial:reload",        "axial:knee",         "axial:load-reversal"};
+  for (const char* form : k_all_forms) {
+    const TestRun now = run_law<Hysteretic>(pair_of_walls(steps), form);
+    EXPECT_EQ(now.events(), events) << form;
+    EXPECT_NEAR(now.time_of("contact-lost"), 1.0 + 2.0 / 3.0, 1e-13) << form;
+    EXPECT_NEAR(now.time_of("reload"), 2.4, 1e-13) << form;
+    EXPECT_NEAR(now.time_of("knee"), 2.6, 1e-13) << form;
+    EXPECT_NEAR(now.last("axial.displacement"), 0.4 - 0.1 / Hysteretic::k_ratio, 1e-14) << form;
+  }
+}
+
+TEST(IndependentContacts, GoOnFromWhereAnotherControlHasLeftTheWall) {
+  const std::vector<Step> steps{ramp(0.2),       force_ramp(0.1), ramp(0.19),       detach(),
+                                force_ramp(0.0), hold(),          force_ramp(0.25), ramp(0.2, 0.5)};
+  for (const char* form : k_all_forms) {
+    const TestRun now = run_law<Hysteretic>(pair_of_walls(steps), form);
+    ASSERT_EQ(now.record.status, RunStatus::complete) << form << ": " << now.record.message;
+    EXPECT_EQ(now.events(), (Names{"axial:load-reversal", "axial:contact-lost", "axial:contact-made", "axial:reload",
+                                   "axial:load-reversal"}))
+        << form;
+    EXPECT_NEAR(now.last("axial.force"), 0.25 - Hysteretic::k_ratio * 0.05, 1e-14) << form;
+  }
+}
+
+TEST(IndependentContacts, EndAtTheLimitOfTheLaw) {
+  for (const char* form : k_all_forms) {
+    for (const Step& step : {ramp(1.0), force_ramp(2.6)}) {
+      const TestRun now = run_law<Hysteretic>(pair_of_walls({step}), form);
+      EXPECT_EQ(now.record.status, RunStatus::stopped) << form;
+      EXPECT_EQ(now.record.limit, Limit::walls_meet) << form;
+      EXPECT_EQ(now.events(), (Names{"axial:knee", "axial:limit"})) << form;
+      EXPECT_NEAR(now.last("axial.displacement"), k_end, 1e-13) << form;
+    }
+    // Up to there and back is allowed; on from there is not.
+    const TestRun there = run_law<Hysteretic>(pair_of_walls(path({k_end, 0.7, k_end})), form);
+    EXPECT_EQ(there.record.status, RunStatus::complete) << there.record.message;
+    const TestRun on = run_law<Hysteretic>(pair_of_walls(path({k_end, 0.9})), form);
+    EXPECT_EQ(on.record.limit, Limit::walls_meet) << form;
+    EXPECT_EQ(on.events().back(), "axial:limit") << form;
+  }
+}
+
+TEST(IndependentContacts, PassABoundaryOnceWhereAStepEndsThere) {
+  for (const char* form : k_all_forms) {
+    const TestRun now = run_law<Hysteretic>(pair_of_walls(path({0.3, 0.4, 0.39, 0.4, 0.5})), form);
+    EXPECT_EQ(now.events(), (Names{"axial:knee", "axial:load-reversal", "axial:reload"})) << form;
+    EXPECT_NEAR(now.time_of("knee"), 1.0, 1e-13) << form;
+    EXPECT_NEAR(now.time_of("reload"), 4.0, 1e-13) << form;
+  }
+}
+
+TEST(IndependentContacts, LeaveNoDentWhereAWallHasOnlyTouched) {
+  for (const char* form : k_all_forms) {
+    const Scenario touching =
+        between(pair_of_walls({}), {wall("a", {0, 0, 1}, {until_event(ramp(0.1), "contact-made"), ramp(-0.1)}, 0.1)});
+    EXPECT_EQ(run_law<Hysteretic>(touching, form).events(), (Names{"a:contact-made", "until-met", "a:contact-lost"}))
+        << form;
+  }
+}
+
+TEST(IndependentContacts, BalanceTheirEnergies) {
+  std::mt19937_64 generator(7);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  for (int i = 0; i < 60; ++i) {
+    std::vector<double> targets;
+    for (int k = 0; k < 6; ++k) targets.push_back(k % 2 == 0 ? k_end * share(generator) : 0.9 * share(generator) - 0.2);
+    for (double& target : targets) target = std::min(target, k_end);
+    const Scenario scenario = with_points(hertz_scenario(Configuration::hydrostatic, path(targets)), 20);
+    const TestRun closed = run_law<HystereticInClosedForm>(scenario, "direct");
+    EXPECT_GE(least_dissipation(closed), -1e-14);
+    EXPECT_LE(std::abs(lost_dissipation(closed)), 1e-14);
+    for (const char* form : k_all_forms) {
+      const TestRun now = run_law<Hysteretic>(scenario, form);
+      EXPECT_LT(difference(now, closed), 1e-6) << form;
+      EXPECT_EQ(now.events(), closed.events()) << form;
+      const TestRun finer = run_law<Hysteretic>(scenario, form, {}, relative(1e-11));
+      EXPECT_LT(difference(finer, closed), 1e-9) << form;
+    }
+  }
+}
+
+TEST(IndependentContacts, ShowNoColumnsThatTheLawDoesNotHave) {
+  const TestRun now = run_law<Spring>(pair_of_walls({ramp(0.1)}), "direct");
+  EXPECT_TRUE(now.record.history.find("axial.force"));
+  EXPECT_TRUE(now.record.history.find("stored_energy"));
+  EXPECT_FALSE(now.record.history.find("axial.pressure"));
+  EXPECT_FALSE(now.record.history.find("axial.contact_radius"));
+}
+
+}  // namespace
+}  // namespace monograin::contacts_test
