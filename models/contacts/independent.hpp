@@ -24,6 +24,7 @@
 /// compliance. Otherwise it is the displacement. Guards are functions of the program alone.
 #pragma once
 
+#include <concepts>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -61,6 +62,13 @@ class IndependentContacts final : public HybridSystem {
     work_slot_ = unknowns_.size();
     unknowns_.push_back({"work", Unknown::Kind::quadrature, work, false});
   }
+  /// Makes the law, and the Settings, of a model's own settings.
+  template <class OfModel>
+  requires std::constructible_from<Law, OfModel> IndependentContacts(const OfModel& settings,
+                                                                     std::vector<ContactClass> classes)
+      : IndependentContacts(Law(settings),
+                            {settings.initial_radius, settings.largest_displacement, settings.largest_force},
+                            std::move(classes)) {}
 
   [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return unknowns_; }
   [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return classes_; }
