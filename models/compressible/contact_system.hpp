@@ -31,6 +31,7 @@ class WallLaw {
     UnloadingCurve curve{};
   };
   static constexpr std::array<std::string_view, 4> k_regimes{"open", "linear", "exponential", "unloading"};
+  static constexpr bool k_opens_beyond = true;
 
   explicit WallLaw(ContactSettings settings) : settings_(std::move(settings)) {}
 

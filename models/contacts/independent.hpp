@@ -14,6 +14,7 @@
 ///   contact_radius(b, d)        over R0
 ///   next(b), pass(b)            boundary ahead on the primary loading branch; what changes there
 ///   turn(b, d), reload(b)       begins to unload at d; is back there. Without them a contact goes back as it came
+///   k_opens_beyond              true: a wall that ends a step at opening() is as it was, touching or not
 ///   made_event(b)               name of the event of touching, if it is not "contact-made"
 ///   surface(b, d)               points of the surface; pressures over unit_force/R0^2
 ///   start(), warnings(walls)    forgets, and tells, what the law has noted on the way; walls: how many have touched
@@ -292,24 +293,32 @@ class IndependentContacts final : public HybridSystem {
     return shown;
   }
 
-  /// The guards that may fire before the end of the step. What a rising step ends at is passed by the next one, if that
-  /// goes on; a force that ends at nothing leaves the wall at the surface.
+  /// The guards that may fire before the end of the step. A wall that ends where it meets or leaves the particle has
+  /// met or left it, but a force that ends at nothing has not; any other boundary at which a step ends is passed by the
+  /// next one, if that goes on.
   void arm_guards() {
     guards_.clear();
     targets_.clear();
     for (const Contact& c : contacts_) {
       const WallDrive& drive = c.drive();
-      const double opening = c.is_force_controlled() ? 0.0 : law_.opening(c.branch());
+      const bool is_by_force = c.is_force_controlled();
+      const double opening = is_by_force ? 0.0 : law_.opening(c.branch());
       if (drive.direction() < 0 && c.touches()) {
-        if (drive.end() < opening) add_guard(k_lost, c, -1, "contact-lost", opening);
+        if (drive.end() < opening || (!is_by_force && opens_at(drive.end(), opening)))
+          add_guard(k_lost, c, -1, "contact-lost", opening);
       } else if (drive.direction() > 0 && c.touches()) {
         const auto ahead = c.next(law_);
         const double target = ahead ? c.prescribed_at(law_, *ahead) : 0.0;
         if (ahead && drive.goes_beyond(target)) add_guard(k_boundary, c, 1, ahead->event, target);
-      } else if (drive.direction() > 0 && !c.is_force_controlled()) {
-        if (drive.end() > opening) add_guard(k_made, c, 1, c.made_event(law_), opening);
+      } else if (drive.direction() > 0 && !is_by_force) {
+        if (drive.end() > opening || opens_at(drive.end(), opening))
+          add_guard(k_made, c, 1, c.made_event(law_), opening);
       }
     }
+  }
+  [[nodiscard]] static bool opens_at(double end, double opening) noexcept {
+    if constexpr (requires { Law::k_opens_beyond; }) return !Law::k_opens_beyond && end == opening;
+    return end == opening;
   }
   void add_guard(GuardKind kind, const Contact& c, int direction, std::string_view name, double target) {
     guards_.push_back({.kind = kind,

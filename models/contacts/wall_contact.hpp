@@ -53,13 +53,13 @@ class WallContact {
     if (!(prescribed > 0.0)) return 0.0;
     return drive_.rate() * prescribed / law.slope(branch_, law.displacement(branch_, prescribed));
   }
-  /// True if the contact bears a force that can be told from none. A wall that stands where it parts from the particle
-  /// has parted, and so has one beyond, to which a ramp of hardly more than round-off leads before its end is found.
+  /// True if the contact bears a force that can be told from none. A prescribed displacement is known but for
+  /// round-off: a wall that stands where it meets the particle, or parts from it, is not pressed by that.
   [[nodiscard]] bool bears(const Law& law, double d) const {
     constexpr double k_round_off = 4.0 * std::numeric_limits<double>::epsilon();
     if (!touches_) return false;
-    const double distance = d - law.opening(branch_);
-    return distance > (is_force_controlled() || is_on_primary_branch_ ? 0.0 : k_round_off * largest_);
+    const double least = is_force_controlled() ? 0.0 : k_round_off * std::max(drive_.size(), largest_);
+    return d - law.opening(branch_) > least;
   }
   /// Force on a particle that the wall may have left, or not met, within round-off.
   [[nodiscard]] double visible_force(const Law& law, double xi) const {
@@ -71,7 +71,7 @@ class WallContact {
   /// The boundary ahead of a contact that is pressed on: below its largest displacement, that.
   [[nodiscard]] std::optional<Boundary> next(const Law& law) const {
     if (!is_on_primary_branch_) return Boundary{largest_, "reload"};
-    if constexpr (k_has_boundaries) return law.next(branch_);
+    if constexpr (requires { law.next(branch_); }) return law.next(branch_);
     return std::nullopt;
   }
   /// What the program prescribes the contact at a boundary.
@@ -120,7 +120,7 @@ class WallContact {
       return end;
     }
     if (is_on_primary_branch_) {
-      if constexpr (k_has_boundaries) law.pass(branch_);
+      if constexpr (requires { law.pass(branch_); }) law.pass(branch_);
     } else {
       is_on_primary_branch_ = true;
       if constexpr (requires { law.reload(branch_); }) law.reload(branch_);
@@ -148,7 +148,7 @@ class WallContact {
     c.touches_ = true;
     for (auto ahead = c.next(law); ahead && !ahead->limit; ahead = c.next(law)) {
       if (!(displacement > ahead->position || force > law.force(c.branch_, ahead->position))) break;
-      if constexpr (k_has_boundaries) law.pass(c.branch_);
+      if constexpr (requires { law.pass(c.branch_); }) law.pass(c.branch_);
     }
     return c;
   }

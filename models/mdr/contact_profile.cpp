@@ -103,4 +103,24 @@ double ContactProfile::relaxed_height(double r) const {
   return 0.5 * indenter.height * (1.0 - 2.0 / pi * boost::math::ellint_2(modulus));
 }
 
+std::vector<SurfacePoint> surface_of(const ContactProfile& profile) {
+  constexpr int k_points = 128;    // within the contact, and as many around it
+  constexpr double k_reach = 2.0;  // as far as this many contact radii
+  std::vector<SurfacePoint> points;
+  const double a = profile.contact_radius;
+  const auto add = [&](double r) {
+    points.push_back({.radius = r,
+                      .pressure = profile.pressure(r),
+                      .displacement = profile.surface_displacement(r),
+                      .relaxed_height = profile.relaxed_height(r)});
+  };
+  // Closer towards the edge from both sides, where the slopes are unbounded; not at the edge itself.
+  for (int k = 0; k < k_points; ++k) add(a * std::sin(0.5 * pi * k / k_points));
+  for (int k = 1; k <= k_points; ++k) {
+    const double share = static_cast<double>(k) / k_points;
+    add(a * (1.0 + (k_reach - 1.0) * share * share));
+  }
+  return points;
+}
+
 }  // namespace monograin::mdr

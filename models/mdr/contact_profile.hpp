@@ -5,7 +5,10 @@
 /// unit. Source, unless said otherwise: 002_000df8fc37500451.txt.
 #pragma once
 
+#include <vector>
+
 #include "mdr/adhesion.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin::mdr {
 
@@ -40,5 +43,9 @@ struct ContactProfile {
   /// @param r  for the ellipse |r| <= b, NaN beyond
   [[nodiscard]] double relaxed_height(double r) const;
 };
+
+/// Points of the pressure and the surface from the contact's middle to twice its radius, in the units of the profile.
+/// @param profile  of a contact that has a radius
+[[nodiscard]] std::vector<SurfacePoint> surface_of(const ContactProfile& profile);
 
 }  // namespace monograin::mdr

@@ -129,30 +129,20 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
 }
 
 std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {
-  constexpr int k_points = 128;    // within the contact, and as many around it
-  constexpr double k_reach = 2.0;  // as far as this many contact radii
   evaluate(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
   const double a = now_[i].contact.contact_radius;
   if (!touches(memory_[i].regime) || !(a > 0.0)) return {};
   const Frame now = frame(i, now_[i].overlap, y[k_radius]);
-  const ContactProfile profile{.indenter = now.indenter,
-                               .composite_modulus = material_.composite_modulus,
-                               .contact_radius = std::min(a, now.indenter.half_width),
-                               .displacement_1d = now.displacement};
-  const double length = settings_.initial_radius;
-  std::vector<SurfacePoint> points;
-  const auto add = [&](double r) {
-    points.push_back({.radius = r * length,
-                      .pressure = profile.pressure(r) * stress_unit_,
-                      .displacement = profile.surface_displacement(r) * length,
-                      .relaxed_height = profile.relaxed_height(r) * length});
-  };
-  // Closer towards the edge from both sides, where the slopes are unbounded; not at the edge itself.
-  for (int k = 0; k < k_points; ++k) add(a * std::sin(0.5 * pi * k / k_points));
-  for (int k = 1; k <= k_points; ++k) {
-    const double share = static_cast<double>(k) / k_points;
-    add(a * (1.0 + (k_reach - 1.0) * share * share));
+  std::vector<SurfacePoint> points = surface_of({.indenter = now.indenter,
+                                                 .composite_modulus = material_.composite_modulus,
+                                                 .contact_radius = std::min(a, now.indenter.half_width),
+                                                 .displacement_1d = now.displacement});
+  for (SurfacePoint& point : points) {
+    point.radius *= settings_.initial_radius;
+    point.pressure *= stress_unit_;
+    point.displacement *= settings_.initial_radius;
+    point.relaxed_height *= settings_.initial_radius;
   }
   return points;
 }

@@ -9,6 +9,7 @@
 #include "compressible/material_point_info.hpp"
 #include "elastic/hertz.hpp"
 #include "elastic/nonlocal_system.hpp"
+#include "hertz/law.hpp"
 #include "mdr/system.hpp"
 #include "packing/system.hpp"
 #include "plastic/system.hpp"
@@ -123,7 +124,14 @@ compressible::MaterialPoint::Settings material_point_settings(const Scenario& sc
 
 std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<ContactClass> classes,
                                          const Reach& reach) {
-  // A Hertz particle is an MDR particle that neither yields nor grows.
+  // With a free centre, a Hertz particle is an MDR particle that neither yields nor grows.
+  if (scenario.model == "hertz" && !scenario.loading.centre_is_free) {
+    const double modulus =
+        composite_modulus(scenario.material.at("youngs_modulus"), scenario.material.at("poisson_ratio"));
+    return std::make_unique<hertz::System>(hertz::WallLaw{modulus},
+                                           contacts::Settings{scenario.radius, reach.displacement, reach.force},
+                                           std::move(classes));
+  }
   if (scenario.model == "hertz") {
     return std::make_unique<mdr::System>(hertz_settings(scenario, reach), std::move(classes));
   }

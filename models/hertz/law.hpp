@@ -1,0 +1,49 @@
+/// An elastic particle between rigid walls with its centre fixed: Hertz's law at every contact. Lengths in R0, stresses
+/// in E*. Source: Hertz (1882); 002_000df8fc37500451.txt, eq. 25.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "contacts/independent.hpp"
+#include "elastic/hertz.hpp"
+#include "mdr/contact_profile.hpp"
+
+namespace monograin::hertz {
+
+/// One contact, as contacts::IndependentContacts asks for it.
+struct WallLaw {
+  struct Branch {};  ///< unloading goes back on the same curve
+  static constexpr std::array<std::string_view, 2> k_regimes{"open", "elastic"};
+  /// Distance of a wall from the centre, over R0, at which it has reached it.
+  static constexpr double k_least_distance = 1e-3;
+
+  double composite_modulus = 1.0;  ///< E* [Pa], > 0
+
+  [[nodiscard]] double unit_force(double radius) const noexcept { return composite_modulus * radius * radius; }
+  [[nodiscard]] double force(Branch, double d) const noexcept { return hertz_force(1.0, 1.0, d); }
+  [[nodiscard]] double slope(Branch, double d) const noexcept { return 2.0 * hertz_contact_radius(1.0, d); }
+  [[nodiscard]] double displacement(Branch, double force) const noexcept {
+    const double root = std::cbrt(0.75 * force);
+    return root * root;
+  }
+  [[nodiscard]] double opening(Branch) const noexcept { return 0.0; }
+  [[nodiscard]] double work(Branch, double d) const noexcept { return hertz_energy(1.0, 1.0, d); }
+  [[nodiscard]] double stored(Branch, double d) const noexcept { return hertz_energy(1.0, 1.0, d); }
+  [[nodiscard]] double contact_radius(Branch, double d) const noexcept { return hertz_contact_radius(1.0, d); }
+  [[nodiscard]] int regime(Branch, bool touches) const noexcept { return touches ? 1 : 0; }
+  [[nodiscard]] contacts::Boundary next(Branch) const noexcept {
+    return {1.0 - k_least_distance, "limit", LimitPoint{Limit::wall_at_centre, -1, "distance/R0", k_least_distance}};
+  }
+  [[nodiscard]] std::vector<SurfacePoint> surface(Branch, double d) const {
+    return mdr::surface_of({.indenter = mdr::elastic_indenter(mdr::ElasticProfile::parabola, 1.0),
+                            .composite_modulus = 1.0,
+                            .contact_radius = hertz_contact_radius(1.0, d),
+                            .displacement_1d = d});
+  }
+};
+
+using System = contacts::IndependentContacts<WallLaw>;
+
+}  // namespace monograin::hertz
