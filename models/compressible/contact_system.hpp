@@ -31,7 +31,7 @@ class WallLaw {
     UnloadingCurve curve{};
   };
   static constexpr std::array<std::string_view, 4> k_regimes{"open", "linear", "exponential", "unloading"};
-  static constexpr bool k_opens_beyond = true;
+  static constexpr auto k_passed_at_end = contacts::PassedAtEnd::none;
 
   explicit WallLaw(ContactSettings settings) : settings_(std::move(settings)) {}
 

@@ -10,19 +10,26 @@
 ///   regime(b, touches)          index of a word
 /// and may have
 ///   work(b, d)                  primitive of the force up to a constant; without it the work is integrated
-///   stored(b, d)                energy that unloading gives back
-///   contact_radius(b, d)        over R0
+///   stored(b, d)                energy that unloading gives back; has_stored_energy(): whether there is any
+///   contact(b, d)               force and contact radius, where the law knows the contact area
 ///   next(b), pass(b)            boundary ahead on the primary loading branch; what changes there
 ///   turn(b, d), reload(b)       begins to unload at d; is back there. Without them a contact goes back as it came
-///   k_opens_beyond              true: a wall that ends a step at opening() is as it was, touching or not
+///   refuses_unloading()         none, or what to do against the limit that a contact meets which begins to unload
+///   k_passed_at_end             which boundaries a step has passed that ends at them
 ///   made_event(b)               name of the event of touching, if it is not "contact-made"
 ///   surface(b, d)               points of the surface; pressures over unit_force/R0^2
-///   start(), warnings(walls)    forgets, and tells, what the law has noted on the way; walls: how many have touched
+///   follows(walls)              true for contacts that follow the first one that does not, and do no work
+///   follower(b, touches, d)     what is seen of them beside that one
+///   start(), note(d), warnings(walls)
+///                               forgets, notes a displacement in a row, tells; walls: how many have touched
+/// and, where an inverse in closed form is missing or loses digits,
+///   coordinate_power(b), is_integrated(b), force_and_slope(b, d), displacement(b, F, near)
+///                               see the coordinates in contacts/wall_contact.hpp
+///   slope_under(b, F)           dF/dd where the force is F
+///   magnitudes(d)               see contacts/scales.hpp
 ///
-/// Unknowns: a coordinate of every wall whose force is prescribed at some time, and the work of the walls. The
-/// coordinate is in proportion to the force while that is prescribed: linear in the step coordinate, it is exact in
-/// every form of the equations, and nothing is singular at first touch or where a contact opens with an infinite
-/// compliance. Otherwise it is the displacement. Guards are functions of the program alone.
+/// Unknowns: a coordinate of every wall whose force is prescribed at some time, and the work of the walls. Guards are
+/// functions of the program alone.
 #pragma once
 
 #include <concepts>
@@ -31,6 +38,7 @@
 #include <utility>
 
 #include "contacts/columns.hpp"
+#include "contacts/scales.hpp"
 #include "contacts/wall_contact.hpp"
 
 namespace monograin::contacts {
@@ -53,15 +61,17 @@ class IndependentContacts final : public HybridSystem {
         classes_(std::move(classes)),
         contacts_(classes_.size()),
         slots_(classes_.size()),
-        columns_(k_has_stored_energy, k_has_contact_area, Law::k_regimes, classes_) {
-    const double work = set_scales(settings.largest_displacement / length_, settings.largest_force / force_unit_);
+        columns_(has_stored_energy(), k_has_contact_area, Law::k_regimes, classes_),
+        scales_(scales_of(law_, settings.largest_displacement / length_, settings.largest_force / force_unit_)) {
     for (std::size_t i = 0; i < classes_.size(); ++i) {
+      if constexpr (k_has_followers) is_follower_.push_back(law_.follows(classes_[i]));
       if (!classes_[i].takes_force) continue;
       slots_[i] = unknowns_.size();
-      unknowns_.push_back({classes_[i].name, Unknown::Kind::differential, reach_, true});
+      unknowns_.push_back({classes_[i].name, Unknown::Kind::differential, scales_.coordinate, true});
     }
+    while (leader_ < classes_.size() && is_follower(leader_)) ++leader_;
     work_slot_ = unknowns_.size();
-    unknowns_.push_back({"work", Unknown::Kind::quadrature, work, false});
+    unknowns_.push_back({"work", Unknown::Kind::quadrature, scales_.magnitudes.work, false});
   }
   /// Makes the law, and the Settings, of a model's own settings.
   template <class OfModel>
@@ -75,7 +85,11 @@ class IndependentContacts final : public HybridSystem {
   [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return classes_; }
   [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
   [[nodiscard]] std::span<const Observable> observables() const noexcept override { return columns_.observables(); }
-  [[nodiscard]] bool is_open(int contact_class) const noexcept override { return !contact(contact_class).touches(); }
+  [[nodiscard]] bool is_open(int contact_class) const noexcept override {
+    const auto i = static_cast<std::size_t>(contact_class);
+    const Contact& c = contacts_[is_follower(i) ? leader_ : i];
+    return is_follower(i) ? law_.regime(c.branch(), c.touches()) == 0 : !c.touches();
+  }
   [[nodiscard]] std::function<void()> checkpoint() override {
     return [this, then = *this] { *this = then; };
   }
@@ -85,52 +99,72 @@ class IndependentContacts final : public HybridSystem {
     has_begun_ = false;
     if constexpr (requires(Law & law) { law.start(); }) law_.start();
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      contacts_[i] = {static_cast<int>(i), -classes_[i].gap / length_};
+      std::vector<int> followers;
+      for (std::size_t k = 0; i == leader_ && k < contacts_.size(); ++k) {
+        if (is_follower(k)) followers.push_back(static_cast<int>(k));
+      }
+      contacts_[i] =
+          Contact(static_cast<int>(i), -classes_[i].gap / length_, scales_.force_per_coordinate, std::move(followers));
     }
-    complete(0.0, y);
+    solve(0.0, y);
   }
 
   void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override {
+    std::vector<double> at(contacts_.size());
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      Contact& c = contacts_[i];
       const bool is_by_force = ramps[i].control == Control::force;
+      const double stood = is_by_force ? contacts_[i].displacement_at(law_, y[slots_[i]]) : 0.0;
       const WallDrive drive(ramps[i], is_by_force ? force_unit_ : length_);
-      const double d = is_by_force ? displacement_at(c, y[slots_[i]]) : drive.start();
-      c.take_up(drive);
+      at[i] = contacts_[i].take_up(law_, drive, stood, classes_[i].takes_force);
+      // A step that cannot begin is shown where it would have, in its own coordinates.
+      if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate(law_, 0.0, at[i]);
+    }
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      if (is_follower(i)) continue;
       // A driven wall that touches the fresh particle is in contact from the start, without an event.
-      if (const auto end = c.begin_step(law_, d, has_begun_ || classes_[i].gap > 0.0, log)) throw CannotBegin(*end);
+      const bool is_seen = has_begun_ || classes_[i].gap > 0.0;
+      if (const auto end = contacts_[i].begin_step(law_, at[i], is_seen, log)) throw CannotBegin(*end);
     }
     has_begun_ = true;
-    complete(0.0, y);
+    solve(0.0, y);
     arm_guards();
   }
 
   void complete(double xi, std::span<double> y) override {
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (classes_[i].takes_force) y[slots_[i]] = coordinate(contacts_[i], xi);
+      if (classes_[i].takes_force && !contacts_[i].is_integrated(law_))
+        y[slots_[i]] = contacts_[i].coordinate_near(law_, xi, y[slots_[i]]);
     }
   }
-  void solve(double xi, std::span<double> y) override { complete(xi, y); }
-
-  void rates(double xi, std::span<const double> /*y*/, std::span<double> dy) override {
-    dy[work_slot_] = power(xi);
+  void solve(double xi, std::span<double> y) override {
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (classes_[i].takes_force)
-        dy[slots_[i]] = contacts_[i].drive().rate() / prescribed_per_coordinate(contacts_[i]);
+      if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate_near(law_, xi, y[slots_[i]]);
     }
+  }
+
+  void rates(double xi, std::span<const double> y, std::span<double> dy) override {
+    dy[work_slot_] = sum([&](std::size_t i) {
+      const auto now = contacts_[i].slope(law_, y[slots_[i]]);
+      if (classes_[i].takes_force) dy[slots_[i]] = contacts_[i].rate(now);
+      return contacts_[i].power(law_, xi, now);
+    });
   }
   void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
 
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override {
-    res[work_slot_] = dy[work_slot_] - power(xi);
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (classes_[i].takes_force) res[slots_[i]] = y[slots_[i]] - coordinate(contacts_[i], xi);
-    }
+    res[work_slot_] = dy[work_slot_] - sum([&](std::size_t i) {
+                        const auto now = contacts_[i].slope(law_, y[slots_[i]]);
+                        if (classes_[i].takes_force)
+                          res[slots_[i]] = contacts_[i].residual(law_, xi, y[slots_[i]], now);
+                        return contacts_[i].power(law_, xi, now);
+                      });
   }
 
-  [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> /*y*/) override {
+  [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override {
     if constexpr (k_has_work) {
-      return sum([&](const Contact& c) { return c.touches() ? law_.work(c.branch(), c.displacement(law_, xi)) : 0.0; });
+      return sum([&](std::size_t i) {
+        return contacts_[i].touches() ? law_.work(contacts_[i].branch(), displacement(i, xi, y)) : 0.0;
+      });
     } else {
       return std::nullopt;
     }
@@ -139,8 +173,8 @@ class IndependentContacts final : public HybridSystem {
   void guard_values(double xi, std::span<const double> /*y*/, std::span<double> values) override {
     for (std::size_t g = 0; g < guards_.size(); ++g) {
       // Ramps are as short as contacts are shallow.
-      const WallDrive& drive = contact(guards_[g].index).drive();
-      values[g] = (drive.value(xi) - targets_[g]) / drive.size();
+      const WallDrive& ramp = drive(static_cast<std::size_t>(guards_[g].index));
+      values[g] = (ramp.value(xi) - targets_[g]) / ramp.size();
     }
   }
 
@@ -159,7 +193,7 @@ class IndependentContacts final : public HybridSystem {
       if (!end && guards_[g].kind != k_lost) end = c.pass_reached(law_, xi, log);
       if (end) return end;
     }
-    complete(xi, y);
+    solve(xi, y);
     arm_guards();
     return std::nullopt;
   }
@@ -167,23 +201,27 @@ class IndependentContacts final : public HybridSystem {
   void observe(double xi, std::span<const double> y, std::span<double> values) override {
     const double energy_unit = force_unit_ * length_;
     Energies energies{.work = y[work_slot_] * energy_unit};
-    if constexpr (k_has_stored_energy) {
-      energies.stored = energy_unit * sum([&](const Contact& c) {
-                          const double d = c.displacement(law_, xi);
-                          return c.bears(law_, d) ? law_.stored(c.branch(), d) : 0.0;
-                        });
+    if constexpr (requires(Law & law) { law.note(1.0); }) {
+      for (std::size_t i = 0; i < contacts_.size(); ++i) law_.note(displacement(i, xi, y));
+    }
+    if constexpr (k_can_store_energy) {
+      if (has_stored_energy()) {
+        energies.stored = energy_unit * sum([&](std::size_t i) {
+                            const double d = displacement(i, xi, y);
+                            return contacts_[i].bears(law_, d) ? law_.stored(contacts_[i].branch(), d) : 0.0;
+                          });
+      }
       energies.dissipation = energies.work - energies.stored;
     }
     columns_.write(
-        energies, contacts_.size(), [&](std::size_t i) { return visible(contacts_[i], xi); }, values);
+        energies, contacts_.size(), [&](std::size_t i) { return visible(i, xi, y); }, values);
   }
 
   /// @throws std::logic_error for what the law does not have
-  [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi,
-                                std::span<const double> /*y*/) override {
+  [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override {
     const bool is_of_area = quantity == Quantity::pressure || quantity == Quantity::contact_radius;
     if (is_of_area && !k_has_contact_area) throw std::logic_error("no such quantity at a wall of this model");
-    const VisibleContact shown = visible(contact(contact_class), xi);
+    const VisibleContact shown = visible(static_cast<std::size_t>(contact_class), xi, y);
     return quantity_of({.force = shown.force,
                         .displacement = shown.displacement,
                         .pressure = shown.pressure,
@@ -191,20 +229,24 @@ class IndependentContacts final : public HybridSystem {
                         .apparent_radius = length_},
                        quantity);
   }
+  /// A ramp of displacement begins where a force has taken the wall, without an integrator's error.
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override {
-    return quantity(control == Control::force ? Quantity::force : Quantity::displacement, contact_class, xi, y);
+    const auto i = static_cast<std::size_t>(contact_class);
+    if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
+    const double d = displacement(i, xi, y);
+    if (!contacts_[i].is_integrated(law_)) return d * length_;
+    return contacts_[i].displacement_under(law_, drive(i).value(xi), d) * length_;
   }
 
-  [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi,
-                                                  std::span<const double> /*y*/) override {
+  [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override {
     std::vector<SurfacePoint> points;
     if constexpr (requires(Law & law, const Branch& b) { law.surface(b, 1.0); }) {
-      const Contact& c = contact(contact_class);
-      const double d = c.displacement(law_, xi);
-      if (c.bears(law_, d)) points = law_.surface(c.branch(), d);
+      const auto i = static_cast<std::size_t>(contact_class);
+      const double d = displacement(i, xi, y);
+      if (contacts_[i].bears(law_, d)) points = law_.surface(contacts_[i].branch(), d);
       for (SurfacePoint& point : points) {
         point.radius *= length_;
-        point.pressure *= force_unit_ / (length_ * length_);
+        point.pressure *= stress_unit();
         point.displacement *= length_;
         point.relaxed_height *= length_;
       }
@@ -215,12 +257,12 @@ class IndependentContacts final : public HybridSystem {
   /// Of the whole program: every contact is as shallow when it is made.
   [[nodiscard]] std::optional<Difficulty> difficulty(double /*xi*/, std::span<const double> /*y*/) override {
     constexpr double k_least_depth = 1e-12;
-    return reach_ <= k_least_depth ? std::optional(Difficulty::below_resolution) : std::nullopt;
+    return scales_.reach <= k_least_depth ? std::optional(Difficulty::below_resolution) : std::nullopt;
   }
 
   [[nodiscard]] std::vector<Diagnostic> warnings() const override {
     if constexpr (requires(const Law& law) { law.warnings(0.0); })
-      return law_.warnings(sum([](const Contact& c) { return c.has_touched() ? 1.0 : 0.0; }));
+      return law_.warnings(sum([&](std::size_t i) { return contacts_[i].has_touched() ? 1.0 : 0.0; }));
     else
       return {};
   }
@@ -229,100 +271,93 @@ class IndependentContacts final : public HybridSystem {
   using Branch = typename Law::Branch;
   using Contact = WallContact<Law>;
   static constexpr bool k_has_work = requires(Law & law, const Branch& b) { law.work(b, 1.0); };
-  static constexpr bool k_has_stored_energy = requires(Law & law, const Branch& b) { law.stored(b, 1.0); };
-  static constexpr bool k_has_contact_area = requires(Law & law, const Branch& b) { law.contact_radius(b, 1.0); };
+  static constexpr bool k_can_store_energy = requires(Law & law, const Branch& b) { law.stored(b, 1.0); };
+  static constexpr bool k_has_contact_area = requires(Law & law, const Branch& b) { law.contact(b, 1.0); };
+
+  static constexpr bool k_has_followers = requires(Law & law, const ContactClass& walls) { law.follows(walls); };
 
   enum GuardKind : int { k_made, k_boundary, k_lost };
 
-  [[nodiscard]] const Contact& contact(int contact_class) const noexcept {
-    return contacts_[static_cast<std::size_t>(contact_class)];
+  [[nodiscard]] const WallDrive& drive(std::size_t i) const noexcept { return contacts_[i].drive(); }
+  [[nodiscard]] bool is_follower(std::size_t i) const noexcept { return k_has_followers && is_follower_[i]; }
+  [[nodiscard]] double stress_unit() const noexcept { return force_unit_ / (length_ * length_); }
+  [[nodiscard]] bool has_stored_energy() const {
+    if constexpr (requires(const Law& law) { law.has_stored_energy(); }) return law_.has_stored_energy();
+    return k_can_store_energy;
   }
 
-  /// Sum over all walls.
+  /// Sum over all walls that do work.
   template <class OfContact>
   [[nodiscard]] double sum(OfContact&& of_contact) const {
     double total = 0.0;
-    for (std::size_t i = 0; i < contacts_.size(); ++i) total += classes_[i].multiplicity() * of_contact(contacts_[i]);
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      if (!is_follower(i)) total += classes_[i].multiplicity() * of_contact(i);
+    }
     return total;
   }
-  [[nodiscard]] double power(double xi) const {
-    return sum([&](const Contact& c) { return c.power(law_, xi); });
+
+  [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const {
+    return contacts_[i].displacement(law_, xi, y[slots_[i]]);
   }
 
-  /// Takes how far the program goes for the magnitude of displacements, or where that is not said the end of the law.
-  /// @return the work of one wall up to there
-  double set_scales(double displacement, double force) {
-    constexpr double k_infinity = std::numeric_limits<double>::infinity();
-    const bool is_said = displacement > 0.0 || force > 0.0;
-    const Contact last = Contact::pressed_to(law_, is_said ? displacement : k_infinity, force);
-    const auto ahead = last.next(law_);
-    const double end = ahead && ahead->limit ? ahead->position : k_infinity;
-    reach_ = is_said ? displacement : std::isfinite(end) ? end : 1.0;
-    if (force > 0.0) reach_ = std::max(reach_, last.displacement_under(law_, force));
-    reach_ = std::min(reach_, end);
-    const double at_reach = law_.force(last.branch(), reach_);
-    force_per_coordinate_ = at_reach / reach_;
-    if constexpr (k_has_work) return law_.work(last.branch(), reach_);
-    return at_reach * reach_;
+  [[nodiscard]] VisibleContact visible(std::size_t i, double xi, std::span<const double> y) {
+    VisibleContact shown = is_follower(i) ? visible_follower(xi, y) : visible_contact(i, xi, y);
+    shown.displacement = is_follower(i) ? drive(i).value(xi) : shown.overlap;
+    shown.displacement *= length_;
+    shown.overlap *= length_;
+    shown.force *= force_unit_;
+    shown.contact_radius *= length_;
+    shown.pressure *= stress_unit();
+    return shown;
   }
-
-  /// What is prescribed over the coordinate.
-  [[nodiscard]] double prescribed_per_coordinate(const Contact& c) const {
-    return c.is_force_controlled() ? force_per_coordinate_ : 1.0;
-  }
-  /// Coordinate of a wall whose force is prescribed at some time.
-  [[nodiscard]] double coordinate(const Contact& c, double xi) const {
-    return c.drive().value(xi) / prescribed_per_coordinate(c);
-  }
-  /// Displacement that a coordinate stands for.
-  [[nodiscard]] double displacement_at(const Contact& c, double u) const {
-    return c.is_force_controlled() ? c.displacement_under(law_, u * force_per_coordinate_) : u;
-  }
-
-  [[nodiscard]] VisibleContact visible(const Contact& c, double xi) const {
-    const double d = c.displacement(law_, xi);
-    VisibleContact shown{.displacement = d * length_,
-                         .overlap = d * length_,
-                         .force = c.visible_force(law_, xi) * force_unit_,
-                         .regime = static_cast<double>(law_.regime(c.branch(), c.touches()))};
+  /// In units of the law.
+  [[nodiscard]] VisibleContact visible_contact(std::size_t i, double xi, std::span<const double> y) const {
+    const Contact& c = contacts_[i];
+    const double d = displacement(i, xi, y);
+    VisibleContact shown{.overlap = d, .regime = static_cast<double>(law_.regime(c.branch(), c.touches()))};
+    if (!c.bears(law_, d)) return shown;
     if constexpr (k_has_contact_area) {
-      if (!c.bears(law_, d)) return shown;
-      shown.contact_radius = law_.contact_radius(c.branch(), d) * length_;
-      shown.pressure = shown.force / (std::numbers::pi * shown.contact_radius * shown.contact_radius);
+      const BearingContact bearing = law_.contact(c.branch(), d);
+      shown.force = c.is_force_controlled() ? drive(i).value(xi) : bearing.force;
+      shown.contact_radius = bearing.contact_radius;
+      const double area = std::numbers::pi * bearing.contact_radius * bearing.contact_radius;
+      shown.pressure = area > 0.0 ? shown.force / area : 0.0;
+    } else {
+      shown.force = c.is_force_controlled() ? drive(i).value(xi) : law_.force(c.branch(), d);
     }
     return shown;
   }
+  [[nodiscard]] VisibleContact visible_follower(double xi, std::span<const double> y) {
+    if constexpr (requires(Law & law, const Branch& b) { law.follower(b, true, 1.0); }) {
+      const Contact& leader = contacts_[leader_];
+      return law_.follower(leader.branch(), leader.touches(), displacement(leader_, xi, y));
+    } else {
+      return {};
+    }
+  }
 
-  /// The guards that may fire before the end of the step. A wall that ends where it meets or leaves the particle has
-  /// met or left it, but a force that ends at nothing has not; any other boundary at which a step ends is passed by the
-  /// next one, if that goes on.
+  /// The guards that may fire before the end of the step.
   void arm_guards() {
     guards_.clear();
     targets_.clear();
-    for (const Contact& c : contacts_) {
-      const WallDrive& drive = c.drive();
-      const bool is_by_force = c.is_force_controlled();
-      const double opening = is_by_force ? 0.0 : law_.opening(c.branch());
-      if (drive.direction() < 0 && c.touches()) {
-        if (drive.end() < opening || (!is_by_force && opens_at(drive.end(), opening)))
-          add_guard(k_lost, c, -1, "contact-lost", opening);
-      } else if (drive.direction() > 0 && c.touches()) {
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      const Contact& c = contacts_[i];
+      const int direction = drive(i).direction();
+      if (is_follower(i) || direction == 0) continue;
+      if (direction > 0 && c.touches()) {
         const auto ahead = c.next(law_);
         const double target = ahead ? c.prescribed_at(law_, *ahead) : 0.0;
-        if (ahead && drive.goes_beyond(target)) add_guard(k_boundary, c, 1, ahead->event, target);
-      } else if (drive.direction() > 0 && !is_by_force) {
-        if (drive.end() > opening || opens_at(drive.end(), opening))
-          add_guard(k_made, c, 1, c.made_event(law_), opening);
+        if (ahead && c.passes(target)) add_guard(k_boundary, i, direction, ahead->event, target);
+      } else if (c.passes_opening(law_) && c.touches() == (direction < 0)) {
+        const double opening = c.is_force_controlled() ? 0.0 : law_.opening(c.branch());
+        add_guard(direction < 0 ? k_lost : k_made, i, direction, direction < 0 ? "contact-lost" : c.made_event(law_),
+                  opening);
       }
     }
   }
-  [[nodiscard]] static bool opens_at(double end, double opening) noexcept {
-    if constexpr (requires { Law::k_opens_beyond; }) return !Law::k_opens_beyond && end == opening;
-    return end == opening;
-  }
-  void add_guard(GuardKind kind, const Contact& c, int direction, std::string_view name, double target) {
+  void add_guard(GuardKind kind, std::size_t i, int direction, std::string_view name, double target) {
     guards_.push_back({.kind = kind,
-                       .index = static_cast<int>(&c - contacts_.data()),
+                       .index = static_cast<int>(i),
                        .direction = direction,
                        .name = name,
                        .is_exact = true,
@@ -336,9 +371,10 @@ class IndependentContacts final : public HybridSystem {
   std::vector<ContactClass> classes_;
   std::vector<Contact> contacts_;
   std::vector<std::size_t> slots_;  ///< in y, of the coordinate of each class that takes a force
+  std::vector<bool> is_follower_;   ///< a contact that follows the leader's displacement, and does not act back
+  std::size_t leader_ = 0;
   Columns columns_;
-  double reach_ = 1.0;                 ///< largest displacement that is expected
-  double force_per_coordinate_ = 1.0;  ///< where the force is prescribed
+  Scales scales_;
   std::vector<Unknown> unknowns_;
   std::size_t work_slot_ = 0;
   bool has_begun_ = false;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "contacts/wall_drive.hpp"
@@ -19,7 +20,17 @@ struct Boundary {
   double position = 0.0;              ///< displacement over R0; still belongs to the part before
   std::string_view event{};           ///< empty: nothing is seen of it
   std::optional<LimitPoint> limit{};  ///< the law ends here
+  bool is_of_followers = false;       ///< the event is one of the contacts that follow this one
 };
+
+/// Force and contact radius of a contact that bears.
+struct BearingContact {
+  double force = 0.0;
+  double contact_radius = 0.0;  ///< over R0
+};
+
+/// Which boundaries a step has passed that ends at them. The next step passes the others, if it goes on.
+enum class PassedAtEnd { none, opening, all };
 
 template <class Law>
 class WallContact {
@@ -28,7 +39,14 @@ class WallContact {
 
   WallContact() = default;
   /// An open wall at a displacement.
-  WallContact(int index, double at) : index_(index), drive_({at, at, Control::displacement}, 1.0), resting_(at) {}
+  /// @param force_per_coordinate  where the coordinate is in proportion to the force
+  /// @param followers             classes of the contacts that follow this one
+  WallContact(int index, double at, double force_per_coordinate = 1.0, std::vector<int> followers = {})
+      : index_(index),
+        force_per_coordinate_(force_per_coordinate),
+        followers_(std::move(followers)),
+        drive_({at, at, Control::displacement}, 1.0),
+        resting_(at) {}
 
   [[nodiscard]] const WallDrive& drive() const noexcept { return drive_; }
   [[nodiscard]] const Branch& branch() const noexcept { return branch_; }
@@ -38,21 +56,82 @@ class WallContact {
 
   // --- at an instant
 
-  [[nodiscard]] double displacement_under(const Law& law, double force) const {
+  /// @param near  a displacement to begin with, where the law looks for it; 0: none is known
+  [[nodiscard]] double displacement_under(const Law& law, double force, double near = 0.0) const {
     if (!touches_) return resting_;
-    return force > 0.0 ? law.displacement(branch_, force) : law.opening(branch_);
+    if (!(force > 0.0)) return law.opening(branch_);
+    if constexpr (requires { law.displacement(branch_, force, near); }) return law.displacement(branch_, force, near);
+    return law.displacement(branch_, force);
   }
-  [[nodiscard]] double displacement(const Law& law, double xi) const {
-    return is_force_controlled() ? displacement_under(law, drive_.value(xi)) : drive_.value(xi);
+
+  // The coordinate u of a wall whose force is prescribed at some time is the displacement while that is prescribed, and
+  // otherwise in proportion to the force: linear in the step coordinate, it is exact in every form of the equations,
+  // and nothing is singular at first touch or where a contact opens with an infinite compliance. A law whose inverse is
+  // dear may name a power n instead, with which its force begins: then u is d^n, and integrated.
+
+  /// n of the coordinate d^n; 0: the coordinate is in proportion to what is prescribed.
+  [[nodiscard]] double coordinate_power(const Law& law) const {
+    if constexpr (k_has_powers) return touches_ && is_force_controlled() ? law.coordinate_power(branch_) : 0.0;
+    return 0.0;
+  }
+  /// True if the coordinate is integrated, and not found at every instant.
+  [[nodiscard]] bool is_integrated(const Law& law) const {
+    const bool has_power = coordinate_power(law) > 0.0;
+    if constexpr (requires { law.is_integrated(branch_); }) return has_power && law.is_integrated(branch_);
+    return has_power;
+  }
+  [[nodiscard]] double displacement_at(const Law& law, double u) const {
+    const double n = coordinate_power(law);
+    if (n > 0.0) return std::copysign(std::pow(std::abs(u), 1.0 / n), u);
+    return is_force_controlled() ? displacement_under(law, u * force_per_coordinate_) : u;
+  }
+  [[nodiscard]] double displacement(const Law& law, double xi, double u) const {
+    if (!is_force_controlled()) return drive_.value(xi);
+    return coordinate_power(law) > 0.0 ? displacement_at(law, u) : displacement_under(law, drive_.value(xi));
+  }
+  /// @param near  a displacement to begin with
+  [[nodiscard]] double coordinate(const Law& law, double xi, double near) const {
+    const double n = coordinate_power(law);
+    if (n > 0.0) return std::pow(displacement_under(law, drive_.value(xi), near), n);
+    return drive_.value(xi) / prescribed_per_coordinate();
+  }
+  /// Coordinate found from one that is near to it.
+  [[nodiscard]] double coordinate_near(const Law& law, double xi, double u) const {
+    return coordinate(law, xi, coordinate_power(law) > 0.0 ? displacement_at(law, u) : 0.0);
+  }
+
+  /// Prescribed quantity at a coordinate, and its derivatives with the coordinate and the displacement; only the first
+  /// of these where the coordinate is in proportion to it.
+  struct Slope {
+    double prescribed = 0.0;
+    double by_coordinate = 0.0;
+    double by_displacement = 0.0;
+  };
+  [[nodiscard]] Slope slope(const Law& law, double u) const {
+    if constexpr (k_has_powers) {
+      if (const double n = coordinate_power(law); n > 0.0) return slope_of_power(law, n, u);
+    }
+    return {.by_coordinate = prescribed_per_coordinate()};
+  }
+  /// Rate of the coordinate.
+  [[nodiscard]] double rate(const Slope& now) const noexcept {
+    return now.by_coordinate > 0.0 ? drive_.rate() / now.by_coordinate : 0.0;
+  }
+  /// Residual of the coordinate, in units of that, as integrators weigh it.
+  [[nodiscard]] double residual(const Law& law, double xi, double u, const Slope& now) const {
+    return is_integrated(law) ? (now.prescribed - drive_.value(xi)) / now.by_coordinate
+                              : u - coordinate_near(law, xi, u);
   }
   /// Rate of the work of one wall: F dd, which is F dF/(dF/dd) where the force is prescribed.
-  [[nodiscard]] double power(const Law& law, double xi) const {
+  [[nodiscard]] double power(const Law& law, double xi, const Slope& now) const {
     if (!touches_) return 0.0;
     const double prescribed = drive_.value(xi);
     if (!is_force_controlled()) return drive_.rate() * law.force(branch_, prescribed);
     if (!(prescribed > 0.0)) return 0.0;
-    return drive_.rate() * prescribed / law.slope(branch_, law.displacement(branch_, prescribed));
+    const double slope = coordinate_power(law) > 0.0 ? now.by_displacement : slope_under(law, prescribed);
+    return slope > 0.0 ? drive_.rate() * prescribed / slope : 0.0;
   }
+
   /// True if the contact bears a force that can be told from none. A prescribed displacement is known but for
   /// round-off: a wall that stands where it meets the particle, or parts from it, is not pressed by that.
   [[nodiscard]] bool bears(const Law& law, double d) const {
@@ -61,13 +140,6 @@ class WallContact {
     const double least = is_force_controlled() ? 0.0 : k_round_off * std::max(drive_.size(), largest_);
     return d - law.opening(branch_) > least;
   }
-  /// Force on a particle that the wall may have left, or not met, within round-off.
-  [[nodiscard]] double visible_force(const Law& law, double xi) const {
-    const double prescribed = drive_.value(xi);
-    if (is_force_controlled()) return touches_ ? std::max(prescribed, 0.0) : 0.0;
-    return bears(law, prescribed) ? law.force(branch_, prescribed) : 0.0;
-  }
-
   /// The boundary ahead of a contact that is pressed on: below its largest displacement, that.
   [[nodiscard]] std::optional<Boundary> next(const Law& law) const {
     if (!is_on_primary_branch_) return Boundary{largest_, "reload"};
@@ -80,9 +152,51 @@ class WallContact {
     return is_on_primary_branch_ ? law.force(branch_, boundary.position) : largest_force_;
   }
 
+  /// True if a rising ramp passes a boundary before the step ends.
+  [[nodiscard]] bool passes(double prescribed) const noexcept {
+    return k_passed_at_end == PassedAtEnd::all ? drive_.end() >= prescribed : drive_.goes_beyond(prescribed);
+  }
+  /// True if the wall meets, or leaves, the particle before the step ends. A force that ends at nothing leaves the wall
+  /// at the surface.
+  [[nodiscard]] bool passes_opening(const Law& law) const {
+    if (is_force_controlled()) return drive_.end() < 0.0;
+    const double distance = drive_.direction() * (drive_.end() - law.opening(branch_));
+    return k_passed_at_end == PassedAtEnd::none ? distance > 0.0 : distance >= 0.0;
+  }
+
   // --- transitions
 
-  void take_up(const WallDrive& drive) noexcept { drive_ = drive; }
+  /// Takes up the ramp of a step. What differs by the round-off of units, of forces and of laws is the same: a wall
+  /// that rests goes on from where it is, one that stands at its dent is not pressed in again, and a ramp between two
+  /// equal values goes nowhere.
+  /// @param d            where the wall has been left, if the ramp is one of force
+  /// @param takes_force  false: no force has ever moved the wall
+  /// @return where the wall is
+  double take_up(const Law& law, WallDrive drive, double d, bool takes_force) {
+    constexpr double k_round_off = 16.0 * std::numeric_limits<double>::epsilon();
+    const bool is_by_force = drive.is_force_controlled();
+    if (drive_.direction() == 0 && is_force_controlled() == is_by_force) drive.start_at(drive_.end());
+    if (!touches_ && !is_by_force) {
+      const double opening = law.opening(branch_);
+      if (std::abs(drive.start() - opening) <= k_round_off * opening) drive.start_at(opening);
+    }
+    if (!is_by_force) d = drive.start();
+    double size = drive.size();
+    if (touches_ && takes_force && d > law.opening(branch_)) {
+      // A force under which a wall stands has the round-off of its displacement, and a displacement to which a force
+      // has led that of the force.
+      const double slope = law.slope(branch_, d);
+      if (is_by_force)
+        size += slope * std::abs(d);
+      else if (slope > 0.0)
+        size += law.force(branch_, d) / slope + std::abs(d);
+    }
+    if (std::abs(drive.rate()) <= k_round_off * size) drive.rest();
+    // An integrated displacement has an error, with which the force that it had would not bring the wall back to it.
+    const bool is_integrated_on = is_by_force && is_integrated(law);
+    drive_ = drive;
+    return is_integrated_on ? displacement_under(law, drive_.start(), d) : d;
+  }
 
   /// Decides the branch at the start of a step, where the wall is at d.
   /// @param is_seen  a contact that is made then is an event
@@ -113,7 +227,10 @@ class WallContact {
   /// Goes beyond a boundary.
   std::optional<DomainEnd> pass(Law& law, const Boundary& boundary, std::vector<Event>& log) {
     const Event event{boundary.event, index_};
-    if (!event.name.empty()) log.push_back(event);
+    if (!event.name.empty() && !boundary.is_of_followers) log.push_back(event);
+    for (const int follower : followers_) {
+      if (!event.name.empty() && boundary.is_of_followers) log.push_back({event.name, follower});
+    }
     if (boundary.limit) {
       DomainEnd end{event, *boundary.limit};
       end.point.contact_class = index_;
@@ -131,7 +248,7 @@ class WallContact {
   std::optional<DomainEnd> pass_reached(Law& law, double xi, std::vector<Event>& log) {
     while (const auto ahead = next(law)) {
       const double at = prescribed_at(law, *ahead);
-      if (!drive_.has_reached(at, xi) || (ahead->limit && !drive_.goes_beyond(at))) break;
+      if (!drive_.has_reached(at, xi) || (ahead->limit && !passes(at))) break;
       if (const auto end = pass(law, *ahead, log)) return end;
     }
     return std::nullopt;
@@ -154,12 +271,38 @@ class WallContact {
   }
 
  private:
-  static constexpr bool k_has_boundaries = requires(Law & law, Branch& b) {
-    law.next(b);
-    law.pass(b);
-  };
+  static constexpr bool k_has_powers = requires(const Law& law, const Branch& b) { law.coordinate_power(b); };
+  static constexpr PassedAtEnd k_passed_at_end = [] {
+    if constexpr (requires { Law::k_passed_at_end; }) return Law::k_passed_at_end;
+    return PassedAtEnd::opening;
+  }();
+
+  [[nodiscard]] double prescribed_per_coordinate() const noexcept {
+    return is_force_controlled() ? force_per_coordinate_ : 1.0;
+  }
+  /// dF/dd where the contact bears a force > 0.
+  [[nodiscard]] double slope_under(const Law& law, double force) const {
+    if constexpr (requires { law.slope_under(branch_, force); }) return law.slope_under(branch_, force);
+    return law.slope(branch_, law.displacement(branch_, force));
+  }
+  /// Odd in u, so that a trial step below zero stays smooth.
+  [[nodiscard]] Slope slope_of_power(const Law& law, double n, double u) const {
+    constexpr double k_nearest = 1e-100;  // the force is linear in u up to this displacement
+    const double d = std::pow(std::abs(u), 1.0 / n);
+    const double by_displacement_of_u = n * std::pow(d, n - 1.0);
+    if (d <= k_nearest) {
+      const double by_coordinate = law.force(branch_, k_nearest) / std::pow(k_nearest, n);
+      return {by_coordinate * u, by_coordinate, by_coordinate * by_displacement_of_u};
+    }
+    const auto [force, by_displacement] = law.force_and_slope(branch_, d);
+    return {std::copysign(force, u), by_displacement / by_displacement_of_u, by_displacement};
+  }
 
   void turn(Law& law, double d, std::vector<Event>& log) {
+    if constexpr (requires { law.refuses_unloading(); }) {
+      if (const auto remark = law.refuses_unloading())
+        throw DomainError({Limit::no_unloading_law, index_, "displacement/R0", d}, *remark);
+    }
     largest_ = d;
     largest_force_ = is_force_controlled() ? drive_.start() : law.force(branch_, d);
     is_on_primary_branch_ = false;
@@ -168,6 +311,8 @@ class WallContact {
   }
 
   int index_ = 0;
+  double force_per_coordinate_ = 1.0;
+  std::vector<int> followers_;
   WallDrive drive_;
   Branch branch_{};
   bool touches_ = false;

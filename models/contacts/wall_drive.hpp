@@ -14,21 +14,33 @@ class WallDrive {
  public:
   WallDrive() = default;
   /// @param unit  of displacements or of forces, as the ramp controls
-  WallDrive(const Ramp& ramp, double unit) : ramp_{ramp.start / unit, ramp.end / unit, ramp.control} {}
+  WallDrive(const Ramp& ramp, double unit) : ramp_{ramp.start / unit, ramp.end / unit, ramp.control} {
+    find_direction();
+  }
 
   [[nodiscard]] bool is_force_controlled() const noexcept { return ramp_.control == Control::force; }
   [[nodiscard]] double start() const noexcept { return ramp_.start; }
   [[nodiscard]] double end() const noexcept { return ramp_.end; }
-  /// Prescribed value at a step coordinate; exact at both ends.
-  [[nodiscard]] double value(double xi) const noexcept {
-    return xi == 1.0 ? ramp_.end : ramp_.start + xi * (ramp_.end - ramp_.start);
-  }
+  /// Prescribed value at a step coordinate; exact at both ends, and to the last digit next to zero.
+  [[nodiscard]] double value(double xi) const noexcept { return std::lerp(ramp_.start, ramp_.end, xi); }
   /// Its rate with the step coordinate.
   [[nodiscard]] double rate() const noexcept { return ramp_.end - ramp_.start; }
   /// 1 loading, -1 unloading, 0 holding.
-  [[nodiscard]] int direction() const noexcept { return rate() > 0.0 ? 1 : rate() < 0.0 ? -1 : 0; }
+  [[nodiscard]] int direction() const noexcept { return direction_; }
   /// Largest magnitude on the ramp.
   [[nodiscard]] double size() const noexcept { return std::max(std::abs(ramp_.start), std::abs(ramp_.end)); }
+
+  /// Begins elsewhere, within round-off.
+  void start_at(double value) noexcept {
+    ramp_.start = value;
+    find_direction();
+  }
+  /// Goes nowhere: the ramp is one of round-off. A displacement stays where it is, so that no force comes of it; a
+  /// force is the prescribed one.
+  void rest() noexcept {
+    direction_ = 0;
+    if (!is_force_controlled()) ramp_.end = ramp_.start;
+  }
 
   /// True if a rising ramp has reached a value at a step coordinate, but for round-off.
   [[nodiscard]] bool has_reached(double target, double xi) const noexcept {
@@ -43,7 +55,10 @@ class WallDrive {
   /// Values this near to each other, relative to themselves, are the same.
   static constexpr double k_same_value = 1e-12;
 
+  void find_direction() noexcept { direction_ = rate() > 0.0 ? 1 : rate() < 0.0 ? -1 : 0; }
+
   Ramp ramp_;
+  int direction_ = 0;
 };
 
 }  // namespace monograin::contacts

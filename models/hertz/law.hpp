@@ -31,7 +31,9 @@ struct WallLaw {
   [[nodiscard]] double opening(Branch) const noexcept { return 0.0; }
   [[nodiscard]] double work(Branch, double d) const noexcept { return hertz_energy(1.0, 1.0, d); }
   [[nodiscard]] double stored(Branch, double d) const noexcept { return hertz_energy(1.0, 1.0, d); }
-  [[nodiscard]] double contact_radius(Branch, double d) const noexcept { return hertz_contact_radius(1.0, d); }
+  [[nodiscard]] contacts::BearingContact contact(Branch b, double d) const noexcept {
+    return {force(b, d), hertz_contact_radius(1.0, d)};
+  }
   [[nodiscard]] int regime(Branch, bool touches) const noexcept { return touches ? 1 : 0; }
   [[nodiscard]] contacts::Boundary next(Branch) const noexcept {
     return {1.0 - k_least_distance, "limit", LimitPoint{Limit::wall_at_centre, -1, "distance/R0", k_least_distance}};

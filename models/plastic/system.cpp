@@ -1,40 +1,21 @@
 #include "plastic/system.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <stdexcept>
 #include <utility>
 
-#include "system/difficulty.hpp"
 #include "system/undefined.hpp"
 
 namespace monograin::plastic {
 namespace {
 
-using std::numbers::pi;
-
-// In the order of Regime.
-constexpr std::array<std::string_view, 9> k_regime_words{
-    "open",      "elastic",   "elastic-plastic", "fully-plastic", "low-compressibility", "elastic-volumetric",
-    "undefined", "unloading", "separated"};
-
-// Nearer to the place where a branch begins, over its length, the force is taken as linear in u.
-constexpr double k_nearest_touch = 1e-100;
-constexpr double k_nearest_opening = 1e-7;
-constexpr double k_opening_power = 1.5;
-// Share of a ramp that takes no time: integrators do not step so far.
-constexpr double k_instant = 1e-13;
-// Share of a prescribed value that is rounding.
-constexpr double k_rounding = 16.0 * std::numeric_limits<double>::epsilon();
-// Depth over R0 below which a contact is rounding.
-constexpr double k_least_depth = 1e-12;
 // Contacts shallower than this over R0 have no digits left where a ramp takes the wall there.
 constexpr double k_least_typical = 1e-7;
-
-double signed_power(double x, double exponent) noexcept { return std::copysign(std::pow(std::abs(x), exponent), x); }
+// Share of a law, towards the limit where the pressure of an enclosed particle is infinite, that sets scales.
+constexpr double k_far_from_limit = 0.9;
+// gamma/2R from which on semimech agrees with finite elements.
+constexpr double k_least_trusted = 0.03;
 
 bool is_die(const Law& law) noexcept {
   if (const auto* semimech = std::get_if<SemimechLaw>(&law)) return semimech->configuration == Configuration::die;
@@ -44,358 +25,244 @@ bool is_die(const Law& law) noexcept {
 
 }  // namespace
 
-System::System(Settings settings, std::vector<ContactClass> classes)
+WallLaw::WallLaw(Settings settings)
     : settings_(std::move(settings)),
       modulus_(settings_.composite_modulus / settings_.strength),
-      classes_(std::move(classes)),
+      first_power_(first_power(settings_.law)),
       boundaries_(boundaries(settings_.law)),
       impingement_(impingement(settings_.law)) {
   const Law& law = settings_.law;
-  const std::size_t count = classes_.size();
-  memory_.resize(count);
-  ramps_.resize(count);
-  directions_.resize(count);
-  places_.resize(count);
-  for (const ContactClass& c : classes_) is_lateral_.push_back(is_die(law) && std::abs(c.normals.front().z()) < 0.5);
-  first_primary_ = static_cast<std::size_t>(std::ranges::find(is_lateral_, false) - is_lateral_.begin());
   if (const auto* semimech = std::get_if<SemimechLaw>(&law); semimech != nullptr && is_die(law)) {
     lateral_law_ = make_lateral(*semimech);
     lateral_boundaries_ = boundaries(*semimech, *lateral_law_);
   }
-
-  const double length = settings_.initial_radius;
-  double reach = settings_.largest_displacement / length;
-  if (settings_.largest_force > 0.0) {
-    try {
-      reach = std::max(reach, approach_under(law, settings_.largest_force / (settings_.strength * length * length)));
-    } catch (const std::domain_error&) {
-      reach = limit(law);  // the run will stop there
-    }
-  }
-  is_shallow_ = reach > 0.0 && reach <= k_least_depth;
-  // Far from the limit, where the pressure of an enclosed particle is infinite.
-  reach = reach > 0.0 ? std::min(reach, 0.9 * limit(law)) : 0.5 * limit(law);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!classes_[i].takes_force) continue;
-    places_[i] = unknowns_.size();
-    // Where there is a yield point, what lies before it counts too.
-    const double first = boundaries_.empty() || !begins_elastic(law) ? reach : std::min(reach, boundaries_[0].approach);
-    // A depth that follows from a force has digits, however shallow.
-    const double least = settings_.largest_displacement > 0.0 ? k_least_typical : 0.0;
-    const double typical = std::max(first, least);
-    unknowns_.push_back({classes_[i].name, Unknown::Kind::differential, std::pow(typical, first_power(law)), true});
-  }
-  work_place_ = unknowns_.size();
-  // Beyond where the law is fitted work grows by orders, and a condition may end a program long before its targets.
-  const double typical_end = std::min(reach, calibrated_end(law));
-  unknowns_.push_back({"work", Unknown::Kind::quadrature, work_per_wall(law, typical_end), false});
-
-  observables_.push_back({"work", "J", {}});
-  if (settings_.unloading != Unloading::none) {
-    observables_.push_back({"stored_energy", "J", {}});
-    observables_.push_back({"dissipation", "J", {}});
-  }
-  for (const ContactClass& c : classes_) add_contact_columns(c.name, k_regime_words, observables_);
   for (const OutOfRange& out : settings_.out_of_range) {
     range_messages_.push_back(std::string(out.quantity) + " is outside " + text(out.lower) + " to " + text(out.upper) +
                               ", over which the source fitted the law");
   }
 }
 
-void System::start(std::span<double> y) {
-  std::ranges::fill(y, 0.0);
-  memory_.assign(classes_.size(), Memory{});
-  has_begun_ = false;
+void WallLaw::start() noexcept {
   farthest_ = 0.0;
   has_lateral_gap_ = false;
   overshooting_.reset();
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    const double gap = classes_[i].gap / settings_.initial_radius;
-    ramps_[i] = {-gap, -gap, Control::displacement};
-    directions_[i] = 0;
-    memory_[i].resting = -gap;
-    if (classes_[i].takes_force) y[places_[i]] = coordinate(i, -gap);
+}
+
+Regime WallLaw::primary_regime(const Branch& b) const noexcept {
+  return b.next == 0 ? first_regime(settings_.law) : boundaries_[b.next - 1].beyond;
+}
+
+// --- force and displacement
+
+double WallLaw::opening(const Branch& b) const noexcept {
+  return b.is_on_indenter ? b.indenter.overlap_max - b.indenter.recovery : 0.0;
+}
+
+double WallLaw::force(const Branch& b, double x) const {
+  if (x <= opening(b)) return 0.0;
+  if (b.is_on_indenter) return mdr::unloading_contact(b.indenter, modulus_, x).force;
+  return state_in(settings_.law, primary_regime(b), x).force;
+}
+
+double WallLaw::slope(const Branch& b, double x) const { return force_and_slope(b, x).second; }
+
+std::pair<double, double> WallLaw::force_and_slope(const Branch& b, double x) const {
+  if (b.is_on_indenter) {
+    const mdr::Contact c = mdr::unloading_contact(b.indenter, modulus_, x);
+    return {c.force, c.by_overlap};
+  }
+  const ContactState c = state_in(settings_.law, primary_regime(b), x);
+  return {c.force, c.force_by_approach};
+}
+
+/// Where the distance from the opening is a small share of the displacement, the displacement has not its digits.
+double WallLaw::slope_under(const Branch& b, double force) const {
+  if (!b.is_on_indenter) return slope(b, displacement(b, force));
+  const double share = mdr::recompressed_share(b.indenter, force);
+  return mdr::recompressed_contact(b.indenter, modulus_, share).by_overlap;
+}
+
+double WallLaw::displacement(const Branch& b, double force, double near) const {
+  return b.is_on_indenter ? mdr::unloading_overlap(b.indenter, force) : approach_under(settings_.law, force, near);
+}
+
+double WallLaw::coordinate_power(const Branch& b) const noexcept { return b.is_on_indenter ? 0.0 : first_power_; }
+
+/// Next to where its pressure becomes infinite, an integrator's error would lead beyond the end of the law.
+bool WallLaw::is_integrated(const Branch& b) const noexcept { return primary_regime(b) != Regime::low_compressibility; }
+
+contacts::BearingContact WallLaw::contact(const Branch& b, double x) const {
+  if (b.is_on_indenter) {
+    const mdr::Contact c = mdr::unloading_contact(b.indenter, modulus_, x);
+    return {c.force, c.contact_radius};
+  }
+  const ContactState c = state_in(settings_.law, primary_regime(b), x);
+  return {c.force, c.contact_radius};
+}
+
+double WallLaw::work(const Branch& b, double x) const {
+  if (x <= opening(b)) return 0.0;
+  return b.is_on_indenter ? mdr::unloading_energy(b.indenter, x) : work_in(settings_.law, primary_regime(b), x);
+}
+
+double WallLaw::stored(const Branch& b, double x) const {
+  if (b.is_on_indenter) return mdr::unloading_energy(b.indenter, x);
+  if (primary_regime(b) == Regime::elastic) return work_per_wall(settings_.law, x);
+  return mdr::plastic_energy(indenter_at(b, x));
+}
+
+contacts::Magnitudes WallLaw::magnitudes(double reach) const {
+  const Law& law = settings_.law;
+  const bool is_said = settings_.largest_displacement > 0.0 || settings_.largest_force > 0.0;
+  reach = is_said ? std::min(reach, k_far_from_limit * limit(law)) : 0.5 * limit(law);
+  // Where there is a yield point, what lies before it counts too.
+  const double first = boundaries_.empty() || !begins_elastic(law) ? reach : std::min(reach, boundaries_[0].approach);
+  // A depth that follows from a force has digits, however shallow.
+  const double least = settings_.largest_displacement > 0.0 ? k_least_typical : 0.0;
+  // Beyond where the law is fitted work grows by orders, and a condition may end a program long before its targets.
+  return {std::max(first, least), work_per_wall(law, std::min(reach, calibrated_end(law)))};
+}
+
+// --- boundaries and branches
+
+WallLaw::Ahead WallLaw::ahead(const Branch& b) const {
+  const bool ends_before = !boundaries_.empty() && boundaries_.back().beyond == Regime::undefined;
+  const double end = limit(settings_.law);
+  Ahead first{{end, "limit", LimitPoint{Limit::walls_meet, -1, "displacement/R0", end}}, Kind::end};
+  if (ends_before) {
+    const Boundary& last = boundaries_.back();
+    first.boundary = {last.approach, last.event, LimitPoint{Limit::cell_filled, -1, "displacement/R0", last.approach}};
+  }
+  const auto consider = [&](double position, std::string_view event, Kind kind) {
+    if (position < first.boundary.position) first = {{position, event, {}, kind == Kind::of_followers}, kind};
+  };
+  if (b.next < boundaries_.size() && boundaries_[b.next].beyond != Regime::undefined)
+    consider(boundaries_[b.next].approach, boundaries_[b.next].event, Kind::of_law);
+  if (impingement_ && !b.has_impinged) consider(*impingement_, "impingement", Kind::impingement);
+  if (b.next_lateral < lateral_boundaries_.size()) {
+    const Boundary& lateral = lateral_boundaries_[b.next_lateral];
+    consider(lateral.approach, lateral.event, Kind::of_followers);
+  }
+  return first;
+}
+
+void WallLaw::pass(Branch& b) const {
+  switch (ahead(b).kind) {
+    case Kind::of_law:
+      ++b.next;
+      break;
+    case Kind::impingement:
+      b.has_impinged = true;
+      break;
+    case Kind::of_followers:
+      ++b.next_lateral;
+      break;
+    case Kind::end:
+      break;
   }
 }
 
-void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
-  const double length = settings_.initial_radius;
-  std::vector<double> begins(ramps_.size());
-  for (std::size_t i = 0; i < ramps_.size(); ++i) {
-    const double unit = ramps[i].control == Control::force ? settings_.strength * length * length : length;
-    const double stood = classes_[i].takes_force ? displacement_at(i, y[places_[i]]) : 0.0;
-    const Ramp last = std::exchange(ramps_[i], {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control});
-    if (is_lateral(i)) continue;
-    if (directions_[i] == 0 && last.control == ramps_[i].control) ramps_[i].start = last.end;
-    // Where a wall has left its dent, the rounding of its units must not press it in again.
-    const bool stands_at_dent = std::abs(ramps_[i].start - origin(i)) <= k_rounding * origin(i);
-    if (memory_[i].regime == Regime::separated && !is_loaded(i) && stands_at_dent) ramps_[i].start = origin(i);
-    const double x = is_loaded(i) ? stood : ramps_[i].start;
-    directions_[i] = direction_of_ramp(i, x);
-    // A wall that goes nowhere stays, for as long as the program says: from the end of such a ramp a force might have
-    // it go back. A force is the prescribed one, however stiff the contact.
-    if (directions_[i] == 0 && !is_loaded(i)) ramps_[i].end = ramps_[i].start;
-    begins[i] = x;
-    // A step that cannot begin is shown where it would have, in its own coordinates.
-    if (classes_[i].takes_force) y[places_[i]] = coordinate(i, x);
+std::optional<std::string_view> WallLaw::refuses_unloading() const noexcept {
+  if (settings_.unloading != Unloading::none) return std::nullopt;
+  return "unloading = \"mdr\" adds one";
+}
+
+void WallLaw::turn(Branch& b, double x) {
+  if (primary_regime(b) == Regime::elastic) return;
+  b.indenter = indenter_at(b, x);
+  b.is_on_indenter = true;
+  if (b.indenter.recovery <= x) return;
+  const double ratio = b.indenter.recovery / x;
+  overshooting_ = std::max(overshooting_.value_or(ratio), ratio);
+}
+
+/// Elastic indenter that the contact would leave if it were unloaded from this displacement.
+mdr::UnloadingShape WallLaw::indenter_at(const Branch& b, double x) const {
+  const ContactState now = state_in(settings_.law, primary_regime(b), x);
+  return mdr::unloading_shape_of(modulus_, settings_.poisson_ratio, 1.0, x, now.contact_radius, now.pressure);
+}
+
+std::string_view WallLaw::made_event(const Branch& b) const noexcept {
+  return b.is_on_indenter ? "dent-touched" : "contact-made";
+}
+
+int WallLaw::regime(const Branch& b, bool touches) const noexcept {
+  if (b.is_on_indenter) return static_cast<int>(touches ? Regime::unloading : Regime::separated);
+  return static_cast<int>(touches ? primary_regime(b) : Regime::open);
+}
+
+// --- lateral contacts
+
+bool WallLaw::follows(const ContactClass& walls) const noexcept {
+  return is_die(settings_.law) && std::abs(walls.normals.front().z()) < 0.5;
+}
+
+/// Lateral contacts follow the axial ones while those are loaded, and while nothing has yielded.
+Regime WallLaw::lateral_regime(const Branch& leader, bool touches) const noexcept {
+  if (leader.is_on_indenter) return Regime::undefined;
+  if (!touches) return Regime::open;
+  if (!lateral_law_) return Regime::undefined;
+  return leader.next_lateral == 0 ? Regime::elastic : lateral_boundaries_[leader.next_lateral - 1].beyond;
+}
+
+contacts::VisibleContact WallLaw::follower(const Branch& leader, bool touches, double x) {
+  const Regime regime = lateral_regime(leader, touches);
+  contacts::VisibleContact shown{.regime = static_cast<double>(regime)};
+  const bool is_undefined = regime == Regime::undefined;
+  has_lateral_gap_ = has_lateral_gap_ || is_undefined;
+  if (is_undefined) shown.overlap = shown.force = shown.contact_radius = shown.pressure = k_nan;
+  if (is_undefined || regime == Regime::open) return shown;
+  // The approach that a lateral contact behaves as if it had.
+  const bool is_in_small_range = regime == Regime::elastic || regime == Regime::elastic_plastic;
+  if (!is_in_small_range) shown.overlap = k_nan;
+  if (!(x > 0.0)) return shown;
+  if (is_in_small_range) shown.overlap = lateral_approach(*lateral_law_, x).value;
+  const ContactState state = lateral_state_in(std::get<SemimechLaw>(settings_.law), *lateral_law_, regime, x);
+  shown.force = state.force;
+  shown.contact_radius = state.contact_radius;
+  shown.pressure = state.pressure;
+  return shown;
+}
+
+std::vector<Diagnostic> WallLaw::warnings(double /*walls*/) const {
+  std::vector<Diagnostic> result;
+  for (std::size_t k = 0; k < range_messages_.size(); ++k) {
+    result.push_back({range_messages_[k], settings_.out_of_range[k].quantity, settings_.out_of_range[k].value});
   }
-  for (std::size_t i = 0; i < ramps_.size(); ++i) {
-    if (is_lateral(i)) continue;
-    double x = begins[i];
-    if (touches(memory_[i].regime)) {
-      // A wall that has only touched leaves no dent.
-      const bool has_pressed = x > (is_loaded(i) ? 0.0 : k_least_depth);
-      if (direction(i) < 0 && memory_[i].is_on_primary_branch && has_pressed) {
-        // By the law: with an integrator's error in it, the force that it had would not bring the wall back to there.
-        if (is_loaded(i)) x = displacement_under_force(i, ramps_[i].start, x);
-        // Where the law has no branch for that, the run ends in this state.
-        if (classes_[i].takes_force) y[places_[i]] = coordinate(i, x);
-        turn_back(i, x, log);
-      }
-      // From there, and where a force ends at nothing or has so far to go below that it does so at once.
-      const bool is_left = memory_[i].is_on_primary_branch ? !has_pressed
-                           : is_loaded(i)                  ? prescribed(i, k_instant) <= 0.0
-                                                           : x <= origin(i);
-      if (direction(i) < 0 && is_left) {
-        if (!memory_[i].is_on_primary_branch) {
-          y[work_place_] -= classes_[i].multiplicity() * stored_energy(i, x);
-          if (is_loaded(i)) x = origin(i);
-        }
-        lose_contact(i);
-        log.push_back({"contact-lost", static_cast<int>(i)});
-      }
-    } else {
-      meet_walls(i, x, log);
+  if (farthest_ > calibrated_end(settings_.law)) {
+    result.push_back({"the walls have gone farther than the source compares the law with its calculations",
+                      "largest gamma/2R", farthest_});
+  }
+  if (std::holds_alternative<SemimechLaw>(settings_.law) && farthest_ > 0.0 && farthest_ < k_least_trusted) {
+    result.push_back(
+        {"the whole run lies where the law is too stiff: below gamma/2R = 0.03 its force is 15 to 66 % above "
+         "finite elements, and in the elastic range 2.3 to 2.9 times that of Hertz",
+         "largest gamma/2R", farthest_});
+  }
+  if (lateral_law_ && farthest_ > k_least_trusted) {
+    result.push_back(
+        {"forces of the lateral contacts are 2.1 to 3.5 times those of finite elements for gamma/2R from "
+         "0.03 to 0.1",
+         "largest gamma/2R", farthest_});
+  }
+  if (has_lateral_gap_) {
+    result.push_back({"the source has no law for lateral contacts in all of the range; their columns are empty there",
+                      "largest gamma/2R", farthest_});
+  }
+  if (lateral_law_) {
+    const double lambda = std::get<SemimechLaw>(settings_.law).material.modulus_over_yield;
+    if (lambda < k_least_lateral_modulus_over_yield || lambda > k_greatest_lateral_modulus_over_yield) {
+      result.push_back({"outside the range over which the lateral contacts were fitted, 163.08 to 4954.4",
+                        "E/((1-nu^2) Y)", lambda});
     }
-    if (touches(memory_[i].regime) && is_reloaded(i, x)) resume_loading(i, x, log);
-    const double now = touches(memory_[i].regime) ? std::max(x, origin(i)) : x;
-    if (classes_[i].takes_force) y[places_[i]] = coordinate(i, is_loaded(i) ? now : x);
   }
-  has_begun_ = true;
-  resolve_lateral();
-  arm_guards(0.0, y);
-}
-
-/// A ramp that rounding has left between two equal values goes nowhere. A force under which a wall stands has the
-/// rounding of its place, too, and a place where a force has left it, however long ago, has that of the force and of
-/// its coordinate.
-int System::direction_of_ramp(std::size_t i, double x) const {
-  const double way = ramps_[i].end - ramps_[i].start;
-  double size = std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
-  if (is_loaded(i)) {
-    size += contact(i, x).stiffness * x;
-  } else if (classes_[i].takes_force && touches(memory_[i].regime)) {
-    const Contact now = contact(i, x);
-    if (now.stiffness > 0.0) size += now.force / now.stiffness + std::abs(x);
+  if (overshooting_) {
+    result.push_back(
+        {"a contact recovers more than it was compressed: so small a contact is not plastic enough for "
+         "unloading = \"mdr\"",
+         "recovery over displacement", *overshooting_});
   }
-  if (std::abs(way) <= k_rounding * size) return 0;
-  return way > 0.0 ? 1 : -1;
-}
-
-/// Whether a contact that comes in is at its largest displacement, or nearer to it than a ramp can tell.
-bool System::is_reloaded(std::size_t i, double x) const {
-  const Memory& memory = memory_[i];
-  if (direction(i) <= 0 || memory.is_on_primary_branch) return false;
-  if (is_loaded(i)) return x >= memory.largest || prescribed(i, k_instant) >= memory.largest_force;
-  return x >= memory.largest - k_instant * (ramps_[i].end - ramps_[i].start);
-}
-
-/// Displacement or force as the program says.
-double System::prescribed(std::size_t i, double xi) const noexcept {
-  return std::lerp(ramps_[i].start, ramps_[i].end, xi);
-}
-
-bool System::is_on_indenter(std::size_t i) const noexcept {
-  return memory_[i].regime == Regime::unloading || memory_[i].regime == Regime::separated;
-}
-
-/// Displacement at which the force of the present branch begins.
-double System::origin(std::size_t i) const noexcept {
-  return is_on_indenter(i) ? memory_[i].indenter.overlap_max - memory_[i].indenter.recovery : 0.0;
-}
-
-/// How the coordinate of a wall goes with the distance from there.
-System::Chart System::chart(std::size_t i) const noexcept {
-  if (!is_loaded(i)) return {};
-  if (!is_on_indenter(i)) return {.power = first_power(settings_.law)};
-  return {origin(i), memory_[i].indenter.recovery, unknowns_[places_[i]].scale, k_opening_power};
-}
-
-/// du/dx at a distance from the origin.
-double System::stretch(std::size_t i, double distance) const noexcept {
-  const auto [origin, length, unit, power] = chart(i);
-  return unit * power * std::pow(distance / length, power - 1.0) / length;
-}
-
-double System::coordinate(std::size_t i, double x) const noexcept {
-  const auto [origin, length, unit, power] = chart(i);
-  return unit * signed_power((x - origin) / length, power);
-}
-
-/// Displacement that a coordinate stands for.
-double System::displacement_at(std::size_t i, double u) const noexcept {
-  const auto [origin, length, unit, power] = chart(i);
-  return origin + length * signed_power(u / unit, 1.0 / power);
-}
-
-double System::displacement(std::size_t i, double xi, std::span<const double> y) const noexcept {
-  return is_loaded(i) ? displacement_at(i, y[places_[i]]) : prescribed(i, xi);
-}
-
-double System::displacement_under_force(std::size_t i, double force, double near) const {
-  switch (memory_[i].regime) {
-    case Regime::open:
-    case Regime::separated:
-      return memory_[i].resting;
-    case Regime::unloading:
-      return mdr::unloading_overlap(memory_[i].indenter, std::max(force, 0.0));
-    default:
-      return approach_under(settings_.law, std::max(force, 0.0), near);
-  }
-}
-
-/// A contact at an instant. A prescribed force is what it is: next to a filled cell, where the force rises without
-/// bound, it does not follow from the displacement to any use.
-System::Contact System::seen(std::size_t i, double xi, std::span<const double> y) const {
-  Contact c = contact(i, displacement(is_lateral(i) ? first_primary_ : i, xi, y));
-  if (presses(i) && c.contact_radius > 0.0) {
-    c.force = prescribed(i, xi);
-    c.pressure = c.force / (pi * c.contact_radius * c.contact_radius);
-  }
-  return c;
-}
-
-System::Contact System::seen_on_indenter(const mdr::Contact& c) noexcept {
-  const double area = pi * c.contact_radius * c.contact_radius;
-  return {c.force, c.by_overlap, c.contact_radius, area > 0.0 ? c.force / area : 0.0};
-}
-
-/// A contact at a displacement of its wall.
-System::Contact System::contact(std::size_t i, double x) const {
-  const Memory& memory = memory_[i];
-  if (is_lateral(i)) return lateral_contact(i, x);
-  if (!touches(memory.regime) || x <= origin(i)) return {};
-  if (memory.regime == Regime::unloading) {
-    return seen_on_indenter(mdr::unloading_contact(memory.indenter, modulus_, x));
-  }
-  const ContactState c = state_in(settings_.law, memory.regime, x);
-  return {c.force, c.force_by_approach, c.contact_radius, c.pressure};
-}
-
-/// A lateral contact at a displacement of the axial walls.
-System::Contact System::lateral_contact(std::size_t i, double x) const {
-  const Regime regime = memory_[i].regime;
-  if (regime == Regime::open || (x <= 0.0 && regime != Regime::undefined)) return {};
-  if (regime == Regime::undefined) return {k_nan, k_nan, k_nan, k_nan};
-  const ContactState c = lateral_state_in(std::get<SemimechLaw>(settings_.law), *lateral_law_, regime, x);
-  return {c.force, c.force_by_approach, c.contact_radius, c.pressure};
-}
-
-/// A contact at a distance from where the force of its present branch begins, over the chart's length: where that is a
-/// small share of the displacement, the displacement has not its digits.
-System::Contact System::contact_at_distance(std::size_t i, double distance) const {
-  const Memory& memory = memory_[i];
-  if (memory.regime != Regime::unloading) return contact(i, chart(i).origin + chart(i).length * distance);
-  return seen_on_indenter(mdr::recompressed_contact(memory.indenter, modulus_, distance));
-}
-
-/// Force and its derivatives at a coordinate of a touching contact; odd in u, so that a trial step below zero stays
-/// smooth.
-System::Slope System::slope(std::size_t i, double u) const {
-  const auto [origin, length, unit, power] = chart(i);
-  const double nearest = is_on_indenter(i) ? k_nearest_opening : k_nearest_touch;
-  const double distance = std::pow(std::abs(u) / unit, 1.0 / power);  // over the length
-  const double by_displacement = stretch(i, length * distance);       // du/dx
-  if (distance <= nearest) {
-    const double by_coordinate = contact_at_distance(i, nearest).force / (unit * std::pow(nearest, power));
-    return {by_coordinate * u, by_coordinate, by_coordinate * by_displacement};
-  }
-  const Contact c = contact_at_distance(i, distance);
-  return {std::copysign(c.force, u), c.stiffness / by_displacement, c.stiffness};
-}
-
-/// Whether the place of a wall needs no integration: it is prescribed, rests, or follows from the force, in closed form
-/// or, next to where its pressure becomes infinite, where an integrator's error would lead beyond.
-bool System::is_known(std::size_t i) const noexcept {
-  const Regime regime = memory_[i].regime;
-  return !is_loaded(i) || is_on_indenter(i) || !touches(regime) || regime == Regime::low_compressibility;
-}
-
-/// Coordinate of such a wall.
-double System::known_coordinate(std::size_t i, double xi, std::span<const double> y) const {
-  const double control = prescribed(i, xi);
-  if (!is_loaded(i)) return control;
-  if (memory_[i].regime != Regime::unloading) {
-    return coordinate(i, displacement_under_force(i, control, displacement(i, xi, y)));
-  }
-  const Chart own = chart(i);
-  return own.unit * std::pow(mdr::recompressed_share(memory_[i].indenter, std::max(control, 0.0)), own.power);
-}
-
-void System::complete(double xi, std::span<double> y) {
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (!classes_[i].takes_force) continue;
-    if (is_known(i)) y[places_[i]] = known_coordinate(i, xi, y);
-  }
-}
-
-void System::solve(double xi, std::span<double> y) {
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (!classes_[i].takes_force) continue;
-    const double now = displacement(i, xi, y);
-    y[places_[i]] = coordinate(i, is_loaded(i) ? displacement_under_force(i, prescribed(i, xi), now) : now);
-  }
-}
-
-void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
-  double total = 0.0;
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (is_lateral(i)) continue;
-    const double speed = ramps_[i].end - ramps_[i].start;
-    const Slope now = presses(i) ? slope(i, y[places_[i]]) : Slope{};
-    total += power(i, xi, now);
-    if (!classes_[i].takes_force) continue;
-    if (is_loaded(i))
-      dy[places_[i]] = now.by_coordinate > 0.0 ? speed / now.by_coordinate : 0.0;
-    else
-      dy[places_[i]] = speed;
-  }
-  dy[work_place_] = total;
-}
-
-/// Rate of the work of the walls of a class; where they press under a force, with the slope of that.
-double System::power(std::size_t i, double xi, const Slope& now) const {
-  const double rate = classes_[i].multiplicity() * (ramps_[i].end - ramps_[i].start);
-  if (!is_loaded(i)) return rate * contact(i, prescribed(i, xi)).force;
-  return now.by_displacement > 0.0 ? rate * prescribed(i, xi) / now.by_displacement : 0.0;
-}
-
-void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
-  double total = 0.0;
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (is_lateral(i)) continue;
-    const double u = classes_[i].takes_force ? y[places_[i]] : 0.0;
-    const double place = classes_[i].takes_force && is_known(i) ? known_coordinate(i, xi, y) : u;
-    const Slope now = presses(i) ? slope(i, place) : Slope{};
-    total += power(i, xi, now);
-    if (!classes_[i].takes_force) continue;
-    // In units of u, as the integrator weighs it.
-    res[places_[i]] = is_known(i) ? u - place : (now.force - prescribed(i, xi)) / now.by_coordinate;
-  }
-  res[work_place_] = dy[work_place_] - total;
-}
-
-std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (is_lateral(i) || !touches(memory_[i].regime)) continue;
-    const double x = displacement(i, xi, y);
-    if (x <= origin(i)) continue;
-    const double one = memory_[i].regime == Regime::unloading ? mdr::unloading_energy(memory_[i].indenter, x)
-                                                              : work_in(settings_.law, memory_[i].regime, x);
-    sum += classes_[i].multiplicity() * one;
-  }
-  return sum;
+  return result;
 }
 
 }  // namespace monograin::plastic

@@ -8,6 +8,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "contacts/independent.hpp"
@@ -79,6 +80,36 @@ struct HystereticInClosedForm : Hysteretic {
   [[nodiscard]] double work(const Branch& b, double d) const {
     if (b.unloads) return stored(b, d);
     return b.is_past_knee ? 0.5 * (force(b, d) * force(b, d) - k_knee * k_knee) / k_hardening : 0.5 * d * d;
+  }
+};
+
+/// F = d^(3/2) with a displacement that is integrated under a force, and without unloading. Lateral walls of a die show
+/// a tenth of its force, and yield where it is at 0.1.
+struct Powerful {
+  struct Branch {
+    bool has_yielded = false;
+  };
+  static constexpr std::array<std::string_view, 3> k_regimes{"open", "pressed", "yielded"};
+
+  [[nodiscard]] double unit_force(double radius) const { return radius * radius; }
+  [[nodiscard]] double force(Branch, double d) const { return d > 0.0 ? d * std::sqrt(d) : 0.0; }
+  [[nodiscard]] double slope(Branch, double d) const { return 1.5 * std::sqrt(d); }
+  [[nodiscard]] std::pair<double, double> force_and_slope(Branch b, double d) const {
+    return {force(b, d), slope(b, d)};
+  }
+  [[nodiscard]] double displacement(Branch, double force) const { return std::cbrt(force * force); }
+  [[nodiscard]] double coordinate_power(Branch) const { return 1.5; }
+  [[nodiscard]] double opening(Branch) const { return 0.0; }
+  [[nodiscard]] int regime(Branch, bool touches) const { return touches ? 1 : 0; }
+  [[nodiscard]] std::optional<contacts::Boundary> next(Branch b) const {
+    if (b.has_yielded) return std::nullopt;
+    return contacts::Boundary{.position = 0.1, .event = "yield", .is_of_followers = true};
+  }
+  void pass(Branch& b) const { b.has_yielded = true; }
+  [[nodiscard]] std::optional<std::string_view> refuses_unloading() const { return "nothing helps"; }
+  [[nodiscard]] bool follows(const ContactClass& walls) const { return std::abs(walls.normals.front().z()) < 0.5; }
+  [[nodiscard]] contacts::VisibleContact follower(Branch b, bool touches, double d) const {
+    return {.overlap = d, .force = 0.1 * force(b, d), .regime = !touches ? 0.0 : b.has_yielded ? 2.0 : 1.0};
   }
 };
 
@@ -213,6 +244,42 @@ TEST(IndependentContacts, LeaveNoDentWhereAWallHasOnlyTouched) {
     EXPECT_EQ(run_law<Hysteretic>(touching, form).events(), (Names{"a:contact-made", "until-met", "a:contact-lost"}))
         << form;
   }
+}
+
+TEST(IndependentContacts, MayIntegrateTheDisplacementUnderAForce) {
+  const double force = 0.4;
+  for (const char* form : k_all_forms) {
+    const TestRun now =
+        run_law<Powerful>(pair_of_walls({force_ramp(force), ramp(0.9), force_ramp(1.2)}), form, {}, relative(1e-10));
+    ASSERT_EQ(now.record.status, RunStatus::complete) << form << ": " << now.record.message;
+    const auto d = now.column("axial.displacement");
+    const auto f = now.column("axial.force");
+    for (std::size_t k = 0; k < d.size(); ++k) EXPECT_NEAR(d[k], std::cbrt(f[k] * f[k]), 1e-8) << form << ", row " << k;
+    EXPECT_NEAR(now.last("work"), 2.0 * 0.4 * std::pow(1.2, 5.0 / 3.0), 1e-8) << form;
+  }
+}
+
+TEST(IndependentContacts, MayFollowOthers) {
+  for (const char* form : k_all_forms) {
+    const TestRun now = run_law<Powerful>(hertz_scenario(Configuration::die, {force_ramp(0.4)}), form);
+    EXPECT_EQ(now.events(), (Names{"lateral:yield"})) << form;
+    EXPECT_NEAR(now.time_of("yield"), std::pow(0.1, 1.5) / 0.4, 1e-13) << form;
+    EXPECT_NEAR(now.last("lateral.force"), 0.04, 1e-8) << form;
+    EXPECT_EQ(now.last("lateral.displacement"), 0.0) << form;
+    EXPECT_EQ(now.column("lateral.regime").back(), 2.0) << form;
+    EXPECT_NEAR(now.last("work"), 2.0 * 0.4 * std::pow(0.4, 5.0 / 3.0), 1e-7) << form;
+  }
+}
+
+TEST(IndependentContacts, EndTheRunWhereALawHasNoUnloading) {
+  const Scenario scenario =
+      between(pair_of_walls({}), {wall("a", {0, 0, 1}, path({0.2, 0.1})), wall("b", {0, 0, -1}, path({0.3, 0.4}))});
+  const TestRun now = run_law<Powerful>(scenario, "direct");
+  EXPECT_EQ(now.record.limit, Limit::no_unloading_law);
+  EXPECT_NE(now.record.message.find("nothing helps"), std::string::npos) << now.record.message;
+  // The last row shows all walls where the step would have begun.
+  EXPECT_EQ(now.last("a.displacement"), 0.2);
+  EXPECT_EQ(now.last("b.displacement"), 0.3);
 }
 
 TEST(IndependentContacts, BalanceTheirEnergies) {

@@ -1,0 +1,56 @@
+/// How large the unknowns of contacts become, which absolute tolerances are relative to.
+#pragma once
+
+#include "contacts/wall_contact.hpp"
+
+namespace monograin::contacts {
+
+/// Typical magnitudes of one contact; over R0 and the law's unit.
+struct Magnitudes {
+  double displacement = 1.0;
+  double work = 1.0;
+};
+
+struct Scales {
+  double reach = 1.0;  ///< largest displacement that is expected
+  Magnitudes magnitudes{};
+  double coordinate = 1.0;
+  double force_per_coordinate = 1.0;  ///< where a coordinate is in proportion to the force
+};
+
+/// Takes how far a program goes, along the primary branch, or where that is not said the end of the law.
+/// @param displacement  largest one of the program, over R0; 0: not said
+/// @param force         likewise, over the law's unit
+template <class Law>
+[[nodiscard]] Scales scales_of(Law& law, double displacement, double force) {
+  constexpr double k_infinity = std::numeric_limits<double>::infinity();
+  using Contact = WallContact<Law>;
+  using Branch = typename Law::Branch;
+  const bool is_said = displacement > 0.0 || force > 0.0;
+  const Contact last = Contact::pressed_to(law, is_said ? displacement : k_infinity, force);
+  const auto ahead = last.next(law);
+  const double end = ahead && ahead->limit ? ahead->position : k_infinity;
+  double reach = is_said ? displacement : std::isfinite(end) ? end : 1.0;
+  if (force > 0.0) {
+    const bool is_beyond_end = std::isfinite(end) && force >= law.force(last.branch(), end);
+    reach = std::max(reach, is_beyond_end ? end : last.displacement_under(law, force));
+  }
+  reach = std::min(reach, end);
+
+  constexpr bool k_has_own = requires { law.magnitudes(reach); };
+  Scales scales{.reach = reach, .magnitudes = {.displacement = reach}};
+  if constexpr (k_has_own) scales.magnitudes = law.magnitudes(reach);
+  const double d = scales.magnitudes.displacement;
+  const Contact typical = Contact::pressed_to(law, d, 0.0);
+  const double typical_force = law.force(typical.branch(), d);
+  scales.coordinate = d;
+  if constexpr (requires { law.coordinate_power(Branch{}); })
+    scales.coordinate = std::pow(d, law.coordinate_power(Branch{}));
+  scales.force_per_coordinate = typical_force / scales.coordinate;
+  if constexpr (k_has_own) return scales;
+  scales.magnitudes.work = typical_force * d;
+  if constexpr (requires { law.work(typical.branch(), d); }) scales.magnitudes.work = law.work(typical.branch(), d);
+  return scales;
+}
+
+}  // namespace monograin::contacts
