@@ -2,34 +2,74 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <stdexcept>
 
-#include "compressible/contact_info.hpp"
-#include "compressible/material_point_info.hpp"
-#include "elastic/nonlocal_info.hpp"
-#include "mdr/info.hpp"
-#include "packing/info.hpp"
-#include "plastic/info.hpp"
+#include "elastic/line_contact.hpp"
+#include "elastic/nonlocal_coupling.hpp"
 
 namespace monograin {
-std::span<const ModelInfo> model_catalogue() noexcept {
-  static const std::array k_models{
-      mdr::hertz_info(),
-      mdr::mdr_info(),
-      plastic::similarity_info(),
-      plastic::semimech_info(),
-      plastic::hardening_info(),
-      nonlocal::nonlocal_info(),
-      compressible::contact_info(),
-      packing::packing_info(),
-      compressible::material_point_info(),
-  };
+namespace {
+
+/// P/(D E*) of an elastic cylinder between flat walls over delta/D.
+double line_contact(std::span<const double> strain) { return line_contact_at_strain(1.0, strain[0]).stress; }
+
+/// Influence of a neighbour's force on a contact radius, over Poisson's ratio, angle and contact radius.
+template <nonlocal::RadiusRule rule>
+double radius_influence(std::span<const double> of) {
+  return nonlocal::radius_influence(rule, of[0], of[1], of[2]);
+}
+
+/// A law, without a value beyond its domain.
+template <double (*law)(std::span<const double>)>
+double where_defined(std::span<const double> arguments) {
+  try {
+    return law(arguments);
+  } catch (const std::domain_error&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+using nonlocal::RadiusRule;
+
+constexpr std::array k_functions{
+    FormulaFunction{"line_contact", 1, where_defined<line_contact>},
+    FormulaFunction{"radius_influence_closed", 3, where_defined<radius_influence<RadiusRule::closed>>},
+    FormulaFunction{"radius_influence_integral", 3, where_defined<radius_influence<RadiusRule::integral>>},
+    FormulaFunction{"radius_influence_projected", 3, where_defined<radius_influence<RadiusRule::projected>>}};
+
+}  // namespace
+
+// Namespace and function of every model, in the order in which they are listed to users.
+#define MONOGRAIN_MODELS(MODEL)             \
+  MODEL(hertz, model)                       \
+  MODEL(mdr, model)                         \
+  MODEL(plastic, similarity_model)          \
+  MODEL(plastic, semimech_model)            \
+  MODEL(plastic, hardening_model)           \
+  MODEL(nonlocal, model)                    \
+  MODEL(compressible, contact_model)        \
+  MODEL(compressible, material_point_model) \
+  MODEL(packing, model)
+
+#define MONOGRAIN_DECLARE(folder, function) \
+  namespace folder {                        \
+  Model function() noexcept;                \
+  }
+MONOGRAIN_MODELS(MONOGRAIN_DECLARE)
+
+std::span<const Model> model_catalogue() noexcept {
+#define MONOGRAIN_CALL(folder, function) folder::function(),
+  static const std::array k_models{MONOGRAIN_MODELS(MONOGRAIN_CALL)};
   return k_models;
 }
 
-const ModelInfo* find_model(std::string_view name) noexcept {
+const Model* find_model(std::string_view name) noexcept {
   const auto models = model_catalogue();
-  const auto found = std::ranges::find(models, name, &ModelInfo::name);
+  const auto found = std::ranges::find(models, name, &Model::name);
   return found == models.end() ? nullptr : &*found;
 }
+
+std::span<const FormulaFunction> formula_functions() noexcept { return k_functions; }
 
 }  // namespace monograin

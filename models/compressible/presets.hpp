@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "catalogue.hpp"
+#include "system/model.hpp"
 
 namespace monograin::compressible {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "catalogue.hpp"
 #include "compressible/contact_law.hpp"
+#include "system/model.hpp"
 
 namespace monograin::compressible {
 

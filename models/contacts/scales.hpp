@@ -1,6 +1,10 @@
 /// How large the unknowns of contacts become, which absolute tolerances are relative to.
 #pragma once
 
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
 #include "contacts/wall_contact.hpp"
 
 namespace monograin::contacts {
@@ -18,6 +22,17 @@ struct Scales {
   double force_per_coordinate = 1.0;  ///< where a coordinate is in proportion to the force
 };
 
+/// Displacement under a force along the present part of the primary branch, not beyond the end of the law.
+template <class Law>
+[[nodiscard]] double reach_under(const Law& law, const WallContact<Law>& contact, double force, double end) {
+  if (std::isfinite(end) && force >= law.force(contact.branch(), end)) return end;
+  try {
+    return contact.displacement_under(law, force);
+  } catch (const std::domain_error&) {
+    return end;  // the greatest force that the law has, but for round-off
+  }
+}
+
 /// Takes how far a program goes, along the primary branch, or where that is not said the end of the law.
 /// @param displacement  largest one of the program, over R0; 0: not said
 /// @param force         likewise, over the law's unit
@@ -31,10 +46,7 @@ template <class Law>
   const auto ahead = last.next(law);
   const double end = ahead && ahead->limit ? ahead->position : k_infinity;
   double reach = is_said ? displacement : std::isfinite(end) ? end : 1.0;
-  if (force > 0.0) {
-    const bool is_beyond_end = std::isfinite(end) && force >= law.force(last.branch(), end);
-    reach = std::max(reach, is_beyond_end ? end : last.displacement_under(law, force));
-  }
+  if (force > 0.0) reach = std::max(reach, reach_under(law, last, force, end));
   reach = std::min(reach, end);
 
   constexpr bool k_has_own = requires { law.magnitudes(reach); };

@@ -49,7 +49,7 @@ Eigen::Matrix3Xd basis_of(const Eigen::Matrix3Xd& normals, double least) {
 
 }  // namespace
 
-Contacts::Contacts(const Model& model, std::span<const ContactClass> classes, Centre centre)
+Contacts::Contacts(const Formulation& model, std::span<const ContactClass> classes, Centre centre)
     : poisson_ratio_(require_poisson_ratio(model.poisson_ratio)),
       law_(model.terms),
       modulus_(monograin::composite_modulus(1.0, poisson_ratio_)) {

@@ -33,7 +33,8 @@
 
 namespace monograin::nonlocal {
 
-struct Model {
+/// Which of the variants of the formulation is meant, and of what material.
+struct Formulation {
   double poisson_ratio = 0.0;  ///< in [0, 0.5]
   Terms terms = Terms::four;
   Influence influence = Influence::half_space;
@@ -63,7 +64,7 @@ class Contacts {
   /// @param classes  walls that share a history by symmetry; only their normals are used
   /// @throws std::invalid_argument for a Poisson's ratio outside [0, 0.5], walls that are the same or closer than
   /// k_least_wall_angle, and classes of which not every wall sees the same forces around it
-  Contacts(const Model& model, std::span<const ContactClass> classes, Centre centre);
+  Contacts(const Formulation& model, std::span<const ContactClass> classes, Centre centre);
 
   [[nodiscard]] std::size_t class_count() const noexcept { return weights_.size(); }
   /// Number of directions in which the centre moves.

@@ -20,7 +20,7 @@
 namespace monograin::nonlocal {
 
 struct Settings {
-  Model model;
+  Formulation model;
   RadiusRule radius_rule = RadiusRule::closed;
   double initial_radius = 0.0;  ///< R0 [m], > 0
   double youngs_modulus = 0.0;  ///< E [Pa], > 0

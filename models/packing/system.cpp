@@ -6,7 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "packing/info.hpp"
+#include "packing/model.hpp"
 #include "system/undefined.hpp"
 
 namespace monograin::packing {

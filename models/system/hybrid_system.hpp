@@ -116,19 +116,7 @@ inline void add_contact_columns(const std::string& contact_class, std::span<cons
   columns.push_back({contact_class + ".regime", "", regimes});
 }
 
-/// What a program's condition can ask for; the last three at a material point.
-enum class Quantity {
-  force,
-  displacement,
-  pressure,
-  contact_radius,
-  apparent_radius,
-  stress_axial,
-  stress_lateral,
-  relative_density
-};
-
-/// The same of a wall and its contact, in SI.
+/// Quantities of a wall and its contact, in SI.
 struct AtWall {
   double force = 0.0;
   double displacement = 0.0;

@@ -1,7 +1,8 @@
 #include "system/limit.hpp"
 
 #include <array>
-#include <charconv>
+
+#include "system/number_text.hpp"
 
 namespace monograin {
 namespace {
@@ -80,10 +81,7 @@ std::string text_of(const LimitPoint& point, std::string_view remark) {
   std::string text(sentence(point.limit));
   if (!remark.empty()) text.append("; ").append(remark);
   if (point.quantity.empty()) return text;
-  std::array<char, 32> number{};
-  const auto [end, error] =
-      std::to_chars(number.data(), number.data() + number.size(), point.value, std::chars_format::general, 9);
-  return text.append(" (").append(point.quantity).append(" = ").append(number.data(), end).append(")");
+  return text.append(" (").append(point.quantity).append(" = ").append(number_text(point.value, 9)).append(")");
 }
 
 DomainError::DomainError(const LimitPoint& point) : std::domain_error(text_of(point)), point_(point) {}

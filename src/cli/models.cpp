@@ -12,7 +12,7 @@
 #include "cli/terminal.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/schema.hpp"
-#include "scene/parameters.hpp"
+#include "scene/scene.hpp"
 
 namespace monograin {
 namespace {
@@ -56,7 +56,7 @@ std::string to_text(const Range& range) {
 }
 
 void print_list() {
-  for (const ModelInfo& model : model_catalogue()) print_data("{:<16}{}\n", model.name, model.summary);
+  for (const Model& model : model_catalogue()) print_data("{:<16}{}\n", model.name, model.summary);
 }
 
 void print_terms(std::string_view title, std::span<const Term> terms) {
@@ -69,7 +69,7 @@ void print_quantity(const Key& key, const std::string& note) {
   print_data("  {:<25}{} [{}], in {}; {}\n", key.name, key.meaning, si_unit(key.dimension), to_text(key.range), note);
 }
 
-void print_steps(const ModelInfo& model) {
+void print_steps(const Model& model) {
   const auto print_keys = [](std::span<const DriveKey> keys) {
     for (const DriveKey& key : keys) {
       print_data("  {:<25}{} [{}], for example {}\n", key.name, key.meaning, si_unit(key.dimension), key.example);
@@ -100,7 +100,7 @@ void print_options(std::span<const OptionKey> options) {
   }
 }
 
-void print_model(const ModelInfo& model) {
+void print_model(const Model& model) {
   print_data("{}: {}\nsource: {}\n\n[material]\n", model.name, model.summary, model.source);
   print_options(model.material_options);
   if (!model.presets.empty()) {
@@ -113,7 +113,7 @@ void print_model(const ModelInfo& model) {
                                                        : "required";
     print_quantity(key, default_text);
   }
-  if (model.takes_ludwik) {
+  if (model.power_law_of != nullptr) {
     print_data("  {:<25}{}\n", "ludwik",
                "instead of strength and hardening_exponent: { yield_stress, strength, exponent = 1/n, eps_max = 1, "
                "fit = \"both\" or \"exponent\" }");
@@ -137,10 +137,10 @@ void print_parameters(const Scenario& scenario) {
 }
 
 int run_models(const ModelsOptions& options) {
-  const ModelInfo* model = options.name.empty() ? nullptr : find_model(options.name);
+  const Model* model = options.name.empty() ? nullptr : find_model(options.name);
   if (!options.name.empty() && model == nullptr) {
     std::vector<std::string_view> names;
-    for (const ModelInfo& known : model_catalogue()) names.push_back(known.name);
+    for (const Model& known : model_catalogue()) names.push_back(known.name);
     throw UsageError(fmt::format("there is no model '{}'; available: {}", options.name, fmt::join(names, ", ")));
   }
   if (options.file.empty()) {

@@ -49,7 +49,6 @@ struct Stop {
 
 /// A quantity of a condition: its word in scenario files and its unit.
 struct QuantityWords {
-  Until::Quantity of_scenario;
   Quantity quantity;
   std::string_view name;
   std::string_view unit;
@@ -57,24 +56,18 @@ struct QuantityWords {
 };
 
 constexpr std::array k_quantities{
-    QuantityWords{Until::Quantity::force, Quantity::force, "force", "N", true},
-    QuantityWords{Until::Quantity::displacement, Quantity::displacement, "displacement", "m", true},
-    QuantityWords{Until::Quantity::pressure, Quantity::pressure, "pressure", "Pa", true},
-    QuantityWords{Until::Quantity::contact_radius, Quantity::contact_radius, "contact_radius", "m", true},
-    QuantityWords{Until::Quantity::apparent_radius, Quantity::apparent_radius, "apparent_radius", "m", false},
-    QuantityWords{Until::Quantity::stress_axial, Quantity::stress_axial, "stress_axial", "Pa", false},
-    QuantityWords{Until::Quantity::stress_lateral, Quantity::stress_lateral, "stress_lateral", "Pa", false},
-    QuantityWords{Until::Quantity::relative_density, Quantity::relative_density, "relative_density", "", false},
+    QuantityWords{Quantity::force, "force", "N", true},
+    QuantityWords{Quantity::displacement, "displacement", "m", true},
+    QuantityWords{Quantity::pressure, "pressure", "Pa", true},
+    QuantityWords{Quantity::contact_radius, "contact_radius", "m", true},
+    QuantityWords{Quantity::apparent_radius, "apparent_radius", "m", false},
+    QuantityWords{Quantity::stress_axial, "stress_axial", "Pa", false},
+    QuantityWords{Quantity::stress_lateral, "stress_lateral", "Pa", false},
+    QuantityWords{Quantity::relative_density, "relative_density", "", false},
 };
 
 const QuantityWords& words_of(Quantity quantity) {
   return *std::ranges::find(k_quantities, quantity, &QuantityWords::quantity);
-}
-
-Quantity to_quantity(Until::Quantity quantity) {
-  const auto found = std::ranges::find(k_quantities, quantity, &QuantityWords::of_scenario);
-  if (found == k_quantities.end()) throw std::logic_error("an event is not a quantity");
-  return found->quantity;
 }
 
 std::string with_unit(double value, Quantity quantity) {
@@ -235,10 +228,10 @@ class Drive {
       plan.detaching.push_back(channel);
     }
     for (const Until& until : step.until) {
-      if (until.quantity == Until::Quantity::event)
+      if (until.is_event())
         plan.ending_events.push_back(until.event);
       else
-        plan.conditions.push_back({to_quantity(until.quantity), channel, until.value});
+        plan.conditions.push_back({until.quantity, channel, until.value});
     }
     if (!step.duration && !step.rate) return;  // takes as long as the others
     const double duration = step.duration ? *step.duration : std::abs(ramp.end - ramp.start) / *step.rate;

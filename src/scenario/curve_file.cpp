@@ -170,7 +170,8 @@ SampledCurve take_curve(const FileText& file, const std::string& name, std::span
     std::string headings(k_example_headings);
     for (const QuantityKey& column : columns) {
       if (&column == columns.data()) headings.clear();
-      headings += (headings.empty() ? "" : ",") + std::string(column.name);
+      if (!headings.empty()) headings += ',';
+      headings += column.name;
     }
     faults.add(named_at,
                fmt::format("{}: {} ({}); expected a table of {} such as {}, its path relative to the "

@@ -17,8 +17,6 @@ namespace {
 using std::string_view;
 using Kind = KeySpec::Kind;
 
-constexpr Range k_positive{.lower = 0.0, .lower_is_open = true};
-constexpr Range k_not_negative{.lower = 0.0};
 constexpr Range k_right_angle{
     .lower = 0.0, .upper = std::numbers::pi / 2.0, .lower_is_open = true, .upper_is_open = true};
 constexpr double k_default_oblique_angle = 37.5 * std::numbers::pi / 180.0;
@@ -44,16 +42,16 @@ constexpr std::array<string_view, 2> k_centres{"fixed", "equilibrium"};
 constexpr std::array<string_view, 2> k_ludwik_fits{"both", "exponent"};
 
 // Stands in for a model that is missing or misspelt, so that the loading is checked as far as no model is needed.
-constexpr ModelInfo k_any_model{.name = {},
-                                .summary = {},
-                                .source = {},
-                                .material = {},
-                                .options = {},
-                                .configurations = k_configurations,
-                                .has_free_centre = true,
-                                .regimes = {},
-                                .events = {},
-                                .domain = {}};
+constexpr Model k_any_model{.name = {},
+                            .summary = {},
+                            .source = {},
+                            .material = {},
+                            .options = {},
+                            .configurations = k_configurations,
+                            .has_free_centre = true,
+                            .regimes = {},
+                            .events = {},
+                            .domain = {}};
 
 // Keys of steps and conditions of all models.
 constexpr std::array<string_view, 8> k_step_keys{
@@ -80,7 +78,7 @@ std::vector<string_view> words_without(std::span<const string_view> words, std::
 
 std::vector<string_view> model_names() {
   std::vector<string_view> names;
-  for (const ModelInfo& model : model_catalogue()) names.push_back(model.name);
+  for (const Model& model : model_catalogue()) names.push_back(model.name);
   return names;
 }
 
@@ -206,7 +204,7 @@ KeySpec option_key(const OptionKey& option) {
   return spec;
 }
 
-std::vector<KeySpec> material_keys(const ModelInfo& model) {
+std::vector<KeySpec> material_keys(const Model& model) {
   std::vector<KeySpec> keys;
   for (const OptionKey& option : model.material_options) keys.push_back(option_key(option));
   if (!model.presets.empty()) {
@@ -219,7 +217,7 @@ std::vector<KeySpec> material_keys(const ModelInfo& model) {
     // The preset may have it; the reader knows what is missing then.
     if (!model.presets.empty()) keys.back().is_required = false;
   }
-  if (model.takes_ludwik) {
+  if (model.power_law_of != nullptr) {
     keys.push_back(
         {.name = "ludwik",
          .meaning = "instead of strength and hardening_exponent: Ludwik's law, and the power law nearest to it",
@@ -266,7 +264,7 @@ KeySpec steps_key(string_view meaning) {
   return {.name = "steps", .meaning = meaning, .kind = Kind::tables, .example = "[[loading.steps]]"};
 }
 
-KeySpec configuration_key(const ModelInfo& model, string_view meaning) {
+KeySpec configuration_key(const Model& model, string_view meaning) {
   return {.name = "configuration",
           .meaning = meaning,
           .kind = Kind::choice,
@@ -276,7 +274,7 @@ KeySpec configuration_key(const ModelInfo& model, string_view meaning) {
           .reserved_where = fmt::format("for model '{}'", model.name)};
 }
 
-std::vector<KeySpec> loading_keys(const ModelInfo& model) {
+std::vector<KeySpec> loading_keys(const Model& model) {
   if (!model.has_walls()) {
     std::vector<KeySpec> keys{steps_key("what is prescribed, one step after another")};
     if (!model.configurations.empty()) keys.push_back(configuration_key(model, "which way the body is loaded"));
@@ -317,7 +315,7 @@ std::vector<KeySpec> loading_keys(const ModelInfo& model) {
   };
 }
 
-KeySpec event_key(const ModelInfo& model) {
+KeySpec event_key(const Model& model) {
   std::vector<string_view> events;
   for (const Term& event : model.events) events.push_back(event.name);
   return {.name = "event",
@@ -327,7 +325,7 @@ KeySpec event_key(const ModelInfo& model) {
           .example = model.has_walls() ? "\"contact-lost\"" : fmt::format("\"{}\"", events.front())};
 }
 
-std::vector<KeySpec> until_keys(const ModelInfo& model) {
+std::vector<KeySpec> until_keys(const Model& model) {
   if (!model.has_walls()) {
     std::vector<KeySpec> keys;
     for (const QuantityKey& key : model.conditions) keys.push_back(quantity_key(key));
@@ -384,7 +382,7 @@ KeySpec rate_key(Dimension dimension, bool is_required) {
           .range = k_positive};
 }
 
-KeySpec until_key(const ModelInfo& model) {
+KeySpec until_key(const Model& model) {
   const std::vector<KeySpec> conditions = until_keys(model);
   return {.name = "until",
           .meaning = "the step ends when the first of these is met",
@@ -393,7 +391,7 @@ KeySpec until_key(const ModelInfo& model) {
           .example = fmt::format("{{ {} }}", model.has_walls() ? "force = \"0 N\"" : example_line(conditions.front()))};
 }
 
-StepForm ramp_form(Step::Kind kind, KeySpec target, Dimension rate, const ModelInfo& model) {
+StepForm ramp_form(Step::Kind kind, KeySpec target, Dimension rate, const Model& model) {
   const string_view key = target.name;
   return {kind, key, {std::move(target), duration_key(false), rate_key(rate, false), until_key(model)}, true, {}};
 }
@@ -408,7 +406,7 @@ KeySpec target_key(const DriveKey& drive, bool is_required) {
           .example = std::string(drive.example)};
 }
 
-StepForm drive_form(const DriveKey& drive, const ModelInfo& model) {
+StepForm drive_form(const DriveKey& drive, const Model& model) {
   const Dimension rate = drive.dimension == Dimension::stress ? Dimension::stress_rate : Dimension::strain_rate;
   StepForm form = ramp_form(ramp_of(drive.control), target_key(drive, true), rate, model);
   for (const DriveKey& lateral : model.lateral_drives) form.keys.push_back(target_key(lateral, false));
@@ -420,7 +418,7 @@ KeySpec mark_key(string_view name, string_view meaning) {
   return {.name = name, .meaning = meaning, .kind = Kind::mark, .is_required = true, .example = "true"};
 }
 
-std::vector<StepForm> step_forms(const ModelInfo& model) {
+std::vector<StepForm> step_forms(const Model& model) {
   KeySpec displacement{.name = "displacement",
                        .meaning = "ramp to this displacement of the wall",
                        .kind = Kind::quantity,
@@ -474,7 +472,7 @@ std::vector<ForeignKey> foreign_keys(std::span<const string_view> names, std::sp
 
 std::vector<string_view> material_names_of_all_models() {
   std::vector<string_view> names{"ludwik", "preset"};
-  for (const ModelInfo& model : model_catalogue()) {
+  for (const Model& model : model_catalogue()) {
     for (const OptionKey& option : model.material_options) names.push_back(option.name);
     for (const QuantityKey& key : model.material) {
       if (!is_in(names, key.name)) names.push_back(key.name);
@@ -499,7 +497,7 @@ void add_model_tables(Language& language, string_view model) {
   }
 }
 
-void add_loading(Language& language, const ModelInfo& model) {
+void add_loading(Language& language, const Model& model) {
   language.loading = loading_keys(model);
   language.wall = wall_keys();
   language.until = until_keys(model);
@@ -513,10 +511,10 @@ void add_loading(Language& language, const ModelInfo& model) {
   language.foreign_loading = foreign_keys(k_loading_keys, language.loading, unused);
 }
 
-void add_material_and_options(Language& language, const ModelInfo& model) {
+void add_material_and_options(Language& language, const Model& model) {
   language.model = &model;
   language.material = material_keys(model);
-  if (model.takes_ludwik) language.ludwik = ludwik_keys();
+  if (model.power_law_of != nullptr) language.ludwik = ludwik_keys();
   for (const OptionKey& option : model.options) language.options.push_back(option_key(option));
   const std::string unused = fmt::format("is not used by model '{}'", model.name);
   language.foreign_material = foreign_keys(material_names_of_all_models(), language.material, unused);
@@ -527,7 +525,7 @@ void add_material_and_options(Language& language, const ModelInfo& model) {
 namespace {
 
 /// @param info  null: of a model that is not known
-Language make_language(const ModelInfo* info) {
+Language make_language(const Model* info) {
   Language language;
   language.root = root_keys();
   language.particle = particle_keys();
@@ -549,8 +547,8 @@ Language make_language(const ModelInfo* info) {
 const Language& language_of(string_view model) {
   // A sweep reads a scenario for each of its runs: what they are read by is made once.
   static std::mutex mutex;
-  static std::map<const ModelInfo*, Language> languages;
-  const ModelInfo* info = find_model(model);
+  static std::map<const Model*, Language> languages;
+  const Model* info = find_model(model);
   const std::lock_guard lock(mutex);
   const auto known = languages.find(info);
   return known != languages.end() ? known->second : languages.emplace(info, make_language(info)).first->second;

@@ -77,7 +77,7 @@ inline constexpr double k_greatest_normal = 1e6;
 
 /// The language as one model understands it.
 struct Language {
-  const ModelInfo* model = nullptr;  ///< null: unknown
+  const Model* model = nullptr;  ///< null: unknown
   std::vector<KeySpec> root;
   std::vector<KeySpec> particle;  ///< empty where the model has none
   std::vector<KeySpec> material;  ///< empty without a model

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 namespace monograin {
@@ -11,8 +12,8 @@ namespace {
 
 constexpr int k_deepest_cycle = 16;
 
-Until::Quantity to_until_quantity(std::string_view key) {
-  using Quantity = Until::Quantity;
+/// None for the key of an event.
+std::optional<Quantity> quantity_of(std::string_view key) {
   if (key == "force") return Quantity::force;
   if (key == "displacement") return Quantity::displacement;
   if (key == "pressure") return Quantity::pressure;
@@ -21,7 +22,7 @@ Until::Quantity to_until_quantity(std::string_view key) {
   if (key == "stress_axial") return Quantity::stress_axial;
   if (key == "stress_lateral") return Quantity::stress_lateral;
   if (key == "relative_density") return Quantity::relative_density;
-  return Quantity::event;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -167,11 +168,10 @@ std::vector<Until> ProgramReader::read_until(const Section& step) {
   std::vector<Until> conditions;
   for (const KeySpec& spec : language_.until) {
     if (!section.has(spec.name)) continue;
-    const Until::Quantity quantity = to_until_quantity(spec.name);
-    if (quantity == Until::Quantity::event) {
-      conditions.push_back({.quantity = quantity, .value = 0.0, .event = section.text(spec.name)});
+    if (const auto quantity = quantity_of(spec.name)) {
+      conditions.push_back({.quantity = *quantity, .value = section.number(spec.name).value_or(0.0)});
     } else {
-      conditions.push_back({.quantity = quantity, .value = section.number(spec.name).value_or(0.0), .event = {}});
+      conditions.push_back({.event = section.text(spec.name)});
     }
   }
   return conditions;

@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "plastic/ludwik.hpp"
 #include "scenario/curve_file.hpp"
 #include "scenario/language.hpp"
 #include "scenario/loading_reader.hpp"
@@ -24,7 +23,7 @@ std::string model_to_check_against(const toml::table& root) {
   const std::string word = root["model"].value_or(std::string());
   if (find_model(word) != nullptr) return word;
   std::vector<std::string_view> names;
-  for (const ModelInfo& model : model_catalogue()) names.push_back(model.name);
+  for (const Model& model : model_catalogue()) names.push_back(model.name);
   const std::string_view nearest = nearest_word(word, names);
   return nearest.empty() ? word : std::string(nearest);
 }
@@ -56,12 +55,13 @@ void read_ludwik(Reading& reading, const Section& material, const Language& lang
   const auto eps_max = section.number("eps_max");
   if (reading.faults.size() > faults_before || !yield_stress || !strength || !exponent || !eps_max) return;
   try {
-    const plastic::LudwikMaterial ludwik{.youngs_modulus = modulus.value_or(std::numeric_limits<double>::infinity()),
-                                         .yield_stress = *yield_stress,
-                                         .hardening = *strength,
-                                         .exponent_inverse = 1.0 / *exponent};
-    const plastic::HollomonMaterial power_law = plastic::fit_hollomon(
-        ludwik, *eps_max, section.text("fit") == "both" ? plastic::HollomonFit::both : plastic::HollomonFit::exponent);
+    const PowerLaw power_law =
+        language.model->power_law_of({.youngs_modulus = modulus.value_or(std::numeric_limits<double>::infinity()),
+                                      .yield_stress = *yield_stress,
+                                      .strength = *strength,
+                                      .exponent = *exponent,
+                                      .largest_strain = *eps_max,
+                                      .fits_both = section.text("fit") == "both"});
     scenario.material.emplace("strength", power_law.strength);
     scenario.material.emplace("hardening_exponent", power_law.exponent);
   } catch (const std::logic_error& error) {  // what the fit objects to

@@ -5,35 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <optional>
 #include <span>
 
 #include "scenario/document.hpp"
+#include "scenario/model_input.hpp"
 
 namespace monograin {
 namespace {
-
-std::string_view configuration_word(Loading::Configuration configuration) {
-  switch (configuration) {
-    case Loading::Configuration::simple:
-      return "simple";
-    case Loading::Configuration::die:
-      return "die";
-    case Loading::Configuration::hydrostatic:
-      return "hydrostatic";
-    case Loading::Configuration::oblique_die:
-      return "oblique-die";
-    case Loading::Configuration::walls:
-      return "walls";
-    case Loading::Configuration::triaxial:
-      return "triaxial";
-    case Loading::Configuration::strain_path:
-      return "strain-path";
-  }
-  return {};
-}
 
 /// Where a key stands, in whichever of the tables it may, or the preset that gives it.
 SourceLocation place_of_key(const toml::table& tree, const std::string& origin, std::string_view model,
@@ -48,38 +28,12 @@ SourceLocation place_of_key(const toml::table& tree, const std::string& origin, 
   return {origin};
 }
 
-PlannedStep planned(const Step& step) {
-  PlannedStep result{.may_end_early = !step.until.empty()};
-  if (const auto control = control_of(step.kind)) result.first = {*control, step.target};
-  if (step.lateral) result.lateral = {*control_of(step.lateral->kind), step.lateral->target};
-  return result;
-}
-
-void check_objections(Reading& reading, const toml::table& tree, const std::string& origin, const ModelInfo& model,
+void check_objections(Reading& reading, const toml::table& tree, const std::string& origin, const Model& model,
                       const Scenario& scenario) {
-  std::map<std::string, std::string> choices;
-  std::map<std::string, double> numbers;
-  std::map<std::string, bool> toggles;
-  for (const auto& [key, value] : scenario.options) {
-    if (const auto* word = std::get_if<std::string>(&value)) choices.emplace(key, *word);
-    if (const auto* number = std::get_if<double>(&value)) numbers.emplace(key, *number);
-    if (const auto* toggle = std::get_if<bool>(&value)) toggles.emplace(key, *toggle);
-  }
-  const std::vector<Step>& steps = scenario.loading.steps;
-  std::vector<PlannedStep> program;
-  if (!model.has_walls()) std::ranges::transform(steps, std::back_inserter(program), planned);
-  const bool has_configuration = !model.configurations.empty();
-  const ModelInput given{.material = scenario.material,
-                         .choices = choices,
-                         .numbers = numbers,
-                         .toggles = toggles,
-                         .configuration = has_configuration ? configuration_word(scenario.loading.configuration) : "",
-                         .program = program,
-                         .integrator = scenario.numerics.integrator};
-  for (const Objection& objection : model.objections(given)) {
-    reading.faults.add(
-        objection.step ? steps[*objection.step].where : place_of_key(tree, origin, model.name, objection.key),
-        objection.message);
+  for (const Objection& objection : model.objections(model_input(scenario))) {
+    reading.faults.add(objection.step ? scenario.loading.steps[*objection.step].where
+                                      : place_of_key(tree, origin, model.name, objection.key),
+                       objection.message);
   }
 }
 
@@ -89,7 +43,7 @@ double angle_between(const std::array<double, 3>& a, const std::array<double, 3>
 }
 
 /// Walls that are closer than the model allows.
-void check_wall_angles(Reading& reading, const toml::table& tree, const std::string& origin, const ModelInfo& model,
+void check_wall_angles(Reading& reading, const toml::table& tree, const std::string& origin, const Model& model,
                        const Loading& loading) {
   const auto expectation = [&](double angle) {
     return fmt::format("are {:.4g} rad apart; model '{}' expects at least {:.4g} rad", angle, model.name,
@@ -146,8 +100,8 @@ void check_rules(Reading& reading, const toml::table& tree, const std::string& o
   if (language.model->least_wall_angle > 0.0) {
     check_wall_angles(reading, tree, origin, *language.model, scenario.loading);
   }
-  const auto unloading = scenario.options.find("unloading");
-  if (unloading == scenario.options.end() || std::get<std::string>(unloading->second) != "none") return;
+  const auto can_unload = language.model->can_unload;
+  if (can_unload == nullptr || can_unload(model_input(scenario))) return;
   check_only_loading(reading, scenario.loading.steps, 0.0, scenario.model);
   for (const WallSpec& wall : scenario.loading.walls) check_only_loading(reading, wall.steps, wall.gap, scenario.model);
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "scenario/text_file.hpp"
+#include "system/model.hpp"
 #include "system/walls.hpp"
 
 namespace monograin {
@@ -37,24 +38,6 @@ class ScenarioError : public std::runtime_error {
 
  private:
   std::vector<Fault> faults_;
-};
-
-/// A condition that ends a step before its time. Values in SI.
-struct Until {
-  enum class Quantity {
-    force,
-    displacement,
-    pressure,
-    contact_radius,
-    apparent_radius,
-    stress_axial,
-    stress_lateral,
-    relative_density,
-    event
-  };
-  Quantity quantity = Quantity::force;
-  double value = 0.0;
-  std::string event;  ///< name of the event, where quantity is `event`
 };
 
 /// One step of the program of a wall, a packing or a material point. Cycles are already written out. Of duration and
@@ -109,16 +92,6 @@ struct Numerics {
   double rtol = 1e-8;
   double atol = 1e-12;  ///< relative to the state's own scale
 };
-
-/// A curve given by samples, in a file that an option names; or, of a table with more columns, values over x and y.
-struct SampledCurve {
-  std::string text;  ///< the file as it was read
-  std::vector<double> x;
-  std::vector<double> y;
-  std::vector<std::vector<double>> values{};  ///< further columns, in the order of the option's; of a curve: none
-};
-
-using OptionValue = std::variant<bool, double, std::string>;
 
 struct Scenario {
   std::string name;  ///< file name without folder and extension; names the run's folder

@@ -51,7 +51,7 @@ json is_fixed_wall() { return {{"properties", {{"fixed", {{"const", true}}}}}, {
 /// The definitions of one model and where they refer to one another.
 class ModelSchema {
  public:
-  explicit ModelSchema(const ModelInfo& model) : language_(language_of(model.name)), name_(model.name) {}
+  explicit ModelSchema(const Model& model) : language_(language_of(model.name)), name_(model.name) {}
 
   void add_to(json& definitions) const {
     definitions[name_ + "-step"] = step();
@@ -177,7 +177,7 @@ class ModelSchema {
 std::string scenario_schema() {
   json definitions = json::object();
   json alternatives = json::array();
-  for (const ModelInfo& model : model_catalogue()) {
+  for (const Model& model : model_catalogue()) {
     ModelSchema(model).add_to(definitions);
     alternatives.push_back({{"$ref", fmt::format("#/definitions/{}", model.name)}});
   }

@@ -9,9 +9,7 @@
 #include <span>
 
 #include "catalogue.hpp"
-#include "scene/mdr_law.hpp"
-#include "scene/nonlocal_model.hpp"
-#include "scene/plastic_law.hpp"
+#include "scenario/model_input.hpp"
 
 namespace monograin {
 namespace {
@@ -77,6 +75,11 @@ constexpr double k_share_of_withdrawal = 1e-4;
 /// already need not end the next one.
 constexpr double k_known_within = 3.0;
 
+/// Depth over R0 below which a contact is below resolution; and share of a depth within which models say how deep a
+/// contact is under a force or a condition.
+constexpr double k_least_depth = 1e-12;
+constexpr double k_same_depth = 1e-6;
+
 /// Whether a free centre may leave its place: classes of walls that push it to no side keep it there.
 bool may_move_centre(const Scenario& scenario, const std::vector<ContactClass>& classes) {
   constexpr double k_no_push = 1e-6;  // of unit normals
@@ -87,25 +90,30 @@ bool may_move_centre(const Scenario& scenario, const std::vector<ContactClass>& 
          });
 }
 
+/// What says how far a program goes.
+struct Program {
+  const Model& model;
+  const ModelInput& input;
+  bool moves_centre = false;
+};
+
 /// How far a condition lets a ramp go that leads on to its target; infinity where the model has to be run to say so.
-Reach end_of(const Scenario& scenario, bool centre_moves, const Until& until) {
+Reach end_of(const Program& program, const Until& until) {
   Reach end{.displacement = std::numeric_limits<double>::infinity(), .force = std::numeric_limits<double>::infinity()};
-  if (!(until.value > 0.0) && until.quantity != Until::Quantity::event) return end;
-  if (is_plastic(scenario.model)) return plastic_reach(scenario, until);
-  if (scenario.model == "mdr" || scenario.model == "hertz") end = mdr_reach(scenario, until);
-  if (scenario.model == "nonlocal") end = nonlocal_reach(scenario, until);
+  if (!(until.value > 0.0) && !until.is_event()) return end;
+  if (program.model.reach != nullptr) end = program.model.reach(program.input, until);
   // The centre goes along: its walls go farther than their contacts.
-  if (centre_moves) end.displacement = std::numeric_limits<double>::infinity();
-  if (until.quantity == Until::Quantity::displacement) end.displacement = until.value;
-  if (until.quantity == Until::Quantity::force) end.force = until.value;
+  if (program.moves_centre) end.displacement = std::numeric_limits<double>::infinity();
+  if (until.is_of(Quantity::displacement)) end.displacement = until.value;
+  if (until.is_of(Quantity::force)) end.force = until.value;
   return end;
 }
 
-/// Number of steps up to one that ends every run that comes to it: walls of the nonlocal law cannot pull.
-std::size_t count_to_pull(const Scenario& scenario, const std::vector<Channel>& channels) {
+/// Number of steps up to one that ends every run that comes to it, because walls of the model cannot pull.
+std::size_t count_to_pull(const Model& model, const std::vector<Channel>& channels) {
   std::size_t count = 0;
   for (const Channel& channel : channels) count = std::max(count, channel.program.size());
-  if (scenario.model != "nonlocal") return count;
+  if (!model.stops_when_pulled) return count;
   for (std::size_t k = 0; k < count; ++k) {
     bool pulls = false;
     bool may_end_before = false;  // a condition on one wall ends the step of all
@@ -120,18 +128,39 @@ std::size_t count_to_pull(const Scenario& scenario, const std::vector<Channel>& 
   return count;
 }
 
+/// Index of the first step of a wall that goes back, where the model has no law for that; else their number.
+std::size_t first_way_back(const Program& program, std::span<const Step> steps) {
+  const auto can_unload = program.model.can_unload;
+  if (steps.size() < 2 || can_unload == nullptr || can_unload(program.input)) return steps.size();
+  double deepest = 0.0;  // at least
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const Step& step = steps[k];
+    double depth = step.kind == Step::Kind::detach ? 0.0 : deepest;
+    if (step.kind == Step::Kind::displacement) depth = step.target;
+    if (step.kind == Step::Kind::force) {
+      depth =
+          step.target > 0.0 ? end_of(program, {.quantity = Quantity::force, .value = step.target}).displacement : 0.0;
+    }
+    if (!std::isfinite(depth)) continue;  // ends at a limit of the law
+    if (deepest > k_least_depth * program.input.radius && depth < (1.0 - k_same_depth) * deepest) return k;
+    for (const Until& until : step.until) {
+      const bool is_foreseen = until.value > 0.0 || until.is_event();
+      depth = is_foreseen ? std::min(depth, (1.0 - k_same_depth) * end_of(program, until).displacement) : 0.0;
+    }
+    deepest = std::max(deepest, depth);
+  }
+  return steps.size();
+}
+
 /// Largest displacement or force of the programs.
-double largest_target(const Scenario& scenario, const Scene& scene, Step::Kind kind) {
+double largest_target(const Program& program, const std::vector<Channel>& channels, Step::Kind kind) {
   double largest = 0.0;
-  const std::vector<Channel>& channels = scene.channels;
-  const bool centre_moves = may_move_centre(scenario, scene.classes);
-  const auto energy = scenario.material.find("surface_energy");
-  const bool adheres = energy != scenario.material.end() && energy->second > 0.0;
+  const bool adheres = program.input.optional_material("surface_energy").value_or(0.0) > 0.0;
   const bool is_displacement = kind == Step::Kind::displacement;
   // Steps that a run comes to: what lies beyond would make tolerances as large as what is reached.
-  std::size_t count = count_to_pull(scenario, channels);
+  std::size_t count = count_to_pull(program.model, channels);
   for (const Channel& channel : channels) {
-    const std::size_t first = first_without_branch(scenario, channel.program);
+    const std::size_t first = first_way_back(program, channel.program);
     if (first < channel.program.size()) count = std::min(count, first);
   }
   for (const Channel& channel : channels) {
@@ -146,11 +175,10 @@ double largest_target(const Scenario& scenario, const Scene& scene, Step::Kind k
       double reach = (is_withdrawal ? k_share_of_withdrawal : 1.0) * std::abs(step.target);
       for (const Until& until : step.until) {
         // Later steps may begin beyond an event, or a value, which then does not end them.
-        if (until.quantity == Until::Quantity::event && &step != &channel.program.front()) continue;
-        const Reach end = end_of(scenario, centre_moves, until);
+        if (until.is_event() && &step != &channel.program.front()) continue;
+        const Reach end = end_of(program, until);
         const double place = is_displacement ? end.displacement : end.force;
-        const bool is_exact =
-            until.quantity == (is_displacement ? Until::Quantity::displacement : Until::Quantity::force);
+        const bool is_exact = until.is_of(is_displacement ? Quantity::displacement : Quantity::force);
         if (place > (is_exact ? 1.0 : k_known_within) * before) reach = std::min(reach, place);
       }
       before = is_withdrawal ? 0.0 : reach;
@@ -158,6 +186,27 @@ double largest_target(const Scenario& scenario, const Scene& scene, Step::Kind k
     }
   }
   return largest;
+}
+
+/// Channels of a model without walls. A lateral one follows the steps, and takes as long as they do.
+std::vector<Channel> channels_without_walls(const Scenario& scenario, const std::vector<RestingChannel>& at_rest) {
+  std::vector<Channel> channels;
+  for (const RestingChannel& rest : at_rest) {
+    Channel& channel = channels.emplace_back(Channel{std::string(rest.name), rest.at_rest, {}});
+    if (!rest.is_lateral) {
+      channel.program = scenario.loading.steps;
+      continue;
+    }
+    for (const Step& step : scenario.loading.steps) {
+      Step follows;
+      if (step.lateral) {
+        follows.kind = step.lateral->kind;
+        follows.target = step.lateral->target;
+      }
+      channel.program.push_back(std::move(follows));
+    }
+  }
+  return channels;
 }
 
 /// Contact classes of the walls and their channels.
@@ -216,15 +265,18 @@ std::vector<Wall> make_walls(const Scenario& scenario) {
 }
 
 Scene make_scene(const Scenario& scenario, bool merges_walls) {
-  const bool has_walls = find_model(scenario.model)->has_walls();
+  const Model& model = *find_model(scenario.model);
+  const ModelInput input = model_input(scenario);
+  const bool has_walls = model.has_walls();
   Scene scene;
   if (has_walls)
     add_walls(scenario, merges_walls, scene);
   else
-    scene.channels = channels_without_walls(scenario);
-  scene.system = bind_model(scenario, scene.classes,
-                            {.displacement = largest_target(scenario, scene, Step::Kind::displacement),
-                             .force = largest_target(scenario, scene, Step::Kind::force)});
+    scene.channels = channels_without_walls(scenario, model.channels(input));
+  const Program program{model, input, may_move_centre(scenario, scene.classes)};
+  scene.system = model.bind(input, scene.classes,
+                            {.displacement = largest_target(program, scene.channels, Step::Kind::displacement),
+                             .force = largest_target(program, scene.channels, Step::Kind::force)});
 
   const auto unknowns = scene.system->unknowns();
   const auto is_algebraic = [](const Unknown& u) { return u.kind == Unknown::Kind::algebraic; };
@@ -238,11 +290,30 @@ Scene make_scene(const Scenario& scenario, bool merges_walls) {
       energy != scenario.material.end() && energy->second == 0.0) {
     scene.skipped.emplace_back("adhesion: the surface energy is zero");
   }
-  if (scenario.model == "hertz")
-    scene.skipped.emplace_back("yield and growth of the apparent radius: not part of the model");
+  for (const std::string_view part : model.skipped) scene.skipped.emplace_back(part);
   scene.skipped.emplace_back("guards that cannot fire before the end of a step");
   scene.skipped.emplace_back("observables between output points");
   return scene;
+}
+
+std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
+  const Model& model = *find_model(scenario.model);
+  std::vector<DerivedParameter> list;
+  if (scenario.radius > 0.0) list.push_back({"radius", scenario.radius, "m"});
+  if (model.parameters == nullptr) return list;
+  Scene scene;
+  if (model.has_walls()) add_walls(scenario, true, scene);
+  std::vector<Ramp> ramps;
+  for (const Channel& channel : scene.channels) {
+    Ramp ramp = channel.at_rest;
+    const auto control = channel.program.empty() ? std::nullopt : control_of(channel.program.front().kind);
+    if (control == Control::force) ramp = {0.0, channel.program.front().target, Control::force};
+    if (control == Control::displacement) ramp.end = channel.program.front().target;
+    ramps.push_back(ramp);
+  }
+  const std::vector<DerivedParameter> own = model.parameters(model_input(scenario), {scene.classes, ramps});
+  list.insert(list.end(), own.begin(), own.end());
+  return list;
 }
 
 }  // namespace monograin

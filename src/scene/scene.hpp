@@ -50,17 +50,7 @@ struct Scene {
 /// @throws ScenarioError where the walls' programs do not go together
 [[nodiscard]] Scene make_scene(const Scenario& scenario, bool merges_walls = true);
 
-/// How far a program goes with any wall; 0 where it prescribes no such thing.
-struct Reach {
-  double displacement = 0.0;  ///< [m]
-  double force = 0.0;         ///< [N]
-};
-
-/// Channels of a scenario whose model has no walls.
-[[nodiscard]] std::vector<Channel> channels_without_walls(const Scenario& scenario);
-
-/// The model of a scenario over given classes, which are empty where it has no walls.
-[[nodiscard]] std::unique_ptr<HybridSystem> bind_model(const Scenario& scenario, std::vector<ContactClass> classes,
-                                                       const Reach& reach);
+/// Particle, material and the constants that follow from them before anything moves.
+[[nodiscard]] std::vector<DerivedParameter> derived_parameters(const Scenario& scenario);
 
 }  // namespace monograin

@@ -12,13 +12,8 @@ namespace {
 
 constexpr double k_same = 1e-9;  // two normals, or two of their scalar products, are the same
 
-bool operator==(const Until& a, const Until& b) {
-  return a.quantity == b.quantity && a.value == b.value && a.event == b.event;
-}
-
 bool same_step(const Step& a, const Step& b) {
-  return a.kind == b.kind && a.target == b.target && a.duration == b.duration && a.rate == b.rate &&
-         std::ranges::equal(a.until, b.until, [](const Until& x, const Until& y) { return x == y; });
+  return a.kind == b.kind && a.target == b.target && a.duration == b.duration && a.rate == b.rate && a.until == b.until;
 }
 
 /// Walls of the same colour start and move alike.

@@ -17,7 +17,6 @@
 
 #include "history/run.hpp"
 #include "scenario/words.hpp"
-#include "scene/parameters.hpp"
 #include "study/adhesion_panels.hpp"
 #include "study/definition.hpp"
 #include "study/profile.hpp"

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "study/dice.hpp"
+#include "stress/dice.hpp"
 
 namespace monograin {
 namespace {

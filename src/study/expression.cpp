@@ -13,8 +13,7 @@
 #include <system_error>
 #include <utility>
 
-#include "elastic/line_contact.hpp"
-#include "elastic/nonlocal_coupling.hpp"
+#include "catalogue.hpp"
 #include "scenario/words.hpp"
 
 namespace monograin {
@@ -27,51 +26,30 @@ struct ValueFunction {
   double (*value)(double);
 };
 
-/// P/(D E*) of an elastic cylinder between flat walls over delta/D; undefined beyond its closed form.
-double line_contact(double strain) {
-  try {
-    return line_contact_at_strain(1.0, strain).stress;
-  } catch (const std::domain_error&) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-}
-
 constexpr ValueFunction k_value_functions[] = {
     {"sqrt", [](double x) { return std::sqrt(x); }}, {"exp", [](double x) { return std::exp(x); }},
     {"log", [](double x) { return std::log(x); }},   {"abs", [](double x) { return std::abs(x); }},
     {"sin", [](double x) { return std::sin(x); }},   {"cos", [](double x) { return std::cos(x); }},
     {"tan", [](double x) { return std::tan(x); }},   {"atan", [](double x) { return std::atan(x); }},
     {"sinh", [](double x) { return std::sinh(x); }}, {"cosh", [](double x) { return std::cosh(x); }},
-    {"tanh", [](double x) { return std::tanh(x); }}, {"line_contact", line_contact}};
+    {"tanh", [](double x) { return std::tanh(x); }}};
 
-/// Laws that are no formula. Without a value where the law has none.
-struct LawFunction {
-  std::string_view name;
-  double (*value)(double poisson_ratio, double angle, double contact_radius);
-};
-
-template <nonlocal::RadiusRule rule>
-double radius_influence(double poisson_ratio, double angle, double contact_radius) {
-  try {
-    return nonlocal::radius_influence(rule, poisson_ratio, angle, contact_radius);
-  } catch (const std::domain_error&) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-}
-
-constexpr LawFunction k_law_functions[] = {
-    {"radius_influence_closed", radius_influence<nonlocal::RadiusRule::closed>},
-    {"radius_influence_integral", radius_influence<nonlocal::RadiusRule::integral>},
-    {"radius_influence_projected", radius_influence<nonlocal::RadiusRule::projected>}};
 constexpr std::array<std::string_view, 3> k_row_functions{"min", "max", "last"};
 constexpr std::size_t k_longest = 400;  ///< which also bounds how deep brackets nest
 
 [[nodiscard]] bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 [[nodiscard]] bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+/// The law of that name, or null.
+[[nodiscard]] const FormulaFunction* find_law(std::string_view name) {
+  const auto laws = formula_functions();
+  const auto found = std::ranges::find(laws, name, &FormulaFunction::name);
+  return found == laws.end() ? nullptr : &*found;
+}
+
 /// How many arguments a function takes; 0: there is no such function.
 [[nodiscard]] std::size_t argument_count(std::string_view name) {
-  if (std::ranges::find(k_law_functions, name, &LawFunction::name) != std::end(k_law_functions)) return 3;
+  if (const FormulaFunction* law = find_law(name)) return law->argument_count;
   const bool is_known =
       std::ranges::find(k_value_functions, name, &ValueFunction::name) != std::end(k_value_functions) ||
       std::ranges::find(k_row_functions, name) != k_row_functions.end();
@@ -249,19 +227,18 @@ template <class Combine>
   return left;
 }
 
-[[nodiscard]] Values evaluated(const LawFunction& law, std::span<const Values, 3> arguments, std::size_t offset) {
+[[nodiscard]] Values evaluated(const FormulaFunction& law, std::span<const Values> arguments, std::size_t offset) {
   const std::size_t count = std::ranges::max(arguments, {}, &Values::size).size();
   for (const Values& values : arguments) {
     if (values.size() != 1 && values.size() != count) {
       throw ExpressionError(offset, fmt::format("{} values do not go with {}", values.size(), count));
     }
   }
-  const auto argument = [&](std::size_t i, std::size_t row) {
-    return arguments[i][arguments[i].size() == 1 ? 0 : row];
-  };
   Values result(count);
+  Values of_row(arguments.size());
   for (std::size_t row = 0; row < count; ++row) {
-    result[row] = law.value(argument(0, row), argument(1, row), argument(2, row));
+    for (std::size_t i = 0; i < arguments.size(); ++i) of_row[i] = arguments[i][arguments[i].size() == 1 ? 0 : row];
+    result[row] = law.value(of_row);
   }
   return result;
 }
@@ -307,12 +284,13 @@ std::vector<double> Expression::evaluate(const Lookup& lookup) const {
         for (double& value : stack.back()) value = -value;
         break;
       case Operation::function: {
-        const auto law = std::ranges::find(k_law_functions, step.name, &LawFunction::name);
-        if (law == std::end(k_law_functions)) {
+        const FormulaFunction* law = find_law(step.name);
+        if (law == nullptr) {
           stack.back() = applied(step.name, std::move(stack.back()));
         } else {
-          Values result = evaluated(*law, std::span<const Values, 3>(stack.end() - 3, 3), step.offset);
-          stack.resize(stack.size() - 2);
+          const std::size_t count = law->argument_count;
+          Values result = evaluated(*law, std::span<const Values>(stack).last(count), step.offset);
+          stack.resize(stack.size() - count + 1);
           stack.back() = std::move(result);
         }
         break;

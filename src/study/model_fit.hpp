@@ -5,17 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "system/curve_procedure.hpp"
+
 namespace monograin {
 
 struct Calibration;
-
-/// A fit by one procedure, with the error measures of its source.
-struct ProcedureFit {
-  std::string procedure;
-  std::vector<double> parameters;  ///< in the order of ModelFits::keys
-  double area_error = 0.0;         ///< 001_3cd85d3b0dc520cf.txt, eq. 7, over displacement/R0
-  double peak_error = 0.0;         ///< eq. 8 of the same, the absolute value added
-};
 
 struct ModelFits {
   std::vector<std::string> keys;         ///< of the parameters, as of `--set`
@@ -23,10 +17,8 @@ struct ModelFits {
   std::map<std::string, double> starts;  ///< by key: where to begin [SI]; also of keys that only unloading tells
 };
 
-/// Those of the calibration's model; none where it has no procedure for these parameters and data.
-///
-/// `compressible`: the source's nested procedure and the joint fit, where k, delta_t and a are free and displacements
-/// drive forces; alpha and beta from the first unloading, where they are free too.
+/// Those of the calibration's model; none where it has no procedure for these parameters and
+/// data: its keys are free, and displacements of a wall drive its forces.
 [[nodiscard]] ModelFits model_fits(const Calibration& calibration);
 
 /// What the fitted parameters are by the same measures, as a further fit; to be called where there are others.

@@ -82,7 +82,7 @@ std::vector<double> of_class(const Table& profiles, std::size_t c, std::string_v
 Table contact_profiles(const Scenario& scenario, double time) {
   if (!find_model(scenario.model)->has_profile) {
     std::vector<std::string_view> names;
-    for (const ModelInfo& model : model_catalogue()) {
+    for (const Model& model : model_catalogue()) {
       if (model.has_profile) names.push_back(model.name);
     }
     throw std::runtime_error(fmt::format("model '{}' has no profile under its contacts; those of {} have one",

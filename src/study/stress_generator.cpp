@@ -11,10 +11,11 @@
 #include <string>
 #include <string_view>
 
+#include "catalogue.hpp"
 #include "engine/integrator.hpp"
 #include "history/run.hpp"
-#include "study/dice.hpp"
-#include "study/stress_materials.hpp"
+#include "scene/scene.hpp"
+#include "stress/draw.hpp"
 #include "study/stress_programs.hpp"
 #include "study/stress_walls.hpp"
 
@@ -28,18 +29,31 @@ constexpr int k_most_cycles = 50;
 // To draw a scene that is admissible.
 constexpr int k_most_tries = 200;
 
+/// Draws a model for a scene, its configuration, material and options.
+ProgramBounds draw_material(Dice& dice, StressScene& scene) {
+  const auto models = model_catalogue();
+  scene.model = &models[dice.below(models.size())];
+  const auto configurations = scene.model->configurations;
+  scene.configuration = configurations.empty() ? "" : configurations[dice.below(configurations.size())];
+  DrawnMaterial drawn{scene.configuration, scene.model->events, {}, {}};
+  const ProgramBounds bounds = scene.model->draw(dice, drawn);
+  scene.material = std::move(drawn.values);
+  scene.options = std::move(drawn.options);
+  return bounds;
+}
+
 /// Cycles of a program, but of a law without unloading: that cannot begin anew.
-void draw_cycles(Dice& dice, StressScene& scene, const StressBounds& bounds) {
+void draw_cycles(Dice& dice, StressScene& scene, const ProgramBounds& bounds) {
   if (!dice.happens(0.15) || bounds.only_loads) return;
   scene.cycles = 2 + static_cast<int>(dice.below(static_cast<std::size_t>(k_most_cycles) - 1));
   scene.points = 3;
 }
 
-void draw_loading(Dice& dice, StressScene& scene, const StressBounds& bounds) {
+void draw_loading(Dice& dice, StressScene& scene, const ProgramBounds& bounds) {
   const std::size_t count = 1 + dice.below(dice.happens(0.8) ? 4 : 10);
   if (!scene.model->has_walls()) {
-    const auto draw = scene.model->name == "packing" ? draw_packing_program : draw_point_program;
-    scene.steps = draw(dice, scene, bounds, count);
+    const DrawnMaterial drawn{scene.configuration, scene.model->events, {}, {}};
+    scene.steps = stress_steps(scene.model->draw_program(dice, drawn, bounds, count));
     draw_cycles(dice, scene, bounds);
     return;
   }
@@ -131,7 +145,7 @@ void make_growing(std::vector<StressStep>& steps) {
 }
 
 /// Lays the program on such a place.
-void refine(Dice& dice, StressScene& scene, const StressBounds& bounds, const fs::path& tables) {
+void refine(Dice& dice, StressScene& scene, const ProgramBounds& bounds, const fs::path& tables) {
   const Places places = find_places(scene, tables);
   if (!places.of_events.empty() && dice.happens(0.7)) {
     StressStep corner = places.of_events[dice.below(places.of_events.size())];
@@ -168,13 +182,21 @@ bool is_admissible(const StressScene& scene, const fs::path& tables) {
   }
 }
 
-/// Of all integrators; the direct form where the model has one.
-std::string draw_integrator(Dice& dice, const StressScene& scene) {
+/// Whether the direct form finds the state at any instant; so it is where the scene is not admissible.
+bool is_solvable(StressScene scene, const fs::path& tables) {
+  scene.integrator = "auto";
+  try {
+    return make_scene(parse_stress_text(scenario_text(scene), tables)).system->is_solvable();
+  } catch (const std::exception&) {
+    return true;
+  }
+}
+
+/// Any integrator; the direct form where the model has one.
+std::string draw_integrator(Dice& dice, bool is_solvable) {
   const std::span<const std::string_view> all = integrator_names();
   const double what = dice.uniform(0.0, 1.0);
   if (what < 0.05) return "auto";
-  const bool is_solvable = scene.model->name != "material-point" || scene.configuration == "hydrostatic" ||
-                           scene.options.at("yield_model") == OptionValue(std::string("vm"));
   if (what < 0.3) return is_solvable ? "direct" : "auto";
   const std::string drawn(all[dice.below(all.size())]);
   return drawn == "direct" && !is_solvable ? "auto" : drawn;
@@ -182,16 +204,17 @@ std::string draw_integrator(Dice& dice, const StressScene& scene) {
 
 StressScene draw_scene(Dice& dice, const fs::path& tables) {
   StressScene scene;
-  const StressBounds bounds = draw_material(dice, scene);
+  const ProgramBounds bounds = draw_material(dice, scene);
   scene.radius = !scene.model->has_walls() || dice.happens(0.5) ? 1.0 : dice.log_uniform(1e-9, 10.0);
   scene.stress = dice.happens(0.5) ? 1.0 : dice.log_uniform(1e3, 1e12);
   draw_loading(dice, scene, bounds);
-  scene.integrator = draw_integrator(dice, scene);
+  const bool has_direct_form = is_solvable(scene, tables);
+  scene.integrator = draw_integrator(dice, has_direct_form);
   scene.rtol = dice.happens(0.5) ? 1e-8 : dice.log_uniform(1e-13, 1e-2);
   // It takes as many steps as the tolerance says.
   if (scene.integrator == "explicit") scene.rtol = dice.log_uniform(1e-3, 1e-2);
   // Where the reference has to be integrated, many cycles at a fine tolerance take minutes.
-  if (scene.model->name == "material-point" && scene.cycles > 1) {
+  if (!has_direct_form && scene.cycles > 1) {
     scene.cycles = std::min(scene.cycles, k_most_cycles / 5);
     scene.rtol = std::max(scene.rtol, 1e-8);
   }

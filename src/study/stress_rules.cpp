@@ -12,14 +12,8 @@
 #include <span>
 
 #include "catalogue.hpp"
-#include "compressible/material_point_info.hpp"
-#include "compressible/yield_surface.hpp"
-#include "elastic/hertz.hpp"
-#include "mdr/contact.hpp"
-#include "packing/law.hpp"
 #include "reaction_cone.hpp"
-#include "scene/mdr_law.hpp"
-#include "scene/packing_law.hpp"
+#include "scenario/model_input.hpp"
 #include "scene/scene.hpp"
 #include "study/stress_distance.hpp"
 
@@ -62,12 +56,6 @@ double material(const Scenario& scenario, const char* key) {
   return found == scenario.material.end() ? 0.0 : found->second;
 }
 
-std::string option(const Scenario& scenario, const char* key) {
-  const auto found = scenario.options.find(key);
-  const auto* word = found == scenario.options.end() ? nullptr : std::get_if<std::string>(&found->second);
-  return word == nullptr ? std::string() : *word;
-}
-
 Dimension find_dimension(const std::string& model, std::string_view key) {
   const std::span<const QuantityKey> keys = find_model(model)->material;
   return std::ranges::find(keys, key, &QuantityKey::name)->dimension;
@@ -105,26 +93,44 @@ void check_end(const Run& run, Violations& found) {
   found.push_back({has_failed ? "solver" : "unstated-limit", run.record.message});
 }
 
+/// Rows of a table as models see them.
+class TableRows final : public HistoryRows {
+ public:
+  explicit TableRows(const Table& table) : table_(table) {}
+  [[nodiscard]] std::size_t row_count() const noexcept override { return table_.row_count(); }
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view column) const noexcept override {
+    return table_.find(column);
+  }
+  [[nodiscard]] double at(std::size_t row, std::size_t column) const override { return table_.at(row, column); }
+  [[nodiscard]] std::string_view word(std::size_t row, std::size_t column) const override {
+    return table_.word(row, column);
+  }
+
+ private:
+  const Table& table_;
+};
+
+/// Calls a model's own function with its view of a run.
+template <class Function>
+auto as_model_sees(const Run& run, const Function& function) {
+  const TableRows rows(run.record.history);
+  const Scene scene = make_scene(run.scenario);
+  const ModelInput input = model_input(run.scenario);
+  return function(CheckedRun{input, rows, scene.classes, own_tolerance(run), k_stress_rounding});
+}
+
 void check_numbers(const Run& run, Violations& found) {
   const Table& table = run.record.history;
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
     const Column& column = table.columns()[c];
     if (column.holds_words()) continue;
-    const std::size_t dot = column.name.rfind('.');
-    const auto regime = dot == std::string::npos ? std::nullopt : table.find(column.name.substr(0, dot) + ".regime");
     for (std::size_t row = 0; row < table.row_count(); ++row) {
       if (std::isfinite(table.at(row, c))) continue;
-      // Where a source has no law for a lateral contact, its columns are empty.
-      const bool may_be_empty = regime && std::isnan(table.at(row, c)) &&
-                                (run.scenario.model == "semimech" || run.scenario.model == "hardening") &&
-                                column.name.starts_with("lateral");
-      // The formulas of the deformed contact radius end where a contact is as wide as the particle.
-      const auto radius = table.find(column.name.substr(0, dot) + ".contact_radius");
-      const bool is_beyond = column.name.ends_with(".contact_radius_deformed") && radius &&
-                             table.at(row, *radius) >= run.scenario.radius * (1.0 - k_stress_rounding);
-      if (is_beyond && std::isnan(table.at(row, c))) continue;
-      // Below jamming there is no coordination number.
-      if (may_be_empty || (column.name == "coordination_number" && std::isnan(table.at(row, c)))) continue;
+      const auto may_be_undefined = find_model(run.scenario.model)->may_be_undefined;
+      const bool is_stated =
+          may_be_undefined != nullptr && std::isnan(table.at(row, c)) &&
+          as_model_sees(run, [&](const CheckedRun& checked) { return may_be_undefined(checked, row, column.name); });
+      if (is_stated) continue;
       found.push_back({"no-number", fmt::format("{} = {} in row {}, t = {:.9g} s", column.name, table.at(row, c), row,
                                                 table.at(row, 0))});
       return;
@@ -148,32 +154,6 @@ void check_forces(const Run& run, Violations& found) {
   }
 }
 
-/// Rows of a history that break something, the first of each: where `excess` is not below zero.
-template <class Excess>
-void check_rows(const Run& run, const char* check, const char* what, Violations& found, Excess&& excess) {
-  const Table& table = run.record.history;
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const double value = excess(table, row);
-    if (value <= 0.0) continue;
-    found.push_back({check, fmt::format("{}, by {:.3g} at t = {:.9g} s", what, value, table.at(row, 0))});
-    return;
-  }
-}
-
-/// Between elastic spheres and walls an overlap without a force is a contact that was missed.
-void check_contacts(const Run& run, Violations& found) {
-  const Table& table = run.record.history;
-  for (std::size_t c = 0; c < table.columns().size(); ++c) {
-    if (kind_of(table.columns()[c]) != "overlap") continue;
-    const std::string& name = table.columns()[c].name;
-    const auto force = *table.find(name.substr(0, name.rfind('.')) + ".force");
-    const std::string what = fmt::format("{} is past the surface, without a force", name);
-    check_rows(run, "missed-contact", what.c_str(), found, [&](const Table& t, std::size_t row) {
-      return t.at(row, force) == 0.0 ? t.at(row, c) / run.scenario.radius - own_tolerance(run) : 0.0;
-    });
-  }
-}
-
 /// What the walls of a class are to press with at the end of a step, counted from 0; nothing where a displacement is
 /// prescribed.
 std::optional<double> prescribed_force(const Channel& channel, std::size_t step) {
@@ -190,17 +170,21 @@ std::optional<double> prescribed_force(const Channel& channel, std::size_t step)
 
 /// The column that shows what a channel of the program prescribes; none where it need not come to that: contacts of a
 /// free centre move with it, and no wall pulls one that does not adhere, or may have snapped off.
-std::optional<std::string> column_of(const Scenario& scenario, const Channel& channel, const Step& step) {
-  constexpr std::array<std::string_view, 5> k_kinds{"displacement", "force", "strain", "stress", "packing_fraction"};
+std::optional<std::string> column_of(const Scenario& scenario, const Scene& scene, const Channel& channel,
+                                     const Step& step) {
   const auto control = control_of(step.kind);
   if (!control) return std::nullopt;
-  const std::string_view kind = k_kinds[static_cast<std::size_t>(*control)];
-  if (scenario.model == "packing") return std::string(kind);
-  if (scenario.model == "material-point") return fmt::format("{}_{}", kind, channel.name);
+  const Model& model = *find_model(scenario.model);
+  if (!model.has_walls()) {
+    const bool is_lateral = &channel != &scene.channels.front();
+    const auto drives = is_lateral ? model.lateral_drives : model.drives;
+    const DriveKey& drive = *std::ranges::find(drives, *control, &DriveKey::control);
+    return std::string(drive.column.empty() ? drive.name : drive.column);
+  }
   if (*control == Control::displacement && scenario.loading.centre_is_free) return std::nullopt;
   const bool may_open = step.target < 0.0 || material(scenario, "surface_energy") > 0.0;
   if (*control == Control::force && may_open) return std::nullopt;
-  return fmt::format("{}.{}", channel.name, kind);
+  return fmt::format("{}.{}", channel.name, *control == Control::force ? "force" : "displacement");
 }
 
 /// What the last step prescribes is reached, unless something else may end it.
@@ -217,7 +201,7 @@ void check_program(const Run& run, Violations& found) {
   for (const Channel& channel : scene.channels) {
     if (!has_last_step(channel)) continue;
     const double target = channel.program.back().target;
-    const auto name = column_of(run.scenario, channel, channel.program.back());
+    const auto name = column_of(run.scenario, scene, channel, channel.program.back());
     if (!name) continue;
     const std::size_t column = *table.find(*name);
     const std::size_t last_row = table.row_count() - 1;
@@ -237,16 +221,16 @@ void check_program(const Run& run, Violations& found) {
   }
 }
 
-/// How deep a program presses at most, as far as contacts are elastic and not as wide as the particle.
+/// How deep a program presses at most, as far as contacts are not as wide as the particle.
 double deepest_asked_for(const Scenario& scenario, const Scene& scene) {
-  const double modulus = composite_modulus(material(scenario, "youngs_modulus"), material(scenario, "poisson_ratio"));
+  const Model& model = *find_model(scenario.model);
   double deepest = 0.0;
   for (const Channel& channel : scene.channels) {
     for (const Step& step : channel.program) {
       if (step.kind == Step::Kind::displacement) deepest = std::max(deepest, step.target);
-      if (step.kind != Step::Kind::force || !(step.target > 0.0)) continue;
-      const double overlap = mdr::elastic_overlap(mdr::ElasticProfile::parabola, modulus, scenario.radius, step.target);
-      deepest = std::max(deepest, overlap);
+      if (step.kind != Step::Kind::force || !(step.target > 0.0) || model.reach == nullptr) continue;
+      const Until until{.quantity = Quantity::force, .value = step.target};
+      deepest = std::max(deepest, model.reach(model_input(scenario), until).displacement);
     }
   }
   return std::min(deepest, scenario.radius);
@@ -274,8 +258,8 @@ void check_hold(const Run& run, Violations& found) {
     const std::string_view regime = table.word(last, *table.find(contact_class.name + ".regime"));
     // Where contacts bear, they lift the surface of this law elsewhere: the overlap is no gap there.
     const double overlap = at_end("overlap");
-    const bool touches = run.scenario.model == "nonlocal" ? regime != "open" || std::abs(overlap) <= touch
-                                                          : overlap >= -touch && regime != "separated";
+    const bool touches = find_model(run.scenario.model)->moves_surface ? regime != "open" || std::abs(overlap) <= touch
+                                                                       : overlap >= -touch && regime != "separated";
     if (const auto force = prescribed_force(scene.channels[c], step)) {
       // A little later, as others may have yet to begin.
       pushes.emplace_back(std::lerp(at_end("force"), *force, k_little), normals);
@@ -341,42 +325,6 @@ void check_energy(const Run& run, Violations& found) {
                                       highest - lost, scale, table.at(row, 0))});
       return;
     }
-  }
-}
-
-/// How far the apparent radius of model mdr may fall, over R0. A contact of the ellipse that yields could bear more at
-/// once, so that under a prescribed force n walls give way by some dx, and their caps of overlap d become smaller by
-/// pi d (2 - d) dx; a step of Newton's method on the volume balance, of slope 4 pi (1 - n d/2), says by how much the
-/// radius follows. A bound, because the walls give way by less where it does.
-double most_fall_at_yield(const Scenario& scenario) {
-  if (option(scenario, "elastic_profile") == "parabola") return 0.0;
-  const mdr::Material law = mdr_material_of(scenario);
-  const double d = law.yield_overlap_ratio;
-  double count = 0.0;
-  const Scene scene = make_scene(scenario);
-  for (const ContactClass& c : scene.system->classes()) count += c.takes_force ? c.multiplicity() : 0;
-  if (count == 0.0 || !std::isfinite(d)) return 0.0;
-  const mdr::Contact before = mdr::elastic_contact(mdr::ElasticProfile::ellipse, law.composite_modulus, 1.0, d);
-  const mdr::Contact after = mdr::plastic_contact(law, 1.0, d, mdr::yield_area_constant(d, 1.0));
-  const double slope = 1.0 - 0.5 * count * d;
-  if (!(after.by_overlap > 0.0 && slope > 0.0)) return std::numeric_limits<double>::infinity();
-  return 0.25 * count * d * (2.0 - d) * (after.force - before.force) / (after.by_overlap * slope);
-}
-
-void check_ratchet(const Run& run, Violations& found) {
-  const Table& table = run.record.history;
-  const auto radius = table.find("apparent_radius");
-  if (!radius) return;
-  const double most = (most_fall_at_yield(run.scenario) + own_tolerance(run)) * run.scenario.radius;
-  double largest = 0.0;
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const double now = table.at(row, *radius);
-    if (largest - now > most) {
-      found.push_back({"shrinking", fmt::format("apparent radius falls by {:.3g} R0, t = {:.9g} s",
-                                                (largest - now) / run.scenario.radius, table.at(row, 0))});
-      return;
-    }
-    largest = std::max(largest, now);
   }
 }
 
@@ -448,109 +396,6 @@ void check_work(const Run& run, Violations& found) {
                                        work / shown, shown, most)});
 }
 
-/// That a column's values only grow.
-void check_growth(const Run& run, const char* name, double tolerance, Violations& found) {
-  double largest = 0.0;
-  check_rows(run, "shrinking", name, found, [&, place = *run.record.history.find(name)](const Table& table, auto row) {
-    const double value = table.at(row, place);
-    largest = std::max(largest, value);
-    return largest - value - tolerance;
-  });
-}
-
-void check_packing(const Run& run, Violations& found) {
-  const Table& table = run.record.history;
-  const double tolerance = own_tolerance(run);
-  const auto fraction = *table.find("packing_fraction");
-  check_rows(run, "density", "the packing fraction passes 1", found,
-             [&](const Table& t, std::size_t row) { return t.at(row, fraction) - 1.0 - tolerance; });
-  const auto stress = *table.find("stress");
-  const double scale = largest_magnitude(table, stress);
-  check_rows(run, "tension", "the packing pulls", found,
-             [&](const Table& t, std::size_t row) { return -t.at(row, stress) - tolerance * scale; });
-  const packing::Law law = packing_law_of(run.scenario);
-  const double full = std::max(packing::full_plasticity(law), law.jamming);
-  const auto regime = *table.find("regime");
-  check_rows(run, "regime", "the regime does not belong to the packing fraction", found,
-             [&](const Table& t, std::size_t row) {
-               const std::string_view word = t.word(row, regime);
-               const double phi = t.at(row, fraction);
-               if (word == "unjammed") return phi / law.jamming - 1.0 - tolerance;
-               return (word == "fully-plastic" ? full / phi : phi / full) - 1.0 - tolerance;
-             });
-  // It grows like a root from jamming on, and is compared by what it follows from.
-  const auto coordination = *table.find("coordination_number");
-  check_rows(run, "coordination", "the coordination number does not belong to the packing fraction", found,
-             [&](const Table& t, std::size_t row) {
-               const double number = t.at(row, coordination);
-               if (std::isnan(number)) return -1.0;
-               return std::abs(number / packing::coordination_number(law, t.at(row, fraction)) - 1.0) -
-                      k_stress_rounding;
-             });
-  const auto plastic = *table.find("plastic_fraction");
-  check_rows(run, "plastic-fraction", "the plastic fraction is not within 0 and 1", found,
-             [&](const Table& t, std::size_t row) {
-               return std::max(-t.at(row, plastic), t.at(row, plastic) - 1.0) - tolerance;
-             });
-  if (!is_elastic(run.scenario)) check_growth(run, "plastic_fraction", tolerance, found);
-}
-
-void check_material_point(const Run& run, Violations& found) {
-  const Scenario& scenario = run.scenario;
-  const Table& table = run.record.history;
-  const double tolerance = own_tolerance(run);
-  const bool is_compressible = option(scenario, "yield_model") != "vm";
-  const double yield_pressure = material(scenario, "yield_pressure");
-  // Stresses are moduli times strains; what is prescribed stands there without their rounding. Densities and strengths
-  // follow from the plastic strain by itself.
-  const compressible::Parameters law =
-      compressible::parameters_from(scenario.material, option(scenario, "yield_model"));
-  const auto phi = *table.find("phi");
-  const double strain_rounding =
-      k_stress_rounding * std::max(1.0, largest_magnitude(table, *table.find("strain_axial")));
-  const auto at = [&](const Table& t, std::size_t row) { return compressible::properties_at(law, t.at(row, phi)); };
-  const auto p = *table.find("p");
-  const auto s = *table.find("s");
-  const auto axial = *table.find("stress_axial");
-  const auto lateral = *table.find("stress_lateral");
-  const double scale = std::max(largest_magnitude(table, p), largest_magnitude(table, s));
-  check_rows(
-      run, "stress-invariants", "p and s do not belong to the axial and the lateral stress", found,
-      [&](const Table& t, std::size_t row) {
-        const double of_axial = t.at(row, p) + 2.0 / 3.0 * t.at(row, s) - t.at(row, axial);
-        const double of_lateral = t.at(row, p) - t.at(row, s) / 3.0 - t.at(row, lateral);
-        const compressible::Properties now = at(t, row);
-        const double stiffness = yield_pressure * std::max({now.bulk_modulus.value, now.shear_modulus.value, 1.0});
-        return std::max(std::abs(of_axial), std::abs(of_lateral)) - tolerance * scale - strain_rounding * stiffness;
-      });
-  const auto f = *table.find("yield_function");
-  check_rows(run, "yield", "the stress is outside the yield surface", found, [&](const Table& t, std::size_t row) {
-    const compressible::Properties now = at(t, row);
-    const double of_p = t.at(row, p) / yield_pressure;
-    const double of_s = t.at(row, s) / yield_pressure;
-    const compressible::Yield y =
-        compressible::yield_on(law, now, compressible::branch_at(law, now, of_p, of_s), of_p, of_s);
-    const double by_strain =
-        std::abs(y.f_p) * now.bulk_modulus.value + 3.0 * std::abs(y.f_s) * now.shear_modulus.value + std::abs(y.f_phi);
-    return t.at(row, f) - tolerance - strain_rounding * by_strain;
-  });
-  if (!is_compressible) {
-    check_growth(run, "phi", tolerance, found);
-    return;
-  }
-  // Solid is neither made nor lost.
-  const auto density = *table.find("relative_density");
-  const auto volumetric = *table.find("plastic_strain_volumetric");
-  const double initial = table.at(0, density);
-  check_rows(run, "mass", "relative density and plastic strain do not belong together", found,
-             [&](const Table& t, std::size_t row) {
-               const double solid = t.at(row, density) * std::exp(t.at(row, volumetric));
-               return std::abs(solid / initial - 1.0) - k_stress_rounding;
-             });
-  check_rows(run, "density", "the relative density passes 1", found,
-             [&](const Table& t, std::size_t row) { return t.at(row, density) - 1.0 - tolerance; });
-}
-
 }  // namespace
 
 double softest(const Scenario& scenario) {
@@ -565,12 +410,12 @@ double softest(const Scenario& scenario) {
 }
 
 bool is_elastic(const Scenario& scenario) {
-  if (scenario.model == "packing") return !scenario.material.contains("hardening_modulus");
-  return scenario.model == "hertz" || scenario.model == "nonlocal";
+  const auto is_elastic = find_model(scenario.model)->is_elastic;
+  return is_elastic != nullptr && is_elastic(model_input(scenario));
 }
 
 bool stays_elastic(const Run& run) {
-  if (run.scenario.model != "material-point") return false;
+  if (find_model(run.scenario.model)->has_walls()) return false;
   const Table& events = run.record.events;
   const auto event = *events.find("event");
   for (std::size_t row = 0; row < events.row_count(); ++row) {
@@ -608,15 +453,14 @@ std::vector<Violation> check_run(const Run& run) {
   check_forces(run, found);
   check_hold(run, found);
   check_energy(run, found);
-  check_ratchet(run, found);
   check_events(run, found);
   check_work(run, found);
   // Fixed steps control no error, and have none of these.
   if (run.integrator.used == "explicit") return found;
   check_program(run, found);
-  if (run.scenario.model == "hertz") check_contacts(run, found);
-  if (run.scenario.model == "packing") check_packing(run, found);
-  if (run.scenario.model == "material-point") check_material_point(run, found);
+  if (const auto check = find_model(run.scenario.model)->check) {
+    as_model_sees(run, [&](const CheckedRun& checked) { check(checked, found); });
+  }
   return found;
 }
 

@@ -8,18 +8,13 @@
 
 #include "history/run.hpp"
 #include "scenario/scenario.hpp"
+#include "stress/checks.hpp"
 
 namespace monograin {
 
 /// Finer tolerances of an integrator are not kept: rounding of a scene's own equations may be larger (README,
 /// "Limits").
 inline constexpr double k_finest_rtol = 1e-11;
-
-/// A rule that is broken, with the numbers that show it.
-struct Violation {
-  std::string check;
-  std::string detail;
-};
 
 /// Changes of a scene's data that stand for rounding on the way from a text to a state.
 inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::epsilon();
@@ -53,7 +48,7 @@ inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::
 /// Whether the law of a scenario goes back the way it came.
 [[nodiscard]] bool is_elastic(const Scenario& scenario);
 
-/// Whether a material point has not yielded.
+/// Whether a run of a model without walls has not yielded.
 [[nodiscard]] bool stays_elastic(const Run& run);
 
 }  // namespace monograin

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "scenario/text_file.hpp"
+#include "stress/draw.hpp"
 
 namespace monograin {
 namespace {
@@ -93,27 +94,6 @@ std::string steps_text(const StressScene& scene, const std::vector<StressStep>& 
   return text + fmt::format("{}]\n", indent);
 }
 
-/// Columns of a table as CSV.
-std::string unloading_table() {
-  std::string text = "stiffness_over_shear,delta_max_over_R0,alpha,beta\n";
-  for (const double stiffness : {1.0, 50.0, 2000.0}) {
-    for (const double depth : {0.01, 0.25, 0.5}) {
-      text += fmt::format("{},{},{},{}\n", stiffness, depth, 1.5 + 0.001 * stiffness * depth, 1.0 + depth);
-    }
-  }
-  return text;
-}
-
-/// The model's own curve, raised as by hardening.
-std::string pressure_table() {
-  std::string text = "delta_max_over_R,pressure_over_yield\n";
-  for (int i = 0; i <= 60; ++i) {
-    const double x = i / 60.0;
-    text += fmt::format("{},{}\n", x, (1.0 + 1.75 * std::exp(-4.4 * x)) * (1.0 + 0.3 * x));
-  }
-  return text;
-}
-
 }  // namespace
 
 std::string scenario_text(const StressScene& scene) {
@@ -157,8 +137,11 @@ std::string scenario_text(const StressScene& scene) {
 }
 
 void write_stress_tables(const fs::path& folder) {
-  write_text_file(folder / k_stress_pressure_table, pressure_table());
-  write_text_file(folder / k_stress_unloading_table, unloading_table());
+  for (const Model& model : model_catalogue()) {
+    for (const OptionKey& option : model.options) {
+      if (option.example != nullptr) write_text_file(folder / example_file_name(option.name), option.example());
+    }
+  }
 }
 
 Scenario parse_stress_text(std::string_view text, const fs::path& tables) {

@@ -42,7 +42,7 @@ struct StressWall {
 };
 
 struct StressScene {
-  const ModelInfo* model = nullptr;
+  const Model* model = nullptr;
   double radius = 1.0;                         ///< R0 [m], where there is a particle
   double stress = 1.0;                         ///< S [Pa]
   std::map<std::string, double> material;      ///< stresses in S, surface energies in S R0
@@ -70,8 +70,5 @@ void write_stress_tables(const std::filesystem::path& folder);
 /// The checked scenario of a text, whose tables lie in a folder.
 /// @throws ScenarioError where the text is none
 [[nodiscard]] Scenario parse_stress_text(std::string_view text, const std::filesystem::path& tables);
-
-inline constexpr const char* k_stress_pressure_table = "pressure.csv";
-inline constexpr const char* k_stress_unloading_table = "unloading.csv";
 
 }  // namespace monograin

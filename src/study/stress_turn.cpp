@@ -15,7 +15,7 @@
 
 #include "catalogue.hpp"
 #include "scene/scene.hpp"
-#include "study/dice.hpp"
+#include "stress/dice.hpp"
 
 namespace monograin {
 namespace {

@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "catalogue.hpp"
+#include "scenario/model_input.hpp"
 #include "scene/scene.hpp"
-#include "study/dice.hpp"
+#include "stress/dice.hpp"
 #include "study/stress_rules.hpp"
 
 namespace monograin {
@@ -43,20 +44,20 @@ double factor_of(Step::Kind kind, const Magnification& by) {
   return 1.0;
 }
 
-double factor_of(Until::Quantity quantity, const Magnification& by) {
-  switch (quantity) {
-    case Until::Quantity::force:
+double factor_of(const Until& until, const Magnification& by) {
+  if (until.is_event()) return 1.0;
+  switch (until.quantity) {
+    case Quantity::force:
       return by.stress * by.length * by.length;
-    case Until::Quantity::displacement:
-    case Until::Quantity::contact_radius:
-    case Until::Quantity::apparent_radius:
+    case Quantity::displacement:
+    case Quantity::contact_radius:
+    case Quantity::apparent_radius:
       return by.length;
-    case Until::Quantity::pressure:
-    case Until::Quantity::stress_axial:
-    case Until::Quantity::stress_lateral:
+    case Quantity::pressure:
+    case Quantity::stress_axial:
+    case Quantity::stress_lateral:
       return by.stress;
-    case Until::Quantity::relative_density:
-    case Until::Quantity::event:
+    case Quantity::relative_density:
       break;
   }
   return 1.0;
@@ -111,12 +112,19 @@ Start start_of(const Scenario& scenario, const std::vector<Step>& steps, std::si
   return start;
 }
 
-/// At the start a wall stands at its gap, and a material point bears nothing; where a packing is, only its law knows.
+/// At the start a wall stands at its gap, and a model without walls where it says.
 Start rest_of(const Scenario& scenario, const Step& first, double gap) {
-  if (find_model(scenario.model)->has_walls()) return {.first = Target{Step::Kind::displacement, -gap}, .lateral = {}};
-  if (scenario.model != "material-point") return {};
-  Start start{.first = Target{first.kind, 0.0}, .lateral = {}};
-  if (first.lateral) start.lateral = Target{first.lateral->kind, 0.0};
+  const Model& model = *find_model(scenario.model);
+  if (model.has_walls()) return {.first = Target{Step::Kind::displacement, -gap}, .lateral = {}};
+  const auto known = [](const RestingChannel& rest, Step::Kind kind) -> std::optional<Target> {
+    if (control_of(kind) == rest.at_rest.control) return Target{kind, rest.at_rest.start};
+    return rest.bears_nothing ? std::optional(Target{kind, 0.0}) : std::nullopt;
+  };
+  Start start;
+  for (const RestingChannel& rest : model.channels(model_input(scenario))) {
+    if (!rest.is_lateral) start.first = known(rest, first.kind);
+    if (rest.is_lateral && first.lateral) start.lateral = known(rest, first.lateral->kind);
+  }
   return start;
 }
 
@@ -147,7 +155,7 @@ void move_out(WallSpec& wall, double distance, const std::vector<Step>& common) 
   for (Step& step : wall.steps) {
     if (step.kind == Step::Kind::displacement) step.target -= distance;
     for (Until& until : step.until) {
-      if (until.quantity == Until::Quantity::displacement) until.value -= distance;
+      if (until.is_of(Quantity::displacement)) until.value -= distance;
     }
   }
 }
@@ -157,8 +165,8 @@ void move_out(WallSpec& wall, double distance, const std::vector<Step>& common) 
 void change(Until& until, double share, double radius) {
   double& value = until.value;
   value *= 1.0 + share;
-  if (until.quantity == Until::Quantity::displacement) value += share * radius;
-  if (until.quantity != Until::Quantity::contact_radius) return;
+  if (until.is_of(Quantity::displacement)) value += share * radius;
+  if (!until.is_of(Quantity::contact_radius)) return;
   const double area = value * value + share * radius * radius;
   value = std::copysign(std::sqrt(std::abs(area)), area);
 }
@@ -199,7 +207,7 @@ Scenario magnified(Scenario scenario, const Magnification& by) {
       step.target *= factor_of(step.kind, by);
       if (step.rate) *step.rate *= factor_of(step.kind, by);
       if (step.lateral) step.lateral->target *= factor_of(step.lateral->kind, by);
-      for (Until& until : step.until) until.value *= factor_of(until.quantity, by);
+      for (Until& until : step.until) until.value *= factor_of(until, by);
     }
   });
   return scenario;

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "study/dice.hpp"
+#include "stress/dice.hpp"
 
 namespace monograin {
 

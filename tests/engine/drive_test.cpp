@@ -18,7 +18,7 @@
 namespace monograin::drive_test {
 namespace {
 
-using enum Until::Quantity;
+using enum Quantity;
 
 Scenario hertz_pair(std::vector<Step> steps, int points = 4) {
   return with_points(hertz_scenario(Configuration::simple, std::move(steps)), points);
@@ -283,7 +283,7 @@ TEST(Steps, OfWallsThatNeedDifferentTimesStopTheRun) {
 
 struct ConditionRow {
   const char* name;
-  Until::Quantity quantity;
+  Quantity quantity;
   const char* column;
   double value;
 };

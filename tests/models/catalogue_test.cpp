@@ -50,7 +50,7 @@ using Names = std::set<string_view>;
 
 TEST(Catalogue, FindsEveryModelByItsName) {
   ASSERT_FALSE(model_catalogue().empty());
-  for (const ModelInfo& model : model_catalogue()) EXPECT_EQ(find_model(model.name), &model) << model.name;
+  for (const Model& model : model_catalogue()) EXPECT_EQ(find_model(model.name), &model) << model.name;
 }
 
 TEST(Catalogue, HasNoModelOfAnUnknownName) {
@@ -59,7 +59,7 @@ TEST(Catalogue, HasNoModelOfAnUnknownName) {
 
 TEST(Catalogue, NamesEverythingOnce) {
   EXPECT_EQ(faulty_names(model_catalogue()), Names{});
-  for (const ModelInfo& model : model_catalogue()) {
+  for (const Model& model : model_catalogue()) {
     EXPECT_EQ(faulty_names(model.material), Names{}) << model.name;
     EXPECT_EQ(faulty_names(model.options), Names{}) << model.name;
     EXPECT_EQ(faulty_names(model.regimes), Names{}) << model.name;
@@ -68,7 +68,7 @@ TEST(Catalogue, NamesEverythingOnce) {
 }
 
 TEST(Catalogue, DescribesEverythingItNames) {
-  for (const ModelInfo& model : model_catalogue()) {
+  for (const Model& model : model_catalogue()) {
     EXPECT_FALSE(model.summary.empty() || model.source.empty()) << model.name;
     for (const auto& key : model.material) EXPECT_FALSE(key.meaning.empty()) << model.name << ": " << key.name;
     for (const auto& key : model.options) EXPECT_FALSE(key.meaning.empty()) << model.name << ": " << key.name;
@@ -77,8 +77,24 @@ TEST(Catalogue, DescribesEverythingItNames) {
   }
 }
 
+TEST(Catalogue, HasTheFunctionsThatTheWorkbenchCallsOfEveryModel) {
+  for (const Model& model : model_catalogue()) {
+    EXPECT_TRUE(model.bind != nullptr && model.draw != nullptr) << model.name;
+    EXPECT_EQ(model.channels != nullptr, !model.has_walls()) << model.name;
+    EXPECT_EQ(model.draw_program != nullptr, !model.has_walls()) << model.name;
+  }
+}
+
+TEST(Catalogue, HasAnExampleOfEveryFileThatAnOptionNames) {
+  for (const Model& model : model_catalogue()) {
+    for (const OptionKey& option : model.options) {
+      EXPECT_EQ(option.example != nullptr, option.kind == OptionKey::Kind::file) << model.name << "." << option.name;
+    }
+  }
+}
+
 TEST(Catalogue, OffersChoicesWhereItAsksForOneAndOnlyThere) {
-  for (const ModelInfo& model : model_catalogue()) {
+  for (const Model& model : model_catalogue()) {
     for (const OptionKey& option : model.options) {
       EXPECT_EQ(option.choices.empty(), option.kind != OptionKey::Kind::choice) << model.name << "." << option.name;
       EXPECT_EQ(Names(option.choices.begin(), option.choices.end()).size(), option.choices.size())
@@ -88,7 +104,7 @@ TEST(Catalogue, OffersChoicesWhereItAsksForOneAndOnlyThere) {
 }
 
 TEST(Catalogue, HasDefaultsInsideTheirRanges) {
-  for (const ModelInfo& model : model_catalogue()) {
+  for (const Model& model : model_catalogue()) {
     for (const QuantityKey& key : model.material) {
       EXPECT_TRUE(!key.default_value || key.range.contains(*key.default_value)) << model.name << ": " << key.name;
     }
@@ -100,14 +116,14 @@ TEST(Catalogue, HasDefaultsInsideTheirRanges) {
 
 /// Whether a model that has the preset knows the key.
 bool is_key_beside(const Preset& preset, std::string_view key) {
-  return std::ranges::any_of(model_catalogue(), [&](const ModelInfo& model) {
+  return std::ranges::any_of(model_catalogue(), [&](const Model& model) {
     const bool has_preset = std::ranges::find(model.presets, preset.name, &Preset::name) != model.presets.end();
     return has_preset && std::ranges::find(model.material, key, &QuantityKey::name) != model.material.end();
   });
 }
 
 TEST(Catalogue, HasPresetsOfKeysThatTheirModelsKnow) {
-  for (const ModelInfo& model : model_catalogue()) {
+  for (const Model& model : model_catalogue()) {
     EXPECT_EQ(faulty_names(model.presets), Names{}) << model.name;
     for (const Preset& preset : model.presets) {
       EXPECT_FALSE(preset.source.empty()) << preset.name;
@@ -127,7 +143,7 @@ TEST(Catalogue, HasPresetsOfKeysThatTheirModelsKnow) {
 }
 
 TEST(Catalogue, KnowsOnlyEventsOfTheContract) {
-  for (const ModelInfo& model : model_catalogue()) {
+  for (const Model& model : model_catalogue()) {
     for (const Term& event : model.events) {
       EXPECT_TRUE(contains(k_contract_events, event.name)) << model.name << ": " << event.name;
     }
@@ -135,7 +151,7 @@ TEST(Catalogue, KnowsOnlyEventsOfTheContract) {
 }
 
 TEST(Catalogue, KnowsOnlyWallConfigurationsOfTheLanguage) {
-  for (const ModelInfo& model : model_catalogue()) {
+  for (const Model& model : model_catalogue()) {
     if (!model.has_walls()) continue;
     EXPECT_FALSE(model.configurations.empty()) << model.name;
     for (const string_view name : model.configurations) {

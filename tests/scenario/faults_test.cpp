@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "catalogue.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/support.hpp"
 
@@ -22,8 +23,11 @@ struct FaultRow {
 };
 
 /// All that can be run.
-const std::string k_models =
-    "hertz, mdr, similarity, semimech, hardening, nonlocal, compressible, packing, material-point";
+const std::string k_models = [] {
+  std::string names;
+  for (const Model& model : model_catalogue()) names += (names.empty() ? "" : ", ") + std::string(model.name);
+  return names;
+}();
 
 class FaultTable : public ::testing::TestWithParam<FaultRow> {};
 
@@ -43,8 +47,8 @@ const std::vector<FaultRow> k_rows{
              {"die.toml:1:1: key 'model' is missing in the scenario; expected for example model = \"mdr\"",
               "die.toml:1:2: unknown key 'outptu' in the scenario; did you mean 'output'?",
               "die.toml:3:2: unknown key '_' in the scenario; expected one of title, model, particle, material, "
-              "loading, output, numerics, hertz, mdr, similarity, semimech, hardening, nonlocal, compressible, "
-              "packing, material-point"}},
+              "loading, output, numerics, " +
+                  k_models}},
     FaultRow{"UnknownRootKey",
              1,
              "titel = \"t\"",

@@ -148,7 +148,6 @@ TEST(Steps, HaveConditionsOfEveryQuantity) {
       "{ displacement = \"0.1 R0\", duration = 1, until = { force = \"-1 N\", displacement = \"0.05 R0\", pressure = "
       "\"1 MPa\","
       " contact_radius = \"R0\", apparent_radius = \"1.1 R0\", event = \"yield\" } }");
-  using Quantity = Until::Quantity;
   const std::vector<Until>& until = steps[0].until;
   ASSERT_EQ(until.size(), 6U);
   const auto expect = [&](std::size_t i, Quantity quantity, double value) {
@@ -160,7 +159,7 @@ TEST(Steps, HaveConditionsOfEveryQuantity) {
   expect(2, Quantity::pressure, 1e6);
   expect(3, Quantity::contact_radius, 1e-2);
   expect(4, Quantity::apparent_radius, 1.1e-2);
-  EXPECT_EQ(until[5].quantity, Quantity::event);
+  EXPECT_TRUE(until[5].is_event());
   EXPECT_EQ(until[5].event, "yield");
 }
 

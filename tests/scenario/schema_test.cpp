@@ -31,7 +31,7 @@ TEST(Schema, AcceptsEveryReadyScenario) {
 
 TEST(Schema, DescribesEveryKeyOfTheCatalogue) {
   const json schema = json::parse(scenario_schema());
-  for (const ModelInfo& model : model_catalogue()) {
+  for (const Model& model : model_catalogue()) {
     const json& properties = schema.at("definitions").at(std::string(model.name)).at("properties");
     for (const QuantityKey& key : model.material) {
       const json& property = properties.at("material").at("properties").at(std::string(key.name));

@@ -1,11 +1,11 @@
-#include "scene/nonlocal_model.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
+#include "scene/scene.hpp"
 #include "support/test_run.hpp"
 
 namespace monograin::nonlocal_model_test {
@@ -23,6 +23,15 @@ Scenario scenario_of(Configuration configuration, const std::string& terms, int 
   scenario.options = {
       {"terms", terms}, {"contact_radius_rule", std::string("closed")}, {"influence", std::string("half-space")}};
   return scenario;
+}
+
+/// Displacement over R0 of the first driven wall at the limit of applicability.
+std::optional<double> limit_of(const Scenario& scenario) {
+  for (const DerivedParameter& parameter : derived_parameters(scenario)) {
+    if (parameter.name != "limit_displacement") continue;
+    return std::isfinite(parameter.value) ? std::optional(parameter.value / scenario.radius) : std::nullopt;
+  }
+  return std::nullopt;
 }
 
 struct Limit {
@@ -52,7 +61,7 @@ constexpr Limit k_limits[] = {
 
 TEST(NonlocalLimitOfAScenario, IsTheOneComputedElsewhere) {
   for (const auto& [configuration, walls, terms, expected, tolerance] : k_limits) {
-    const auto limit = nonlocal_limit_of(scenario_of(configuration, terms, walls));
+    const auto limit = limit_of(scenario_of(configuration, terms, walls));
     ASSERT_TRUE(limit) << terms;
     EXPECT_NEAR(*limit, expected, tolerance + 1e-13) << terms << " " << walls;
   }
@@ -60,21 +69,21 @@ TEST(NonlocalLimitOfAScenario, IsTheOneComputedElsewhere) {
 
 TEST(NonlocalLimitOfAScenario, DoesNotDependOnHowFarTheProgramGoes) {
   Scenario scenario = scenario_of(Configuration::die, "4");
-  const double limit = *nonlocal_limit_of(scenario);
+  const double limit = *limit_of(scenario);
   for (const double target : {1e-3, 0.3, 0.9}) {
     scenario.loading.steps = {ramp(target)};
-    EXPECT_NEAR(*nonlocal_limit_of(scenario), limit, 1e-13) << target;
+    EXPECT_NEAR(*limit_of(scenario), limit, 1e-13) << target;
   }
 }
 
 TEST(NonlocalLimitOfAScenario, IsNoneWhereTheWallsMeetOrAForceIsPrescribedOrNothingMoves) {
-  EXPECT_FALSE(nonlocal_limit_of(scenario_of(Configuration::simple, "4")));
-  EXPECT_FALSE(nonlocal_limit_of(scenario_of(Configuration::die, "inf", 2, 0.1))) << "as wide as the particle before";
+  EXPECT_FALSE(limit_of(scenario_of(Configuration::simple, "4")));
+  EXPECT_FALSE(limit_of(scenario_of(Configuration::die, "inf", 2, 0.1))) << "as wide as the particle before";
   Scenario scenario = scenario_of(Configuration::die, "4");
   scenario.loading.steps = {force_ramp(0.1)};
-  EXPECT_FALSE(nonlocal_limit_of(scenario));
+  EXPECT_FALSE(limit_of(scenario));
   scenario.loading.steps = {hold()};
-  EXPECT_FALSE(nonlocal_limit_of(scenario));
+  EXPECT_FALSE(limit_of(scenario));
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ TEST(SymmetryClasses, KeepWallsApartThatMoveOrStartDifferently) {
   walls[1] = fixed({0, 0, -1});
   EXPECT_EQ(symmetry_classes(walls), (Classes{0, 1}));
   walls[1] = driven({0, 0, -1});
-  walls[1].steps[0] = until(walls[1].steps[0], Until::Quantity::force, 1.0);
+  walls[1].steps[0] = until(walls[1].steps[0], Quantity::force, 1.0);
   EXPECT_EQ(symmetry_classes(walls), (Classes{0, 1}));
 }
 

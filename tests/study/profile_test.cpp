@@ -82,7 +82,7 @@ TEST(ContactProfiles, SayWhyThereAreNone) {
 
 TEST(ContactProfiles, AreThereForTheModelsThatClaimThem) {
   std::size_t with_profile = 0;
-  for (const ModelInfo& model : model_catalogue()) {
+  for (const Model& model : model_catalogue()) {
     const std::filesystem::path file =
         fmt::format(MONOGRAIN_SOURCE_DIR "/scenarios/{}.toml", model.name == "mdr" ? "die" : model.name);
     ASSERT_TRUE(std::filesystem::exists(file)) << file;

@@ -53,7 +53,7 @@ TEST_F(StressScenes, AreScenariosOfEveryModelOfTheCatalogue) {
       ADD_FAILURE() << "scene " << index << ": " << error.what() << '\n' << text;
     }
   }
-  for (const ModelInfo& model : model_catalogue()) EXPECT_TRUE(models.contains(std::string(model.name))) << model.name;
+  for (const Model& model : model_catalogue()) EXPECT_TRUE(models.contains(std::string(model.name))) << model.name;
 }
 
 /// The history of a run with one number changed.

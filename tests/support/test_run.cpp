@@ -54,13 +54,13 @@ Step detach(double rate) {
   return step;
 }
 
-Step until(Step step, Until::Quantity quantity, double value) {
-  step.until.push_back({.quantity = quantity, .value = value, .event = {}});
+Step until(Step step, Quantity quantity, double value) {
+  step.until.push_back({.quantity = quantity, .value = value});
   return step;
 }
 
 Step until_event(Step step, const std::string& event) {
-  step.until.push_back({.quantity = Until::Quantity::event, .event = event});
+  step.until.push_back({.event = event});
   return step;
 }
 

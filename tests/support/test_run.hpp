@@ -25,7 +25,7 @@ inline constexpr const char* k_integrators[] = {"direct", "cvode-adams", "cvode-
 [[nodiscard]] Step hold(double duration = 1.0);
 [[nodiscard]] Step detach(double rate = 1.0);
 /// A step with a condition that ends it.
-[[nodiscard]] Step until(Step step, Until::Quantity quantity, double value);
+[[nodiscard]] Step until(Step step, Quantity quantity, double value);
 [[nodiscard]] Step until_event(Step step, const std::string& event);
 /// One ramp of unit duration to each displacement.
 [[nodiscard]] std::vector<Step> path(const std::vector<double>& displacements);

@@ -62,7 +62,7 @@ Step back_to(double axial, double rate, double stress) {
   Step step = strain(axial);
   step.duration.reset();
   step.rate = rate;
-  return until(step, Until::Quantity::stress_axial, stress);
+  return until(step, Quantity::stress_axial, stress);
 }
 
 /// What the line `path` of each file says.

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "compressible/material_point_info.hpp"
+#include "compressible/material_point_model.hpp"
 #include "compressible/properties.hpp"
 #include "support/test_run.hpp"
 

@@ -369,7 +369,7 @@ TEST(CompressibleRuns, HoldDetachAndEndByConditions) {
   const CompressibleNumbers numbers;
   const Walk walk(numbers);
   const std::vector<Step> steps{
-      until(ramp(0.4), Until::Quantity::force, 0.5), hold(), force_ramp(0.2), hold(), detach(), ramp(0.45)};
+      until(ramp(0.4), Quantity::force, 0.5), hold(), force_ramp(0.2), hold(), detach(), ramp(0.45)};
   const double dm = static_cast<double>(walk.displacement(0.5L, 0));
   for (const char* integrator : k_integrators) {
     const TestRun now = run(compressible_scenario(Configuration::simple, numbers, steps), integrator);

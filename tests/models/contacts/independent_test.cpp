@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <random>
 #include <string>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "contacts/independent.hpp"
+#include "contacts/model_of.hpp"
 #include "support/test_run.hpp"
 
 namespace monograin::contacts_test {
@@ -309,6 +311,36 @@ TEST(IndependentContacts, ShowNoColumnsThatTheLawDoesNotHave) {
   EXPECT_TRUE(now.record.history.find("stored_energy"));
   EXPECT_FALSE(now.record.history.find("axial.pressure"));
   EXPECT_FALSE(now.record.history.find("axial.contact_radius"));
+}
+
+Model unnamed() { return {.name = {}, .summary = {}, .source = {}, .material = {}, .domain = {}}; }
+Spring spring_of(const ModelInput& input) { return {input.material("stiffness")}; }
+Hysteretic hysteretic_of(const ModelInput& /*input*/) { return {}; }
+
+TEST(ModelOf, FillsInWhatFollowsFromTheLaw) {
+  const Model spring = contacts::model_of<spring_of>(unnamed());
+  EXPECT_EQ(spring.configurations.size(), k_wall_configurations.size());
+  EXPECT_EQ(spring.events.size(), contacts::k_events.size());
+  EXPECT_FALSE(spring.has_contact_area);
+  ASSERT_NE(spring.bind, nullptr);
+  const std::map<std::string, double> values{{"stiffness", 2.0}};
+  const std::map<std::string, OptionValue> options;
+  const std::map<std::string, SampledCurve> curves;
+  const ModelInput input{.radius = 3.0, .values = values, .options = options, .curves = curves};
+  const auto system = spring.bind(input, {{.name = "axial", .normals = {Eigen::Vector3d::UnitZ()}}}, {});
+  EXPECT_EQ(system->classes().size(), 1u);
+  EXPECT_EQ(system->unknowns().size(), 1u) << "the work alone: no force is prescribed";
+}
+
+TEST(ModelOf, KeepsTheWallSetsAndEventsThatAModelNames) {
+  constexpr std::array<std::string_view, 1> k_simple{"simple"};
+  constexpr std::array k_own{Term{"yield", "the law bends"}};
+  Model own = unnamed();
+  own.configurations = k_simple;
+  own.events = k_own;
+  const Model model = contacts::model_of<hysteretic_of>(own);
+  EXPECT_EQ(model.configurations.size(), 1u);
+  EXPECT_EQ(model.events.size(), 1u);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace {
 using std::numbers::pi;
 
 /// d/R of the first class at the limit, the other walls at first touch.
-double limit_of(const Model& model, const std::vector<ContactClass>& classes, double longest = 0.9) {
+double limit_of(const Formulation& model, const std::vector<ContactClass>& classes, double longest = 0.9) {
   Contacts contacts(model, classes, Centre::fixed);
   std::vector<double> y(classes.size(), 0.0);
   const double displacement =

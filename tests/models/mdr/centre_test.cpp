@@ -244,7 +244,7 @@ TEST(FreeCentre, LeavesADisplacementThatOfTheWallItselfUnderForce) {
 
 TEST(FreeCentre, MeetsAConditionByTheTravelOfTheWall) {
   for (const Scenario& particle : {hertz_particle(), mdr_particle()}) {
-    const Step step = until(ramp(0.1), Until::Quantity::displacement, 0.04);
+    const Step step = until(ramp(0.1), Quantity::displacement, 0.04);
     const TestRun result =
         run(with_free_centre(between(particle, {wall("top", {0, 0, 1}, {step}), wall("bottom", {0, 0, -1})})));
     EXPECT_NEAR(result.last("top.displacement"), 0.04, 1e-15) << particle.model;

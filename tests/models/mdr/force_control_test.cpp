@@ -214,15 +214,14 @@ TEST_P(MdrForceControl, HandsOverTheWallWhereItStands) {
 
 TEST_P(MdrForceControl, EndsAStepAtAnyQuantity) {
   struct Row {
-    Until::Quantity quantity;
+    Quantity quantity;
     const char* column;
     double value;
   };
-  for (const Row& row : {Row{Until::Quantity::force, "axial.force", 0.012},
-                         Row{Until::Quantity::displacement, "axial.displacement", 0.05},
-                         Row{Until::Quantity::pressure, "axial.pressure", 0.075},
-                         Row{Until::Quantity::contact_radius, "axial.contact_radius", 0.25},
-                         Row{Until::Quantity::apparent_radius, "apparent_radius", 1.0005}}) {
+  for (const Row& row :
+       {Row{Quantity::force, "axial.force", 0.012}, Row{Quantity::displacement, "axial.displacement", 0.05},
+        Row{Quantity::pressure, "axial.pressure", 0.075}, Row{Quantity::contact_radius, "axial.contact_radius", 0.25},
+        Row{Quantity::apparent_radius, "apparent_radius", 1.0005}}) {
     const TestRun result = run(simple({until(force_ramp(0.03), row.quantity, row.value), ramp(0.07)}), GetParam());
     ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
     // An event is as exact as the integrated radius.

@@ -15,11 +15,19 @@
 #include "models/plastic/cases.hpp"
 #include "models/plastic/scenarios.hpp"
 #include "plastic/law.hpp"
-#include "scene/plastic_law.hpp"
+#include "plastic/model.hpp"
+#include "scenario/model_input.hpp"
+#include "scene/scene.hpp"
 #include "support/test_run.hpp"
 
 namespace monograin::plastic::runs_test {
 namespace {
+
+Law law_of(const Scenario& scenario) {
+  const ModelInput input = model_input(scenario);
+  if (scenario.model == "semimech") return semimech_law(input);
+  return scenario.model == "hardening" ? hardening_law(input) : similarity_law(input);
+}
 
 using Walls = monograin::Configuration;
 
@@ -63,7 +71,7 @@ TEST(PlasticEvents, FallOnTheBoundariesOfTheLaw) {
     for (const bool hardens : {false, true}) {
       const double end = walls == Walls::simple ? 0.6 : walls == Walls::die ? 0.475 : 0.193;
       const Scenario scenario = hardens ? cellulose(walls, {ramp(end, end)}) : steel(walls, {ramp(end, end)});
-      const Law law = plastic_law_of(scenario);
+      const Law law = law_of(scenario);
       for (const char* integrator : k_integrators) {
         const TestRun now = run(scenario, integrator);
         for (const Boundary& boundary : boundaries(law)) {
@@ -79,7 +87,7 @@ TEST(PlasticEvents, FallOnTheBoundariesOfTheLaw) {
 }
 
 TEST(PlasticEvents, FallOnTheForcesAtTheBoundariesUnderAForce) {
-  const Law law = plastic_law_of(steel(Walls::die, {}));
+  const Law law = law_of(steel(Walls::die, {}));
   const double end = 1.2 * state_in(law, Regime::low_compressibility, 0.47).force;
   for (const char* integrator : k_integrators) {
     const TestRun now = run(steel(Walls::die, {force_ramp(end, end)}), integrator);
@@ -183,7 +191,7 @@ TEST(PlasticUnloading, BeginsWithTheForceOfTheLawAndTheStiffnessOfTheIndenter) {
   for (const Walls walls : k_walls) {
     const double largest = 0.18;
     const Scenario scenario = unloading_steel(walls, {ramp(largest), ramp(0.0)});
-    const Law law = plastic_law_of(scenario);
+    const Law law = law_of(scenario);
     const double modulus = 1000.0 / (1.0 - 0.09);
     const TestRun now = run(scenario);
     const ContactState state = std::visit([&](const auto& one) { return state_at(one, largest); }, law);
@@ -219,7 +227,7 @@ TEST(PlasticUnloading, GoesBackTheSameWayAndThenTheLawGoesOn) {
 }
 
 TEST(PlasticUnloading, OfAContactThatHasNotYieldedLosesNothing) {
-  const double yield = std::get<SemimechLaw>(plastic_law_of(steel(Walls::simple, {}))).yield_approach;
+  const double yield = std::get<SemimechLaw>(law_of(steel(Walls::simple, {}))).yield_approach;
   const TestRun now = run(unloading_steel(Walls::simple, {ramp(0.9 * yield), ramp(-0.1 * yield), ramp(0.8 * yield)}));
   EXPECT_TRUE(now.has_event("contact-lost"));
   EXPECT_TRUE(now.has_event("contact-made"));
@@ -229,7 +237,7 @@ TEST(PlasticUnloading, OfAContactThatHasNotYieldedLosesNothing) {
 }
 
 TEST(PlasticUnloading, IsTheSameUnderAForceInAllForms) {
-  const Law law = plastic_law_of(steel(Walls::hydrostatic, {}));
+  const Law law = law_of(steel(Walls::hydrostatic, {}));
   const double force = std::get<SemimechLaw>(law).fall.least * 1.2;
   const std::vector<Step> steps{force_ramp(force),
                                 force_ramp(0.3 * force),
@@ -260,7 +268,7 @@ TEST(SemimechWarnings, SayWhereAWholeRunIsTooStiff) {
 }
 
 TEST(PlasticUnloading, WarnsOfContactsThatRecoverMoreThanTheyWereCompressed) {
-  const double yield = std::get<SemimechLaw>(plastic_law_of(steel(Walls::simple, {}))).yield_approach;
+  const double yield = std::get<SemimechLaw>(law_of(steel(Walls::simple, {}))).yield_approach;
   const TestRun small = run(unloading_steel(Walls::simple, {ramp(1.05 * yield), ramp(0.9 * yield)}));
   // What it recovers more it also gives back as energy.
   EXPECT_TRUE(energy_warning(small.record.history, 1.0, "semimech", 0.0));
@@ -291,7 +299,7 @@ TEST(PlasticEnds, StopWhereTheWallsMeetOrTheCellIsFilled) {
 
 TEST(PlasticEnds, StopWhereAProgramGoesBackAfterACondition) {
   // Which way the second step goes is known only when the first has ended.
-  const TestRun now = run(steel(Walls::simple, {until(ramp(0.3), Until::Quantity::displacement, 0.2), ramp(0.1)}));
+  const TestRun now = run(steel(Walls::simple, {until(ramp(0.3), Quantity::displacement, 0.2), ramp(0.1)}));
   EXPECT_EQ(now.record.status, RunStatus::stopped);
   EXPECT_TRUE(contains(now.record.message, "unloading = \"mdr\" adds one")) << now.record.message;
 }
@@ -340,7 +348,7 @@ Scenario random_scenario(std::mt19937_64& generator) {
     const double nu = kind < 1.0 ? scenario.material.at("poisson_ratio") : uniform(generator, 0.0, 0.4999);
     scenario = unloading(scenario, youngs_modulus, nu);
   }
-  const Law law = plastic_law_of(scenario);
+  const Law law = law_of(scenario);
   const double end = 0.98 * std::min(limit(law), calibrated_end(law) + 0.1);
   double x = 0.0;
   const bool by_force = uniform(generator, 0.0, 1.0) < 0.5;
@@ -380,6 +388,17 @@ TEST(PlasticRandomScenes, AgreeInAllForms) {
       EXPECT_LE(distance(run(scenario, integrator), direct), 3e-7) << k << " " << integrator << "\n"
                                                                    << describe(scenario);
     }
+  }
+}
+
+TEST(PlasticRuns, MakeASceneOfAForceThatIsTheGreatestButForRoundOff) {
+  Scenario scenario = steel(Walls::simple, {force_ramp(1.0)});
+  const Law law = law_of(scenario);
+  const double greatest =
+      std::visit([](const auto& any) { return state_at(any, std::nextafter(1.0, 0.0)).force; }, law);
+  for (int k = -40; k <= 40; ++k) {
+    scenario.loading.steps = {force_ramp(greatest * (1.0 + k * std::numeric_limits<double>::epsilon()))};
+    EXPECT_NO_THROW(static_cast<void>(make_scene(scenario))) << k;
   }
 }
 

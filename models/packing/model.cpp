@@ -1,4 +1,4 @@
-#include "packing/info.hpp"
+#include "packing/model.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,16 +7,17 @@
 #include <stdexcept>
 #include <string>
 
+#include "packing/stress.hpp"
+#include "packing/system.hpp"
+#include "stress/checks.hpp"
+
 namespace monograin::packing {
 namespace {
 
 using std::string_view;
 
-constexpr Range k_positive{.lower = 0.0, .lower_is_open = true};
-constexpr Range k_not_negative{.lower = 0.0};
 constexpr Range k_inside_one{.lower = 0.0, .upper = 1.0, .lower_is_open = true, .upper_is_open = true};
 constexpr Range k_to_one{.lower = 0.0, .upper = 1.0, .lower_is_open = true};
-constexpr Range k_poisson{.lower = -1.0, .upper = 0.5, .lower_is_open = true, .upper_is_open = true};
 // Beyond 1 the run stops with an event.
 constexpr Range k_fraction{.lower = 0.0, .upper = 2.0, .lower_is_open = true};
 
@@ -31,7 +32,8 @@ constexpr std::array<string_view, 4> k_regime_words{"unjammed", "elastic", "elas
 constexpr std::array k_material{
     QuantityKey{"youngs_modulus", "Young's modulus of the particles", Dimension::stress, k_positive,
                 k_published.youngs_modulus},
-    QuantityKey{"poisson_ratio", "their Poisson's ratio", Dimension::none, k_poisson, k_published.poisson_ratio},
+    QuantityKey{"poisson_ratio", "their Poisson's ratio", Dimension::none, k_poisson_below_half,
+                k_published.poisson_ratio},
     QuantityKey{"yield_stress", "their uniaxial yield stress", Dimension::stress, k_positive, k_published_yield_stress},
     QuantityKey{"hardening_modulus",
                 "their plastic modulus d sigma_y/d eps_p; absent: they stay elastic",
@@ -150,11 +152,11 @@ class Destinations {
 };
 
 /// Steps of a plastic packing that go back. What a step leaves open by its condition is the run's to find out.
-void check_only_compaction(const Law& law, double initial, const ModelInput& given, std::vector<Objection>& found) {
+void check_only_compaction(const Law& law, double initial, const ModelInput& input, std::vector<Objection>& found) {
   Destinations destinations(law);
   double least = initial;
-  for (std::size_t k = 0; k < given.program.size(); ++k) {
-    const PlannedStep& step = given.program[k];
+  for (std::size_t k = 0; k < input.program.size(); ++k) {
+    const PlannedStep& step = input.program[k];
     if (!step.first) continue;
     const double next = destinations.of(*step.first, least);
     if (next < least * (1.0 - k_same)) {
@@ -178,15 +180,32 @@ const char* culprit(const Parameters& p) {
   return "jamming_fraction";
 }
 
-std::vector<Objection> objections(const ModelInput& given) {
-  const auto value = [&given](const char* key) -> std::optional<double> {
-    for (const auto* table : {&given.material, &given.numbers}) {
-      if (const auto found = table->find(key); found != table->end()) return found->second;
-    }
-    return std::nullopt;
-  };
-  const Parameters parameters =
-      parameters_from(value, given.choices.at("coupling"), given.toggles.at("continuous_jamming"));
+/// Parameters of a law from the keys in `[material]` and `[packing]`; without a hardening modulus the particles are
+/// elastic.
+Parameters parameters_of(const ModelInput& input) {
+  Parameters p;
+  p.youngs_modulus = input.material("youngs_modulus");
+  p.poisson_ratio = input.material("poisson_ratio");
+  if (const auto hardening = input.optional_material("hardening_modulus")) {
+    p.plasticity = {input.material("yield_stress"), *hardening};
+  }
+  p.stretch_exponent = input.number("f_E").value();
+  p.shear_exponent = input.number("f_G").value();
+  p.critical_porosity = input.number("critical_porosity").value();
+  p.coupling_factor = input.number("c1").value();
+  p.strain_offset = input.number("c2").value();
+  p.plastic_growth = input.number("alpha").value();
+  p.jamming_fraction = input.number("jamming_fraction").value();
+  p.coordination_at_jamming = input.number("Z_c").value();
+  p.coordination_at_reference = input.number("Z_1").value();
+  p.reference_fraction = input.number("Phi_1").value();
+  p.coupling = input.word("coupling") == k_couplings.front() ? Coupling::published : Coupling::consistent;
+  p.has_continuous_jamming = input.toggle("continuous_jamming");
+  return p;
+}
+
+std::vector<Objection> objections(const ModelInput& input) {
+  const Parameters parameters = parameters_of(input);
   std::vector<Objection> found;
   if (parameters.has_continuous_jamming) {
     const auto check_absent = [&](const char* key, double given_value, double default_value) {
@@ -199,14 +218,14 @@ std::vector<Objection> objections(const ModelInput& given) {
   }
   try {
     const Law law = make_law(parameters);
-    const double initial = value("initial_packing_fraction").value_or(law.jamming);
+    const double initial = initial_packing_fraction(input, law);
     static_cast<void>(state(law, std::max(initial, law.jamming)));
     if (initial >= law.end) {
       found.push_back({"initial_packing_fraction", "the stress of the packing is infinite from packing fraction " +
                                                        std::to_string(law.end) + " on; expected less"});
       return found;
     }
-    if (parameters.plasticity) check_only_compaction(law, initial, given, found);
+    if (parameters.plasticity) check_only_compaction(law, initial, input, found);
   } catch (const std::invalid_argument& error) {
     found.push_back({culprit(parameters), error.what()});
   } catch (const std::domain_error& error) {
@@ -215,45 +234,82 @@ std::vector<Objection> objections(const ModelInput& given) {
   return found;
 }
 
+std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> /*classes*/,
+                                   const Reach& /*reach*/) {
+  const Law law = law_of(input);
+  return std::make_unique<System>(law, initial_packing_fraction(input, law));
+}
+
+std::vector<RestingChannel> channels(const ModelInput& input) {
+  const double initial = initial_packing_fraction(input, law_of(input));
+  return {{.name = "packing", .at_rest = {initial, initial, Control::packing_fraction}}};
+}
+
+std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstStep& /*step*/) {
+  const Law law = law_of(input);
+  std::vector<DerivedParameter> list =
+      law.given.plasticity
+          ? material_parameters(
+                input,
+                {{"youngs_modulus", "Pa"}, {"poisson_ratio", "-"}, {"yield_stress", "Pa"}, {"hardening_modulus", "Pa"}})
+          : material_parameters(input, {{"youngs_modulus", "Pa"}, {"poisson_ratio", "-"}});
+  list.push_back({"shear_modulus", law.shear_modulus, "Pa", "G"});
+  list.push_back({"bulk_modulus", law.bulk_modulus, "Pa", "K"});
+  list.push_back({"modulus_at_one", law.modulus_at_one, "Pa", "M"});
+  list.push_back({"critical_porosity", law.given.critical_porosity, "-", "p_c"});
+  list.push_back({"c2", law.given.strain_offset, "-"});
+  list.push_back({"jamming", law.jamming, "-", "Phi_J"});
+  list.push_back({"initial_packing_fraction", initial_packing_fraction(input, law), "-"});
+  const State at_jamming = state(law, law.jamming);
+  list.push_back({"jamming_strain", at_jamming.strain, "-", "e(Phi_J)"});
+  list.push_back({"jamming_stress", at_jamming.stress, "Pa", "sigma(Phi_J)"});
+  const Branch strain = growing_branch(law, Measure::strain);
+  list.push_back({"greatest_strain", strain.greatest, "-"});
+  list.push_back({"greatest_strain_fraction", strain.end, "-"});
+  const Branch stress = growing_branch(law, Measure::stress);
+  list.push_back({"greatest_stress", stress.greatest, "Pa"});
+  list.push_back({"greatest_stress_fraction", stress.end, "-"});
+  if (!law.given.plasticity) return list;
+  list.push_back({"softening_fraction", softening(law), "-"});
+  list.push_back({"fully_plastic_fraction", full_plasticity(law), "-"});
+  return list;
+}
+
+bool is_elastic(const ModelInput& input) { return !input.optional_material("hardening_modulus"); }
+
 }  // namespace
 
 std::span<const string_view> regime_words() noexcept { return k_regime_words; }
 
-Parameters parameters_from(const std::function<std::optional<double>(const char*)>& value, string_view coupling,
-                           bool has_continuous_jamming) {
-  Parameters p;
-  p.youngs_modulus = value("youngs_modulus").value();
-  p.poisson_ratio = value("poisson_ratio").value();
-  if (const auto hardening = value("hardening_modulus")) p.plasticity = {value("yield_stress").value(), *hardening};
-  p.stretch_exponent = value("f_E").value();
-  p.shear_exponent = value("f_G").value();
-  p.critical_porosity = value("critical_porosity").value();
-  p.coupling_factor = value("c1").value();
-  p.strain_offset = value("c2").value();
-  p.plastic_growth = value("alpha").value();
-  p.jamming_fraction = value("jamming_fraction").value();
-  p.coordination_at_jamming = value("Z_c").value();
-  p.coordination_at_reference = value("Z_1").value();
-  p.reference_fraction = value("Phi_1").value();
-  p.coupling = coupling == k_couplings.front() ? Coupling::published : Coupling::consistent;
-  p.has_continuous_jamming = has_continuous_jamming;
-  return p;
+std::span<const OptionKey> options() noexcept { return k_options; }
+
+Law law_of(const ModelInput& input) { return make_law(parameters_of(input)); }
+
+double initial_packing_fraction(const ModelInput& input, const Law& law) {
+  return input.number("initial_packing_fraction").value_or(law.jamming);
 }
 
-ModelInfo packing_info() noexcept {
+Model model() noexcept {
   return {.name = "packing",
           .summary = "compaction of a packing of elastic or plastic discs, from jamming to no pores left",
           .source = "004_9c343b0bc13eca8e.txt, eqs. 5-22; signs corrected",
           .material = k_material,
           .options = k_options,
-          .configurations = {},
-          .has_free_centre = false,
           .regimes = k_regimes,
           .events = k_events,
           .domain = k_domain,
-          .takes_ludwik = false,
+          .drives = k_drives,
           .objections = objections,
-          .drives = k_drives};
+          .bind = bind,
+          .channels = channels,
+          .parameters = parameters,
+          .is_elastic = is_elastic,
+          .draw = draw,
+          .draw_program = draw_program,
+          .check = check,
+          .may_be_undefined = [](const CheckedRun&, std::size_t, string_view column) {
+            return column == "coordination_number";  // below jamming
+          }};
 }
 
 }  // namespace monograin::packing

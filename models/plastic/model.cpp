@@ -1,20 +1,27 @@
-#include "plastic/info.hpp"
+#include "plastic/model.hpp"
 
 #include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
 #include <stdexcept>
+#include <variant>
 
+#include "elastic/hertz.hpp"
+#include "plastic/ludwik.hpp"
+#include "plastic/parameters.hpp"
 #include "plastic/semimech.hpp"
+#include "plastic/system.hpp"
+#include "stress/checks.hpp"
+#include "stress/draw.hpp"
 
 namespace monograin::plastic {
 namespace {
 
 using std::string_view;
 
-constexpr Range k_positive{.lower = 0.0, .lower_is_open = true};
-constexpr Range k_poisson{.lower = -1.0, .upper = 0.5, .lower_is_open = true};
 constexpr Range k_share{.lower = 0.0, .upper = 1.0};
 
-constexpr std::array<string_view, 5> k_all_configurations{"simple", "die", "hydrostatic", "oblique-die", "walls"};
 constexpr std::array<string_view, 3> k_source_configurations{"simple", "die", "hydrostatic"};
 
 constexpr std::array<string_view, 2> k_unloading_rules{"none", "mdr"};
@@ -31,7 +38,7 @@ constexpr OptionKey k_unloading{
 
 constexpr std::array k_elastic_plastic_material{
     QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive, {}},
-    QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, k_poisson, {}},
+    QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, k_poisson_to_half, {}},
     QuantityKey{"yield_stress", "uniaxial yield stress", Dimension::stress, k_positive, {}},
 };
 
@@ -46,7 +53,7 @@ constexpr std::array k_power_law_material{
         "hardening_exponent", "exponent 1/m of the power law; 0: ideally plastic", Dimension::none, k_share, {}, true},
     QuantityKey{
         "youngs_modulus", "Young's modulus, for unloading and ludwik only", Dimension::stress, k_positive, {}, true},
-    QuantityKey{"poisson_ratio", "Poisson's ratio, for unloading only", Dimension::none, k_poisson, {}, true},
+    QuantityKey{"poisson_ratio", "Poisson's ratio, for unloading only", Dimension::none, k_poisson_to_half, {}, true},
 };
 
 constexpr std::array k_similarity_options{
@@ -200,85 +207,249 @@ constexpr std::array<string_view, 6> k_hardening_domain{
     k_energy,
 };
 
+// --- from a scenario to the law
+
+// Where the search for a condition's value begins, over the limit, at which pressures may be infinite; and where it
+// ends, over R0: shallower contacts are below resolution.
+constexpr double k_deepest = 0.9;
+constexpr double k_shallowest = 1e-12;
+// How closely the displacement is then known: next to the limit work may grow by orders over a tenth of the path.
+constexpr int k_bisections = 20;
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+
+/// Walls of other sets are each for themselves, in the one law that allows them.
+Configuration configuration_of(const ModelInput& input) {
+  if (input.configuration == "die") return Configuration::die;
+  return input.configuration == "hydrostatic" ? Configuration::hydrostatic : Configuration::simple;
+}
+
+SemimechMaterial semimech_material(const ModelInput& input) {
+  return make_semimech_material(input.material("youngs_modulus"), input.material("poisson_ratio"),
+                                input.material("yield_stress"));
+}
+
+bool can_unload(const ModelInput& input) { return input.word("unloading") != "none"; }
+
 // --- objections
 
-void require_elastic_constants(const ModelInput& given, std::vector<Objection>& found) {
-  if (given.choices.at("unloading") != "mdr") return;
+std::vector<Objection> power_law_objections(const ModelInput& input) {
+  std::vector<Objection> found;
+  if (!can_unload(input)) return found;
   for (const char* key : {"youngs_modulus", "poisson_ratio"}) {
-    if (given.material.contains(key)) continue;
+    if (input.optional_material(key)) continue;
     found.push_back({"unloading", std::string("unloading = \"mdr\" needs the elastic constants; expected ") + key +
                                       " in [material]"});
   }
-}
-
-std::vector<Objection> power_law_objections(const ModelInput& given) {
-  std::vector<Objection> found;
-  require_elastic_constants(given, found);
   return found;
 }
 
-std::vector<Objection> semimech_objections(const ModelInput& given) {
-  const auto& constants = given.material;
-  const Configuration configuration = configuration_named(given.configuration);
+std::vector<Objection> semimech_objections(const ModelInput& input) {
   try {
-    static_cast<void>(make_semimech(make_semimech_material(constants.at("youngs_modulus"),
-                                                           constants.at("poisson_ratio"), constants.at("yield_stress")),
-                                    configuration));
+    static_cast<void>(semimech_law(input));
   } catch (const std::invalid_argument& error) {
     // Too soft against its strength, or compressed to nothing, or not at all.
-    const double lambda = make_semimech_material(constants.at("youngs_modulus"), constants.at("poisson_ratio"),
-                                                 constants.at("yield_stress"))
-                              .modulus_over_yield;
-    return {{lambda < k_least_modulus_over_yield ? "yield_stress" : "poisson_ratio", error.what()}};
+    const bool is_soft = semimech_material(input).modulus_over_yield < k_least_modulus_over_yield;
+    return {{is_soft ? "yield_stress" : "poisson_ratio", error.what()}};
   }
   return {};
 }
 
+// --- the same functions for all three laws
+
+/// One law of this folder, and the key of the stress that it is counted in.
+template <Law (*make_law)(const ModelInput&)>
+struct ModelOf {
+  static constexpr const char* k_strength = make_law == semimech_law ? "yield_stress" : "strength";
+
+  static std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> classes,
+                                            const Reach& reach) {
+    Settings settings{.law = make_law(input),
+                      .initial_radius = input.radius,
+                      .strength = input.material(k_strength),
+                      .unloading = can_unload(input) ? Unloading::mdr : Unloading::none,
+                      .largest_displacement = reach.displacement,
+                      .largest_force = reach.force};
+    if (settings.unloading == Unloading::mdr) {
+      settings.poisson_ratio = input.material("poisson_ratio");
+      settings.composite_modulus = composite_modulus(input.material("youngs_modulus"), settings.poisson_ratio);
+    }
+    if (const auto* semimech = std::get_if<SemimechLaw>(&settings.law)) {
+      settings.out_of_range = outside_calibration(input.material("youngs_modulus"), input.material("poisson_ratio"),
+                                                  settings.strength, semimech->configuration);
+    }
+    return std::make_unique<System>(std::move(settings), std::move(classes));
+  }
+
+  static std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstStep& /*step*/) {
+    std::vector<DerivedParameter> list = material_parameters(input, {{"youngs_modulus", "Pa"},
+                                                                     {"poisson_ratio", "-"},
+                                                                     {"yield_stress", "Pa"},
+                                                                     {"strength", "Pa"},
+                                                                     {"hardening_exponent", "-"}});
+    add_law_parameters(make_law(input), list);
+    return list;
+  }
+
+  static Reach reach(const ModelInput& input, const Until& until) {
+    const Law law = make_law(input);
+    const double radius = input.radius;
+    const double strength = input.material(k_strength);
+    const double force_unit = strength * radius * radius;
+    const auto state_at_approach = [&](double x) {
+      return std::visit([x](const auto& any) { return state_at(any, x); }, law);
+    };
+    const auto reach_at = [&](double x) { return Reach{x * radius, state_at_approach(x).force * force_unit}; };
+    if (until.is_event()) {
+      for (const Boundary& boundary : boundaries(law)) {
+        if (boundary.event == until.event && boundary.beyond != Regime::undefined) return reach_at(boundary.approach);
+      }
+      return {k_infinity, k_infinity};
+    }
+    const auto is_met = [&](double x) {
+      if (until.quantity == Quantity::displacement) return x * radius >= until.value;
+      const ContactState contact = state_at_approach(x);
+      if (until.quantity == Quantity::force) return contact.force * force_unit >= until.value;
+      if (until.quantity == Quantity::pressure) return contact.pressure * strength >= until.value;
+      if (until.quantity == Quantity::contact_radius) return contact.contact_radius * radius >= until.value;
+      return until.value <= 0.0;
+    };
+    double first = 0.0;
+    // Pressures fall again further in.
+    for (double x = k_deepest * limit(law); x > 0.5 * k_shallowest; x *= 0.5) {
+      if (is_met(x)) first = x;
+    }
+    if (first == 0.0) return {k_infinity, k_infinity};
+    double before = 0.5 * first;
+    for (int k = 0; k < k_bisections; ++k) {
+      const double middle = std::midpoint(before, first);
+      (is_met(middle) ? first : before) = middle;
+    }
+    return reach_at(first);
+  }
+};
+
+PowerLaw power_law_of(const LudwikInput& ludwik) {
+  const HollomonMaterial fitted =
+      fit_hollomon({.youngs_modulus = ludwik.youngs_modulus,
+                    .yield_stress = ludwik.yield_stress,
+                    .hardening = ludwik.strength,
+                    .exponent_inverse = 1.0 / ludwik.exponent},
+                   ludwik.largest_strain, ludwik.fits_both ? HollomonFit::both : HollomonFit::exponent);
+  return {fitted.strength, fitted.exponent};
+}
+
+// --- the stress test
+
+/// Strength and exponent of a power law, and the elastic constants that unloading needs.
+ProgramBounds draw_power_law(Dice& dice, DrawnMaterial& drawn, std::span<const OptionKey> options) {
+  const double exponent = dice.uniform(0.0, 1.0);
+  drawn.values = {{"strength", 1.0}, {"hardening_exponent", dice.happens(0.7) ? exponent : std::round(exponent)}};
+  draw_choices(dice, options, drawn);
+  const bool unloads = drawn.options.contains("unloading");
+  if (unloads) {
+    drawn.values["youngs_modulus"] = dice.log_uniform(2.0, 1e6);
+    drawn.values["poisson_ratio"] = draw_poisson_ratio(dice, 0.5);
+  }
+  return {.force = 2.0, .only_loads = !unloads};
+}
+
+ProgramBounds draw_similarity(Dice& dice, DrawnMaterial& drawn) {
+  return draw_power_law(dice, drawn, k_similarity_options);
+}
+
+ProgramBounds draw_hardening(Dice& dice, DrawnMaterial& drawn) {
+  return draw_power_law(dice, drawn, k_hardening_options);
+}
+
+ProgramBounds draw_semimech(Dice& dice, DrawnMaterial& drawn) {
+  const bool is_enclosed = drawn.configuration != "simple";
+  const double poisson_ratio = draw_poisson_ratio(dice, is_enclosed ? 0.4999 : 0.5);
+  // From the softest that the law has, E/((1 - nu^2) Y) = 22.0931, just above it in some scenes.
+  const double lambda = dice.happens(0.1) ? 22.0931 : dice.log_uniform(22.0931, 1e6);
+  drawn.values = {{"youngs_modulus", lambda * (1.0 - poisson_ratio * poisson_ratio)},
+                  {"poisson_ratio", poisson_ratio},
+                  {"yield_stress", 1.0}};
+  draw_choices(dice, k_semimech_options, drawn);
+  return {.force = 2.0, .only_loads = !drawn.options.contains("unloading")};
+}
+
+/// Where a source has no law for a lateral contact, its columns are empty.
+bool lateral_may_be_undefined(const CheckedRun& /*run*/, std::size_t /*row*/, string_view column) {
+  return column.starts_with("lateral.");
+}
+
 }  // namespace
 
-ModelInfo similarity_info() noexcept {
+Law similarity_law(const ModelInput& input) {
+  return make_similarity(input.material("hardening_exponent"), input.toggle("curvature_correction")
+                                                                   ? SimilarityRadius::corrected
+                                                                   : SimilarityRadius::parabolic);
+}
+
+Law hardening_law(const ModelInput& input) {
+  return make_hardening(
+      input.material("hardening_exponent"), configuration_of(input),
+      input.word("minimum_condition") == "ideal" ? MinimumCondition::ideal : MinimumCondition::current);
+}
+
+Law semimech_law(const ModelInput& input) { return make_semimech(semimech_material(input), configuration_of(input)); }
+
+Model similarity_model() noexcept {
   return {.name = "similarity",
           .summary = "rigid-plastic power-law contact by the similarity solution, every contact for itself",
           .source = "000_34f0f4b3689a4570.txt (Biwa-Storakers law), section 2.2 and appendix B",
           .material = k_power_law_material,
           .options = k_similarity_options,
-          .configurations = k_all_configurations,
-          .has_free_centre = false,
+          .configurations = k_wall_configurations,
           .regimes = k_similarity_regimes,
           .events = k_similarity_events,
           .domain = k_similarity_domain,
-          .takes_ludwik = true,
-          .objections = power_law_objections};
+          .objections = power_law_objections,
+          .power_law_of = power_law_of,
+          .bind = ModelOf<similarity_law>::bind,
+          .parameters = ModelOf<similarity_law>::parameters,
+          .reach = ModelOf<similarity_law>::reach,
+          .can_unload = can_unload,
+          .draw = draw_similarity};
 }
 
-ModelInfo semimech_info() noexcept {
+Model semimech_model() noexcept {
   return {.name = "semimech",
           .summary = "elastic-ideally plastic particle by the semi-mechanistic law, from first touch to no pores left",
           .source = "000_34f0f4b3689a4570.txt, chapter 2",
           .material = k_elastic_plastic_material,
           .options = k_semimech_options,
           .configurations = k_source_configurations,
-          .has_free_centre = false,
           .regimes = k_semimech_regimes,
           .events = k_semimech_events,
           .domain = k_semimech_domain,
-          .takes_ludwik = false,
-          .objections = semimech_objections};
+          .objections = semimech_objections,
+          .bind = ModelOf<semimech_law>::bind,
+          .parameters = ModelOf<semimech_law>::parameters,
+          .reach = ModelOf<semimech_law>::reach,
+          .can_unload = can_unload,
+          .draw = draw_semimech,
+          .may_be_undefined = lateral_may_be_undefined};
 }
 
-ModelInfo hardening_info() noexcept {
+Model hardening_model() noexcept {
   return {.name = "hardening",
           .summary = "rigid-plastic particle that hardens by a power law, by the semi-mechanistic law",
           .source = "000_34f0f4b3689a4570.txt, chapter 3",
           .material = k_power_law_material,
           .options = k_hardening_options,
           .configurations = k_source_configurations,
-          .has_free_centre = false,
           .regimes = k_hardening_regimes,
           .events = k_hardening_events,
           .domain = k_hardening_domain,
-          .takes_ludwik = true,
-          .objections = power_law_objections};
+          .objections = power_law_objections,
+          .power_law_of = power_law_of,
+          .bind = ModelOf<hardening_law>::bind,
+          .parameters = ModelOf<hardening_law>::parameters,
+          .reach = ModelOf<hardening_law>::reach,
+          .can_unload = can_unload,
+          .draw = draw_hardening,
+          .may_be_undefined = lateral_may_be_undefined};
 }
 
 }  // namespace monograin::plastic

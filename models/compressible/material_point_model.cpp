@@ -1,23 +1,22 @@
-#include "compressible/material_point_info.hpp"
+#include "compressible/material_point_model.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <stdexcept>
 #include <vector>
 
+#include "compressible/material_point.hpp"
+#include "compressible/material_point_stress.hpp"
 #include "compressible/presets.hpp"
 #include "compressible/yield_surface.hpp"
+#include "system/number_text.hpp"
 
 namespace monograin::compressible {
 namespace {
 
 using std::string_view;
 
-constexpr Range k_positive{.lower = 0.0, .lower_is_open = true};
-constexpr Range k_not_negative{.lower = 0.0};
 constexpr Range k_density{.lower = 0.0, .upper = 1.0, .lower_is_open = true, .upper_is_open = true};
-constexpr Range k_poisson{.lower = -1.0, .upper = 0.5, .lower_is_open = true, .upper_is_open = true};
 
 constexpr std::array<string_view, 5> k_configurations{"simple", "die", "hydrostatic", "triaxial", "strain-path"};
 constexpr std::array<string_view, 3> k_yield_models{"vmdc", "dpc", "vm"};
@@ -98,13 +97,17 @@ constexpr std::array k_lateral_drives{
              Control::strain,
              Dimension::none,
              {},
-             "0.05"},
+             "0.05",
+             false,
+             "strain_lateral"},
     DriveKey{"lateral_stress",
              "lateral stress (triaxial; not given: kept)",
              Control::stress,
              Dimension::stress,
              {},
-             "\"-5 MPa\""},
+             "\"-5 MPa\"",
+             false,
+             "stress_lateral"},
 };
 constexpr std::array k_conditions{
     QuantityKey{"stress_axial", "axial stress, tension positive", Dimension::stress, {}, {}, true},
@@ -151,26 +154,22 @@ constexpr std::array<string_view, 9> k_domain{
 
 // --- objections
 
-std::string text_of(double value) {
-  char buffer[32];
-  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 6);
-  return {buffer, end};
-}
+std::string text_of(double value) { return number_text(value, 6); }
 
-void check_needed(const ModelInput& given, std::vector<Objection>& found) {
+void check_needed(const ModelInput& input, std::vector<Objection>& found) {
   for (const char* key : {"tensile_ratio", "eps0", "reference_density"}) {
-    if (given.material.contains(key)) continue;
-    found.push_back({key, std::string("yield_model = \"") + given.choices.at("yield_model") + "\" needs " + key +
+    if (input.optional_material(key)) continue;
+    found.push_back({key, std::string("yield_model = \"") + input.word("yield_model") + "\" needs " + key +
                               " in [material]; expected a value, or a preset that has it"});
   }
 }
 
-void check_program(const ModelInput& given, std::vector<Objection>& found) {
-  const string_view configuration = given.configuration;
+void check_program(const ModelInput& input, std::vector<Objection>& found) {
+  const string_view configuration = input.configuration;
   const bool is_path = configuration == "strain-path";
   const bool is_triaxial = configuration == "triaxial";
-  for (std::size_t i = 0; i < given.program.size(); ++i) {
-    const PlannedStep& step = given.program[i];
+  for (std::size_t i = 0; i < input.program.size(); ++i) {
+    const PlannedStep& step = input.program[i];
     const auto object = [&](const std::string& message) {
       found.push_back({"steps", message + " configuration = \"" + std::string(configuration) + "\"", i});
     };
@@ -188,21 +187,72 @@ void check_program(const ModelInput& given, std::vector<Objection>& found) {
   }
 }
 
-std::vector<Objection> objections(const ModelInput& given) {
+std::vector<Objection> objections(const ModelInput& input) {
   std::vector<Objection> found;
-  const string_view yield_model = given.choices.at("yield_model");
-  const double width = given.material.at("transition_width");
+  const string_view yield_model = input.word("yield_model");
+  const double width = input.material("transition_width");
   if (yield_model != "dpc" && width != 0.0) {
     found.push_back({"transition_width", "transition_width goes with yield_model = \"dpc\" only"});
   }
-  check_program(given, found);
-  if (yield_model != "vm" && given.configuration != "hydrostatic" && given.integrator == "direct") {
+  check_program(input, found);
+  if (yield_model != "vm" && input.configuration != "hydrostatic" && input.integrator == "direct") {
     found.push_back({"integrator",
                      "integrator = \"direct\" goes with yield_model = \"vm\" or configuration = "
                      "\"hydrostatic\" only; expected auto, or one that integrates"});
   }
-  if (yield_model != "vm") check_needed(given, found);
-  return found.empty() ? start_objections(parameters_from(given.material, yield_model)) : found;
+  if (yield_model != "vm") check_needed(input, found);
+  return found.empty() ? start_objections(parameters_of(input)) : found;
+}
+
+/// @throws std::invalid_argument where the material has no meaning at the start: a fit tries such numbers too
+std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> /*classes*/,
+                                   const Reach& /*reach*/) {
+  const Parameters m = parameters_of(input);
+  const std::vector<Objection> found = start_objections(m);
+  if (!found.empty()) throw std::invalid_argument(found.front().message);
+  return std::make_unique<MaterialPoint>(
+      MaterialPoint::Settings{.parameters = m,
+                              .yield_pressure = input.material("yield_pressure"),
+                              .is_hydrostatic = input.configuration == "hydrostatic"});
+}
+
+std::vector<RestingChannel> channels(const ModelInput& input) {
+  std::vector<RestingChannel> list{{.name = "axial", .at_rest = {0.0, 0.0, Control::strain}, .bears_nothing = true}};
+  if (input.configuration == "hydrostatic") return list;
+  const bool is_free = input.configuration == "simple" || input.configuration == "triaxial";
+  list.push_back({.name = "lateral",
+                  .at_rest = {0.0, 0.0, is_free ? Control::stress : Control::strain},
+                  .is_lateral = true,
+                  .bears_nothing = true});
+  return list;
+}
+
+/// Constants of the material where it starts.
+std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstStep& /*step*/) {
+  const Parameters m = parameters_of(input);
+  const double unit = input.material("yield_pressure");
+  const Properties at = properties_at(m, 0.0);
+  std::vector<DerivedParameter> list{{"yield_pressure", unit, "Pa", "sigma_y0"},
+                                     {"youngs_modulus", unit * at.youngs_modulus.value, "Pa", "E"},
+                                     {"poisson_ratio", at.poisson_ratio.value, "-", "nu"},
+                                     {"bulk_modulus", unit * at.bulk_modulus.value, "Pa", "K"},
+                                     {"shear_modulus", unit * at.shear_modulus.value, "Pa", "G"},
+                                     {"shear_strength", unit * at.shear_strength.value, "Pa", "Gamma"}};
+  if (!is_compressible(m.model)) return list;
+  list.push_back({"relative_density", at.relative_density, "-", "rho"});
+  list.push_back({"hydrostatic_strength", unit * at.yield_pressure.value, "Pa", "sigma_y"});
+  list.push_back({"tensile_strength", unit * at.tensile_strength.value, "Pa", "Lambda"});
+  list.push_back({"axis_ratio", at.axis_ratio.value, "-", "eps"});
+  list.push_back({"cap_centre", unit * at.cap_centre.value, "Pa", "pi3"});
+  if (m.model != YieldModel::dpc) return list;
+  const CapConstants cap = cap_constants(m, at);
+  list.push_back({"friction_slope", cap.friction_slope.value, "-", "tan pi6"});
+  list.push_back({"cohesion", unit * cap.cohesion.value, "Pa", "pi5"});
+  list.push_back({"arc_radius", unit * cap.arc_radius.value, "Pa", "pi8 C"});
+  list.push_back({"arc_centre", unit * cap.arc_centre.value, "Pa", "(1 - A) C"});
+  list.push_back({"flow_stretch", cap.flow_stretch.value, "-", "B"});
+  list.push_back({"transition_start", unit * cap.transition_start.value, "Pa", "p_i"});
+  return list;
 }
 
 }  // namespace
@@ -211,7 +261,7 @@ std::vector<Objection> start_objections(const Parameters& m) {
   std::vector<Objection> found;
   const Properties at = properties_at(m, 0.0);
   const std::string where = is_compressible(m.model) ? " at relative_density = " + text_of(m.relative_density) : "";
-  if (const double nu = at.poisson_ratio.value; !k_poisson.contains(nu)) {
+  if (const double nu = at.poisson_ratio.value; !k_poisson_below_half.contains(nu)) {
     found.push_back({"nu0", "Poisson's ratio is " + text_of(nu) + where + "; expected above -1 and below 0.5"});
   }
   if (!is_compressible(m.model)) return found;
@@ -239,16 +289,14 @@ std::vector<Objection> start_objections(const Parameters& m) {
   return found;
 }
 
-Parameters parameters_from(const std::map<std::string, double>& material, std::string_view yield_model) {
-  const auto value = [&](const char* key, double absent) {
-    const auto found = material.find(key);
-    return found == material.end() ? absent : found->second;
-  };
+Parameters parameters_of(const ModelInput& input) {
+  const auto value = [&](const char* key, double absent) { return input.optional_material(key).value_or(absent); };
+  const string_view yield_model = input.word("yield_model");
   Parameters m;
   m.model = yield_model == "vm" ? YieldModel::vm : yield_model == "dpc" ? YieldModel::dpc : YieldModel::vmdc;
-  m.stiffness_ratio = material.at("stiffness_ratio");
-  m.nu0 = material.at("nu0");
-  m.shear_ratio = material.at("shear_ratio");
+  m.stiffness_ratio = input.material("stiffness_ratio");
+  m.nu0 = input.material("nu0");
+  m.shear_ratio = input.material("shear_ratio");
   m.tensile_ratio = value("tensile_ratio", m.tensile_ratio);
   m.eps0 = value("eps0", m.eps0);
   m.eta = value("eta", 0.0);
@@ -263,24 +311,28 @@ Parameters parameters_from(const std::map<std::string, double>& material, std::s
   return m;
 }
 
-ModelInfo material_point_info() noexcept {
-  ModelInfo info{.name = "material-point",
-                 .summary = "compressible plastic material under prescribed strains and stresses",
-                 .source = "001_3cd85d3b0dc520cf.txt, sections 2 and 3 (Edmans and Sinka); Table 3 as corrected",
-                 .material = k_material,
-                 .options = {},
-                 .configurations = k_configurations,
-                 .regimes = k_regimes,
-                 .events = k_events,
-                 .domain = k_domain};
-  info.material_options = k_material_options;
-  info.presets = presets();
-  info.objections = objections;
-  info.drives = k_drives;
-  info.lateral_drives = k_lateral_drives;
-  info.conditions = k_conditions;
-  info.sign = "tension positive";
-  return info;
+Model material_point_model() noexcept {
+  return {.name = "material-point",
+          .summary = "compressible plastic material under prescribed strains and stresses",
+          .source = "001_3cd85d3b0dc520cf.txt, sections 2 and 3 (Edmans and Sinka); Table 3 as corrected",
+          .material = k_material,
+          .configurations = k_configurations,
+          .regimes = k_regimes,
+          .events = k_events,
+          .domain = k_domain,
+          .material_options = k_material_options,
+          .presets = presets(),
+          .sign = "tension positive",
+          .drives = k_drives,
+          .lateral_drives = k_lateral_drives,
+          .conditions = k_conditions,
+          .objections = objections,
+          .bind = bind,
+          .channels = channels,
+          .parameters = parameters,
+          .draw = draw_material_point,
+          .draw_program = draw_material_point_program,
+          .check = check_material_point};
 }
 
 }  // namespace monograin::compressible

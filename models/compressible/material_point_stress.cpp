@@ -1,0 +1,137 @@
+#include "compressible/material_point_stress.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compressible/material_point_model.hpp"
+#include "compressible/yield_surface.hpp"
+
+namespace monograin::compressible {
+
+ProgramBounds draw_material_point(Dice& dice, DrawnMaterial& drawn) {
+  const std::string model(dice.one_of<std::string_view>({"vmdc", "vmdc", "dpc", "vm"}));
+  const double stiffness = dice.happens(0.8) ? dice.log_uniform(30.0, 2000.0) : dice.log_uniform(2.0, 1e6);
+  drawn.values = {{"yield_pressure", 1.0},
+                  {"stiffness_ratio", stiffness},
+                  {"shear_ratio", dice.uniform(0.3, 3.0)},
+                  {"nu0", draw_poisson_ratio(dice, 0.4999)}};
+  drawn.options["yield_model"] = model;
+  const auto maybe = [&](const char* key, double value) {
+    if (dice.happens(0.6)) drawn.values[key] = value;
+  };
+  maybe("eta", dice.uniform(0.0, 17.0));
+  maybe("xi", dice.uniform(0.0, 10.0));
+  maybe("xi1", dice.uniform(0.0, 0.9));
+  if (model != "vm") {
+    const double density = dice.uniform(0.2, 0.9);
+    drawn.values["reference_density"] = density;
+    drawn.values["tensile_ratio"] = dice.log_uniform(1e-3, 0.5);
+    drawn.values["eps0"] = dice.uniform(0.1, 1.2);
+    maybe("zeta", dice.uniform(0.0, 19.0));
+    maybe("omega", dice.uniform(0.0, 20.0));
+    maybe("xi2", dice.uniform(0.0, 3.0));
+    if (dice.happens(0.3)) drawn.values["relative_density"] = dice.uniform(density, 0.99);
+    if (model == "dpc" && dice.happens(0.5)) drawn.values["transition_width"] = dice.log_uniform(1e-6, 0.1);
+  }
+  return {.deepest = 0.4, .force = 3.0, .tension = 0.5};
+}
+
+std::vector<DrawnStep> draw_material_point_program(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds,
+                                                   std::size_t count) {
+  const double usual = dice.happens(0.6) ? 1.0 : dice.log_uniform(1e-12, 1e12);
+  const bool is_path = drawn.configuration == "strain-path";
+  const bool is_triaxial = drawn.configuration == "triaxial";
+  const double size = dice.one_of({1e-6, 1e-2, 0.1, 1.0, 1.0});
+  const auto draw_strain = [&] { return bounds.deepest * size * dice.uniform(-1.0, 0.3); };
+  const auto draw_stress = [&] {
+    return dice.happens(0.2) ? bounds.tension * dice.uniform(0.0, 1.0) : -bounds.force * size * dice.uniform(0.0, 1.0);
+  };
+  std::vector<DrawnStep> program;
+  double present = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    DrawnStep step;
+    step.pace = draw_duration(dice, usual);
+    if (dice.happens(0.08)) {
+      program.push_back(step);
+      continue;
+    }
+    step.control = !is_path && dice.happens(0.3) ? Control::stress : Control::strain;
+    step.target = step.control == Control::stress ? draw_stress() : draw_strain();
+    if (step.control == Control::strain) {
+      if (dice.happens(0.3)) step.target = present + dice.one_of({1e-13, 1e-8, 1e-4}) * dice.uniform(-1.0, 1.0);
+      present = step.target;
+    }
+    if (is_path) {
+      // Also straight along an axis of the stress: no deviator, or no pressure.
+      const double of_axial = dice.one_of({0.0, 1.0, -0.5, dice.uniform(-1.0, 1.0)});
+      if (dice.happens(0.8)) step.lateral = {Control::strain, of_axial * step.target};
+    } else if (is_triaxial && dice.happens(0.5)) {
+      step.lateral = {Control::stress, draw_stress()};
+    }
+    if (!step.lateral && dice.happens(0.3)) give_rate(step);
+    if (dice.happens(0.15)) {
+      const std::string_view key =
+          dice.one_of<std::string_view>({"stress_axial", "stress_lateral", "relative_density", "event"});
+      if (key == "event") {
+        step.until_event = draw_event(dice, drawn.events);
+      } else {
+        step.until = key;
+        step.until_value = key == "relative_density" ? dice.uniform(0.2, 0.999) : draw_stress();
+      }
+    }
+    program.push_back(step);
+  }
+  return program;
+}
+
+void check_material_point(const CheckedRun& run, std::vector<Violation>& found) {
+  const HistoryRows& rows = run.rows;
+  const double tolerance = run.tolerance;
+  const double yield_pressure = run.input.material("yield_pressure");
+  // Stresses are moduli times strains; what is prescribed stands there without their round-off. Densities and strengths
+  // follow from the plastic strain by itself.
+  const Parameters law = parameters_of(run.input);
+  const std::size_t phi = rows.column("phi");
+  const double strain_round_off = run.round_off * std::max(1.0, rows.largest_magnitude(rows.column("strain_axial")));
+  const auto properties = [&](std::size_t row) { return properties_at(law, rows.at(row, phi)); };
+  const std::size_t p = rows.column("p");
+  const std::size_t s = rows.column("s");
+  const std::size_t axial = rows.column("stress_axial");
+  const std::size_t lateral = rows.column("stress_lateral");
+  const double scale = std::max(rows.largest_magnitude(p), rows.largest_magnitude(s));
+  check_rows(
+      run, "stress-invariants", "p and s do not belong to the axial and the lateral stress", found,
+      [&](std::size_t row) {
+        const double of_axial = rows.at(row, p) + 2.0 / 3.0 * rows.at(row, s) - rows.at(row, axial);
+        const double of_lateral = rows.at(row, p) - rows.at(row, s) / 3.0 - rows.at(row, lateral);
+        const Properties now = properties(row);
+        const double stiffness = yield_pressure * std::max({now.bulk_modulus.value, now.shear_modulus.value, 1.0});
+        return std::max(std::abs(of_axial), std::abs(of_lateral)) - tolerance * scale - strain_round_off * stiffness;
+      });
+  const std::size_t f = rows.column("yield_function");
+  check_rows(run, "yield", "the stress is outside the yield surface", found, [&](std::size_t row) {
+    const Properties now = properties(row);
+    const double of_p = rows.at(row, p) / yield_pressure;
+    const double of_s = rows.at(row, s) / yield_pressure;
+    const Yield y = yield_on(law, now, branch_at(law, now, of_p, of_s), of_p, of_s);
+    const double by_strain =
+        std::abs(y.f_p) * now.bulk_modulus.value + 3.0 * std::abs(y.f_s) * now.shear_modulus.value + std::abs(y.f_phi);
+    return rows.at(row, f) - tolerance - strain_round_off * by_strain;
+  });
+  if (!is_compressible(law.model)) {
+    check_growth(run, "phi", tolerance, found);
+    return;
+  }
+  // Solid is neither made nor lost.
+  const std::size_t density = rows.column("relative_density");
+  const std::size_t volumetric = rows.column("plastic_strain_volumetric");
+  const double initial = rows.at(0, density);
+  check_rows(run, "mass", "relative density and plastic strain do not belong together", found, [&](std::size_t row) {
+    const double solid = rows.at(row, density) * std::exp(rows.at(row, volumetric));
+    return std::abs(solid / initial - 1.0) - run.round_off;
+  });
+  check_rows(run, "density", "the relative density passes 1", found,
+             [&](std::size_t row) { return rows.at(row, density) - 1.0 - tolerance; });
+}
+
+}  // namespace monograin::compressible

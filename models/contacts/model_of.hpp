@@ -1,0 +1,41 @@
+/// A model whose contacts each depend on their own wall alone, from its law.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "contacts/independent.hpp"
+#include "system/model.hpp"
+
+namespace monograin::contacts {
+
+/// Events of contacts that pass no boundary of their law.
+inline constexpr std::array k_events{
+    Term{"contact-made", "a wall comes to touch the particle"},
+    Term{"contact-lost", "a wall leaves the particle"},
+    Term{"load-reversal", "a contact at its largest displacement starts to unload"},
+    Term{"reload", "a contact passes its old largest displacement"},
+    Term{"step-end", "end of a step of the program"},
+    Term{"until-met", "a step ended early by its condition"},
+};
+
+/// Fills in what follows from the law: the equations, wall sets and events where none are named, and whether contacts
+/// have areas.
+/// @tparam law_of  the law of a scenario, as IndependentContacts asks for it
+template <auto law_of>
+[[nodiscard]] Model model_of(Model model) {
+  using Law = decltype(law_of(std::declval<const ModelInput&>()));
+  if (model.configurations.empty()) model.configurations = k_wall_configurations;
+  if (model.events.empty()) model.events = k_events;
+  model.has_contact_area = requires(const Law& law, const typename Law::Branch& b) { law.contact(b, 1.0); };
+  model.bind = [](const ModelInput& input, std::vector<ContactClass> classes,
+                  const Reach& reach) -> std::unique_ptr<HybridSystem> {
+    return std::make_unique<IndependentContacts<Law>>(
+        law_of(input), Settings{input.radius, reach.displacement, reach.force}, std::move(classes));
+  };
+  return model;
+}
+
+}  // namespace monograin::contacts

@@ -1,0 +1,98 @@
+#include <array>
+
+#include "elastic/hertz.hpp"
+#include "hertz/law.hpp"
+#include "mdr/model.hpp"
+#include "stress/checks.hpp"
+#include "stress/draw.hpp"
+#include "system/model.hpp"
+
+namespace monograin::hertz {
+namespace {
+
+using std::string_view;
+
+constexpr std::array k_material{
+    QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive, {}},
+    QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, k_poisson_to_half, {}},
+};
+
+constexpr std::array k_regimes{
+    Term{"open", "the wall does not touch: no force"},
+    Term{"elastic", "Hertz contact"},
+};
+
+constexpr std::array k_events{
+    Term{"contact-made", "a wall comes to touch the particle"},
+    Term{"contact-lost", "a wall leaves the particle"},
+    Term{"load-reversal", "a contact starts to unload"},
+    Term{"reload", "a contact passes its old maximum overlap"},
+    Term{"retreat", "a contact starts to unload in the middle of a step"},
+    Term{"step-end", "end of a step of the program"},
+    Term{"until-met", "a step ended early by its condition"},
+    Term{"limit", "end of the equations' domain; the message says which"},
+};
+
+constexpr std::array<string_view, 2> k_domain{
+    "small contacts: contact radius well below the particle radius (no check)",
+    "the overlap stays below the diameter",
+};
+
+constexpr std::array<string_view, 1> k_skipped{"yield and growth of the apparent radius: not part of the model"};
+
+/// With a free centre, a Hertz particle is an MDR particle that neither yields nor grows.
+std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> classes, const Reach& reach) {
+  if (!input.centre_is_free) {
+    const double modulus = composite_modulus(input.material("youngs_modulus"), input.material("poisson_ratio"));
+    return std::make_unique<System>(WallLaw{modulus}, contacts::Settings{input.radius, reach.displacement, reach.force},
+                                    std::move(classes));
+  }
+  mdr::Settings settings = mdr::common_settings(input, reach);
+  settings.elastic_profile = mdr::ElasticProfile::parabola;
+  settings.radius_rule = mdr::RadiusRule::fixed;
+  return std::make_unique<mdr::System>(settings, std::move(classes));
+}
+
+ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) {
+  drawn.values = {{"youngs_modulus", 1.0}, {"poisson_ratio", draw_poisson_ratio(dice, 0.5)}};
+  if (dice.happens(0.05)) drawn.values["poisson_ratio"] = dice.one_of({-0.2, -0.99});
+  return {.force = 0.3};
+}
+
+/// Between elastic spheres and walls an overlap without a force is a contact that was missed.
+void check(const CheckedRun& run, std::vector<Violation>& found) {
+  for (const ContactClass& c : run.classes) {
+    const std::size_t overlap = run.rows.column(c.name + ".overlap");
+    const std::size_t force = run.rows.column(c.name + ".force");
+    check_rows(run, "missed-contact", c.name + ".overlap is past the surface, without a force", found,
+               [&](std::size_t row) {
+                 if (run.rows.at(row, force) != 0.0) return 0.0;
+                 return run.rows.at(row, overlap) / run.input.radius - run.tolerance;
+               });
+  }
+}
+
+}  // namespace
+
+Model model() noexcept {
+  return {.name = "hertz",
+          .summary = "elastic sphere between rigid walls, Hertz contacts at fixed radius",
+          .source = "Hertz (1882); 002_000df8fc37500451.txt, eq. 25",
+          .material = k_material,
+          .options = {},
+          .configurations = k_wall_configurations,
+          .has_free_centre = true,
+          .has_profile = true,
+          .regimes = k_regimes,
+          .events = k_events,
+          .domain = k_domain,
+          .skipped = k_skipped,
+          .bind = bind,
+          .parameters = mdr::parameters,
+          .reach = mdr::reach,
+          .is_elastic = [](const ModelInput&) { return true; },
+          .draw = draw,
+          .check = check};
+}
+
+}  // namespace monograin::hertz

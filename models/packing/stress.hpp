@@ -1,0 +1,18 @@
+/// How the stress test draws scenes of model `packing`, and what must hold of their histories.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "stress/checks.hpp"
+#include "stress/draw.hpp"
+
+namespace monograin::packing {
+
+/// Materials from the published set outwards. Not every set is admissible: the generator draws again.
+[[nodiscard]] ProgramBounds draw(Dice& dice, DrawnMaterial& drawn);
+[[nodiscard]] std::vector<DrawnStep> draw_program(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds,
+                                                  std::size_t count);
+void check(const CheckedRun& run, std::vector<Violation>& found);
+
+}  // namespace monograin::packing

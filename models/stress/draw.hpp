@@ -1,0 +1,67 @@
+/// What the stress test draws of a model: materials, options and programs, dimensionless. Lengths are over R0, stresses
+/// over a unit of stress S, forces over S R0^2.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "stress/dice.hpp"
+#include "system/model.hpp"
+
+namespace monograin {
+
+/// A material from the whole admissible space of a model, or from its edges.
+struct DrawnMaterial {
+  std::string_view configuration;              ///< empty where the model has none
+  std::span<const Term> events;                ///< of the model
+  std::map<std::string, double> values;        ///< stresses in S, surface energies in S R0
+  std::map<std::string, OptionValue> options;  ///< those that differ from their defaults, `[material]` ones included
+};
+
+/// What the programs of a scene are made of.
+struct ProgramBounds {
+  double deepest = 0.45;  ///< most displacement of an ordinary step in R0; or strain, or packing fraction
+  double force = 1.0;     ///< that a wall bears there, about, in S R0^2; or stress in S
+  double tension = 0.0;   ///< of the order of pull-off, in S R0^2
+  bool only_loads = false;
+  double start = 0.0;  ///< packing fraction at the start
+};
+
+/// A step of the program of a model without walls.
+struct DrawnStep {
+  std::optional<Control> control{};  ///< none: a hold
+  double target = 0.0;
+  std::optional<Prescription> lateral{};
+  double pace = 1.0;  ///< duration [s]; where it has a rate, that in units of the target per second
+  bool has_rate = false;
+  std::string until{};  ///< key of a condition; empty: none
+  double until_value = 0.0;
+  std::string until_event{};
+};
+
+/// Ordinary ones up to 0.49, and the edges.
+[[nodiscard]] double draw_poisson_ratio(Dice& dice, double upper);
+
+/// Words and switches of options, where they are not the defaults.
+void draw_choices(Dice& dice, std::span<const OptionKey> options, DrawnMaterial& drawn);
+
+/// Name of the file that stands for an option of kind file in drawn scenes: the stress test writes the option's example
+/// there.
+[[nodiscard]] std::string example_file_name(std::string_view option);
+
+/// The usual duration within a factor of ten, or any up to twelve orders of magnitude from a second.
+[[nodiscard]] double draw_duration(Dice& dice, double usual);
+
+/// Gives a step a rate instead of its duration.
+void give_rate(DrawnStep& step);
+
+[[nodiscard]] std::string_view draw_event(Dice& dice, std::span<const Term> events);
+
+/// Rows of numbers under a line of headings, as comma-separated text.
+[[nodiscard]] std::string csv_text(std::string_view headings, const std::vector<std::vector<double>>& rows);
+
+}  // namespace monograin
