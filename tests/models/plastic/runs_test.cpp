@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/integrator.hpp"
 #include "history/energy.hpp"
 #include "mdr/contact.hpp"
 #include "models/plastic/cases.hpp"
@@ -399,6 +400,17 @@ TEST(PlasticRuns, MakeASceneOfAForceThatIsTheGreatestButForRoundOff) {
   for (int k = -40; k <= 40; ++k) {
     scenario.loading.steps = {force_ramp(greatest * (1.0 + k * std::numeric_limits<double>::epsilon()))};
     EXPECT_NO_THROW(static_cast<void>(make_scene(scenario))) << k;
+  }
+}
+
+TEST(PlasticRuns, HoldAForceThatAConditionHasLedTo) {
+  const Scenario scenario = steel(Walls::simple, {until(ramp(0.3), Quantity::force, 1.7), force_ramp(1.7),
+                                                  until(ramp(0.35), Quantity::force, 2.3), force_ramp(2.3)});
+  for (const std::string_view integrator : integrator_names()) {
+    if (integrator == "explicit") continue;  // its steps lead beyond
+    const TestRun now = run(scenario, integrator);
+    EXPECT_EQ(now.record.status, RunStatus::complete) << integrator << ": " << now.record.message;
+    EXPECT_NEAR(now.last("axial.force"), 2.3, 1e-12) << integrator;
   }
 }
 
