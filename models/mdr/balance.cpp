@@ -146,7 +146,7 @@ void System::sum_up(double xi, double r) {
   sums_.force.setZero();
   sums_.stiffness.setZero();
   for (Line& line : lines_) {
-    if (is_first_touch) line.stiffness = line.firmness / least_firm();
+    if (is_first_touch) line.stiffness = line.tangent_stiffness / least_stiffness();
     sums_.force += line.force * line.direction;
     sums_.stiffness += line.stiffness * line.direction * line.direction.transpose();
   }
@@ -155,25 +155,25 @@ void System::sum_up(double xi, double r) {
 /// What a touching contact does to a free centre along its line.
 void System::push_line(std::size_t i, double r) {
   const double count = counts_[i];
-  const double firm = firmness(i);
+  const double stiffness = tangent_stiffness(i);
   const double along = on_lines_[i].along;
   const double speed = ramps_[i].end - ramps_[i].start;
   const Contact& c = now_[i].contact;
   Line& line = lines_[on_lines_[i].line];
   if (!is_slight(i)) {
     line.force += count * c.force * along;
-    line.force_by_time += count * (is_loaded(i) ? speed : firm * speed) * along;
+    line.force_by_time += count * (is_loaded(i) ? speed : stiffness * speed) * along;
   }
   if (!is_loaded(i)) {
     double by_radius = c.by_radius;
-    if (memory_[i].regime == Regime::unloading && memory_[i].edge == Edge::following && c.by_overlap < firm) {
+    if (memory_[i].regime == Regime::unloading && memory_[i].edge == Edge::following && c.by_overlap < stiffness) {
       // Where a dent begins moves with the radius, however little presses it.
-      const Contact pressed = firm_contact(i, r);
-      by_radius = firm * (pressed.by_radius / pressed.by_overlap);
+      const Contact pressed = stiff_contact(i, r);
+      by_radius = stiffness * (pressed.by_radius / pressed.by_overlap);
     }
-    line.force_by_radius += count * (firm + by_radius) * along;
+    line.force_by_radius += count * (stiffness + by_radius) * along;
     line.stiffness += count * c.by_overlap * along * along;
-    line.firmness += count * firm * along * along;
+    line.tangent_stiffness += count * stiffness * along * along;
   }
 }
 
@@ -202,10 +202,10 @@ void System::find_lines() {
 
 /// Stiffness by which a contact takes part in the motion of a free centre: that of contacts which only touch would be
 /// one of rounding, and zero at some of them; equal ones give the right motion for contacts of one law.
-double System::firmness(std::size_t i) const noexcept {
+double System::tangent_stiffness(std::size_t i) const noexcept {
   const double stiffness = now_[i].contact.by_overlap;
   const bool is_soft_at_first = memory_[i].regime != Regime::fully_plastic && memory_[i].edge != Edge::peeling;
-  return is_soft_at_first ? std::max(stiffness, least_firm()) : stiffness;
+  return is_soft_at_first ? std::max(stiffness, least_stiffness()) : stiffness;
 }
 
 /// Along the line that holds the centre most, across it along the one that does so most there, and so on: in these
@@ -270,8 +270,8 @@ System::Motion System::motion(bool growing) const {
             .growth = growing ? -sums_.by_time / sums_.by_radius : 0.0,
             .centre = Small::Zero()};
   }
-  const Small by_time = balance_step(&Line::firmness, &Line::force_by_time);
-  const Small by_radius = balance_step(&Line::firmness, &Line::force_by_radius);
+  const Small by_time = balance_step(&Line::tangent_stiffness, &Line::force_by_time);
+  const Small by_radius = balance_step(&Line::tangent_stiffness, &Line::force_by_radius);
   Motion result{.demand = -sums_.by_time - sums_.by_centre.dot(by_time),
                 .slope = sums_.by_radius + sums_.by_centre.dot(by_radius),
                 .growth = 0.0,
@@ -371,7 +371,7 @@ void System::find_balance(double xi, std::span<double> y) {
     const double noise = rounding_of_forces();
     Small step = balance_step(&Line::stiffness, &Line::force);
     // Contacts that are shallower than rounding are so soft that their tangents lead out of all bounds.
-    if (step.norm() > k_out_of_bounds) step = balance_step(&Line::firmness, &Line::force);
+    if (step.norm() > k_out_of_bounds) step = balance_step(&Line::tangent_stiffness, &Line::force);
     if (step.norm() == 0.0) {
       if (error <= noise) return;
       throw DomainError(Limit::centre_not_held);
@@ -407,7 +407,7 @@ void System::find_balance(double xi, std::span<double> y) {
   // Where edges peel, the search may also end beyond a fold, where the force is least.
   const double rounding = rounding_of_forces() + k_no_force * magnitude_of_forces();
   if (is_only_one ? way < 2.0 * k_round_off : sums_.force.norm() <= rounding) return;
-  if (std::abs(least_firmness()) < k_at_fold) throw DomainError(Limit::centre_fold);
+  if (std::abs(least_centre_stiffness()) < k_at_fold) throw DomainError(Limit::centre_fold);
   throw DomainError(Limit::no_solution, "the balance of forces on the free centre was not found");
 }
 
@@ -418,12 +418,12 @@ void System::find_balance(double xi, std::span<double> y) {
 /// @return whether it has found the equilibrium sought
 bool System::leave_saddle(double xi, std::span<double> y, bool is_balanced) {
   evaluate_cached(xi, y);
-  const auto is_sought = [&] { return least_firmness() >= 0.0 && !contact_beyond_pull_off(y[k_radius]); };
+  const auto is_sought = [&] { return least_centre_stiffness() >= 0.0 && !contact_beyond_pull_off(y[k_radius]); };
   if (is_balanced && is_sought()) return true;
   const std::optional<std::size_t> beyond = contact_beyond_pull_off(y[k_radius]);
   // Of what each of them would hold: what only touches is no stiffer at first than rounding, but would be pressed on
   // the way.
-  const Small weakest = (beyond ? directions_[*beyond] : weakest_hold().direction).normalized();
+  const Small weakest = (beyond ? directions_[*beyond] : centre_stiffness().direction).normalized();
   Small saddle = Small::Zero();
   for (int k = 0; k < free_count_; ++k) saddle[k] = y[centre_place(k)];
   const auto go = [&](double way) {
@@ -549,7 +549,7 @@ void System::grow(double xi, std::span<double> y) {
     Small by_radius = Small::Zero();
     if (free_count_ > 0) {
       to_balance = balance_step(&Line::stiffness, &Line::force);
-      by_radius = balance_step(&Line::firmness, &Line::force_by_radius);
+      by_radius = balance_step(&Line::tangent_stiffness, &Line::force_by_radius);
       slope += sums_.by_centre.dot(by_radius);
       defect += sums_.by_centre.dot(to_balance);
     }

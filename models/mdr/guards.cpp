@@ -94,7 +94,7 @@ void System::arm_guards(double xi, std::span<const double> y) {
   if (free_count_ > 0 && weakest_contact()) {
     guards_.push_back({.kind = k_unstable, .index = -1, .direction = -1, .name = "pull-off", .is_branch_end = true});
   } else if (free_count_ > 0 && std::ranges::any_of(memory_, is_plastic)) {
-    guards_.push_back({.kind = k_spent, .index = -1, .direction = -1, .name = "limit", .is_branch_end = true});
+    guards_.push_back({.kind = k_softened, .index = -1, .direction = -1, .name = "limit", .is_branch_end = true});
   }
 
   if (is_growing_) {
@@ -268,10 +268,10 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = growth_drive(now);
         break;
       case k_unstable:
-        values[g] = hold_guard(r);
+        values[g] = centre_stiffness_guard(r);
         break;
-      case k_spent:
-        values[g] = is_any_spent() ? least_firmness() - k_least_firmness : 1.0;
+      case k_softened:
+        values[g] = is_any_softened() ? least_centre_stiffness() - k_least_centre_stiffness : 1.0;
         break;
       case k_singular:
         values[g] = free_surface(now, r) - k_least_slope;

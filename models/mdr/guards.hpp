@@ -19,7 +19,7 @@ enum GuardKind : int {
   k_tension_falls,
   k_tension_rises,
   k_unstable,
-  k_spent,
+  k_softened,
   k_growth_on,
   k_growth_off,
   k_caps,
@@ -44,7 +44,7 @@ inline constexpr double k_least_slope = 1e-3;
 /// Stiffness of a free centre at which a fold counts as reached. At the fold the equilibrium ceases to exist: a guard
 /// that vanished there could not be located, because no state lies beyond. The remaining distance goes with the square
 /// of this.
-inline constexpr double k_least_firmness = 1e-5;
+inline constexpr double k_least_centre_stiffness = 1e-5;
 /// Stiffness of a plastic contact under force, over that of a shallow one, at which it counts as bearing the largest
 /// force that it can. At less its overlap would magnify errors of the radius a hundredfold and more.
 inline constexpr double k_last_stiffness = 1e-2;

@@ -256,7 +256,7 @@ void System::note_walls(double xi, std::span<double> y) const noexcept {
 
 /// A contact, or one as deep as rounding where it is shallower: under force it moves without bound as it is made, and
 /// what that does to the others is over before any of them has moved by more than rounding.
-Contact System::firm_contact(std::size_t i, double r) {
+Contact System::stiff_contact(std::size_t i, double r) {
   const Memory& memory = memory_[i];
   const bool is_dent = memory.regime == Regime::unloading;
   if (memory.edge != Edge::following || !(is_dent || memory.regime == Regime::elastic)) return now_[i].contact;
@@ -269,7 +269,7 @@ Contact System::firm_contact(std::size_t i, double r) {
 void System::set_rates_under_force(std::size_t i, double r) {
   Instant& now = now_[i];
   const double speed = ramps_[i].end - ramps_[i].start;
-  const Contact c = firm_contact(i, r);
+  const Contact c = stiff_contact(i, r);
   if (memory_[i].edge == Edge::peeling) {
     // Where it pulls off, a force holds it no longer: whatever the radius, the overlap is about that.
     const double critical = pull_off(i, frame(i, now.overlap, r).indenter).by_force.contact_radius;

@@ -362,7 +362,7 @@ void System::resolve_mode(double xi, std::span<double> y, std::optional<bool> gr
       // not be met.
       const auto weakest = weakest_contact();
       if (free_count_ == 0 || !weakest) break;
-      if (hold_guard(y[k_radius]) >= 0.0) break;
+      if (centre_stiffness_guard(y[k_radius]) >= 0.0) break;
       separate(*weakest, y[k_radius], y, log);
     }
     drop_evaluation();
@@ -458,7 +458,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         continue;
       case k_turn:
         // Through infinity: what holds the centre gives way, and no edge has turned.
-        if (const auto weakest = weakest_contact(); weakest && free_count_ > 0 && least_firmness() < k_at_fold)
+        if (const auto weakest = weakest_contact(); weakest && free_count_ > 0 && least_centre_stiffness() < k_at_fold)
           separate(*weakest, r, y, log);
         else
           stick(i, log);
@@ -478,9 +478,10 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         if (const auto weakest = weakest_contact()) separate(*weakest, r, y, log);
         others_fired = true;
         continue;
-      case k_spent:
+      case k_softened:
         end = DomainEnd{
-            event, {Limit::centre_softening, -1, "their stiffness over that of shallow contacts", least_firmness()}};
+            event,
+            {Limit::centre_softening, -1, "their stiffness over that of shallow contacts", least_centre_stiffness()}};
         continue;
       case k_follow:
         memory_[i].edge = Edge::following;

@@ -211,7 +211,7 @@ std::optional<Difficulty> System::difficulty(double xi, std::span<const double> 
   if (!(largest_overlap_expected() > k_shallow)) return Difficulty::below_resolution;
   if (free_count_ == 0 || !weakest_contact()) return std::nullopt;
   evaluate(xi, y);
-  if (least_firmness() >= k_hardly_firm) return std::nullopt;
+  if (least_centre_stiffness() >= k_soft_centre) return std::nullopt;
   return Difficulty::soft_centre;
 }
 

@@ -113,7 +113,7 @@ class System final : public HybridSystem {
   /// forces ends there with a force that is least, and not zero, and rates of the centre change sign through infinity.
   static constexpr double k_at_fold = 1e-2;
   /// Firmness below which a fold is so near that errors are magnified.
-  static constexpr double k_hardly_firm = 0.1;
+  static constexpr double k_soft_centre = 0.1;
   /// Share of the forces on a free centre that is rounding in their balance.
   static constexpr double k_no_force = 1e-9;
   /// Overlaps over R0 that are rounding of lengths of the order of R0.
@@ -178,10 +178,10 @@ class System final : public HybridSystem {
     double force_by_time = 0.0;
     double force_by_radius = 0.0;
     double stiffness = 0.0;
-    double firmness = 0.0;
+    double tangent_stiffness = 0.0;
     double last_stiffness = 0.0;  ///< of the last step towards the balance
-    double held = 0.0;            ///< work space: what holds the centre, such as the stiffness that is left; and
-    double unspent = 0.0;         ///< what it would be if no edge peeled and no contact were past its peak
+    double held = 0.0;            ///< work space: tangent stiffness of the centre along the line; and
+    double unsoftened = 0.0;      ///< what it would be if no edge peeled and no contact were softened past its peak
   };
 
   /// Mean normal of a class as a multiple of the direction of a line.
@@ -197,9 +197,10 @@ class System final : public HybridSystem {
     Small centre = Small::Zero();  ///< velocity of the centre
   };
 
-  /// How firmly the contacts hold a free centre in the direction in which they do so least.
-  struct Hold {
-    double firmness = 0.0;
+  /// Tangent stiffness of a free centre in its softest direction, over what it would be if no edge peeled and no
+  /// contact were softened past its peak.
+  struct CentreStiffness {
+    double value = 0.0;
     Small direction = Small::Zero();
   };
 
@@ -257,13 +258,15 @@ class System final : public HybridSystem {
   [[nodiscard]] Contact visible_contact(std::size_t i) const noexcept;
   void evaluate_contact(std::size_t i, double displacement, double r);
   [[nodiscard]] Contact contact_at(std::size_t i, double overlap, double r);
-  [[nodiscard]] Contact firm_contact(std::size_t i, double r);
+  [[nodiscard]] Contact stiff_contact(std::size_t i, double r);
   [[nodiscard]] double force_work(std::span<const double> y);
   void sum_up(double xi, double r);
   void push_line(std::size_t i, double r);
-  /// Stiffness of a contact as deep as rounding.
-  [[nodiscard]] double least_firm() const noexcept { return 2.0 * material_.composite_modulus * std::sqrt(k_shallow); }
-  [[nodiscard]] double firmness(std::size_t i) const noexcept;
+  /// Tangent stiffness of a contact as deep as round-off.
+  [[nodiscard]] double least_stiffness() const noexcept {
+    return 2.0 * material_.composite_modulus * std::sqrt(k_shallow);
+  }
+  [[nodiscard]] double tangent_stiffness(std::size_t i) const noexcept;
   void find_lines();
   [[nodiscard]] SmallMatrix stiffest_directions(double Line::*stiffness) const;
   [[nodiscard]] static Small components(const SmallMatrix& basis, const Line& line);
@@ -342,11 +345,11 @@ class System final : public HybridSystem {
   [[nodiscard]] std::optional<std::size_t> weakest_contact() const noexcept;
   [[nodiscard]] double unpeeled_stiffness(std::size_t i) const noexcept;
   [[nodiscard]] double stiffness_of_shallow() const noexcept;
-  [[nodiscard]] bool is_any_spent() const noexcept;
-  [[nodiscard]] Hold weakest_hold();
-  [[nodiscard]] double rounding_of_hold(const Hold& hold, double r);
-  [[nodiscard]] double hold_guard(double r);
-  [[nodiscard]] double least_firmness() { return weakest_hold().firmness; }
+  [[nodiscard]] bool is_any_softened() const noexcept;
+  [[nodiscard]] CentreStiffness centre_stiffness();
+  [[nodiscard]] double round_off_of(const CentreStiffness& softest, double r);
+  [[nodiscard]] double centre_stiffness_guard(double r);
+  [[nodiscard]] double least_centre_stiffness() { return centre_stiffness().value; }
   void check_adhesion(std::size_t i, double r);
   void start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);
   void separate(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);

@@ -190,7 +190,7 @@ bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi,
   }
   if (!in_reaction_cone(push, units)) return false;
   std::vector<double> weights;
-  for (const Drive& drive : drives) weights.push_back(counts_[drive.contact] * firmness(drive.contact));
+  for (const Drive& drive : drives) weights.push_back(counts_[drive.contact] * tangent_stiffness(drive.contact));
   const std::vector<double> overlaps = overlaps_under_push(push, normals, weights);
   bool has_left = false;
   for (std::size_t k = 0; k < drives.size(); ++k) {

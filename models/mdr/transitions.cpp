@@ -197,69 +197,69 @@ double System::unpeeled_stiffness(std::size_t i) const noexcept {
 double System::stiffness_of_shallow() const noexcept { return 2.0 * std::numbers::pi * material_.yield_stress; }
 
 /// True if a plastic contact is softened past its peak so far that it may no longer constrain a free centre.
-bool System::is_any_spent() const noexcept {
-  constexpr double k_spent_share = 0.1;
+bool System::is_any_softened() const noexcept {
+  constexpr double k_softened_share = 0.1;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     const bool is_plastic = memory_[i].regime == Regime::fully_plastic;
-    if (is_plastic && now_[i].contact.by_overlap < k_spent_share * stiffness_of_shallow()) return true;
+    if (is_plastic && now_[i].contact.by_overlap < k_softened_share * stiffness_of_shallow()) return true;
   }
   return false;
 }
 
-/// How firmly the contacts hold a free centre in the direction in which they do so least: their stiffness over what it
-/// would be if no edge peeled and no contact were past its peak. Zero where the equilibrium turns back.
-System::Hold System::weakest_hold() {
-  for (Line& line : lines_) line.held = line.unspent = 0.0;
+/// Tangent stiffness of a free centre in its softest direction, over what it would be if no edge peeled and no contact
+/// were softened past its peak. Zero where the equilibrium turns back.
+System::CentreStiffness System::centre_stiffness() {
+  for (Line& line : lines_) line.held = line.unsoftened = 0.0;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (!touches(memory_[i].regime) || is_loaded(i)) continue;
     const double along = on_lines_[i].along;
     const double count = counts_[i] * along * along;
     Line& line = lines_[on_lines_[i].line];
-    line.held += count * firmness(i);
-    // Of two alike that peel, or spend their strength, the stiffnesses end together, and with them the sum of what they
-    // are.
-    const double at_first = memory_[i].regime == Regime::fully_plastic ? stiffness_of_shallow() : firmness(i);
-    line.unspent += count * std::max(unpeeled_stiffness(i), at_first);
+    line.held += count * tangent_stiffness(i);
+    // Of two alike that peel, or soften past their peaks, the stiffnesses end together, and with them the sum of what
+    // they are.
+    const double at_first = memory_[i].regime == Regime::fully_plastic ? stiffness_of_shallow() : tangent_stiffness(i);
+    line.unsoftened += count * std::max(unpeeled_stiffness(i), at_first);
   }
   // The stiffness of one direction is not to be lost in the rounding of another's.
-  const SmallMatrix basis = stiffest_directions(&Line::unspent);
+  const SmallMatrix basis = stiffest_directions(&Line::unsoftened);
   SmallMatrix held = SmallMatrix::Zero();
-  SmallMatrix unspent = SmallMatrix::Zero();
+  SmallMatrix unsoftened = SmallMatrix::Zero();
   for (const Line& line : lines_) {
     const Small at = components(basis, line);
     held += line.held * at * at.transpose();
-    unspent += line.unspent * at * at.transpose();
+    unsoftened += line.unsoftened * at * at.transpose();
   }
   for (int k = 0; k < 3; ++k) {
-    if (unspent(k, k) == 0.0) held(k, k) = unspent(k, k) = 1.0;
+    if (unsoftened(k, k) == 0.0) held(k, k) = unsoftened(k, k) = 1.0;
   }
-  const Small scale = unspent.diagonal().cwiseSqrt().cwiseInverse();
+  const Small scale = unsoftened.diagonal().cwiseSqrt().cwiseInverse();
   const SmallMatrix numerator = scale.asDiagonal() * held * scale.asDiagonal();
-  const SmallMatrix denominator = scale.asDiagonal() * unspent * scale.asDiagonal();
+  const SmallMatrix denominator = scale.asDiagonal() * unsoftened * scale.asDiagonal();
   const Eigen::GeneralizedSelfAdjointEigenSolver<SmallMatrix> solver(numerator, denominator);
   return {solver.eigenvalues()[0], basis * scale.cwiseProduct(solver.eigenvectors().col(0))};
 }
 
-/// What rounding leaves uncertain of that next to a fold, where it goes with the root of the distance: beyond it there
-/// is no state, or one that holds the centre no more.
-double System::rounding_of_hold(const Hold& hold, double r) {
+/// Round-off of that stiffness next to a fold, where it goes with the root of the distance: beyond the fold there is no
+/// state, or one in which the contacts hold the centre no more.
+double System::round_off_of(const CentreStiffness& softest, double r) {
   double softening = 0.0;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     if (memory_[i].edge != Edge::peeling || is_loaded(i)) continue;
-    const double along = std::abs(directions_[i].dot(hold.direction));
+    const double along = std::abs(directions_[i].dot(softest.direction));
     const Frame at = frame(i, now_[i].overlap, r);
     const double modulus = material_.composite_modulus;
     const double of_one = peeling_softening(at, modulus, surface_energy_, now_[i].contact.contact_radius);
     softening += counts_[i] * std::abs(of_one) * along * along * along;
   }
-  return std::sqrt(2.0 * softening * hold.direction.norm() * rounding_of_forces());
+  return std::sqrt(2.0 * softening * softest.direction.norm() * rounding_of_forces());
 }
 
-/// What is left until the contacts hold a free centre no more.
-double System::hold_guard(double r) {
-  const Hold hold = weakest_hold();
-  const double rounding = std::min(rounding_of_hold(hold, r), k_at_fold);
-  return hold.firmness - std::max(k_least_firmness, rounding);
+/// Distance of that stiffness from the fold.
+double System::centre_stiffness_guard(double r) {
+  const CentreStiffness softest = centre_stiffness();
+  const double rounding = std::min(round_off_of(softest, r), k_at_fold);
+  return softest.value - std::max(k_least_centre_stiffness, rounding);
 }
 
 void System::resume_loading(std::size_t i) {

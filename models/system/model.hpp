@@ -186,7 +186,7 @@ struct ModelInput {
 struct Objection {
   std::string_view key;  ///< in `[material]`, in the model's own table, or `configuration`
   std::string message;
-  std::optional<std::size_t> step{};  ///< of the program: the place is this step's, not that of the key
+  std::optional<std::size_t> step{};  ///< of the program; the fault is shown at this step, not at the key
 };
 
 /// Walls of a scene and their ramps in the first step; a wall that holds has a ramp that ends where it starts.
@@ -231,6 +231,7 @@ struct PowerLaw {
   double exponent = 0.0;
 };
 
+// Of stress/draw.hpp, stress/checks.hpp and system/curve_procedure.hpp.
 class Dice;
 struct CheckedRun;
 struct CurveProcedure;
@@ -239,6 +240,7 @@ struct DrawnStep;
 struct ProgramBounds;
 struct Violation;
 
+/// A model: what users are told of it, and what the workbench does with it.
 struct Model {
   std::string_view name;
   std::string_view summary;
@@ -264,43 +266,43 @@ struct Model {
   /// What such a step can wait for, besides events.
   std::span<const QuantityKey> conditions{};
 
-  /// What is not computed because the model has no such thing, for the record of a run.
+  /// Parts of other models that this one does not have, for the record of a run.
   std::span<const std::string_view> skipped{};
-  /// A contact moves the surface elsewhere, so that an overlap need not be a gap that has closed.
+  /// True if a contact moves the surface under the other walls, so that their overlap need not be a contact.
   bool moves_surface = false;
-  /// A wall cannot pull: a step that prescribes a negative force ends the run.
+  /// True if a wall cannot pull: a step that prescribes a negative force ends the run.
   bool stops_when_pulled = false;
 
-  // --- functions; null: what stands behind the colon
+  // --- functions
 
-  /// What of the values does not go together: nothing.
+  /// Lists the values that do not go together. Null: any go together.
   std::vector<Objection> (*objections)(const ModelInput& input) = nullptr;
-  /// The power law that Ludwik's law stands for, under `strength` and `hardening_exponent`: the model does not take it.
+  /// Finds the `strength` and the `hardening_exponent` that stand for Ludwik's law. Null: the model has no `ludwik`.
   PowerLaw (*power_law_of)(const LudwikInput& ludwik) = nullptr;
-  /// The equations over contact classes, which are empty where there are no walls. Never null.
+  /// Makes the equations over contact classes, which are empty where there are no walls. Never null.
   std::unique_ptr<HybridSystem> (*bind)(const ModelInput& input, std::vector<ContactClass> classes,
                                         const Reach& reach) = nullptr;
-  /// What a model without walls starts from: it has walls.
+  /// Says where a model without walls starts. Null: the model has walls.
   std::vector<RestingChannel> (*channels)(const ModelInput& input) = nullptr;
-  /// Constants that follow from the material: none.
+  /// Lists constants that follow from the material. Null: there are none.
   std::vector<DerivedParameter> (*parameters)(const ModelInput& input, const FirstStep& step) = nullptr;
-  /// How far a contact is pressed, at most, that meets a condition for the first time; infinity where the model has to
-  /// be run to say so: infinite, but for what the condition itself says.
+  /// Says how far a contact is pressed, at most, that meets a condition for the first time; infinite where only a run
+  /// can tell. Null: a condition on a displacement or a force says it itself, others do not.
   Reach (*reach)(const ModelInput& input, const Until& until) = nullptr;
-  /// Whether walls may go back: they may.
+  /// Tells whether walls may go back. Null: they may.
   bool (*can_unload)(const ModelInput& input) = nullptr;
-  /// Whether the law goes back the way it came, so that all work is stored: it does not.
+  /// Tells whether unloading goes back on the loading curve, so that all work is stored. Null: it does not.
   bool (*is_elastic)(const ModelInput& input) = nullptr;
-  /// Material, options and bounds of a program for the stress test. Never null.
+  /// Draws material, options and bounds of a program for the stress test. Never null.
   ProgramBounds (*draw)(Dice& dice, DrawnMaterial& drawn) = nullptr;
-  /// The program of such a scene: that of walls.
+  /// Draws the program of such a scene. Null: a program of walls is drawn.
   std::vector<DrawnStep> (*draw_program)(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds,
                                          std::size_t count) = nullptr;
-  /// What must hold of every history of this model alone: nothing.
+  /// Checks what must hold of every history of this model alone. Null: nothing is checked beside what holds for all.
   void (*check)(const CheckedRun& run, std::vector<Violation>& found) = nullptr;
-  /// Whether a column may be without a value in a row: it may not.
+  /// Tells whether a column may be without a value in a row. Null: none may.
   bool (*may_be_undefined)(const CheckedRun& run, std::size_t row, std::string_view column) = nullptr;
-  /// The source's own procedure for finding parameters from a curve: none.
+  /// The source's own procedure for finding parameters from a curve. Null: there is none.
   const CurveProcedure* curve_procedure = nullptr;
 
   [[nodiscard]] bool has_walls() const noexcept { return drives.empty(); }

@@ -129,7 +129,7 @@ std::size_t count_to_pull(const Model& model, const std::vector<Channel>& channe
 }
 
 /// Index of the first step of a wall that goes back, where the model has no law for that; else their number.
-std::size_t first_way_back(const Program& program, std::span<const Step> steps) {
+std::size_t first_unloading_step(const Program& program, std::span<const Step> steps) {
   const auto can_unload = program.model.can_unload;
   if (steps.size() < 2 || can_unload == nullptr || can_unload(program.input)) return steps.size();
   double deepest = 0.0;  // at least
@@ -160,7 +160,7 @@ double largest_target(const Program& program, const std::vector<Channel>& channe
   // Steps that a run comes to: what lies beyond would make tolerances as large as what is reached.
   std::size_t count = count_to_pull(program.model, channels);
   for (const Channel& channel : channels) {
-    const std::size_t first = first_way_back(program, channel.program);
+    const std::size_t first = first_unloading_step(program, channel.program);
     if (first < channel.program.size()) count = std::min(count, first);
   }
   for (const Channel& channel : channels) {

@@ -110,27 +110,16 @@ class TableRows final : public HistoryRows {
   const Table& table_;
 };
 
-/// Calls a model's own function with its view of a run.
-template <class Function>
-auto as_model_sees(const Run& run, const Function& function) {
-  const TableRows rows(run.record.history);
-  const Scene scene = make_scene(run.scenario);
-  const ModelInput input = model_input(run.scenario);
-  return function(CheckedRun{input, rows, scene.classes, own_tolerance(run), k_stress_rounding});
-}
-
-void check_numbers(const Run& run, Violations& found) {
+void check_numbers(const Run& run, const CheckedRun& checked, Violations& found) {
   const Table& table = run.record.history;
+  const auto may_be_undefined = find_model(run.scenario.model)->may_be_undefined;
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
     const Column& column = table.columns()[c];
     if (column.holds_words()) continue;
     for (std::size_t row = 0; row < table.row_count(); ++row) {
       if (std::isfinite(table.at(row, c))) continue;
-      const auto may_be_undefined = find_model(run.scenario.model)->may_be_undefined;
-      const bool is_stated =
-          may_be_undefined != nullptr && std::isnan(table.at(row, c)) &&
-          as_model_sees(run, [&](const CheckedRun& checked) { return may_be_undefined(checked, row, column.name); });
-      if (is_stated) continue;
+      const bool may_be = may_be_undefined != nullptr && may_be_undefined(checked, row, column.name);
+      if (may_be && std::isnan(table.at(row, c))) continue;
       found.push_back({"no-number", fmt::format("{} = {} in row {}, t = {:.9g} s", column.name, table.at(row, c), row,
                                                 table.at(row, 0))});
       return;
@@ -448,8 +437,12 @@ double own_absolute_tolerance(const Run& run) {
 
 std::vector<Violation> check_run(const Run& run) {
   Violations found;
+  const TableRows rows(run.record.history);
+  const Scene scene = make_scene(run.scenario);
+  const ModelInput input = model_input(run.scenario);
+  const CheckedRun checked{input, rows, scene.classes, own_tolerance(run), k_stress_rounding};
   check_end(run, found);
-  check_numbers(run, found);
+  check_numbers(run, checked, found);
   check_forces(run, found);
   check_hold(run, found);
   check_energy(run, found);
@@ -458,9 +451,7 @@ std::vector<Violation> check_run(const Run& run) {
   // Fixed steps control no error, and have none of these.
   if (run.integrator.used == "explicit") return found;
   check_program(run, found);
-  if (const auto check = find_model(run.scenario.model)->check) {
-    as_model_sees(run, [&](const CheckedRun& checked) { check(checked, found); });
-  }
+  if (const auto check = find_model(run.scenario.model)->check) check(checked, found);
   return found;
 }
 
