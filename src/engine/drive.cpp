@@ -38,9 +38,6 @@ constexpr int k_most_events = 1000;
 constexpr double k_surest_rtol = 1e-11;
 // Durations of walls that end their steps together (relative).
 constexpr double k_same_duration = 1e-9;
-// A target of a control that takes over at which its channel already stands (relative): events are located to some
-// hundred roundings.
-constexpr double k_same_value = 1e-12;
 // An output time that counts as the program's end (relative).
 constexpr double k_same_instant = 1e-12;
 
@@ -222,11 +219,11 @@ class Drive {
       ramp = {present, present, control};
     };
     if (const auto control = control_of(step.kind)) {
-      const bool takes_over = ramp.control != *control;
       take_control(*control);
       ramp.end = step.target;
-      // What a condition, or another control, has led to is known but for round-off: a ramp to it goes nowhere.
-      if (takes_over && std::abs(ramp.end - ramp.start) <= k_same_value * std::abs(ramp.end)) ramp.start = ramp.end;
+      // The value at which a condition has ended the last step has the error of an integrator: a ramp to it goes
+      // nowhere.
+      if (guard_set_.has_ended_at(*control, channel, ramp.end)) ramp.start = ramp.end;
     } else if (step.kind == Step::Kind::detach) {
       take_control(Control::displacement);
       // One apparent radius back: farther than any contact stays closed.

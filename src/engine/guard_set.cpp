@@ -47,6 +47,15 @@ void GuardSet::note_met(std::span<const std::size_t> fired, double xi, std::span
   }
 }
 
+bool GuardSet::has_ended_at(Control control, int channel, double value) const noexcept {
+  return std::ranges::any_of(conditions_, [&](const Watched& watched) {
+    const Condition& condition = watched.condition;
+    const bool is_prescribed = (control == Control::force && condition.quantity == Quantity::force) ||
+                               (control == Control::displacement && condition.quantity == Quantity::displacement);
+    return watched.has_ended && is_prescribed && condition.channel == channel && equals_target(value, condition.target);
+  });
+}
+
 void GuardSet::renew() {
   directions_.clear();
   rooted_.clear();

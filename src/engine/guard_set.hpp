@@ -37,6 +37,10 @@ class GuardSet {
   /// targets. One that was passed in a jump ends the step, too, but does not hold where the next one begins.
   void note_met(std::span<const std::size_t> fired, double xi, std::span<const double> y);
 
+  /// True if the last step has ended where the quantity that a control prescribes a wall equals a value, by a condition
+  /// that says so.
+  [[nodiscard]] bool has_ended_at(Control control, int channel, double value) const noexcept;
+
   /// Value of a condition's quantity where the step began.
   [[nodiscard]] double value_at_begin(std::size_t condition) const { return conditions_[condition].begin; }
 
