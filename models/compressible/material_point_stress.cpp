@@ -46,15 +46,8 @@ std::vector<DrawnStep> draw_material_point_program(Dice& dice, const DrawnMateri
   const auto draw_stress = [&] {
     return dice.happens(0.2) ? bounds.tension * dice.uniform(0.0, 1.0) : -bounds.force * size * dice.uniform(0.0, 1.0);
   };
-  std::vector<DrawnStep> program;
   double present = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    DrawnStep step;
-    step.pace = draw_duration(dice, usual);
-    if (dice.happens(0.08)) {
-      program.push_back(step);
-      continue;
-    }
+  return draw_steps(dice, usual, count, [&](DrawnStep& step, std::size_t /*index*/) {
     step.control = !is_path && dice.happens(0.3) ? Control::stress : Control::strain;
     step.target = step.control == Control::stress ? draw_stress() : draw_strain();
     if (step.control == Control::strain) {
@@ -79,9 +72,7 @@ std::vector<DrawnStep> draw_material_point_program(Dice& dice, const DrawnMateri
         step.until_value = key == "relative_density" ? dice.uniform(0.2, 0.999) : draw_stress();
       }
     }
-    program.push_back(step);
-  }
-  return program;
+  });
 }
 
 void check_material_point(const CheckedRun& run, std::vector<Violation>& found) {

@@ -29,36 +29,56 @@ struct VisibleContact {
   double regime = 0.0;  ///< an index into the law's words
 };
 
-/// Which columns there are.
+/// A column of a contact: its name after that of the class, its unit, and its number.
+struct ContactColumn {
+  std::string_view name;
+  std::string_view unit;
+  double VisibleContact::*value;
+  bool needs_area = false;  ///< only of models that know the contact area
+};
+inline constexpr std::array k_contact_columns{
+    ContactColumn{"displacement", "m", &VisibleContact::displacement},
+    ContactColumn{"overlap", "m", &VisibleContact::overlap},
+    ContactColumn{"force", "N", &VisibleContact::force},
+    ContactColumn{"contact_radius", "m", &VisibleContact::contact_radius, true},
+    ContactColumn{"pressure", "Pa", &VisibleContact::pressure, true},
+    ContactColumn{"regime", "", &VisibleContact::regime}};
+
+/// Appends the columns of a contact class.
+inline void add_contact_columns(const std::string& contact_class, std::span<const std::string_view> regimes,
+                                std::vector<Observable>& columns, bool has_contact_area = true) {
+  for (const ContactColumn& column : k_contact_columns) {
+    if (column.needs_area && !has_contact_area) continue;
+    const bool is_regime = column.value == &VisibleContact::regime;
+    columns.push_back({contact_class + "." + std::string(column.name), std::string(column.unit),
+                       is_regime ? regimes : std::span<const std::string_view>()});
+  }
+}
+
+/// Columns of a particle whose contacts share nothing else: its energies, then those of every class.
 class Columns {
  public:
   Columns(bool has_stored_energy, bool has_contact_area, std::span<const std::string_view> regimes,
           std::span<const ContactClass> classes)
-      : energies_(std::span(k_energies).first(has_stored_energy ? k_energies.size() : 1)) {
-    for (const OfContact& column : k_of_contact) {
-      if (has_contact_area || !column.needs_area) of_contact_.push_back(column);
-    }
+      : energies_(std::span(k_energies).first(has_stored_energy ? k_energies.size() : 1)),
+        has_contact_area_(has_contact_area) {
     for (const OfParticle& column : energies_) observables_.push_back({std::string(column.name), "J", {}});
-    for (const ContactClass& c : classes) {
-      for (const OfContact& column : of_contact_) {
-        observables_.push_back(
-            {c.name + "." + std::string(column.name), std::string(column.unit),
-             column.value == &VisibleContact::regime ? regimes : std::span<const std::string_view>()});
-      }
-    }
+    for (const ContactClass& c : classes) add_contact_columns(c.name, regimes, observables_, has_contact_area);
   }
 
   [[nodiscard]] std::span<const Observable> observables() const noexcept { return observables_; }
 
   /// Writes one row.
-  /// @param contact  VisibleContact of a class by its index
+  /// @param contact_of  VisibleContact of a class by its index
   template <class ContactOf>
   void write(const Energies& energies, std::size_t classes, ContactOf&& contact_of, std::span<double> values) const {
     auto out = values.begin();
     for (const OfParticle& column : energies_) *out++ = energies.*column.value;
     for (std::size_t i = 0; i < classes; ++i) {
       const VisibleContact contact = contact_of(i);
-      for (const OfContact& column : of_contact_) *out++ = contact.*column.value;
+      for (const ContactColumn& column : k_contact_columns) {
+        if (has_contact_area_ || !column.needs_area) *out++ = contact.*column.value;
+      }
     }
   }
 
@@ -67,24 +87,12 @@ class Columns {
     std::string_view name;
     double Energies::*value;
   };
-  struct OfContact {
-    std::string_view name;
-    std::string_view unit;
-    double VisibleContact::*value;
-    bool needs_area;
-  };
   static constexpr std::array k_energies{OfParticle{"work", &Energies::work},
                                          OfParticle{"stored_energy", &Energies::stored},
                                          OfParticle{"dissipation", &Energies::dissipation}};
-  static constexpr std::array k_of_contact{OfContact{"displacement", "m", &VisibleContact::displacement, false},
-                                           OfContact{"overlap", "m", &VisibleContact::overlap, false},
-                                           OfContact{"force", "N", &VisibleContact::force, false},
-                                           OfContact{"contact_radius", "m", &VisibleContact::contact_radius, true},
-                                           OfContact{"pressure", "Pa", &VisibleContact::pressure, true},
-                                           OfContact{"regime", "", &VisibleContact::regime, false}};
 
   std::span<const OfParticle> energies_;
-  std::vector<OfContact> of_contact_;
+  bool has_contact_area_;
   std::vector<Observable> observables_;
 };
 

@@ -61,6 +61,7 @@ class IndependentContacts final : public HybridSystem {
         classes_(std::move(classes)),
         contacts_(classes_.size()),
         slots_(classes_.size()),
+        displacements_(classes_.size()),
         columns_(has_stored_energy(), k_has_contact_area, Law::k_regimes, classes_),
         scales_(scales_of(law_, settings.largest_displacement / length_, settings.largest_force / force_unit_)) {
     for (std::size_t i = 0; i < classes_.size(); ++i) {
@@ -87,7 +88,7 @@ class IndependentContacts final : public HybridSystem {
   [[nodiscard]] std::span<const Observable> observables() const noexcept override { return columns_.observables(); }
   [[nodiscard]] bool is_open(int contact_class) const noexcept override {
     const auto i = static_cast<std::size_t>(contact_class);
-    const Contact& c = contacts_[is_follower(i) ? leader_ : i];
+    const Contact& c = contacts_[leading(i)];
     return is_follower(i) ? law_.regime(c.branch(), c.touches()) == 0 : !c.touches();
   }
   [[nodiscard]] std::function<void()> checkpoint() override {
@@ -201,27 +202,28 @@ class IndependentContacts final : public HybridSystem {
   void observe(double xi, std::span<const double> y, std::span<double> values) override {
     const double energy_unit = force_unit_ * length_;
     Energies energies{.work = y[work_slot_] * energy_unit};
-    if constexpr (requires(Law & law) { law.note(1.0); }) {
-      for (std::size_t i = 0; i < contacts_.size(); ++i) law_.note(displacement(i, xi, y));
-    }
+    for (std::size_t i = 0; i < contacts_.size(); ++i) displacements_[i] = displacement(i, xi, y);
+    if constexpr (requires(Law & law) { law.note(1.0); })
+      std::ranges::for_each(displacements_, [&](double d) { law_.note(d); });
     if constexpr (k_can_store_energy) {
       if (has_stored_energy()) {
         energies.stored = energy_unit * sum([&](std::size_t i) {
-                            const double d = displacement(i, xi, y);
+                            const double d = displacements_[i];
                             return contacts_[i].bears(law_, d) ? law_.stored(contacts_[i].branch(), d) : 0.0;
                           });
       }
       energies.dissipation = energies.work - energies.stored;
     }
     columns_.write(
-        energies, contacts_.size(), [&](std::size_t i) { return visible(i, xi, y); }, values);
+        energies, contacts_.size(), [&](std::size_t i) { return visible(i, xi, displacements_[leading(i)]); }, values);
   }
 
   /// @throws std::logic_error for what the law does not have
   [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override {
     const bool is_of_area = quantity == Quantity::pressure || quantity == Quantity::contact_radius;
     if (is_of_area && !k_has_contact_area) throw std::logic_error("no such quantity at a wall of this model");
-    const VisibleContact shown = visible(static_cast<std::size_t>(contact_class), xi, y);
+    const auto i = static_cast<std::size_t>(contact_class);
+    const VisibleContact shown = visible(i, xi, displacement(leading(i), xi, y));
     return quantity_of({.force = shown.force,
                         .displacement = shown.displacement,
                         .pressure = shown.pressure,
@@ -254,7 +256,7 @@ class IndependentContacts final : public HybridSystem {
     return points;
   }
 
-  /// Of the whole program: every contact is as shallow when it is made.
+  /// The whole program is below resolution, because every contact is as shallow when it is made.
   [[nodiscard]] std::optional<Difficulty> difficulty(double /*xi*/, std::span<const double> /*y*/) override {
     constexpr double k_least_depth = 1e-12;
     return scales_.reach <= k_least_depth ? std::optional(Difficulty::below_resolution) : std::nullopt;
@@ -280,6 +282,8 @@ class IndependentContacts final : public HybridSystem {
 
   [[nodiscard]] const WallDrive& drive(std::size_t i) const noexcept { return contacts_[i].drive(); }
   [[nodiscard]] bool is_follower(std::size_t i) const noexcept { return k_has_followers && is_follower_[i]; }
+  /// The contact itself, or the leader that it follows.
+  [[nodiscard]] std::size_t leading(std::size_t i) const noexcept { return is_follower(i) ? leader_ : i; }
   [[nodiscard]] double stress_unit() const noexcept { return force_unit_ / (length_ * length_); }
   [[nodiscard]] bool has_stored_energy() const {
     if constexpr (requires(const Law& law) { law.has_stored_energy(); }) return law_.has_stored_energy();
@@ -300,8 +304,9 @@ class IndependentContacts final : public HybridSystem {
     return contacts_[i].displacement(law_, xi, y[slots_[i]]);
   }
 
-  [[nodiscard]] VisibleContact visible(std::size_t i, double xi, std::span<const double> y) {
-    VisibleContact shown = is_follower(i) ? visible_follower(xi, y) : visible_contact(i, xi, y);
+  /// @param d  displacement of the contact, or of the leader that it follows
+  [[nodiscard]] VisibleContact visible(std::size_t i, double xi, double d) {
+    VisibleContact shown = is_follower(i) ? visible_follower(d) : visible_contact(i, xi, d);
     shown.displacement = is_follower(i) ? drive(i).value(xi) : shown.overlap;
     shown.displacement *= length_;
     shown.overlap *= length_;
@@ -311,9 +316,8 @@ class IndependentContacts final : public HybridSystem {
     return shown;
   }
   /// In units of the law.
-  [[nodiscard]] VisibleContact visible_contact(std::size_t i, double xi, std::span<const double> y) const {
+  [[nodiscard]] VisibleContact visible_contact(std::size_t i, double xi, double d) const {
     const Contact& c = contacts_[i];
-    const double d = displacement(i, xi, y);
     VisibleContact shown{.overlap = d, .regime = static_cast<double>(law_.regime(c.branch(), c.touches()))};
     if (!c.bears(law_, d)) return shown;
     if constexpr (k_has_contact_area) {
@@ -327,10 +331,10 @@ class IndependentContacts final : public HybridSystem {
     }
     return shown;
   }
-  [[nodiscard]] VisibleContact visible_follower(double xi, std::span<const double> y) {
+  [[nodiscard]] VisibleContact visible_follower(double d) {
     if constexpr (requires(Law & law, const Branch& b) { law.follower(b, true, 1.0); }) {
       const Contact& leader = contacts_[leader_];
-      return law_.follower(leader.branch(), leader.touches(), displacement(leader_, xi, y));
+      return law_.follower(leader.branch(), leader.touches(), d);
     } else {
       return {};
     }
@@ -370,8 +374,9 @@ class IndependentContacts final : public HybridSystem {
   double force_unit_;  ///< [N]
   std::vector<ContactClass> classes_;
   std::vector<Contact> contacts_;
-  std::vector<std::size_t> slots_;  ///< in y, of the coordinate of each class that takes a force
-  std::vector<bool> is_follower_;   ///< a contact that follows the leader's displacement, and does not act back
+  std::vector<std::size_t> slots_;     ///< in y, of the coordinate of each class that takes a force
+  std::vector<double> displacements_;  ///< of a row
+  std::vector<bool> is_follower_;      ///< a contact that follows the leader's displacement, and does not act back
   std::size_t leader_ = 0;
   Columns columns_;
   Scales scales_;

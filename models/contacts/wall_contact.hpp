@@ -132,7 +132,7 @@ class WallContact {
     return slope > 0.0 ? drive_.rate() * prescribed / slope : 0.0;
   }
 
-  /// True if the contact bears a force that can be told from none. A prescribed displacement is known but for
+  /// True if the contact bears a force that differs from none. A prescribed displacement is known but for
   /// round-off: a wall that stands where it meets the particle, or parts from it, is not pressed by that.
   [[nodiscard]] bool bears(const Law& law, double d) const {
     constexpr double k_round_off = 4.0 * std::numeric_limits<double>::epsilon();

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "contacts/columns.hpp"
 #include "system/difficulty.hpp"
 #include "system/undefined.hpp"
 
@@ -143,7 +144,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
 
   observables_ = {{"work", "J", {}}, {"stored_energy", "J", {}}, {"margin", "-", {}}};
   for (const ContactClass& c : classes_) {
-    add_contact_columns(c.name, k_regime_words, observables_);
+    contacts::add_contact_columns(c.name, k_regime_words, observables_);
     observables_.push_back({c.name + ".contact_radius_deformed", "m", {}});
   }
   if (settings_.centre == Centre::free) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "contacts/columns.hpp"
 #include "elastic/hertz.hpp"
 #include "system/difficulty.hpp"
 
@@ -120,7 +121,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   observables_.push_back({"dissipation", "J", {}});
   const std::span<const std::string_view> words =
       yields ? std::span<const std::string_view>(k_regime_words) : std::span<const std::string_view>(k_hertz_words);
-  for (const ContactClass& c : classes_) add_contact_columns(c.name, words, observables_);
+  for (const ContactClass& c : classes_) contacts::add_contact_columns(c.name, words, observables_);
   if (settings_.centre_is_free) {
     for (const char* axis : {"centre_x", "centre_y", "centre_z"}) observables_.push_back({axis, "m", {}});
   }

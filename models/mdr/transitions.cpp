@@ -216,7 +216,7 @@ System::CentreStiffness System::centre_stiffness() {
     const double count = counts_[i] * along * along;
     Line& line = lines_[on_lines_[i].line];
     line.held += count * tangent_stiffness(i);
-    // Of two alike that peel, or soften past their peaks, the stiffnesses end together, and with them the sum of what
+    // Two contacts that are alike lose their stiffness together where they peel or soften, and with it the sum of what
     // they are.
     const double at_first = memory_[i].regime == Regime::fully_plastic ? stiffness_of_shallow() : tangent_stiffness(i);
     line.unsoftened += count * std::max(unpeeled_stiffness(i), at_first);

@@ -46,15 +46,8 @@ std::vector<DrawnStep> draw_program(Dice& dice, const DrawnMaterial& drawn, cons
   const double usual = dice.happens(0.6) ? 1.0 : dice.log_uniform(1e-12, 1e12);
   // Plastic packings are compacted only; targets of different kinds are in no order that is known here.
   const Control only = dice.one_of({Control::packing_fraction, Control::strain, Control::stress});
-  std::vector<DrawnStep> program;
   double present = 0.0;  // share of the path
-  for (std::size_t i = 0; i < count; ++i) {
-    DrawnStep step;
-    step.pace = draw_duration(dice, usual);
-    if (dice.happens(0.08)) {
-      program.push_back(step);
-      continue;
-    }
+  return draw_steps(dice, usual, count, [&](DrawnStep& step, std::size_t i) {
     step.control =
         bounds.only_loads ? only : dice.one_of({Control::packing_fraction, Control::strain, Control::stress});
     const double share = dice.happens(0.9) ? dice.uniform(0.0, 1.0) : dice.one_of({0.0, 1e-12, 1.0, 1.2});
@@ -70,9 +63,7 @@ std::vector<DrawnStep> draw_program(Dice& dice, const DrawnMaterial& drawn, cons
     }
     if (dice.happens(0.3)) give_rate(step);
     if (dice.happens(0.1)) step.until_event = draw_event(dice, drawn.events);
-    program.push_back(step);
-  }
-  return program;
+  });
 }
 
 void check(const CheckedRun& run, std::vector<Violation>& found) {

@@ -1,8 +1,9 @@
 #include "plastic/compression.hpp"
 
+#include "system/number_text.hpp"
+
 #include <array>
 #include <boost/math/tools/toms748_solve.hpp>
-#include <charconv>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -231,16 +232,10 @@ ValueAndSlope falling_pressure(const PressureFall& fall, double x) noexcept {
           .slope = -sign * drop * (1.0 + fall.exponent_excess) * power * slope / fall.peak};
 }
 
-std::string text(double number) {
-  std::array<char, 32> buffer{};
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
-  return {buffer.data(), result.ptr};
-}
-
 void require_approach_below(double x, double limit, Limit reason) {
   if (x < limit) return;
-  throw DomainError(
-      reason, "displacement/R0 = " + text(x) + " is not below " + text(limit) + ": " + std::string(sentence(reason)));
+  throw DomainError(reason, "displacement/R0 = " + number_text(x) + " is not below " + number_text(limit) + ": " +
+                                std::string(sentence(reason)));
 }
 
 }  // namespace monograin::plastic

@@ -234,9 +234,6 @@ template <class Force>
   return boost::math::quadrature::gauss<double, 30>::integrate(integrand, root(s - b), root(s - a));
 }
 
-/// The shortest decimal that reads back as the same number.
-[[nodiscard]] std::string text(double number);
-
 /// @throws std::domain_error unless x is below the limit; NaN is not
 void require_approach_below(double x, double limit, Limit reason);
 

@@ -1,5 +1,7 @@
 #include "plastic/hardening.hpp"
 
+#include "system/number_text.hpp"
+
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
@@ -36,9 +38,10 @@ ValueAndSlope reduced_low_compressibility_pressure(const HardeningLaw& law, doub
   const double y = cell_shrinkage(law.configuration, law.fall.end, x) / span;
   const double argument = rest * (1.0 + y);
   if (!(argument > 0.0)) {
-    throw DomainError(Limit::cell_filled, "displacement/R0 = " + text(x) +
+    throw DomainError(Limit::cell_filled, "displacement/R0 = " + number_text(x) +
                                               " is not between the least pressure and zero porosity at " +
-                                              text(law.zero_porosity) + " as the law of low compressibility demands");
+                                              number_text(law.zero_porosity) +
+                                              " as the law of low compressibility demands");
   }
   return {.value = law.fall.least - law.pressure_scale * std::log(argument),
           .slope = -2.0 * law.pressure_scale * y / argument * cell_slope(law.configuration, x) / span};
@@ -60,7 +63,7 @@ double small_force_coefficient(const HardeningLaw& law) noexcept {
 
 HardeningLaw make_hardening(double exponent, Configuration configuration, MinimumCondition condition) {
   if (!(exponent >= 0.0 && exponent <= 1.0))
-    throw std::invalid_argument("the hardening exponent 1/m must be in [0, 1], but is " + text(exponent));
+    throw std::invalid_argument("the hardening exponent 1/m must be in [0, 1], but is " + number_text(exponent));
   HardeningLaw law{
       .configuration = configuration, .exponent = exponent, .radius = hardening_radius_series(configuration, exponent)};
   const RadiusSeries minimum = condition == MinimumCondition::current ? law.radius : rigid_radius_series(configuration);
@@ -99,7 +102,7 @@ ContactState state_at(const HardeningLaw& law, double x) {
 
 ContactState state_in(const HardeningLaw& law, Regime regime, double x) {
   if (regime == Regime::open) return {};
-  if (!(x > 0.0)) throw std::domain_error("gamma/2R = " + text(x) + " is no contact");
+  if (!(x > 0.0)) throw std::domain_error("gamma/2R = " + number_text(x) + " is no contact");
   const auto [reduced, slope] = reduced_pressure(law, regime, x);
   const double half = 0.5 * law.exponent;
   const double factor = std::pow(x, half);
@@ -126,9 +129,10 @@ double approach_under(const HardeningLaw& law, double force, double near) {
     greatest = stiffening(last).force;
     if (force <= greatest) return approach_between(stiffening, end, last, force, end);
   }
-  throw DomainError(reason_of_limit(law), "a force of " + text(force) + " kappa R0^2 is above the greatest, " +
-                                              text(greatest) + " kappa R0^2 just below displacement/R0 = " +
-                                              text(law.limit) + ": " + std::string(sentence(reason_of_limit(law))));
+  throw DomainError(reason_of_limit(law), "a force of " + number_text(force) + " kappa R0^2 is above the greatest, " +
+                                              number_text(greatest) +
+                                              " kappa R0^2 just below displacement/R0 = " + number_text(law.limit) +
+                                              ": " + std::string(sentence(reason_of_limit(law))));
 }
 
 double impingement_approach(const HardeningLaw& law) { return impingement_approach(law.configuration, law.radius); }

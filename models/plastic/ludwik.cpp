@@ -9,12 +9,13 @@
 #include <string>
 
 #include "plastic/compression.hpp"
+#include "system/number_text.hpp"
 
 namespace monograin::plastic {
 namespace {
 
 void require(bool holds, const std::string& demand, double value) {
-  if (!holds) throw std::invalid_argument(demand + ", but is " + text(value));
+  if (!holds) throw std::invalid_argument(demand + ", but is " + number_text(value));
 }
 
 /// Integrals over the strain range of a material, in e = strain/range.
@@ -146,8 +147,8 @@ HollomonMaterial fit_hollomon(const LudwikMaterial& material, double greatest_st
   const double at_none = condition(0.0);
   const double at_linear = condition(1.0);
   if (at_none < -rounding || at_linear > rounding) {
-    throw std::domain_error("no exponent in [0, 1] fits best with the strength Y + K = " + text(strength) +
-                            " up to a strain of " + text(greatest_strain));
+    throw std::domain_error("no exponent in [0, 1] fits best with the strength Y + K = " + number_text(strength) +
+                            " up to a strain of " + number_text(greatest_strain));
   }
   const double mu = at_none <= rounding ? 0.0 : at_linear >= -rounding ? 1.0 : root(condition);
   return {.strength = strength, .exponent = mu, .residual = moments.residual(strength, mu)};

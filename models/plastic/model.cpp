@@ -254,18 +254,19 @@ std::vector<Objection> semimech_objections(const ModelInput& input) {
   return {};
 }
 
-// --- the same functions for all three laws
+// --- functions of all three laws
 
-/// One law of this folder, and the key of the stress that it is counted in.
-template <Law (*make_law)(const ModelInput&)>
-struct ModelOf {
-  static constexpr const char* k_strength = make_law == semimech_law ? "yield_stress" : "strength";
+double strength(const ModelInput& input) { return input.material("strength"); }
+double yield_stress(const ModelInput& input) { return input.material("yield_stress"); }
 
+/// A law of this folder, and the stress that its pressures are counted in.
+template <Law (*make_law)(const ModelInput&), double (*stress_unit)(const ModelInput&)>
+struct Functions {
   static std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> classes,
                                             const Reach& reach) {
     Settings settings{.law = make_law(input),
                       .initial_radius = input.radius,
-                      .strength = input.material(k_strength),
+                      .strength = stress_unit(input),
                       .unloading = can_unload(input) ? Unloading::mdr : Unloading::none,
                       .largest_displacement = reach.displacement,
                       .largest_force = reach.force};
@@ -293,7 +294,7 @@ struct ModelOf {
   static Reach reach(const ModelInput& input, const Until& until) {
     const Law law = make_law(input);
     const double radius = input.radius;
-    const double strength = input.material(k_strength);
+    const double strength = stress_unit(input);
     const double force_unit = strength * radius * radius;
     const auto state_at_approach = [&](double x) {
       return std::visit([x](const auto& any) { return state_at(any, x); }, law);
@@ -325,6 +326,15 @@ struct ModelOf {
       (is_met(middle) ? first : before) = middle;
     }
     return reach_at(first);
+  }
+
+  /// Completes what a model says of itself.
+  static Model of(Model model) {
+    model.bind = bind;
+    model.parameters = parameters;
+    model.reach = reach;
+    model.can_unload = can_unload;
+    return model;
   }
 };
 
@@ -395,61 +405,52 @@ Law hardening_law(const ModelInput& input) {
 Law semimech_law(const ModelInput& input) { return make_semimech(semimech_material(input), configuration_of(input)); }
 
 Model similarity_model() noexcept {
-  return {.name = "similarity",
-          .summary = "rigid-plastic power-law contact by the similarity solution, every contact for itself",
-          .source = "000_34f0f4b3689a4570.txt (Biwa-Storakers law), section 2.2 and appendix B",
-          .material = k_power_law_material,
-          .options = k_similarity_options,
-          .configurations = k_wall_configurations,
-          .regimes = k_similarity_regimes,
-          .events = k_similarity_events,
-          .domain = k_similarity_domain,
-          .objections = power_law_objections,
-          .power_law_of = power_law_of,
-          .bind = ModelOf<similarity_law>::bind,
-          .parameters = ModelOf<similarity_law>::parameters,
-          .reach = ModelOf<similarity_law>::reach,
-          .can_unload = can_unload,
-          .draw = draw_similarity};
+  return Functions<similarity_law, strength>::of(
+      {.name = "similarity",
+       .summary = "rigid-plastic power-law contact by the similarity solution, every contact for itself",
+       .source = "000_34f0f4b3689a4570.txt (Biwa-Storakers law), section 2.2 and appendix B",
+       .material = k_power_law_material,
+       .options = k_similarity_options,
+       .configurations = k_wall_configurations,
+       .regimes = k_similarity_regimes,
+       .events = k_similarity_events,
+       .domain = k_similarity_domain,
+       .objections = power_law_objections,
+       .power_law_of = power_law_of,
+       .draw = draw_similarity});
 }
 
 Model semimech_model() noexcept {
-  return {.name = "semimech",
-          .summary = "elastic-ideally plastic particle by the semi-mechanistic law, from first touch to no pores left",
-          .source = "000_34f0f4b3689a4570.txt, chapter 2",
-          .material = k_elastic_plastic_material,
-          .options = k_semimech_options,
-          .configurations = k_source_configurations,
-          .regimes = k_semimech_regimes,
-          .events = k_semimech_events,
-          .domain = k_semimech_domain,
-          .objections = semimech_objections,
-          .bind = ModelOf<semimech_law>::bind,
-          .parameters = ModelOf<semimech_law>::parameters,
-          .reach = ModelOf<semimech_law>::reach,
-          .can_unload = can_unload,
-          .draw = draw_semimech,
-          .may_be_undefined = lateral_may_be_undefined};
+  return Functions<semimech_law, yield_stress>::of(
+      {.name = "semimech",
+       .summary = "elastic-ideally plastic particle by the semi-mechanistic law, from first touch to no pores left",
+       .source = "000_34f0f4b3689a4570.txt, chapter 2",
+       .material = k_elastic_plastic_material,
+       .options = k_semimech_options,
+       .configurations = k_source_configurations,
+       .regimes = k_semimech_regimes,
+       .events = k_semimech_events,
+       .domain = k_semimech_domain,
+       .objections = semimech_objections,
+       .draw = draw_semimech,
+       .may_be_undefined = lateral_may_be_undefined});
 }
 
 Model hardening_model() noexcept {
-  return {.name = "hardening",
-          .summary = "rigid-plastic particle that hardens by a power law, by the semi-mechanistic law",
-          .source = "000_34f0f4b3689a4570.txt, chapter 3",
-          .material = k_power_law_material,
-          .options = k_hardening_options,
-          .configurations = k_source_configurations,
-          .regimes = k_hardening_regimes,
-          .events = k_hardening_events,
-          .domain = k_hardening_domain,
-          .objections = power_law_objections,
-          .power_law_of = power_law_of,
-          .bind = ModelOf<hardening_law>::bind,
-          .parameters = ModelOf<hardening_law>::parameters,
-          .reach = ModelOf<hardening_law>::reach,
-          .can_unload = can_unload,
-          .draw = draw_hardening,
-          .may_be_undefined = lateral_may_be_undefined};
+  return Functions<hardening_law, strength>::of(
+      {.name = "hardening",
+       .summary = "rigid-plastic particle that hardens by a power law, by the semi-mechanistic law",
+       .source = "000_34f0f4b3689a4570.txt, chapter 3",
+       .material = k_power_law_material,
+       .options = k_hardening_options,
+       .configurations = k_source_configurations,
+       .regimes = k_hardening_regimes,
+       .events = k_hardening_events,
+       .domain = k_hardening_domain,
+       .objections = power_law_objections,
+       .power_law_of = power_law_of,
+       .draw = draw_hardening,
+       .may_be_undefined = lateral_may_be_undefined});
 }
 
 }  // namespace monograin::plastic

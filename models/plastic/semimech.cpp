@@ -1,5 +1,7 @@
 #include "plastic/semimech.hpp"
 
+#include "system/number_text.hpp"
+
 #include <algorithm>
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
@@ -37,9 +39,9 @@ Stiffening make_stiffening(Configuration configuration, double zeta, const Press
   stiffening.elastic_volume = (fall.least + stiffening.pressure_scale * std::log1p(s)) / zeta;
   const double v = stiffening.elastic_volume;
   if (!(v < 1.0)) {
-    throw std::invalid_argument("bulk modulus over yield stress of " + text(zeta) +
+    throw std::invalid_argument("bulk modulus over yield stress of " + number_text(zeta) +
                                 " is so small that the particle does not fill its cell: its elastic loss of volume " +
-                                "would be " + text(v) + " of it");
+                                "would be " + number_text(v) + " of it");
   }
   stiffening.cell_at_zero_porosity = 1.0 - v;
   // 1 - (pi/6 chi_zp)^(1/n) (eq. 2.42) as the filled cell's x and a positive term.
@@ -78,8 +80,9 @@ ValueAndSlope low_compressibility_pressure(const SemimechLaw& law, double x) {  
   const Stiffening& c = law.stiffening;
   const double within = std::min(x, c.zero_porosity);
   if (x - within > k_little_beyond) {
-    throw DomainError(Limit::cell_filled, "displacement/R0 = " + text(x) + " is too far above zero porosity at " +
-                                              text(c.zero_porosity) + " for the law of low compressibility");
+    throw DomainError(Limit::cell_filled, "displacement/R0 = " + number_text(x) +
+                                              " is too far above zero porosity at " + number_text(c.zero_porosity) +
+                                              " for the law of low compressibility");
   }
   const double span = cell_shrinkage(law.configuration, law.fall.end, c.zero_porosity);
   const double y = cell_shrinkage(law.configuration, law.fall.end, within) / span;
@@ -140,11 +143,11 @@ double small_approach(const SemimechLaw& law, double force) {
 
 SemimechMaterial make_semimech_material(double youngs_modulus, double poisson_ratio, double yield_stress) {
   if (!(youngs_modulus > 0.0) || !std::isfinite(youngs_modulus))
-    throw std::invalid_argument("Young's modulus must be positive and finite, but is " + text(youngs_modulus));
+    throw std::invalid_argument("Young's modulus must be positive and finite, but is " + number_text(youngs_modulus));
   if (!(yield_stress > 0.0) || !std::isfinite(yield_stress))
-    throw std::invalid_argument("yield stress must be positive and finite, but is " + text(yield_stress));
+    throw std::invalid_argument("yield stress must be positive and finite, but is " + number_text(yield_stress));
   if (!(poisson_ratio > -1.0 && poisson_ratio <= 0.5))
-    throw std::invalid_argument("Poisson's ratio must be in (-1, 0.5], but is " + text(poisson_ratio));
+    throw std::invalid_argument("Poisson's ratio must be in (-1, 0.5], but is " + number_text(poisson_ratio));
   const double ratio = youngs_modulus / yield_stress;
   return {.modulus_over_yield = ratio / ((1.0 - poisson_ratio) * (1.0 + poisson_ratio)),
           .bulk_over_yield = ratio / (3.0 * (1.0 - 2.0 * poisson_ratio))};
@@ -170,14 +173,14 @@ SemimechLaw make_semimech(const SemimechMaterial& material, Configuration config
   const double lambda = material.modulus_over_yield;
   const double zeta = material.bulk_over_yield;
   if (!(lambda >= k_least_modulus_over_yield) || !std::isfinite(lambda)) {
-    throw std::invalid_argument("E/((1-nu^2) Y) = " + text(lambda) +
+    throw std::invalid_argument("E/((1-nu^2) Y) = " + number_text(lambda) +
                                 ": the pressure would have a kink at its maximum; expected a finite number "
                                 "from " +
-                                text(k_least_modulus_over_yield) + " on");
+                                number_text(k_least_modulus_over_yield) + " on");
   }
   if (is_enclosed(configuration) && !(zeta > 0.0 && std::isfinite(zeta))) {
     throw std::invalid_argument(
-        "an enclosed particle needs a positive and finite bulk modulus over yield stress, not " + text(zeta) +
+        "an enclosed particle needs a positive and finite bulk modulus over yield stress, not " + number_text(zeta) +
         " (nu = 0.5 has none)");
   }
 
@@ -231,7 +234,7 @@ ContactState state_at(const SemimechLaw& law, double x) {
 
 ContactState state_in(const SemimechLaw& law, Regime regime, double x) {
   if (regime == Regime::open) return {};
-  if (!(x > 0.0)) throw std::domain_error("gamma/2R = " + text(x) + " is no contact");
+  if (!(x > 0.0)) throw std::domain_error("gamma/2R = " + number_text(x) + " is no contact");
   return loaded_contact(regime, contact_radius(law.radius, x), pressure_in(law, regime, x));
 }
 
@@ -260,8 +263,8 @@ double approach_under(const SemimechLaw& law, double force, double near) {
     const auto found = approach_near(state, lower, last, force, near);
     return found ? *found : approach_between(state, lower, last, force, lower);
   }
-  throw DomainError(Limit::walls_meet, "a force of " + text(force) + " Y R0^2 is above the greatest, " +
-                                           text(greatest) +
+  throw DomainError(Limit::walls_meet, "a force of " + number_text(force) + " Y R0^2 is above the greatest, " +
+                                           number_text(greatest) +
                                            " Y R0^2 just below displacement/R0 = 1, where the walls meet");
 }
 

@@ -1,5 +1,7 @@
 #include "plastic/similarity.hpp"
 
+#include "system/number_text.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,7 +17,7 @@ constexpr SimilarityPair k_equal_pair{.curvature = 2.0, .cubed_curvature = 2.0};
 
 void require_exponent(double exponent) {
   if (!(exponent >= 0.0 && exponent <= 1.0))
-    throw std::invalid_argument("the hardening exponent 1/m must be in [0, 1], but is " + text(exponent));
+    throw std::invalid_argument("the hardening exponent 1/m must be in [0, 1], but is " + number_text(exponent));
 }
 
 double cubed_curvature(const SimilarityLaw& law, const SimilarityPair& pair) noexcept {
@@ -41,8 +43,8 @@ double force_coefficient(const SimilarityLaw& law, const SimilarityPair& pair, d
 
 SimilarityPair make_similarity_pair(double first_radius, double second_radius) {
   if (!(first_radius > 0.0 && second_radius > 0.0) || (std::isinf(first_radius) && std::isinf(second_radius))) {
-    throw std::invalid_argument("radii must be positive and not both infinite, but are " + text(first_radius) +
-                                " and " + text(second_radius));
+    throw std::invalid_argument("radii must be positive and not both infinite, but are " + number_text(first_radius) +
+                                " and " + number_text(second_radius));
   }
   const double first = 1.0 / first_radius;
   const double second = 1.0 / second_radius;
@@ -52,8 +54,8 @@ SimilarityPair make_similarity_pair(double first_radius, double second_radius) {
 double similarity_strength(double first, double second, double exponent) {
   require_exponent(exponent);
   if (!(first > 0.0 && second > 0.0) || (std::isinf(first) && std::isinf(second))) {
-    throw std::invalid_argument("strengths must be positive and not both infinite, but are " + text(first) + " and " +
-                                text(second));
+    throw std::invalid_argument("strengths must be positive and not both infinite, but are " + number_text(first) +
+                                " and " + number_text(second));
   }
   const auto [weaker, stronger] = std::minmax(first, second);
   // Only for equal strengths would m ln 1 be no number.
@@ -124,8 +126,8 @@ double approach_under(const SimilarityLaw& law, double force) {
   if (std::isnan(force)) throw std::domain_error("the force is not a number");
   const double x = 0.5 * similarity_approach(law, k_equal_pair, equal_strength(law), force);
   if (x < k_similarity_limit) return x;
-  throw DomainError(Limit::walls_meet, "a force of " + text(force) + " kappa R0^2 leads to displacement/R0 = " +
-                                           text(x) + ", not below 1, where the walls meet");
+  throw DomainError(Limit::walls_meet, "a force of " + number_text(force) + " kappa R0^2 leads to displacement/R0 = " +
+                                           number_text(x) + ", not below 1, where the walls meet");
 }
 
 double work_per_wall(const SimilarityLaw& law, double x) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "system/number_text.hpp"
 #include "system/undefined.hpp"
 
 namespace monograin::plastic {
@@ -37,8 +38,8 @@ WallLaw::WallLaw(Settings settings)
     lateral_boundaries_ = boundaries(*semimech, *lateral_law_);
   }
   for (const OutOfRange& out : settings_.out_of_range) {
-    range_messages_.push_back(std::string(out.quantity) + " is outside " + text(out.lower) + " to " + text(out.upper) +
-                              ", over which the source fitted the law");
+    range_messages_.push_back(std::string(out.quantity) + " is outside " + number_text(out.lower) + " to " +
+                              number_text(out.upper) + ", over which the source fitted the law");
   }
 }
 

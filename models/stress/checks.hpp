@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -32,13 +31,7 @@ class HistoryRows {
 
   /// Index of a column that there is.
   [[nodiscard]] std::size_t column(std::string_view name) const { return find(name).value(); }
-  [[nodiscard]] double largest_magnitude(std::size_t column) const {
-    double largest = 0.0;
-    for (std::size_t row = 0; row < row_count(); ++row) {
-      if (std::isfinite(at(row, column))) largest = std::max(largest, std::abs(at(row, column)));
-    }
-    return largest;
-  }
+  [[nodiscard]] virtual double largest_magnitude(std::size_t column) const = 0;
 };
 
 /// A run as its model sees it.

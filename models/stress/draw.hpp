@@ -53,6 +53,11 @@ void draw_choices(Dice& dice, std::span<const OptionKey> options, DrawnMaterial&
 /// there.
 [[nodiscard]] std::string example_file_name(std::string_view option);
 
+/// Draws a program of so many steps, one in twelve of them a hold.
+/// @param ramp  draws what a step does that is none, by its index
+template <class Ramp>
+[[nodiscard]] std::vector<DrawnStep> draw_steps(Dice& dice, double usual, std::size_t count, Ramp&& ramp);
+
 /// The usual duration within a factor of ten, or any up to twelve orders of magnitude from a second.
 [[nodiscard]] double draw_duration(Dice& dice, double usual);
 
@@ -63,5 +68,15 @@ void give_rate(DrawnStep& step);
 
 /// Rows of numbers under a line of headings, as comma-separated text.
 [[nodiscard]] std::string csv_text(std::string_view headings, const std::vector<std::vector<double>>& rows);
+
+template <class Ramp>
+std::vector<DrawnStep> draw_steps(Dice& dice, double usual, std::size_t count, Ramp&& ramp) {
+  std::vector<DrawnStep> program(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    program[i].pace = draw_duration(dice, usual);
+    if (!dice.happens(0.08)) ramp(program[i], i);
+  }
+  return program;
+}
 
 }  // namespace monograin

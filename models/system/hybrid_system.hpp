@@ -102,20 +102,6 @@ struct Observable {
   std::span<const std::string_view> words;  ///< not empty: the value is an index into these
 };
 
-/// Appends what the history shows of a contact class: displacement, overlap, force, contact radius and pressure where
-/// the model knows the contact area, and regime.
-inline void add_contact_columns(const std::string& contact_class, std::span<const std::string_view> regimes,
-                                std::vector<Observable>& columns, bool has_contact_area = true) {
-  columns.push_back({contact_class + ".displacement", "m", {}});
-  columns.push_back({contact_class + ".overlap", "m", {}});
-  columns.push_back({contact_class + ".force", "N", {}});
-  if (has_contact_area) {
-    columns.push_back({contact_class + ".contact_radius", "m", {}});
-    columns.push_back({contact_class + ".pressure", "Pa", {}});
-  }
-  columns.push_back({contact_class + ".regime", "", regimes});
-}
-
 /// Quantities of a wall and its contact, in SI.
 struct AtWall {
   double force = 0.0;

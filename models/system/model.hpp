@@ -1,4 +1,4 @@
-/// What a model is to the workbench: one value, made in the folder of its law.
+/// A model is one value, made in the folder of its law.
 ///
 /// The data say what the model is called, which keys it reads, which regimes and events it knows, and where it comes
 /// from: reading and checking scenario files, the JSON Schema and `monograin models` are made from them, so that a key
@@ -84,7 +84,7 @@ struct OptionKey {
   Dimension dimension = Dimension::none;  ///< of a quantity, as its range and default
   Range range{};
   std::optional<double> default_value{};  ///< none: the quantity may be absent
-  /// Of a file that is not a curve of two columns: the columns that are read. No two rows have the same first two.
+  /// The columns of a table that is not a curve of two. No two rows have the same first two values.
   std::span<const QuantityKey> columns{};
   std::string (*example)() = nullptr;  ///< of a file: what one may hold
 };
@@ -231,7 +231,7 @@ struct PowerLaw {
   double exponent = 0.0;
 };
 
-// Of stress/draw.hpp, stress/checks.hpp and system/curve_procedure.hpp.
+// stress/draw.hpp, stress/checks.hpp and system/curve_procedure.hpp define these.
 class Dice;
 struct CheckedRun;
 struct CurveProcedure;
@@ -240,7 +240,7 @@ struct DrawnStep;
 struct ProgramBounds;
 struct Violation;
 
-/// A model: what users are told of it, and what the workbench does with it.
+/// A model, as users read about it and as the workbench runs it.
 struct Model {
   std::string_view name;
   std::string_view summary;

@@ -22,11 +22,11 @@ namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 
-// Error of a controlled integrator over its rtol; README, "Accuracy and speed".
+// Error of a controlled integrator over its rtol (docs/accuracy.md).
 constexpr double k_rtol_multiple = 100.0;
 // The multiple for each step of a long program: errors of work have one sign, and add up (measured: 16).
 constexpr double k_rtol_multiple_of_step = 25.0;
-// Two runs of the direct form: each is polished to 1e-12 of the largest values (README), and work is a sum of
+// Two runs of the direct form: each is polished to 1e-12 of the largest values, and work is a sum of
 // quadratures.
 constexpr double k_direct_tolerance = 1e-10;
 // Error of that work over the tolerance it is asked for (measured: 0.0014).
@@ -104,6 +104,9 @@ class TableRows final : public HistoryRows {
   [[nodiscard]] double at(std::size_t row, std::size_t column) const override { return table_.at(row, column); }
   [[nodiscard]] std::string_view word(std::size_t row, std::size_t column) const override {
     return table_.word(row, column);
+  }
+  [[nodiscard]] double largest_magnitude(std::size_t column) const override {
+    return monograin::largest_magnitude(table_, column);
   }
 
  private:
@@ -213,13 +216,14 @@ void check_program(const Run& run, Violations& found) {
 /// How deep a program presses at most, as far as contacts are not as wide as the particle.
 double deepest_asked_for(const Scenario& scenario, const Scene& scene) {
   const Model& model = *find_model(scenario.model);
+  const ModelInput input = model_input(scenario);
   double deepest = 0.0;
   for (const Channel& channel : scene.channels) {
     for (const Step& step : channel.program) {
       if (step.kind == Step::Kind::displacement) deepest = std::max(deepest, step.target);
       if (step.kind != Step::Kind::force || !(step.target > 0.0) || model.reach == nullptr) continue;
       const Until until{.quantity = Quantity::force, .value = step.target};
-      deepest = std::max(deepest, model.reach(model_input(scenario), until).displacement);
+      deepest = std::max(deepest, model.reach(input, until).displacement);
     }
   }
   return std::min(deepest, scenario.radius);
@@ -318,7 +322,7 @@ void check_energy(const Run& run, Violations& found) {
 }
 
 /// Whether modes may answer each other without end: those of contacts that adhere to a free centre, or to a particle
-/// that grows until one is touched and no longer while it is (README, "Limits").
+/// that grows until one is touched and no longer while it is (docs/limits.md).
 bool may_go_on(const Run& run) {
   if (!(material(run.scenario, "surface_energy") > 0.0)) return false;
   if (run.scenario.loading.centre_is_free) return true;
@@ -329,7 +333,7 @@ bool may_go_on(const Run& run) {
   return ends * k_most_events_between_ends >= k_most_events_per_step;
 }
 
-/// The reason of a failed run, if README's limits name it; else empty.
+/// The reason of a failed run, if docs/limits.md names it; else empty.
 std::string stated_failure(const Run& run) {
   const RunRecord& record = run.record;
   if (!record.failure) return "";

@@ -77,7 +77,7 @@ struct Hysteretic {
   }
 };
 
-/// The same with its work in closed form.
+/// The hysteretic law with its work in closed form.
 struct HystereticInClosedForm : Hysteretic {
   [[nodiscard]] double work(const Branch& b, double d) const {
     if (b.unloads) return stored(b, d);

@@ -16,6 +16,7 @@
 
 #include "models/accuracy.hpp"
 #include "models/plastic/cases.hpp"
+#include "system/number_text.hpp"
 
 namespace monograin::plastic::hardening_test {
 namespace {
@@ -395,9 +396,9 @@ TEST(HardeningInverse, RefusesForcesBeyondTheLimit) {
       EXPECT_GT(approach_under(law, greatest * (1.0 - 1e-12)), last - 1e-11) << configuration;
       for (const double force : {std::nextafter(greatest, k_infinity), 2.0 * greatest, k_infinity}) {
         const std::string message = refusal<std::domain_error>([&] { return approach_under(law, force); });
-        EXPECT_TRUE(contains(message, text(force))) << message;
-        EXPECT_TRUE(contains(message, text(greatest))) << message;
-        EXPECT_TRUE(contains(message, text(law.limit))) << message;
+        EXPECT_TRUE(contains(message, number_text(force))) << message;
+        EXPECT_TRUE(contains(message, number_text(greatest))) << message;
+        EXPECT_TRUE(contains(message, number_text(law.limit))) << message;
       }
       EXPECT_THROW(static_cast<void>(approach_under(law, k_nan)), std::domain_error);
     }
@@ -467,8 +468,8 @@ TEST(HardeningDomain, EndsAtZeroPorosityOrWhereTheWallsMeet) {
     const HardeningLaw law = make_hardening(0.3, configuration);
     EXPECT_TRUE(std::isfinite(state_at(law, std::nextafter(law.limit, 0.0)).force_by_approach));
     for (const double x : {law.limit, 1.25, k_infinity}) {
-      EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return state_at(law, x); }), text(x))) << x;
-      EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return work(law, x); }), text(x))) << x;
+      EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return state_at(law, x); }), number_text(x))) << x;
+      EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return work(law, x); }), number_text(x))) << x;
     }
     EXPECT_THROW(static_cast<void>(state_at(law, k_nan)), std::domain_error);
     EXPECT_THROW(static_cast<void>(work(law, k_nan)), std::domain_error);
@@ -492,7 +493,7 @@ TEST(HardeningDomain, RefusesExponentsThatAreNone) {
     for (const Configuration configuration : k_configurations) {
       const std::string message =
           refusal<std::invalid_argument>([&] { return make_hardening(exponent, configuration); });
-      EXPECT_TRUE(contains(message, text(exponent))) << message;
+      EXPECT_TRUE(contains(message, number_text(exponent))) << message;
     }
   }
 }
@@ -516,8 +517,8 @@ TEST(HardeningDomain, RefusesTrialStepsBeyondZeroPorosity) {
     for (const double x : {law.zero_porosity, law.zero_porosity + 1e-12, 0.6}) {
       const std::string message =
           refusal<std::domain_error>([&] { return state_in(law, Regime::low_compressibility, x); });
-      EXPECT_TRUE(contains(message, text(x))) << message;
-      EXPECT_TRUE(contains(message, text(law.zero_porosity))) << message;
+      EXPECT_TRUE(contains(message, number_text(x))) << message;
+      EXPECT_TRUE(contains(message, number_text(law.zero_porosity))) << message;
     }
     EXPECT_NO_THROW(static_cast<void>(state_in(law, Regime::fully_plastic, law.zero_porosity + 0.01)));
     EXPECT_THROW(static_cast<void>(state_in(law, Regime::fully_plastic, 0.0)), std::domain_error);

@@ -20,6 +20,7 @@
 #include "models/accuracy.hpp"
 #include "models/plastic/cases.hpp"
 #include "plastic/hardening.hpp"
+#include "system/number_text.hpp"
 
 namespace monograin::plastic::semimech_test {
 namespace {
@@ -488,8 +489,8 @@ TEST(SemimechInverse, RefusesForcesBeyondTheLimit) {
     EXPECT_GT(approach_under(law, greatest * (1.0 - 1e-12)), 1.0 - 1e-11) << configuration;
     for (const double force : {std::nextafter(greatest, k_infinity), 2.0 * greatest, k_infinity}) {
       const std::string message = refusal<std::domain_error>([&] { return approach_under(law, force); });
-      EXPECT_TRUE(contains(message, text(force))) << message;
-      EXPECT_TRUE(contains(message, text(greatest))) << message;
+      EXPECT_TRUE(contains(message, number_text(force))) << message;
+      EXPECT_TRUE(contains(message, number_text(greatest))) << message;
     }
     EXPECT_THROW(static_cast<void>(approach_under(law, k_nan)), std::domain_error);
   }
@@ -548,8 +549,8 @@ TEST(SemimechDomain, EndsWhereTheWallsMeet) {
     const SemimechLaw law = Steel{200e9, 0.3, 500e6}.law(configuration);
     EXPECT_NO_THROW(static_cast<void>(state_at(law, std::nextafter(1.0, 0.0))));
     for (const double x : {1.0, 1.25, k_infinity}) {
-      EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return state_at(law, x); }), text(x))) << x;
-      EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return work(law, x); }), text(x))) << x;
+      EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return state_at(law, x); }), number_text(x))) << x;
+      EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return work(law, x); }), number_text(x))) << x;
     }
     EXPECT_THROW(static_cast<void>(state_at(law, k_nan)), std::domain_error);
   }
@@ -573,8 +574,8 @@ TEST(SemimechDomain, GoesOnAlongItsTangentALittleBeyondZeroPorosity) {
       EXPECT_NEAR(at(8e-4).pressure - at(0.0).pressure, 2.0 * (at(8e-4).pressure - at(4e-4).pressure),
                   1e-12 * at(8e-4).pressure);
       const std::string message = refusal<std::domain_error>([&] { return at(0.01); });
-      EXPECT_TRUE(contains(message, text(x + 0.01))) << message;
-      EXPECT_TRUE(contains(message, text(x))) << message;
+      EXPECT_TRUE(contains(message, number_text(x + 0.01))) << message;
+      EXPECT_TRUE(contains(message, number_text(x))) << message;
     }
   }
 }

@@ -14,6 +14,7 @@
 
 #include "models/accuracy.hpp"
 #include "models/plastic/cases.hpp"
+#include "system/number_text.hpp"
 
 namespace monograin::plastic::similarity_test {
 namespace {
@@ -126,8 +127,8 @@ TEST(SimilarityPairs, RefuseRadiiThatAreNone) {
        {Bad{0.0, 1.0}, Bad{1.0, -2.0}, Bad{k_nan, 1.0}, Bad{1.0, k_nan}, Bad{k_infinity, k_infinity}}) {
     const std::string message =
         refusal<std::invalid_argument>([a = first, b = second] { return make_similarity_pair(a, b); });
-    EXPECT_TRUE(contains(message, text(first))) << message;
-    EXPECT_TRUE(contains(message, text(second))) << message;
+    EXPECT_TRUE(contains(message, number_text(first))) << message;
+    EXPECT_TRUE(contains(message, number_text(second))) << message;
   }
 }
 
@@ -166,7 +167,7 @@ TEST(SimilarityStrength, RefusesStrengthsThatAreNone) {
   for (const double strength : {0.0, -2.5, k_nan}) {
     const std::string message =
         refusal<std::invalid_argument>([&] { return similarity_strength(20.0, strength, 0.3); });
-    EXPECT_TRUE(contains(message, text(strength)) && contains(message, "20")) << message;
+    EXPECT_TRUE(contains(message, number_text(strength)) && contains(message, "20")) << message;
   }
   EXPECT_TRUE(
       contains(refusal<std::invalid_argument>([] { return similarity_strength(k_infinity, k_infinity, 0.3); }), "inf"));
@@ -295,7 +296,7 @@ TEST(SimilarityInverse, RefusesForcesBeyondTheLimit) {
       EXPECT_GT(approach_under(law, greatest * (1.0 - 1e-12)), 1.0 - 1e-11);
       for (const double force : {greatest * (1.0 + 1e-12), 2.0 * greatest, k_infinity}) {
         const std::string message = refusal<std::domain_error>([&] { return approach_under(law, force); });
-        EXPECT_TRUE(contains(message, text(force))) << message;
+        EXPECT_TRUE(contains(message, number_text(force))) << message;
       }
       EXPECT_THROW(static_cast<void>(approach_under(law, k_nan)), std::domain_error);
     }
@@ -350,16 +351,17 @@ TEST(SimilarityDomain, EndsWhereTheWallsMeet) {
   const SimilarityLaw law = make_similarity(0.3);
   EXPECT_NO_THROW(static_cast<void>(state_at(law, std::nextafter(1.0, 0.0))));
   for (const double x : {1.0, 1.25, k_infinity, k_nan}) {
-    EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return state_at(law, x); }), text(x))) << x;
-    EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return work_per_wall(law, x); }), text(x))) << x;
+    EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return state_at(law, x); }), number_text(x))) << x;
+    EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return work_per_wall(law, x); }), number_text(x))) << x;
   }
 }
 
 TEST(SimilarityDomain, RefusesExponentsThatAreNone) {
   for (const double exponent : {-0.1, 1.0 + k_epsilon, 4.0, k_infinity, k_nan}) {
-    EXPECT_TRUE(contains(refusal<std::invalid_argument>([&] { return make_similarity(exponent); }), text(exponent)));
+    EXPECT_TRUE(
+        contains(refusal<std::invalid_argument>([&] { return make_similarity(exponent); }), number_text(exponent)));
     EXPECT_TRUE(contains(refusal<std::invalid_argument>([&] { return similarity_strength(1.0, 2.0, exponent); }),
-                         text(exponent)));
+                         number_text(exponent)));
   }
 }
 
