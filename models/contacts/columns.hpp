@@ -19,7 +19,7 @@ struct Energies {
   double dissipation = 0.0;
 };
 
-/// What the history shows of one contact, SI.
+/// Numbers of one contact in a row of the history, SI.
 struct VisibleContact {
   double displacement = 0.0;
   double overlap = 0.0;

@@ -146,7 +146,7 @@ class WallContact {
     if constexpr (requires { law.next(branch_); }) return law.next(branch_);
     return std::nullopt;
   }
-  /// What the program prescribes the contact at a boundary.
+  /// Displacement or force that the program prescribes the contact at a boundary.
   [[nodiscard]] double prescribed_at(const Law& law, const Boundary& boundary) const {
     if (!is_force_controlled()) return boundary.position;
     return is_on_primary_branch_ ? law.force(branch_, boundary.position) : largest_force_;

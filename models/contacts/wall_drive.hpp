@@ -1,4 +1,4 @@
-/// What a step of the program does to one wall.
+/// The ramp of one wall during a step of the program.
 #pragma once
 
 #include <algorithm>

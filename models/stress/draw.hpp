@@ -1,4 +1,4 @@
-/// What the stress test draws of a model: materials, options and programs, dimensionless. Lengths are over R0, stresses
+/// Materials, options and programs that the stress test draws of a model, dimensionless. Lengths are over R0, stresses
 /// over a unit of stress S, forces over S R0^2.
 #pragma once
 
@@ -22,7 +22,7 @@ struct DrawnMaterial {
   std::map<std::string, OptionValue> options;  ///< those that differ from their defaults, `[material]` ones included
 };
 
-/// What the programs of a scene are made of.
+/// Bounds within which the programs of a scene are drawn.
 struct ProgramBounds {
   double deepest = 0.45;  ///< most displacement of an ordinary step in R0; or strain, or packing fraction
   double force = 1.0;     ///< that a wall bears there, about, in S R0^2; or stress in S

@@ -31,7 +31,7 @@ struct CurveProcedure {
   double (*force_unit)(const ModelInput& input) = nullptr;  ///< [N]
   /// Fits to the first loading, the best one last; none where there is none.
   std::vector<ProcedureFit> (*fit)(const ForceCurve& loading) = nullptr;
-  /// What given parameters are by the same measures.
+  /// Measures parameters that are given as those of a fit are measured.
   ProcedureFit (*measure)(const ForceCurve& loading, std::span<const double> parameters) = nullptr;
   /// Values of further keys, from the first unloading [SI].
   std::map<std::string, double> (*unloading_starts)(const ModelInput& input, const ForceCurve& unloading) = nullptr;

@@ -119,7 +119,7 @@ struct Term {
   std::string_view meaning;
 };
 
-/// What a step prescribes one channel: the end of its ramp.
+/// The end of the ramp that a step prescribes one channel.
 struct Prescription {
   Control control = Control::displacement;
   double target = 0.0;  ///< [SI]
@@ -142,7 +142,7 @@ struct SampledCurve {
 
 using OptionValue = std::variant<bool, double, std::string>;
 
-/// What a scenario says to its model, each value right by itself.
+/// A scenario as its model sees it; each value is right by itself.
 struct ModelInput {
   double radius = 0.0;                                ///< R0 [m]; 0 where the model has no particle
   const std::map<std::string, double>& values;        ///< of the keys in `[material]` [SI]
@@ -256,14 +256,14 @@ struct Model {
   std::span<const std::string_view> domain;       ///< limits of validity, a sentence each
   double least_wall_angle = 0.0;                  ///< [rad], between any two walls
   std::span<const OptionKey> material_options{};  ///< options that stand in `[material]`
-  /// What `preset` in `[material]` may name. Keys that are given beside it win.
+  /// Materials that `preset` in `[material]` may name. Keys that are given beside it win.
   std::span<const Preset> presets{};
   std::string_view sign{};  ///< convention of stresses and strains, where it is not that compression is positive
-  /// What steps prescribe of a model that has neither particle nor walls; empty: it has both.
+  /// Quantities that steps prescribe of a model without particle and walls; empty: it has both.
   std::span<const DriveKey> drives{};
-  /// What such a step can prescribe besides, in a second channel, under keys of their own.
+  /// Quantities that such a step can prescribe in a second channel, under keys of their own.
   std::span<const DriveKey> lateral_drives{};
-  /// What such a step can wait for, besides events.
+  /// Quantities that such a step can wait for, besides events.
   std::span<const QuantityKey> conditions{};
 
   /// Parts of other models that this one does not have, for the record of a run.

@@ -22,7 +22,7 @@ struct ContactClass {
 /// compression positive [N]; elsewhere a strain, a stress [Pa] or a packing fraction, with the signs of their model.
 enum class Control { displacement, force, strain, stress, packing_fraction };
 
-/// What a program's condition can ask for; the last three at a material point.
+/// Quantities that a program's condition can ask for; the last three at a material point.
 enum class Quantity {
   force,
   displacement,

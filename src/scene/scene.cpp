@@ -90,7 +90,7 @@ bool may_move_centre(const Scenario& scenario, const std::vector<ContactClass>& 
          });
 }
 
-/// What says how far a program goes.
+/// A program and the model that says how far it goes.
 struct Program {
   const Model& model;
   const ModelInput& input;

@@ -1,5 +1,5 @@
-// What all laws share whose contacts depend on their own wall alone, seen with two laws of a few lines: a linear
-// spring, and one that is stiffer on the way back.
+// The base of laws whose contacts depend on their own wall alone, seen with two laws of a few lines: a linear
+// spring, and one that is stiffer under unloading.
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ struct Spring {
   [[nodiscard]] int regime(Branch, bool touches) const { return touches ? 1 : 0; }
 };
 
-/// The law of Walton and Braun: F = d on the way in; on the way back stiffer by a ratio, from the largest displacement.
+/// The law of Walton and Braun: F = d under loading; under unloading stiffer by a ratio, from the largest displacement.
 /// It hardens at a knee, and ends.
 struct Hysteretic {
   struct Branch {
@@ -49,7 +49,7 @@ struct Hysteretic {
   static constexpr std::array<std::string_view, 4> k_regimes{"open", "loading", "hardened", "unloading"};
   static constexpr double k_knee = 0.3;
   static constexpr double k_hardening = 2.0;  ///< slope beyond the knee
-  static constexpr double k_ratio = 4.0;      ///< slope on the way back
+  static constexpr double k_ratio = 4.0;      ///< slope under unloading
 
   [[nodiscard]] double unit_force(double radius) const { return radius * radius; }
   [[nodiscard]] double opening(const Branch& b) const { return b.unloads ? b.largest - b.force / k_ratio : 0.0; }
