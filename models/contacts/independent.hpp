@@ -505,10 +505,9 @@ class IndependentContacts final : public HybridSystem {
     Contact& c = contacts_[i];
     const double opening = law_.opening(c.branch());
     // Farther away, a guard tells when that is.
-    const bool is_there = !is_decided && std::abs(d - opening) <= k_touch;
     const bool will_touch = then - opening > k_no_change;
-    if (is_there && will_touch && !c.touches()) c.make(law_, is_seen(i), log);
-    if (is_there && !will_touch && c.touches()) c.lose(law_, log);
+    if (!is_decided && will_touch && !c.touches() && d - opening >= -k_touch) c.make(law_, is_seen(i), log);
+    if (!is_decided && !will_touch && c.touches() && d - opening <= k_touch) c.lose(law_, log);
     if (!c.touches() || is_decided) return std::nullopt;
     if (then < d - k_no_change && c.is_on_primary_branch() && d - opening > k_no_change) {
       c.turn(law_, d, turning, log);
@@ -547,7 +546,7 @@ class IndependentContacts final : public HybridSystem {
     const Contact& c = contacts_[i];
     const double overlap = drive(i).value(xi) + centre_->along(i, rest_) - law_.opening(c.branch());
     if (!c.touches()) {
-      add_guard_with_centre(k_made, i, 1, c.made_event(law_), 0.0);
+      add_guard_with_centre(k_made, i, 1, c.made_event(law_), overlap >= -k_touch ? k_touch : 0.0);
       return;
     }
     add_guard_with_centre(k_lost, i, -1, "contact-lost", overlap <= k_touch ? -k_touch : 0.0);
