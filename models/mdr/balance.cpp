@@ -83,13 +83,13 @@ void System::sum_up(double xi, double r) {
   for (std::size_t i = 0; i < now_.size(); ++i) {
     const double one = counts_[i] * now_[i].contact.force * (1.0 - now_[i].displacement);
     virial_of_all += one;
-    if (is_member(memory_[i])) virial += one;
+    if (is_member(branches_[i])) virial += one;
   }
-  const double scale = 3.0 * k_per_solid_angle * material_.bulk_compliance;
+  const double scale = 3.0 * k_per_solid_angle * law_.material.bulk_compliance;
   const double w = scale * virial;
   const double under_root = 1.0 - 4.0 * w;
   const double root = std::sqrt(under_root);
-  const double weight = k_per_solid_angle * material_.bulk_compliance / root;
+  const double weight = k_per_solid_angle * law_.material.bulk_compliance / root;
 
   // Sums of their own: what is written to contacts might else be written to those in sums_.
   double power = 0.0;
@@ -107,7 +107,7 @@ void System::sum_up(double xi, double r) {
     now.rate_by_time = is_under_force ? 0.0 : speed;
     now.rate_by_growth = 0.0;
     if (is_under_force) set_rates_under_force(i, r);
-    if (!touches(memory_[i].regime)) continue;
+    if (!branches_[i].touches()) continue;
     const Contact& c = now.contact;
     const double count = counts_[i];
     if (is_under_force) {
@@ -117,7 +117,7 @@ void System::sum_up(double xi, double r) {
       power += count * c.force * speed;
     }
     if (free_count_ > 0) push_line(i, r);
-    if (!is_member(memory_[i])) continue;
+    if (!is_member(branches_[i])) continue;
     const double distance = 1.0 - now.displacement;
     caps += count * now.overlap * now.overlap * (3.0 * radius - now.overlap);
     overlaps += count * now.overlap;
@@ -146,7 +146,7 @@ void System::sum_up(double xi, double r) {
   sums_.force.setZero();
   sums_.stiffness.setZero();
   for (Line& line : lines_) {
-    if (is_first_touch) line.stiffness = line.tangent_stiffness / least_stiffness();
+    if (is_first_touch) line.stiffness = line.tangent_stiffness / law_.least_stiffness();
     sums_.force += line.force * line.direction;
     sums_.stiffness += line.stiffness * line.direction * line.direction.transpose();
   }
@@ -155,7 +155,7 @@ void System::sum_up(double xi, double r) {
 /// What a touching contact does to a free centre along its line.
 void System::push_line(std::size_t i, double r) {
   const double count = counts_[i];
-  const double stiffness = tangent_stiffness(i);
+  const double stiffness = branches_[i].tangent_stiffness(law_, now_[i].contact);
   const double along = on_lines_[i].along;
   const double speed = ramps_[i].end - ramps_[i].start;
   const Contact& c = now_[i].contact;
@@ -166,9 +166,9 @@ void System::push_line(std::size_t i, double r) {
   }
   if (!is_loaded(i)) {
     double by_radius = c.by_radius;
-    if (memory_[i].regime == Regime::unloading && memory_[i].edge == Edge::following && c.by_overlap < stiffness) {
+    if (branches_[i].regime == Regime::unloading && branches_[i].edge.follows() && c.by_overlap < stiffness) {
       // Where a dent begins moves with the radius, however little presses it.
-      const Contact pressed = stiff_contact(i, r);
+      const Contact pressed = branches_[i].stiff_contact(law_, r, now_[i].overlap, now_[i].contact);
       by_radius = stiffness * (pressed.by_radius / pressed.by_overlap);
     }
     line.force_by_radius += count * (stiffness + by_radius) * along;
@@ -198,14 +198,6 @@ void System::find_lines() {
     on_lines_.push_back({line, along});
   }
   if (lines_.empty()) lines_.emplace_back();  // of those that do not act along any
-}
-
-/// Stiffness by which a contact takes part in the motion of a free centre: that of contacts which only touch would be
-/// one of rounding, and zero at some of them; equal ones give the right motion for contacts of one law.
-double System::tangent_stiffness(std::size_t i) const noexcept {
-  const double stiffness = now_[i].contact.by_overlap;
-  const bool is_soft_at_first = memory_[i].regime != Regime::fully_plastic && memory_[i].edge != Edge::peeling;
-  return is_soft_at_first ? std::max(stiffness, least_stiffness()) : stiffness;
 }
 
 /// Along the line that holds the centre most, across it along the one that does so most there, and so on: in these
@@ -309,7 +301,7 @@ double System::rounding_of_forces() const noexcept {
   double sum = magnitude_of_forces();
   for (std::size_t i = 0; i < now_.size(); ++i) {
     const double length = std::max(longest_, std::abs(now_[i].position));
-    sum += counts_[i] * unpeeled_stiffness(i) * length;
+    sum += counts_[i] * branches_[i].unpeeled_stiffness(law_, evaluated_radius_, now_[i].contact) * length;
   }
   return 4.0 * k_round_off * sum;
 }
@@ -317,22 +309,22 @@ double System::rounding_of_forces() const noexcept {
 /// Overlap of a contact that only touches a free centre: rounding of lengths, and what the rounding of others presses
 /// it in by, which may bear much more and be much stiffer.
 double System::shallow() const noexcept {
-  return std::max(k_shallow,
-                  elastic_overlap(ElasticProfile::parabola, material_.composite_modulus, 1.0, rounding_of_forces()));
+  return std::max(k_resolution, elastic_overlap(ElasticProfile::parabola, law_.material.composite_modulus, 1.0,
+                                                rounding_of_forces()));
 }
 
 /// True if an overlap is below the resolution; cheaper than comparing it with shallow().
 bool System::is_shallow(double overlap) const noexcept {
-  return overlap < k_shallow || hertz_force(material_.composite_modulus, 1.0, overlap) < rounding_of_forces();
+  return overlap < k_resolution || hertz_force(law_.material.composite_modulus, 1.0, overlap) < rounding_of_forces();
 }
 
 /// A contact whose edge peels and that has been led beyond pull-off: before it comes there, its stiffness falls without
 /// bound, and the centre is held no more.
 std::optional<std::size_t> System::contact_beyond_pull_off(double r) {
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    if (memory_[i].edge != Edge::peeling || is_loaded(i) || directions_[i].norm() < k_no_direction) continue;
-    const Frame at = frame(i, now_[i].overlap, r);
-    if (at.displacement < pull_off(i, at.indenter).by_displacement.displacement_1d) return i;
+    if (!branches_[i].edge.peels() || is_loaded(i) || directions_[i].norm() < k_no_direction) continue;
+    const Frame at = branches_[i].frame(law_, r, now_[i].overlap);
+    if (at.displacement < branches_[i].pull_off(law_, at.indenter).by_displacement.displacement_1d) return i;
   }
   return std::nullopt;
 }
@@ -503,9 +495,9 @@ bool System::approach_balance(double xi, std::span<double> y) {
 /// Projector on the directions in which no touching contact holds the centre.
 System::SmallMatrix System::unheld_directions() {
   for (Line& line : lines_) line.held = 0.0;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
     const double along = on_lines_[i].along;
-    if (touches(memory_[i].regime) && !is_loaded(i)) lines_[on_lines_[i].line].held += along * along;
+    if (branches_[i].touches() && !is_loaded(i)) lines_[on_lines_[i].line].held += along * along;
   }
   SmallMatrix unheld = SmallMatrix::Zero();
   for (int k = 0; k < free_count_; ++k) unheld(k, k) = 1.0;
@@ -519,8 +511,8 @@ void System::hold_centre(std::span<const double> y) {
   if (free_count_ == 0) return;
   for (int k = 0; k < free_count_; ++k) held_centre_[k] = y[centre_place(k)];
   unheld_ = unheld_directions();
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    const bool may_pull = memory_[i].edge != Edge::following;
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    const bool may_pull = !branches_[i].edge.follows();
     bears_[i] = directions_[i].norm() < k_no_direction || is_supported(i) || (may_pull && is_supported(i, -1.0));
   }
   drop_evaluation();
@@ -538,7 +530,7 @@ void System::grow(double xi, std::span<double> y) {
   double step_size = std::numeric_limits<double>::infinity();
   // Quadratic convergence: below this the next step is rounding, unless square roots are still settling, of the force
   // of what touches a free centre or of an edge next to pull-off.
-  const bool peels = std::ranges::any_of(memory_, [](const Memory& memory) { return memory.edge == Edge::peeling; });
+  const bool peels = std::ranges::any_of(branches_, [](const ContactBranch& memory) { return memory.edge.peels(); });
   const double last_step = free_count_ == 0 && !peels ? k_last_step : 2.0 * k_round_off;
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     move_walls(xi, y);

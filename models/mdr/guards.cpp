@@ -24,20 +24,17 @@ double System::contact_guard(int kind, std::size_t i, double xi, double overlap,
     const double scale = std::max(std::abs(ramps_[i].start), std::abs(ramps_[i].end));
     return scale > 0.0 ? prescribed_force(i, xi) / scale + (kind == k_lost ? k_same_overlap : 0.0) : 0.0;
   }
+  const ContactBranch& branch = branches_[i];
   switch (kind) {
-    case k_yield: {
-      const double at = (1.0 + r) * material_.yield_overlap_ratio;
+    case k_yield:
       // What only touches may be as deep as that by the rounding of others.
-      return overlap / (is_idle_contact(i) ? std::max(at, shallow()) : at) - 1.0;
-    }
+      return branch.yield_guard(law_, r, overlap, is_idle_contact(i) ? shallow() : 0.0);
     case k_reload:
-      return overlap - largest_overlap(memory_[i], r) - k_same_overlap;
+      return overlap - branch.largest_overlap(law_, r) - k_same_overlap;
     case k_lost:
-      if (is_idle_contact(i)) overlap += shallow();
-      if (memory_[i].regime == Regime::elastic) return overlap;
-      return 1.0 - unloading_fraction(shape(i, r), overlap);
+      return branch.opening_guard(law_, r, is_idle_contact(i) ? overlap + shallow() : overlap);
     case k_dent_touched:
-      return 1.0 - unloading_fraction(shape(i, r), overlap);
+      return branch.opening_guard(law_, r, overlap);
     default:
       // A wall that a free centre leaves at a touch, and comes back to at once, would not be seen to have been left.
       return free_count_ > 0 ? overlap - k_same_overlap : overlap;
@@ -46,27 +43,25 @@ double System::contact_guard(int kind, std::size_t i, double xi, double overlap,
 
 /// Distances from the states in which the edge of an adhesive contact changes, over what tears it.
 double System::edge_guard(int kind, std::size_t i, double xi, double overlap, double r) {
-  const Frame now = frame(i, overlap, r);
+  const ContactBranch& branch = branches_[i];
+  const Frame now = branch.frame(law_, r, overlap);
   if (kind == k_pull_off) {
-    const PullOff& limits = pull_off(i, now.indenter);
-    if (is_loaded(i)) return (prescribed_force(i, xi) - limits.by_force.force) / std::abs(limits.by_force.force);
-    const double critical = limits.by_displacement.displacement_1d;
-    return (now.displacement - critical) / std::abs(critical);
+    const PullOff& limits = branch.pull_off(law_, now.indenter);
+    return is_loaded(i) ? pull_off_guard(limits, prescribed_force(i, xi)) : pull_off_guard(limits, now);
   }
-  const double a = memory_[i].edge_radius;
   // Without springs a force leads it either way by its sign alone.
-  if (a == 0.0 && is_loaded(i)) return contact_guard(kind == k_peel ? k_lost : k_made, i, xi, overlap, r);
-  const double w = now.displacement - profile_height(now.indenter, a);
-  const double stretch = critical_stretch(material_.composite_modulus, surface_energy_, a);
-  if (stretch == 0.0) return w;
-  return kind == k_peel ? w / stretch + 1.0 : w / stretch;
+  if (branch.edge.radius == 0.0 && is_loaded(i)) {
+    return contact_guard(kind == k_peel ? k_lost : k_made, i, xi, overlap, r);
+  }
+  return kind == k_peel ? peel_guard(branch.edge, now, law_.adhesion())
+                        : follow_guard(branch.edge, now, law_.adhesion());
 }
 
 /// Overlap by which an edge that sticks may seem to be where it would follow. One that has just come to stick leaves
 /// with the square of the way, and rounding does not bring it back.
 double System::rounding_of_edge(std::size_t i, double r) {
-  const Frame at = frame(i, now_[i].overlap, r);
-  return k_same_overlap + profile_rounding(at.indenter, memory_[i].edge_radius) / at.by_overlap;
+  const Frame at = branches_[i].frame(law_, r, now_[i].overlap);
+  return k_same_overlap + profile_rounding(at.indenter, branches_[i].edge.radius) / at.by_overlap;
 }
 
 double System::cap_guard(const CapPair& pair, double r) const {
@@ -89,11 +84,11 @@ void System::arm_guards(double xi, std::span<const double> y) {
   evaluate_cached(xi, y);
   const double r = y[k_radius];
   const Motion now = motion(is_growing_);
-  for (std::size_t i = 0; i < memory_.size(); ++i) arm_contact_guards(i, r, now);
-  const auto is_plastic = [](const Memory& memory) { return memory.regime == Regime::fully_plastic; };
+  for (std::size_t i = 0; i < branches_.size(); ++i) arm_contact_guards(i, r, now);
+  const auto is_plastic = [](const ContactBranch& memory) { return memory.regime == Regime::fully_plastic; };
   if (free_count_ > 0 && weakest_contact()) {
     guards_.push_back({.kind = k_unstable, .index = -1, .direction = -1, .name = "pull-off", .is_branch_end = true});
-  } else if (free_count_ > 0 && std::ranges::any_of(memory_, is_plastic)) {
+  } else if (free_count_ > 0 && std::ranges::any_of(branches_, is_plastic)) {
     guards_.push_back({.kind = k_softened, .index = -1, .direction = -1, .name = "limit", .is_branch_end = true});
   }
 
@@ -110,13 +105,13 @@ void System::arm_guards(double xi, std::span<const double> y) {
   for (std::size_t p = 0; p < cap_pairs_.size(); ++p) {
     const auto first = static_cast<std::size_t>(cap_pairs_[p].first);
     const auto second = static_cast<std::size_t>(cap_pairs_[p].second);
-    const bool both_touch = touches(memory_[first].regime) && touches(memory_[second].regime);
+    const bool both_touch = branches_[first].touches() && branches_[second].touches();
     // Caps that have just met change no mode; met a rounding error short of zero, they would meet again at once.
     if (both_touch && !cap_pairs_[p].have_met && cap_guard(cap_pairs_[p], r) < -k_touch) {
       guards_.push_back({k_caps, static_cast<int>(p), 1, "caps-intersect"});
     }
   }
-  if (settings_.radius_rule != RadiusRule::fixed && material_.bulk_compliance > 0.0) {
+  if (settings_.radius_rule != RadiusRule::fixed && law_.material.bulk_compliance > 0.0) {
     guards_.push_back({k_volume, -1, -1, "volume-limit"});
   }
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
@@ -145,7 +140,7 @@ bool System::goes_one_way(double r, const Motion& now) const {
 }
 
 void System::arm_contact_guards(std::size_t i, double r, const Motion& now) {
-  const Memory& memory = memory_[i];
+  const ContactBranch& memory = branches_[i];
   const int index = static_cast<int>(i);
   const bool is_free = !is_loaded(i) && free_count_ > 0 && directions_[i].norm() > k_no_direction;
   const bool may_turn = is_growing_ || is_free;            // in mid-step
@@ -173,20 +168,20 @@ void System::arm_contact_guards(std::size_t i, double r, const Motion& now) {
     case Regime::unloading:
       break;
   }
-  if (memory.regime == Regime::elastic && may_come_in && may_yield(memory)) add(k_yield, 1, "yield");
+  if (memory.regime == Regime::elastic && may_come_in && memory.may_yield(law_)) add(k_yield, 1, "yield");
   if (has_greatest_force(i)) {
     guards_.push_back(
         {.kind = k_greatest_force, .index = index, .direction = -1, .name = "limit", .is_branch_end = true});
   }
   if (memory.is_on_primary_branch) {
-    const bool is_shifted = settings_.delta_max_rule == DeltaMaxRule::shifted;
+    const bool is_shifted = law_.is_shifted();
     const bool may_retreat = is_free || (may_turn && (is_loaded(i) || (wall_rate(i, now) < 0.0 && !is_shifted)));
     if (may_retreat) guards_.push_back({k_retreat, index, -1, "retreat"});
     if (is_free && memory.regime == Regime::elastic) guards_.push_back({k_lost, index, -1, "contact-lost"});
     return;
   }
   if (may_come_in) add(k_reload, 1, "reload");
-  if (adheres()) {
+  if (law_.adheres()) {
     watch_edge(i, r, may_come_in, may_go_out, may_turn);
     watch_tension(i, now, may_go_out, may_turn);
   } else if (may_go_out) {
@@ -195,15 +190,15 @@ void System::arm_contact_guards(std::size_t i, double r, const Motion& now) {
 }
 
 void System::watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_out, bool may_turn) {
-  const Memory& memory = memory_[i];
+  const ContactBranch& memory = branches_[i];
   const int index = static_cast<int>(i);
-  switch (memory.edge) {
+  switch (memory.edge.motion) {
     case Edge::following:
       if (may_turn) guards_.push_back({k_turn, index, -1, "stick"});
       break;
     case Edge::sticking: {
       // An edge that sticks since the largest overlap follows again when that is passed.
-      const double at_largest = edge_guard(k_follow, i, 0.0, largest_overlap(memory, r), r);
+      const double at_largest = edge_guard(k_follow, i, 0.0, memory.largest_overlap(law_, r), r);
       if (may_come_in && (may_turn || at_largest > 1e-9)) guards_.push_back({k_follow, index, 1, "follow"});
       if (may_go_out) guards_.push_back({k_peel, index, -1, "peel"});
       break;
@@ -221,7 +216,7 @@ void System::watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_o
 /// Rate of a contact's force with xi, over what the walls' motion makes of the force of an edge that sticks.
 double System::force_rate(std::size_t i, const Motion& now) const noexcept {
   const Contact& c = now_[i].contact;
-  const double scale = unpeeled_stiffness(i) * speed_scale();
+  const double scale = branches_[i].unpeeled_stiffness(law_, evaluated_radius_, now_[i].contact) * speed_scale();
   const double rate = c.by_overlap * (inward_rate(i, now) + now.growth) + c.by_radius * now.growth;
   return scale > 0.0 ? rate / scale : 0.0;
 }
@@ -229,8 +224,8 @@ double System::force_rate(std::size_t i, const Motion& now) const noexcept {
 /// Lists the guards of the extrema of a tensile force, in turns: after a least force comes a greatest. A prescribed
 /// force has none within a step, nor has an edge that sticks where only the own wall moves.
 void System::watch_tension(std::size_t i, const Motion& now, bool may_go_out, bool may_turn) {
-  const bool peels_alone = memory_[i].edge == Edge::peeling && may_go_out;
-  if (memory_[i].edge == Edge::following || is_loaded(i) || !(may_turn || peels_alone)) return;
+  const bool peels_alone = branches_[i].edge.peels() && may_go_out;
+  if (branches_[i].edge.follows() || is_loaded(i) || !(may_turn || peels_alone)) return;
   const auto add = [&](int kind, int direction) {
     guards_.push_back({.kind = kind,
                        .index = static_cast<int>(i),
@@ -251,7 +246,7 @@ void System::watch_tension(std::size_t i, const Motion& now, bool may_go_out, bo
 /// Whether the force of a contact that pulls goes through an extremum where the guard has fired. One that presses has
 /// come back from that with a rate.
 bool System::is_extremum(int kind, std::size_t i, const Motion& now) const noexcept {
-  if (memory_[i].edge != edges_before_[i] || !touches(memory_[i].regime) || !(now_[i].contact.force < 0.0))
+  if (branches_[i].edge.motion != edges_before_[i] || !branches_[i].touches() || !(now_[i].contact.force < 0.0))
     return false;
   return kind == k_greatest_tension || (kind == k_least_tension && force_rate(i, now) > -2.0 * k_steady_force);
 }
@@ -307,7 +302,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
       case k_lost:
         values[g] = contact_guard(k_lost, i, xi, now_[i].overlap, r);
         // What only touches is always near to that, and not lost together with others.
-        if (memory_[i].is_on_primary_branch || is_idle_contact(i)) values[g] /= k_shallow;
+        if (branches_[i].is_on_primary_branch || is_idle_contact(i)) values[g] /= k_resolution;
         break;
       case k_greatest_tension: {
         const double rate = force_rate(i, now);

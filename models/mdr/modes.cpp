@@ -32,15 +32,15 @@ void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
 // --- deciding a mode
 
 bool System::gate_is_open(const Motion& now) const noexcept {
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (!is_member(memory_[i])) continue;
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    if (!is_member(branches_[i])) continue;
     // Beside stiff contacts the rate of what only touches has fewer digits.
     const double least = (is_idle_contact(i) ? k_at_rest : k_touch) * speed_scale();
     // What keeps up with its wall displaces nothing.
     const bool is_idle = !is_loaded(i) && std::abs(inward_rate(i, now)) <= least;
     if (settings_.radius_rule == RadiusRule::seed && !is_idle) return true;
     const bool is_driven = is_loaded(i) ? ramps_[i].end > ramps_[i].start : inward_rate(i, now) > least;
-    if (memory_[i].is_on_primary_branch && is_driven) return true;
+    if (branches_[i].is_on_primary_branch && is_driven) return true;
   }
   return false;
 }
@@ -54,8 +54,8 @@ bool System::wants_growth(double xi, std::span<double> y) {
   double drive = growth_drive(now);
   // A contact under force moves without bound at the instant at which it is made.
   bool is_singular = false;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    is_singular = is_singular || (is_loaded(i) && is_member(memory_[i]) && ramps_[i].end > ramps_[i].start &&
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    is_singular = is_singular || (is_loaded(i) && is_member(branches_[i]) && ramps_[i].end > ramps_[i].start &&
                                   !(now_[i].contact.by_overlap > 0.0));
   }
   if (is_singular || std::abs(drive) <= k_touch) {
@@ -79,21 +79,21 @@ double System::growth_drive(const Motion& now) const noexcept {
   // last.
   bool goes_in = false;
   bool goes_out = false;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (!is_member(memory_[i])) continue;
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    if (!is_member(branches_[i])) continue;
     const double rate = wall_rate(i, now);
     goes_in = goes_in || rate > 0.0;
     goes_out = goes_out || rate < 0.0;
   }
   const bool is_left = goes_out && !goes_in;
-  return (material_.bulk_compliance > 0.0) == is_left ? 1.0 : -1.0;
+  return (law_.material.bulk_compliance > 0.0) == is_left ? 1.0 : -1.0;
 }
 
 /// Distance of an elastic contact from where it yields, over the overlap there, that counts as none. Contacts that
 /// balance each other on a free centre yield together, and their overlaps agree to the rounding of lengths only.
 double System::nearness_of_yield(std::size_t i) const noexcept {
   if (free_count_ == 0 || directions_[i].norm() < k_no_direction) return k_touch;
-  return std::max(k_touch, std::min(k_together, k_shallow / material_.yield_overlap_ratio));
+  return std::max(k_touch, std::min(k_together, k_resolution / law_.material.yield_overlap_ratio));
 }
 
 /// Fires the guards of one contact that are past already and moving on. Returns whether anything changed.
@@ -107,14 +107,14 @@ bool System::resolve_contact(std::size_t i, double xi, std::span<double> y, cons
   const bool is_carried = is_growing_ && !is_loaded(i) && of_wall >= -k_touch;
   const bool moves_in = of_overlap > k_touch || is_carried;
   const bool moves_out = of_overlap < -k_touch && !is_carried;
-  const bool is_shifted = settings_.delta_max_rule == DeltaMaxRule::shifted;
+  const bool is_shifted = law_.is_shifted();
   const bool retreats = !goes_on_[i] && (is_shifted ? of_wall < -k_touch : moves_out);
   const bool advances = is_shifted ? of_wall > k_touch : moves_in;
   // A force that is about to vanish, and was found to do so together with another event, presses no more.
   const bool is_vanishing = ramps_[i].end < ramps_[i].start && contact_guard(k_made, i, xi, overlap, r) < k_together;
   const bool is_pressed = is_loaded(i) && prescribed_force(i, xi) > 0.0 && !is_vanishing;
   // A dent opens and closes where its own depth says so, which moves with the radius too.
-  const bool is_dent = memory_[i].regime == Regime::unloading || memory_[i].regime == Regime::separated;
+  const bool is_dent = branches_[i].regime == Regime::unloading || branches_[i].regime == Regime::separated;
   const double of_dent = is_dent && !is_loaded(i) ? edge_rate(i, r, now) : of_overlap;
   const bool closes = of_dent > k_touch || is_carried;
   const bool opens = of_dent < -k_touch && !is_carried;
@@ -122,28 +122,28 @@ bool System::resolve_contact(std::size_t i, double xi, std::span<double> y, cons
   const auto is_past = [&](int kind, double sign) { return sign * contact_guard(kind, i, xi, overlap, r) >= -k_touch; };
   const std::string_view why = xi == 0.0 ? "load-reversal" : "retreat";
 
-  Memory& memory = memory_[i];
+  ContactBranch& memory = branches_[i];
   switch (memory.regime) {
     case Regime::open:
       if (is_left_[i] || !(moves_in || is_pressed) || !is_past(k_made, 1.0)) return false;
-      make_contact(i);
+      branches_[i] = branches_[i].made();
       made.push_back(event("contact-made"));
       return true;
     case Regime::separated:
       if (is_left_[i] || !(closes || is_pressed) || !is_past(k_dent_touched, 1.0)) return false;
-      make_contact(i);
+      branches_[i] = branches_[i].made();
       log.push_back(event("dent-touched"));
       return true;
     case Regime::elastic:
       if (is_idle_contact(i)) {
         if (!opens || !is_past(k_lost, -1.0)) return false;
-        lose_contact(i);
+        branches_[i] = branches_[i].lost(now_[i].displacement);
         log.push_back(event("contact-lost"));
         return true;
       }
       // Where its force is about to pull before a contact has borne any, there is no edge that could stick.
-      if (memory.is_on_primary_branch && retreats && is_loaded(i) && !is_pressed && overlap < k_shallow) {
-        lose_contact(i);
+      if (memory.is_on_primary_branch && retreats && is_loaded(i) && !is_pressed && overlap < k_resolution) {
+        branches_[i] = branches_[i].lost(now_[i].displacement);
         log.push_back(event("contact-lost"));
         return true;
       }
@@ -151,8 +151,8 @@ bool System::resolve_contact(std::size_t i, double xi, std::span<double> y, cons
         start_unloading(i, r, why, log);
         return true;
       }
-      if (may_yield(memory) && moves_in && -contact_guard(k_yield, i, xi, overlap, r) <= nearness_of_yield(i)) {
-        yield(i, r);
+      if (memory.may_yield(law_) && moves_in && -contact_guard(k_yield, i, xi, overlap, r) <= nearness_of_yield(i)) {
+        branches_[i] = branches_[i].yielded(law_, r);
         log.push_back(event("yield"));
         return true;
       }
@@ -171,18 +171,21 @@ bool System::resolve_contact(std::size_t i, double xi, std::span<double> y, cons
     const double passed = contact_guard(k_reload, i, xi, overlap, r);
     if (!has_turned_[i] || rate > k_at_rest || passed > k_touch) {
       has_resumed_[i] = has_turned_[i];
-      resume_loading(i);
+      branches_[i] = branches_[i].reloaded();
       log.push_back(event("reload"));
       return true;
     }
     // Passed by rounding, the guard would not be met.
-    if (passed > 0.0) set_largest(i, r);
+    if (passed > 0.0) {
+      branches_[i] = branches_[i].with_largest(law_, r, now_[i].overlap);
+      drop_evaluation();
+    }
   }
-  if (adheres()) return resolve_edge(i, xi, y, now, is_carried, log);
+  if (law_.adheres()) return resolve_edge(i, xi, y, now, is_carried, log);
   // No force presses a wall on what is left of its contact: whether that ends does not wait for the radius to grow.
   const bool is_let_go = is_loaded(i) && ramps_[i].start <= 0.0 && ramps_[i].end <= 0.0;
   if ((opens || is_let_go) && is_past(k_lost, -1.0)) {
-    lose_contact(i);
+    branches_[i] = branches_[i].lost(now_[i].displacement);
     log.push_back(event("contact-lost"));
     return true;
   }
@@ -200,8 +203,8 @@ bool System::resolve_edge(std::size_t i, double xi, std::span<double> y, const M
   const auto is_past = [&](int kind, double sign) { return sign * edge_guard(kind, i, xi, overlap, r) >= -k_touch; };
   // What has turned at this instant rests: from one look to the next the sign of its rate is another one.
   const bool rests = has_turned_[i] && std::abs(overlap_rate(i, now)) <= k_at_rest;
-  Memory& memory = memory_[i];
-  switch (memory.edge) {
+  ContactBranch& memory = branches_[i];
+  switch (memory.edge.motion) {
     case Edge::following:
       if (!moves_out) return false;
       stick(i, log);
@@ -209,7 +212,7 @@ bool System::resolve_edge(std::size_t i, double xi, std::span<double> y, const M
     case Edge::sticking:
       if (rests) return false;
       if (moves_in && is_past(k_follow, 1.0)) {
-        memory.edge = Edge::following;
+        memory.edge.motion = Edge::following;
         log.push_back({"follow", static_cast<int>(i)});
         return true;
       }
@@ -241,13 +244,13 @@ void System::throw_unsettled() {
 /// another equilibrium, and the other contacts go there along their own branches: back from their largest overlap, on
 /// beyond it, their edges stretched or pressed.
 void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& log, std::vector<Event>& made) {
-  if (free_count_ == 0 || !adheres()) {
+  if (free_count_ == 0 || !law_.adheres()) {
     complete(xi, y);
     return;
   }
   evaluate(xi, y);
   for (std::size_t i = 0; i < now_.size(); ++i) overlaps_before_[i] = now_[i].overlap;
-  memory_before_ = memory_;
+  branches_before_ = branches_;
   const std::size_t logged_before = log.size();
   const std::size_t made_before = made.size();
   for (std::size_t round = 0;; ++round) {
@@ -265,17 +268,17 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
     evaluate(xi, y);
     const double r = y[k_radius];
     bool has_changed = false;
-    for (std::size_t i = 0; i < memory_.size(); ++i) {
+    for (std::size_t i = 0; i < branches_.size(); ++i) {
       const double gone = now_[i].overlap - overlaps_before_[i];
       if (is_loaded(i)) continue;
       // What was led in on the way there, to touch, to yield or to reload, may be led back again: each time it is seen
       // anew how far it has come from where it was.
-      const Memory& before = memory_before_[i];
-      const Memory last = memory_[i];
+      const ContactBranch& before = branches_before_[i];
+      const ContactBranch last = branches_[i];
       const bool has_entered =
           last.is_on_primary_branch && (!before.is_on_primary_branch || last.regime != before.regime);
       if (has_entered) {
-        memory_[i] = before;
+        branches_[i] = before;
         evaluate_contact(i, now_[i].displacement, r);
         forget_events(i, logged_before, log);
         forget_events(i, made_before, made);
@@ -285,7 +288,7 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
         continue;
       }
       // What turns back turns where it came from.
-      const bool turns = gone < 0.0 && touches(memory_[i].regime) && memory_[i].edge == Edge::following;
+      const bool turns = gone < 0.0 && branches_[i].touches() && branches_[i].edge.follows();
       if (turns) evaluate_contact(i, overlaps_before_[i] - r, r);
       now_[i].rate_by_time = gone;
       now_[i].rate_by_growth = 0.0;
@@ -295,7 +298,7 @@ void System::balance_anew(double xi, std::span<double> y, std::vector<Event>& lo
         has_changed = has_changed || !has_entered;
       }
       const bool is_as_last =
-          memory_[i].regime == last.regime && memory_[i].is_on_primary_branch == last.is_on_primary_branch;
+          branches_[i].regime == last.regime && branches_[i].is_on_primary_branch == last.is_on_primary_branch;
       has_changed = has_changed || (has_entered && !is_as_last);
     }
     if (!has_changed && !has_arrived) throw_unsettled();
@@ -314,12 +317,12 @@ void System::resolve_mode(double xi, std::span<double> y, std::optional<bool> gr
   const bool was_growing = is_growing_;
   drop_evaluation();
   std::vector<Event> made;
-  goes_on_.assign(memory_.size(), false);
-  has_resumed_.assign(memory_.size(), false);
+  goes_on_.assign(branches_.size(), false);
+  has_resumed_.assign(branches_.size(), false);
   if (!has_jumped) balance_anew(xi, y, log, made);
   held_radius_ = y[k_radius];
   const std::vector<double> first_state(y.begin(), y.end());
-  const std::vector<Memory> first_memory = memory_;
+  const std::vector<ContactBranch> first_branches = branches_;
   const std::size_t first_logged = log.size();
   const std::size_t first_made = made.size();
   bool runs_away = false;
@@ -328,7 +331,7 @@ void System::resolve_mode(double xi, std::span<double> y, std::optional<bool> gr
     // of a step, where its rate is rounding when it turns.
     if (round == most_rounds() && !runs_away && has_resumed_ != goes_on_) {
       std::ranges::copy(first_state, y.begin());
-      memory_ = first_memory;
+      branches_ = first_branches;
       log.resize(first_logged);
       made.resize(first_made);
       growth.reset();
@@ -352,10 +355,10 @@ void System::resolve_mode(double xi, std::span<double> y, std::optional<bool> gr
     runs_away = runs_away || (is_growing_ && free_surface(now, y[k_radius]) < k_least_slope);
     bool has_changed = false;
     std::vector<std::size_t> just_loaded;
-    for (std::size_t i = 0; i < memory_.size(); ++i) {
-      const bool was_open = !touches(memory_[i].regime);
+    for (std::size_t i = 0; i < branches_.size(); ++i) {
+      const bool was_open = !branches_[i].touches();
       has_changed = resolve_contact(i, xi, y, now, log, made) || has_changed;
-      if (was_open && is_loaded(i) && touches(memory_[i].regime)) just_loaded.push_back(i);
+      if (was_open && is_loaded(i) && branches_[i].touches()) just_loaded.push_back(i);
     }
     if (!has_changed) {
       // Several edges that peel at once may not hold the centre from the start: past already, the guard of that would
@@ -369,8 +372,8 @@ void System::resolve_mode(double xi, std::span<double> y, std::optional<bool> gr
     // No guard is met by a wall that a force presses on from the start.
     for (const std::size_t i : just_loaded) meet_balanced(i, true, y[k_radius], made);
     // Where a contact has pulled off, the others have to balance anew.
-    if (!has_jumped && adheres()) balance_anew(xi, y, log, made);
-    if (!has_jumped && !adheres()) move_walls(xi, y);
+    if (!has_jumped && law_.adheres()) balance_anew(xi, y, log, made);
+    if (!has_jumped && !law_.adheres()) move_walls(xi, y);
     // A contact that has just been made carries no force yet and leaves the growth guard's decision standing.
     if (log.size() > events_before) growth.reset();
   }
@@ -385,7 +388,7 @@ void System::resolve_mode(double xi, std::span<double> y, std::optional<bool> gr
       std::min(free_surface(motion(true), y[k_radius]), free_surface_at_rest(y[k_radius])) < k_least_slope) {
     throw DomainError(Limit::free_surface_used_up);
   }
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
     if (has_greatest_force(i) && stiffness_left(i) < k_last_stiffness)
       throw DomainError({Limit::greatest_force, static_cast<int>(i), "stiffness left", stiffness_left(i)});
   }
@@ -402,9 +405,9 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   bool others_fired = false;
   bool has_jumped = false;
   std::optional<DomainEnd> end;
-  for (std::size_t i = 0; i < memory_.size(); ++i) edges_before_[i] = memory_[i].edge;
-  has_turned_.assign(memory_.size(), false);
-  is_left_.assign(memory_.size(), false);
+  for (std::size_t i = 0; i < branches_.size(); ++i) edges_before_[i] = branches_[i].edge.motion;
+  has_turned_.assign(branches_.size(), false);
+  is_left_.assign(branches_.size(), false);
   for (const std::size_t g : fired) {
     const Guard guard = guards_[g];
     const auto i = static_cast<std::size_t>(std::max(0, guard.index));
@@ -412,45 +415,46 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     const bool is_making = guard.kind == k_made || guard.kind == k_dent_touched;
     const bool is_losing = guard.kind == k_lost;
     // Closed or opened already, together with the contact it balances.
-    if ((is_making && touches(memory_[i].regime)) || (is_losing && !touches(memory_[i].regime))) continue;
+    if ((is_making && branches_[i].touches()) || (is_losing && !branches_[i].touches())) continue;
     // What only takes the centre along has nothing to unload from, nor to yield by.
     if ((guard.kind == k_retreat || guard.kind == k_yield) && is_idle_contact(i)) continue;
     // Another guard of the same edge has changed it at this instant, or its contact is back at its largest overlap,
     // where edges only follow.
     const bool is_of_edge = guard.kind == k_peel || guard.kind == k_follow || guard.kind == k_turn;
     // Asked of the guards of edges alone: that of intersecting caps carries the number of their pair, not of a wall.
-    const auto has_edge = [this](const Memory& memory) {
-      return touches(memory.regime) && !memory.is_on_primary_branch;
+    const auto has_edge = [this](const ContactBranch& memory) {
+      return memory.touches() && !memory.is_on_primary_branch;
     };
-    if (is_of_edge && (!has_edge(memory_[i]) || edges_before_[i] != memory_[i].edge)) continue;
+    if (is_of_edge && (!has_edge(branches_[i]) || edges_before_[i] != branches_[i].edge.motion)) continue;
     // Nor is a branch at its end that is as short as what counts as zero.
-    if (guard.kind == k_reload && memory_[i].regime == Regime::unloading) {
+    if (guard.kind == k_reload && branches_[i].regime == Regime::unloading) {
       const double passed = is_loaded(i) ? k_passed_by_force : k_passed;
-      if (unloading_fraction(shape(i, r), now_[i].overlap) > passed) continue;
+      if (unloading_fraction(branches_[i].shape(law_, r, now_[i].overlap), now_[i].overlap) > passed) continue;
     }
     // Beside stiff contacts the rate of what turns with them has fewer digits.
     const auto rests = [&] {
       return edge_rate(i, r, now) >= -k_at_rest || std::abs(overlap_rate(i, now)) <= k_at_rest;
     };
     if (guard.kind == k_peel && rests()) {
-      set_edge_back(i, r);
+      const Frame at = branches_[i].frame(law_, r, now_[i].overlap);
+      branches_[i].edge = branches_[i].edge.set_back(at.indenter, rounding_of_edge(i, r) * at.by_overlap);
       continue;
     }
     if (guard.kind == k_follow && edge_rate(i, r, now) <= k_at_rest) continue;
     switch (guard.kind) {
       case k_yield:
-        yield(i, r);
+        branches_[i] = branches_[i].yielded(law_, r);
         has_jumped = has_jumped || is_loaded(i);
         break;
       case k_reload:
-        resume_loading(i);
+        branches_[i] = branches_[i].reloaded();
         break;
       case k_made:
       case k_dent_touched:
-        make_contact(i);
+        branches_[i] = branches_[i].made();
         break;
       case k_lost:
-        lose_contact(i);
+        branches_[i] = branches_[i].lost(now_[i].displacement);
         break;
       case k_retreat:
         start_unloading(i, r, guard.name, log);
@@ -470,7 +474,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         others_fired = true;
         continue;
       case k_pull_off:
-        if (memory_[i].edge == Edge::peeling) separate(i, r, y, log);
+        if (branches_[i].edge.peels()) separate(i, r, y, log);
         others_fired = true;
         continue;
       case k_unstable:
@@ -484,7 +488,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
             {Limit::centre_softening, -1, "their stiffness over that of shallow contacts", least_centre_stiffness()}};
         continue;
       case k_follow:
-        memory_[i].edge = Edge::following;
+        branches_[i].edge.motion = Edge::following;
         break;
       case k_greatest_tension:
       case k_least_tension:
@@ -547,8 +551,8 @@ std::optional<DomainEnd> System::meet_caps_at_once(double xi, std::span<const do
   const double r = y[k_radius];
   std::optional<DomainEnd> end;
   for (CapPair& pair : cap_pairs_) {
-    const bool both_touch = touches(memory_[static_cast<std::size_t>(pair.first)].regime) &&
-                            touches(memory_[static_cast<std::size_t>(pair.second)].regime);
+    const bool both_touch = branches_[static_cast<std::size_t>(pair.first)].touches() &&
+                            branches_[static_cast<std::size_t>(pair.second)].touches();
     const double guard = both_touch ? cap_guard(pair, r) : -1.0;
     if (guard < -k_parted) pair.have_met = false;
     if (guard < -k_touch || pair.have_met) continue;

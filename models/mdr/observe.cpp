@@ -17,50 +17,23 @@ using std::numbers::pi;
 // Regime words of a contact whose edge does not follow, after those of Regime.
 constexpr double k_adhering_word = 5.0;
 constexpr double k_peeling_word = 6.0;
-// Of what an overlap is computed from.
-constexpr double k_roundings = 4.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
 /// Energy of the contacts that evaluate() found. A row of the history asks for both parts of it, which differ where a
 /// contact is at its largest overlap, and by the surface energy where an edge follows.
 double System::energy(double r, PlasticPart plastic_part) {
-  const bool is_either = std::ranges::none_of(memory_, [this](const Memory& memory) {
-    return memory.edge == Edge::following && (memory.regime == Regime::fully_plastic || adheres());
+  const bool is_either = std::ranges::none_of(branches_, [this](const ContactBranch& memory) {
+    return memory.edge.follows() && (memory.regime == Regime::fully_plastic || law_.adheres());
   });
   if (is_either && sums_.energy) return *sums_.energy;
   double sum = 0.0;
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    if (touches(memory_[i].regime)) sum += counts_[i] * contact_energy(i, r, plastic_part);
+    if (branches_[i].touches())
+      sum += counts_[i] * branches_[i].energy(law_, r, now_[i].overlap, now_[i].contact.contact_radius, plastic_part);
   }
   if (is_either) sums_.energy = sum;
   return sum;
-}
-
-double System::contact_energy(std::size_t i, double r, PlasticPart plastic_part) {
-  const Memory& memory = memory_[i];
-  const double overlap = now_[i].overlap;
-  const double a = now_[i].contact.contact_radius;
-  if (memory.edge != Edge::following) {
-    return adhesive_energy(frame(i, overlap, r), material_.composite_modulus, surface_energy_, a);
-  }
-  // A contact closes without attraction: the surface energy is lost, but can be got back.
-  const double surface = plastic_part == PlasticPart::recoverable ? pi * a * a * surface_energy_ : 0.0;
-  switch (memory.regime) {
-    case Regime::open:
-    case Regime::separated:
-      break;
-    case Regime::elastic:
-      return elastic_energy(settings_.elastic_profile, material_.composite_modulus, 1.0 + r, overlap) - surface;
-    case Regime::fully_plastic:
-      if (plastic_part == PlasticPart::work_done) {
-        return plastic_work_primitive(material_, 1.0 + r, overlap, memory.area_constant);
-      }
-      return plastic_energy(shape(i, r)) - (1.0 - shape(i, r).rho) * surface;
-    case Regime::unloading:
-      return unloading_energy(shape(i, r), overlap) - (1.0 - shape(i, r).rho) * surface;
-  }
-  return 0.0;
 }
 
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
@@ -90,9 +63,9 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
     *out++ = c.force * force_unit;
     *out++ = c.contact_radius * length;
     *out++ = c.contact_radius > 0.0 ? c.force / (pi * c.contact_radius * c.contact_radius) * stress_unit_ : 0.0;
-    *out++ = memory_[i].edge == Edge::sticking  ? k_adhering_word
-             : memory_[i].edge == Edge::peeling ? k_peeling_word
-                                                : static_cast<double>(memory_[i].regime);
+    *out++ = branches_[i].edge.sticks()  ? k_adhering_word
+             : branches_[i].edge.peels() ? k_peeling_word
+                                         : static_cast<double>(branches_[i].regime);
   }
   if (settings_.centre_is_free) {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -101,17 +74,11 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   }
 }
 
-/// A contact without what touching_contact() adds for trials. One that is shallower than its overlap is rounded is
-/// none: the radius, a root of that, would be a hundred million times as large.
-Contact System::visible_contact(std::size_t i) const noexcept {
-  const Memory& memory = memory_[i];
+Contact System::visible_contact(std::size_t i) const {
   const Instant& now = now_[i];
-  const bool is_unloading = memory.regime == Regime::unloading;
-  if (memory.edge != Edge::following || (memory.regime != Regime::elastic && !is_unloading)) return now.contact;
-  const double touching = is_unloading ? shapes_[i].overlap_max - shapes_[i].recovery : 0.0;
   // The overlap is the displacement of the wall and the growth of the radius.
-  const double rounding = k_roundings * (2.0 * std::abs(now.displacement) + std::abs(now.overlap) + touching);
-  return now.overlap - touching < rounding ? Contact{} : now.contact;
+  const double magnitude = 2.0 * std::abs(now.displacement) + std::abs(now.overlap);
+  return branches_[i].visible(law_, evaluated_radius_, now.overlap, magnitude, now.contact);
 }
 
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
@@ -132,10 +99,10 @@ std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::spa
   evaluate(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
   const double a = now_[i].contact.contact_radius;
-  if (!touches(memory_[i].regime) || !(a > 0.0)) return {};
-  const Frame now = frame(i, now_[i].overlap, y[k_radius]);
+  if (!branches_[i].touches() || !(a > 0.0)) return {};
+  const Frame now = branches_[i].frame(law_, y[k_radius], now_[i].overlap);
   std::vector<SurfacePoint> points = surface_of({.indenter = now.indenter,
-                                                 .composite_modulus = material_.composite_modulus,
+                                                 .composite_modulus = law_.material.composite_modulus,
                                                  .contact_radius = std::min(a, now.indenter.half_width),
                                                  .displacement_1d = now.displacement});
   for (SurfacePoint& point : points) {
@@ -157,7 +124,7 @@ std::vector<Diagnostic> System::warnings() const {
   std::vector<Diagnostic> result;
   if (settings_.radius_rule != RadiusRule::fixed) {
     const double ratio = settings_.youngs_modulus / settings_.yield_stress;
-    if (!std::isfinite(material_.yield_overlap_ratio)) {
+    if (!std::isfinite(law_.material.yield_overlap_ratio)) {
       result.push_back(
           {"the material is too compliant to yield inside the model; the particle stays elastic", "E/Y", ratio});
     } else if (ratio < 10.0) {

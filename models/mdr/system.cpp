@@ -31,26 +31,26 @@ constexpr std::array<std::string_view, 3> k_centre_names{"centre displacement 1"
 System::System(const Settings& settings, std::vector<ContactClass> classes)
     : settings_(settings), classes_(std::move(classes)) {
   const bool yields = std::isfinite(settings_.yield_stress);
-  material_ = make_material(settings_.youngs_modulus, settings_.poisson_ratio, settings_.yield_stress,
-                            settings_.pressure_curve);
-  stress_unit_ = yields ? settings_.yield_stress : material_.composite_modulus;
-  material_.composite_modulus /= stress_unit_;
-  material_.yield_stress /= stress_unit_;
-  material_.bulk_compliance *= stress_unit_;
-  surface_energy_ = settings_.surface_energy / (stress_unit_ * settings_.initial_radius);
+  law_.material = make_material(settings_.youngs_modulus, settings_.poisson_ratio, settings_.yield_stress,
+                                settings_.pressure_curve);
+  stress_unit_ = yields ? settings_.yield_stress : law_.material.composite_modulus;
+  law_.elastic_profile = settings_.elastic_profile;
+  law_.delta_max_rule = settings_.delta_max_rule;
+  law_.material.composite_modulus /= stress_unit_;
+  law_.material.yield_stress /= stress_unit_;
+  law_.material.bulk_compliance *= stress_unit_;
+  law_.surface_energy = settings_.surface_energy / (stress_unit_ * settings_.initial_radius);
 
   const std::size_t count = classes_.size();
-  memory_.resize(count);
+  branches_.resize(count);
   now_.resize(count);
-  shapes_.resize(count);
-  pull_offs_.resize(count);
   edges_before_.resize(count);
   has_turned_.resize(count);
   is_left_.resize(count);
   has_resumed_.resize(count);
   goes_on_.resize(count);
   overlaps_before_.resize(count);
-  memory_before_.resize(count);
+  branches_before_.resize(count);
   ramps_.resize(count);
   wall_places_.resize(count);
   takes_forces_ = std::ranges::any_of(classes_, &ContactClass::takes_force);
@@ -70,6 +70,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
     Eigen::ColPivHouseholderQR<Eigen::Matrix3Xd> qr(means);
     qr.setThreshold(k_no_direction);
     free_count_ = static_cast<int>(qr.rank());
+    law_.continues_off_branch = free_count_ > 0;
     const Eigen::Matrix3d q = qr.householderQ();
     free_directions_.leftCols(free_count_) = q.leftCols(free_count_);
   }
@@ -133,8 +134,8 @@ double System::largest_overlap_expected() const {
   double reach = std::min(1.0, settings_.largest_displacement / settings_.initial_radius);
   const double force = settings_.largest_force / (stress_unit_ * settings_.initial_radius * settings_.initial_radius);
   if (force > 0.0) {
-    const double elastic = elastic_overlap(ElasticProfile::parabola, material_.composite_modulus, 1.0, force);
-    const double plastic = std::isfinite(material_.yield_overlap_ratio) ? force / (2.0 * pi) : 0.0;
+    const double elastic = elastic_overlap(ElasticProfile::parabola, law_.material.composite_modulus, 1.0, force);
+    const double plastic = std::isfinite(law_.material.yield_overlap_ratio) ? force / (2.0 * pi) : 0.0;
     reach = std::max(reach, std::min(1.0, std::max(elastic, plastic)));
   }
   return reach > 0.0 ? reach : 1.0;
@@ -145,20 +146,20 @@ double System::largest_overlap_expected() const {
 double System::growth_scale(double displacement) const noexcept {
   const double displaced = displacement * displacement;
   if (settings_.radius_rule != RadiusRule::seed) return displaced;
-  const double force = hertz_force(material_.composite_modulus, 1.0, displacement);
-  return std::min(1.0, std::max(displaced, 0.5 * std::numbers::inv_pi * material_.bulk_compliance * force));
+  const double force = hertz_force(law_.material.composite_modulus, 1.0, displacement);
+  return std::min(1.0, std::max(displaced, 0.5 * std::numbers::inv_pi * law_.material.bulk_compliance * force));
 }
 
 /// Work of one wall up to a displacement, whichever is less of an elastic and a fully plastic contact.
 double System::work_scale(double displacement) const noexcept {
-  const double elastic = hertz_energy(material_.composite_modulus, 1.0, displacement);
-  const double plastic = plastic_pressure(material_, 0.0).pressure * pi * displacement * displacement;
-  return std::isfinite(material_.yield_overlap_ratio) ? std::min(elastic, plastic) : elastic;
+  const double elastic = hertz_energy(law_.material.composite_modulus, 1.0, displacement);
+  const double plastic = plastic_pressure(law_.material, 0.0).pressure * pi * displacement * displacement;
+  return std::isfinite(law_.material.yield_overlap_ratio) ? std::min(elastic, plastic) : elastic;
 }
 
 void System::start(std::span<double> y) {
   std::ranges::fill(y, 0.0);
-  memory_.assign(classes_.size(), Memory{});
+  branches_.assign(classes_.size(), ContactBranch{});
   is_growing_ = false;
   held_radius_ = 0.0;
   validity_.reset();
@@ -168,11 +169,11 @@ void System::start(std::span<double> y) {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const double gap = classes_[i].gap / settings_.initial_radius;
     ramps_[i] = {-gap, -gap, Control::displacement};
-    memory_[i].resting = -gap;
+    branches_[i].resting = -gap;
     if (classes_[i].takes_force) y[wall_places_[i]] = -gap;
     // A free centre is held by whatever it touches; otherwise resting walls stay open until the particle grows against
     // them.
-    if (gap == 0.0 && directions_[i].norm() > k_no_direction) memory_[i].regime = Regime::elastic;
+    if (gap == 0.0 && directions_[i].norm() > k_no_direction) branches_[i].regime = Regime::elastic;
   }
 }
 
@@ -182,21 +183,21 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     const double unit = ramps[i].control == Control::force ? stress_unit_ * length * length : length;
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
-    if (is_loaded(i)) memory_[i].resting = y[wall_places_[i]];
+    if (is_loaded(i)) branches_[i].resting = y[wall_places_[i]];
     // A driven wall that touches the fresh particle and approaches is in contact from the start, without an event.
     const bool touches_at_once = is_loaded(i) ? classes_[i].gap == 0.0 : ramps_[i].start == 0.0;
-    if (!has_begun_ && touches_at_once && ramps_[i].end > 0.0) memory_[i].regime = Regime::elastic;
+    if (!has_begun_ && touches_at_once && ramps_[i].end > 0.0) branches_[i].regime = Regime::elastic;
   }
   has_begun_ = true;
   y[k_work] -= force_work(y);
-  has_turned_.assign(memory_.size(), false);
-  is_left_.assign(memory_.size(), false);
+  has_turned_.assign(branches_.size(), false);
+  is_left_.assign(branches_.size(), false);
   find_slight_forces();
   if (free_count_ > 0) evaluate(0.0, y);
   for (std::size_t i = 0; i < ramps_.size(); ++i) {
     // The nearest walls close with it, as no guard is met by one that touches already.
     const bool begins_to_press = is_loaded(i) && ramps_[i].start == 0.0 && ramps_[i].end > 0.0;
-    if (begins_to_press && touches(memory_[i].regime)) meet_balanced(i, true, y[k_radius], log);
+    if (begins_to_press && branches_[i].touches()) meet_balanced(i, true, y[k_radius], log);
   }
   resolve_mode(0.0, y, std::nullopt, log);
   if (const auto end = meet_caps_at_once(0.0, y, log)) throw CannotBegin(*end);
@@ -204,20 +205,16 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
 }
 
 bool System::is_open(int contact_class) const noexcept {
-  return !touches(memory_[static_cast<std::size_t>(contact_class)].regime);
+  return !branches_[static_cast<std::size_t>(contact_class)].touches();
 }
 
 std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
   // Of the whole program: every contact is as shallow when it is made.
-  if (!(largest_overlap_expected() > k_shallow)) return Difficulty::below_resolution;
+  if (!(largest_overlap_expected() > k_resolution)) return Difficulty::below_resolution;
   if (free_count_ == 0 || !weakest_contact()) return std::nullopt;
   evaluate(xi, y);
   if (least_centre_stiffness() >= k_soft_centre) return std::nullopt;
   return Difficulty::soft_centre;
-}
-
-double System::largest_overlap(const Memory& memory, double r) const noexcept {
-  return settings_.delta_max_rule == DeltaMaxRule::shifted ? memory.largest + r : memory.largest;
 }
 
 void System::complete(double xi, std::span<double> y) {

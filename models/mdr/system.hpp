@@ -15,8 +15,7 @@
 #include <optional>
 #include <vector>
 
-#include "mdr/adhesion.hpp"
-#include "mdr/contact.hpp"
+#include "mdr/contact_branch.hpp"
 #include "system/hybrid_system.hpp"
 #include "system/undefined.hpp"
 
@@ -28,22 +27,6 @@ enum class RadiusRule {
   yielded,  ///< yielded contacts at their largest overlap; only while one of them is driven inwards
   seed,     ///< all touching contacts; always (eq. 37 to the letter)
   fixed     ///< R = R0 for ever (model hertz)
-};
-
-/// What the largest overlap of an unloaded contact does while R grows.
-enum class DeltaMaxRule {
-  running_maximum,  ///< stays: it is the running maximum of the overlap (Appendix E)
-  shifted           ///< moves with R: delta_o,max + R - R0 (eq. 19)
-};
-
-enum class Regime { open, elastic, fully_plastic, unloading, separated };
-
-/// What the edge of an adhesive contact does. The contact radius is a play operator between the radius without adhesion
-/// and the one in equilibrium.
-enum class Edge {
-  following,  ///< advances with the load, as without adhesion
-  sticking,   ///< stays where it was when the load was reversed
-  peeling     ///< recedes in equilibrium
 };
 
 struct Settings {
@@ -116,23 +99,9 @@ class System final : public HybridSystem {
   static constexpr double k_soft_centre = 0.1;
   /// Share of the forces on a free centre that is rounding in their balance.
   static constexpr double k_no_force = 1e-9;
-  /// Overlaps over R0 that are rounding of lengths of the order of R0.
-  static constexpr double k_shallow = 1e-12;
-
   /// Vectors and matrices along the free directions of the centre; entries beyond their number are zero.
   using Small = Eigen::Vector3d;
   using SmallMatrix = Eigen::Matrix3d;
-
-  /// What a contact class remembers: changed by transitions only.
-  struct Memory {
-    Regime regime = Regime::open;
-    bool is_on_primary_branch = true;  ///< at its largest overlap, and not decreasing
-    double largest = 0.0;  ///< largest overlap (running maximum) or wall displacement (shifted), off the primary branch
-    double area_constant = 0.0;  ///< c, set once at yield
-    Edge edge = Edge::following;
-    double edge_radius = 0.0;  ///< of a sticking edge
-    double resting = 0.0;      ///< displacement at which an open wall without load was left
-  };
 
   /// One contact class at an instant.
   struct Instant {
@@ -142,13 +111,6 @@ class System final : public HybridSystem {
     Contact contact;
     double rate_by_time = 0.0;    ///< of the displacement, at fixed R and centre, with xi
     double rate_by_growth = 0.0;  ///< and with R, where the force is prescribed
-  };
-
-  /// Where the edge of a contact pulls off, under either control; fixed while its indenter is.
-  struct PullOff {
-    Indenter indenter;
-    PeelState by_displacement;
-    PeelState by_force;
   };
 
   /// Sums over the contacts at an instant; the volume balance is divided by 4 pi R0^3.
@@ -217,11 +179,8 @@ class System final : public HybridSystem {
     bool have_met = false;   ///< and not parted since
   };
 
-  [[nodiscard]] static bool touches(Regime regime) noexcept {
-    return regime != Regime::open && regime != Regime::separated;
-  }
   /// Whether a contact takes part in the growth of the apparent radius.
-  [[nodiscard]] bool is_member(const Memory& memory) const noexcept {
+  [[nodiscard]] bool is_member(const ContactBranch& memory) const noexcept {
     switch (settings_.radius_rule) {
       case RadiusRule::gated:
       case RadiusRule::seed:
@@ -233,14 +192,8 @@ class System final : public HybridSystem {
     }
     return false;
   }
-  [[nodiscard]] double largest_overlap(const Memory& memory, double r) const noexcept;
-  [[nodiscard]] const UnloadingShape& shape(std::size_t i, double r);
   [[nodiscard]] double inward_rate(std::size_t i, const Motion& motion) const noexcept;
   [[nodiscard]] double prescribed_force(std::size_t i, double xi) const noexcept;
-  [[nodiscard]] Frame frame(std::size_t i, double overlap, double r);
-  [[nodiscard]] const PullOff& pull_off(std::size_t i, const Indenter& indenter);
-  [[nodiscard]] double touching_overlap(std::size_t i, double r);
-  [[nodiscard]] double displacement_under_force(std::size_t i, double xi, double r, double guess);
   void set_rates_under_force(std::size_t i, double r);
   [[nodiscard]] double prescribed_position(std::size_t i, double xi) const noexcept;
   [[nodiscard]] double carried_by_centre(std::size_t i, std::span<const double> y) const noexcept;
@@ -253,20 +206,11 @@ class System final : public HybridSystem {
   void keep_evaluation(double xi, std::span<const double> y);
   void evaluate_cached(double xi, std::span<const double> y);
   void drop_evaluation() noexcept { seen_xi_ = k_nan; }
-  [[nodiscard]] Contact touching_contact(double radius, double overlap) const;
-  [[nodiscard]] Contact unloaded_contact(const UnloadingShape& shape, double overlap) const;
-  [[nodiscard]] Contact visible_contact(std::size_t i) const noexcept;
+  [[nodiscard]] Contact visible_contact(std::size_t i) const;
   void evaluate_contact(std::size_t i, double displacement, double r);
-  [[nodiscard]] Contact contact_at(std::size_t i, double overlap, double r);
-  [[nodiscard]] Contact stiff_contact(std::size_t i, double r);
   [[nodiscard]] double force_work(std::span<const double> y);
   void sum_up(double xi, double r);
   void push_line(std::size_t i, double r);
-  /// Tangent stiffness of a contact as deep as round-off.
-  [[nodiscard]] double least_stiffness() const noexcept {
-    return 2.0 * material_.composite_modulus * std::sqrt(k_shallow);
-  }
-  [[nodiscard]] double tangent_stiffness(std::size_t i) const noexcept;
   void find_lines();
   [[nodiscard]] SmallMatrix stiffest_directions(double Line::*stiffness) const;
   [[nodiscard]] static Small components(const SmallMatrix& basis, const Line& line);
@@ -284,11 +228,11 @@ class System final : public HybridSystem {
   }
   /// True for a plastic contact under a prescribed force: at a given radius it bears no more than a largest one.
   [[nodiscard]] bool has_greatest_force(std::size_t i) const noexcept {
-    return is_loaded(i) && memory_[i].regime == Regime::fully_plastic;
+    return is_loaded(i) && branches_[i].regime == Regime::fully_plastic;
   }
   /// Stiffness of a contact over that of a shallow plastic one.
   [[nodiscard]] double stiffness_left(std::size_t i) const noexcept {
-    return now_[i].contact.by_overlap / stiffness_of_shallow();
+    return now_[i].contact.by_overlap / law_.plastic_stiffness();
   }
   [[nodiscard]] double magnitude_of_forces() const noexcept;
   [[nodiscard]] double rounding_of_forces() const noexcept;
@@ -308,7 +252,7 @@ class System final : public HybridSystem {
   void balance_anew(double xi, std::span<double> y, std::vector<Event>& log, std::vector<Event>& made);
   [[noreturn]] void throw_unsettled();
   /// After which a mode is taken to have none that agrees with it.
-  [[nodiscard]] std::size_t most_rounds() const noexcept { return 4 * memory_.size() + 8; }
+  [[nodiscard]] std::size_t most_rounds() const noexcept { return 4 * branches_.size() + 8; }
   [[nodiscard]] bool wants_growth(double xi, std::span<double> y);
   [[nodiscard]] double growth_drive(const Motion& now) const noexcept;
   [[nodiscard]] SmallMatrix unheld_directions();
@@ -336,15 +280,11 @@ class System final : public HybridSystem {
   [[nodiscard]] bool is_slight(std::size_t contact);
   [[nodiscard]] std::optional<Small> velocity_of(std::span<Drive> drives, double xi, std::span<const double> y);
   bool drive_out(std::span<const Drive> drives, const SmallMatrix& along, Small& velocity) const;
-  [[nodiscard]] bool is_idle_contact(std::size_t i) const noexcept;
+  [[nodiscard]] bool is_idle_contact(std::size_t i) const;
   void check_support();
-  void set_largest(std::size_t i, double r) noexcept;
-  void turn(std::size_t i, double r) noexcept;
   void start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log);
   void stick(std::size_t i, std::vector<Event>& log);
   [[nodiscard]] std::optional<std::size_t> weakest_contact() const noexcept;
-  [[nodiscard]] double unpeeled_stiffness(std::size_t i) const noexcept;
-  [[nodiscard]] double stiffness_of_shallow() const noexcept;
   [[nodiscard]] bool is_any_softened() const noexcept;
   [[nodiscard]] CentreStiffness centre_stiffness();
   [[nodiscard]] double round_off_of(const CentreStiffness& softest, double r);
@@ -353,12 +293,7 @@ class System final : public HybridSystem {
   void check_adhesion(std::size_t i, double r);
   void start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);
   void separate(std::size_t i, double r, std::span<double> y, std::vector<Event>& log);
-  void make_contact(std::size_t i);
-  void lose_contact(std::size_t i);
-  [[nodiscard]] bool may_yield(const Memory& memory) const noexcept;
   [[nodiscard]] double nearness_of_yield(std::size_t i) const noexcept;
-  void yield(std::size_t i, double r);
-  void resume_loading(std::size_t i);
   void meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log);
   [[nodiscard]] double way_to_touch(std::size_t i, double r);
   [[nodiscard]] bool may_be_backed(std::size_t i, double r);
@@ -371,7 +306,6 @@ class System final : public HybridSystem {
   void watch_edge(std::size_t i, double r, bool may_come_in, bool may_go_out, bool may_turn);
   [[nodiscard]] double contact_guard(int kind, std::size_t i, double xi, double overlap, double r);
   [[nodiscard]] double edge_guard(int kind, std::size_t i, double xi, double overlap, double r);
-  void set_edge_back(std::size_t i, double r);
   [[nodiscard]] double rounding_of_edge(std::size_t i, double r);
   std::optional<DomainEnd> meet_caps(CapPair& pair, double r, std::vector<Event>& log);
   [[nodiscard]] std::optional<DomainEnd> meet_caps_at_once(double xi, std::span<const double> y,
@@ -380,21 +314,16 @@ class System final : public HybridSystem {
   [[nodiscard]] std::optional<DomainEnd> reach_centre_at_once(double xi, std::span<const double> y);
   [[nodiscard]] double cap_guard(const CapPair& pair, double r) const;
 
-  /// What counts of a contact at its largest overlap: the energy it would give back, or the work done on it (up to a
-  /// constant). On all other branches the two are the same.
-  enum class PlasticPart { recoverable, work_done };
   [[nodiscard]] double energy(double r, PlasticPart plastic_part);
-  [[nodiscard]] double contact_energy(std::size_t i, double r, PlasticPart plastic_part);
-  [[nodiscard]] bool adheres() const noexcept { return surface_energy_ > 0.0; }
+  [[nodiscard]] bool adheres() const noexcept { return law_.adheres(); }
   [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return ramps_[i].control == Control::force; }
   [[nodiscard]] double largest_overlap_expected() const;
   [[nodiscard]] double growth_scale(double displacement) const noexcept;
   [[nodiscard]] double work_scale(double displacement) const noexcept;
 
   Settings settings_;
-  Material material_;  ///< stresses over the stress unit
+  ContactLaw law_;  ///< stresses over the stress unit, lengths over R0
   double stress_unit_ = 1.0;
-  double surface_energy_ = 0.0;  ///< over the stress unit and R0
   std::vector<ContactClass> classes_;
   std::vector<double> counts_;  ///< walls of each class
   std::vector<Unknown> unknowns_;
@@ -410,7 +339,7 @@ class System final : public HybridSystem {
 
   std::vector<Ramp> ramps_;  ///< displacements over R0, forces over the stress unit and R0^2
   bool has_begun_ = false;
-  std::vector<Memory> memory_;
+  std::vector<ContactBranch> branches_;
   bool is_growing_ = false;
   double held_radius_ = 0.0;                  ///< r while it is held
   double frozen_balance_ = 0.0;               ///< C while it grows
@@ -427,15 +356,14 @@ class System final : public HybridSystem {
   double longest_ = 1.0;        ///< of the lengths, over R0, that overlaps are differences of
   double seen_xi_ = k_nan;      ///< where evaluate() was last
   std::vector<double> seen_;
-  std::vector<UnloadingShape> shapes_;
-  std::vector<PullOff> pull_offs_;
+  double evaluated_radius_ = 0.0;  ///< r where the forces were evaluated last
   std::vector<Edge> edges_before_;
   std::vector<bool> has_turned_;   ///< started to unload at the instant at which a mode is decided
   std::vector<bool> has_resumed_;  ///< and gone on beyond its largest overlap at that instant
   std::vector<bool> goes_on_;      ///< taken to do so from the first, because no mode agrees otherwise
   std::vector<bool> is_left_;      ///< left, at that instant, by a centre that forces press elsewhere
   std::vector<double> overlaps_before_;
-  std::vector<Memory> memory_before_;
+  std::vector<ContactBranch> branches_before_;
   Sums sums_;
   std::optional<Diagnostic> validity_;  ///< of the first adhesive contact to unload for which the model is not valid
   bool caps_have_met_ = false;

@@ -75,28 +75,28 @@ std::vector<double> overlaps_under_push(const Eigen::Vector3d& push, std::span<c
 /// Where the centre is free, a contact along its directions is carried by others only: the nearest ones close with it
 /// until they balance it, if they can, and those open with it that the rest does not balance.
 void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Event>& log) {
-  if (free_count_ == 0 || directions_[i].norm() < k_no_direction || adheres()) return;
+  if (free_count_ == 0 || directions_[i].norm() < k_no_direction || law_.adheres()) return;
   // Walls that cannot balance it have not met the particle with it, however near they are.
   if (is_made && !may_be_backed(i, r)) return;
   while (!is_made || !is_supported(i)) {
     std::optional<std::size_t> next;
     double nearest = k_together;
     bool next_is_dent = false;
-    for (std::size_t j = 0; j < memory_.size(); ++j) {
+    for (std::size_t j = 0; j < branches_.size(); ++j) {
       if (j == i || is_loaded(j) || directions_[j].norm() < k_no_direction) continue;
-      if (touches(memory_[j].regime) == is_made) continue;
+      if (branches_[j].touches() == is_made) continue;
       const double distance =
           is_made ? way_to_touch(j, r) : std::abs(contact_guard(k_lost, j, 0.0, now_[j].overlap, r));
       if (distance > nearest || (!is_made && is_supported(j))) continue;
       next = j;
       nearest = distance;
-      next_is_dent = memory_[j].regime == Regime::separated;
+      next_is_dent = branches_[j].regime == Regime::separated;
     }
     if (!next) return;
     if (is_made)
-      make_contact(*next);
+      branches_[*next] = branches_[*next].made();
     else
-      lose_contact(*next);
+      branches_[*next] = branches_[*next].lost(now_[*next].displacement);
     log.push_back(
         {is_made ? (next_is_dent ? "dent-touched" : "contact-made") : "contact-lost", static_cast<int>(*next)});
   }
@@ -104,16 +104,16 @@ void System::meet_balanced(std::size_t i, bool is_made, double r, std::vector<Ev
 
 /// How far a wall is from touching the fresh particle or its dent.
 double System::way_to_touch(std::size_t i, double r) {
-  const int kind = memory_[i].regime == Regime::separated ? k_dent_touched : k_made;
+  const int kind = branches_[i].regime == Regime::separated ? k_dent_touched : k_made;
   return std::abs(contact_guard(kind, i, 0.0, now_[i].overlap, r));
 }
 
 /// Whether contacts that touch, or are about to, can balance a push of one on the free centre.
 bool System::may_be_backed(std::size_t i, double r) {
   std::vector<Small> others;
-  for (std::size_t j = 0; j < memory_.size(); ++j) {
+  for (std::size_t j = 0; j < branches_.size(); ++j) {
     if (j == i || directions_[j].norm() < k_no_direction) continue;
-    if (!touches(memory_[j].regime) && (is_loaded(j) || way_to_touch(j, r) > k_together)) continue;
+    if (!branches_[j].touches() && (is_loaded(j) || way_to_touch(j, r) > k_together)) continue;
     others.push_back(directions_[j].normalized());
   }
   return in_reaction_cone(directions_[i], others);
@@ -121,14 +121,12 @@ bool System::may_be_backed(std::size_t i, double r) {
 
 /// True for an idle contact: the wall touches a particle with a free centre and carries no load. Its overlap and the
 /// rate of that are round-off; it leaves no dent, and is lost when the gap exceeds the resolution.
-bool System::is_idle_contact(std::size_t i) const noexcept {
+bool System::is_idle_contact(std::size_t i) const {
   if (free_count_ == 0 || is_loaded(i) || !(directions_[i].norm() > k_no_direction)) return false;
-  const Memory& memory = memory_[i];
-  if (memory.regime == Regime::elastic)
-    return (memory.is_on_primary_branch || !adheres()) && is_shallow(now_[i].overlap);
-  const UnloadingShape& dent = shapes_[i];
-  return memory.regime == Regime::unloading && !adheres() &&
-         is_shallow(now_[i].overlap - (dent.overlap_max - dent.recovery));
+  const ContactBranch& branch = branches_[i];
+  const bool may_be_idle = branch.regime == Regime::elastic ? branch.is_on_primary_branch || !law_.adheres()
+                                                            : branch.regime == Regime::unloading && !law_.adheres();
+  return may_be_idle && is_shallow(now_[i].overlap - branch.touching_overlap(law_, evaluated_radius_));
 }
 
 /// Loses the walls that only touch a free centre and that the others drive it away from faster than they follow: a
@@ -138,7 +136,7 @@ bool System::is_idle_contact(std::size_t i) const noexcept {
 /// @return whether there are any
 bool System::leave_behind(double xi, std::span<const double> y, std::vector<Event>& log) {
   std::vector<Drive> drives;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
     if (is_idle_contact(i)) drives.push_back({i});
   }
   if (drives.empty()) return false;
@@ -161,7 +159,7 @@ bool System::leave_behind(double xi, std::span<const double> y, std::vector<Even
   for (const Drive& drive : drives) {
     const std::size_t i = drive.contact;
     if (!(drive.rate + directions_[i].dot(*velocity) < least)) continue;
-    lose_contact(i);
+    branches_[i] = branches_[i].lost(now_[i].displacement);
     log.push_back({"contact-lost", static_cast<int>(i)});
     has_left = true;
   }
@@ -173,10 +171,11 @@ bool System::leave_behind(double xi, std::span<const double> y, std::vector<Even
 /// one, nor where those to be left still pull in the search for the balance.
 /// @return whether there are any
 bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi, std::vector<Event>& log) {
-  memory_before_ = memory_;
-  for (const Drive& drive : drives) lose_contact(drive.contact);
+  branches_before_ = branches_;
+  for (const Drive& drive : drives)
+    branches_[drive.contact] = branches_[drive.contact].lost(now_[drive.contact].displacement);
   const SmallMatrix along = unheld_directions();
-  memory_ = memory_before_;
+  branches_ = branches_before_;
   const double least = k_no_force * largest_prescribed_force();
   const Small push = along * prescribed_push(1.0);
   if (push.norm() <= least) return false;
@@ -190,13 +189,15 @@ bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi,
   }
   if (!in_reaction_cone(push, units)) return false;
   std::vector<double> weights;
-  for (const Drive& drive : drives) weights.push_back(counts_[drive.contact] * tangent_stiffness(drive.contact));
+  for (const Drive& drive : drives)
+    weights.push_back(counts_[drive.contact] *
+                      branches_[drive.contact].tangent_stiffness(law_, now_[drive.contact].contact));
   const std::vector<double> overlaps = overlaps_under_push(push, normals, weights);
   bool has_left = false;
   for (std::size_t k = 0; k < drives.size(); ++k) {
     const std::size_t i = drives[k].contact;
     if (!(overlaps[k] < -k_left_behind)) continue;
-    lose_contact(i);
+    branches_[i] = branches_[i].lost(now_[i].displacement);
     is_left_[i] = true;
     log.push_back({"contact-lost", static_cast<int>(i)});
     has_left = true;
@@ -208,11 +209,11 @@ bool System::leave_what_is_not_pressed(std::span<const Drive> drives, double xi,
 /// them by themselves, now or at the end of the step.
 bool System::touches_have_to_bear(double xi) const {
   std::vector<Small> bearing;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (!touches(memory_[i].regime) || is_loaded(i) || is_idle_contact(i) || directions_[i].norm() < k_no_direction)
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    if (!branches_[i].touches() || is_loaded(i) || is_idle_contact(i) || directions_[i].norm() < k_no_direction)
       continue;
     bearing.push_back(directions_[i].normalized());
-    if (memory_[i].edge != Edge::following) bearing.emplace_back(-directions_[i].normalized());
+    if (!branches_[i].edge.follows()) bearing.emplace_back(-directions_[i].normalized());
   }
   const double least = k_no_force * largest_prescribed_force();
   const auto is_borne = [&](const Small& push) { return push.norm() <= least || in_reaction_cone(push, bearing); };
@@ -222,8 +223,8 @@ bool System::touches_have_to_bear(double xi) const {
 /// Sum of the prescribed forces on a free centre.
 System::Small System::prescribed_push(double xi) const noexcept {
   Small sum = Small::Zero();
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (!is_loaded(i) || !touches(memory_[i].regime)) continue;
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    if (!is_loaded(i) || !branches_[i].touches()) continue;
     sum += counts_[i] * prescribed_force(i, xi) * directions_[i];
   }
   return sum;
@@ -232,8 +233,8 @@ System::Small System::prescribed_push(double xi) const noexcept {
 /// The largest of them within the step.
 double System::largest_prescribed_force() const noexcept {
   double largest = 0.0;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (touches(memory_[i].regime)) largest = std::max(largest, largest_force(i));
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    if (branches_[i].touches()) largest = std::max(largest, largest_force(i));
   }
   return largest;
 }
@@ -246,8 +247,8 @@ double System::largest_force(std::size_t i) const noexcept {
 /// Finds the forces that are rounding beside the others within the step.
 void System::find_slight_forces() {
   double largest = 0.0;
-  for (std::size_t i = 0; i < memory_.size(); ++i) largest = std::max(largest, largest_force(i));
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
+  for (std::size_t i = 0; i < branches_.size(); ++i) largest = std::max(largest, largest_force(i));
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
     const bool is_free = free_count_ > 0 && directions_[i].norm() > k_no_direction;
     may_be_slight_[i] = is_free && largest_force(i) > 0.0 && largest_force(i) <= k_no_force * largest;
   }
@@ -259,14 +260,15 @@ bool System::is_slight(std::size_t i) { return may_be_slight_[i] && !is_supporte
 /// Velocity of the centre that such walls add to what it has without them, if they leave it a way out; and the rates of
 /// their overlaps without it.
 std::optional<System::Small> System::velocity_of(std::span<Drive> drives, double xi, std::span<const double> y) {
-  memory_before_ = memory_;
-  for (const Drive& drive : drives) lose_contact(drive.contact);
+  branches_before_ = branches_;
+  for (const Drive& drive : drives)
+    branches_[drive.contact] = branches_[drive.contact].lost(now_[drive.contact].displacement);
   evaluate(xi, y);
   const Motion now = motion(is_growing_);
   for (Drive& drive : drives) drive.rate = overlap_rate(drive.contact, now);
   Small velocity = Small::Zero();
   const bool is_free = drive_out(drives, unheld_directions(), velocity);
-  memory_ = memory_before_;
+  branches_ = branches_before_;
   evaluate(xi, y);
   return is_free ? std::optional(velocity) : std::nullopt;
 }
@@ -295,10 +297,10 @@ bool System::drive_out(std::span<const Drive> drives, const SmallMatrix& along, 
 /// is -1; those whose edges do not follow pull, too.
 bool System::is_supported(std::size_t i, double side) {
   backing_.clear();
-  for (std::size_t j = 0; j < memory_.size(); ++j) {
-    if (j == i || !touches(memory_[j].regime) || directions_[j].norm() < k_no_direction) continue;
+  for (std::size_t j = 0; j < branches_.size(); ++j) {
+    if (j == i || !branches_[j].touches() || directions_[j].norm() < k_no_direction) continue;
     backing_.push_back(directions_[j].normalized());
-    if (memory_[j].edge != Edge::following) backing_.emplace_back(-directions_[j].normalized());
+    if (!branches_[j].edge.follows()) backing_.emplace_back(-directions_[j].normalized());
   }
   return in_reaction_cone(side * directions_[i], backing_);
 }
@@ -309,8 +311,8 @@ bool System::is_supported(std::size_t i, double side) {
 void System::check_support() {
   if (free_count_ == 0) return;
   const double least = k_touch * speed_scale();
-  for (std::size_t i = 0; !adheres() && i < memory_.size(); ++i) {
-    const bool pushes = touches(memory_[i].regime) && !is_loaded(i) && ramps_[i].end - ramps_[i].start > least;
+  for (std::size_t i = 0; !law_.adheres() && i < branches_.size(); ++i) {
+    const bool pushes = branches_[i].touches() && !is_loaded(i) && ramps_[i].end - ramps_[i].start > least;
     if (pushes && directions_[i].norm() > k_no_direction && !is_supported(i)) {
       throw DomainError(Limit::centre_not_held,
                         "no contact holds the free centre of the particle against a wall that pushes it");

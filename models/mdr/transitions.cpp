@@ -36,19 +36,20 @@ double System::overlap_rate(std::size_t i, const Motion& now) const noexcept {
 /// Rate of the quantity that defines the largest overlap: the overlap itself, or the displacement of the wall with
 /// delta_max_rule = shifted.
 double System::primary_branch_rate(std::size_t i, const Motion& now) const noexcept {
-  return settings_.delta_max_rule == DeltaMaxRule::shifted ? wall_rate(i, now) : overlap_rate(i, now);
+  return law_.is_shifted() ? wall_rate(i, now) : overlap_rate(i, now);
 }
 
 /// Rate of the largest overlap if this contact began to unload here, times the ratio of stiffnesses. A contact that
 /// would load again as soon as it unloads alternates between the two without end: it stays on its loading branch until
 /// this rate is negative.
 double System::rate_if_turned(std::size_t i, double xi, std::span<const double> y) {
-  const Memory before = memory_[i];
-  turn(i, y[k_radius]);
+  const ContactBranch before = branches_[i];
+  branches_[i] = branches_[i].unloaded(law_, y[k_radius], now_[i].overlap);
+  drop_evaluation();
   evaluate(xi, y);
-  const double stiffer = std::max(1.0, now_[i].contact.by_overlap / stiffness_of_shallow());
+  const double stiffer = std::max(1.0, now_[i].contact.by_overlap / law_.plastic_stiffness());
   const double rate = stiffer * primary_branch_rate(i, motion(is_growing_));
-  memory_[i] = before;
+  branches_[i] = before;
   evaluate(xi, y);
   return rate;
 }
@@ -67,18 +68,7 @@ double System::edge_rate(std::size_t i, double r, const Motion& now) {
     const double rounding = is_loaded(i) ? 0.0 : k_touch * (std::abs(now_[i].rate_by_time) + now.centre.norm());
     return overlap_speed > rounding ? 1.0 : overlap_speed < -rounding ? -1.0 : 0.0;
   }
-  const Frame at = frame(i, now_[i].overlap, r);
-  Frame::Change change = at.by_radius;
-  if (settings_.delta_max_rule == DeltaMaxRule::shifted) {
-    change.displacement += at.by_overlap_max.displacement;
-    change.height += at.by_overlap_max.height;
-    change.half_width += at.by_overlap_max.half_width;
-  }
-  const EdgePress press = edge_press(at, change, c.contact_radius);
-  const double by_overlap = press.by_overlap * overlap_speed;
-  const double by_radius = press.by_radius * now.growth;
-  const double scale = std::abs(by_overlap) + std::abs(by_radius);
-  return scale > 0.0 ? (by_overlap + by_radius) / scale : 0.0;
+  return branches_[i].press_rate(law_, r, now_[i].overlap, c.contact_radius, overlap_speed, now.growth);
 }
 
 double System::loaded_rate(double loading, double by_radius, double growth) const noexcept {
@@ -89,25 +79,12 @@ double System::loaded_rate(double loading, double by_radius, double growth) cons
   return is_growing_ && by_radius > 0.0 ? -1.0 : 0.0;
 }
 
-/// Where a contact is becomes its largest overlap.
-void System::set_largest(std::size_t i, double r) noexcept {
-  drop_evaluation();
-  memory_[i].largest = now_[i].overlap - (settings_.delta_max_rule == DeltaMaxRule::shifted ? r : 0.0);
-}
-
-/// From its largest overlap, which is where it is, to the branch below that.
-void System::turn(std::size_t i, double r) noexcept {
-  Memory& memory = memory_[i];
-  memory.is_on_primary_branch = false;
-  set_largest(i, r);
-  if (memory.regime == Regime::fully_plastic) memory.regime = Regime::unloading;
-}
-
 void System::start_unloading(std::size_t i, double r, std::string_view why, std::vector<Event>& log) {
-  turn(i, r);
+  branches_[i] = branches_[i].unloaded(law_, r, now_[i].overlap);
+  drop_evaluation();
   has_turned_[i] = true;
   log.push_back({why, static_cast<int>(i)});
-  if (!adheres()) return;
+  if (!law_.adheres()) return;
   stick(i, log);
   check_adhesion(i, r);
 }
@@ -115,11 +92,12 @@ void System::start_unloading(std::size_t i, double r, std::string_view why, std:
 /// Whether the model's convex indenter, which knows no yielding in tension, will do for this contact (F.7).
 void System::check_adhesion(std::size_t i, double r) {
   if (validity_) return;
-  const Indenter indenter = frame(i, now_[i].overlap, r).indenter;
-  const PullOff& limits = pull_off(i, indenter);
-  const double critical = (is_loaded(i) ? limits.by_force : limits.by_displacement).contact_radius;
-  const double peak = peak_radius_over_initial_radius(now_[i].displacement, material_.yield_overlap_ratio);
-  const double zone = plastic_zone_size(material_.composite_modulus, surface_energy_, material_.yield_stress);
+  const ContactBranch& branch = branches_[i];
+  const PullOff& limits = branch.pull_off(law_, branch.frame(law_, r, now_[i].overlap).indenter);
+  const double critical = limits.under(ramps_[i].control).contact_radius;
+  const double peak = peak_radius_over_initial_radius(now_[i].displacement, law_.material.yield_overlap_ratio);
+  const double zone =
+      plastic_zone_size(law_.material.composite_modulus, law_.surface_energy, law_.material.yield_stress);
   switch (adhesion_validity(critical, peak, zone)) {
     case AdhesionValidity::valid:
       break;
@@ -135,41 +113,30 @@ void System::check_adhesion(std::size_t i, double r) {
 }
 
 void System::stick(std::size_t i, std::vector<Event>& log) {
-  memory_[i].edge = Edge::sticking;
-  memory_[i].edge_radius = now_[i].contact.contact_radius;
+  branches_[i].edge = {Edge::sticking, now_[i].contact.contact_radius};
   log.push_back({"stick", static_cast<int>(i)});
-}
-
-/// An edge that has just turned sticks where it would peel, and leaves with the square of the way: found to be past
-/// that by rounding, it would be found there again.
-void System::set_edge_back(std::size_t i, double r) {
-  const Frame at = frame(i, now_[i].overlap, r);
-  double& a = memory_[i].edge_radius;
-  // The profile becomes steeper outwards, and is steeper there than this; an edge of no radius stays as it is.
-  const double steepness = (profile_height(at.indenter, a) - profile_height(at.indenter, 0.5 * a)) / (0.5 * a);
-  const double way = rounding_of_edge(i, r) * at.by_overlap / steepness;
-  if (way < k_at_rest * a) a -= way;
 }
 
 /// Pull-off: the edge is no longer stable, and the contact opens at once.
 void System::separate(std::size_t i, double r, std::span<double> y, std::vector<Event>& log) {
-  Memory& memory = memory_[i];
-  const bool is_touch = memory.edge == Edge::sticking && memory.edge_radius == 0.0;
+  ContactBranch& memory = branches_[i];
+  const bool is_touch = memory.edge.sticks() && memory.edge.radius == 0.0;
   if (is_loaded(i)) {
     const Instant& now = now_[i];
     // The wall keeps the work done on it so far. Where the contact holds negative energy, the load has at least to
     // supply that in the snap.
-    const double supplied = std::max(0.0, -contact_energy(i, r, PlasticPart::recoverable));
+    const double supplied = std::max(
+        0.0, -branches_[i].energy(law_, r, now_[i].overlap, now_[i].contact.contact_radius, PlasticPart::recoverable));
     y[k_work] += counts_[i] * (now.contact.force * now.position + supplied);
     memory.resting = now.displacement;
   }
-  memory.edge = Edge::following;
-  lose_contact(i);
+  memory.edge.motion = Edge::following;
+  branches_[i] = branches_[i].lost(now_[i].displacement);
   log.push_back({is_touch ? "contact-lost" : "pull-off", static_cast<int>(i)});
   if (free_count_ == 0) return;
   // A free centre springs back from there: what peeled on the other side is relieved.
-  for (std::size_t j = 0; j < memory_.size(); ++j) {
-    if (memory_[j].edge == Edge::peeling && !is_loaded(j)) stick(j, log);
+  for (std::size_t j = 0; j < branches_.size(); ++j) {
+    if (branches_[j].edge.peels() && !is_loaded(j)) stick(j, log);
   }
 }
 
@@ -177,31 +144,20 @@ void System::separate(std::size_t i, double r, std::span<double> y, std::vector<
 /// peel the one whose wall withdraws fastest.
 std::optional<std::size_t> System::weakest_contact() const noexcept {
   std::optional<std::size_t> weakest;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (memory_[i].edge != Edge::peeling || is_loaded(i) || directions_[i].norm() < k_no_direction) continue;
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    if (!branches_[i].edge.peels() || is_loaded(i) || directions_[i].norm() < k_no_direction) continue;
     const auto speed = [&](std::size_t j) { return ramps_[j].end - ramps_[j].start; };
     if (!weakest || speed(i) < speed(*weakest)) weakest = i;
   }
   return weakest;
 }
 
-/// Magnitude of the stiffness that a contact has, or would have if its edge did not peel.
-double System::unpeeled_stiffness(std::size_t i) const noexcept {
-  const Contact& c = now_[i].contact;
-  if (memory_[i].edge != Edge::peeling) return std::abs(c.by_overlap);
-  const double opening = memory_[i].regime == Regime::elastic ? 1.0 : 1.0 / (1.0 - shapes_[i].rho);
-  return 2.0 * material_.composite_modulus * c.contact_radius * opening;
-}
-
-/// Of a plastic contact, which is the less stiff the wider it is.
-double System::stiffness_of_shallow() const noexcept { return 2.0 * std::numbers::pi * material_.yield_stress; }
-
 /// True if a plastic contact is softened past its peak so far that it may no longer constrain a free centre.
 bool System::is_any_softened() const noexcept {
   constexpr double k_softened_share = 0.1;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    const bool is_plastic = memory_[i].regime == Regime::fully_plastic;
-    if (is_plastic && now_[i].contact.by_overlap < k_softened_share * stiffness_of_shallow()) return true;
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    const bool is_plastic = branches_[i].regime == Regime::fully_plastic;
+    if (is_plastic && now_[i].contact.by_overlap < k_softened_share * law_.plastic_stiffness()) return true;
   }
   return false;
 }
@@ -210,16 +166,19 @@ bool System::is_any_softened() const noexcept {
 /// were softened past its peak. Zero where the equilibrium turns back.
 System::CentreStiffness System::centre_stiffness() {
   for (Line& line : lines_) line.held = line.unsoftened = 0.0;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (!touches(memory_[i].regime) || is_loaded(i)) continue;
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    if (!branches_[i].touches() || is_loaded(i)) continue;
     const double along = on_lines_[i].along;
     const double count = counts_[i] * along * along;
     Line& line = lines_[on_lines_[i].line];
-    line.held += count * tangent_stiffness(i);
+    line.held += count * branches_[i].tangent_stiffness(law_, now_[i].contact);
     // Two contacts that are alike lose their stiffness together where they peel or soften, and with it the sum of what
     // they are.
-    const double at_first = memory_[i].regime == Regime::fully_plastic ? stiffness_of_shallow() : tangent_stiffness(i);
-    line.unsoftened += count * std::max(unpeeled_stiffness(i), at_first);
+    const double at_first = branches_[i].regime == Regime::fully_plastic
+                                ? law_.plastic_stiffness()
+                                : branches_[i].tangent_stiffness(law_, now_[i].contact);
+    line.unsoftened +=
+        count * std::max(branches_[i].unpeeled_stiffness(law_, evaluated_radius_, now_[i].contact), at_first);
   }
   // The stiffness of one direction is not to be lost in the rounding of another's.
   const SmallMatrix basis = stiffest_directions(&Line::unsoftened);
@@ -244,12 +203,12 @@ System::CentreStiffness System::centre_stiffness() {
 /// state, or one in which the contacts hold the centre no more.
 double System::round_off_of(const CentreStiffness& softest, double r) {
   double softening = 0.0;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    if (memory_[i].edge != Edge::peeling || is_loaded(i)) continue;
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    if (!branches_[i].edge.peels() || is_loaded(i)) continue;
     const double along = std::abs(directions_[i].dot(softest.direction));
-    const Frame at = frame(i, now_[i].overlap, r);
-    const double modulus = material_.composite_modulus;
-    const double of_one = peeling_softening(at, modulus, surface_energy_, now_[i].contact.contact_radius);
+    const Frame at = branches_[i].frame(law_, r, now_[i].overlap);
+    const double modulus = law_.material.composite_modulus;
+    const double of_one = peeling_softening(at, modulus, law_.surface_energy, now_[i].contact.contact_radius);
     softening += counts_[i] * std::abs(of_one) * along * along * along;
   }
   return std::sqrt(2.0 * softening * softest.direction.norm() * rounding_of_forces());
@@ -262,46 +221,16 @@ double System::centre_stiffness_guard(double r) {
   return softest.value - std::max(k_least_centre_stiffness, rounding);
 }
 
-void System::resume_loading(std::size_t i) {
-  memory_[i].is_on_primary_branch = true;
-  memory_[i].edge = Edge::following;
-  if (memory_[i].regime == Regime::unloading) memory_[i].regime = Regime::fully_plastic;
-}
-
-void System::make_contact(std::size_t i) {
-  Memory& memory = memory_[i];
-  // An elastic contact that was pressed before keeps its running maximum; a new one starts at its own.
-  memory.regime = memory.regime == Regime::separated ? Regime::unloading : Regime::elastic;
-}
-
-void System::lose_contact(std::size_t i) {
-  memory_[i].resting = now_[i].displacement;
-  memory_[i].regime = memory_[i].regime == Regime::unloading ? Regime::separated : Regime::open;
-}
-
-/// Whether an elastic contact yields where it is deep enough: at its largest overlap, and below it where that moves
-/// with the radius, as growth may then have pressed the contact in beyond anything it has borne while its wall went
-/// back, or have left it with a largest overlap that it never had.
-bool System::may_yield(const Memory& memory) const noexcept {
-  const bool is_at_largest = memory.is_on_primary_branch || settings_.delta_max_rule == DeltaMaxRule::shifted;
-  return is_at_largest && std::isfinite(material_.yield_overlap_ratio);
-}
-
-void System::yield(std::size_t i, double r) {
-  resume_loading(i);
-  memory_[i].regime = Regime::fully_plastic;
-  memory_[i].area_constant = yield_area_constant(material_.yield_overlap_ratio, 1.0 + r);
-}
-
 /// The springs at a sticking edge tear: it recedes in equilibrium, or, within the critical radius, at once.
 void System::start_peeling(std::size_t i, double r, std::span<double> y, std::vector<Event>& log) {
-  const PullOff& limits = pull_off(i, frame(i, now_[i].overlap, r).indenter);
-  const PeelState& critical = is_loaded(i) ? limits.by_force : limits.by_displacement;
-  if (memory_[i].edge_radius <= critical.contact_radius) {
+  const ContactBranch& branch = branches_[i];
+  const PullOff& limits = branch.pull_off(law_, branch.frame(law_, r, now_[i].overlap).indenter);
+  const std::optional<AdhesiveEdge> peeling = branch.edge.torn(limits.under(ramps_[i].control));
+  if (!peeling) {
     separate(i, r, y, log);
     return;
   }
-  memory_[i].edge = Edge::peeling;
+  branches_[i].edge = *peeling;
   log.push_back({"peel", static_cast<int>(i)});
 }
 
