@@ -2,33 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace monograin::mdr {
 namespace {
-
-// Divisions by these would be a good part of what summing up takes.
-constexpr double k_per_solid_angle = 0.25 * std::numbers::inv_pi;
-constexpr double k_third = 1.0 / 3.0;
-constexpr double k_twelfth = 1.0 / 12.0;
 
 // By how much the squared sine of half the angle between opposite walls falls short of 1 for round-off.
 constexpr double k_opposite = 5e-13;
 
 }  // namespace
-
-bool takes_part(RadiusRule rule, Regime regime) noexcept {
-  switch (rule) {
-    case RadiusRule::gated:
-    case RadiusRule::seed:
-      return touches(regime);
-    case RadiusRule::yielded:
-      return regime == Regime::fully_plastic;
-    case RadiusRule::fixed:
-      return false;
-  }
-  return false;
-}
 
 bool opens_gate(RadiusRule rule, const GrowthDrive& drive) noexcept {
   // What keeps up with its wall displaces nothing.
@@ -42,24 +23,6 @@ double VolumeBalance::volume_ratio() const noexcept {
   // There is no smaller volume; fixed steps end beyond it.
   const double w = std::min(relative_compression, 0.25);
   return 1.0 - 2.0 * w / (1.0 + std::sqrt(1.0 - 4.0 * w));
-}
-
-VolumeSum::VolumeSum(double bulk_compliance, double virial_of_all, double virial) noexcept {
-  const double scale = 3.0 * k_per_solid_angle * bulk_compliance;
-  w_ = scale * virial;
-  sum_.under_root = 1.0 - 4.0 * w_;
-  root_ = std::sqrt(sum_.under_root);
-  weight_ = k_per_solid_angle * bulk_compliance / root_;
-  sum_.relative_compression = scale * virial_of_all;
-}
-
-VolumeBalance VolumeSum::balance(double r) const noexcept {
-  const double radius = 1.0 + r;
-  VolumeBalance result = sum_;
-  result.value = r * (1.0 + r * (1.0 + k_third * r)) - k_twelfth * caps_ + 2.0 * k_third * w_ / (1.0 + root_);
-  result.by_radius_at_rest = sum_.by_radius + (radius * radius - 0.5 * radius * overlaps_);
-  result.by_radius = result.by_radius_at_rest + of_walls_;
-  return result;
 }
 
 double growth_drive(double demand, double time_scale, bool withdraws, bool is_compressible) noexcept {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -25,7 +26,18 @@ enum class RadiusRule {
 };
 
 /// True if a contact in a regime takes part in the growth.
-[[nodiscard]] bool takes_part(RadiusRule rule, Regime regime) noexcept;
+[[nodiscard]] inline bool takes_part(RadiusRule rule, Regime regime) noexcept {
+  switch (rule) {
+    case RadiusRule::gated:
+    case RadiusRule::seed:
+      return touches(regime);
+    case RadiusRule::yielded:
+      return regime == Regime::fully_plastic;
+    case RadiusRule::fixed:
+      return false;
+  }
+  return false;
+}
 
 /// How one contact that takes part in the growth moves.
 struct GrowthDrive {
@@ -72,37 +84,55 @@ class VolumeSum {
  public:
   /// @param virial_of_all  sum of force times distance from the centre over all contacts
   /// @param virial         of those in Q
-  VolumeSum(double bulk_compliance, double virial_of_all, double virial) noexcept;
+  VolumeSum(double bulk_compliance, double virial_of_all, double virial) noexcept
+      : w_(k_scale * bulk_compliance * virial) {
+    sum_.under_root = 1.0 - 4.0 * w_;
+    root_ = std::sqrt(sum_.under_root);
+    weight_ = k_per_solid_angle * bulk_compliance / root_;
+    sum_.relative_compression = k_scale * bulk_compliance * virial_of_all;
+  }
 
   /// Adds a class of contacts in Q.
   /// @return the derivative of the balance by the displacement of its walls
-  double add(const VolumeTerm& term, double radius) noexcept;
-  [[nodiscard]] VolumeBalance balance(double r) const noexcept;
+  double add(const VolumeTerm& term, double radius) noexcept {
+    const Contact& c = term.contact;
+    const double distance = 1.0 - term.displacement;
+    caps_ += term.count * term.overlap * term.overlap * (3.0 * radius - term.overlap);
+    overlaps_ += term.count * term.overlap;
+    const double cap_rate = 0.25 * term.overlap * (2.0 * radius - term.overlap);
+    const double volume_rate = weight_ * (c.by_overlap * distance - c.force);
+    const double by_displacement = term.count * (volume_rate - cap_rate);
+    sum_.by_time += by_displacement * term.rate_by_time;
+    sum_.time_scale += term.count * (std::abs(volume_rate) + std::abs(cap_rate)) * std::abs(term.rate_by_time);
+    by_radius_ += term.count * weight_ * (c.by_overlap + c.by_radius) * distance;
+    of_walls_ += by_displacement * term.rate_by_growth;
+    return by_displacement;
+  }
+
+  [[nodiscard]] const VolumeBalance& balance(double r) noexcept {
+    const double radius = 1.0 + r;
+    sum_.value = r * (1.0 + r * (1.0 + k_third * r)) - k_twelfth * caps_ + 2.0 * k_third * w_ / (1.0 + root_);
+    sum_.by_radius_at_rest = by_radius_ + (radius * radius - 0.5 * radius * overlaps_);
+    sum_.by_radius = sum_.by_radius_at_rest + of_walls_;
+    return sum_;
+  }
 
  private:
+  // Divisions by these would be a good part of what summing up takes.
+  static constexpr double k_per_solid_angle = 0.25 * std::numbers::inv_pi;
+  static constexpr double k_scale = 3.0 * k_per_solid_angle;
+  static constexpr double k_third = 1.0 / 3.0;
+  static constexpr double k_twelfth = 1.0 / 12.0;
+
   double w_ = 0.0;
   double root_ = 1.0;
   double weight_ = 0.0;
   double caps_ = 0.0;
   double overlaps_ = 0.0;
-  double of_walls_ = 0.0;
+  double by_radius_ = 0.0;
+  double of_walls_ = 0.0;  ///< part of by_radius
   VolumeBalance sum_;
 };
-
-inline double VolumeSum::add(const VolumeTerm& term, double radius) noexcept {
-  const Contact& c = term.contact;
-  const double distance = 1.0 - term.displacement;
-  caps_ += term.count * term.overlap * term.overlap * (3.0 * radius - term.overlap);
-  overlaps_ += term.count * term.overlap;
-  const double cap_rate = 0.25 * term.overlap * (2.0 * radius - term.overlap);
-  const double volume_rate = weight_ * (c.by_overlap * distance - c.force);
-  const double by_displacement = term.count * (volume_rate - cap_rate);
-  sum_.by_time += by_displacement * term.rate_by_time;
-  sum_.time_scale += term.count * (std::abs(volume_rate) + std::abs(cap_rate)) * std::abs(term.rate_by_time);
-  sum_.by_radius += term.count * weight_ * (c.by_overlap + c.by_radius) * distance;
-  of_walls_ += by_displacement * term.rate_by_growth;
-  return by_displacement;
-}
 
 /// Demand for growth over the magnitudes it is the difference of: -1 where elastic volume loss rules, +1 where the caps
 /// do. The demand itself starts at zero with every first touch, and near nu = 0.5 comes back to zero within no time: as

@@ -82,32 +82,34 @@ const PullOff& ContactBranch::pull_off(const ContactLaw& law, const Indenter& in
   return pull_off_;
 }
 
-Contact ContactBranch::following_contact(const ContactLaw& law, double r, double overlap) const {
-  switch (regime) {
-    case Regime::open:
-    case Regime::separated:
-      return {};
-    case Regime::elastic:
-      return elastic_branch(law, 1.0 + r, overlap);
-    case Regime::fully_plastic:
-      return plastic_contact(law.material, 1.0 + r, overlap, area_constant);
-    case Regime::unloading:
-      return unloading_branch(law, shape(law, r, overlap), overlap);
-  }
-  return {};
-}
-
 Contact ContactBranch::contact(const ContactLaw& law, double r, double overlap) const {
   Contact contact;
-  if (edge.follows()) {
-    contact = following_contact(law, r, overlap);
+  if (!edge.follows()) {
+    contact = adhering_contact(law, r, overlap);
   } else {
-    const Frame at = frame(law, r, overlap);
-    contact = edge.sticks() ? sticking_contact(at, law.material.composite_modulus, edge.radius)
-                            : peeling_contact(at, law.adhesion(), pull_off(law, at.indenter), law.continues_off_branch);
+    switch (regime) {
+      case Regime::open:
+      case Regime::separated:
+        break;
+      case Regime::elastic:
+        contact = elastic_branch(law, 1.0 + r, overlap);
+        break;
+      case Regime::fully_plastic:
+        contact = plastic_contact(law.material, 1.0 + r, overlap, area_constant);
+        break;
+      case Regime::unloading:
+        contact = unloading_branch(law, shape(law, r, overlap), overlap);
+        break;
+    }
   }
   if (law.is_shifted()) contact.by_radius += contact.by_overlap_max;
   return contact;
+}
+
+Contact ContactBranch::adhering_contact(const ContactLaw& law, double r, double overlap) const {
+  const Frame at = frame(law, r, overlap);
+  return edge.sticks() ? sticking_contact(at, law.material.composite_modulus, edge.radius)
+                       : peeling_contact(at, law.adhesion(), pull_off(law, at.indenter), law.continues_off_branch);
 }
 
 Contact ContactBranch::stiff_contact(const ContactLaw& law, double r, double overlap, const Contact& now) const {

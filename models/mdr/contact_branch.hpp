@@ -123,7 +123,7 @@ struct ContactBranch {
   [[nodiscard]] ContactBranch with_edge(const AdhesiveEdge& next) const noexcept;
 
  private:
-  [[nodiscard]] Contact following_contact(const ContactLaw& law, double r, double overlap) const;
+  [[nodiscard]] Contact adhering_contact(const ContactLaw& law, double r, double overlap) const;
 
   // Memos of shape() and pull_off(), which depend on nothing but what they are asked for.
   mutable UnloadingShape shape_;

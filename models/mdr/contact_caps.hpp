@@ -17,6 +17,11 @@ class ContactCaps {
       : pairs_(setup.grows() ? cap_pairs_of(setup.classes) : std::vector<CapPair>{}),
         stops_(setup.settings.stops_at_cap_intersection) {}
 
+  /// Before the first step: no caps have met.
+  void start() noexcept {
+    for (CapPair& pair : pairs_) pair.have_met = false;
+    first_radius_.reset();
+  }
   [[nodiscard]] std::span<const CapPair> pairs() const noexcept { return pairs_; }
   [[nodiscard]] bool both_touch(const Particle& p, std::size_t pair) const noexcept;
   /// >= 0 where the caps of a pair intersect.

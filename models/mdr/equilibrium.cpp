@@ -78,7 +78,7 @@ void grow(Particle& p, double xi, std::span<double> y) {
     }
     y[k_radius] += step;
     const CentreVector centre_step = to_balance + step * by_radius;
-    set_centre(y, count, centre_of(y, count) + centre_step);
+    if (count > 0) set_centre(y, count, centre_of(y, count) + centre_step);
     const double size = std::max(std::abs(step), centre_step.norm());
     if (size < last_step) return;
     // A centre that soft contacts hold goes to and fro by more than that.

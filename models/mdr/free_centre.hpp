@@ -51,7 +51,7 @@ class FreeCentre {
   /// Mean normal of a class along the free directions.
   [[nodiscard]] const CentreVector& direction(std::size_t i) const noexcept { return directions_[i]; }
   /// True if a contact of the class acts on the centre.
-  [[nodiscard]] bool acts(std::size_t i) const noexcept { return acts_[i]; }
+  [[nodiscard]] bool acts(std::size_t i) const noexcept { return is_free() && acts_[i]; }
   /// A vector along the free directions, in space.
   [[nodiscard]] Eigen::Vector3d in_space(const CentreVector& vector) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();

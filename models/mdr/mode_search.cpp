@@ -82,6 +82,7 @@ void ModeSearch::begin(const Particle& particle) {
   for (std::size_t i = 0; i < p_.size(); ++i) edges_before_[i] = p_.branch(i).edge.motion;
   growth_.reset();
   has_jumped_ = false;
+  validity_.reset();
 }
 
 void ModeSearch::close_with(std::size_t i, std::vector<Event>& log) { balance_touch(p_, i, true, log); }

@@ -20,7 +20,7 @@ namespace monograin::mdr {
 
 class ModeSearch {
  public:
-  explicit ModeSearch(const Particle& particle) : p_(particle) { begin(particle); }
+  explicit ModeSearch(const Particle& particle) : p_(particle) {}
 
   /// Begins another search, from the mode of a particle.
   void begin(const Particle& particle);
@@ -37,7 +37,7 @@ class ModeSearch {
   /// @throws std::domain_error where there is none
   void resolve(double xi, std::span<double> y, std::vector<Event>& log);
 
-  /// Of the first adhesive contact to unload for which the model is not valid.
+  /// Of the first adhesive contact to unload in this search for which the model is not valid.
   [[nodiscard]] const std::optional<Diagnostic>& validity() const noexcept { return validity_; }
 
  private:

@@ -34,9 +34,8 @@ System::System(std::shared_ptr<const Setup> setup)
     : setup_(std::move(setup)),
       unknowns_(setup_->unknowns()),
       columns_(true, true, regime_words(*setup_), setup_->classes),
-      particle_(setup_),
-      search_(particle_),
-      caps_(*setup_),
+      now_{.particle = Particle(setup_), .caps = ContactCaps(*setup_)},
+      search_(now_.particle),
       trial_(unknowns_.size()) {
   if (setup_->grows()) observables_ = {{"apparent_radius", "m", {}}, {"volume", "m3", {}}};
   observables_.insert(observables_.end(), columns_.observables().begin(), columns_.observables().end());
@@ -45,53 +44,50 @@ System::System(std::shared_ptr<const Setup> setup)
 }
 
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
-  const Evaluation& at = particle_.evaluated(xi, y);
+  const Evaluation& at = now_.particle.evaluated(xi, y);
   const double length = setup_->length_unit();
-  const double energy_unit = setup_->force_unit() * length;
+  const double force_unit = setup_->force_unit();
+  const double energy_unit = force_unit * length;
   const double work = y[k_work] + at.force_work;
-  const double stored = particle_.energy(PlasticPart::recoverable);
+  const double stored = now_.particle.energy(PlasticPart::recoverable);
   if (setup_->grows()) {
     values[0] = (1.0 + at.r) * length;
     values[1] = 4.0 * pi / 3.0 * length * length * length * at.volume.volume_ratio();
     values = values.subspan(2);
   }
-  columns_.write(
-      {work * energy_unit, stored * energy_unit, (work - stored) * energy_unit}, particle_.size(),
-      [this](std::size_t i) { return visible_row(i); }, values);
+  const auto row_of = [&](std::size_t i) -> contacts::VisibleContact {
+    const Contact c = visible_contact(i);
+    const double area = pi * c.contact_radius * c.contact_radius;
+    return {.displacement = at.contacts[i].position * length,
+            .overlap = at.contacts[i].overlap * length,
+            .force = c.force * force_unit,
+            .contact_radius = c.contact_radius * length,
+            .pressure = area > 0.0 ? c.force / area * setup_->stress_unit : 0.0,
+            .regime = regime_word(now_.particle.branch(i))};
+  };
+  columns_.write({work * energy_unit, stored * energy_unit, (work - stored) * energy_unit}, now_.particle.size(),
+                 row_of, values);
   if (!setup_->settings.centre_is_free) return;
-  const Eigen::Vector3d centre = particle_.centre().in_space(centre_of(y, particle_.centre().count()));
+  const Eigen::Vector3d centre = now_.particle.centre().in_space(centre_of(y, now_.particle.centre().count()));
   const std::span<double> last = values.last(3);
   for (std::size_t k = 0; k < 3; ++k) last[k] = centre[static_cast<Eigen::Index>(k)] * length;
 }
 
 Contact System::visible_contact(std::size_t i) const {
-  const Instant& now = particle_.contact(i);
+  const Instant& now = now_.particle.contact(i);
   // The overlap is the displacement of the wall and the growth of the radius.
   const double magnitude = 2.0 * std::abs(now.displacement) + std::abs(now.overlap);
-  return particle_.branch(i).visible(setup_->law, particle_.at().r, now.overlap, magnitude, now.contact);
-}
-
-/// A contact in a row of the history.
-contacts::VisibleContact System::visible_row(std::size_t i) const {
-  const Contact c = visible_contact(i);
-  const double length = setup_->length_unit();
-  const double area = pi * c.contact_radius * c.contact_radius;
-  return {.displacement = particle_.contact(i).position * length,
-          .overlap = particle_.contact(i).overlap * length,
-          .force = c.force * setup_->force_unit(),
-          .contact_radius = c.contact_radius * length,
-          .pressure = area > 0.0 ? c.force / area * setup_->stress_unit : 0.0,
-          .regime = regime_word(particle_.branch(i))};
+  return now_.particle.branch(i).visible(setup_->law, now_.particle.at().r, now.overlap, magnitude, now.contact);
 }
 
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
-  particle_.evaluated(xi, y);
+  now_.particle.evaluated(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
   const Contact contact = visible_contact(i);
   const double length = setup_->length_unit();
   const double area = pi * contact.contact_radius * contact.contact_radius;
   return quantity_of({.force = contact.force * setup_->stress_unit * length * length,
-                      .displacement = particle_.contact(i).position * length,
+                      .displacement = now_.particle.contact(i).position * length,
                       .pressure = area > 0.0 ? contact.force / area * setup_->stress_unit : 0.0,
                       .contact_radius = contact.contact_radius * length,
                       .apparent_radius = (1.0 + y[k_radius]) * length},
@@ -99,12 +95,12 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
 }
 
 std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {
-  particle_.evaluate(xi, y);
+  now_.particle.evaluate(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
-  const ContactBranch& branch = particle_.branch(i);
-  const double a = particle_.contact(i).contact.contact_radius;
+  const ContactBranch& branch = now_.particle.branch(i);
+  const double a = now_.particle.contact(i).contact.contact_radius;
   if (!branch.touches() || !(a > 0.0)) return {};
-  const Frame now = branch.frame(setup_->law, y[k_radius], particle_.contact(i).overlap);
+  const Frame now = branch.frame(setup_->law, y[k_radius], now_.particle.contact(i).overlap);
   std::vector<SurfacePoint> points = surface_of({.indenter = now.indenter,
                                                  .composite_modulus = setup_->law.material.composite_modulus,
                                                  .contact_radius = std::min(a, now.indenter.half_width),
@@ -120,8 +116,8 @@ std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::spa
 
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
   if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
-  particle_.evaluate(xi, y);
-  return particle_.contact(static_cast<std::size_t>(contact_class)).position * setup_->length_unit();
+  now_.particle.evaluate(xi, y);
+  return now_.particle.contact(static_cast<std::size_t>(contact_class)).position * setup_->length_unit();
 }
 
 std::vector<Diagnostic> System::warnings() const {
@@ -135,11 +131,11 @@ std::vector<Diagnostic> System::warnings() const {
       result.push_back({"elastic strains are not small: the model is meant for E/Y of 10 and more", "E/Y", ratio});
     }
   }
-  if (caps_.first_radius()) {
+  if (now_.caps.first_radius()) {
     result.push_back({"contact caps intersect (event caps-intersect); the model is not valid beyond", "first at R/R0",
-                      *caps_.first_radius()});
+                      *now_.caps.first_radius()});
   }
-  if (search_.validity()) result.push_back(*search_.validity());
+  if (now_.validity) result.push_back(*now_.validity);
   return result;
 }
 

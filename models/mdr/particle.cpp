@@ -31,6 +31,17 @@ Particle::Particle(std::shared_ptr<const Setup> setup) : setup_(std::move(setup)
   mode.loads_on.resize(count, false);
 }
 
+void Particle::start() {
+  mode.is_growing = false;
+  mode.held_radius = 0.0;
+  bears_.assign(size(), true);
+  for (std::size_t i = 0; i < size(); ++i) {
+    branches_[i] = {};
+    branches_[i].resting = -setup_->classes[i].gap / setup_->length_unit();
+  }
+  ++revision_;
+}
+
 void Particle::set_drives(std::span<const Ramp> ramps) {
   double largest = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
@@ -326,8 +337,8 @@ bool Particle::is_below_resolution(double overlap) const {
   return overlap < k_resolution || hertz_force(law().material.composite_modulus, 1.0, overlap) < force_rounding();
 }
 
-bool Particle::is_idle(std::size_t i) const {
-  if (is_loaded(i) || !centre().acts(i)) return false;
+bool Particle::is_idle_touch(std::size_t i) const {
+  if (is_loaded(i)) return false;
   const ContactBranch& branch = branches_[i];
   const bool may_be_idle = branch.regime == Regime::elastic ? branch.is_on_primary_branch || !law().adheres()
                                                             : branch.regime == Regime::unloading && !law().adheres();

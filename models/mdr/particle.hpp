@@ -69,6 +69,8 @@ struct Mode {
 class Particle {
  public:
   explicit Particle(std::shared_ptr<const Setup> setup);
+  /// Brings mode and branches back to what they are before the first step.
+  void start();
 
   [[nodiscard]] const Setup& setup() const noexcept { return *setup_; }
   [[nodiscard]] const ContactLaw& law() const noexcept { return setup_->law; }
@@ -145,7 +147,7 @@ class Particle {
   [[nodiscard]] double resolution() const;
   /// True for an idle contact: the wall touches a particle with a free centre and carries no load. Its overlap and the
   /// rate of that are round-off; it leaves no dent, and is lost when the gap exceeds the resolution.
-  [[nodiscard]] bool is_idle(std::size_t i) const;
+  [[nodiscard]] bool is_idle(std::size_t i) const { return centre().acts(i) && is_idle_touch(i); }
 
  private:
   [[nodiscard]] double prescribed_position(std::size_t i, double xi) const noexcept;
@@ -153,6 +155,7 @@ class Particle {
   void load_centre(std::size_t i);
   void set_rates_under_force(std::size_t i);
   [[nodiscard]] bool is_slight(std::size_t i) const;
+  [[nodiscard]] bool is_idle_touch(std::size_t i) const;
   [[nodiscard]] bool is_below_resolution(double overlap) const;
 
   std::shared_ptr<const Setup> setup_;

@@ -28,7 +28,7 @@ class System final : public HybridSystem {
   void start(std::span<double> y) override;
   void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override;
   [[nodiscard]] std::function<void()> checkpoint() override {
-    return [this, then = *this] { *this = then; };
+    return [this, then = now_] { now_ = then; };
   }
   void complete(double xi, std::span<double> y) override;
   void rates(double xi, std::span<const double> y, std::span<double> dy) override;
@@ -36,9 +36,9 @@ class System final : public HybridSystem {
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
   void solve(double xi, std::span<double> y) override;
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override;
-  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_.list(); }
+  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return now_.guards.list(); }
   void guard_values(double xi, std::span<const double> y, std::span<double> values) override {
-    guards_.values(particle_, caps_, xi, y, values);
+    now_.guards.values(now_.particle, now_.caps, xi, y, values);
   }
   std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                 std::vector<Event>& log) override;
@@ -48,7 +48,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override {
-    return !particle_.branch(static_cast<std::size_t>(contact_class)).touches();
+    return !now_.particle.branch(static_cast<std::size_t>(contact_class)).touches();
   }
   [[nodiscard]] bool contacts_adhere() const noexcept override { return setup_->law.adheres(); }
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
@@ -58,23 +58,30 @@ class System final : public HybridSystem {
   [[nodiscard]] double balance_residual(double xi, std::span<const double> y);
 
  private:
+  /// What changes in a run.
+  struct State {
+    Particle particle;
+    GuardSet guards{};
+    ContactCaps caps;
+    std::optional<Diagnostic> validity{};  ///< of the first adhesive contact to unload for which the model is not valid
+    bool has_begun = false;
+  };
+
   explicit System(std::shared_ptr<const Setup> setup);
   template <class Search>
   void decide_mode(Search&& search);
   [[nodiscard]] Contact visible_contact(std::size_t i) const;
-  [[nodiscard]] contacts::VisibleContact visible_row(std::size_t i) const;
   [[nodiscard]] std::optional<DomainEnd> reach_centre_at_once(double xi, std::span<const double> y);
 
   std::shared_ptr<const Setup> setup_;
   std::vector<Unknown> unknowns_;
   contacts::Columns columns_;
   std::vector<Observable> observables_;
-  Particle particle_;
+  State now_;
+  // Work space, so that nothing is allocated while integrating.
   ModeSearch search_;
-  GuardSet guards_;
-  ContactCaps caps_;
-  bool has_begun_ = false;
-  std::vector<double> trial_;  ///< work space, so that nothing is allocated while integrating
+  std::vector<Guard> fired_;
+  std::vector<double> trial_;
 };
 
 }  // namespace monograin::mdr
