@@ -330,8 +330,8 @@ class IndependentContacts final : public HybridSystem {
   using Vector = FreeCentre::Vector;
   static constexpr std::array<std::string_view, 3> k_centre_names{"centre displacement 1", "centre displacement 2",
                                                                   "centre displacement 3"};
-  /// How far ahead of an instant, in step coordinates, the mode that begins there is decided: briefer ones are not seen.
-  /// Farther where walls hardly move, so that they go by more than round-off.
+  /// How far ahead of an instant, in step coordinates, the mode that begins there is decided: briefer ones are not
+  /// seen. Farther where walls hardly move, so that they go by more than round-off.
   static constexpr double k_least_ahead = 1e-6;
   static constexpr double k_most_ahead = 1e-3;
   static constexpr double k_distance_ahead = 1e-9;  ///< over R0
@@ -538,8 +538,7 @@ class IndependentContacts final : public HybridSystem {
       const double fastest = std::max(velocity.norm(), fastest_wall());
       return (drive(i).rate() + centre_->along(i, velocity) + k_at_rest * fastest) / scales_.reach;
     }
-    if (guards_[g].kind == k_boundary)
-      return (drive(i).value(xi) + centre_->along(i, c) - targets_[g]) / scales_.reach;
+    if (guards_[g].kind == k_boundary) return (drive(i).value(xi) + centre_->along(i, c) - targets_[g]) / scales_.reach;
     return (overlap_as_touching(i, xi, c) - targets_[g]) / scales_.reach;
   }
   void arm_guards_with_centre(std::size_t i, double xi) {

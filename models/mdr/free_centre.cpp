@@ -69,12 +69,11 @@ void FreeCentre::add(std::size_t i, const CentreLoad& load) noexcept {
   line.tangent_stiffness += load.count * load.tangent_stiffness * along * along;
 }
 
-void FreeCentre::sum_up(double least_stiffness) noexcept {
-  const bool is_first_touch = std::ranges::all_of(lines_, [](const Line& line) { return line.stiffness == 0.0; });
+void FreeCentre::sum_up() noexcept {
   force_.setZero();
   stiffness_.setZero();
   for (Line& line : lines_) {
-    if (is_first_touch) line.stiffness = line.tangent_stiffness / least_stiffness;
+    if (line.stiffness == 0.0) line.stiffness = line.tangent_stiffness;
     force_ += line.force * line.direction;
     stiffness_ += line.stiffness * line.direction * line.direction.transpose();
   }

@@ -62,10 +62,9 @@ class FreeCentre {
   /// Forgets all loads.
   void clear() noexcept;
   void add(std::size_t i, const CentreLoad& load) noexcept;
-  /// Sums the loads of all lines up.
-  /// @param least_stiffness  of a touch; at first touch all stiffnesses vanish together, and are in proportion to their
-  ///                         tangents
-  void sum_up(double least_stiffness) noexcept;
+  /// Sums the loads of all lines up. Contacts that are first touched have no stiffness yet: along their lines their
+  /// tangents serve.
+  void sum_up() noexcept;
   [[nodiscard]] const CentreVector& force() const noexcept { return force_; }
   [[nodiscard]] const CentreMatrix& stiffness() const noexcept { return stiffness_; }
 

@@ -185,7 +185,7 @@ void Particle::sum_up(double xi) {
   at_.volume = volume.balance(at_.r);
   at_.power = power;
   at_.force_work = force_work;
-  if (is_free) at_.centre.sum_up(law().least_stiffness());
+  if (is_free) at_.centre.sum_up();
 }
 
 void Particle::load_centre(std::size_t i) {

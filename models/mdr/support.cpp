@@ -222,14 +222,6 @@ double largest_prescribed_force(const Particle& p) noexcept {
 
 void check_support(Particle& p) {
   if (!p.centre().is_free()) return;
-  const double least = k_touch * p.speed_scale();
-  for (std::size_t i = 0; !p.law().adheres() && i < p.size(); ++i) {
-    const bool pushes = p.branch(i).touches() && !p.is_loaded(i) && p.drive(i).rate() > least;
-    if (pushes && p.centre().acts(i) && !is_supported(p, i)) {
-      throw DomainError(Limit::centre_not_held,
-                        "no contact holds the free centre of the particle against a wall that pushes it");
-    }
-  }
   const double largest = largest_prescribed_force(p);
   if (largest == 0.0) return;
   const CentreMatrix unconstrained = unconstrained_directions(p);

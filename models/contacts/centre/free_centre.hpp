@@ -132,7 +132,7 @@ class FreeCentre {
   // Work space, so that nothing is allocated while integrating.
   std::vector<double> overlaps_;
   std::vector<double> gone_in_;  ///< overlaps with the centre where it started
-  std::vector<char> bears_;  ///< whether a contact did when directions that are held were last asked for
+  std::vector<char> bears_;      ///< whether a contact did when directions that are held were last asked for
   Matrix held_directions_ = Matrix::Zero();  ///< and these
   std::vector<std::size_t> to_clear_;
 };

@@ -47,8 +47,8 @@ TEST(LooseHertzParticle, IsTakenByAForceToTheWallThatBearsIt) {
 }
 
 TEST(HertzCell, AtRightAnglesTakesAForceOnOneWallAndADisplacementOnAnother) {
-  const Scenario scenario = cell({wall("w0", {1, 0, 0}), wall("w1", {0, 1, 0}), wall("w2", {-1, 0, 0}, {force_ramp(1e-3)}),
-                                  wall("w3", {0, -1, 0}, path({0.01}))});
+  const Scenario scenario = cell({wall("w0", {1, 0, 0}), wall("w1", {0, 1, 0}),
+                                  wall("w2", {-1, 0, 0}, {force_ramp(1e-3)}), wall("w3", {0, -1, 0}, path({0.01}))});
   for (const char* integrator : k_integrators) {
     const TestRun result = run(scenario, integrator);
     ASSERT_EQ(result.record.status, RunStatus::complete) << integrator << ": " << result.record.message;

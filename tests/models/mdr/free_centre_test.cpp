@@ -30,7 +30,7 @@ void press(FreeCentre& centre, const std::vector<double>& stiffness, const std::
     const double force = forces[i] + stiffness[i] * centre.direction(i).dot(displacement);
     centre.add(i, {.count = 1.0, .force = force, .stiffness = stiffness[i], .tangent_stiffness = stiffness[i]});
   }
-  centre.sum_up(1e-6);
+  centre.sum_up();
 }
 
 TEST(MdrFreeCentre, DoesNotMoveWhereItIsFixed) {
@@ -92,7 +92,7 @@ TEST(MdrFreeCentre, IsMovedAlikeByTouchesOfOneLaw) {
   for (std::size_t i = 0; i < 4; ++i) {
     centre.add(i, {.count = 1.0, .force = i == 0 ? 1e-9 : 0.0, .stiffness = 0.0, .tangent_stiffness = 1e-6});
   }
-  centre.sum_up(1e-6);
+  centre.sum_up();
   EXPECT_GT(centre.step().norm(), 0.0);
   EXPECT_NEAR(centre.stiffness().trace(), 4.0, 1e-12);
 }
