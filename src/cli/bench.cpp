@@ -11,8 +11,8 @@
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "history/staged_folder.hpp"
-#include "study/atlas.hpp"
-#include "study/bench.hpp"
+#include "study/atlas/atlas.hpp"
+#include "verify/bench/bench.hpp"
 
 namespace monograin {
 namespace {

@@ -1,0 +1,167 @@
+#include "verify/stress/shrink/shrink.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace monograin {
+namespace {
+
+constexpr int k_most_digits = 3;
+
+using Candidates = std::vector<StressScene>;
+
+double rounded(double value, int digits) {
+  if (value == 0.0 || !std::isfinite(value)) return value;
+  return std::stod(fmt::format("{:.{}e}", value, digits - 1));
+}
+
+/// Every program of a scene.
+std::vector<std::vector<StressStep>*> programs_of(StressScene& scene) {
+  std::vector<std::vector<StressStep>*> programs{&scene.steps};
+  for (StressWall& wall : scene.walls) programs.push_back(&wall.steps);
+  return programs;
+}
+
+std::size_t step_count(StressScene scene) {
+  std::size_t count = 0;
+  for (const auto* program : programs_of(scene)) count = std::max(count, program->size());
+  return count;
+}
+
+/// Every number of a scene that can be rounded.
+std::vector<double*> numbers_of(StressScene& scene) {
+  std::vector<double*> numbers;
+  for (auto& [key, value] : scene.material) numbers.push_back(&value);
+  for (auto& [key, value] : scene.options) {
+    if (auto* number = std::get_if<double>(&value)) numbers.push_back(number);
+  }
+  if (scene.oblique_angle) numbers.push_back(&*scene.oblique_angle);
+  for (StressWall& wall : scene.walls) {
+    numbers.push_back(&wall.gap);
+    for (double& component : wall.normal) numbers.push_back(&component);
+  }
+  for (auto* program : programs_of(scene)) {
+    for (StressStep& step : *program) {
+      numbers.push_back(&step.target);
+      if (step.lateral) numbers.push_back(&*step.lateral);
+      numbers.push_back(&step.pace);
+      numbers.push_back(&step.until_value);
+    }
+  }
+  return numbers;
+}
+
+/// Smaller scenes, those that leave most away first.
+Candidates smaller_than(const StressScene& scene) {
+  Candidates candidates;
+  const auto add = [&](const auto& change) {
+    StressScene other = scene;
+    change(other);
+    if (other != scene) candidates.push_back(std::move(other));
+  };
+  const std::size_t steps = step_count(scene);
+  const auto keep_steps = [](std::size_t from, std::size_t count) {
+    return [=](StressScene& s) {
+      for (auto* program : programs_of(s)) {
+        const std::size_t begin = std::min(from, program->size());
+        const std::size_t end = std::min(begin + count, program->size());
+        *program = std::vector<StressStep>(program->begin() + static_cast<std::ptrdiff_t>(begin),
+                                           program->begin() + static_cast<std::ptrdiff_t>(end));
+      }
+    };
+  };
+  if (steps > 2) add(keep_steps(0, steps / 2));
+  for (std::size_t wall = scene.walls.size(); wall-- > 0 && scene.walls.size() > 1;) {
+    add([&](StressScene& s) { s.walls.erase(s.walls.begin() + static_cast<std::ptrdiff_t>(wall)); });
+  }
+  add([](StressScene& s) { s.cycles = 1; });
+  add([](StressScene& s) { s.cycles = std::max(1, s.cycles / 2); });
+  add([](StressScene& s) { s.cycles = std::max(1, s.cycles - 1); });
+  for (std::size_t step = steps; step-- > 0 && steps > 1;) {
+    add([&](StressScene& s) {
+      for (auto* program : programs_of(s)) {
+        if (step < program->size()) program->erase(program->begin() + static_cast<std::ptrdiff_t>(step));
+      }
+    });
+  }
+  add([](StressScene& s) {
+    if (!s.configuration.empty()) s.configuration = "simple";
+    s.walls.clear();
+    s.oblique_angle.reset();
+    s.oblique_walls.reset();
+  });
+  add([](StressScene& s) { s.centre_is_free = false; });
+  add([](StressScene& s) { s.oblique_angle.reset(); });
+  add([](StressScene& s) { s.oblique_walls.reset(); });
+  for (const auto& option : scene.options) add([&](StressScene& s) { s.options.erase(option.first); });
+  for (const QuantityKey& key : scene.model->material) {
+    if (key.default_value || key.is_optional) add([&](StressScene& s) { s.material.erase(std::string(key.name)); });
+  }
+  add([](StressScene& s) { s.integrator = "direct"; });
+  add([](StressScene& s) { s.rtol = 1e-8; });
+  add([](StressScene& s) { s.radius = 1.0; });
+  add([](StressScene& s) { s.stress = 1.0; });
+  for (std::size_t program = 0; program <= scene.walls.size(); ++program) {
+    for (std::size_t step = 0; step < steps; ++step) {
+      const auto add_step = [&](const auto& change) {
+        add([&](StressScene& s) {
+          std::vector<StressStep>& changed = *programs_of(s)[program];
+          if (step < changed.size()) change(changed[step]);
+        });
+      };
+      add_step([](StressStep& s) {
+        s.until.clear();
+        s.until_event.clear();
+        s.until_value = 0.0;
+      });
+      add_step([](StressStep& s) { s.lateral.reset(); });
+      add_step([](StressStep& s) { s.has_rate = s.kind == Step::Kind::detach; });
+    }
+  }
+  // Walls that end their steps together keep doing so.
+  add([](StressScene& s) {
+    for (auto* program : programs_of(s)) {
+      for (StressStep& step : *program) step.pace = 1.0;
+    }
+  });
+  for (std::size_t wall = 0; wall < scene.walls.size(); ++wall) {
+    add([&](StressScene& s) { s.walls[wall].gap = 0.0; });
+    add([&](StressScene& s) { s.walls[wall].is_fixed = wall > 0; });
+  }
+  StressScene counted = scene;
+  const std::size_t numbers = numbers_of(counted).size();
+  for (int digits = 1; digits <= k_most_digits; ++digits) {
+    add([&](StressScene& s) {
+      for (double* number : numbers_of(s)) *number = rounded(*number, digits);
+    });
+    for (std::size_t i = 0; i < numbers; ++i) {
+      add([&](StressScene& s) { *numbers_of(s)[i] = rounded(*numbers_of(s)[i], digits); });
+    }
+  }
+  return candidates;
+}
+
+/// What is counted in the order in which candidates give it up; a scene only changes for one that comes before it.
+/// Digits in the text, so that a rounder number is smaller.
+std::size_t size_of(const StressScene& scene) { return scenario_text(scene).size(); }
+
+}  // namespace
+
+StressScene shrink(StressScene scene, const std::function<bool(const StressScene&)>& is_faulty) {
+  for (bool has_changed = true; has_changed;) {
+    has_changed = false;
+    for (const StressScene& candidate : smaller_than(scene)) {
+      if (size_of(candidate) >= size_of(scene) || !is_faulty(candidate)) continue;
+      scene = candidate;
+      has_changed = true;
+      break;
+    }
+  }
+  return scene;
+}
+
+}  // namespace monograin
