@@ -11,6 +11,7 @@
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "history/staged_folder.hpp"
+#include "scenario/integrators.hpp"
 #include "study/atlas/atlas.hpp"
 #include "verify/bench/bench.hpp"
 
@@ -68,7 +69,8 @@ std::vector<Scenario> chosen_scenes(const BenchOptions& options) {
 
 void check_integrators(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    if (name == "auto" || std::ranges::find(integrator_names(), name) != integrator_names().end()) continue;
+    if (name == integrators::k_auto || std::ranges::find(integrator_names(), name) != integrator_names().end())
+      continue;
     throw UsageError(fmt::format("no integrator is called '{}'; expected auto or one of {}", name,
                                  fmt::join(integrator_names(), ", ")));
   }
@@ -95,7 +97,7 @@ int bench(const BenchOptions& options) {
       scenes.push_back(measure_scene(scenario, settings, [&] { bar.show(done, scenarios.size()); }));
       if (!options.profiles) continue;
       std::vector<std::string> integrators = options.integrators;
-      if (integrators.empty()) integrators = {"auto", "cvode-bdf", "ida"};
+      if (integrators.empty()) integrators = {integrators::k_auto, integrators::k_cvode_bdf, integrators::k_ida};
       for (const std::string& name : integrators) profiles.push_back(profile_scene(scenario, name));
     }
   }

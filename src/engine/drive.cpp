@@ -18,6 +18,7 @@
 
 #include "engine/guard_set.hpp"
 #include "engine/program_notes.hpp"
+#include "scenario/integrators.hpp"
 
 namespace monograin {
 namespace {
@@ -106,7 +107,7 @@ class Drive {
         y_(system_.unknowns().size()),
         output_state_(y_.size()),
         open_since_(scene.channels.size()) {
-    if (integrator != "direct") rtol_ = tolerances.rtol;
+    if (integrator != integrators::k_direct) rtol_ = tolerances.rtol;
     for (const Channel& channel : scene.channels) held_.push_back(channel.at_rest);
     outputs_.reserve(output.times.empty() ? static_cast<std::size_t>(output.points) : output.times.size());
   }

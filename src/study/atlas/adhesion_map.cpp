@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "history/run.hpp"
+#include "scenario/integrators.hpp"
 #include "scenario/scenario.hpp"
 #include "scene/scene.hpp"
 
@@ -84,7 +85,7 @@ std::vector<FlattenedContact> flatten(double modulus_over_yield, double poisson_
   scenario.output.times.assign(displacements.begin(), displacements.end());
 
   Scene scene = make_scene(scenario);
-  const RunRecord record = record_run(scene, "direct", {}, scenario.output);
+  const RunRecord record = record_run(scene, integrators::k_direct, {}, scenario.output);
   if (record.status != RunStatus::complete)
     throw std::runtime_error(fmt::format("E/Y = {}: {}", modulus_over_yield, record.message));
 

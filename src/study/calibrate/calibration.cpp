@@ -9,6 +9,7 @@
 
 #include "engine/drive.hpp"
 #include "scenario/faults.hpp"
+#include "scenario/integrators.hpp"
 #include "system/undefined.hpp"
 
 namespace monograin {
@@ -22,8 +23,9 @@ constexpr double k_poor = 0.1;               // relative standard error
 /// Relative error of the responses.
 double noise_of(const Scenario& scenario) {
   const Scene scene = make_scene(scenario);
-  return choose_integrator(scenario.numerics.integrator, *scene.system).used == "direct" ? k_direct_noise
-                                                                                         : scenario.numerics.rtol;
+  return choose_integrator(scenario.numerics.integrator, *scene.system).used == integrators::k_direct
+             ? k_direct_noise
+             : scenario.numerics.rtol;
 }
 
 /// x with further values in between, so that a curve through it is smooth.

@@ -13,6 +13,7 @@
 #include "engine/linear_algebra_clock.hpp"
 #include "history/run.hpp"
 #include "scenario/document.hpp"
+#include "scenario/integrators.hpp"
 #include "scenario/section.hpp"
 #include "scenario/text_file.hpp"
 #include "scene/scene.hpp"
@@ -221,8 +222,8 @@ struct Standard {
 /// multi-step.
 std::pair<Standard, Standard> standards_of(const Scenario& scenario) {
   const bool is_solvable = make_scene(scenario).system->is_solvable();
-  const std::string first = is_solvable ? "direct" : "arkode-erk";
-  const std::string second = is_solvable ? "arkode-erk" : "cvode-adams";
+  const std::string first = is_solvable ? integrators::k_direct : integrators::k_arkode_erk;
+  const std::string second = is_solvable ? integrators::k_arkode_erk : integrators::k_cvode_adams;
   return {{first, run_once(scenario, first, k_tightest)}, {second, run_once(scenario, second, k_tightest)}};
 }
 
@@ -245,7 +246,7 @@ BenchPoint measure_point(const Scenario& scenario, const std::string& name, cons
 }
 
 std::vector<std::string> all_integrators() {
-  std::vector<std::string> names{"auto"};
+  std::vector<std::string> names{integrators::k_auto};
   for (const std::string_view name : integrator_names()) names.emplace_back(name);
   return names;
 }
@@ -334,8 +335,8 @@ BenchScene measure_scene(const Scenario& scenario, const BenchSettings& settings
   for (const std::string& name : names) {
     for (const double rtol : tolerances) {
       const IntegratorChoice choice = choose_integrator(name, *scene.system);
-      if (name == "auto") result.chosen = choice.used;
-      if (choice.used == "direct" && !scene.system->is_solvable()) break;
+      if (name == integrators::k_auto) result.chosen = choice.used;
+      if (choice.used == integrators::k_direct && !scene.system->is_solvable()) break;
       const Standard& standard = choice.used == first.integrator ? second : first;
       result.points.push_back(measure_point(scenario, name, choice.used, rtol, standard));
       watches.emplace_back([&scenario, used = choice.used, rtol] { return time_once(scenario, used, rtol); });
@@ -422,13 +423,13 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings) {
   };
 
   const Scenario die = scene_of({});
-  const Measured direct = measure(die, "direct", as_it_is);
-  const Measured bdf = measure(die, "cvode-bdf", as_it_is);
+  const Measured direct = measure(die, integrators::k_direct, as_it_is);
+  const Measured bdf = measure(die, integrators::k_cvode_bdf, as_it_is);
   add("walls that share a history are one class", "die, direct", direct,
-      measure(die, "direct", [](const Scenario& scenario) { return make_scene(scenario, false); }));
+      measure(die, integrators::k_direct, [](const Scenario& scenario) { return make_scene(scenario, false); }));
   add("nothing is integrated where a state can be solved for", "die, direct / cvode-bdf", direct, bdf);
   add("no algebraic unknowns where there is an explicit form", "die, cvode-bdf / ida", bdf,
-      measure(die, "ida", as_it_is));
+      measure(die, integrators::k_ida, as_it_is));
   using System = std::unique_ptr<HybridSystem>;
   const auto wrapped = [](const std::function<System(System)>& wrap) -> Alter {
     return [wrap](const Scenario& scenario) {
@@ -438,9 +439,9 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings) {
     };
   };
   add("work in closed form where there is one", "die, direct", direct,
-      measure(die, "direct", wrapped(always_integrated)));
+      measure(die, integrators::k_direct, wrapped(always_integrated)));
   // A saving this small shows only beside a system that is wrapped as well.
-  for (const char* integrator : {"direct", "cvode-bdf"}) {
+  for (const char* integrator : {integrators::k_direct, integrators::k_cvode_bdf}) {
     const auto looking = [&](double factor) {
       return measure(die, integrator,
                      wrapped([factor](System system) { return looking_beyond(std::move(system), factor); }));
@@ -448,17 +449,19 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings) {
     add("no guard that cannot fire before the end of a step", fmt::format("die, {}", integrator), looking(1.0),
         looking(10.0));
   }
-  add("observables only at output points", "die, direct", direct, measure(die, "direct", wrapped(always_observed)));
-  add("observables only at output points", "die, cvode-bdf", bdf, measure(die, "cvode-bdf", wrapped(always_observed)));
+  add("observables only at output points", "die, direct", direct,
+      measure(die, integrators::k_direct, wrapped(always_observed)));
+  add("observables only at output points", "die, cvode-bdf", bdf,
+      measure(die, integrators::k_cvode_bdf, wrapped(always_observed)));
 
   const std::string simple = "loading.configuration=simple";
   const Scenario plain = scene_of({simple});
   const Scenario sticky = scene_of({simple, "material.surface_energy=1e-12"});
-  const Measured uniaxial = measure(plain, "direct", as_it_is);
+  const Measured uniaxial = measure(plain, integrators::k_direct, as_it_is);
   add("no adhesion where the surface energy is zero", "simple, direct, against 1e-12 J/m2", uniaxial,
-      measure(sticky, "direct", as_it_is));
+      measure(sticky, integrators::k_direct, as_it_is));
   add("no contacts where nothing can touch", "simple, direct, against 4 walls out of reach", uniaxial,
-      measure(with_walls_out_of_reach(plain), "direct", as_it_is));
+      measure(with_walls_out_of_reach(plain), integrators::k_direct, as_it_is));
   // Shallow enough for an elastic particle to keep its radius.
   const Scenario elastic = scene_of({simple, "material.yield_stress=10 GPa", "mdr.elastic_profile=\"parabola\"",
                                      "loading.steps[0].displacement=0.015 R0", "loading.steps[1].displacement=0.008 R0",
@@ -466,7 +469,7 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings) {
   Scenario hertz = elastic;
   hertz.model = "hertz";
   add("no growth of the radius where nothing yields", "simple to 0.018 R0, direct, hertz / mdr that stays elastic",
-      measure(hertz, "direct", as_it_is), measure(elastic, "direct", as_it_is));
+      measure(hertz, integrators::k_direct, as_it_is), measure(elastic, integrators::k_direct, as_it_is));
   return savings;
 }
 

@@ -15,6 +15,7 @@
 #include "figure/page.hpp"
 #include "history/run.hpp"
 #include "history/table.hpp"
+#include "scenario/integrators.hpp"
 #include "system/undefined.hpp"
 #include "verify/bench/bench.hpp"
 
@@ -38,21 +39,21 @@ struct Line {
 /// How integrators are drawn: those of one library in one panel and with one dash, each line in its own way in all
 /// panels together.
 constexpr std::array k_lines{
-    Line{"direct", 0, 0, ChartSeries::Style::points},
-    Line{"auto", 0, 1, ChartSeries::Style::points},
-    Line{"explicit", 0, 5, ChartSeries::Style::dotted},
-    Line{"ida", 0, 2, ChartSeries::Style::dotted},
-    Line{"cvode-adams", 1, 0, ChartSeries::Style::solid},
-    Line{"cvode-bdf", 1, 1, ChartSeries::Style::solid},
-    Line{"arkode-erk", 1, 2, ChartSeries::Style::solid},
-    Line{"arkode-dirk", 1, 3, ChartSeries::Style::solid},
-    Line{"odeint-dopri5", 2, 0, ChartSeries::Style::dashed},
-    Line{"odeint-fehlberg78", 2, 1, ChartSeries::Style::dashed},
-    Line{"odeint-bulirsch-stoer", 2, 2, ChartSeries::Style::dashed},
-    Line{"odeint-rosenbrock4", 2, 3, ChartSeries::Style::dashed},
-    Line{"gsl-rk8pd", 3, 0, ChartSeries::Style::dash_dotted},
-    Line{"gsl-msadams", 3, 1, ChartSeries::Style::dash_dotted},
-    Line{"gsl-msbdf", 3, 2, ChartSeries::Style::dash_dotted},
+    Line{integrators::k_direct, 0, 0, ChartSeries::Style::points},
+    Line{integrators::k_auto, 0, 1, ChartSeries::Style::points},
+    Line{integrators::k_explicit, 0, 5, ChartSeries::Style::dotted},
+    Line{integrators::k_ida, 0, 2, ChartSeries::Style::dotted},
+    Line{integrators::k_cvode_adams, 1, 0, ChartSeries::Style::solid},
+    Line{integrators::k_cvode_bdf, 1, 1, ChartSeries::Style::solid},
+    Line{integrators::k_arkode_erk, 1, 2, ChartSeries::Style::solid},
+    Line{integrators::k_arkode_dirk, 1, 3, ChartSeries::Style::solid},
+    Line{integrators::k_odeint_dopri5, 2, 0, ChartSeries::Style::dashed},
+    Line{integrators::k_odeint_fehlberg78, 2, 1, ChartSeries::Style::dashed},
+    Line{integrators::k_odeint_bulirsch_stoer, 2, 2, ChartSeries::Style::dashed},
+    Line{integrators::k_odeint_rosenbrock4, 2, 3, ChartSeries::Style::dashed},
+    Line{integrators::k_gsl_rk8pd, 3, 0, ChartSeries::Style::dash_dotted},
+    Line{integrators::k_gsl_msadams, 3, 1, ChartSeries::Style::dash_dotted},
+    Line{integrators::k_gsl_msbdf, 3, 2, ChartSeries::Style::dash_dotted},
 };
 constexpr std::array<const char*, 4> k_panels{"Direct form, fixed steps, IDA", "CVODE, ARKODE", "Boost.Odeint", "GSL"};
 
@@ -79,7 +80,7 @@ constexpr std::array<const char*, 4> k_panels{"Direct form, fixed steps, IDA", "
 [[nodiscard]] double best_time(const BenchScene& scene, double error) {
   double best = k_nan;
   for (const BenchPoint& point : scene.points) {
-    if (point.integrator != "auto") best = std::fmin(best, time_to_error(scene, point.integrator, error));
+    if (point.integrator != integrators::k_auto) best = std::fmin(best, time_to_error(scene, point.integrator, error));
   }
   return best;
 }
@@ -119,15 +120,15 @@ void append_scene(const BenchScene& scene, std::string& text) {
 [[nodiscard]] std::string bdf_at_own_error(const BenchScene& scene) {
   constexpr double k_default_rtol = Tolerances{}.rtol;
   const auto own = std::ranges::find_if(scene.points, [](const BenchPoint& point) {
-    return point.integrator == "auto" && std::abs(point.rtol - k_default_rtol) < 1e-3 * k_default_rtol;
+    return point.integrator == integrators::k_auto && std::abs(point.rtol - k_default_rtol) < 1e-3 * k_default_rtol;
   });
   if (own == scene.points.end()) return "-";
   double least = k_nan;
   for (const BenchPoint& point : scene.points) {
-    if (point.integrator == "cvode-bdf") least = std::fmin(least, point.curve_error);
+    if (point.integrator == integrators::k_cvode_bdf) least = std::fmin(least, point.curve_error);
   }
   const double error = std::fmax(own->curve_error, least);
-  const std::string ratio = number_text(time_to_error(scene, "cvode-bdf", error) / own->fastest, 3);
+  const std::string ratio = number_text(time_to_error(scene, integrators::k_cvode_bdf, error) / own->fastest, 3);
   return error > own->curve_error && ratio != "-" ? "> " + ratio : ratio;
 }
 
@@ -144,14 +145,15 @@ void append_auto(const std::vector<BenchScene>& scenes, std::string& text) {
   for (const BenchScene& scene : scenes) {
     MarkdownRow row{scene.name, scene.chosen};
     for (const double error : k_errors) {
-      row.push_back(number_text(time_to_error(scene, "auto", error) / best_time(scene, error), 3));
+      row.push_back(number_text(time_to_error(scene, integrators::k_auto, error) / best_time(scene, error), 3));
     }
     for (const double error : k_errors) {
-      row.push_back(number_text(time_to_error(scene, "cvode-bdf", error) / time_to_error(scene, "auto", error), 3));
+      row.push_back(number_text(
+          time_to_error(scene, integrators::k_cvode_bdf, error) / time_to_error(scene, integrators::k_auto, error), 3));
     }
     row.push_back(bdf_at_own_error(scene));
-    row.push_back(
-        number_text(time_to_error(scene, "auto", 1e-6) / (static_cast<double>(scene.rows) * scene.evaluation), 3));
+    row.push_back(number_text(
+        time_to_error(scene, integrators::k_auto, 1e-6) / (static_cast<double>(scene.rows) * scene.evaluation), 3));
     rows.push_back(std::move(row));
   }
   append_markdown(text, rows);
@@ -189,9 +191,9 @@ void append_constants(const std::vector<BenchScene>& scenes, std::string& text) 
       k_rounding);
   std::vector<MarkdownRow> rows{{"integrator", "curve", "events", "least error", "other ends"}};
   for (const std::string_view name : integrators_of(scenes)) {
-    if (name == "auto") continue;
+    if (name == integrators::k_auto) continue;
     const Constants worst = constants_of(scenes, name);
-    const bool has_tolerance = name != "direct";
+    const bool has_tolerance = name != integrators::k_direct;
     rows.push_back({std::string(name), has_tolerance ? number_text(worst.curve) : "-",
                     has_tolerance ? number_text(worst.event) : "-", number_text(worst.least),
                     fmt::format("{}", worst.faults)});
@@ -293,7 +295,7 @@ using Place = std::function<std::pair<double, double>(const BenchPoint&)>;
   for (const BenchScene& scene : scenes) {
     for (const BenchPoint& point : scene.points) {
       // Neither has a tolerance of its own.
-      if (point.integrator == "direct" || point.integrator == "auto") continue;
+      if (point.integrator == integrators::k_direct || point.integrator == integrators::k_auto) continue;
       const auto found = std::ranges::find_if(worst.points, [&](const BenchPoint& one) {
         return one.integrator == point.integrator && one.rtol == point.rtol;
       });
@@ -317,7 +319,7 @@ constexpr double k_least_error = 1e-16;  ///< what a figure shows of an error of
                             .note = note});
   }
   for (const Line& line : k_lines) {
-    if (line.integrator == "auto") continue;
+    if (line.integrator == integrators::k_auto) continue;
     ChartSeries series{.legend = std::string(line.integrator),
                        .style = line.style == ChartSeries::Style::points ? ChartSeries::Style::dotted : line.style,
                        .colour = line.colour,
@@ -328,7 +330,8 @@ constexpr double k_least_error = 1e-16;  ///< what a figure shows of an error of
       double sum = 0.0;
       long count = 0;
       for (const BenchScene& scene : scenes) {
-        const double ratio = time_to_error(scene, line.integrator, error) / time_to_error(scene, "auto", error);
+        const double ratio =
+            time_to_error(scene, line.integrator, error) / time_to_error(scene, integrators::k_auto, error);
         if (!std::isfinite(ratio)) continue;
         sum += std::log(ratio);
         ++count;

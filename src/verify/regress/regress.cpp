@@ -12,6 +12,7 @@
 
 #include "history/compare.hpp"
 #include "history/run.hpp"
+#include "scenario/integrators.hpp"
 #include "scenario/text_file.hpp"
 #include "scene/scene.hpp"
 
@@ -30,7 +31,8 @@ constexpr double k_tighter = 1e-2;
 constexpr std::size_t k_most_faults = 4;  // of one run: one change may touch every column
 constexpr std::string_view k_events_suffix = ".events.csv";
 
-constexpr std::array<std::string_view, 4> k_integrators{"direct", "cvode-adams", "cvode-bdf", "ida"};
+constexpr std::array<std::string_view, 4> k_integrators{integrators::k_direct, integrators::k_cvode_adams,
+                                                        integrators::k_cvode_bdf, integrators::k_ida};
 
 bool has_direct_form(const Scenario& scenario) { return make_scene(scenario).system->is_solvable(); }
 
@@ -122,8 +124,7 @@ void compare_with_stored(const Run& run, const fs::path& curves, RegressionResul
 
 RegressionResult compare(const Run& run, const fs::path& curves) {
   RegressionResult result{.scenario = run.scenario.name, .integrator = run.integrator.used, .column = {}, .fault = {}};
-  result.tolerance =
-      run.integrator.used == "direct" ? k_direct_tolerance : k_rtol_multiple * run.scenario.numerics.rtol;
+  result.tolerance = run.integrator.is_direct() ? k_direct_tolerance : k_rtol_multiple * run.scenario.numerics.rtol;
   try {
     compare_with_stored(run, curves, result);
   } catch (const std::runtime_error& error) {
@@ -170,7 +171,8 @@ std::vector<RegressionResult> regress(const fs::path& scenarios, const fs::path&
     const Scenario scenario = read_scenario(file);
     const bool has_direct = has_direct_form(scenario);
     for (const std::string_view integrator : k_integrators) {
-      if (has_direct || integrator != "direct") results.push_back(compare(run_with(scenario, integrator), curves));
+      if (has_direct || integrator != integrators::k_direct)
+        results.push_back(compare(run_with(scenario, integrator), curves));
     }
   }
   return results;
@@ -187,7 +189,7 @@ std::vector<RegressionResult> accept_curves(const fs::path& scenarios, const fs:
       scenario.numerics.rtol *= k_tighter;
       scenario.numerics.atol *= k_tighter;
     }
-    Run run = run_with(scenario, has_direct ? "direct" : "cvode-bdf");
+    Run run = run_with(scenario, has_direct ? integrators::k_direct : integrators::k_cvode_bdf);
     results.push_back(compare(run, curves));
     if (run.record.status != RunStatus::complete) {
       throw std::runtime_error(fmt::format("{}: does not run to its end: {}", file.string(), run.record.message));

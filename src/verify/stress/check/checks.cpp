@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "catalogue.hpp"
+#include "scenario/integrators.hpp"
 #include "scene/scene.hpp"
 #include "system/undefined.hpp"
 #include "verify/probe/profiled_system.hpp"
@@ -186,7 +187,7 @@ class SceneCheck {
     // What is broken already would be found again by every comparison.
     if (!verdict_.violations.empty()) return;
     // The scheme without error control says nothing of how near it comes; its copies take the same steps.
-    if (run->integrator.used == "explicit") {
+    if (run->integrator.used == integrators::k_explicit) {
       reference_ = run;
       compares_curves_ = false;
       tolerance_ = own_tolerance(*run);
@@ -199,7 +200,7 @@ class SceneCheck {
     compares_curves_ = scenario_.output.points > 0 && !is_below_resolution(*run);
     if (!compares_curves_ && !has_ended) return;
 
-    const bool is_direct = run->integrator.used == "direct";
+    const bool is_direct = run->integrator.is_direct();
     reference_ = is_direct ? run : try_run(as_reference(scenario_), "reference form");
     if (!reference_) return;
     // What takes its time takes as long beside it.
@@ -218,7 +219,7 @@ class SceneCheck {
 
   /// What the scene's own run may be wrong by.
   void measure_tolerance() {
-    const bool is_direct = own_->integrator.used == "direct";
+    const bool is_direct = own_->integrator.is_direct();
     share_ = is_direct ? k_stress_rounding : std::max(scenario_.numerics.rtol, k_finest_rtol);
     tolerance_ = std::max(own_tolerance(*own_), own_tolerance(*reference_));
     nothing_ = {.unit = {.length = scenario_.radius, .stress = softest(scenario_)},
@@ -241,11 +242,12 @@ class SceneCheck {
     for (std::uint64_t sample = 0; sample < k_rotations; ++sample) {
       if (needs_all || (kind == 2 && which % k_rotations == sample)) check_turned(run, sample);
     }
-    if (run.integrator.used == "explicit") return;
-    const bool is_direct = run.integrator.used == "direct";
-    if ((needs_all || (kind == 3 && which % 2 == 0)) && run.integrator.used != "ida") check_form(run, "ida");
-    if ((needs_all || (kind == 3 && which % 2 == 1)) && (is_direct || run.integrator.used == "ida")) {
-      check_form(run, "cvode-bdf");
+    if (run.integrator.used == integrators::k_explicit) return;
+    const bool is_direct = run.integrator.is_direct();
+    if ((needs_all || (kind == 3 && which % 2 == 0)) && run.integrator.used != integrators::k_ida)
+      check_form(run, integrators::k_ida);
+    if ((needs_all || (kind == 3 && which % 2 == 1)) && (is_direct || run.integrator.used == integrators::k_ida)) {
+      check_form(run, integrators::k_cvode_bdf);
     }
   }
 
@@ -289,7 +291,7 @@ class SceneCheck {
   /// The direct form against an integrated one, an explicit form against the implicit one.
   void check_form(const Run& run, const char* integrator) {
     Scenario other = with_integrator(scenario_, integrator);
-    if (run.integrator.used == "direct") {
+    if (run.integrator.is_direct()) {
       other.numerics.rtol = k_form_rtol;
       other.numerics.atol = 1e-4 * k_form_rtol;
     }
@@ -364,10 +366,10 @@ class SceneCheck {
   /// step.
   template <class Measure>
   double spread_of_states(Measure&& measure) {
-    if (own_->integrator.used == "direct") return 0.0;
+    if (own_->integrator.is_direct()) return 0.0;
     double widest = 0.0;
     // By as much as they may be off, less what the samples are counted by.
-    const double most = (reference_->integrator.used == "direct" ? tolerance_ : share_) / k_sample_multiple;
+    const double most = (reference_->integrator.is_direct() ? tolerance_ : share_) / k_sample_multiple;
     for (const auto& shares : {std::array{most, most}, {-most, -most}, {most, -most}, {-most, most}}) {
       ++verdict_.runs;
       try {

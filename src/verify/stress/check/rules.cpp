@@ -13,6 +13,7 @@
 
 #include "catalogue.hpp"
 #include "reaction_cone.hpp"
+#include "scenario/integrators.hpp"
 #include "scenario/model_input.hpp"
 #include "scene/scene.hpp"
 #include "verify/stress/check/distance.hpp"
@@ -72,7 +73,7 @@ double stiffest_modulus(const Run& run) {
 /// Rounding of an energy, overlaps being differences of lengths of the order of R0; or what an integrator takes for
 /// nothing.
 double energy_floor(const Run& run) {
-  const double negligible = run.integrator.used == "direct" ? 0.0 : own_absolute_tolerance(run) * softest(run.scenario);
+  const double negligible = run.integrator.is_direct() ? 0.0 : own_absolute_tolerance(run) * softest(run.scenario);
   return std::max(k_stress_rounding * stiffest_modulus(run), negligible) * std::pow(run.scenario.radius, 3);
 }
 
@@ -132,7 +133,7 @@ void check_numbers(const Run& run, const CheckedRun& checked, Violations& found)
 
 void check_forces(const Run& run, Violations& found) {
   // A fixed step does not end where a contact opens.
-  if (material(run.scenario, "surface_energy") > 0.0 || run.integrator.used == "explicit") return;
+  if (material(run.scenario, "surface_energy") > 0.0 || run.integrator.used == integrators::k_explicit) return;
   const Table& table = run.record.history;
   const double scale = largest_of_kind(table, "force");
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
@@ -283,14 +284,14 @@ void check_energy(const Run& run, Violations& found) {
   const double scale = std::max(largest_magnitude(table, *work), largest_magnitude(table, *stored));
   if (scale == 0.0) return;
   // Fixed steps control no error.
-  if (run.integrator.used == "explicit") return;
+  if (run.integrator.used == integrators::k_explicit) return;
   const bool is_conservative = is_elastic(run.scenario);
   // What integrators make of a law that keeps its energy is found where they are compared with the direct form, with
   // what the scene magnifies.
-  if (is_conservative && run.integrator.used != "direct") return;
+  if (is_conservative && !run.integrator.is_direct()) return;
   // A law that gives back more than was put in has to say so.
   const bool is_warned = run.record.creates_energy;
-  const double of_run = run.integrator.used == "direct" ? direct_work_tolerance(run) : own_tolerance(run);
+  const double of_run = run.integrator.is_direct() ? direct_work_tolerance(run) : own_tolerance(run);
   const double share = is_conservative ? k_direct_tolerance : k_tolerated_loss;
   const double most = (share + of_run) * scale + energy_floor(run);
   double highest = 0.0;
@@ -338,7 +339,7 @@ std::string stated_failure(const Run& run) {
   const RunRecord& record = run.record;
   if (!record.failure) return "";
   const Failure failure = *record.failure;
-  if (run.integrator.used != "direct" && run.scenario.numerics.rtol < k_finest_rtol) return "tolerance of round-off";
+  if (!run.integrator.is_direct() && run.scenario.numerics.rtol < k_finest_rtol) return "tolerance of round-off";
   if (failure == Failure::endless_events || failure == Failure::chattering) {
     return may_go_on(run) ? "events without end" : "";
   }
@@ -379,7 +380,7 @@ void check_work(const Run& run, Violations& found) {
   if (!suits_stiff_equations(run.integrator.used)) return;
   // As a method of order 4 needs more at a finer tolerance.
   const double finer = std::pow(std::max(1.0, 1e-8 / run.scenario.numerics.rtol), 0.25);
-  const long most = run.integrator.used == "direct" ? k_most_work_direct : std::lround(k_most_work_integrated * finer);
+  const long most = run.integrator.is_direct() ? k_most_work_direct : std::lround(k_most_work_integrated * finer);
   const Statistics& done = run.record.statistics;
   const long work = done.rhs_evaluations + done.guard_evaluations;
   const auto shown =
@@ -424,18 +425,18 @@ std::size_t step_count(const Scenario& scenario) {
 }
 
 double direct_work_tolerance(const Run& run) {
-  return run.integrator.used == "direct" ? k_direct_work * run.scenario.numerics.rtol : 0.0;
+  return run.integrator.is_direct() ? k_direct_work * run.scenario.numerics.rtol : 0.0;
 }
 
 double own_tolerance(const Run& run) {
-  if (run.integrator.used == "direct") return k_direct_tolerance;
+  if (run.integrator.is_direct()) return k_direct_tolerance;
   const auto steps = static_cast<double>(step_count(run.scenario));
   return std::max(k_rtol_multiple, k_rtol_multiple_of_step * steps) *
          std::max(run.scenario.numerics.rtol, k_finest_rtol);
 }
 
 double own_absolute_tolerance(const Run& run) {
-  if (run.integrator.used == "direct") return k_stress_rounding;
+  if (run.integrator.is_direct()) return k_stress_rounding;
   return own_tolerance(run) / run.scenario.numerics.rtol * run.scenario.numerics.atol;
 }
 
@@ -453,7 +454,7 @@ std::vector<Violation> check_run(const Run& run) {
   check_events(run, found);
   check_work(run, found);
   // Fixed steps control no error, and have none of these.
-  if (run.integrator.used == "explicit") return found;
+  if (run.integrator.used == integrators::k_explicit) return found;
   check_program(run, found);
   if (const auto check = find_model(run.scenario.model)->check) check(checked, found);
   return found;

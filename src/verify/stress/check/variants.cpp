@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "catalogue.hpp"
+#include "scenario/integrators.hpp"
 #include "scenario/model_input.hpp"
 #include "scene/scene.hpp"
 #include "stress/dice.hpp"
@@ -180,8 +181,9 @@ Scenario with_integrator(Scenario scenario, std::string integrator) {
 
 Scenario as_reference(Scenario scenario) {
   const bool is_solvable = make_scene(scenario).system->is_solvable();
-  scenario.numerics = {
-      .integrator = is_solvable ? "direct" : "cvode-bdf", .rtol = k_reference_rtol, .atol = 1e-4 * k_reference_rtol};
+  scenario.numerics = {.integrator = is_solvable ? integrators::k_direct : integrators::k_cvode_bdf,
+                       .rtol = k_reference_rtol,
+                       .atol = 1e-4 * k_reference_rtol};
   return scenario;
 }
 

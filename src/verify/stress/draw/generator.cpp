@@ -14,6 +14,7 @@
 #include "catalogue.hpp"
 #include "engine/integrator.hpp"
 #include "history/run.hpp"
+#include "scenario/integrators.hpp"
 #include "scene/scene.hpp"
 #include "stress/draw.hpp"
 #include "verify/stress/draw/programs.hpp"
@@ -109,7 +110,7 @@ struct Places {
 /// Of the class of the first wall, which is always driven.
 Places find_places(const StressScene& scene, const fs::path& tables) {
   StressScene first = scene;
-  first.integrator = "auto";
+  first.integrator = integrators::k_auto;
   const Run run = run_scenario(parse_stress_text(scenario_text(first), tables));
   const double force_unit = scene.stress * scene.radius * scene.radius;
   Places places;
@@ -184,7 +185,7 @@ bool is_admissible(const StressScene& scene, const fs::path& tables) {
 
 /// Whether the direct form finds the state at any instant; so it is where the scene is not admissible.
 bool is_solvable(StressScene scene, const fs::path& tables) {
-  scene.integrator = "auto";
+  scene.integrator = integrators::k_auto;
   try {
     return make_scene(parse_stress_text(scenario_text(scene), tables)).system->is_solvable();
   } catch (const std::exception&) {
@@ -196,10 +197,10 @@ bool is_solvable(StressScene scene, const fs::path& tables) {
 std::string draw_integrator(Dice& dice, bool is_solvable) {
   const std::span<const std::string_view> all = integrator_names();
   const double what = dice.uniform(0.0, 1.0);
-  if (what < 0.05) return "auto";
-  if (what < 0.3) return is_solvable ? "direct" : "auto";
+  if (what < 0.05) return integrators::k_auto;
+  if (what < 0.3) return is_solvable ? integrators::k_direct : integrators::k_auto;
   const std::string drawn(all[dice.below(all.size())]);
-  return drawn == "direct" && !is_solvable ? "auto" : drawn;
+  return drawn == integrators::k_direct && !is_solvable ? integrators::k_auto : drawn;
 }
 
 StressScene draw_scene(Dice& dice, const fs::path& tables) {
@@ -212,7 +213,7 @@ StressScene draw_scene(Dice& dice, const fs::path& tables) {
   scene.integrator = draw_integrator(dice, has_direct_form);
   scene.rtol = dice.happens(0.5) ? 1e-8 : dice.log_uniform(1e-13, 1e-2);
   // It takes as many steps as the tolerance says.
-  if (scene.integrator == "explicit") scene.rtol = dice.log_uniform(1e-3, 1e-2);
+  if (scene.integrator == integrators::k_explicit) scene.rtol = dice.log_uniform(1e-3, 1e-2);
   // Where the reference has to be integrated, many cycles at a fine tolerance take minutes.
   if (!has_direct_form && scene.cycles > 1) {
     scene.cycles = std::min(scene.cycles, k_most_cycles / 5);

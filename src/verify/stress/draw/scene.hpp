@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "catalogue.hpp"
+#include "scenario/integrators.hpp"
 #include "scenario/scenario.hpp"
 
 namespace monograin {
@@ -54,7 +55,7 @@ struct StressScene {
   std::vector<StressStep> steps;
   int cycles = 1;  ///< how often the steps are gone through
   std::vector<StressWall> walls;
-  std::string integrator = "direct";
+  std::string integrator = integrators::k_direct;
   double rtol = 1e-8;
   int points = 12;
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "scenario/integrators.hpp"
+
 namespace monograin {
 namespace {
 
@@ -101,7 +103,7 @@ Candidates smaller_than(const StressScene& scene) {
   for (const QuantityKey& key : scene.model->material) {
     if (key.default_value || key.is_optional) add([&](StressScene& s) { s.material.erase(std::string(key.name)); });
   }
-  add([](StressScene& s) { s.integrator = "direct"; });
+  add([](StressScene& s) { s.integrator = integrators::k_direct; });
   add([](StressScene& s) { s.rtol = 1e-8; });
   add([](StressScene& s) { s.radius = 1.0; });
   add([](StressScene& s) { s.stress = 1.0; });
