@@ -42,13 +42,8 @@ int bench_against_fe(const BenchOptions& options) {
   return exit_code_of(figures.front().status);
 }
 
-/// The scenes that are named: in the list, or as scenario files.
-std::vector<Scenario> chosen_scenes(const BenchOptions& options) {
-  const bool needs_list = options.scenes.empty() || std::ranges::any_of(options.scenes, [](const std::string& name) {
-                            return fs::path(name).extension() != ".toml";
-                          });
-  std::vector<Scenario> listed;
-  if (needs_list) listed = read_bench_scenes(options.list);
+/// The scenes that are named, in the list or as scenario files; all of the list where none is.
+std::vector<Scenario> chosen_scenes(const BenchOptions& options, const std::vector<Scenario>& listed) {
   if (options.scenes.empty()) return listed;
   std::vector<Scenario> chosen;
   for (const std::string& name : options.scenes) {
@@ -86,7 +81,11 @@ int bench(const BenchOptions& options) {
   }
   check_integrators(options.integrators);
   const BenchSettings settings{.integrators = options.integrators, .tolerances = options.tolerances};
-  const std::vector<Scenario> scenarios = chosen_scenes(options);
+  const bool needs_list = options.scenes.empty() || std::ranges::any_of(options.scenes, [](const std::string& name) {
+                            return fs::path(name).extension() != ".toml";
+                          });
+  const BenchList list = needs_list ? read_bench_list(options.list) : BenchList{};
+  const std::vector<Scenario> scenarios = chosen_scenes(options, list.scenes);
   prepare_folder(options.output);
   std::vector<BenchScene> scenes;
   std::vector<BenchProfile> profiles;
@@ -102,7 +101,7 @@ int bench(const BenchOptions& options) {
     }
   }
   std::vector<BenchSaving> savings;
-  if (options.scenes.empty()) savings = measure_savings(settings);
+  if (options.scenes.empty()) savings = measure_savings(settings, list.savings);
   print_data("{}", bench_text(scenes, profiles, savings));
   for (const fs::path& file : write_bench(scenes, profiles, savings, options.output)) {
     say("-> {}\n", file.string());

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "catalogue.hpp"
 #include "history/run.hpp"
 #include "scenario/integrators.hpp"
 #include "scenario/scenario.hpp"
@@ -17,29 +18,11 @@
 namespace monograin {
 namespace {
 
-using mdr::AdhesionValidity;
-
-// The radius and the area of a stiffer particle differ from those of this one by less than 1e-6, while its overlap at
-// first yield drowns in rounding.
-constexpr double k_stiffest_run = 1e6;
-
-// Read like any scenario, so that options which are not named here have the defaults of the language.
-constexpr std::string_view k_scenario = R"(
-model = "mdr"
-[particle]
-radius = "1 m"
-[material]
-youngs_modulus = "1 Pa"
-poisson_ratio = 0.3
-yield_stress = "1 Pa"
-[mdr]
-radius_rule = "gated"  # as the source draws its map
-[loading]
-configuration = "simple"
-[[loading.steps]]
-displacement = "0.1 R0"
-duration = "1 s"
-)";
+/// The map of the one model that offers one.
+const AdhesionMap& offered_map() {
+  const auto has_map = [](const Model& model) { return model.adhesion_map != nullptr; };
+  return *std::ranges::find_if(model_catalogue(), has_map)->adhesion_map;
+}
 
 void check(const AdhesionMapSettings& settings) {
   if (!(settings.least_modulus > 0.0) || !(settings.least_yield_stress > 0.0) || !(settings.decades > 0.0))
@@ -55,14 +38,6 @@ std::vector<double> logarithmic_axis(double least, double decades, std::size_t p
   return axis;
 }
 
-/// @param modulus       E* R0/dg
-/// @param yield_stress  Y R0/dg
-AdhesionValidity classify(const FlattenedContact& contact, double modulus, double yield_stress, Control control) {
-  // In units of dg and R0.
-  const double critical = mdr::critical_radius(contact.indenter, modulus, 1.0, control);
-  return mdr::adhesion_validity(critical, contact.peak_radius, mdr::plastic_zone_size(modulus, 1.0, yield_stress));
-}
-
 }  // namespace
 
 std::vector<FlattenedContact> flatten(double modulus_over_yield, double poisson_ratio,
@@ -75,8 +50,9 @@ std::vector<FlattenedContact> flatten(double modulus_over_yield, double poisson_
       std::ranges::adjacent_find(displacements, std::ranges::greater_equal()) != displacements.end())
     throw std::invalid_argument("displacements have to be positive and to ascend");
 
-  const double run_modulus = std::min(modulus_over_yield, k_stiffest_run);
-  Scenario scenario = parse_scenario(k_scenario, "adhesion map");
+  const AdhesionMap& map = offered_map();
+  const double run_modulus = std::min(modulus_over_yield, map.stiffest_run);
+  Scenario scenario = parse_scenario(map.scenario, "adhesion map");
   scenario.material.at("poisson_ratio") = poisson_ratio;
   scenario.material.at("yield_stress") = 1.0 / run_modulus;
   // One metre in a second: the time is the displacement.
@@ -97,24 +73,17 @@ std::vector<FlattenedContact> flatten(double modulus_over_yield, double poisson_
   const std::vector<double> overlap = history.column(contact_class + ".overlap");
   const std::vector<double> contact_radius = history.column(contact_class + ".contact_radius");
   const std::size_t regime = history.find(contact_class + ".regime").value();
-  const mdr::Material material = mdr::make_material(1.0, poisson_ratio, 1.0 / run_modulus);
 
   std::vector<FlattenedContact> contacts;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i] != static_cast<double>(RowSide::output) || times[i] == 0.0) continue;
-    const double radius = apparent_radius[i];
-    FlattenedContact contact{.displacement = times[i], .apparent_radius = radius};
-    contact.has_yielded = history.word(i, regime) == "fully-plastic";
-    if (contact.has_yielded) {
-      // eq. 28 for the height, which is proportional to the yield stress
-      const double pressure = mdr::plastic_pressure(material, overlap[i] / radius).pressure;
-      const double height = 4.0 * pressure * contact_radius[i] / material.composite_modulus;
-      contact.indenter = {mdr::ElasticProfile::ellipse, height * (run_modulus / modulus_over_yield), contact_radius[i]};
-    } else {
-      contact.indenter = mdr::elastic_indenter(mdr::ElasticProfile::ellipse, radius);
-    }
-    contact.peak_radius = mdr::peak_radius_over_initial_radius(contact.displacement, material.yield_overlap_ratio);
-    contacts.push_back(contact);
+    contacts.push_back({.modulus_over_yield = modulus_over_yield,
+                        .poisson_ratio = poisson_ratio,
+                        .displacement = times[i],
+                        .apparent_radius = apparent_radius[i],
+                        .overlap = overlap[i],
+                        .contact_radius = contact_radius[i],
+                        .has_yielded = history.word(i, regime) == map.yielded});
   }
   return contacts;
 }
@@ -124,9 +93,10 @@ std::vector<AdhesionDiagram> adhesion_maps(const AdhesionMapSettings& settings) 
   const std::size_t points = settings.points;
   const std::vector<double> modulus = logarithmic_axis(settings.least_modulus, settings.decades, points);
   const std::vector<double> yield_stress = logarithmic_axis(settings.least_yield_stress, settings.decades, points);
+  const AdhesionMap& map = offered_map();
   std::vector<AdhesionDiagram> diagrams;
   for (const double displacement : settings.displacements) {
-    diagrams.push_back({displacement, modulus, yield_stress, std::vector<AdhesionValidity>(points * points)});
+    diagrams.push_back({displacement, map.classes, modulus, yield_stress, std::vector<std::size_t>(points * points)});
   }
   // A diagonal begins in the first column or in the first row; its other points have the same E/Y.
   for (std::size_t diagonal = 0; diagonal + 1 < 2 * points; ++diagonal) {
@@ -141,7 +111,7 @@ std::vector<AdhesionDiagram> adhesion_maps(const AdhesionMapSettings& settings) 
       const std::size_t column = first_column + k;
       for (std::size_t d = 0; d < diagrams.size(); ++d) {
         diagrams[d].classes[row * points + column] =
-            classify(contacts[d], modulus[column], yield_stress[row], settings.control);
+            map.classify(contacts[d], modulus[column], yield_stress[row], settings.control);
       }
     }
   }

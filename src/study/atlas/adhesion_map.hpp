@@ -6,25 +6,16 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
 #include <vector>
 
-#include "mdr/adhesion_validity.hpp"
+#include "system/adhesion_map.hpp"
 
 namespace monograin {
 
-/// A contact of a particle pressed between two walls, without adhesion.
-struct FlattenedContact {
-  double displacement = 0.0;     ///< of each wall, delta_o,max/R0
-  double apparent_radius = 0.0;  ///< R/R0
-  bool has_yielded = false;
-  mdr::Indenter indenter{};  ///< that is left on unloading; of the elastic contact where it has not yielded
-  double peak_radius = 0.0;  ///< r_peak/R0 of the fit F.1
-};
-
-/// Presses a particle between two walls through the engine (model mdr with its default options).
+/// Presses a particle between two walls through the engine, by the scenario of the model that offers the map.
 ///
-/// @param modulus_over_yield  E/Y > 0, finite (not E*/Y); above 1e6 radii are those of 1e6, which are the rigid-plastic
-/// ones
+/// @param modulus_over_yield  E/Y > 0, finite (not E*/Y)
 /// @param poisson_ratio       in (-1, 0.5]
 /// @param displacements       delta_o,max/R0, ascending, > 0
 /// @return one contact for each displacement
@@ -47,12 +38,13 @@ struct AdhesionMapSettings {
 
 /// One diagram (one panel of Fig. F.21).
 struct AdhesionDiagram {
-  double displacement = 0.0;                   ///< delta_o,max/R0
-  std::vector<double> modulus;                 ///< E* R0/dg of the columns
-  std::vector<double> yield_stress;            ///< Y R0/dg of the rows
-  std::vector<mdr::AdhesionValidity> classes;  ///< row by row
+  double displacement = 0.0;                  ///< delta_o,max/R0
+  std::span<const std::string_view> legends;  ///< of the classes
+  std::vector<double> modulus;                ///< E* R0/dg of the columns
+  std::vector<double> yield_stress;           ///< Y R0/dg of the rows
+  std::vector<std::size_t> classes;           ///< row by row, as indices into the legends
 
-  [[nodiscard]] mdr::AdhesionValidity at(std::size_t row, std::size_t column) const {
+  [[nodiscard]] std::size_t at(std::size_t row, std::size_t column) const {
     return classes[row * modulus.size() + column];
   }
 };

@@ -2,24 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <string>
 
 namespace monograin {
 namespace {
 
-using mdr::AdhesionValidity;
-
-struct ClassLook {
-  AdhesionValidity kind;
-  const char* legend;
-  unsigned colour;
-};
-
-/// Yellow where the model holds and two blues where it does not, as in the source, in colours of the same palette as
-/// all others.
-constexpr ClassLook k_looks[] = {{AdhesionValidity::valid, "valid", 0xF0E442u},
-                                 {AdhesionValidity::peak_failure, "peak failure", 0x56B4E9u},
-                                 {AdhesionValidity::yielding_failure, "small-scale yielding failure", 0x0072B2u}};
+/// Of the classes in turn: yellow where the model holds and two blues where it does not, as in the source, in colours
+/// of the same palette as all others.
+constexpr std::array<unsigned, 3> k_colours{0xF0E442u, 0x56B4E9u, 0x0072B2u};
 
 /// Share of a row by which boxes overlap the next one: a renderer would leave a hair of white between them.
 constexpr double k_overlap = 0.05;
@@ -28,7 +20,7 @@ constexpr double k_overlap = 0.05;
 [[nodiscard]] double half_step(const std::vector<double>& axis) { return std::sqrt(axis[1] / axis[0]); }
 
 /// Boxes around the points of a class, those beside each other in a row as one.
-[[nodiscard]] std::vector<figure::ChartArea::Box> boxes_of(const AdhesionDiagram& diagram, AdhesionValidity kind) {
+[[nodiscard]] std::vector<figure::ChartArea::Box> boxes_of(const AdhesionDiagram& diagram, std::size_t kind) {
   std::vector<figure::ChartArea::Box> boxes;
   const double half_column = half_step(diagram.modulus);
   const double half_row = half_step(diagram.yield_stress);
@@ -62,8 +54,10 @@ std::vector<figure::ChartPanel> adhesion_panels(const std::vector<AdhesionDiagra
         .x = axis_of("Modulus {/:Italic E}^* {/:Italic R}_0 / Δγ", diagram.modulus),
         .y = axis_of("Yield stress {/:Italic Y R}_0 / Δγ", diagram.yield_stress),
         .note = fmt::format("{{/:Italic δ}}_{{o,max}} / {{/:Italic R}}_0 = {}", diagram.displacement)};
-    for (const auto& [kind, legend, colour] : k_looks) {
-      panel.areas.push_back({.legend = legend, .colour = colour, .boxes = boxes_of(diagram, kind)});
+    for (std::size_t kind = 0; kind < diagram.legends.size(); ++kind) {
+      panel.areas.push_back({.legend = std::string(diagram.legends[kind]),
+                             .colour = k_colours[kind % k_colours.size()],
+                             .boxes = boxes_of(diagram, kind)});
     }
     panels.push_back(std::move(panel));
   }

@@ -273,21 +273,35 @@ Scenario with_walls_out_of_reach(Scenario simple) {
 
 }  // namespace
 
-std::vector<Scenario> read_bench_scenes(const fs::path& file) {
+BenchList read_bench_list(const fs::path& file) {
   using Kind = KeySpec::Kind;
   static const std::vector<KeySpec> root_keys{
-      {.name = "scene", .meaning = "scenes to measure", .kind = Kind::tables, .is_required = true}};
+      {.name = "scene", .meaning = "scenes to measure", .kind = Kind::tables, .is_required = true},
+      {.name = "saving", .meaning = "scenes that are spared something", .kind = Kind::tables}};
+  static const KeySpec scenario_key{.name = "scenario",
+                                    .meaning = "scenario file, sought from this file's folder",
+                                    .is_required = true,
+                                    .example = "\"../die.toml\""};
+  static const KeySpec set_key{.name = "set",
+                               .meaning = "overrides of the scenario",
+                               .kind = Kind::texts,
+                               .example = "[\"material.yield_stress=20 MPa\"]"};
   static const std::vector<KeySpec> scene_keys{
       {.name = "name", .meaning = "name of the scene", .is_required = true, .example = "\"die\""},
       {.name = "title", .meaning = "what it is", .is_required = true, .example = "\"Die compaction\""},
-      {.name = "scenario",
-       .meaning = "scenario file, sought from this file's folder",
+      scenario_key,
+      set_key};
+  static const std::vector<KeySpec> saving_keys{
+      {.name = "what", .meaning = "what is not computed", .is_required = true, .example = "\"no adhesion\""},
+      {.name = "name", .meaning = "name of both scenes", .is_required = true, .example = "\"simple\""},
+      scenario_key,
+      set_key,
+      {.name = "without",
+       .meaning = "the scene that computes it",
+       .kind = Kind::table,
        .is_required = true,
-       .example = "\"../die.toml\""},
-      {.name = "set",
-       .meaning = "overrides of the scenario",
-       .kind = Kind::texts,
-       .example = "[\"material.yield_stress=20 MPa\"]"}};
+       .example = "without = { scenario = \"../die.toml\" }"}};
+  static const std::vector<KeySpec> without_keys{scenario_key, set_key};
   const auto [text, problem] = read_text_file(file, k_largest_text);
   if (!problem.empty()) throw_fault({file.string()}, problem);
   const toml::table tree = parse_document(text, file.string());
@@ -295,20 +309,32 @@ std::vector<Scenario> read_bench_scenes(const fs::path& file) {
   Reading reading{faults};
   const SourceLocation top{file.string()};
   const Section root(reading, {&tree, top, "the file"}, root_keys);
-  std::vector<Scenario> scenes;
-  for (const auto& table : root.tables("scene", "[[scene]]")) {
-    const Section section(reading, table, scene_keys);
-    if (section.text("scenario").empty()) continue;
+  const auto scenario_of = [&](const Section& section) -> std::optional<Scenario> {
+    if (section.text("scenario").empty()) return std::nullopt;
     try {
-      scenes.push_back(read_scenario(file.parent_path() / section.text("scenario"), section.texts("set")));
-      scenes.back().name = section.text("name");
-      scenes.back().title = section.text("title");
+      return read_scenario(file.parent_path() / section.text("scenario"), section.texts("set"));
     } catch (const ScenarioError& error) {
       for (const Fault& fault : error.faults()) faults.add(fault.where, fault.message);
+      return std::nullopt;
     }
+  };
+  BenchList list;
+  for (const auto& table : root.tables("scene", "[[scene]]")) {
+    const Section section(reading, table, scene_keys);
+    const auto scenario = scenario_of(section);
+    if (!scenario) continue;
+    list.scenes.push_back(*scenario);
+    list.scenes.back().name = section.text("name");
+    list.scenes.back().title = section.text("title");
+  }
+  for (const auto& table : root.tables("saving", "[[saving]]")) {
+    const Section section(reading, table, saving_keys);
+    const auto spared = scenario_of(section);
+    const auto without = scenario_of(Section(reading, section.table("without", "without"), without_keys));
+    if (spared && without) list.savings.push_back({section.text("what"), section.text("name"), *spared, *without});
   }
   faults.throw_if_any();
-  return scenes;
+  return list;
 }
 
 BenchScene measure_scene(const Scenario& scenario, const BenchSettings& settings, const std::function<void()>& shown) {
@@ -384,7 +410,7 @@ BenchProfile profile_scene(const Scenario& scenario, const std::string& name) {
   return profile;
 }
 
-std::vector<BenchSaving> measure_savings(const BenchSettings& settings) {
+std::vector<BenchSaving> measure_savings(const BenchSettings& settings, const std::vector<BenchPair>& listed) {
   const auto scene_of = [](std::vector<std::string> overrides) {
     return parse_scenario(default_scenario_text(), "die.toml", overrides);
   };
@@ -462,14 +488,10 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings) {
       measure(sticky, integrators::k_direct, as_it_is));
   add("no contacts where nothing can touch", "simple, direct, against 4 walls out of reach", uniaxial,
       measure(with_walls_out_of_reach(plain), integrators::k_direct, as_it_is));
-  // Shallow enough for an elastic particle to keep its radius.
-  const Scenario elastic = scene_of({simple, "material.yield_stress=10 GPa", "mdr.elastic_profile=\"parabola\"",
-                                     "loading.steps[0].displacement=0.015 R0", "loading.steps[1].displacement=0.008 R0",
-                                     "loading.steps[2].displacement=0.018 R0"});
-  Scenario hertz = elastic;
-  hertz.model = "hertz";
-  add("no growth of the radius where nothing yields", "simple to 0.018 R0, direct, hertz / mdr that stays elastic",
-      measure(hertz, integrators::k_direct, as_it_is), measure(elastic, integrators::k_direct, as_it_is));
+  for (const BenchPair& pair : listed) {
+    add(pair.what, pair.name, measure(pair.spared, integrators::k_direct, as_it_is),
+        measure(pair.without, integrators::k_direct, as_it_is));
+  }
   return savings;
 }
 

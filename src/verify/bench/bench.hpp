@@ -67,8 +67,22 @@ struct BenchSaving {
   double difference = 0.0;  ///< of the two curves
 };
 
-/// What is measured where no scene is named: every scene of a file of scenes. @throws ScenarioError
-[[nodiscard]] std::vector<Scenario> read_bench_scenes(const std::filesystem::path& file);
+/// Two scenes with the same curve, of which the second does what the first is spared.
+struct BenchPair {
+  std::string what;
+  std::string name;
+  Scenario spared;
+  Scenario without;
+};
+
+/// What is measured where no scene is named.
+struct BenchList {
+  std::vector<Scenario> scenes;
+  std::vector<BenchPair> savings;
+};
+
+/// @throws ScenarioError
+[[nodiscard]] BenchList read_bench_list(const std::filesystem::path& file);
 
 /// @param shown  called after each point
 [[nodiscard]] BenchScene measure_scene(const Scenario& scenario, const BenchSettings& settings,
@@ -77,8 +91,9 @@ struct BenchSaving {
 /// @param name  of an integrator, or "auto"
 [[nodiscard]] BenchProfile profile_scene(const Scenario& scenario, const std::string& name);
 
-/// The savings that a scene can do without, each over the default scenario or one near to it.
-[[nodiscard]] std::vector<BenchSaving> measure_savings(const BenchSettings& settings);
+/// The savings that a scene can do without, each over the default scenario or one near to it, and those of the list.
+[[nodiscard]] std::vector<BenchSaving> measure_savings(const BenchSettings& settings,
+                                                       const std::vector<BenchPair>& listed);
 
 /// The least time in which an integrator has reached an error [s]; nan: it has not.
 [[nodiscard]] double time_to_error(const BenchScene& scene, std::string_view integrator, double error);

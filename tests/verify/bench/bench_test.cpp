@@ -104,7 +104,7 @@ TEST(BenchScene, TimeToAnErrorIsThatOfTheFastestRunThatReachesIt) {
 
 TEST(BenchScenes, EachRunsToItsEnd) {
   std::set<std::string> names;
-  for (const Scenario& scenario : read_bench_scenes(k_scenes)) {
+  for (const Scenario& scenario : read_bench_list(k_scenes).scenes) {
     EXPECT_TRUE(names.insert(scenario.name).second) << scenario.name;
     const monograin::Run run = run_scenario(scenario);
     EXPECT_EQ(run.record.status, RunStatus::complete) << scenario.name << ": " << run.record.message;
@@ -117,7 +117,7 @@ TEST(BenchScenes, FaultsHaveTheirPlaces) {
   const fs::path file = folder.path() / "scenes.toml";
   std::ofstream(file) << "[[scene]]\nname = \"a\"\nscenario = \"none.toml\"\ncolour = 3\n";
   try {
-    static_cast<void>(read_bench_scenes(file));
+    static_cast<void>(read_bench_list(file));
     FAIL() << "no fault";
   } catch (const ScenarioError& error) {
     const std::string text = error.what();
@@ -125,7 +125,7 @@ TEST(BenchScenes, FaultsHaveTheirPlaces) {
     EXPECT_NE(text.find("'title'"), std::string::npos) << text;
     EXPECT_NE(text.find("none.toml"), std::string::npos) << text;
   }
-  EXPECT_THROW(static_cast<void>(read_bench_scenes(folder.path() / "none.toml")), ScenarioError);
+  EXPECT_THROW(static_cast<void>(read_bench_list(folder.path() / "none.toml")), ScenarioError);
 }
 
 // --- profile and savings
@@ -162,7 +162,7 @@ void expect_looks_on_only(const Scenario& scenario, std::initializer_list<const 
 }
 
 TEST(BenchProfile, LooksOnOnly) {
-  for (const Scenario& scenario : read_bench_scenes(k_scenes)) {
+  for (const Scenario& scenario : read_bench_list(k_scenes).scenes) {
     expect_looks_on_only(scenario, {"direct", "cvode-bdf", "ida"});
   }
   // A singular start, which none of the bench's own scenes has.
@@ -202,7 +202,7 @@ TEST(BenchSavings, LookBeyondTheEndOfAStep) {
 }
 
 TEST(BenchSavings, LookBeyondStepsInEveryFormOfEveryModel) {
-  for (const Scenario& scenario : read_bench_scenes(k_scenes)) {
+  for (const Scenario& scenario : read_bench_list(k_scenes).scenes) {
     for (const char* integrator : {"direct", "cvode-bdf", "ida"}) {
       Scene plain = make_scene(scenario);
       if (std::string_view(integrator) == "direct" && !plain.system->is_solvable()) continue;
@@ -227,7 +227,7 @@ TEST(BenchSavings, LookBeyondStepsInEveryFormOfEveryModel) {
 }
 
 TEST(BenchSavings, LeaveTheCurvesAsTheyAre) {
-  const std::vector<BenchSaving> savings = measure_savings({.least_time = 0.0});
+  const std::vector<BenchSaving> savings = measure_savings({.least_time = 0.0}, read_bench_list(k_scenes).savings);
   std::set<std::string> names;
   for (const BenchSaving& saving : savings) names.insert(saving.what);
   EXPECT_EQ(names.size(), 9U);
