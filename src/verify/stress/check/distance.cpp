@@ -76,6 +76,57 @@ double factor_of(const std::string& unit, const Magnification& larger) {
   return unit == "J" ? larger.stress * std::pow(larger.length, 3) : 1.0;
 }
 
+/// A column of two tables, and by what measure its values are compared.
+struct ColumnPair {
+  const Table& first;
+  const Table& second;
+  std::size_t column = 0;
+  double factor = 1.0;   ///< by which values of the second are larger
+  double scale = 0.0;    ///< largest magnitude
+  bool is_root = false;  ///< the square of its distance from the origin is smooth
+  double origin = 0.0;
+  double floor = 0.0;  ///< differences below it are none
+
+  /// Values over which a contact's first touch is smooth.
+  [[nodiscard]] double smooth(double value) const { return is_root ? (value - origin) * (value - origin) : value; }
+  [[nodiscard]] double unit() const { return is_root ? scale * scale : scale; }
+  /// Distance of two values, each from the origin.
+  [[nodiscard]] double apart(double x, double y) const {
+    return is_root ? std::abs(x * x - y * y) : std::max(0.0, std::abs(x - y) - floor);
+  }
+};
+
+ColumnPair pair_of(const Table& first, const Table& second, std::size_t c, const Negligible& nothing,
+                   const Magnification& larger) {
+  const Column& column = first.columns()[c];
+  const double factor = factor_of(column.unit, larger);
+  const double scale = std::max(scale_of(first, c), scale_of(second, c) / factor);
+  // The area of a contact is smooth at first touch, its root is not; nor is the margin, which is 1 less such roots.
+  const bool is_margin = column.name == "margin";
+  return {.first = first,
+          .second = second,
+          .column = c,
+          .factor = factor,
+          .scale = scale,
+          .is_root = is_margin || kind_of(column).starts_with("contact_radius"),
+          .origin = is_margin ? 1.0 : 0.0,
+          .floor = nothing.share * factor_of(column.unit, nothing.unit) +
+                   (is_energy(column) ? nothing.energy_share * scale : 0.0)};
+}
+
+/// Both values at a pair of rows, from the origin; where only one is empty, its value on the other side of an event.
+std::pair<double, double> values_at(const ColumnPair& pair, std::size_t a, std::size_t b, double step_share) {
+  double x = pair.first.at(a, pair.column) - pair.origin;
+  double y = pair.second.at(b, pair.column) / pair.factor - pair.origin;
+  if (std::isnan(x) != std::isnan(y)) {
+    if (const auto of_first = beyond_event(pair.first, a, pair.column, step_share))
+      x = *of_first - pair.origin;
+    else if (const auto of_second = beyond_event(pair.second, b, pair.column, step_share))
+      y = *of_second / pair.factor - pair.origin;
+  }
+  return {x, y};
+}
+
 }  // namespace
 
 std::string_view kind_of(const Column& column) {
@@ -143,32 +194,17 @@ Distance distance_at(const Table& first, const Table& second,
   Distance worst;
   for (std::size_t c = 0; c < first.columns().size(); ++c) {
     if (!is_compared(first.columns()[c]) || (nothing.has_any_place && is_place(first.columns()[c]))) continue;
-    const double factor = factor_of(first.columns()[c].unit, larger);
-    const double scale = std::max(scale_of(first, c), scale_of(second, c) / factor);
-    if (scale == 0.0) continue;
-    // The area of a contact is smooth at first touch, its root is not; nor is the margin, which is 1 less such roots.
-    const bool is_margin = first.columns()[c].name == "margin";
-    const bool is_root = is_margin || kind_of(first.columns()[c]).starts_with("contact_radius");
-    const double origin = is_margin ? 1.0 : 0.0;
-    const double floor = nothing.share * factor_of(first.columns()[c].unit, nothing.unit) +
-                         (is_energy(first.columns()[c]) ? nothing.energy_share * scale : 0.0);
+    const ColumnPair pair = pair_of(first, second, c, nothing, larger);
+    if (pair.scale == 0.0) continue;
     for (const auto& [a, b] : rows) {
-      double x = first.at(a, c) - origin;
-      double y = second.at(b, c) / factor - origin;
-      if (std::isnan(x) != std::isnan(y)) {
-        if (const auto other = beyond_event(first, a, c, nothing.step_share))
-          x = *other - origin;
-        else if (const auto of_second = beyond_event(second, b, c, nothing.step_share))
-          y = *of_second / factor - origin;
-      }
+      const auto [x, y] = values_at(pair, a, b, nothing.step_share);
       if (std::isnan(x) && std::isnan(y)) continue;
       if (std::isnan(x - y)) return {x - y, first.columns()[c].name, first.at(a, 0)};
-      const auto smooth = [&](double of) { return is_root ? (of - origin) * (of - origin) : of; };
-      const double apart = is_root ? std::abs(x * x - y * y) : std::max(0.0, std::abs(x - y) - floor);
-      const double unit = is_root ? scale * scale : scale;
-      if (!(apart > worst.value * unit)) continue;
+      const double apart = pair.apart(x, y);
+      if (!(apart > worst.value * pair.unit())) continue;
       // What is steep over the overlap is known as well as that.
-      const double value = (apart - change_with_overlap(first, a, c, nothing.length, smooth)) / unit;
+      const auto smooth = [&pair](double of) { return pair.smooth(of); };
+      const double value = (apart - change_with_overlap(first, a, c, nothing.length, smooth)) / pair.unit();
       if (value > worst.value) worst = {value, first.columns()[c].name, first.at(a, 0)};
     }
   }

@@ -50,6 +50,46 @@ void draw_cycles(Dice& dice, StressScene& scene, const ProgramBounds& bounds) {
   scene.points = 3;
 }
 
+void draw_oblique_walls(Dice& dice, StressScene& scene) {
+  const double least = std::max(scene.model->least_wall_angle, 1e-6);
+  if (dice.happens(0.5)) scene.oblique_angle = dice.uniform(least, k_right_angle - least);
+  if (dice.happens(0.1)) scene.oblique_angle = 1.000001 * least;
+  if (dice.happens(0.5)) scene.oblique_walls = 4;
+  // Four walls at a small angle stand close to each other, too.
+  if (scene.oblique_walls && scene.oblique_angle && 2.0 * *scene.oblique_angle < 1.01 * least) {
+    scene.oblique_walls.reset();
+  }
+}
+
+/// How the walls of a free set are moved.
+struct FreeSet {
+  std::size_t count = 0;  ///< of steps
+  bool have_own = false;  ///< programs
+  bool is_cell = false;   ///< the walls close a cell around the particle
+};
+
+void draw_free_walls(Dice& dice, StressScene& scene, const ProgramBounds& bounds, const FreeSet& set) {
+  // No wall touches a loose particle.
+  const bool is_loose = scene.centre_is_free && dice.happens(0.1);
+  const double shared_gap = dice.happens(0.5) && !is_loose ? 0.0 : dice.log_uniform(1e-12, 0.1);
+  // Steps end together, so that all walls take the durations of the first.
+  std::vector<double> durations;
+  for (const std::array<double, 3>& normal :
+       set.is_cell ? draw_cell(dice) : draw_normals(dice, scene.model->least_wall_angle)) {
+    StressWall wall{.name = fmt::format("w{}", scene.walls.size()), .normal = normal, .gap = 0.0, .steps = {}};
+    if (is_loose || dice.happens(0.4)) wall.gap = dice.happens(0.5) ? shared_gap : dice.uniform(0.0, 0.05);
+    wall.is_fixed = !scene.walls.empty() && dice.happens(0.3);
+    if (set.have_own && !wall.is_fixed) {
+      wall.steps = draw_program(dice, scene, bounds, set.count, wall.gap, false, false);
+      for (std::size_t i = 0; i < set.count; ++i) {
+        if (durations.size() <= i) durations.push_back(wall.steps[i].pace);
+        wall.steps[i].pace = durations[i];
+      }
+    }
+    scene.walls.push_back(wall);
+  }
+}
+
 void draw_loading(Dice& dice, StressScene& scene, const ProgramBounds& bounds) {
   const std::size_t count = 1 + dice.below(dice.happens(0.8) ? 4 : 10);
   if (!scene.model->has_walls()) {
@@ -62,41 +102,13 @@ void draw_loading(Dice& dice, StressScene& scene, const ProgramBounds& bounds) {
   const bool have_own = are_free && dice.happens(0.5);
   const bool is_cell = are_free && dice.happens(0.2);
   if (scene.model->has_free_centre && dice.happens(is_cell ? 0.5 : 0.2)) scene.centre_is_free = true;
-  if (scene.configuration == "oblique-die") {
-    const double least = std::max(scene.model->least_wall_angle, 1e-6);
-    if (dice.happens(0.5)) scene.oblique_angle = dice.uniform(least, k_right_angle - least);
-    if (dice.happens(0.1)) scene.oblique_angle = 1.000001 * least;
-    if (dice.happens(0.5)) scene.oblique_walls = 4;
-    // Four walls at a small angle stand close to each other, too.
-    if (scene.oblique_walls && scene.oblique_angle && 2.0 * *scene.oblique_angle < 1.01 * least) {
-      scene.oblique_walls.reset();
-    }
-  }
+  if (scene.configuration == "oblique-die") draw_oblique_walls(dice, scene);
   if (!have_own) {
     // Free walls have different ways to go, and at one rate would not arrive together.
     scene.steps = draw_program(dice, scene, bounds, count, 0.0, !are_free, true);
     draw_cycles(dice, scene, bounds);
   }
-  if (!are_free) return;
-  // No wall touches a loose particle.
-  const bool is_loose = scene.centre_is_free && dice.happens(0.1);
-  const double shared_gap = dice.happens(0.5) && !is_loose ? 0.0 : dice.log_uniform(1e-12, 0.1);
-  // Steps end together, so that all walls take the durations of the first.
-  std::vector<double> durations;
-  for (const std::array<double, 3>& normal :
-       is_cell ? draw_cell(dice) : draw_normals(dice, scene.model->least_wall_angle)) {
-    StressWall wall{.name = fmt::format("w{}", scene.walls.size()), .normal = normal, .gap = 0.0, .steps = {}};
-    if (is_loose || dice.happens(0.4)) wall.gap = dice.happens(0.5) ? shared_gap : dice.uniform(0.0, 0.05);
-    wall.is_fixed = !scene.walls.empty() && dice.happens(0.3);
-    if (have_own && !wall.is_fixed) {
-      wall.steps = draw_program(dice, scene, bounds, count, wall.gap, false, false);
-      for (std::size_t i = 0; i < count; ++i) {
-        if (durations.size() <= i) durations.push_back(wall.steps[i].pace);
-        wall.steps[i].pace = durations[i];
-      }
-    }
-    scene.walls.push_back(wall);
-  }
+  if (are_free) draw_free_walls(dice, scene, bounds, {count, have_own, is_cell});
 }
 
 // --- places that a first run finds

@@ -57,94 +57,130 @@ std::vector<double*> numbers_of(StressScene& scene) {
   return numbers;
 }
 
-/// Smaller scenes, those that leave most away first.
-Candidates smaller_than(const StressScene& scene) {
-  Candidates candidates;
-  const auto add = [&](const auto& change) {
-    StressScene other = scene;
+/// Collects scenes that are smaller than one, each by one change.
+class Smaller {
+ public:
+  explicit Smaller(const StressScene& scene) : scene_(scene) {}
+
+  void add(const auto& change) {
+    StressScene other = scene_;
     change(other);
-    if (other != scene) candidates.push_back(std::move(other));
-  };
-  const std::size_t steps = step_count(scene);
-  const auto keep_steps = [](std::size_t from, std::size_t count) {
-    return [=](StressScene& s) {
-      for (auto* program : programs_of(s)) {
-        const std::size_t begin = std::min(from, program->size());
-        const std::size_t end = std::min(begin + count, program->size());
-        *program = std::vector<StressStep>(program->begin() + static_cast<std::ptrdiff_t>(begin),
-                                           program->begin() + static_cast<std::ptrdiff_t>(end));
-      }
-    };
-  };
-  if (steps > 2) add(keep_steps(0, steps / 2));
-  for (std::size_t wall = scene.walls.size(); wall-- > 0 && scene.walls.size() > 1;) {
-    add([&](StressScene& s) { s.walls.erase(s.walls.begin() + static_cast<std::ptrdiff_t>(wall)); });
+    if (other != scene_) candidates_.push_back(std::move(other));
   }
-  add([](StressScene& s) { s.cycles = 1; });
-  add([](StressScene& s) { s.cycles = std::max(1, s.cycles / 2); });
-  add([](StressScene& s) { s.cycles = std::max(1, s.cycles - 1); });
-  for (std::size_t step = steps; step-- > 0 && steps > 1;) {
+  /// A change of one step of one program, which may be shorter than others.
+  void add_step(std::size_t program, std::size_t step, const auto& change) {
     add([&](StressScene& s) {
-      for (auto* program : programs_of(s)) {
-        if (step < program->size()) program->erase(program->begin() + static_cast<std::ptrdiff_t>(step));
-      }
+      std::vector<StressStep>& changed = *programs_of(s)[program];
+      if (step < changed.size()) change(changed[step]);
     });
   }
-  add([](StressScene& s) {
+
+  [[nodiscard]] Candidates& candidates() noexcept { return candidates_; }
+
+ private:
+  const StressScene& scene_;
+  Candidates candidates_;
+};
+
+void keep_steps(StressScene& scene, std::size_t from, std::size_t count) {
+  for (auto* program : programs_of(scene)) {
+    const std::size_t begin = std::min(from, program->size());
+    const std::size_t end = std::min(begin + count, program->size());
+    *program = std::vector<StressStep>(program->begin() + static_cast<std::ptrdiff_t>(begin),
+                                       program->begin() + static_cast<std::ptrdiff_t>(end));
+  }
+}
+
+void erase_step(StressScene& scene, std::size_t step) {
+  for (auto* program : programs_of(scene)) {
+    if (step < program->size()) program->erase(program->begin() + static_cast<std::ptrdiff_t>(step));
+  }
+}
+
+/// Fewer steps, walls and cycles.
+void add_fewer(const StressScene& scene, Smaller& smaller) {
+  const std::size_t steps = step_count(scene);
+  if (steps > 2) smaller.add([&](StressScene& s) { keep_steps(s, 0, steps / 2); });
+  for (std::size_t wall = scene.walls.size(); wall-- > 0 && scene.walls.size() > 1;) {
+    smaller.add([&](StressScene& s) { s.walls.erase(s.walls.begin() + static_cast<std::ptrdiff_t>(wall)); });
+  }
+  smaller.add([](StressScene& s) { s.cycles = 1; });
+  smaller.add([](StressScene& s) { s.cycles = std::max(1, s.cycles / 2); });
+  smaller.add([](StressScene& s) { s.cycles = std::max(1, s.cycles - 1); });
+  for (std::size_t step = steps; step-- > 0 && steps > 1;) {
+    smaller.add([&](StressScene& s) { erase_step(s, step); });
+  }
+}
+
+/// Plainer configurations, options, materials, units and numerics.
+void add_plainer(const StressScene& scene, Smaller& smaller) {
+  smaller.add([](StressScene& s) {
     if (!s.configuration.empty()) s.configuration = "simple";
     s.walls.clear();
     s.oblique_angle.reset();
     s.oblique_walls.reset();
   });
-  add([](StressScene& s) { s.centre_is_free = false; });
-  add([](StressScene& s) { s.oblique_angle.reset(); });
-  add([](StressScene& s) { s.oblique_walls.reset(); });
-  for (const auto& option : scene.options) add([&](StressScene& s) { s.options.erase(option.first); });
+  smaller.add([](StressScene& s) { s.centre_is_free = false; });
+  smaller.add([](StressScene& s) { s.oblique_angle.reset(); });
+  smaller.add([](StressScene& s) { s.oblique_walls.reset(); });
+  for (const auto& option : scene.options) smaller.add([&](StressScene& s) { s.options.erase(option.first); });
   for (const QuantityKey& key : scene.model->material) {
-    if (key.default_value || key.is_optional) add([&](StressScene& s) { s.material.erase(std::string(key.name)); });
+    if (!key.default_value && !key.is_optional) continue;
+    smaller.add([&](StressScene& s) { s.material.erase(std::string(key.name)); });
   }
-  add([](StressScene& s) { s.integrator = integrators::k_direct; });
-  add([](StressScene& s) { s.rtol = 1e-8; });
-  add([](StressScene& s) { s.radius = 1.0; });
-  add([](StressScene& s) { s.stress = 1.0; });
+  smaller.add([](StressScene& s) { s.integrator = integrators::k_direct; });
+  smaller.add([](StressScene& s) { s.rtol = 1e-8; });
+  smaller.add([](StressScene& s) { s.radius = 1.0; });
+  smaller.add([](StressScene& s) { s.stress = 1.0; });
+}
+
+/// Steps without conditions, lateral parts and rates, and walls without gaps and programs.
+void add_plainer_programs(const StressScene& scene, Smaller& smaller) {
+  const std::size_t steps = step_count(scene);
   for (std::size_t program = 0; program <= scene.walls.size(); ++program) {
     for (std::size_t step = 0; step < steps; ++step) {
-      const auto add_step = [&](const auto& change) {
-        add([&](StressScene& s) {
-          std::vector<StressStep>& changed = *programs_of(s)[program];
-          if (step < changed.size()) change(changed[step]);
-        });
-      };
-      add_step([](StressStep& s) {
+      smaller.add_step(program, step, [](StressStep& s) {
         s.until.clear();
         s.until_event.clear();
         s.until_value = 0.0;
       });
-      add_step([](StressStep& s) { s.lateral.reset(); });
-      add_step([](StressStep& s) { s.has_rate = s.kind == Step::Kind::detach; });
+      smaller.add_step(program, step, [](StressStep& s) { s.lateral.reset(); });
+      smaller.add_step(program, step, [](StressStep& s) { s.has_rate = s.kind == Step::Kind::detach; });
     }
   }
   // Walls that end their steps together keep doing so.
-  add([](StressScene& s) {
+  smaller.add([](StressScene& s) {
     for (auto* program : programs_of(s)) {
       for (StressStep& step : *program) step.pace = 1.0;
     }
   });
   for (std::size_t wall = 0; wall < scene.walls.size(); ++wall) {
-    add([&](StressScene& s) { s.walls[wall].gap = 0.0; });
-    add([&](StressScene& s) { s.walls[wall].is_fixed = wall > 0; });
+    smaller.add([&](StressScene& s) { s.walls[wall].gap = 0.0; });
+    smaller.add([&](StressScene& s) { s.walls[wall].is_fixed = wall > 0; });
   }
+}
+
+void add_rounder_numbers(const StressScene& scene, Smaller& smaller) {
   StressScene counted = scene;
   const std::size_t numbers = numbers_of(counted).size();
   for (int digits = 1; digits <= k_most_digits; ++digits) {
-    add([&](StressScene& s) {
+    smaller.add([&](StressScene& s) {
       for (double* number : numbers_of(s)) *number = rounded(*number, digits);
     });
     for (std::size_t i = 0; i < numbers; ++i) {
-      add([&](StressScene& s) { *numbers_of(s)[i] = rounded(*numbers_of(s)[i], digits); });
+      smaller.add([&](StressScene& s) { *numbers_of(s)[i] = rounded(*numbers_of(s)[i], digits); });
     }
   }
-  return candidates;
+}
+
+/// Smaller scenes, those that leave most away first.
+Candidates smaller_than(const StressScene& scene) {
+  Smaller smaller(scene);
+  add_fewer(scene, smaller);
+  add_plainer(scene, smaller);
+  add_plainer_programs(scene, smaller);
+  add_rounder_numbers(scene, smaller);
+  return std::move(smaller.candidates());
 }
 
 /// What is counted in the order in which candidates give it up; a scene only changes for one that comes before it.
