@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "scenario/scenario.hpp"
-#include "study/stress_checks.hpp"
 #include "support/test_run.hpp"
 #include "support/text_file.hpp"
+#include "verify/stress/check/checks.hpp"
 
 namespace monograin::stress_findings_test {
 namespace {
