@@ -86,9 +86,10 @@ class IndependentContacts final : public HybridSystem {
   template <class OfModel>
   requires std::constructible_from<Law, OfModel> IndependentContacts(const OfModel& settings,
                                                                      std::vector<ContactClass> classes)
-      : IndependentContacts(Law(settings),
-                            {settings.initial_radius, settings.largest_displacement, settings.largest_force},
-                            std::move(classes)) {}
+      : IndependentContacts(
+            Law(settings),
+            {settings.initial_radius, settings.largest_displacement, settings.largest_force, settings.centre_is_free},
+            std::move(classes)) {}
 
   [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return unknowns_; }
   [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return classes_; }

@@ -1,22 +1,17 @@
 /// Balance of the forces on the free centre of a particle: what contacts do to it, and how it moves for that.
 ///
-/// The centre moves along the mean normals of the contact classes only, which keeps the symmetry of the walls. Walls
-/// that face each other, or the same way, push it along one line. What they do is summed up there before it is
-/// resolved: the round-off of large forces that nearly cancel would otherwise act across the line, where a soft contact
-/// may be all that constrains the centre. Lengths in R0.
+/// Contacts push it along the lines of contacts/centre/centre_lines.hpp. Lengths in R0.
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
 #include <vector>
 
-#include "system/walls.hpp"
+#include "contacts/centre/centre_lines.hpp"
 
 namespace monograin::mdr {
 
-/// Vectors and matrices along the free directions of the centre; entries beyond their number are zero.
-using CentreVector = Eigen::Vector3d;
-using CentreMatrix = Eigen::Matrix3d;
+using CentreVector = contacts::CentreLines::Vector;
+using CentreMatrix = contacts::CentreLines::Matrix;
 
 /// What a class of contacts does to the centre, towards it positive; one wall of them.
 struct CentreLoad {
@@ -37,31 +32,25 @@ struct CentreStiffness {
 
 class FreeCentre {
  public:
-  /// Smallest mean normal of a contact class, along the free directions, that counts. The stiffness along them goes
-  /// with its square, and is round-off below this.
-  static constexpr double k_no_direction = 1e-6;
+  static constexpr double k_no_direction = contacts::CentreLines::k_no_direction;
 
   FreeCentre() = default;
   /// @param is_free  false: nothing moves the centre
-  FreeCentre(std::span<const ContactClass> classes, bool is_free);
+  FreeCentre(std::span<const ContactClass> classes, bool is_free) : lines_(classes, is_free), loads_(lines_.size()) {}
 
   /// Free directions, 0 to 3.
-  [[nodiscard]] int count() const noexcept { return count_; }
-  [[nodiscard]] bool is_free() const noexcept { return count_ > 0; }
+  [[nodiscard]] int count() const noexcept { return lines_.dimension(); }
+  [[nodiscard]] bool is_free() const noexcept { return count() > 0; }
   /// Mean normal of a class along the free directions.
-  [[nodiscard]] const CentreVector& direction(std::size_t i) const noexcept { return directions_[i]; }
+  [[nodiscard]] const CentreVector& direction(std::size_t i) const noexcept { return lines_.arm(i); }
   /// True if a contact of the class acts on the centre.
-  [[nodiscard]] bool acts(std::size_t i) const noexcept { return is_free() && acts_[i]; }
+  [[nodiscard]] bool acts(std::size_t i) const noexcept { return is_free() && lines_.acts(i); }
   /// A vector along the free directions, in space.
-  [[nodiscard]] Eigen::Vector3d in_space(const CentreVector& vector) const {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (int k = 0; k < count_; ++k) sum += basis_.col(k) * vector[k];
-    return sum;
-  }
+  [[nodiscard]] Eigen::Vector3d in_space(const CentreVector& vector) const { return lines_.in_space(vector); }
 
   /// Forgets all loads.
   void clear() noexcept;
-  void add(std::size_t i, const CentreLoad& load) noexcept;
+  void add(std::size_t i, const CentreLoad& added) noexcept;
   /// Sums the loads of all lines up. Contacts that are first touched have no stiffness yet: along their lines their
   /// tangents serve.
   void sum_up() noexcept;
@@ -71,23 +60,22 @@ class FreeCentre {
   // Displacements of the centre; none along directions in which no contact constrains it.
 
   /// Cancels the net force, by the stiffnesses, or by the tangent ones.
-  [[nodiscard]] CentreVector step() const { return step_along(&Line::stiffness, &Line::force); }
-  [[nodiscard]] CentreVector tangent_step() const { return step_along(&Line::tangent_stiffness, &Line::force); }
+  [[nodiscard]] CentreVector step() const { return step_along(&Load::stiffness, &Load::force); }
+  [[nodiscard]] CentreVector tangent_step() const { return step_along(&Load::tangent_stiffness, &Load::force); }
   /// Cancels it by the stiffnesses that keep_stiffness() saw.
-  [[nodiscard]] CentreVector step_of_kept() const { return step_along(&Line::kept_stiffness, &Line::force); }
+  [[nodiscard]] CentreVector step_of_kept() const { return step_along(&Load::kept_stiffness, &Load::force); }
   void keep_stiffness() noexcept;
   /// Rates with the step coordinate and with the radius.
-  [[nodiscard]] CentreVector by_time() const { return step_along(&Line::tangent_stiffness, &Line::force_by_time); }
-  [[nodiscard]] CentreVector by_radius() const { return step_along(&Line::tangent_stiffness, &Line::force_by_radius); }
+  [[nodiscard]] CentreVector by_time() const { return step_along(&Load::tangent_stiffness, &Load::force_by_time); }
+  [[nodiscard]] CentreVector by_radius() const { return step_along(&Load::tangent_stiffness, &Load::force_by_radius); }
 
   /// Projector on the directions in which no contact constrains the centre.
   /// @param constrains  contact class -> whether it does
   template <class Constrains>
   [[nodiscard]] CentreMatrix unconstrained(Constrains&& constrains) {
-    for (Line& line : lines_) line.held = 0.0;
-    for (std::size_t i = 0; i < on_lines_.size(); ++i) {
-      const OnLine& on = on_lines_[i];
-      if (constrains(i)) lines_[on.line].held += on.along * on.along;
+    for (Load& load : loads_) load.held = 0.0;
+    for (std::size_t i = 0; i < lines_.classes(); ++i) {
+      if (constrains(i)) load(i).held += lines_.along(i) * lines_.along(i);
     }
     return unconstrained_directions();
   }
@@ -96,19 +84,18 @@ class FreeCentre {
   ///                      line, and the one without peeling and softening
   template <class StiffnessOf>
   [[nodiscard]] CentreStiffness softest(StiffnessOf&& stiffness_of) {
-    for (Line& line : lines_) line.held = line.unsoftened = 0.0;
-    for (std::size_t i = 0; i < on_lines_.size(); ++i) {
-      const OnLine& on = on_lines_[i];
-      const auto [held, unsoftened] = stiffness_of(i, on.along);
-      lines_[on.line].held += held;
-      lines_[on.line].unsoftened += unsoftened;
+    for (Load& load : loads_) load.held = load.unsoftened = 0.0;
+    for (std::size_t i = 0; i < lines_.classes(); ++i) {
+      const auto [held, unsoftened] = stiffness_of(i, lines_.along(i));
+      load(i).held += held;
+      load(i).unsoftened += unsoftened;
     }
     return softest_direction();
   }
 
  private:
-  struct Line {
-    CentreVector direction = CentreVector::Zero();
+  /// Of a line.
+  struct Load {
     double force = 0.0;  ///< net force, and its partial derivatives
     double force_by_time = 0.0;
     double force_by_radius = 0.0;
@@ -118,25 +105,17 @@ class FreeCentre {
     double held = 0.0;        ///< work space of unconstrained() and softest()
     double unsoftened = 0.0;  ///< work space of softest()
   };
-  /// Mean normal of a class as a multiple of the direction of a line.
-  struct OnLine {
-    std::size_t line = 0;
-    double along = 0.0;
-  };
-
-  void find_lines();
-  [[nodiscard]] CentreMatrix stiffest_directions(double Line::*stiffness) const;
-  [[nodiscard]] static CentreVector components(const CentreMatrix& basis, const Line& line);
-  [[nodiscard]] CentreVector step_along(double Line::*stiffness, double Line::*force) const;
+  /// Along the line of a class.
+  [[nodiscard]] Load& load(std::size_t i) noexcept { return loads_[lines_.line_of(i)]; }
+  [[nodiscard]] CentreMatrix stiffest_directions(double Load::*stiffness) const {
+    return lines_.stiffest_directions([&](std::size_t line) { return loads_[line].*stiffness; });
+  }
+  [[nodiscard]] CentreVector step_along(double Load::*stiffness, double Load::*force) const;
   [[nodiscard]] CentreMatrix unconstrained_directions() const;
   [[nodiscard]] CentreStiffness softest_direction() const;
 
-  int count_ = 0;
-  Eigen::Matrix3d basis_ = Eigen::Matrix3d::Zero();  ///< orthonormal, in the first columns
-  std::vector<CentreVector> directions_;
-  std::vector<bool> acts_;
-  std::vector<Line> lines_;
-  std::vector<OnLine> on_lines_;
+  contacts::CentreLines lines_;
+  std::vector<Load> loads_;
   CentreVector force_ = CentreVector::Zero();
   CentreMatrix stiffness_ = CentreMatrix::Zero();
 };

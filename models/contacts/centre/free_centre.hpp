@@ -10,13 +10,12 @@
 /// over any one unit.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "system/walls.hpp"
+#include "contacts/centre/centre_lines.hpp"
 
 namespace monograin::contacts {
 
@@ -53,17 +52,15 @@ class CentreWalls {
 
 class FreeCentre {
  public:
-  /// Coordinates of the centre along its free directions; entries beyond their number are zero.
-  using Vector = Eigen::Vector3d;
+  using Vector = CentreLines::Vector;
   /// Smallest overlap of a contact that bears: below, it only touches.
   static constexpr double k_resolution = 1e-13;
-  /// The centre can only move in ways that keep the symmetry of the walls: along the mean normals of the classes.
   explicit FreeCentre(std::span<const ContactClass> classes);
 
-  [[nodiscard]] int dimension() const noexcept { return dimension_; }
+  [[nodiscard]] int dimension() const noexcept { return lines_.dimension(); }
   /// By how much the walls of a class press on where the centre moves to c.
-  [[nodiscard]] double along(std::size_t i, const Vector& c) const noexcept { return arms_[i].dot(c); }
-  [[nodiscard]] Eigen::Vector3d in_space(const Vector& c) const noexcept { return directions_ * c; }
+  [[nodiscard]] double along(std::size_t i, const Vector& c) const noexcept { return lines_.arm(i).dot(c); }
+  [[nodiscard]] Eigen::Vector3d in_space(const Vector& c) const noexcept { return lines_.in_space(c); }
 
   /// Where the centre is in a mode.
   /// @param rest   where it was when the mode began
@@ -83,21 +80,14 @@ class FreeCentre {
                                         const Vector& rest, const Vector& guess);
 
  private:
-  using Matrix = Eigen::Matrix3d;
-  /// Walls that face each other, or the same way, push the centre along one line. Their forces are summed up there
-  /// before they are resolved: the round-off of large forces that nearly cancel would otherwise act across the line,
-  /// where a soft contact may be all that holds the centre.
-  struct Line {
-    Vector direction = Vector::Zero();
+  using Matrix = CentreLines::Matrix;
+  /// Forces and stiffness along a line.
+  struct Load {
     double force = 0.0;
     double stiffness = 0.0;
   };
-  struct OnLine {
-    std::size_t line = 0;
-    double along = 0.0;  ///< mean normal of a class as a multiple of the line's direction; 0: acts along none
-  };
 
-  [[nodiscard]] bool acts(std::size_t i) const noexcept { return on_lines_[i].along != 0.0; }
+  [[nodiscard]] bool acts(std::size_t i) const noexcept { return lines_.acts(i); }
   void sum_up(const CentreWalls& walls, std::span<const Role> roles, const Vector& c);
   [[nodiscard]] Vector net_force() const noexcept;
   [[nodiscard]] Matrix stiffest_directions() const;
@@ -117,14 +107,11 @@ class FreeCentre {
                                    std::span<const Role> roles, Vector& c);
   [[nodiscard]] double across_held(std::size_t i) const;
 
-  int dimension_ = 0;
-  Matrix directions_ = Matrix::Zero();  ///< orthonormal basis of the free directions, in the first columns
-  std::vector<double> counts_;          ///< walls of each class
-  std::vector<Vector> arms_;            ///< mean normal of each class along the free directions
-  std::vector<OnLine> on_lines_;
+  CentreLines lines_;
+  std::vector<double> counts_;  ///< walls of each class
 
   // Of the last sums.
-  std::vector<Line> lines_;
+  std::vector<Load> loads_;     ///< of the lines
   std::vector<double> forces_;  ///< of one wall of each class
   double round_off_ = 0.0;      ///< of the balance of forces
   bool is_held_ = false;        ///< contacts of comparable stiffness bear in all directions
