@@ -33,15 +33,13 @@
 /// of the program alone.
 #pragma once
 
-#include <array>
-#include <cmath>
 #include <concepts>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "contacts/centre/free_centre.hpp"
+#include "contacts/centre/centre_mode.hpp"
 #include "contacts/columns.hpp"
 #include "contacts/scales.hpp"
 #include "contacts/wall_contact.hpp"
@@ -79,7 +77,7 @@ class IndependentContacts final : public HybridSystem {
     while (leader_ < classes_.size() && is_follower(leader_)) ++leader_;
     work_slot_ = unknowns_.size();
     unknowns_.push_back({"work", Unknown::Kind::quadrature, scales_.magnitudes.work, false});
-    if (settings.centre_is_free) add_centre();
+    if (settings.centre_is_free) centre_.emplace(classes_, scales_.reach, unknowns_);
     trial_.resize(unknowns_.size());
   }
   /// Makes the law, and the Settings, of a model's own settings.
@@ -134,10 +132,8 @@ class IndependentContacts final : public HybridSystem {
       if (const auto end = contacts_[i].begin_step(law_, at[i], is_seen(i), log, carried(i, y)))
         throw CannotBegin(*end);
     }
-    if (centre_) {
-      ahead_ = std::clamp(k_distance_ahead / fastest_wall(), k_least_ahead, k_most_ahead);
-      if (const auto end = find_mode(0.0, y, log)) throw CannotBegin(*end);
-    }
+    if (centre_) centre_->begin_step(contacts_);
+    if (const auto end = find_mode(0.0, y, log, {})) throw CannotBegin(*end);
     has_begun_ = true;
     solve(0.0, y);
     arm_guards(0.0);
@@ -145,7 +141,7 @@ class IndependentContacts final : public HybridSystem {
 
   void complete(double xi, std::span<double> y) override {
     if (unknowns_.size() == 1) return;  // the work
-    move_centre(xi, y);
+    if (centre_) centre_->move(law_, contacts_, xi, y);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (classes_[i].takes_force && !contacts_[i].is_integrated(law_))
         y[slots_[i]] = contacts_[i].coordinate_near(law_, xi, y[slots_[i]]);
@@ -153,14 +149,14 @@ class IndependentContacts final : public HybridSystem {
   }
   void solve(double xi, std::span<double> y) override {
     if (unknowns_.size() == 1) return;  // the work
-    move_centre(xi, y);
+    if (centre_) centre_->move(law_, contacts_, xi, y);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate_near(law_, xi, y[slots_[i]]);
     }
   }
 
   void rates(double xi, std::span<const double> y, std::span<double> dy) override {
-    const Vector velocity = centre_velocity(xi, y);
+    const FreeCentre::Vector velocity = centre_velocity(xi, y);
     dy[work_slot_] = sum([&](std::size_t i) {
       const auto now = contacts_[i].slope(law_, y[slots_[i]]);
       if (classes_[i].takes_force) dy[slots_[i]] = contacts_[i].rate(now);
@@ -169,28 +165,21 @@ class IndependentContacts final : public HybridSystem {
   }
   void all_rates(double xi, std::span<const double> y, std::span<double> dy) override {
     rates(xi, y, dy);
-    if (!centre_) return;
-    // A quotient of differences is all that integrators need to begin with: it has no singularity at first touch.
-    const Vector now = centre_position(y);
-    const Vector then = centre_->equilibrium(Instant(*this, xi + ahead_), roles_, rest_, now);
-    for (std::size_t k = centre_slot_; k < unknowns_.size(); ++k) {
-      const auto axis = static_cast<Eigen::Index>(k - centre_slot_);
-      dy[k] = (then[axis] - now[axis]) / ahead_;
-    }
+    if (centre_) centre_->write_rates(law_, contacts_, xi, y, dy);
   }
 
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override {
     // The centre stands where the balance of forces puts it, so that a trial's own position does not enter the work.
     std::ranges::copy(y, trial_.begin());
-    move_centre(xi, trial_);
-    const Vector velocity = centre_velocity(xi, trial_);
+    if (centre_) centre_->move(law_, contacts_, xi, trial_);
+    for (std::size_t k = work_slot_ + 1; k < y.size(); ++k) res[k] = y[k] - trial_[k];
+    const FreeCentre::Vector velocity = centre_velocity(xi, trial_);
     res[work_slot_] = dy[work_slot_] - sum([&](std::size_t i) {
                         const auto now = contacts_[i].slope(law_, y[slots_[i]]);
                         if (classes_[i].takes_force)
                           res[slots_[i]] = contacts_[i].residual(law_, xi, y[slots_[i]], now);
                         return power(i, xi, trial_, now, velocity);
                       });
-    for (std::size_t k = centre_slot_; centre_ && k < unknowns_.size(); ++k) res[k] = y[k] - trial_[k];
   }
 
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override {
@@ -207,7 +196,8 @@ class IndependentContacts final : public HybridSystem {
   void guard_values(double xi, std::span<const double> y, std::span<double> values) override {
     for (std::size_t g = 0; g < guards_.size(); ++g) {
       if (follows_centre(static_cast<std::size_t>(guards_[g].index))) {
-        values[g] = value_with_centre(g, xi, y);
+        const auto i = static_cast<std::size_t>(guards_[g].index);
+        values[g] = centre_->guard_value(law_, contacts_, i, guards_[g].kind, targets_[g], xi, y);
         continue;
       }
       // Ramps are as short as contacts are shallow.
@@ -222,22 +212,20 @@ class IndependentContacts final : public HybridSystem {
       const auto i = static_cast<std::size_t>(guards_[g].index);
       Contact& c = contacts_[i];
       std::optional<DomainEnd> end;
-      if (guards_[g].kind == k_made)
+      if (guards_[g].kind == Centre::k_made)
         c.make(law_, true, log);
-      else if (guards_[g].kind == k_lost)
+      else if (guards_[g].kind == Centre::k_lost)
         c.lose(law_, log, carried(i, y));
-      else if (guards_[g].kind == k_retreat)
+      else if (guards_[g].kind == Centre::k_retreat)
         c.turn(law_, displacement(i, xi, y), guards_[g].name, log);
       else
         end = c.pass(law_, *c.next(law_), log);
       // A dent may be shallower than the round-off of a ramp, and so may be what lies beyond a boundary.
-      const bool is_pressed_on = guards_[g].kind == k_made || guards_[g].kind == k_boundary;
+      const bool is_pressed_on = guards_[g].kind == Centre::k_made || guards_[g].kind == Centre::k_boundary;
       if (!end && is_pressed_on && !follows_centre(i)) end = c.pass_reached(law_, xi, log);
       if (end) return end;
     }
-    if (centre_) {
-      if (const auto end = find_mode(xi, y, log, fired)) return end;
-    }
+    if (const auto end = find_mode(xi, y, log, fired)) return end;
     solve(xi, y);
     arm_guards(xi);
     return std::nullopt;
@@ -262,7 +250,7 @@ class IndependentContacts final : public HybridSystem {
         energies, contacts_.size(),
         [&](std::size_t i) { return visible(i, xi, displacements_[leading(i)], carried(i, y)); }, values);
     if (!centre_) return;
-    const Eigen::Vector3d centre = centre_->in_space(centre_position(y)) * length_;
+    const Eigen::Vector3d centre = centre_->in_space(y) * length_;
     std::ranges::copy(centre, values.end() - centre.size());
   }
 
@@ -326,51 +314,7 @@ class IndependentContacts final : public HybridSystem {
 
   static constexpr bool k_has_followers = requires(Law & law, const ContactClass& walls) { law.follows(walls); };
 
-  enum GuardKind : int { k_made, k_boundary, k_lost, k_retreat };
-
-  using Vector = FreeCentre::Vector;
-  static constexpr std::array<std::string_view, 3> k_centre_names{"centre displacement 1", "centre displacement 2",
-                                                                  "centre displacement 3"};
-  /// How far ahead of an instant, in step coordinates, the mode that begins there is decided: briefer ones are not
-  /// seen. Farther where walls hardly move, so that they go by more than round-off.
-  static constexpr double k_least_ahead = 1e-6;
-  static constexpr double k_most_ahead = 1e-3;
-  static constexpr double k_distance_ahead = 1e-9;  ///< over R0
-  /// Changes of displacements over that which are round-off.
-  static constexpr double k_no_change = 1e-14;
-
-  /// Gap or overlap of a wall that is where it meets the particle: it is lost where the gap would be larger.
-  static constexpr double k_touch = 1e-12;
-  /// Rate of a contact's displacement over the fastest one that is round-off.
-  static constexpr double k_at_rest = 1e-9;
-
-  /// The walls around the centre at one instant.
-  class Instant final : public CentreWalls {
-   public:
-    Instant(const IndependentContacts& system, double xi) : system_(system), xi_(xi) {}
-    [[nodiscard]] std::optional<double> prescribed_force(std::size_t i) const override {
-      const Contact& c = system_.contacts_[i];
-      if (!c.is_force_controlled()) return std::nullopt;
-      return c.touches() ? c.drive().value(xi_) : 0.0;
-    }
-    [[nodiscard]] double overlap(std::size_t i) const override {
-      const Contact& c = system_.contacts_[i];
-      return c.drive().value(xi_) - system_.law_.opening(c.branch());
-    }
-    [[nodiscard]] Force force(std::size_t i, double overlap) const override {
-      const Branch& branch = system_.contacts_[i].branch();
-      const double d = system_.law_.opening(branch) + overlap;
-      return {system_.law_.force(branch, d), system_.law_.slope(branch, d)};
-    }
-    [[nodiscard]] double overlap_under(std::size_t i, double force) const override {
-      const Branch& branch = system_.contacts_[i].branch();
-      return system_.law_.displacement(branch, force) - system_.law_.opening(branch);
-    }
-
-   private:
-    const IndependentContacts& system_;
-    double xi_;
-  };
+  using Centre = CentreMode<Law>;
 
   [[nodiscard]] const WallDrive& drive(std::size_t i) const noexcept { return contacts_[i].drive(); }
   [[nodiscard]] bool is_follower(std::size_t i) const noexcept { return k_has_followers && is_follower_[i]; }
@@ -395,168 +339,39 @@ class IndependentContacts final : public HybridSystem {
   /// Displacement of a contact: of its wall, and by how much a free centre has moved towards that.
   [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const {
     const double d = contacts_[i].displacement(law_, xi, y[slots_[i]]);
-    return centre_ ? displacement_with_centre(i, d, y) : d;
+    return centre_ ? centre_->displacement(law_, contacts_[i], i, d, y) : d;
   }
-
-  // --- a free centre
 
   /// True for a contact whose displacement depends on where a free centre is.
   [[nodiscard]] bool follows_centre(std::size_t i) const noexcept {
     return centre_.has_value() && !contacts_[i].is_force_controlled();
   }
-  void add_centre() {
-    centre_.emplace(classes_);
-    centre_slot_ = unknowns_.size();
-    roles_.resize(classes_.size());
-    rates_.resize(classes_.size());
-    for (std::size_t k = 0; k < static_cast<std::size_t>(centre_->dimension()); ++k) {
-      unknowns_.push_back({.name = k_centre_names[k],
-                           .kind = Unknown::Kind::algebraic,
-                           .scale = scales_.reach,
-                           .is_implicitly_algebraic = true,
-                           .is_dependent = true});
-    }
+  /// By how much a free centre has moved towards the walls of a class.
+  [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const {
+    return centre_ ? centre_->carried(i, y) : 0.0;
   }
-  [[nodiscard]] bool is_seen(std::size_t i) const noexcept {
-    // A wall that touches the fresh particle is in contact from the start, without an event.
-    return has_begun_ || classes_[i].gap > 0.0;
-  }
-  [[nodiscard]] Vector centre_position(std::span<const double> y) const noexcept {
-    Vector c = Vector::Zero();
-    for (std::size_t k = centre_slot_; centre_ && k < unknowns_.size(); ++k)
-      c[static_cast<Eigen::Index>(k - centre_slot_)] = y[k];
-    return c;
-  }
-  [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const noexcept {
-    return centre_ ? centre_->along(i, centre_position(y)) : 0.0;
-  }
-  /// @param d  displacement with the centre where it started; under force control, where it is
-  [[nodiscard]] double displacement_with_centre(std::size_t i, double d, std::span<const double> y) const {
-    const Contact& c = contacts_[i];
-    const double opening = law_.opening(c.branch());
-    if (c.is_force_controlled()) {
-      // An open wall without load stays where it was left, until the particle pushes it.
-      return c.touches() ? d : std::min(d + carried(i, y), opening);
-    }
-    const double overlap = d + carried(i, y) - opening;
-    const bool only_touches = c.touches() && std::abs(overlap) <= FreeCentre::k_resolution;
-    return only_touches ? opening : opening + overlap;
-  }
-  void move_centre(double xi, std::span<double> y) {
-    if (!centre_ || centre_->dimension() == 0) return;
-    const Vector c = centre_->equilibrium(Instant(*this, xi), roles_, rest_, centre_position(y));
-    for (std::size_t k = centre_slot_; k < unknowns_.size(); ++k) y[k] = c[static_cast<Eigen::Index>(k - centre_slot_)];
-  }
-  [[nodiscard]] Vector centre_velocity(double xi, std::span<const double> y) {
-    if (!centre_) return Vector::Zero();
-    for (std::size_t i = 0; i < contacts_.size(); ++i) rates_[i] = drive(i).rate();
-    return centre_->velocity(Instant(*this, xi), roles_, rates_, centre_position(y));
-  }
-  /// Rate of the fastest wall under displacement control.
-  [[nodiscard]] double fastest_wall() const noexcept {
-    double fastest = 0.0;
-    for (const Contact& c : contacts_) {
-      if (!c.is_force_controlled()) fastest = std::max(fastest, std::abs(c.drive().rate()));
-    }
-    return fastest;
-  }
+  /// True if touching is an event: a wall that touches the fresh particle is in contact from the start, without one.
+  [[nodiscard]] bool is_seen(std::size_t i) const noexcept { return has_begun_ || classes_[i].gap > 0.0; }
   /// Rate of the work of one wall.
+  /// @param now  of the contact's coordinate
   [[nodiscard]] double power(std::size_t i, double xi, std::span<const double> y, const typename Contact::Slope& now,
-                             const Vector& velocity) const {
-    const Contact& c = contacts_[i];
-    if (!centre_) return c.power(law_, xi, now);
-    if (c.is_force_controlled()) {
-      const double force = c.touches() ? std::max(0.0, drive(i).value(xi)) : 0.0;
-      return force > 0.0 ? c.power(law_, xi, now) - force * centre_->along(i, velocity) : 0.0;
-    }
-    const double d = displacement(i, xi, y);
-    return c.bears(law_, d) ? law_.force(c.branch(), d) * drive(i).rate() : 0.0;
+                             const FreeCentre::Vector& velocity) const {
+    if (!centre_) return contacts_[i].power(law_, xi, now);
+    return centre_->power(law_, contacts_[i], i, xi, y, now, velocity);
   }
-
-  /// Decides which walls touch, which bear and which contacts turn in the mode that begins, by looking a little ahead:
-  /// these depend on each other through the centre, so assume, look, correct, and repeat.
-  /// @param fired  guards that have just decided that for their contacts
-  std::optional<DomainEnd> find_mode(double xi, std::span<double> y, std::vector<Event>& log,
-                                     std::span<const std::size_t> fired = {}) {
-    rest_ = centre_position(y);
-    std::vector<bool> is_decided(contacts_.size(), false);
-    for (const std::size_t g : fired) is_decided[static_cast<std::size_t>(guards_[g].index)] = true;
-    for (std::size_t round = 0; round <= 4 * contacts_.size() + 8; ++round) {
-      Vector ahead = rest_;
-      centre_->find_roles(Instant(*this, xi), Instant(*this, xi + ahead_), ahead, roles_);
-      bool has_changed = false;
-      for (std::size_t i = 0; i < contacts_.size(); ++i) {
-        if (!follows_centre(i)) continue;
-        const double d = drive(i).value(xi) + centre_->along(i, rest_);
-        const double then = law_.opening(contacts_[i].branch()) + overlap_as_touching(i, xi + ahead_, ahead);
-        const std::string_view turning = xi == 0.0 ? "load-reversal" : "retreat";
-        if (const auto end = find_branch(i, d, then, is_decided[i], turning, log, has_changed)) return end;
-      }
-      if (!has_changed) return std::nullopt;
-    }
-    throw DomainError(Limit::no_consistent_regimes);
+  [[nodiscard]] FreeCentre::Vector centre_velocity(double xi, std::span<const double> y) {
+    return centre_ ? centre_->velocity(law_, contacts_, xi, y) : FreeCentre::Vector::Zero();
   }
-  /// Decides the branch of a contact.
-  /// @param d           its displacement
-  /// @param then        and a little later
-  /// @param is_decided  a guard has just changed it
-  /// @param turning     name of the event of beginning to unload
-  std::optional<DomainEnd> find_branch(std::size_t i, double d, double then, bool is_decided, std::string_view turning,
-                                       std::vector<Event>& log, bool& has_changed) {
-    Contact& c = contacts_[i];
-    const double opening = law_.opening(c.branch());
-    // Farther away, a guard tells when that is.
-    const bool will_touch = then - opening > k_no_change;
-    if (!is_decided && will_touch && !c.touches() && d - opening >= -k_touch) c.make(law_, is_seen(i), log);
-    if (!is_decided && !will_touch && c.touches() && d - opening <= k_touch) c.lose(law_, log);
-    if (!c.touches() || is_decided) return std::nullopt;
-    if (then < d - k_no_change && c.is_on_primary_branch() && d - opening > k_no_change) {
-      c.turn(law_, d, turning, log);
-      has_changed = true;
-    } else if (then > d + k_no_change) {
-      while (const auto ahead = c.next(law_)) {
-        if (!(then > ahead->position) || d < ahead->position - k_no_change) break;
-        if (const auto end = c.pass(law_, *ahead, log)) return end;
-        has_changed = true;
-      }
-    }
-    return std::nullopt;
-  }
-
-  /// How far a contact is past where wall and particle meet. An idle wall that touches has an overlap of nothing: it
-  /// shows by the one that it would have if it did not push.
-  [[nodiscard]] double overlap_as_touching(std::size_t i, double xi, const Vector& c) {
-    if (roles_[i] == Role::idle) return centre_->unpushed_overlap(i, Instant(*this, xi), roles_, rest_, c);
-    return drive(i).value(xi) + centre_->along(i, c) - law_.opening(contacts_[i].branch());
-  }
-  /// Value of the guard of a contact that follows the centre.
-  [[nodiscard]] double value_with_centre(std::size_t g, double xi, std::span<const double> y) {
-    const auto i = static_cast<std::size_t>(guards_[g].index);
-    const Vector c = centre_position(y);
-    if (guards_[g].kind == k_retreat) {
-      const Vector velocity = centre_velocity(xi, y);
-      // A contact at rest has a rate of round-off.
-      const double fastest = std::max(velocity.norm(), fastest_wall());
-      return (drive(i).rate() + centre_->along(i, velocity) + k_at_rest * fastest) / scales_.reach;
-    }
-    if (guards_[g].kind == k_boundary) return (drive(i).value(xi) + centre_->along(i, c) - targets_[g]) / scales_.reach;
-    return (overlap_as_touching(i, xi, c) - targets_[g]) / scales_.reach;
-  }
-  void arm_guards_with_centre(std::size_t i, double xi) {
-    const Contact& c = contacts_[i];
-    const double overlap = drive(i).value(xi) + centre_->along(i, rest_) - law_.opening(c.branch());
-    if (!c.touches()) {
-      add_guard_with_centre(k_made, i, 1, c.made_event(law_), overlap >= -k_touch ? k_touch : 0.0);
-      return;
-    }
-    add_guard_with_centre(k_lost, i, -1, "contact-lost", overlap <= k_touch ? -k_touch : 0.0);
-    if (const auto ahead = c.next(law_)) add_guard_with_centre(k_boundary, i, 1, ahead->event, ahead->position);
-    if (c.is_on_primary_branch() && roles_[i] == Role::bearing) add_guard_with_centre(k_retreat, i, -1, "retreat", 0.0);
-  }
-  /// @param target  overlap where the guard is zero; at a boundary of the law the displacement
-  void add_guard_with_centre(GuardKind kind, std::size_t i, int direction, std::string_view name, double target) {
-    guards_.push_back({.kind = kind, .index = static_cast<int>(i), .direction = direction, .name = name});
-    targets_.push_back(target);
+  /// Decides the mode around a free centre.
+  /// @param fired  guards that have just decided it for their contacts
+  std::optional<DomainEnd> find_mode(double xi, std::span<const double> y, std::vector<Event>& log,
+                                     std::span<const std::size_t> fired) {
+    if (!centre_) return std::nullopt;
+    const auto is_decided = [&](std::size_t i) {
+      return std::ranges::any_of(fired, [&](std::size_t g) { return static_cast<std::size_t>(guards_[g].index) == i; });
+    };
+    return centre_->find(
+        law_, contacts_, xi, y, is_decided, [this](std::size_t i) { return is_seen(i); }, log);
   }
 
   // --- columns
@@ -605,7 +420,10 @@ class IndependentContacts final : public HybridSystem {
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       const Contact& c = contacts_[i];
       if (follows_centre(i)) {
-        arm_guards_with_centre(i, xi);
+        centre_->arm_guards(law_, c, i, xi, [&](int kind, int toward, std::string_view name, double target) {
+          guards_.push_back({.kind = kind, .index = static_cast<int>(i), .direction = toward, .name = name});
+          targets_.push_back(target);
+        });
         continue;
       }
       const int direction = drive(i).direction();
@@ -613,15 +431,15 @@ class IndependentContacts final : public HybridSystem {
       if (direction > 0 && c.touches()) {
         const auto ahead = c.next(law_);
         const double target = ahead ? c.prescribed_at(law_, *ahead) : 0.0;
-        if (ahead && c.passes(target)) add_guard(k_boundary, i, direction, ahead->event, target);
+        if (ahead && c.passes(target)) add_guard(Centre::k_boundary, i, direction, ahead->event, target);
       } else if (c.passes_opening(law_) && c.touches() == (direction < 0)) {
         const double opening = c.is_force_controlled() ? 0.0 : law_.opening(c.branch());
-        add_guard(direction < 0 ? k_lost : k_made, i, direction, direction < 0 ? "contact-lost" : c.made_event(law_),
-                  opening);
+        add_guard(direction < 0 ? Centre::k_lost : Centre::k_made, i, direction,
+                  direction < 0 ? "contact-lost" : c.made_event(law_), opening);
       }
     }
   }
-  void add_guard(GuardKind kind, std::size_t i, int direction, std::string_view name, double target) {
+  void add_guard(int kind, std::size_t i, int direction, std::string_view name, double target) {
     guards_.push_back({.kind = kind,
                        .index = static_cast<int>(i),
                        .direction = direction,
@@ -644,13 +462,8 @@ class IndependentContacts final : public HybridSystem {
   Scales scales_;
   std::vector<Unknown> unknowns_;
   std::size_t work_slot_ = 0;
-  std::optional<FreeCentre> centre_;
-  std::size_t centre_slot_ = 0;   ///< in y, of the first coordinate of the centre
-  Vector rest_ = Vector::Zero();  ///< of the centre, where the present mode began
-  std::vector<Role> roles_;
-  double ahead_ = k_least_ahead;
-  std::vector<double> rates_;  ///< of what the program prescribes
-  std::vector<double> trial_;  ///< work space
+  std::optional<Centre> centre_;  ///< where it is free
+  std::vector<double> trial_;     ///< work space
   bool has_begun_ = false;
   std::vector<Guard> guards_;
   std::vector<double> targets_;  ///< what the program prescribes where they are zero

@@ -142,19 +142,23 @@ double FreeCentre::share_of_step(const CentreWalls& walls, std::span<const Role>
   return low > 0.0 ? low : high;
 }
 
+/// Makes contacts that bear less than a force as stiff as under that: at first touch they have no stiffness.
+void FreeCentre::lend_stiffness(const CentreWalls& walls, std::span<const Role> roles, double force) {
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    if (roles[i] != Role::bearing || !(overlaps_[i] > 0.0) || forces_[i] >= force) continue;
+    const double along = lines_.along(i);
+    const double now = walls.force(i, overlaps_[i]).slope;
+    const double under = walls.force(i, walls.overlap_under(i, force)).slope;
+    loads_[lines_.line_of(i)].stiffness += counts_[i] * std::max(0.0, under - now) * along * along;
+  }
+}
+
 FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const Role> roles, Vector c) {
   double last = std::numeric_limits<double>::infinity();
   for (int k = 0; k < k_most_steps; ++k) {
     sum_up(walls, roles, c);
     const Vector net = net_force();
-    // A contact that bears less than is to be balanced is as stiff as under that: at first touch it has no stiffness.
-    for (std::size_t i = 0; i < counts_.size(); ++i) {
-      if (roles[i] != Role::bearing || !(overlaps_[i] > 0.0) || forces_[i] >= net.norm()) continue;
-      const double along = lines_.along(i);
-      const auto before = walls.force(i, overlaps_[i]).slope;
-      const auto under = walls.force(i, walls.overlap_under(i, net.norm())).slope;
-      loads_[lines_.line_of(i)].stiffness += counts_[i] * std::max(0.0, under - before) * along * along;
-    }
+    lend_stiffness(walls, roles, net.norm());
     Vector borne = net;
     Vector wanted = Vector::Zero();
     const auto quick = step_of_all(net);
