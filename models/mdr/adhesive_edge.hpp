@@ -39,7 +39,7 @@ struct PullOff {
 /// State of an edge; the transitions return another one.
 struct AdhesiveEdge {
   Edge motion = Edge::following;
-  double radius = 0.0;  ///< of a sticking edge
+  double radius = 0.0;  ///< contact radius while it sticks
 
   [[nodiscard]] bool follows() const noexcept { return motion == Edge::following; }
   [[nodiscard]] bool sticks() const noexcept { return motion == Edge::sticking; }

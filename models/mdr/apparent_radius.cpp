@@ -12,7 +12,7 @@ constexpr double k_opposite = 5e-13;
 }  // namespace
 
 bool opens_gate(RadiusRule rule, const GrowthDrive& drive) noexcept {
-  // What keeps up with its wall displaces nothing.
+  // A contact that keeps up with its wall displaces nothing.
   const bool is_idle = !drive.is_force_controlled && std::abs(drive.inward_rate) <= drive.least_rate;
   if (rule == RadiusRule::seed && !is_idle) return true;
   const bool is_driven = drive.is_force_controlled ? drive.rises : drive.inward_rate > drive.least_rate;

@@ -41,7 +41,7 @@ enum class RadiusRule {
 
 /// How one contact that takes part in the growth moves.
 struct GrowthDrive {
-  double inward_rate = 0.0;  ///< of its wall
+  double inward_rate = 0.0;  ///< rate of its wall, inwards positive
   double least_rate = 0.0;   ///< below which that is round-off
   bool is_force_controlled = false;
   bool rises = false;  ///< a prescribed force grows
@@ -50,14 +50,14 @@ struct GrowthDrive {
 /// True if such a contact opens the gate for growth.
 [[nodiscard]] bool opens_gate(RadiusRule rule, const GrowthDrive& drive) noexcept;
 
-/// What one class of contacts puts into the volume balance.
+/// Part of one class of contacts in the volume balance.
 struct VolumeTerm {
   double count;
   const Contact& contact;
-  double displacement;  ///< of the wall relative to the centre
+  double displacement;  ///< wall displacement relative to the centre
   double overlap;
-  double rate_by_time;    ///< of the displacement, at fixed R
-  double rate_by_growth;  ///< and with R, where the force is prescribed
+  double rate_by_time;    ///< rate of the displacement at fixed R
+  double rate_by_growth;  ///< its derivative by R, where the force is prescribed
 };
 
 /// The volume balance and its partial derivatives at an instant.
@@ -146,9 +146,9 @@ class VolumeSum {
 /// Two walls, maybe of one class, whose contact caps may meet.
 struct CapPair {
   int first = 0;           ///< contact class
-  int second = 0;          ///< likewise
+  int second = 0;          ///< contact class
   double half_sine = 0.0;  ///< sine of half the smallest angle between two of their normals
-  bool have_met = false;   ///< and not parted since
+  bool have_met = false;   ///< caps have met and not parted since
 };
 /// All pairs but those on opposite sides, which meet only where the particle is squeezed to nothing.
 [[nodiscard]] std::vector<CapPair> cap_pairs_of(std::span<const ContactClass> classes);

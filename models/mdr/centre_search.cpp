@@ -195,8 +195,8 @@ bool leave_saddle(Particle& p, double xi, std::span<double> y, bool is_balanced)
   const auto is_sought = [&] { return centre_stiffness(p).value >= 0.0 && !contact_beyond_pull_off(p); };
   if (is_balanced && is_sought()) return true;
   const std::optional<std::size_t> beyond = contact_beyond_pull_off(p);
-  // Of what each of them would hold: an idle contact is no stiffer at first than rounding, but would be pressed on
-  // the path.
+  // The direction counts every contact at what it would hold: an idle one is no stiffer at first than round-off, but
+  // would be pressed on the path.
   const CentreVector weakest = (beyond ? p.centre().direction(*beyond) : centre_stiffness(p).direction).normalized();
   const CentreVector saddle = centre_of(y, count);
   const auto go = [&](double distance) {

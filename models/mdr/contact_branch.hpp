@@ -9,7 +9,7 @@
 
 namespace monograin::mdr {
 
-/// What the largest overlap of an unloaded contact does while R grows.
+/// Rule for the largest overlap of an unloaded contact while R grows.
 enum class DeltaMaxRule {
   running_maximum,  ///< stays: it is the running maximum of the overlap (Appendix E)
   shifted           ///< moves with R: delta_o,max + R - R0 (eq. 19)
@@ -24,7 +24,7 @@ enum class Regime { open, elastic, fully_plastic, unloading, separated };
 /// Overlaps over R0 below this are round-off of lengths of the order of R0.
 inline constexpr double k_resolution = 1e-12;
 
-/// What all contacts of a particle share.
+/// Material and rules that all contacts of a particle share.
 struct ContactLaw {
   Material material;
   double surface_energy = 0.0;
@@ -43,8 +43,8 @@ struct ContactLaw {
   [[nodiscard]] double plastic_stiffness() const noexcept;
 };
 
-/// What counts of a contact at its largest overlap: the energy it would give back, or the work done on it (up to a
-/// constant). On all other branches the two are equal.
+/// Part of the energy of a contact at its largest overlap: the energy it would give back, or the work done on it (up to
+/// a constant). On all other branches the two are equal.
 enum class PlasticPart { recoverable, work_done };
 
 /// The branch that a contact is on: a value. Transitions return the next one.

@@ -20,7 +20,7 @@ constexpr double k_least_step = 1e-12;
 
 }  // namespace
 
-void place(Particle& p, double xi, std::span<double> y) {
+void move_centre_and_walls(Particle& p, double xi, std::span<double> y) {
   p.move_walls(xi, y);
   if (p.centre().is_free()) move_centre(p, xi, y);
   p.record_walls(xi, y);
@@ -31,7 +31,7 @@ void complete(Particle& p, double xi, std::span<double> y) {
   const bool may_peel_off = p.centre().is_free() && weakest_contact(p);
   bool is_balanced = true;
   try {
-    place(p, xi, y);
+    move_centre_and_walls(p, xi, y);
   } catch (const std::domain_error&) {
     // A guess beyond pull-off leads to there, where the force that is left is least.
     is_balanced = false;
@@ -67,7 +67,7 @@ void grow(Particle& p, double xi, std::span<double> y) {
     if (!(slope > 0.0)) throw DomainError(Limit::free_surface_used_up);
     double step = std::clamp(-defect / slope, -0.1, 0.1);
     // The balance rises with the radius, but has a kink where a wall under force pulls off: a step over that, and one
-    // back, may lead to and fro without end. What has been seen on either side bounds the next place.
+    // back, may lead to and fro without end. What has been seen on either side bounds the next radius.
     if (!p.centre().is_free()) {
       (defect < 0.0 ? below : above) = y[k_radius];
       const double next = y[k_radius] + step;

@@ -13,7 +13,7 @@ namespace monograin::mdr {
 using CentreVector = contacts::CentreLines::Vector;
 using CentreMatrix = contacts::CentreLines::Matrix;
 
-/// What a class of contacts does to the centre, towards it positive; one wall of them.
+/// Load of a class of contacts on the centre, per wall, towards the centre positive.
 struct CentreLoad {
   double count = 1.0;
   double force = 0.0;

@@ -20,7 +20,7 @@ bool goes_one_way(const Particle& p, const Motion& now) {
   bool goes_in = false;
   bool goes_out = false;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    // What a deeper contact has in force it may lose in the lever with which that acts on the volume.
+    // A deeper contact may lose in the lever with which its force acts on the volume what it gains in force.
     if (p.is_loaded(i) || 2.0 * std::max(p.drive(i).start(), p.drive(i).end()) > 1.0 - p.at().r) return false;
     const double rate = overlap_rate(p, i, now);
     goes_in = goes_in || rate > 0.0;
@@ -41,7 +41,7 @@ double contact_guard(const Particle& p, int kind, std::size_t i, double xi, doub
   const ContactBranch& branch = p.branch(i);
   switch (kind) {
     case k_yield:
-      // What only touches may be as deep as that by the rounding of others.
+      // An idle contact may be as deep as that by the round-off of others.
       return branch.yield_guard(p.law(), r, overlap, p.is_idle(i) ? p.resolution() : 0.0);
     case k_reload:
       return overlap - branch.largest_overlap(p.law(), r) - k_same_overlap;
@@ -126,7 +126,7 @@ void GuardSet::arm_contact(const Particle& p, std::size_t i, const Motion& now) 
   const double last_overlap = p.drive(i).end() + p.at().r;
 
   const auto add = [&](int kind, int direction, std::string_view name) {
-    // What a linear overlap, or a prescribed force, does not reach by the end of the step needs no watching.
+    // A guard that a linear overlap, or a prescribed force, does not reach by the end of the step is not armed.
     const bool is_by_force = p.is_loaded(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost);
     if ((is_predictable || is_by_force) && direction * contact_guard(p, kind, i, 1.0, last_overlap) < -1e-9) return;
     list_.push_back({kind, index, direction, name});
@@ -134,17 +134,10 @@ void GuardSet::arm_contact(const Particle& p, std::size_t i, const Motion& now) 
   const double rate = overlap_rate(p, i, now);
   const bool may_come_in = rate > 0.0 || may_turn;
   const bool may_go_out = rate < 0.0 || may_turn;
-  switch (branch.regime) {
-    case Regime::open:
-      if (may_come_in) add(k_made, 1, "contact-made");
-      return;
-    case Regime::separated:
-      if (may_come_in) add(k_dent_touched, 1, "dent-touched");
-      return;
-    case Regime::elastic:
-    case Regime::fully_plastic:
-    case Regime::unloading:
-      break;
+  if (!branch.touches()) {
+    const bool is_dent = branch.regime == Regime::separated;
+    if (may_come_in) add(is_dent ? k_dent_touched : k_made, 1, is_dent ? "dent-touched" : "contact-made");
+    return;
   }
   if (branch.regime == Regime::elastic && may_come_in && branch.may_yield(p.law())) add(k_yield, 1, "yield");
   if (has_greatest_force(p, i)) {

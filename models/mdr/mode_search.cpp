@@ -184,7 +184,7 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
       balance_touch(p_, i, true, log);
       return true;
     case k_lost:
-      lose(i);
+      p_.lose(i);
       log.push_back({guard.name, guard.index});
       balance_touch(p_, i, false, log);
       return true;
@@ -417,8 +417,8 @@ bool ModeSearch::follow_jump(std::size_t i, double xi, std::span<double> y, std:
   if (p_.is_loaded(i)) return false;
   const double r = y[k_radius];
   const double jump = p_.contact(i).overlap - spring_.overlaps[i];
-  // What was led in on the path there, to touch, to yield or to reload, may be led back again: each time it is found
-  // anew how far it has come from where it was.
+  // A contact that was led in on the path there, to touch, to yield or to reload, may be led back again: each time it
+  // is found anew how far it has come from where it was.
   const ContactBranch& before = spring_.branches[i];
   const ContactBranch last = p_.branch(i);
   const bool has_entered = last.is_on_primary_branch && (!before.is_on_primary_branch || last.regime != before.regime);
@@ -429,7 +429,7 @@ bool ModeSearch::follow_jump(std::size_t i, double xi, std::span<double> y, std:
     forget_events(i, spring_.made, made_);
   }
   if (std::abs(jump) <= k_spring) return has_entered;
-  // What turns back turns where it came from.
+  // A contact that turns back turns where it came from.
   const bool turns = jump < 0.0 && p_.branch(i).touches() && p_.branch(i).edge.follows();
   if (turns) p_.evaluate_contact(i, spring_.overlaps[i] - r, r);
   p_.assume_rate(i, jump);
@@ -511,7 +511,7 @@ bool ModeSearch::resolve_elastic(std::size_t i, double xi, const Tendency& tends
   // Where its force is about to pull before a contact has borne any, there is no edge that could stick.
   const bool is_unborne = !is_idle && retreats && p_.is_loaded(i) && !tends.is_pressed && overlap < k_resolution;
   if (is_past_opening || is_unborne) {
-    lose(i);
+    p_.lose(i);
     log.push_back(event_of("contact-lost", i));
     return true;
   }
@@ -534,7 +534,8 @@ bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<doubl
   const double overlap = p_.contact(i).overlap;
   const double passed = tends.advances ? contact_guard(p_, k_reload, i, xi, overlap) : -1.0;
   if (passed >= -k_touch) {
-    // What has turned at this instant rests where it is: from one evaluation to the next the sign of its rate changes.
+    // A contact that has turned at this instant stays where it is: from one evaluation to the next the sign of its rate
+    // changes.
     if (!has_turned_[i] || primary_branch_rate(p_, i, now) > k_at_rest || passed > k_touch) {
       has_resumed_[i] = has_turned_[i];
       p_.set_branch(i, p_.branch(i).reloaded());
@@ -548,7 +549,7 @@ bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<doubl
   // No force presses a wall on what is left of its contact: whether that ends does not wait for the radius to grow.
   const bool is_let_go = p_.is_loaded(i) && p_.drive(i).start() <= 0.0 && p_.drive(i).end() <= 0.0;
   if ((tends.opens || is_let_go) && contact_guard(p_, k_lost, i, xi, overlap) <= k_touch) {
-    lose(i);
+    p_.lose(i);
     log.push_back(event_of("contact-lost", i));
     return true;
   }
@@ -566,15 +567,15 @@ bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, con
   const auto is_past = [&](GuardKind kind, double sign) {
     return sign * edge_guard(p_, kind, i, xi, overlap) >= -k_touch;
   };
-  // What has turned at this instant rests: from one evaluation to the next the sign of its rate changes.
-  const bool rests = has_turned_[i] && std::abs(overlap_rate(p_, i, now)) <= k_at_rest;
+  // A contact that has turned at this instant is at rest: from one evaluation to the next the sign of its rate changes.
+  const bool is_at_rest = has_turned_[i] && std::abs(overlap_rate(p_, i, now)) <= k_at_rest;
   switch (p_.branch(i).edge.motion) {
     case Edge::following:
       if (!moves_out) return false;
       stick(i, log);
       return true;
     case Edge::sticking:
-      if (rests) return false;
+      if (is_at_rest) return false;
       if (moves_in && is_past(k_follow, 1.0)) {
         p_.set_branch(i, p_.branch(i).with_edge({}));
         log.push_back(event_of("follow", i));
@@ -637,7 +638,7 @@ void ModeSearch::separate(std::size_t i, std::span<double> y, std::vector<Event>
     y[k_work] += p_.count(i) * (now.contact.force * now.position + supplied);
   }
   p_.set_branch(i, p_.branch(i).with_edge({}));
-  lose(i);
+  p_.lose(i);
   log.push_back(event_of(is_touch ? "contact-lost" : "pull-off", i));
   if (!p_.centre().is_free()) return;
   // A free centre springs back from there: what peeled on the other side is relieved.

@@ -37,7 +37,7 @@ class ModeSearch {
   /// @throws std::domain_error where there is none
   void resolve(double xi, std::span<double> y, std::vector<Event>& log);
 
-  /// Of the first adhesive contact to unload in this search for which the model is not valid.
+  /// Warning about the first adhesive contact to unload in this search for which the model is not valid.
   [[nodiscard]] const std::optional<Diagnostic>& validity() const noexcept { return validity_; }
 
  private:
@@ -80,7 +80,6 @@ class ModeSearch {
                     std::vector<Event>& log);
 
   void start_unloading(std::size_t i, std::string_view why, std::vector<Event>& log);
-  void lose(std::size_t i) { p_.set_branch(i, p_.branch(i).lost(p_.contact(i).displacement)); }
   void stick(std::size_t i, std::vector<Event>& log);
   void start_peeling(std::size_t i, std::span<double> y, std::vector<Event>& log);
   void separate(std::size_t i, std::span<double> y, std::vector<Event>& log);
@@ -89,7 +88,7 @@ class ModeSearch {
 
   Particle p_;
   std::vector<bool> has_turned_;   ///< started to unload at this instant
-  std::vector<bool> has_resumed_;  ///< and loaded on beyond its largest overlap at this instant
+  std::vector<bool> has_resumed_;  ///< started to unload at this instant, and loaded on beyond its largest overlap
   std::vector<bool> is_left_;      ///< left, at this instant, by a centre that forces press elsewhere
   std::vector<Edge> edges_before_;
   Spring spring_;

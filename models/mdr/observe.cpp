@@ -1,4 +1,4 @@
-// What can be seen of the MDR system: columns of the history, quantities, surfaces, warnings.
+// Observables of the MDR system: columns of the history, quantities, surfaces, warnings.
 
 #include <algorithm>
 #include <array>

@@ -347,13 +347,13 @@ bool Particle::is_idle_touch(std::size_t i) const {
 
 /// True for a force that is round-off beside the others and that nothing bears: a wall that only touches would be left
 /// for it, and come back.
-bool Particle::is_slight(std::size_t i) const { return may_be_slight_[i] && !is_supported(*this, i); }
+bool Particle::is_slight(std::size_t i) { return may_be_slight_[i] && !is_supported(*this, i, 1.0, supports_); }
 
 // --- rates of one contact
 
 namespace {
 
-/// What a prescribed force asks for less what the growth takes away, over the sum of their magnitudes.
+/// Rate that a prescribed force asks for, less that which the growth takes away, over the sum of their magnitudes.
 double loaded_rate(const Particle& p, double loading, double by_radius, double growth) noexcept {
   const double taken = by_radius * growth;
   const double scale = std::abs(loading) + std::abs(taken);

@@ -21,19 +21,19 @@ inline constexpr double k_no_force = 1e-9;
 
 /// One contact class at an instant.
 struct Instant {
-  double displacement = 0.0;  ///< of the wall relative to the centre, wherever that is, over R0
-  double position = 0.0;      ///< of the wall itself, towards the initial position of the centre, over R0
+  double displacement = 0.0;  ///< displacement of the wall relative to the present centre
+  double position = 0.0;      ///< displacement of the wall towards the initial position of the centre
   double overlap = 0.0;
   Contact contact;
-  double rate_by_time = 0.0;    ///< of the displacement, at fixed R and centre, with xi
-  double rate_by_growth = 0.0;  ///< and with R, where the force is prescribed
+  double rate_by_time = 0.0;    ///< rate of the displacement with xi, at fixed R and centre
+  double rate_by_growth = 0.0;  ///< its derivative by R, where the force is prescribed
 };
 
 /// All contacts at a state, and what they sum up to. Depends on the state, the program and the branches of the
 /// contacts.
 struct Evaluation {
   double r = 0.0;
-  double longest = 1.0;  ///< of the lengths, over R0, that overlaps are differences of
+  double longest = 1.0;  ///< longest length that an overlap is a difference of
   std::vector<Instant> contacts;
   VolumeBalance volume;
   FreeCentre centre;
@@ -55,12 +55,12 @@ struct Motion {
   [[nodiscard]] double free_surface(double r) const noexcept { return slope / ((1.0 + r) * (1.0 + r)); }
 };
 
-/// Equations that hold between two transitions.
+/// Equations that apply between two transitions.
 struct Mode {
   bool is_growing = false;
   double held_radius = 0.0;                           ///< r while it is held
   double frozen_balance = 0.0;                        ///< C while it grows
-  CentreVector held_centre = CentreVector::Zero();    ///< of a free centre, where the mode began
+  CentreVector held_centre = CentreVector::Zero();    ///< position of a free centre where the mode began
   CentreMatrix unconstrained = CentreMatrix::Zero();  ///< projector on the directions in which nothing holds it
   /// Contacts that start to unload at their largest overlap, and would load on at once: taken to load on.
   std::vector<bool> loads_on;
@@ -79,7 +79,7 @@ class Particle {
   [[nodiscard]] std::size_t size() const noexcept { return branches_.size(); }
   [[nodiscard]] double count(std::size_t i) const noexcept { return setup_->counts[i]; }
 
-  // What the program prescribes.
+  // Program.
 
   void set_drives(std::span<const Ramp> ramps);
   [[nodiscard]] const contacts::WallDrive& drive(std::size_t i) const noexcept { return drives_[i]; }
@@ -92,6 +92,8 @@ class Particle {
   [[nodiscard]] const ContactBranch& branch(std::size_t i) const noexcept { return branches_[i]; }
   [[nodiscard]] const std::vector<ContactBranch>& branches() const noexcept { return branches_; }
   void set_branch(std::size_t i, const ContactBranch& branch);
+  /// A wall leaves the particle or its dent, and stays where it is.
+  void lose(std::size_t i) { set_branch(i, branches_[i].lost(at_.contacts[i].displacement)); }
   void set_branches(const std::vector<ContactBranch>& branches);
   [[nodiscard]] bool takes_part(std::size_t i) const noexcept {
     return mdr::takes_part(setup_->settings.radius_rule, branches_[i].regime);
@@ -132,7 +134,7 @@ class Particle {
 
   /// Displacement towards a wall by which the centre has come.
   [[nodiscard]] double carried_by_centre(std::size_t i, std::span<const double> y) const noexcept;
-  /// Moves the walls under force to where those hold them, at a given radius.
+  /// Moves the walls under force to their displacements under it, at a given radius.
   void move_walls(double xi, std::span<double> y) const;
   /// Writes the unknowns of walls that are under force at other times only.
   void record_walls(double xi, std::span<double> y) const noexcept;
@@ -140,7 +142,7 @@ class Particle {
   // Round-off of a free centre.
 
   [[nodiscard]] double magnitude_of_forces() const noexcept;
-  /// What is left of forces on the centre that balance.
+  /// Largest net force on the centre that is round-off of forces that balance.
   [[nodiscard]] double force_rounding() const;
   /// Overlap of a contact that only touches a free centre: round-off of lengths, and what the round-off of other forces
   /// presses it in by, which may bear much more and be much stiffer.
@@ -154,16 +156,17 @@ class Particle {
   void sum_up(double xi);
   void load_centre(std::size_t i);
   void set_rates_under_force(std::size_t i);
-  [[nodiscard]] bool is_slight(std::size_t i) const;
+  [[nodiscard]] bool is_slight(std::size_t i);
   [[nodiscard]] bool is_idle_touch(std::size_t i) const;
   [[nodiscard]] bool is_below_resolution(double overlap) const;
 
   std::shared_ptr<const Setup> setup_;
   std::vector<contacts::WallDrive> drives_;
-  std::vector<bool> may_be_slight_;  ///< a force within the step that is round-off beside the others
+  std::vector<CentreVector> supports_;  ///< work space of is_slight()
+  std::vector<bool> may_be_slight_;     ///< a force within the step that is round-off beside the others
   std::vector<ContactBranch> branches_;
   std::vector<bool> bears_;
-  std::uint64_t revision_ = 0;  ///< of what an evaluation depends on beside the state
+  std::uint64_t revision_ = 0;  ///< counts changes of all that an evaluation depends on beside the state
   Evaluation at_;
   double at_xi_ = k_nan;
   std::vector<double> at_y_;

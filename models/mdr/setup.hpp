@@ -1,4 +1,4 @@
-/// What stays during a run of the MDR particle: settings, law and units, contact classes, and the unknowns in y.
+/// Constants of a run of the MDR particle: settings, law and units, contact classes, and the unknowns in y.
 ///
 /// Unknowns: r = (R - R0)/R0, the work of the walls, with a free centre its displacement along the directions in which
 /// the walls can move it, and the displacement of every wall whose force is prescribed at some time. Where a force is
@@ -42,13 +42,13 @@ struct Settings {
 // Indices of the unknowns in y.
 inline constexpr std::size_t k_radius = 0;  ///< r = (R - R0)/R0
 inline constexpr std::size_t k_work = 1;
-inline constexpr std::size_t k_centre = 2;  ///< of the first free direction; the others follow
+inline constexpr std::size_t k_centre = 2;  ///< first free direction of the centre; the others follow
 [[nodiscard]] constexpr std::size_t centre_index(int k) noexcept { return k_centre + static_cast<std::size_t>(k); }
 /// Displacement of the centre in a state.
 [[nodiscard]] CentreVector centre_of(std::span<const double> y, int free_count) noexcept;
 void set_centre(std::span<double> y, int free_count, const CentreVector& centre) noexcept;
 
-/// What stays during a run.
+/// Constants of a run.
 struct Setup {
   Setup(const Settings& given, std::vector<ContactClass> contact_classes);
 

@@ -1,4 +1,4 @@
-// What supports a free centre, and which idle contacts it leaves.
+// Contacts that support a free centre, and idle contacts that it leaves.
 
 #include "mdr/support.hpp"
 
@@ -95,6 +95,22 @@ bool may_be_supported(const Particle& p, std::size_t i) {
   return in_reaction_cone(p.centre().direction(i), others);
 }
 
+/// The contact that closes or opens together with another one: the nearest of those that do so within the integration
+/// error, and to open has nothing that balances it.
+std::optional<std::size_t> nearest_partner(const Particle& p, std::size_t i, bool is_made) {
+  std::optional<std::size_t> next;
+  double nearest = k_together;
+  for (std::size_t j = 0; j < p.size(); ++j) {
+    if (j == i || p.is_loaded(j) || !p.centre().acts(j) || p.branch(j).touches() == is_made) continue;
+    const double distance =
+        is_made ? distance_to_touch(p, j) : std::abs(contact_guard(p, k_lost, j, 0.0, p.contact(j).overlap));
+    if (distance > nearest || (!is_made && is_supported(p, j))) continue;
+    next = j;
+    nearest = distance;
+  }
+  return next;
+}
+
 /// True if forces press a free centre against idle contacts: those that bear already cannot balance them by themselves,
 /// now or at the end of the step.
 bool idle_contacts_have_to_bear(const Particle& p, double xi) {
@@ -135,8 +151,7 @@ bool push_out(const Particle& p, std::span<const IdleWall> walls, const CentreMa
 /// their overlaps without it.
 std::optional<CentreVector> velocity_of(Particle& p, std::span<IdleWall> walls, double xi, std::span<const double> y) {
   const std::vector<ContactBranch> before = p.branches();
-  for (const IdleWall& wall : walls)
-    p.set_branch(wall.contact, p.branch(wall.contact).lost(p.contact(wall.contact).displacement));
+  for (const IdleWall& wall : walls) p.lose(wall.contact);
   p.evaluate(xi, y);
   const Motion now = p.motion(p.mode.is_growing);
   for (IdleWall& wall : walls) wall.rate = overlap_rate(p, wall.contact, now);
@@ -154,8 +169,7 @@ std::optional<CentreVector> velocity_of(Particle& p, std::span<IdleWall> walls, 
 bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std::vector<bool>& is_left,
                     std::vector<Event>& log) {
   const std::vector<ContactBranch> before = p.branches();
-  for (const IdleWall& wall : walls)
-    p.set_branch(wall.contact, p.branch(wall.contact).lost(p.contact(wall.contact).displacement));
+  for (const IdleWall& wall : walls) p.lose(wall.contact);
   const CentreMatrix along = unconstrained_directions(p);
   p.set_branches(before);
   const double least = k_no_force * largest_prescribed_force(p);
@@ -179,7 +193,7 @@ bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std
   for (std::size_t k = 0; k < walls.size(); ++k) {
     const std::size_t i = walls[k].contact;
     if (!(overlaps[k] < -k_moved_away)) continue;
-    p.set_branch(i, p.branch(i).lost(p.contact(i).displacement));
+    p.lose(i);
     is_left[i] = true;
     log.push_back({"contact-lost", static_cast<int>(i)});
     has_left = true;
@@ -191,6 +205,11 @@ bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std
 
 bool is_supported(const Particle& p, std::size_t i, double side) {
   std::vector<CentreVector> others;
+  return is_supported(p, i, side, others);
+}
+
+bool is_supported(const Particle& p, std::size_t i, double side, std::vector<CentreVector>& others) {
+  others.clear();
   for (std::size_t j = 0; j < p.size(); ++j) {
     if (j == i || !p.branch(j).touches() || !p.centre().acts(j)) continue;
     others.push_back(p.centre().direction(j).normalized());
@@ -237,26 +256,15 @@ void balance_touch(Particle& p, std::size_t i, bool is_made, std::vector<Event>&
   // Walls that cannot balance it have not met the particle with it, however near they are.
   if (is_made && !may_be_supported(p, i)) return;
   while (!is_made || !is_supported(p, i)) {
-    std::optional<std::size_t> next;
-    double nearest = k_together;
-    bool next_is_dent = false;
-    for (std::size_t j = 0; j < p.size(); ++j) {
-      if (j == i || p.is_loaded(j) || !p.centre().acts(j)) continue;
-      if (p.branch(j).touches() == is_made) continue;
-      const double distance =
-          is_made ? distance_to_touch(p, j) : std::abs(contact_guard(p, k_lost, j, 0.0, p.contact(j).overlap));
-      if (distance > nearest || (!is_made && is_supported(p, j))) continue;
-      next = j;
-      nearest = distance;
-      next_is_dent = p.branch(j).regime == Regime::separated;
-    }
+    const std::optional<std::size_t> next = nearest_partner(p, i, is_made);
     if (!next) return;
-    if (is_made)
+    const bool is_dent = p.branch(*next).regime == Regime::separated;
+    if (is_made) {
       p.set_branch(*next, p.branch(*next).made());
-    else
-      p.set_branch(*next, p.branch(*next).lost(p.contact(*next).displacement));
-    log.push_back(
-        {is_made ? (next_is_dent ? "dent-touched" : "contact-made") : "contact-lost", static_cast<int>(*next)});
+    } else {
+      p.lose(*next);
+    }
+    log.push_back({!is_made ? "contact-lost" : is_dent ? "dent-touched" : "contact-made", static_cast<int>(*next)});
   }
 }
 
@@ -286,7 +294,7 @@ bool lose_idle_contacts(Particle& p, double xi, std::span<const double> y, std::
   for (const IdleWall& wall : walls) {
     const std::size_t i = wall.contact;
     if (!(wall.rate + p.centre().direction(i).dot(*velocity) < least)) continue;
-    p.set_branch(i, p.branch(i).lost(p.contact(i).displacement));
+    p.lose(i);
     log.push_back({"contact-lost", static_cast<int>(i)});
     has_left = true;
   }

@@ -8,6 +8,9 @@ namespace monograin::mdr {
 /// True if the other touching contacts can balance a push of one of them on the free centre, or a pull where the side
 /// is -1; those whose edges do not follow pull, too.
 [[nodiscard]] bool is_supported(const Particle& p, std::size_t i, double side = 1.0);
+/// is_supported() where nothing is to be allocated.
+/// @param others  work space
+[[nodiscard]] bool is_supported(const Particle& p, std::size_t i, double side, std::vector<CentreVector>& others);
 /// Projector on the directions in which no touching contact constrains the centre.
 [[nodiscard]] CentreMatrix unconstrained_directions(Particle& p);
 /// Sum of the prescribed forces on a free centre.

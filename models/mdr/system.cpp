@@ -110,7 +110,7 @@ std::optional<DomainEnd> System::reach_centre_at_once(double xi, std::span<const
 }
 
 std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
-  // Of the whole program: every contact is as shallow when it is made.
+  // Asked for the whole program: every contact is below the resolution when it is made.
   if (!(setup_->largest_overlap_expected() > k_resolution)) return Difficulty::below_resolution;
   if (!weakest_contact(now_.particle)) return std::nullopt;
   now_.particle.evaluate(xi, y);
@@ -148,7 +148,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
       trial_[centre_index(k)] -= mode.unconstrained(k, j) * (y[centre_index(j)] - mode.held_centre[j]);
     }
   }
-  place(now_.particle, xi, trial_);
+  move_centre_and_walls(now_.particle, xi, trial_);
   const Evaluation& at = now_.particle.evaluate(xi, trial_);
   // Beyond where growth would run away there is no balance to be found; the rates end there, too.
   if (mode.is_growing) static_cast<void>(now_.particle.growing_motion());

@@ -58,12 +58,12 @@ class System final : public HybridSystem {
   [[nodiscard]] double balance_residual(double xi, std::span<const double> y);
 
  private:
-  /// What changes in a run.
+  /// Everything that changes in a run.
   struct State {
     Particle particle;
     GuardSet guards{};
     ContactCaps caps;
-    std::optional<Diagnostic> validity{};  ///< of the first adhesive contact to unload for which the model is not valid
+    std::optional<Diagnostic> validity{};  ///< first adhesive contact to unload for which the model is not valid
     bool has_begun = false;
   };
 
