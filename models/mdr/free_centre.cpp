@@ -55,20 +55,6 @@ void FreeCentre::find_lines() {
   if (lines_.empty()) lines_.emplace_back();  // of those that do not act along any
 }
 
-void FreeCentre::clear() noexcept {
-  for (Line& line : lines_) line = {.direction = line.direction, .kept_stiffness = line.kept_stiffness};
-}
-
-void FreeCentre::add(std::size_t i, const CentreLoad& load) noexcept {
-  const double along = on_lines_[i].along;
-  Line& line = lines_[on_lines_[i].line];
-  line.force += load.count * load.force * along;
-  line.force_by_time += load.count * load.force_by_time * along;
-  line.force_by_radius += load.count * load.force_by_radius * along;
-  line.stiffness += load.count * load.stiffness * along * along;
-  line.tangent_stiffness += load.count * load.tangent_stiffness * along * along;
-}
-
 void FreeCentre::sum_up(double least_stiffness) noexcept {
   const bool is_first_touch = std::ranges::all_of(lines_, [](const Line& line) { return line.stiffness == 0.0; });
   force_.setZero();

@@ -60,8 +60,18 @@ class FreeCentre {
   }
 
   /// Forgets all loads.
-  void clear() noexcept;
-  void add(std::size_t i, const CentreLoad& load) noexcept;
+  void clear() noexcept {
+    for (Line& line : lines_) line = {.direction = line.direction, .kept_stiffness = line.kept_stiffness};
+  }
+  void add(std::size_t i, const CentreLoad& load) noexcept {
+    const double along = on_lines_[i].along;
+    Line& line = lines_[on_lines_[i].line];
+    line.force += load.count * load.force * along;
+    line.force_by_time += load.count * load.force_by_time * along;
+    line.force_by_radius += load.count * load.force_by_radius * along;
+    line.stiffness += load.count * load.stiffness * along * along;
+    line.tangent_stiffness += load.count * load.tangent_stiffness * along * along;
+  }
   /// Sums the loads of all lines up.
   /// @param least_stiffness  of a touch; at first touch all stiffnesses vanish together, and are in proportion to their
   ///                         tangents
