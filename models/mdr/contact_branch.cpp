@@ -83,25 +83,21 @@ const PullOff& ContactBranch::pull_off(const ContactLaw& law, const Indenter& in
 }
 
 Contact ContactBranch::contact(const ContactLaw& law, double r, double overlap) const {
-  Contact contact;
-  if (!edge.follows()) {
-    contact = adhering_contact(law, r, overlap);
-  } else {
+  Contact contact = [&]() -> Contact {
+    if (!edge.follows()) return adhering_contact(law, r, overlap);
     switch (regime) {
       case Regime::open:
       case Regime::separated:
         break;
       case Regime::elastic:
-        contact = elastic_branch(law, 1.0 + r, overlap);
-        break;
+        return elastic_branch(law, 1.0 + r, overlap);
       case Regime::fully_plastic:
-        contact = plastic_contact(law.material, 1.0 + r, overlap, area_constant);
-        break;
+        return plastic_contact(law.material, 1.0 + r, overlap, area_constant);
       case Regime::unloading:
-        contact = unloading_branch(law, shape(law, r, overlap), overlap);
-        break;
+        return unloading_branch(law, shape(law, r, overlap), overlap);
     }
-  }
+    return {};
+  }();
   if (law.is_shifted()) contact.by_radius += contact.by_overlap_max;
   return contact;
 }
@@ -120,12 +116,11 @@ Contact ContactBranch::stiff_contact(const ContactLaw& law, double r, double ove
   return contact(law, r, is_dent ? std::min(touch + k_resolution, largest_overlap(law, r)) : k_resolution);
 }
 
-Contact ContactBranch::visible(const ContactLaw& law, double r, double overlap, double magnitude,
-                               const Contact& now) const {
+bool ContactBranch::is_visible(const ContactLaw& law, double r, double overlap, double magnitude) const {
   constexpr double round_off = 4.0 * std::numeric_limits<double>::epsilon();
-  if (!edge.follows() || (regime != Regime::elastic && regime != Regime::unloading)) return now;
+  if (!edge.follows() || (regime != Regime::elastic && regime != Regime::unloading)) return true;
   const double touch = touching_overlap(law, r);
-  return overlap - touch < round_off * (magnitude + touch) ? Contact{} : now;
+  return !(overlap - touch < round_off * (magnitude + touch));
 }
 
 double ContactBranch::displacement_under(const ContactLaw& law, double r, double force, double guess) const {

@@ -76,12 +76,10 @@ struct ContactBranch {
   /// The contact, or one as deep as round-off where it is less deep: its stiffness does not vanish.
   /// @param now  contact(law, r, overlap)
   [[nodiscard]] Contact stiff_contact(const ContactLaw& law, double r, double overlap, const Contact& now) const;
-  /// The contact without what continues off its branch; none where the overlap is less than its round-off, because the
-  /// radius, a root of that, would be a hundred million times as large.
+  /// False for a contact off its branch, and where the overlap is less than its round-off: the contact radius, a root
+  /// of that, would be a hundred million times as large.
   /// @param magnitude  sum of the lengths that the overlap is a difference of
-  /// @param now        contact(law, r, overlap)
-  [[nodiscard]] Contact visible(const ContactLaw& law, double r, double overlap, double magnitude,
-                                const Contact& now) const;
+  [[nodiscard]] bool is_visible(const ContactLaw& law, double r, double overlap, double magnitude) const;
   /// Displacement of a wall under a force. Where no contact bears that force, the nearest that one bears.
   /// @param guess  a displacement nearby
   [[nodiscard]] double displacement_under(const ContactLaw& law, double r, double force, double guess) const;

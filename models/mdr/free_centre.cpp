@@ -4,20 +4,6 @@
 
 namespace monograin::mdr {
 
-void FreeCentre::clear() noexcept {
-  for (Load& load : loads_) load = {.kept_stiffness = load.kept_stiffness};
-}
-
-void FreeCentre::add(std::size_t i, const CentreLoad& added) noexcept {
-  const double along = lines_.along(i);
-  Load& line = load(i);
-  line.force += added.count * added.force * along;
-  line.force_by_time += added.count * added.force_by_time * along;
-  line.force_by_radius += added.count * added.force_by_radius * along;
-  line.stiffness += added.count * added.stiffness * along * along;
-  line.tangent_stiffness += added.count * added.tangent_stiffness * along * along;
-}
-
 void FreeCentre::sum_up() noexcept {
   force_.setZero();
   stiffness_.setZero();

@@ -49,8 +49,18 @@ class FreeCentre {
   [[nodiscard]] Eigen::Vector3d in_space(const CentreVector& vector) const { return lines_.in_space(vector); }
 
   /// Forgets all loads.
-  void clear() noexcept;
-  void add(std::size_t i, const CentreLoad& added) noexcept;
+  void clear() noexcept {
+    for (Load& load : loads_) load = {.kept_stiffness = load.kept_stiffness};
+  }
+  void add(std::size_t i, const CentreLoad& added) noexcept {
+    const double along = lines_.along(i);
+    Load& line = load(i);
+    line.force += added.count * added.force * along;
+    line.force_by_time += added.count * added.force_by_time * along;
+    line.force_by_radius += added.count * added.force_by_radius * along;
+    line.stiffness += added.count * added.stiffness * along * along;
+    line.tangent_stiffness += added.count * added.tangent_stiffness * along * along;
+  }
   /// Sums the loads of all lines up. Contacts that are first touched have no stiffness yet: along their lines their
   /// tangents serve.
   void sum_up() noexcept;

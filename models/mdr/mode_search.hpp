@@ -20,7 +20,7 @@ namespace monograin::mdr {
 
 class ModeSearch {
  public:
-  explicit ModeSearch(const Particle& particle) : p_(particle) {}
+  explicit ModeSearch(const Particle& particle) : p_(particle) { begin(particle); }
 
   /// Begins another search, from the mode of a particle.
   void begin(const Particle& particle);

@@ -56,7 +56,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
     values = values.subspan(2);
   }
   const auto row_of = [&](std::size_t i) -> contacts::VisibleContact {
-    const Contact c = visible_contact(i);
+    const Contact& c = visible_contact(i);
     const double area = pi * c.contact_radius * c.contact_radius;
     return {.displacement = at.contacts[i].position * length,
             .overlap = at.contacts[i].overlap * length,
@@ -73,17 +73,20 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   for (std::size_t k = 0; k < 3; ++k) last[k] = centre[static_cast<Eigen::Index>(k)] * length;
 }
 
-Contact System::visible_contact(std::size_t i) const {
+/// The contact that a row of the history shows.
+const Contact& System::visible_contact(std::size_t i) const {
+  static constexpr Contact none;
   const Instant& now = now_.particle.contact(i);
   // The overlap is the displacement of the wall and the growth of the radius.
   const double magnitude = 2.0 * std::abs(now.displacement) + std::abs(now.overlap);
-  return now_.particle.branch(i).visible(setup_->law, now_.particle.at().r, now.overlap, magnitude, now.contact);
+  const bool is_visible = now_.particle.branch(i).is_visible(setup_->law, now_.particle.at().r, now.overlap, magnitude);
+  return is_visible ? now.contact : none;
 }
 
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
   now_.particle.evaluated(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
-  const Contact contact = visible_contact(i);
+  const Contact& contact = visible_contact(i);
   const double length = setup_->length_unit();
   const double area = pi * contact.contact_radius * contact.contact_radius;
   return quantity_of({.force = contact.force * setup_->stress_unit * length * length,

@@ -21,10 +21,8 @@ constexpr double k_at_pull_off = 1e-9;
 
 Particle::Particle(std::shared_ptr<const Setup> setup) : setup_(std::move(setup)) {
   const std::size_t count = setup_->classes.size();
-  drives_.resize(count);
-  may_be_slight_.resize(count, false);
+  walls_.resize(count);
   branches_.resize(count);
-  bears_.resize(count, true);
   at_.contacts.resize(count);
   at_.centre = setup_->centre;
   at_y_.resize(setup_->unknown_count());
@@ -34,8 +32,8 @@ Particle::Particle(std::shared_ptr<const Setup> setup) : setup_(std::move(setup)
 void Particle::start() {
   mode.is_growing = false;
   mode.held_radius = 0.0;
-  bears_.assign(size(), true);
   for (std::size_t i = 0; i < size(); ++i) {
+    walls_[i].bears = true;
     branches_[i] = {};
     branches_[i].resting = -setup_->classes[i].gap / setup_->length_unit();
   }
@@ -46,20 +44,20 @@ void Particle::set_drives(std::span<const Ramp> ramps) {
   double largest = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     const bool is_force = ramps[i].control == Control::force;
-    drives_[i] = {ramps[i], is_force ? setup_->force_unit() : setup_->length_unit()};
-    if (is_force) largest = std::max(largest, count(i) * drives_[i].size());
+    walls_[i].drive = {ramps[i], is_force ? setup_->force_unit() : setup_->length_unit()};
+    if (is_force) largest = std::max(largest, count(i) * walls_[i].drive.size());
   }
   for (std::size_t i = 0; i < size(); ++i) {
-    const double force = is_loaded(i) ? count(i) * drives_[i].size() : 0.0;
-    may_be_slight_[i] = centre().acts(i) && force > 0.0 && force <= k_no_force * largest;
+    const double force = is_loaded(i) ? count(i) * walls_[i].drive.size() : 0.0;
+    walls_[i].may_be_slight = centre().acts(i) && force > 0.0 && force <= k_no_force * largest;
   }
   ++revision_;
 }
 
 double Particle::speed_scale() const noexcept {
   double scale = 0.0;
-  for (const contacts::WallDrive& drive : drives_) {
-    if (!drive.is_force_controlled()) scale = std::max(scale, std::abs(drive.rate()));
+  for (const Wall& wall : walls_) {
+    if (!wall.drive.is_force_controlled()) scale = std::max(scale, std::abs(wall.drive.rate()));
   }
   return scale > 0.0 ? scale : 1.0;
 }
@@ -79,8 +77,8 @@ bool Particle::peels_anywhere() const noexcept {
 }
 
 void Particle::set_bears(std::size_t i, bool bears) {
-  if (bears_[i] == bears) return;
-  bears_[i] = bears;
+  if (walls_[i].bears == bears) return;
+  walls_[i].bears = bears;
   ++revision_;
 }
 
@@ -164,15 +162,15 @@ void Particle::sum_up(double xi) {
   for (std::size_t i = 0; i < size(); ++i) {
     Instant& now = at_.contacts[i];
     const bool is_under_force = is_loaded(i);
-    const double speed = drives_[i].rate();
+    const double speed = walls_[i].drive.rate();
     now.rate_by_time = is_under_force ? 0.0 : speed;
     now.rate_by_growth = 0.0;
     if (is_under_force) set_rates_under_force(i);
     if (!branches_[i].touches()) continue;
     if (is_under_force) {
       power -= count(i) * now.position * speed;
-      force_work += count(i) * drives_[i].value(xi) * now.position;
-    } else if (bears_[i]) {
+      force_work += count(i) * walls_[i].drive.value(xi) * now.position;
+    } else if (walls_[i].bears) {
       power += count(i) * now.contact.force * speed;
     }
     if (is_free) load_centre(i);
@@ -192,7 +190,7 @@ void Particle::load_centre(std::size_t i) {
   const ContactBranch& branch = branches_[i];
   const Contact& c = contact(i).contact;
   const double stiffness = branch.tangent_stiffness(law(), c);
-  const double speed = drives_[i].rate();
+  const double speed = walls_[i].drive.rate();
   CentreLoad load{.count = count(i)};
   if (!is_slight(i)) {
     load.force = c.force;
@@ -229,7 +227,7 @@ void Particle::set_rates_under_force(std::size_t i) {
     }
   }
   if (branch.touches() && c.by_overlap > 0.0) {
-    now.rate_by_time = drives_[i].rate() / c.by_overlap;
+    now.rate_by_time = walls_[i].drive.rate() / c.by_overlap;
     now.rate_by_growth = -1.0 - c.by_radius / c.by_overlap;
   } else if (branch.touches() || branch.resting >= branch.touching_overlap(law(), at_.r) - at_.r) {
     now.rate_by_growth = -1.0;  // without load the wall stays at the surface
@@ -281,7 +279,7 @@ Motion Particle::growing_motion() const {
 
 double Particle::prescribed_position(std::size_t i, double xi) const noexcept {
   // As exact as std::lerp, which takes longer than the rest of this.
-  const contacts::WallDrive& drive = drives_[i];
+  const contacts::WallDrive& drive = walls_[i].drive;
   return xi == 1.0 ? drive.end() : drive.start() + xi * drive.rate();
 }
 
@@ -296,7 +294,7 @@ void Particle::move_walls(double xi, std::span<double> y) const {
   for (std::size_t i = 0; i < size(); ++i) {
     if (!is_loaded(i)) continue;
     double& wall = y[setup_->wall_index[i]];
-    wall = branches_[i].displacement_under(law(), y[k_radius], drives_[i].value(xi), wall);
+    wall = branches_[i].displacement_under(law(), y[k_radius], walls_[i].drive.value(xi), wall);
   }
 }
 
@@ -347,7 +345,7 @@ bool Particle::is_idle_touch(std::size_t i) const {
 
 /// True for a force that is round-off beside the others and that nothing bears: a wall that only touches would be left
 /// for it, and come back.
-bool Particle::is_slight(std::size_t i) { return may_be_slight_[i] && !is_supported(*this, i, 1.0, supports_); }
+bool Particle::is_slight(std::size_t i) { return walls_[i].may_be_slight && !is_supported(*this, i, 1.0, supports_); }
 
 // --- rates of one contact
 

@@ -82,8 +82,8 @@ class Particle {
   // Program.
 
   void set_drives(std::span<const Ramp> ramps);
-  [[nodiscard]] const contacts::WallDrive& drive(std::size_t i) const noexcept { return drives_[i]; }
-  [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return drives_[i].is_force_controlled(); }
+  [[nodiscard]] const contacts::WallDrive& drive(std::size_t i) const noexcept { return walls_[i].drive; }
+  [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return walls_[i].drive.is_force_controlled(); }
   /// Largest rate of a wall under displacement control; 1 where none moves.
   [[nodiscard]] double speed_scale() const noexcept;
 
@@ -152,6 +152,12 @@ class Particle {
   [[nodiscard]] bool is_idle(std::size_t i) const { return centre().acts(i) && is_idle_touch(i); }
 
  private:
+  struct Wall {
+    contacts::WallDrive drive;
+    bool may_be_slight = false;  ///< its force within the step is round-off beside the others
+    bool bears = true;           ///< false: its contact is balanced by no others, and does no work
+  };
+
   [[nodiscard]] double prescribed_position(std::size_t i, double xi) const noexcept;
   void sum_up(double xi);
   void load_centre(std::size_t i);
@@ -161,11 +167,9 @@ class Particle {
   [[nodiscard]] bool is_below_resolution(double overlap) const;
 
   std::shared_ptr<const Setup> setup_;
-  std::vector<contacts::WallDrive> drives_;
+  std::vector<Wall> walls_;
   std::vector<CentreVector> supports_;  ///< work space of is_slight()
-  std::vector<bool> may_be_slight_;     ///< a force within the step that is round-off beside the others
   std::vector<ContactBranch> branches_;
-  std::vector<bool> bears_;
   std::uint64_t revision_ = 0;  ///< counts changes of all that an evaluation depends on beside the state
   Evaluation at_;
   double at_xi_ = k_nan;

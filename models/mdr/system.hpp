@@ -70,7 +70,7 @@ class System final : public HybridSystem {
   explicit System(std::shared_ptr<const Setup> setup);
   template <class Search>
   void decide_mode(Search&& search);
-  [[nodiscard]] Contact visible_contact(std::size_t i) const;
+  [[nodiscard]] const Contact& visible_contact(std::size_t i) const;
   [[nodiscard]] std::optional<DomainEnd> reach_centre_at_once(double xi, std::span<const double> y);
 
   std::shared_ptr<const Setup> setup_;

@@ -196,7 +196,7 @@ TEST(FreeCentre, ThatIsLooseIsCarriedToTheOtherWallAndSqueezedThere) {
     EXPECT_NEAR(result.last("bottom.force") / expected.last("bottom.force"), 1.0, 1e-7) << integrator;
   }
   const Scenario let_go = between(mdr_particle(), {wall("top", {0, 0, 1}, path({0.2, 0.0, 0.0})),
-                                                   wall("bottom", {0, 0, -1}, path({0.2, 0.0, 0.3}))});
+                                                   wall("bottom", {0, 0, -1}, path({0.2, 0.0, 0.4}))});
   for (const char* integrator : k_integrators) {
     const TestRun result = run(with_free_centre(let_go), integrator);
     ASSERT_EQ(result.record.status, RunStatus::complete) << integrator << ": " << result.record.message;
