@@ -81,7 +81,7 @@ std::optional<FreeCentre::Vector> FreeCentre::step_of_all(const Vector& net) con
   }
   const double largest = stiffness.diagonal().maxCoeff();
   for (int k = dimension(); k < 3; ++k) stiffness(k, k) = largest;
-  Matrix inverse;
+  Matrix inverse = Matrix::Zero();
   double determinant = 0.0;
   bool is_regular = false;
   stiffness.computeInverseAndDetWithCheck(inverse, determinant, is_regular, 0.0);
