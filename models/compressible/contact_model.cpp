@@ -186,7 +186,8 @@ std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactC
                                  .yield_pressure = input.material("yield_pressure"),
                                  .reservations = law.reservations,
                                  .largest_displacement = reach.displacement,
-                                 .largest_force = reach.force};
+                                 .largest_force = reach.force,
+                                 .centre_is_free = input.centre_is_free};
   return std::make_unique<ContactSystem>(settings, std::move(classes));
 }
 
@@ -284,6 +285,7 @@ Model contact_model() noexcept {
           .material = k_material,
           .options = k_options,
           .configurations = k_wall_configurations,
+          .has_free_centre = true,
           .has_contact_area = false,
           .regimes = k_regimes,
           .events = k_events,

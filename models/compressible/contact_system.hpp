@@ -20,6 +20,7 @@ struct ContactSettings {
   /// As contacts::Settings.
   double largest_displacement = 0.0;
   double largest_force = 0.0;
+  bool centre_is_free = false;
 };
 
 /// One contact, as contacts::IndependentContacts asks for it.

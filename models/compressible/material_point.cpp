@@ -49,8 +49,8 @@ constexpr double k_stiffest = 1e10;
 constexpr double k_negligible_work = 1e-9;
 
 enum Regime { elastic, plastic_tension, plastic_shear, plastic_transition, plastic_cap };
-constexpr std::array<string_view, 5> k_regimes{"elastic", "plastic-tension", "plastic-shear", "plastic-transition",
-                                               "plastic-cap"};
+constexpr std::array<string_view, 5> k_regime_names{"elastic", "plastic-tension", "plastic-shear", "plastic-transition",
+                                                    "plastic-cap"};
 
 Regime regime_of(Segment segment) {
   switch (segment) {
@@ -76,7 +76,7 @@ MaterialPoint::MaterialPoint(const Settings& settings) : settings_(settings) {
   }
   observables_.push_back({"youngs_modulus", "Pa", {}});
   observables_.push_back({"yield_function", "-", {}});
-  observables_.push_back({"regime", "", k_regimes});
+  observables_.push_back({"regime", "", k_regime_names});
 }
 
 std::span<const Unknown> MaterialPoint::unknowns() const noexcept { return k_unknowns; }

@@ -33,7 +33,7 @@ constexpr QuantityKey number(string_view name, string_view meaning, std::optiona
   return {name, meaning, Dimension::none, {}, default_value};
 }
 
-constexpr std::array k_material{
+constexpr std::array k_point_material{
     QuantityKey{
         "yield_pressure", "hydrostatic yield pressure at the reference density", Dimension::stress, k_positive, {}},
     QuantityKey{"stiffness_ratio", "Young's modulus over the yield pressure", Dimension::none, k_positive, {}},
@@ -115,7 +115,7 @@ constexpr std::array k_conditions{
     QuantityKey{"relative_density", "relative density without load", Dimension::none, k_density, {}, true},
 };
 
-constexpr std::array k_regimes{
+constexpr std::array k_point_regimes{
     Term{"elastic", "inside the yield surface: no plastic strain"},
     Term{"plastic-tension", "yielding on the tensile cap: dilates (vmdc)"},
     Term{"plastic-shear", "yielding in shear: at constant volume (vm, vmdc), or dilating (dpc)"},
@@ -123,7 +123,7 @@ constexpr std::array k_regimes{
     Term{"plastic-cap", "yielding on the compression cap: densifies (vmdc, dpc)"},
 };
 
-constexpr std::array k_events{
+constexpr std::array k_point_events{
     Term{"yield", "the stress reaches the yield surface"},
     Term{"plastic-off", "a step of the program starts by unloading"},
     Term{"segment-change", "the stress passes from one segment of the yield surface to the next"},
@@ -137,7 +137,7 @@ constexpr std::array k_events{
     Term{"limit", "another end of the equations; the message says which"},
 };
 
-constexpr std::array<string_view, 9> k_domain{
+constexpr std::array<string_view, 9> k_point_domain{
     "tension is positive; strains are logarithmic, along fixed principal axes",
     "rate independent: the same curve whatever the durations",
     "vmdc, dpc: axis ratio eps, cap centre pi3 above zero, relative density below 1, Poisson's ratio below 1/2; events "
@@ -187,7 +187,7 @@ void check_program(const ModelInput& input, std::vector<Objection>& found) {
   }
 }
 
-std::vector<Objection> objections(const ModelInput& input) {
+std::vector<Objection> point_objections(const ModelInput& input) {
   std::vector<Objection> found;
   const string_view yield_model = input.word("yield_model");
   const double width = input.material("transition_width");
@@ -205,8 +205,8 @@ std::vector<Objection> objections(const ModelInput& input) {
 }
 
 /// @throws std::invalid_argument where the material has no meaning at the start: a fit tries such numbers too
-std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> /*classes*/,
-                                   const Reach& /*reach*/) {
+std::unique_ptr<HybridSystem> bind_point(const ModelInput& input, std::vector<ContactClass> /*classes*/,
+                                         const Reach& /*reach*/) {
   const Parameters m = parameters_of(input);
   const std::vector<Objection> found = start_objections(m);
   if (!found.empty()) throw std::invalid_argument(found.front().message);
@@ -228,7 +228,7 @@ std::vector<RestingChannel> channels(const ModelInput& input) {
 }
 
 /// Constants of the material where it starts.
-std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstStep& /*step*/) {
+std::vector<DerivedParameter> point_parameters(const ModelInput& input, const FirstStep& /*step*/) {
   const Parameters m = parameters_of(input);
   const double unit = input.material("yield_pressure");
   const Properties at = properties_at(m, 0.0);
@@ -315,21 +315,21 @@ Model material_point_model() noexcept {
   return {.name = "material-point",
           .summary = "compressible plastic material under prescribed strains and stresses",
           .source = "001_3cd85d3b0dc520cf.txt, sections 2 and 3 (Edmans and Sinka); Table 3 as corrected",
-          .material = k_material,
+          .material = k_point_material,
           .configurations = k_configurations,
-          .regimes = k_regimes,
-          .events = k_events,
-          .domain = k_domain,
+          .regimes = k_point_regimes,
+          .events = k_point_events,
+          .domain = k_point_domain,
           .material_options = k_material_options,
           .presets = presets(),
           .sign = "tension positive",
           .drives = k_drives,
           .lateral_drives = k_lateral_drives,
           .conditions = k_conditions,
-          .objections = objections,
-          .bind = bind,
+          .objections = point_objections,
+          .bind = bind_point,
           .channels = channels,
-          .parameters = parameters,
+          .parameters = point_parameters,
           .draw = draw_material_point,
           .draw_program = draw_material_point_program,
           .check = check_material_point};

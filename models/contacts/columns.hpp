@@ -55,15 +55,21 @@ inline void add_contact_columns(const std::string& contact_class, std::span<cons
   }
 }
 
+/// Appends the columns of a free centre.
+inline void add_centre_columns(std::vector<Observable>& columns) {
+  for (const char* axis : {"centre_x", "centre_y", "centre_z"}) columns.push_back({axis, "m", {}});
+}
+
 /// Columns of a particle whose contacts share nothing else: its energies, then those of every class.
 class Columns {
  public:
   Columns(bool has_stored_energy, bool has_contact_area, std::span<const std::string_view> regimes,
-          std::span<const ContactClass> classes)
+          std::span<const ContactClass> classes, bool has_centre = false)
       : energies_(std::span(k_energies).first(has_stored_energy ? k_energies.size() : 1)),
         has_contact_area_(has_contact_area) {
     for (const OfParticle& column : energies_) observables_.push_back({std::string(column.name), "J", {}});
     for (const ContactClass& c : classes) add_contact_columns(c.name, regimes, observables_, has_contact_area);
+    if (has_centre) add_centre_columns(observables_);
   }
 
   [[nodiscard]] std::span<const Observable> observables() const noexcept { return observables_; }

@@ -28,15 +28,18 @@
 ///   slope_under(b, F)           dF/dd where the force is F
 ///   magnitudes(d)               see contacts/scales.hpp
 ///
-/// Unknowns: a coordinate of every wall whose force is prescribed at some time, and the work of the walls. Guards are
-/// functions of the program alone.
+/// Unknowns: a coordinate of every wall whose force is prescribed at some time, the work of the walls, and the position
+/// of a free centre, which the balance of forces determines at every instant. With a fixed centre, guards are functions
+/// of the program alone.
 #pragma once
 
 #include <concepts>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "contacts/centre/centre_mode.hpp"
 #include "contacts/columns.hpp"
 #include "contacts/scales.hpp"
 #include "contacts/wall_contact.hpp"
@@ -49,6 +52,7 @@ struct Settings {
   /// tolerances are relative to. 0: not said.
   double largest_displacement = 0.0;
   double largest_force = 0.0;
+  bool centre_is_free = false;  ///< the centre moves so that the forces balance
 };
 
 template <class Law>
@@ -62,7 +66,7 @@ class IndependentContacts final : public HybridSystem {
         contacts_(classes_.size()),
         slots_(classes_.size()),
         displacements_(classes_.size()),
-        columns_(has_stored_energy(), k_has_contact_area, Law::k_regimes, classes_),
+        columns_(has_stored_energy(), k_has_contact_area, Law::k_regimes, classes_, settings.centre_is_free),
         scales_(scales_of(law_, settings.largest_displacement / length_, settings.largest_force / force_unit_)) {
     for (std::size_t i = 0; i < classes_.size(); ++i) {
       if constexpr (k_has_followers) is_follower_.push_back(law_.follows(classes_[i]));
@@ -73,14 +77,17 @@ class IndependentContacts final : public HybridSystem {
     while (leader_ < classes_.size() && is_follower(leader_)) ++leader_;
     work_slot_ = unknowns_.size();
     unknowns_.push_back({"work", Unknown::Kind::quadrature, scales_.magnitudes.work, false});
+    if (settings.centre_is_free) centre_.emplace(classes_, scales_.reach, unknowns_);
+    trial_.resize(unknowns_.size());
   }
   /// Makes the law, and the Settings, of a model's own settings.
   template <class OfModel>
   requires std::constructible_from<Law, OfModel> IndependentContacts(const OfModel& settings,
                                                                      std::vector<ContactClass> classes)
-      : IndependentContacts(Law(settings),
-                            {settings.initial_radius, settings.largest_displacement, settings.largest_force},
-                            std::move(classes)) {}
+      : IndependentContacts(
+            Law(settings),
+            {settings.initial_radius, settings.largest_displacement, settings.largest_force, settings.centre_is_free},
+            std::move(classes)) {}
 
   [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return unknowns_; }
   [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return classes_; }
@@ -116,63 +123,83 @@ class IndependentContacts final : public HybridSystem {
       const bool is_by_force = ramps[i].control == Control::force;
       const double stood = is_by_force ? contacts_[i].displacement_at(law_, y[slots_[i]]) : 0.0;
       const WallDrive drive(ramps[i], is_by_force ? force_unit_ : length_);
-      at[i] = contacts_[i].take_up(law_, drive, stood, classes_[i].takes_force);
+      at[i] = contacts_[i].take_up(law_, drive, stood, classes_[i].takes_force, carried(i, y));
       // A step that cannot begin is shown where it would have, in its own coordinates.
       if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate(law_, 0.0, at[i]);
     }
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (is_follower(i)) continue;
-      // A driven wall that touches the fresh particle is in contact from the start, without an event.
-      const bool is_seen = has_begun_ || classes_[i].gap > 0.0;
-      if (const auto end = contacts_[i].begin_step(law_, at[i], is_seen, log)) throw CannotBegin(*end);
+      if (is_follower(i) || follows_centre(i)) continue;
+      if (const auto end = contacts_[i].begin_step(law_, at[i], is_seen(i), log, carried(i, y)))
+        throw CannotBegin(*end);
     }
+    if (centre_) centre_->begin_step(contacts_);
+    if (const auto end = find_mode(0.0, y, log, {})) throw CannotBegin(*end);
     has_begun_ = true;
     solve(0.0, y);
-    arm_guards();
+    arm_guards(0.0);
   }
 
   void complete(double xi, std::span<double> y) override {
+    if (unknowns_.size() == 1) return;  // the work
+    if (centre_) centre_->move(law_, contacts_, xi, y);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (classes_[i].takes_force && !contacts_[i].is_integrated(law_))
         y[slots_[i]] = contacts_[i].coordinate_near(law_, xi, y[slots_[i]]);
     }
   }
   void solve(double xi, std::span<double> y) override {
+    if (unknowns_.size() == 1) return;  // the work
+    if (centre_) centre_->move(law_, contacts_, xi, y);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate_near(law_, xi, y[slots_[i]]);
     }
   }
 
   void rates(double xi, std::span<const double> y, std::span<double> dy) override {
+    const FreeCentre::Vector velocity = centre_velocity(xi, y);
     dy[work_slot_] = sum([&](std::size_t i) {
       const auto now = contacts_[i].slope(law_, y[slots_[i]]);
       if (classes_[i].takes_force) dy[slots_[i]] = contacts_[i].rate(now);
-      return contacts_[i].power(law_, xi, now);
+      return power(i, xi, y, now, velocity);
     });
   }
-  void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
+  void all_rates(double xi, std::span<const double> y, std::span<double> dy) override {
+    rates(xi, y, dy);
+    if (centre_) centre_->write_rates(law_, contacts_, xi, y, dy);
+  }
 
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override {
+    // The centre stands where the balance of forces puts it, so that a trial's own position does not enter the work.
+    std::ranges::copy(y, trial_.begin());
+    if (centre_) centre_->move(law_, contacts_, xi, trial_);
+    for (std::size_t k = work_slot_ + 1; k < y.size(); ++k) res[k] = y[k] - trial_[k];
+    const FreeCentre::Vector velocity = centre_velocity(xi, trial_);
     res[work_slot_] = dy[work_slot_] - sum([&](std::size_t i) {
                         const auto now = contacts_[i].slope(law_, y[slots_[i]]);
                         if (classes_[i].takes_force)
                           res[slots_[i]] = contacts_[i].residual(law_, xi, y[slots_[i]], now);
-                        return contacts_[i].power(law_, xi, now);
+                        return power(i, xi, trial_, now, velocity);
                       });
   }
 
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override {
     if constexpr (k_has_work) {
       return sum([&](std::size_t i) {
-        return contacts_[i].touches() ? law_.work(contacts_[i].branch(), displacement(i, xi, y)) : 0.0;
+        if (!contacts_[i].touches()) return 0.0;
+        return law_.work(contacts_[i].branch(), displacement(i, xi, y));
       });
     } else {
       return std::nullopt;
     }
   }
 
-  void guard_values(double xi, std::span<const double> /*y*/, std::span<double> values) override {
+  void guard_values(double xi, std::span<const double> y, std::span<double> values) override {
     for (std::size_t g = 0; g < guards_.size(); ++g) {
+      if (follows_centre(static_cast<std::size_t>(guards_[g].index))) {
+        const auto i = static_cast<std::size_t>(guards_[g].index);
+        values[g] = centre_->guard_value(law_, contacts_, i, guards_[g].kind, targets_[g], xi, y);
+        continue;
+      }
       // Ramps are as short as contacts are shallow.
       const WallDrive& ramp = drive(static_cast<std::size_t>(guards_[g].index));
       values[g] = (ramp.value(xi) - targets_[g]) / ramp.size();
@@ -182,20 +209,25 @@ class IndependentContacts final : public HybridSystem {
   std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                 std::vector<Event>& log) override {
     for (const std::size_t g : fired) {
-      Contact& c = contacts_[static_cast<std::size_t>(guards_[g].index)];
+      const auto i = static_cast<std::size_t>(guards_[g].index);
+      Contact& c = contacts_[i];
       std::optional<DomainEnd> end;
-      if (guards_[g].kind == k_made)
+      if (guards_[g].kind == Centre::k_made)
         c.make(law_, true, log);
-      else if (guards_[g].kind == k_lost)
-        c.lose(law_, log);
+      else if (guards_[g].kind == Centre::k_lost)
+        c.lose(law_, log, carried(i, y));
+      else if (guards_[g].kind == Centre::k_retreat)
+        c.turn(law_, displacement(i, xi, y), guards_[g].name, log);
       else
         end = c.pass(law_, *c.next(law_), log);
       // A dent may be shallower than the round-off of a ramp, and so may be what lies beyond a boundary.
-      if (!end && guards_[g].kind != k_lost) end = c.pass_reached(law_, xi, log);
+      const bool is_pressed_on = guards_[g].kind == Centre::k_made || guards_[g].kind == Centre::k_boundary;
+      if (!end && is_pressed_on && !follows_centre(i)) end = c.pass_reached(law_, xi, log);
       if (end) return end;
     }
+    if (const auto end = find_mode(xi, y, log, fired)) return end;
     solve(xi, y);
-    arm_guards();
+    arm_guards(xi);
     return std::nullopt;
   }
 
@@ -215,7 +247,11 @@ class IndependentContacts final : public HybridSystem {
       energies.dissipation = energies.work - energies.stored;
     }
     columns_.write(
-        energies, contacts_.size(), [&](std::size_t i) { return visible(i, xi, displacements_[leading(i)]); }, values);
+        energies, contacts_.size(),
+        [&](std::size_t i) { return visible(i, xi, displacements_[leading(i)], carried(i, y)); }, values);
+    if (!centre_) return;
+    const Eigen::Vector3d centre = centre_->in_space(y) * length_;
+    std::ranges::copy(centre, values.end() - centre.size());
   }
 
   /// @throws std::logic_error for what the law does not have
@@ -223,7 +259,7 @@ class IndependentContacts final : public HybridSystem {
     const bool is_of_area = quantity == Quantity::pressure || quantity == Quantity::contact_radius;
     if (is_of_area && !k_has_contact_area) throw std::logic_error("no such quantity at a wall of this model");
     const auto i = static_cast<std::size_t>(contact_class);
-    const VisibleContact shown = visible(i, xi, displacement(leading(i), xi, y));
+    const VisibleContact shown = visible(i, xi, displacement(leading(i), xi, y), carried(i, y));
     return quantity_of({.force = shown.force,
                         .displacement = shown.displacement,
                         .pressure = shown.pressure,
@@ -236,8 +272,8 @@ class IndependentContacts final : public HybridSystem {
     const auto i = static_cast<std::size_t>(contact_class);
     if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
     const double d = displacement(i, xi, y);
-    if (!contacts_[i].is_integrated(law_)) return d * length_;
-    return contacts_[i].displacement_under(law_, drive(i).value(xi), d) * length_;
+    if (!contacts_[i].is_integrated(law_)) return (d - carried(i, y)) * length_;
+    return (contacts_[i].displacement_under(law_, drive(i).value(xi), d) - carried(i, y)) * length_;
   }
 
   [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override {
@@ -278,7 +314,7 @@ class IndependentContacts final : public HybridSystem {
 
   static constexpr bool k_has_followers = requires(Law & law, const ContactClass& walls) { law.follows(walls); };
 
-  enum GuardKind : int { k_made, k_boundary, k_lost };
+  using Centre = CentreMode<Law>;
 
   [[nodiscard]] const WallDrive& drive(std::size_t i) const noexcept { return contacts_[i].drive(); }
   [[nodiscard]] bool is_follower(std::size_t i) const noexcept { return k_has_followers && is_follower_[i]; }
@@ -300,14 +336,51 @@ class IndependentContacts final : public HybridSystem {
     return total;
   }
 
+  /// Displacement of a contact: of its wall, and by how much a free centre has moved towards that.
   [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const {
-    return contacts_[i].displacement(law_, xi, y[slots_[i]]);
+    const double d = contacts_[i].displacement(law_, xi, y[slots_[i]]);
+    return centre_ ? centre_->displacement(law_, contacts_[i], i, d, y) : d;
   }
 
-  /// @param d  displacement of the contact, or of the leader that it follows
-  [[nodiscard]] VisibleContact visible(std::size_t i, double xi, double d) {
+  /// True for a contact whose displacement depends on where a free centre is.
+  [[nodiscard]] bool follows_centre(std::size_t i) const noexcept {
+    return centre_.has_value() && !contacts_[i].is_force_controlled();
+  }
+  /// By how much a free centre has moved towards the walls of a class.
+  [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const {
+    return centre_ ? centre_->carried(i, y) : 0.0;
+  }
+  /// True if touching is an event: a wall that touches the fresh particle is in contact from the start, without one.
+  [[nodiscard]] bool is_seen(std::size_t i) const noexcept { return has_begun_ || classes_[i].gap > 0.0; }
+  /// Rate of the work of one wall.
+  /// @param now  of the contact's coordinate
+  [[nodiscard]] double power(std::size_t i, double xi, std::span<const double> y, const typename Contact::Slope& now,
+                             const FreeCentre::Vector& velocity) const {
+    if (!centre_) return contacts_[i].power(law_, xi, now);
+    return centre_->power(law_, contacts_[i], i, xi, y, now, velocity);
+  }
+  [[nodiscard]] FreeCentre::Vector centre_velocity(double xi, std::span<const double> y) {
+    return centre_ ? centre_->velocity(law_, contacts_, xi, y) : FreeCentre::Vector::Zero();
+  }
+  /// Decides the mode around a free centre.
+  /// @param fired  guards that have just decided it for their contacts
+  std::optional<DomainEnd> find_mode(double xi, std::span<const double> y, std::vector<Event>& log,
+                                     std::span<const std::size_t> fired) {
+    if (!centre_) return std::nullopt;
+    const auto is_decided = [&](std::size_t i) {
+      return std::ranges::any_of(fired, [&](std::size_t g) { return static_cast<std::size_t>(guards_[g].index) == i; });
+    };
+    return centre_->find(
+        law_, contacts_, xi, y, is_decided, [this](std::size_t i) { return is_seen(i); }, log);
+  }
+
+  // --- columns
+
+  /// @param d        displacement of the contact, or of the leader that it follows
+  /// @param carried  by how much a free centre has moved towards the wall
+  [[nodiscard]] VisibleContact visible(std::size_t i, double xi, double d, double carried) {
     VisibleContact shown = is_follower(i) ? visible_follower(d) : visible_contact(i, xi, d);
-    shown.displacement = is_follower(i) ? drive(i).value(xi) : shown.overlap;
+    shown.displacement = is_follower(i) ? drive(i).value(xi) : shown.overlap - carried;
     shown.displacement *= length_;
     shown.overlap *= length_;
     shown.force *= force_unit_;
@@ -341,25 +414,32 @@ class IndependentContacts final : public HybridSystem {
   }
 
   /// The guards that may fire before the end of the step.
-  void arm_guards() {
+  void arm_guards(double xi) {
     guards_.clear();
     targets_.clear();
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       const Contact& c = contacts_[i];
+      if (follows_centre(i)) {
+        centre_->arm_guards(law_, c, i, xi, [&](int kind, int toward, std::string_view name, double target) {
+          guards_.push_back({.kind = kind, .index = static_cast<int>(i), .direction = toward, .name = name});
+          targets_.push_back(target);
+        });
+        continue;
+      }
       const int direction = drive(i).direction();
       if (is_follower(i) || direction == 0) continue;
       if (direction > 0 && c.touches()) {
         const auto ahead = c.next(law_);
         const double target = ahead ? c.prescribed_at(law_, *ahead) : 0.0;
-        if (ahead && c.passes(target)) add_guard(k_boundary, i, direction, ahead->event, target);
+        if (ahead && c.passes(target)) add_guard(Centre::k_boundary, i, direction, ahead->event, target);
       } else if (c.passes_opening(law_) && c.touches() == (direction < 0)) {
         const double opening = c.is_force_controlled() ? 0.0 : law_.opening(c.branch());
-        add_guard(direction < 0 ? k_lost : k_made, i, direction, direction < 0 ? "contact-lost" : c.made_event(law_),
-                  opening);
+        add_guard(direction < 0 ? Centre::k_lost : Centre::k_made, i, direction,
+                  direction < 0 ? "contact-lost" : c.made_event(law_), opening);
       }
     }
   }
-  void add_guard(GuardKind kind, std::size_t i, int direction, std::string_view name, double target) {
+  void add_guard(int kind, std::size_t i, int direction, std::string_view name, double target) {
     guards_.push_back({.kind = kind,
                        .index = static_cast<int>(i),
                        .direction = direction,
@@ -382,6 +462,8 @@ class IndependentContacts final : public HybridSystem {
   Scales scales_;
   std::vector<Unknown> unknowns_;
   std::size_t work_slot_ = 0;
+  std::optional<Centre> centre_;  ///< where it is free
+  std::vector<double> trial_;     ///< work space
   bool has_begun_ = false;
   std::vector<Guard> guards_;
   std::vector<double> targets_;  ///< what the program prescribes where they are zero

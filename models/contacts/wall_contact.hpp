@@ -53,6 +53,7 @@ class WallContact {
   [[nodiscard]] bool touches() const noexcept { return touches_; }
   [[nodiscard]] bool has_touched() const noexcept { return has_touched_; }
   [[nodiscard]] bool is_force_controlled() const noexcept { return drive_.is_force_controlled(); }
+  [[nodiscard]] bool is_on_primary_branch() const noexcept { return is_on_primary_branch_; }
 
   // --- at an instant
 
@@ -169,18 +170,19 @@ class WallContact {
   /// Takes up the ramp of a step. What differs by the round-off of units, of forces and of laws is the same: a wall
   /// that rests goes on from where it is, one that stands at its dent is not pressed in again, and a ramp between two
   /// equal values goes nowhere.
-  /// @param d            where the wall has been left, if the ramp is one of force
+  /// @param d            displacement of the contact where the wall has been left, if the ramp is one of force
   /// @param takes_force  false: no force has ever moved the wall
-  /// @return where the wall is
-  double take_up(const Law& law, WallDrive drive, double d, bool takes_force) {
+  /// @param carried      by how much a free centre has moved towards the wall
+  /// @return displacement of the contact
+  double take_up(const Law& law, WallDrive drive, double d, bool takes_force, double carried = 0.0) {
     constexpr double k_round_off = 16.0 * std::numeric_limits<double>::epsilon();
     const bool is_by_force = drive.is_force_controlled();
     if (drive_.direction() == 0 && is_force_controlled() == is_by_force) drive.start_at(drive_.end());
     if (!touches_ && !is_by_force) {
       const double opening = law.opening(branch_);
-      if (std::abs(drive.start() - opening) <= k_round_off * opening) drive.start_at(opening);
+      if (std::abs(drive.start() + carried - opening) <= k_round_off * opening) drive.start_at(opening - carried);
     }
-    if (!is_by_force) d = drive.start();
+    if (!is_by_force) d = drive.start() + carried;
     double size = drive.size();
     if (touches_ && takes_force && d > law.opening(branch_)) {
       // A force under which a wall stands has the round-off of its displacement, and a displacement to which a force
@@ -200,28 +202,41 @@ class WallContact {
 
   /// Decides the branch at the start of a step, where the wall is at d.
   /// @param is_seen  a contact that is made then is an event
-  std::optional<DomainEnd> begin_step(Law& law, double d, bool is_seen, std::vector<Event>& log) {
+  /// @param carried  by how much a free centre has moved towards the wall
+  std::optional<DomainEnd> begin_step(Law& law, double d, bool is_seen, std::vector<Event>& log, double carried = 0.0) {
     const bool goes_in = drive_.direction() > 0;
     if (!touches_) {
-      resting_ = d;
+      resting_ = d - carried;
       const bool is_pressed = is_force_controlled() && drive_.start() > 0.0;
       const bool meets = goes_in && (is_force_controlled() || d >= law.opening(branch_));
       if (is_pressed || meets) make(law, is_seen, log);
     } else if (drive_.direction() < 0) {
       // A wall that has only touched leaves no dent.
-      if (is_on_primary_branch_ && d > law.opening(branch_)) turn(law, d, log);
-      if (is_force_controlled() ? drive_.start() <= 0.0 : d <= law.opening(branch_)) lose(law, log);
+      if (is_on_primary_branch_ && d > law.opening(branch_)) turn(law, d, "load-reversal", log);
+      if (is_force_controlled() ? drive_.start() <= 0.0 : d <= law.opening(branch_)) lose(law, log, carried);
     }
     return touches_ && goes_in ? pass_reached(law, 0.0, log) : std::nullopt;
   }
 
+  /// Begins to unload at d.
+  void turn(Law& law, double d, std::string_view event, std::vector<Event>& log) {
+    if constexpr (requires { law.refuses_unloading(); }) {
+      if (const auto remark = law.refuses_unloading())
+        throw DomainError({Limit::no_unloading_law, index_, "displacement/R0", d}, *remark);
+    }
+    largest_ = d;
+    largest_force_ = is_force_controlled() ? drive_.start() : law.force(branch_, d);
+    is_on_primary_branch_ = false;
+    if constexpr (requires { law.turn(branch_, d); }) law.turn(branch_, d);
+    log.push_back({event, index_});
+  }
   void make(Law& law, bool is_seen, std::vector<Event>& log) {
     touches_ = has_touched_ = true;
     if (is_seen) log.push_back({made_event(law), index_});
   }
-  void lose(Law& law, std::vector<Event>& log) {
+  void lose(Law& law, std::vector<Event>& log, double carried = 0.0) {
     touches_ = false;
-    resting_ = law.opening(branch_);
+    resting_ = law.opening(branch_) - carried;
     log.push_back({"contact-lost", index_});
   }
   /// Goes beyond a boundary.
@@ -298,18 +313,6 @@ class WallContact {
     return {std::copysign(force, u), by_displacement / by_displacement_of_u, by_displacement};
   }
 
-  void turn(Law& law, double d, std::vector<Event>& log) {
-    if constexpr (requires { law.refuses_unloading(); }) {
-      if (const auto remark = law.refuses_unloading())
-        throw DomainError({Limit::no_unloading_law, index_, "displacement/R0", d}, *remark);
-    }
-    largest_ = d;
-    largest_force_ = is_force_controlled() ? drive_.start() : law.force(branch_, d);
-    is_on_primary_branch_ = false;
-    if constexpr (requires { law.turn(branch_, d); }) law.turn(branch_, d);
-    log.push_back({"load-reversal", index_});
-  }
-
   int index_ = 0;
   double force_per_coordinate_ = 1.0;
   std::vector<int> followers_;
@@ -320,7 +323,7 @@ class WallContact {
   bool is_on_primary_branch_ = true;  ///< at its largest displacement
   double largest_ = 0.0;              ///< off the primary branch: displacement at which it was left
   double largest_force_ = 0.0;        ///< and the force there
-  double resting_ = 0.0;              ///< displacement at which an open wall without load was left
+  double resting_ = 0.0;              ///< displacement of the wall at which it was left open, without load
 };
 
 }  // namespace monograin::contacts

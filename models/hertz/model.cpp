@@ -1,8 +1,10 @@
 #include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "elastic/hertz.hpp"
 #include "hertz/law.hpp"
-#include "mdr/model.hpp"
 #include "stress/checks.hpp"
 #include "stress/draw.hpp"
 #include "system/model.hpp"
@@ -40,17 +42,41 @@ constexpr std::array<string_view, 2> k_domain{
 
 constexpr std::array<string_view, 1> k_skipped{"yield and growth of the apparent radius: not part of the model"};
 
-/// With a free centre, a Hertz particle is an MDR particle that neither yields nor grows.
+double composite_modulus(const ModelInput& input) {
+  return monograin::composite_modulus(input.material("youngs_modulus"), input.material("poisson_ratio"));
+}
+
 std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> classes, const Reach& reach) {
-  if (!input.centre_is_free) {
-    const double modulus = composite_modulus(input.material("youngs_modulus"), input.material("poisson_ratio"));
-    return std::make_unique<System>(WallLaw{modulus}, contacts::Settings{input.radius, reach.displacement, reach.force},
-                                    std::move(classes));
-  }
-  mdr::Settings settings = mdr::common_settings(input, reach);
-  settings.elastic_profile = mdr::ElasticProfile::parabola;
-  settings.radius_rule = mdr::RadiusRule::fixed;
-  return std::make_unique<mdr::System>(settings, std::move(classes));
+  return std::make_unique<System>(
+      WallLaw{composite_modulus(input)},
+      contacts::Settings{input.radius, reach.displacement, reach.force, input.centre_is_free}, std::move(classes));
+}
+
+std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstStep& /*step*/) {
+  const double youngs_modulus = input.material("youngs_modulus");
+  const double poisson_ratio = input.material("poisson_ratio");
+  return {{"youngs_modulus", youngs_modulus, "Pa"},
+          {"poisson_ratio", poisson_ratio, "-"},
+          {"composite_modulus", composite_modulus(input), "Pa"},
+          {"shear_modulus", youngs_modulus / (2.0 * (1.0 + poisson_ratio)), "Pa"},
+          {"bulk_compliance", (1.0 - 2.0 * poisson_ratio) / youngs_modulus, "1/Pa"}};
+}
+
+/// How far a contact is pressed that meets a condition for the first time.
+Reach reach(const ModelInput& input, const Until& until) {
+  constexpr double k_infinity = std::numeric_limits<double>::infinity();
+  const double radius = input.radius;
+  const WallLaw law{composite_modulus(input)};
+  const double force_unit = law.unit_force(radius);
+  double displacement = k_infinity;
+  if (until.is_of(Quantity::force)) displacement = radius * law.displacement({}, until.value / force_unit);
+  if (until.is_of(Quantity::displacement)) displacement = until.value;
+  if (until.is_of(Quantity::contact_radius)) displacement = until.value * until.value / radius;
+  if (until.is_of(Quantity::pressure))
+    displacement = radius * std::pow(0.75 * std::numbers::pi * until.value / law.composite_modulus, 2);
+  if (until.is_of(Quantity::force)) return {.displacement = displacement, .force = until.value};
+  const double overlap = displacement / radius;
+  return {.displacement = displacement, .force = overlap < 1.0 ? force_unit * law.force({}, overlap) : k_infinity};
 }
 
 ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) {
@@ -88,8 +114,8 @@ Model model() noexcept {
           .domain = k_domain,
           .skipped = k_skipped,
           .bind = bind,
-          .parameters = mdr::parameters,
-          .reach = mdr::reach,
+          .parameters = parameters,
+          .reach = reach,
           .is_elastic = [](const ModelInput&) { return true; },
           .draw = draw,
           .check = check};

@@ -1,5 +1,12 @@
-/// Guards of the MDR system: their kinds, and where those are zero that modes are decided by as well.
+/// Guards of the MDR system: their kinds, which of them are alive in a mode, and their values.
 #pragma once
+
+#include <span>
+#include <vector>
+
+#include "mdr/contact_caps.hpp"
+#include "mdr/particle.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin::mdr {
 
@@ -50,5 +57,31 @@ inline constexpr double k_least_centre_stiffness = 1e-5;
 inline constexpr double k_last_stiffness = 1e-2;
 /// A wall this near to the centre of the particle (over R0) has reached it.
 inline constexpr double k_least_distance = 1e-3;
+
+/// Guard of a contact without regard to its edge.
+/// @param overlap  of the contact, which need not be the one it has
+[[nodiscard]] double contact_guard(const Particle& p, int kind, std::size_t i, double xi, double overlap);
+/// Distance from the state in which the edge of an adhesive contact changes, over what tears it.
+[[nodiscard]] double edge_guard(const Particle& p, int kind, std::size_t i, double xi, double overlap);
+/// Overlap by which an edge that sticks may seem to be where it would follow. One that has just come to stick leaves
+/// with the square of its displacement, and round-off does not bring it back.
+[[nodiscard]] double edge_rounding(const Particle& p, std::size_t i);
+
+/// The guards that are alive until the next transition or the end of the step.
+class GuardSet {
+ public:
+  void arm(Particle& p, const ContactCaps& caps, double xi, std::span<const double> y);
+  [[nodiscard]] std::span<const Guard> list() const noexcept { return list_; }
+  void values(Particle& p, const ContactCaps& caps, double xi, std::span<const double> y,
+              std::span<double> values) const;
+
+ private:
+  void arm_contact(const Particle& p, std::size_t i, const Motion& now);
+  void arm_edge(const Particle& p, std::size_t i, bool may_come_in, bool may_go_out, bool may_turn);
+  void arm_tension(const Particle& p, std::size_t i, const Motion& now, bool may_go_out, bool may_turn);
+  void arm_growth(const Particle& p, const Motion& now);
+
+  std::vector<Guard> list_;
+};
 
 }  // namespace monograin::mdr

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "elastic/hertz.hpp"
+#include "mdr/adhesion_map.hpp"
 #include "stress/checks.hpp"
 #include "stress/draw.hpp"
 
@@ -252,7 +253,8 @@ Model model() noexcept {
           .parameters = parameters,
           .reach = reach,
           .draw = draw,
-          .check = check};
+          .check = check,
+          .adhesion_map = &k_adhesion_map};
 }
 
 }  // namespace monograin::mdr

@@ -1,10 +1,9 @@
-// What can be seen of the MDR system: columns of the history, energies, surfaces, warnings.
+// Observables of the MDR system: columns of the history, quantities, surfaces, warnings.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <stdexcept>
 
 #include "mdr/contact_profile.hpp"
 #include "mdr/system.hpp"
@@ -14,161 +13,129 @@ namespace {
 
 using std::numbers::pi;
 
-// Regime words of a contact whose edge does not follow, after those of Regime.
+// In the order of Regime, then what replaces them where the edge of an adhesive contact sticks or peels.
+constexpr std::array<std::string_view, 7> k_regime_words{"open",      "elastic",  "fully-plastic", "unloading",
+                                                         "separated", "adhering", "peeling"};
 constexpr double k_adhering_word = 5.0;
 constexpr double k_peeling_word = 6.0;
-// Of what an overlap is computed from.
-constexpr double k_roundings = 4.0 * std::numeric_limits<double>::epsilon();
+
+std::span<const std::string_view> regime_words(const Setup& setup) {
+  return std::span(k_regime_words).first(std::isfinite(setup.settings.yield_stress) ? k_regime_words.size() : 2);
+}
+
+double regime_word(const ContactBranch& branch) noexcept {
+  if (branch.edge.sticks()) return k_adhering_word;
+  return branch.edge.peels() ? k_peeling_word : static_cast<double>(branch.regime);
+}
 
 }  // namespace
 
-/// Energy of the contacts that evaluate() found. A row of the history asks for both parts of it, which differ where a
-/// contact is at its largest overlap, and by the surface energy where an edge follows.
-double System::energy(double r, PlasticPart plastic_part) {
-  const bool is_either = std::ranges::none_of(memory_, [this](const Memory& memory) {
-    return memory.edge == Edge::following && (memory.regime == Regime::fully_plastic || adheres());
-  });
-  if (is_either && sums_.energy) return *sums_.energy;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < now_.size(); ++i) {
-    if (touches(memory_[i].regime)) sum += counts_[i] * contact_energy(i, r, plastic_part);
-  }
-  if (is_either) sums_.energy = sum;
-  return sum;
-}
-
-double System::contact_energy(std::size_t i, double r, PlasticPart plastic_part) {
-  const Memory& memory = memory_[i];
-  const double overlap = now_[i].overlap;
-  const double a = now_[i].contact.contact_radius;
-  if (memory.edge != Edge::following) {
-    return adhesive_energy(frame(i, overlap, r), material_.composite_modulus, surface_energy_, a);
-  }
-  // A contact closes without attraction: the surface energy is lost, but can be got back.
-  const double surface = plastic_part == PlasticPart::recoverable ? pi * a * a * surface_energy_ : 0.0;
-  switch (memory.regime) {
-    case Regime::open:
-    case Regime::separated:
-      break;
-    case Regime::elastic:
-      return elastic_energy(settings_.elastic_profile, material_.composite_modulus, 1.0 + r, overlap) - surface;
-    case Regime::fully_plastic:
-      if (plastic_part == PlasticPart::work_done) {
-        return plastic_work_primitive(material_, 1.0 + r, overlap, memory.area_constant);
-      }
-      return plastic_energy(shape(i, r)) - (1.0 - shape(i, r).rho) * surface;
-    case Regime::unloading:
-      return unloading_energy(shape(i, r), overlap) - (1.0 - shape(i, r).rho) * surface;
-  }
-  return 0.0;
+System::System(std::shared_ptr<const Setup> setup)
+    : setup_(std::move(setup)),
+      unknowns_(setup_->unknowns()),
+      columns_(true, true, regime_words(*setup_), setup_->classes),
+      now_{.particle = Particle(setup_), .caps = ContactCaps(*setup_)},
+      search_(now_.particle),
+      trial_(unknowns_.size()) {
+  if (setup_->grows()) observables_ = {{"apparent_radius", "m", {}}, {"volume", "m3", {}}};
+  observables_.insert(observables_.end(), columns_.observables().begin(), columns_.observables().end());
+  if (!setup_->settings.centre_is_free) return;
+  for (const char* axis : {"centre_x", "centre_y", "centre_z"}) observables_.push_back({axis, "m", {}});
 }
 
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
-  evaluate_cached(xi, y);
-  const double r = y[k_radius];
-  const double length = settings_.initial_radius;
-  const double force_unit = stress_unit_ * length * length;
+  const Evaluation& at = now_.particle.evaluated(xi, y);
+  const double length = setup_->length_unit();
+  const double force_unit = setup_->force_unit();
   const double energy_unit = force_unit * length;
-  const double work = y[k_work] + sums_.force_work;
-  const double stored = energy(r, PlasticPart::recoverable);
-
-  auto out = values.begin();
-  if (settings_.radius_rule != RadiusRule::fixed) {
-    // There is no smaller volume; fixed steps end beyond it.
-    const double w = std::min(sums_.relative_compression, 0.25);
-    const double volume = 1.0 - 2.0 * w / (1.0 + std::sqrt(1.0 - 4.0 * w));
-    *out++ = (1.0 + r) * length;
-    *out++ = 4.0 * pi / 3.0 * length * length * length * volume;
+  const double work = y[k_work] + at.force_work;
+  const double stored = now_.particle.energy(PlasticPart::recoverable);
+  if (setup_->grows()) {
+    values[0] = (1.0 + at.r) * length;
+    values[1] = 4.0 * pi / 3.0 * length * length * length * at.volume.volume_ratio();
+    values = values.subspan(2);
   }
-  *out++ = work * energy_unit;
-  *out++ = stored * energy_unit;
-  *out++ = (work - stored) * energy_unit;
-  for (std::size_t i = 0; i < now_.size(); ++i) {
+  const auto row_of = [&](std::size_t i) -> contacts::VisibleContact {
     const Contact c = visible_contact(i);
-    *out++ = now_[i].position * length;
-    *out++ = now_[i].overlap * length;
-    *out++ = c.force * force_unit;
-    *out++ = c.contact_radius * length;
-    *out++ = c.contact_radius > 0.0 ? c.force / (pi * c.contact_radius * c.contact_radius) * stress_unit_ : 0.0;
-    *out++ = memory_[i].edge == Edge::sticking  ? k_adhering_word
-             : memory_[i].edge == Edge::peeling ? k_peeling_word
-                                                : static_cast<double>(memory_[i].regime);
-  }
-  if (settings_.centre_is_free) {
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    for (int k = 0; k < free_count_; ++k) centre += free_directions_.col(k) * y[centre_place(k)];
-    for (const double x : centre) *out++ = x * length;
-  }
+    const double area = pi * c.contact_radius * c.contact_radius;
+    return {.displacement = at.contacts[i].position * length,
+            .overlap = at.contacts[i].overlap * length,
+            .force = c.force * force_unit,
+            .contact_radius = c.contact_radius * length,
+            .pressure = area > 0.0 ? c.force / area * setup_->stress_unit : 0.0,
+            .regime = regime_word(now_.particle.branch(i))};
+  };
+  columns_.write({work * energy_unit, stored * energy_unit, (work - stored) * energy_unit}, now_.particle.size(),
+                 row_of, values);
+  if (!setup_->settings.centre_is_free) return;
+  const Eigen::Vector3d centre = now_.particle.centre().in_space(centre_of(y, now_.particle.centre().count()));
+  const std::span<double> last = values.last(3);
+  for (std::size_t k = 0; k < 3; ++k) last[k] = centre[static_cast<Eigen::Index>(k)] * length;
 }
 
-/// A contact without what touching_contact() adds for trials. One that is shallower than its overlap is rounded is
-/// none: the radius, a root of that, would be a hundred million times as large.
-Contact System::visible_contact(std::size_t i) const noexcept {
-  const Memory& memory = memory_[i];
-  const Instant& now = now_[i];
-  const bool is_unloading = memory.regime == Regime::unloading;
-  if (memory.edge != Edge::following || (memory.regime != Regime::elastic && !is_unloading)) return now.contact;
-  const double touching = is_unloading ? shapes_[i].overlap_max - shapes_[i].recovery : 0.0;
+Contact System::visible_contact(std::size_t i) const {
+  const Instant& now = now_.particle.contact(i);
   // The overlap is the displacement of the wall and the growth of the radius.
-  const double rounding = k_roundings * (2.0 * std::abs(now.displacement) + std::abs(now.overlap) + touching);
-  return now.overlap - touching < rounding ? Contact{} : now.contact;
+  const double magnitude = 2.0 * std::abs(now.displacement) + std::abs(now.overlap);
+  return now_.particle.branch(i).visible(setup_->law, now_.particle.at().r, now.overlap, magnitude, now.contact);
 }
 
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
-  evaluate_cached(xi, y);
+  now_.particle.evaluated(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
   const Contact contact = visible_contact(i);
-  const double length = settings_.initial_radius;
+  const double length = setup_->length_unit();
   const double area = pi * contact.contact_radius * contact.contact_radius;
-  return quantity_of({.force = contact.force * stress_unit_ * length * length,
-                      .displacement = now_[i].position * length,
-                      .pressure = area > 0.0 ? contact.force / area * stress_unit_ : 0.0,
+  return quantity_of({.force = contact.force * setup_->stress_unit * length * length,
+                      .displacement = now_.particle.contact(i).position * length,
+                      .pressure = area > 0.0 ? contact.force / area * setup_->stress_unit : 0.0,
                       .contact_radius = contact.contact_radius * length,
                       .apparent_radius = (1.0 + y[k_radius]) * length},
                      quantity);
 }
 
 std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {
-  evaluate(xi, y);
+  now_.particle.evaluate(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
-  const double a = now_[i].contact.contact_radius;
-  if (!touches(memory_[i].regime) || !(a > 0.0)) return {};
-  const Frame now = frame(i, now_[i].overlap, y[k_radius]);
+  const ContactBranch& branch = now_.particle.branch(i);
+  const double a = now_.particle.contact(i).contact.contact_radius;
+  if (!branch.touches() || !(a > 0.0)) return {};
+  const Frame now = branch.frame(setup_->law, y[k_radius], now_.particle.contact(i).overlap);
   std::vector<SurfacePoint> points = surface_of({.indenter = now.indenter,
-                                                 .composite_modulus = material_.composite_modulus,
+                                                 .composite_modulus = setup_->law.material.composite_modulus,
                                                  .contact_radius = std::min(a, now.indenter.half_width),
                                                  .displacement_1d = now.displacement});
   for (SurfacePoint& point : points) {
-    point.radius *= settings_.initial_radius;
-    point.pressure *= stress_unit_;
-    point.displacement *= settings_.initial_radius;
-    point.relaxed_height *= settings_.initial_radius;
+    point.radius *= setup_->length_unit();
+    point.pressure *= setup_->stress_unit;
+    point.displacement *= setup_->length_unit();
+    point.relaxed_height *= setup_->length_unit();
   }
   return points;
 }
 
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
   if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
-  evaluate(xi, y);
-  return now_[static_cast<std::size_t>(contact_class)].position * settings_.initial_radius;
+  now_.particle.evaluate(xi, y);
+  return now_.particle.contact(static_cast<std::size_t>(contact_class)).position * setup_->length_unit();
 }
 
 std::vector<Diagnostic> System::warnings() const {
   std::vector<Diagnostic> result;
-  if (settings_.radius_rule != RadiusRule::fixed) {
-    const double ratio = settings_.youngs_modulus / settings_.yield_stress;
-    if (!std::isfinite(material_.yield_overlap_ratio)) {
+  if (setup_->grows()) {
+    const double ratio = setup_->settings.youngs_modulus / setup_->settings.yield_stress;
+    if (!std::isfinite(setup_->law.material.yield_overlap_ratio)) {
       result.push_back(
           {"the material is too compliant to yield inside the model; the particle stays elastic", "E/Y", ratio});
     } else if (ratio < 10.0) {
       result.push_back({"elastic strains are not small: the model is meant for E/Y of 10 and more", "E/Y", ratio});
     }
   }
-  if (caps_have_met_) {
+  if (now_.caps.first_radius()) {
     result.push_back({"contact caps intersect (event caps-intersect); the model is not valid beyond", "first at R/R0",
-                      radius_at_caps_});
+                      *now_.caps.first_radius()});
   }
-  if (validity_) result.push_back(*validity_);
+  if (now_.validity) result.push_back(*now_.validity);
   return result;
 }
 

@@ -19,12 +19,12 @@ using std::string_view;
 constexpr Range k_inside_one{.lower = 0.0, .upper = 1.0, .lower_is_open = true, .upper_is_open = true};
 constexpr Range k_to_one{.lower = 0.0, .upper = 1.0, .lower_is_open = true};
 // Beyond 1 the run stops with an event.
-constexpr Range k_fraction{.lower = 0.0, .upper = 2.0, .lower_is_open = true};
+constexpr Range k_fraction_range{.lower = 0.0, .upper = 2.0, .lower_is_open = true};
 
 constexpr Parameters k_published{};
 constexpr double k_published_yield_stress = 0.4e6;
 // Share of a packing fraction within which two targets are one.
-constexpr double k_same = 1e-9;
+constexpr double k_same_fraction = 1e-9;
 
 constexpr std::array<string_view, 2> k_couplings{"published", "consistent"};
 constexpr std::array<string_view, 4> k_regime_words{"unjammed", "elastic", "elastic-plastic", "fully-plastic"};
@@ -83,7 +83,7 @@ constexpr std::array k_options{
 
 constexpr std::array k_drives{
     DriveKey{"packing_fraction", "ramp to this packing fraction", Control::packing_fraction, Dimension::none,
-             k_fraction, "0.95"},
+             k_fraction_range, "0.95"},
     DriveKey{"strain",
              "ramp to this strain since jamming, compression positive",
              Control::strain,
@@ -159,7 +159,7 @@ void check_only_compaction(const Law& law, double initial, const ModelInput& inp
     const PlannedStep& step = input.program[k];
     if (!step.first) continue;
     const double next = destinations.of(*step.first, least);
-    if (next < least * (1.0 - k_same)) {
+    if (next < least * (1.0 - k_same_fraction)) {
       found.push_back({"",
                        "the packing goes back from packing fraction " + std::to_string(least) + " to " +
                            std::to_string(next) +

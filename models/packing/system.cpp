@@ -12,7 +12,6 @@
 namespace monograin::packing {
 namespace {
 
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr int k_iterations = 60;
 constexpr double k_resolution = 1e-14;  // of the last step but one of an iteration that doubles its digits
 constexpr double k_noise = 1e-11;       // steps below it may be rounding

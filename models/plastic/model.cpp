@@ -269,7 +269,8 @@ struct Functions {
                       .strength = stress_unit(input),
                       .unloading = can_unload(input) ? Unloading::mdr : Unloading::none,
                       .largest_displacement = reach.displacement,
-                      .largest_force = reach.force};
+                      .largest_force = reach.force,
+                      .centre_is_free = input.centre_is_free};
     if (settings.unloading == Unloading::mdr) {
       settings.poisson_ratio = input.material("poisson_ratio");
       settings.composite_modulus = composite_modulus(input.material("youngs_modulus"), settings.poisson_ratio);
@@ -412,6 +413,7 @@ Model similarity_model() noexcept {
        .material = k_power_law_material,
        .options = k_similarity_options,
        .configurations = k_wall_configurations,
+       .has_free_centre = true,
        .regimes = k_similarity_regimes,
        .events = k_similarity_events,
        .domain = k_similarity_domain,

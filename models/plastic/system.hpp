@@ -31,6 +31,7 @@ struct Settings {
   /// As contacts::Settings.
   double largest_displacement = 0.0;
   double largest_force = 0.0;
+  bool centre_is_free = false;
 };
 
 /// One contact, as contacts::IndependentContacts asks for it.

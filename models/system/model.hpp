@@ -231,8 +231,9 @@ struct PowerLaw {
   double exponent = 0.0;
 };
 
-// stress/draw.hpp, stress/checks.hpp and system/curve_procedure.hpp define these.
+// stress/draw.hpp, stress/checks.hpp, system/curve_procedure.hpp and system/adhesion_map.hpp define these.
 class Dice;
+struct AdhesionMap;
 struct CheckedRun;
 struct CurveProcedure;
 struct DrawnMaterial;
@@ -304,6 +305,8 @@ struct Model {
   bool (*may_be_undefined)(const CheckedRun& run, std::size_t row, std::string_view column) = nullptr;
   /// The source's own procedure for finding parameters from a curve. Null: there is none.
   const CurveProcedure* curve_procedure = nullptr;
+  /// Where the model's pull-off can be trusted. Null: it says nothing about that.
+  const AdhesionMap* adhesion_map = nullptr;
 
   [[nodiscard]] bool has_walls() const noexcept { return drives.empty(); }
 };

@@ -11,8 +11,9 @@
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "history/staged_folder.hpp"
-#include "study/atlas.hpp"
-#include "study/bench.hpp"
+#include "scenario/integrators.hpp"
+#include "study/atlas/atlas.hpp"
+#include "verify/bench/bench.hpp"
 
 namespace monograin {
 namespace {
@@ -41,13 +42,8 @@ int bench_against_fe(const BenchOptions& options) {
   return exit_code_of(figures.front().status);
 }
 
-/// The scenes that are named: in the list, or as scenario files.
-std::vector<Scenario> chosen_scenes(const BenchOptions& options) {
-  const bool needs_list = options.scenes.empty() || std::ranges::any_of(options.scenes, [](const std::string& name) {
-                            return fs::path(name).extension() != ".toml";
-                          });
-  std::vector<Scenario> listed;
-  if (needs_list) listed = read_bench_scenes(options.list);
+/// The scenes that are named, in the list or as scenario files; all of the list where none is.
+std::vector<Scenario> chosen_scenes(const BenchOptions& options, const std::vector<Scenario>& listed) {
   if (options.scenes.empty()) return listed;
   std::vector<Scenario> chosen;
   for (const std::string& name : options.scenes) {
@@ -68,7 +64,8 @@ std::vector<Scenario> chosen_scenes(const BenchOptions& options) {
 
 void check_integrators(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    if (name == "auto" || std::ranges::find(integrator_names(), name) != integrator_names().end()) continue;
+    if (name == integrators::k_auto || std::ranges::find(integrator_names(), name) != integrator_names().end())
+      continue;
     throw UsageError(fmt::format("no integrator is called '{}'; expected auto or one of {}", name,
                                  fmt::join(integrator_names(), ", ")));
   }
@@ -84,7 +81,11 @@ int bench(const BenchOptions& options) {
   }
   check_integrators(options.integrators);
   const BenchSettings settings{.integrators = options.integrators, .tolerances = options.tolerances};
-  const std::vector<Scenario> scenarios = chosen_scenes(options);
+  const bool needs_list = options.scenes.empty() || std::ranges::any_of(options.scenes, [](const std::string& name) {
+                            return fs::path(name).extension() != ".toml";
+                          });
+  const BenchList list = needs_list ? read_bench_list(options.list) : BenchList{};
+  const std::vector<Scenario> scenarios = chosen_scenes(options, list.scenes);
   prepare_folder(options.output);
   std::vector<BenchScene> scenes;
   std::vector<BenchProfile> profiles;
@@ -95,12 +96,12 @@ int bench(const BenchOptions& options) {
       scenes.push_back(measure_scene(scenario, settings, [&] { bar.show(done, scenarios.size()); }));
       if (!options.profiles) continue;
       std::vector<std::string> integrators = options.integrators;
-      if (integrators.empty()) integrators = {"auto", "cvode-bdf", "ida"};
+      if (integrators.empty()) integrators = {integrators::k_auto, integrators::k_cvode_bdf, integrators::k_ida};
       for (const std::string& name : integrators) profiles.push_back(profile_scene(scenario, name));
     }
   }
   std::vector<BenchSaving> savings;
-  if (options.scenes.empty()) savings = measure_savings(settings);
+  if (options.scenes.empty()) savings = measure_savings(settings, list.savings);
   print_data("{}", bench_text(scenes, profiles, savings));
   for (const fs::path& file : write_bench(scenes, profiles, savings, options.output)) {
     say("-> {}\n", file.string());

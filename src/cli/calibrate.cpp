@@ -12,7 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/terminal.hpp"
 #include "history/staged_folder.hpp"
-#include "study/calibration.hpp"
+#include "study/calibrate/calibration.hpp"
 
 namespace monograin {
 namespace {

@@ -1,6 +1,6 @@
 // `monograin stress`.
 
-#include "study/stress.hpp"
+#include "verify/stress/stress.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "cli/commands.hpp"
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
-#include "study/stress_checks.hpp"
+#include "verify/stress/check/checks.hpp"
 
 namespace monograin {
 namespace {

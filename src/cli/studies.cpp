@@ -14,9 +14,9 @@
 #include "history/compare.hpp"
 #include "history/run_files.hpp"
 #include "scenario/words.hpp"
-#include "study/atlas.hpp"
-#include "study/profile.hpp"
-#include "study/regress.hpp"
+#include "study/atlas/atlas.hpp"
+#include "study/atlas/profile.hpp"
+#include "verify/regress/regress.hpp"
 
 namespace monograin {
 namespace {

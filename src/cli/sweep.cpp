@@ -1,6 +1,6 @@
 // `monograin sweep`.
 
-#include "study/sweep.hpp"
+#include "study/sweep/sweep.hpp"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct CommandOptions {
+struct SweepCommandOptions {
   std::string file;
   std::string output;
   std::string shard = "1/1";
@@ -66,7 +66,7 @@ void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds, con
   say("{}\n", text);
 }
 
-int sweep(const CommandOptions& options) {
+int sweep(const SweepCommandOptions& options) {
   const SweepShard shard = parse_shard(options.shard);
   const Sweep plan = read_sweep(options.file);
   const fs::path folder = options.output.empty() ? fs::path("runs") / plan.name : fs::path(options.output);
@@ -89,7 +89,7 @@ int sweep(const CommandOptions& options) {
 }  // namespace
 
 void add_sweep_command(CLI::App& app, Action& action) {
-  auto options = std::make_shared<CommandOptions>();
+  auto options = std::make_shared<SweepCommandOptions>();
   CLI::App* command = app.add_subcommand(
       "sweep",
       "Run one scenario many times over a grid, a table or a space-filling design; goes on where it was stopped");

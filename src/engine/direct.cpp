@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "engine/event_locator.hpp"
-#include "engine/legendre_series.hpp"
+#include "numerics/legendre_series.hpp"
 
 namespace monograin {
 namespace {

@@ -18,6 +18,7 @@
 
 #include "engine/guard_set.hpp"
 #include "engine/program_notes.hpp"
+#include "scenario/integrators.hpp"
 
 namespace monograin {
 namespace {
@@ -106,7 +107,7 @@ class Drive {
         y_(system_.unknowns().size()),
         output_state_(y_.size()),
         open_since_(scene.channels.size()) {
-    if (integrator != "direct") rtol_ = tolerances.rtol;
+    if (integrator != integrators::k_direct) rtol_ = tolerances.rtol;
     for (const Channel& channel : scene.channels) held_.push_back(channel.at_rest);
     outputs_.reserve(output.times.empty() ? static_cast<std::size_t>(output.points) : output.times.size());
   }
@@ -376,62 +377,82 @@ class Drive {
     return end;
   }
 
+  /// Work done in a step of the program, and in how much of it nothing moved.
+  struct Work {
+    long steps = 0;             ///< internal ones
+    long first_evaluation = 0;  ///< of the equations
+    int idle_steps = 0;
+    int events = 0;
+    int idle_events = 0;
+  };
+
   /// Integrates from the present state to where the step ends. Returns whether a condition ended it.
   bool integrate() {
     std::ranges::fill(open_since_, std::nullopt);
     note_open_contacts();
-    int idle_events = 0;
-    int events = 0;
-    long steps = 0;
-    const long first_evaluation = integrator_->rhs_evaluations();
-    int idle_steps = 0;
+    Work work{.first_evaluation = integrator_->rhs_evaluations()};
     while (plan_.duration > 0.0 && 1.0 - xi_ > k_round_off) {
       const double segment_start = xi_;
       change_state([this](std::span<double> y) { xi_ = system_.leave_singularity(xi_, y); });
       if (xi_ == 1.0) break;
-      integrator_->begin(xi_, y_);
-      Integrator::Advance advance{};
-      double last = xi_;
-      do {
-        last = xi_;
-        const long of_equations = integrator_->rhs_evaluations() - first_evaluation;
-        const long most = integrator_->most_steps();
-        if (steps == most || of_equations > k_most_evaluations * most) throw too_much_work(steps, of_equations);
-        ++steps;
-        advance = integrator_->advance();
-        idle_steps = advance.xi > last ? 0 : idle_steps + 1;
-        if (idle_steps > k_most_idle_steps) throw stalled(idle_steps);
-        // Place and state together: an output may meet a limit, and the run then ends in them.
-        change_state([&](std::span<double> y) { integrator_->dense_output(advance.xi, y); });
-        xi_ = advance.xi;
-        emit_outputs_before(last, xi_);
-      } while (!advance.hit_guard && xi_ < 1.0);
-      if (!advance.hit_guard) break;
-
-      ++event_count_;
-      if (xi_ - segment_start >= k_round_off) {
-        idle_events = 0;
-        idle_guards_.clear();
-      } else {
-        for (const std::size_t guard : integrator_->fired()) idle_guards_.insert(guard_set_.name(guard));
-      }
-      if (++idle_events > k_most_idle_events) throw chattering();
-      if (++events > k_most_events) throw endless();
-      if (handle_event(last)) return true;
+      const auto last = integrate_segment(work);
+      if (!last) break;
+      count_event(xi_ - segment_start, work);
+      if (handle_event(*last)) return true;
       if (is_detached()) return false;
     }
-    // What an event leaves of the step may be round-off. It is solved for, because a contact may be as shallow.
-    if (plan_.duration > 0.0 && xi_ < 1.0) {
-      change_state([this](std::span<double> y) {
-        if (system_.is_solvable())
-          system_.solve(1.0, y);
-        else
-          system_.complete(1.0, y);
-      });
-    }
+    solve_remainder();
     xi_ = 1.0;
     guard_set_.note_met({}, xi_, y_);
     return guard_set_.is_met(xi_, y_);
+  }
+
+  /// Integrates to the first guard that fires, or to the end of the step.
+  /// @return where the integrator's last step began; nothing where no guard has fired
+  std::optional<double> integrate_segment(Work& work) {
+    integrator_->begin(xi_, y_);
+    while (true) {
+      const double last = xi_;
+      const long of_equations = integrator_->rhs_evaluations() - work.first_evaluation;
+      const long most = integrator_->most_steps();
+      if (work.steps == most || of_equations > k_most_evaluations * most) throw too_much_work(work.steps, of_equations);
+      ++work.steps;
+      const Integrator::Advance advance = integrator_->advance();
+      work.idle_steps = advance.xi > last ? 0 : work.idle_steps + 1;
+      if (work.idle_steps > k_most_idle_steps) throw stalled(work.idle_steps);
+      // Place and state together: an output may meet a limit, and the run then ends in them.
+      change_state([&](std::span<double> y) { integrator_->dense_output(advance.xi, y); });
+      xi_ = advance.xi;
+      emit_outputs_before(last, xi_);
+      if (advance.hit_guard) return last;
+      if (xi_ >= 1.0) return std::nullopt;
+    }
+  }
+
+  /// Counts an event, and gives up where events follow each other without end.
+  /// @param length  of the segment that it ends
+  void count_event(double length, Work& work) {
+    ++event_count_;
+    if (length >= k_round_off) {
+      work.idle_events = 0;
+      idle_guards_.clear();
+    } else {
+      for (const std::size_t guard : integrator_->fired()) idle_guards_.insert(guard_set_.name(guard));
+    }
+    if (++work.idle_events > k_most_idle_events) throw chattering();
+    if (++work.events > k_most_events) throw endless();
+  }
+
+  /// Solves for the end of the step: what an event leaves of the step may be round-off, because a contact may be as
+  /// shallow.
+  void solve_remainder() {
+    if (!(plan_.duration > 0.0 && xi_ < 1.0)) return;
+    change_state([this](std::span<double> y) {
+      if (system_.is_solvable())
+        system_.solve(1.0, y);
+      else
+        system_.complete(1.0, y);
+    });
   }
 
   /// Changes the state wholly or, where that meets the end of the equations, not at all: the run ends in it.

@@ -189,26 +189,30 @@ void EventLocator::locate_event() {
       look_up_to(last_look);
       continue;
     }
-    fired_.clear();
-    bool has_earlier = false;
-    const auto directions = guard_set_.directions();
-    const View last = seen(place);
-    for (std::size_t g = 0; g < directions.size(); ++g) {
-      if (g == first) {
-        fired_.push_back(g);
-      } else if (crosses(directions[g], last.values[g], end_values_[g])) {
-        if (!is_shorter || std::abs(end_values_[g]) <= guard_tolerance())
-          fired_.push_back(g);
-        else
-          has_earlier = true;
-      }
-    }
     // A root that these looks did not show is looked for again in what is left of them.
-    if (!has_earlier) return;
+    if (collect_fired(first, seen(place), is_shorter)) return;
     fired_.clear();
   }
   // Found short of zero by its rounding, it is a root nonetheless: the next piece would end there, and so on.
   if (of_branch && of_branch->root == end_) fired_.push_back(of_branch->guard);
+}
+
+/// Collects the guards that fire at the end of the piece: the first one, and those that cross zero with it.
+/// @param last        values at the last look before the end
+/// @param is_shorter  the root has moved the end
+/// @return false where another guard has a root before the end
+bool EventLocator::collect_fired(std::size_t first, const View& last, bool is_shorter) {
+  fired_.clear();
+  bool has_earlier = false;
+  const auto directions = guard_set_.directions();
+  for (std::size_t g = 0; g < directions.size(); ++g) {
+    if (g != first && !crosses(directions[g], last.values[g], end_values_[g])) continue;
+    if (g == first || !is_shorter || std::abs(end_values_[g]) <= guard_tolerance())
+      fired_.push_back(g);
+    else
+      has_earlier = true;
+  }
+  return !has_earlier;
 }
 
 /// Ends the piece at xi, or where it has a state before that, and forgets the looks beyond the first ones.

@@ -66,6 +66,7 @@ class EventLocator : public Integrator {
   [[nodiscard]] bool any_crosses(const View& before, const View& after) const;
   [[nodiscard]] double hidden_extremum(std::size_t place) const;
   [[nodiscard]] double first_root(const View& before, const View& after, std::size_t& guard);
+  [[nodiscard]] bool collect_fired(std::size_t first, const View& last, bool is_shorter);
   [[nodiscard]] std::size_t shorten(double xi, std::size_t looks);
   [[nodiscard]] bool is_branch_end(std::size_t guard) const;
   void look_up_to(double last);

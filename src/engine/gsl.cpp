@@ -42,7 +42,7 @@ const gsl_odeiv2_step_type* type_of(GslMethod method) {
 /// What is tolerated of a step, and how long the next one is: as the library's standard, but where a contact lasts
 /// hardly longer than the step coordinate is rounded. The errors of the stages are then those of rounding, and no less
 /// than that is tolerated.
-class Control {
+class ErrorControl {
  public:
   [[nodiscard]] static gsl_odeiv2_control* make(double atol, double rtol) {
     static const gsl_odeiv2_control_type type{"rounding", alloc, init, adjust, level, set_driver, free};
@@ -52,11 +52,11 @@ class Control {
   }
 
  private:
-  static void* alloc() { return new (std::nothrow) Control; }
-  static void free(void* self) { delete static_cast<Control*>(self); }
+  static void* alloc() { return new (std::nothrow) ErrorControl; }
+  static void free(void* self) { delete static_cast<ErrorControl*>(self); }
   static int set_driver(void*, const gsl_odeiv2_driver*) { return GSL_SUCCESS; }
   static int init(void* self, double atol, double rtol, double, double) {
-    *static_cast<Control*>(self) = Control{atol, rtol};
+    *static_cast<ErrorControl*>(self) = ErrorControl{atol, rtol};
     return GSL_SUCCESS;
   }
 
@@ -65,7 +65,7 @@ class Control {
   }
 
   static int level(void* self, const double value, const double rate, const double, const size_t, double* tolerated) {
-    *tolerated = static_cast<const Control*>(self)->tolerated(value, rate);
+    *tolerated = static_cast<const ErrorControl*>(self)->tolerated(value, rate);
     return GSL_SUCCESS;
   }
 
@@ -73,8 +73,8 @@ class Control {
                     const double rates[], double* step) {
     double largest = std::numeric_limits<double>::min();
     for (size_t k = 0; k < size; ++k) {
-      largest =
-          std::max(largest, std::abs(errors[k]) / static_cast<const Control*>(self)->tolerated(values[k], rates[k]));
+      largest = std::max(largest,
+                         std::abs(errors[k]) / static_cast<const ErrorControl*>(self)->tolerated(values[k], rates[k]));
     }
     if (largest > k_refused) {
       *step *= std::max(k_safety / std::pow(largest, 1.0 / order), 1.0 / k_most_growth);
@@ -91,8 +91,8 @@ class Control {
   static constexpr double k_safety = 0.9;
   static constexpr double k_most_growth = 5.0;
 
-  Control() = default;
-  Control(double atol, double rtol) : atol_(atol), rtol_(rtol) {}
+  ErrorControl() = default;
+  ErrorControl(double atol, double rtol) : atol_(atol), rtol_(rtol) {}
   double atol_ = 0.0, rtol_ = 0.0;
 };
 
@@ -225,7 +225,7 @@ class GslStepper final : public Stepper {
     const auto [rtol, atol] = of_step(tolerances, share);
     Driver driver(gsl_odeiv2_driver_alloc_y_new(&system_, type, k_first_step, atol, rtol));
     if (!driver) throw std::bad_alloc();
-    gsl_odeiv2_control* control = Control::make(atol, rtol);
+    gsl_odeiv2_control* control = ErrorControl::make(atol, rtol);
     if (control == nullptr) throw std::bad_alloc();
     gsl_odeiv2_control_free(driver->c);
     driver->c = control;

@@ -66,26 +66,32 @@ struct NamedMethod {
 
 /// Integrators of the explicit form with error control.
 constexpr std::array<NamedMethod, 11> k_of_explicit_form{{
-    {"cvode-adams", OdeMethod::cvode_adams, false},
-    {"cvode-bdf", OdeMethod::cvode_bdf, true},
-    {"arkode-erk", OdeMethod::arkode_erk, false},
-    {"arkode-dirk", OdeMethod::arkode_dirk, true},
-    {"odeint-dopri5", OdeintMethod::dopri5, false},
-    {"odeint-fehlberg78", OdeintMethod::fehlberg78, false},
-    {"odeint-bulirsch-stoer", OdeintMethod::bulirsch_stoer, false},
-    {"odeint-rosenbrock4", OdeintMethod::rosenbrock4, true},
-    {"gsl-rk8pd", GslMethod::rk8pd, false},
-    {"gsl-msadams", GslMethod::msadams, false},
-    {"gsl-msbdf", GslMethod::msbdf, true},
+    {integrators::k_cvode_adams, OdeMethod::cvode_adams, false},
+    {integrators::k_cvode_bdf, OdeMethod::cvode_bdf, true},
+    {integrators::k_arkode_erk, OdeMethod::arkode_erk, false},
+    {integrators::k_arkode_dirk, OdeMethod::arkode_dirk, true},
+    {integrators::k_odeint_dopri5, OdeintMethod::dopri5, false},
+    {integrators::k_odeint_fehlberg78, OdeintMethod::fehlberg78, false},
+    {integrators::k_odeint_bulirsch_stoer, OdeintMethod::bulirsch_stoer, false},
+    {integrators::k_odeint_rosenbrock4, OdeintMethod::rosenbrock4, true},
+    {integrators::k_gsl_rk8pd, GslMethod::rk8pd, false},
+    {integrators::k_gsl_msadams, GslMethod::msadams, false},
+    {integrators::k_gsl_msbdf, GslMethod::msbdf, true},
 }};
 
-constexpr std::string_view k_switching = "odeint-dopri5, cvode-bdf where stiff";
+/// What "auto" integrates with.
+const std::string& switching_name() {
+  static const std::string k_name =
+      fmt::format("{}, {} where stiff", integrators::k_odeint_dopri5, integrators::k_cvode_bdf);
+  return k_name;
+}
 
 }  // namespace
 
 std::span<const std::string_view> integrator_names() noexcept {
   static const auto k_names = [] {
-    std::array<std::string_view, k_of_explicit_form.size() + 3> names{"direct", "ida", "explicit"};
+    std::array<std::string_view, k_of_explicit_form.size() + 3> names{integrators::k_direct, integrators::k_ida,
+                                                                      integrators::k_explicit};
     std::ranges::transform(k_of_explicit_form, names.begin() + 3, &NamedMethod::name);
     return names;
   }();
@@ -94,20 +100,20 @@ std::span<const std::string_view> integrator_names() noexcept {
 
 bool suits_stiff_equations(std::string_view name) noexcept {
   const auto found = std::ranges::find(k_of_explicit_form, name, &NamedMethod::name);
-  return found == k_of_explicit_form.end() ? name != "explicit" : found->suits_stiff;
+  return found == k_of_explicit_form.end() ? name != integrators::k_explicit : found->suits_stiff;
 }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, GuardSet& guard_set,
                                             const Tolerances& asked) {
-  if (name == "direct" && !system.is_solvable()) throw std::logic_error("the system has no direct form");
-  if (name == "direct") return make_direct(system, asked.rtol, guard_set);
-  if (name == "explicit") return make_fixed_step(system, guard_set, asked);
+  if (name == integrators::k_direct && !system.is_solvable()) throw std::logic_error("the system has no direct form");
+  if (name == integrators::k_direct) return make_direct(system, asked.rtol, guard_set);
+  if (name == integrators::k_explicit) return make_fixed_step(system, guard_set, asked);
   const double gain = system.error_gain();
   const double rtol = std::max(asked.rtol / gain, std::min(asked.rtol, k_least_rtol));
   // No smaller than it takes to let the relative one count: equations without rates have round-off.
   const Tolerances tolerances{rtol, std::min(asked.atol, std::max(asked.atol / gain, 0.1 * rtol))};
-  if (name == "ida") return make_ida(system, guard_set, tolerances);
-  if (name == k_switching) return make_switching(system, guard_set, tolerances);
+  if (name == integrators::k_ida) return make_ida(system, guard_set, tolerances);
+  if (name == switching_name()) return make_switching(system, guard_set, tolerances);
   for (const auto& [word, method, suits_stiff] : k_of_explicit_form) {
     if (word != name) continue;
     return std::visit(
@@ -123,13 +129,13 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem&
 }
 
 IntegratorChoice choose_integrator(const std::string& asked, const HybridSystem& system) {
-  if (asked != "auto") return {asked, asked, "asked for"};
+  if (asked != integrators::k_auto) return {asked, asked, "asked for"};
   if (system.is_solvable()) {
-    return {asked, "direct",
+    return {asked, integrators::k_direct,
             "the state at any instant follows from equations that need no history: nothing is integrated"};
   }
   return {
-      asked, std::string(k_switching),
+      asked, switching_name(),
       "the state depends on the way to it, so that it is integrated, in its explicit form: by the cheapest method, and "
       "from the first phase that slows that down by one for stiff equations"};
 }

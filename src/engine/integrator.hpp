@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/guard_set.hpp"
+#include "scenario/integrators.hpp"
 #include "system/hybrid_system.hpp"
 
 namespace monograin {
@@ -123,6 +124,9 @@ struct IntegratorChoice {
   std::string asked;
   std::string used;
   std::string why;
+
+  /// True if every state is solved for, and nothing integrated.
+  [[nodiscard]] bool is_direct() const noexcept { return used == integrators::k_direct; }
 };
 
 /// The integrator asked for, or for "auto" the cheapest that reaches the accuracy and that the system allows.

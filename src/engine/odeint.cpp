@@ -12,8 +12,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "engine/rosenbrock.hpp"
 #include "engine/stepper.hpp"
+#include "numerics/rosenbrock.hpp"
 
 namespace monograin {
 namespace {
@@ -449,7 +449,8 @@ std::unique_ptr<Stepper> make_explicit(OdeintMethod method, ScaledForm& form, co
     case OdeintMethod::bulirsch_stoer: {
       using Controlled = Extrapolation<State>;
       return std::make_unique<ExplicitStepper<State, Controlled>>(
-          form, tolerances, 0, [&](const auto&, const auto&) { return Controlled(atol, rtol, 1.0, 0.0); });
+          form, tolerances, 0,
+          [atol = atol, rtol = rtol](const auto&, const auto&) { return Controlled(atol, rtol, 1.0, 0.0); });
     }
     case OdeintMethod::rosenbrock4:
       return std::make_unique<RosenbrockStepper>(form, tolerances);

@@ -103,8 +103,8 @@ Run run_scenario(const Scenario& scenario, const SystemWrapper& wrapped) {
 
   for (std::size_t c = 0; c < scene.classes.size(); ++c) run.classes.push_back({scene.classes[c].name, scene.walls[c]});
   run.skipped = std::move(scene.skipped);
-  if (run.integrator.used == "direct") run.skipped.emplace_back("time integration: every state is solved for directly");
-  const double rtol = run.integrator.used == "direct" ? 0.0 : scenario.numerics.rtol;
+  if (run.integrator.is_direct()) run.skipped.emplace_back("time integration: every state is solved for directly");
+  const double rtol = run.integrator.is_direct() ? 0.0 : scenario.numerics.rtol;
   if (auto warning = energy_warning(run.record.history, scenario.radius, scenario.model, rtol)) {
     run.record.warnings.push_back(std::move(*warning));
     run.record.creates_energy = true;

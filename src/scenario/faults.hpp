@@ -1,6 +1,7 @@
 /// Collects what is wrong with a scenario, so that a user sees all of it at once.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <unordered_set>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "scenario/scenario.hpp"
 
 namespace monograin {
+
+/// Faults of one table after which no more are reported: nobody reads on.
+inline constexpr std::size_t k_most_table_faults = 20;
 
 class FaultList {
  public:

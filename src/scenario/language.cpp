@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "scenario/integrators.hpp"
 #include "scenario/units.hpp"
 
 namespace monograin {
@@ -21,21 +22,6 @@ constexpr Range k_right_angle{
     .lower = 0.0, .upper = std::numbers::pi / 2.0, .lower_is_open = true, .upper_is_open = true};
 constexpr double k_default_oblique_angle = 37.5 * std::numbers::pi / 180.0;
 
-constexpr std::array<string_view, 15> k_integrators{"auto",
-                                                    "direct",
-                                                    "cvode-bdf",
-                                                    "cvode-adams",
-                                                    "ida",
-                                                    "arkode-erk",
-                                                    "arkode-dirk",
-                                                    "odeint-dopri5",
-                                                    "odeint-fehlberg78",
-                                                    "odeint-bulirsch-stoer",
-                                                    "odeint-rosenbrock4",
-                                                    "gsl-rk8pd",
-                                                    "gsl-msadams",
-                                                    "gsl-msbdf",
-                                                    "explicit"};
 constexpr std::array<string_view, 7> k_configurations{"simple", "die",      "hydrostatic", "oblique-die",
                                                       "walls",  "triaxial", "strain-path"};
 constexpr std::array<string_view, 2> k_centres{"fixed", "equilibrium"};
@@ -132,8 +118,8 @@ std::vector<KeySpec> numerics_keys() {
       {.name = "integrator",
        .meaning = "method; auto picks the cheapest",
        .kind = Kind::choice,
-       .choices = words_of(k_integrators),
-       .default_value = "auto"},
+       .choices = words_of(integrators::k_all),
+       .default_value = integrators::k_auto},
       {.name = "rtol",
        .meaning = "relative tolerance",
        .kind = Kind::quantity,

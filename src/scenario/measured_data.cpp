@@ -10,8 +10,6 @@
 namespace monograin {
 namespace {
 
-constexpr std::size_t k_most_faults = 20;  // of one table: nobody reads on
-
 /// Where the unit's bracket opens; npos where there is none.
 std::size_t bracket_in(std::string_view heading) noexcept {
   const std::size_t bracket = heading.rfind('[');
@@ -29,7 +27,7 @@ class DataParser {
   MeasuredData parse(std::string_view text) {
     data_.text = text;
     std::string_view rest = without_byte_order_mark(text);
-    while (!rest.empty() && found_ < k_most_faults) {
+    while (!rest.empty() && found_ < k_most_table_faults) {
       ++line_;
       const std::string_view line = take_line(rest);
       if (is_comment(line)) continue;
@@ -39,7 +37,7 @@ class DataParser {
         take_row(cells_of(line));
       }
     }
-    if (found_ >= k_most_faults && !rest.empty()) {
+    if (found_ >= k_most_table_faults && !rest.empty()) {
       ++line_;
       fault(1, "too many faults above; the rest of the table is not checked");
     }

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "scenario/integrators.hpp"
 #include "scenario/text_file.hpp"
 #include "system/model.hpp"
 #include "system/walls.hpp"
@@ -88,7 +89,7 @@ struct Output {
 };
 
 struct Numerics {
-  std::string integrator = "auto";
+  std::string integrator = integrators::k_auto;
   double rtol = 1e-8;
   double atol = 1e-12;  ///< relative to the state's own scale
 };

@@ -152,17 +152,38 @@ std::size_t first_unloading_step(const Program& program, std::span<const Step> s
   return steps.size();
 }
 
-/// Largest displacement or force of the programs.
-double largest_target(const Program& program, const std::vector<Channel>& channels, Step::Kind kind) {
-  double largest = 0.0;
-  const bool adheres = program.input.optional_material("surface_energy").value_or(0.0) > 0.0;
-  const bool is_displacement = kind == Step::Kind::displacement;
-  // Steps that a run comes to: what lies beyond would make tolerances as large as what is reached.
+/// Number of steps that a run comes to: what lies beyond would make tolerances as large as what is reached.
+std::size_t steps_reached(const Program& program, const std::vector<Channel>& channels) {
   std::size_t count = count_to_pull(program.model, channels);
   for (const Channel& channel : channels) {
     const std::size_t first = first_unloading_step(program, channel.program);
     if (first < channel.program.size()) count = std::min(count, first);
   }
+  return count;
+}
+
+/// How far the conditions of a ramp let it go, at most.
+/// @param reach     without conditions
+/// @param is_first  of the program
+/// @param before    where the last ramp of this kind has led, at most
+double reach_until(const Program& program, const Step& step, double reach, bool is_first, double before) {
+  const bool is_displacement = step.kind == Step::Kind::displacement;
+  for (const Until& until : step.until) {
+    // Later steps may begin beyond an event, or a value, which then does not end them.
+    if (until.is_event() && !is_first) continue;
+    const Reach end = end_of(program, until);
+    const double place = is_displacement ? end.displacement : end.force;
+    const bool is_exact = until.is_of(is_displacement ? Quantity::displacement : Quantity::force);
+    if (place > (is_exact ? 1.0 : k_known_within) * before) reach = std::min(reach, place);
+  }
+  return reach;
+}
+
+/// Largest displacement or force of the programs.
+double largest_target(const Program& program, const std::vector<Channel>& channels, Step::Kind kind) {
+  double largest = 0.0;
+  const bool adheres = program.input.optional_material("surface_energy").value_or(0.0) > 0.0;
+  const std::size_t count = steps_reached(program, channels);
   for (const Channel& channel : channels) {
     double before = 0.0;  // where the last ramp of this kind has led, at most
     for (const Step& step : std::span(channel.program).first(std::min(count, channel.program.size()))) {
@@ -171,16 +192,9 @@ double largest_target(const Program& program, const std::vector<Channel>& channe
         before = 0.0;
         continue;
       }
-      const bool is_withdrawal = step.target < 0.0 && (is_displacement || !adheres);
-      double reach = (is_withdrawal ? k_share_of_withdrawal : 1.0) * std::abs(step.target);
-      for (const Until& until : step.until) {
-        // Later steps may begin beyond an event, or a value, which then does not end them.
-        if (until.is_event() && &step != &channel.program.front()) continue;
-        const Reach end = end_of(program, until);
-        const double place = is_displacement ? end.displacement : end.force;
-        const bool is_exact = until.is_of(is_displacement ? Quantity::displacement : Quantity::force);
-        if (place > (is_exact ? 1.0 : k_known_within) * before) reach = std::min(reach, place);
-      }
+      const bool is_withdrawal = step.target < 0.0 && (kind == Step::Kind::displacement || !adheres);
+      const double target = (is_withdrawal ? k_share_of_withdrawal : 1.0) * std::abs(step.target);
+      const double reach = reach_until(program, step, target, &step == &channel.program.front(), before);
       before = is_withdrawal ? 0.0 : reach;
       largest = std::max(largest, reach);
     }

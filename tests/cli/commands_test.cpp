@@ -10,8 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "cli/command_test.hpp"
 #include "history/table.hpp"
-#include "support/command_test.hpp"
 #include "support/svg_figure.hpp"
 
 namespace monograin::commands_test {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "support/command_test.hpp"
+#include "cli/command_test.hpp"
 
 namespace monograin::failing_allocation_test {
 namespace {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "cli/command_test.hpp"
 #include "history/table.hpp"
-#include "support/command_test.hpp"
 
 namespace monograin::material_point_command_test {
 namespace {

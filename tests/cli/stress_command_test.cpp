@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "support/command_test.hpp"
+#include "cli/command_test.hpp"
 
 namespace monograin::stress_command_test {
 namespace {

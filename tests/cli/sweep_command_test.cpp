@@ -7,8 +7,8 @@
 #include <random>
 #include <string>
 
+#include "cli/command_test.hpp"
 #include "history/table.hpp"
-#include "support/command_test.hpp"
 
 namespace monograin::sweep_command_test {
 namespace {

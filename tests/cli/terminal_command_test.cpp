@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "support/command_test.hpp"
+#include "cli/command_test.hpp"
 #include "support/refusal.hpp"
 
 namespace monograin::terminal_command_test {

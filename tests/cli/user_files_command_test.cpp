@@ -13,8 +13,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "cli/command_test.hpp"
 #include "history/table.hpp"
-#include "support/command_test.hpp"
 
 namespace monograin::user_files_test {
 namespace {

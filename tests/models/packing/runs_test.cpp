@@ -1,5 +1,6 @@
 // Runs of packings in all forms and under all controls.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,0 +1,119 @@
+/// Directions in which a free centre can move, and the lines along which contact classes push it.
+///
+/// The centre can only move in ways that keep the symmetry of the walls: along the mean normals of the classes. Walls
+/// that face each other, or the same way, push it along one line. What they do is summed up there before it is
+/// resolved: the round-off of large forces that nearly cancel would otherwise act across the line, where a soft contact
+/// may be all that bears.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "system/walls.hpp"
+
+namespace monograin::contacts {
+
+class CentreLines {
+ public:
+  /// Vectors and matrices along the free directions of the centre; entries beyond their number are zero.
+  using Vector = Eigen::Vector3d;
+  using Matrix = Eigen::Matrix3d;
+  /// Smallest mean normal of a contact class, along the free directions, that counts. The stiffness along them goes
+  /// with its square, and is round-off below this.
+  static constexpr double k_no_direction = 1e-6;
+
+  CentreLines() = default;
+  /// @param is_free  false: nothing moves the centre
+  CentreLines(std::span<const ContactClass> classes, bool is_free);
+
+  /// Free directions, 0 to 3.
+  [[nodiscard]] int dimension() const noexcept { return dimension_; }
+  /// A vector along the free directions, in space.
+  [[nodiscard]] Eigen::Vector3d in_space(const Vector& vector) const noexcept { return basis_ * vector; }
+  [[nodiscard]] std::size_t classes() const noexcept { return arms_.size(); }
+  /// Mean normal of a class along the free directions.
+  [[nodiscard]] const Vector& arm(std::size_t i) const noexcept { return arms_[i]; }
+  /// True if the contacts of a class act on the centre.
+  [[nodiscard]] bool acts(std::size_t i) const noexcept { return on_lines_[i].along != 0.0; }
+
+  /// Lines, at least one.
+  [[nodiscard]] std::size_t size() const noexcept { return directions_.size(); }
+  [[nodiscard]] const Vector& direction(std::size_t line) const noexcept { return directions_[line]; }
+  /// Line of a class, and its mean normal as a multiple of the line's direction.
+  [[nodiscard]] std::size_t line_of(std::size_t i) const noexcept { return on_lines_[i].line; }
+  [[nodiscard]] double along(std::size_t i) const noexcept { return on_lines_[i].along; }
+
+  /// Orthonormal basis along the line that is stiffest, across it along the one that is so there, and so on; no columns
+  /// for directions without stiffness. In these directions the forces of stiff contacts are nothing, not round-off,
+  /// where only soft ones bear.
+  /// @param stiffness  of a line
+  template <class Stiffness>
+  [[nodiscard]] Matrix stiffest_directions(Stiffness&& stiffness) const {
+    Matrix basis = Matrix::Zero();
+    for (int k = 0; k < dimension_; ++k) {
+      double most = 0.0;
+      Vector next = Vector::Zero();
+      for (std::size_t line = 0; line < size(); ++line) {
+        const Vector across = directions_[line] - basis * (basis.transpose() * directions_[line]);
+        const double strength = std::abs(stiffness(line)) * across.squaredNorm();
+        if (strength <= most || across.norm() <= k_no_direction) continue;
+        most = strength;
+        next = across;
+      }
+      if (most == 0.0) break;
+      next.normalize();
+      basis.col(k) = (next - basis * (basis.transpose() * next)).normalized();
+    }
+    return basis;
+  }
+  /// Components of a line's direction in a basis, without round-off.
+  [[nodiscard]] Vector components(const Matrix& basis, std::size_t line) const {
+    constexpr double k_no_component = 1e-15;
+    const Vector raw = basis.transpose() * directions_[line];
+    return (raw.array().abs() > k_no_component).select(raw, 0.0);
+  }
+  /// Displacement of the centre, along the directions of a basis, that cancels forces by stiffnesses; none along
+  /// directions in which these are round-off.
+  /// @param stiffness  of a line
+  /// @param force      along a line
+  template <class Stiffness, class Force>
+  [[nodiscard]] Vector step(const Matrix& basis, Stiffness&& stiffness, Force&& force) const {
+    constexpr double k_no_stiffness = 1e-12;  // over the greatest one, each scaled by its own contacts
+    Matrix sum = Matrix::Zero();
+    Vector load = Vector::Zero();
+    Vector magnitudes = Vector::Zero();
+    for (std::size_t line = 0; line < size(); ++line) {
+      const Vector at = components(basis, line);
+      sum += stiffness(line) * at * at.transpose();
+      load += force(line) * at;
+      magnitudes += std::abs(stiffness(line)) * at.cwiseAbs2();
+    }
+    const Vector scale = (magnitudes.array() > 0.0).select(magnitudes.array().rsqrt(), 0.0);
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(scale.asDiagonal() * sum * scale.asDiagonal());
+    const double least = k_no_stiffness * solver.eigenvalues().cwiseAbs().maxCoeff();
+    Vector result = Vector::Zero();
+    for (int k = 0; k < 3; ++k) {
+      if (std::abs(solver.eigenvalues()[k]) <= least) continue;
+      const Vector direction = scale.cwiseProduct(solver.eigenvectors().col(k));
+      result -= direction * (direction.dot(load) / solver.eigenvalues()[k]);
+    }
+    return basis * result;
+  }
+
+ private:
+  struct OnLine {
+    std::size_t line = 0;
+    double along = 0.0;  ///< 0: acts along none
+  };
+
+  int dimension_ = 0;
+  Matrix basis_ = Matrix::Zero();  ///< orthonormal, in the first columns
+  std::vector<Vector> arms_;
+  std::vector<Vector> directions_;  ///< of the lines
+  std::vector<OnLine> on_lines_;
+};
+
+}  // namespace monograin::contacts

@@ -1,0 +1,257 @@
+/// Contacts around a free centre in a mode: where the centre is, how it moves, which contacts bear, and what ends the
+/// mode. The functions of a law are listed in contacts/independent.hpp; lengths are over R0, forces over the law's
+/// unit.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "contacts/centre/free_centre.hpp"
+#include "contacts/wall_contact.hpp"
+
+namespace monograin::contacts {
+
+template <class Law>
+class CentreMode {
+ public:
+  using Contact = WallContact<Law>;
+  using Vector = FreeCentre::Vector;
+
+  /// Appends the unknowns of the centre.
+  /// @param reach  largest displacement that is expected
+  CentreMode(std::span<const ContactClass> classes, double reach, std::vector<Unknown>& unknowns)
+      : centre_(classes), slot_(unknowns.size()), reach_(reach), roles_(classes.size()), rates_(classes.size()) {
+    static constexpr std::array<std::string_view, 3> k_names{"centre displacement 1", "centre displacement 2",
+                                                             "centre displacement 3"};
+    for (std::size_t k = 0; k < dimension(); ++k) {
+      unknowns.push_back({.name = k_names[k],
+                          .kind = Unknown::Kind::algebraic,
+                          .scale = reach,
+                          .is_implicitly_algebraic = true,
+                          .is_dependent = true});
+    }
+  }
+
+  // --- where the centre is
+
+  [[nodiscard]] Eigen::Vector3d in_space(std::span<const double> y) const { return centre_.in_space(position(y)); }
+  /// By how much the centre has moved towards the walls of a class.
+  [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const { return centre_.along(i, position(y)); }
+  /// Displacement of a contact.
+  /// @param d  with the centre where it started; under force control, where it is
+  [[nodiscard]] double displacement(const Law& law, const Contact& c, std::size_t i, double d,
+                                    std::span<const double> y) const {
+    const double opening = law.opening(c.branch());
+    if (c.is_force_controlled()) {
+      // An open wall without load stays where it was left, until the particle pushes it.
+      return c.touches() ? d : std::min(d + carried(i, y), opening);
+    }
+    const double overlap = d + carried(i, y) - opening;
+    const bool only_touches = c.touches() && std::abs(overlap) <= FreeCentre::k_resolution;
+    return only_touches ? opening : opening + overlap;
+  }
+  /// Writes the position of the centre that balances the forces.
+  void move(const Law& law, std::span<const Contact> contacts, double xi, std::span<double> y) {
+    if (dimension() == 0) return;
+    const Vector c = centre_.equilibrium(Instant(law, contacts, xi), roles_, rest_, position(y));
+    for (std::size_t k = 0; k < dimension(); ++k) y[slot_ + k] = c[static_cast<Eigen::Index>(k)];
+  }
+  /// Writes its rates for integrators to begin with: a quotient of differences, which has no singularity at first
+  /// touch.
+  void write_rates(const Law& law, std::span<const Contact> contacts, double xi, std::span<const double> y,
+                   std::span<double> dy) {
+    const Vector now = position(y);
+    const Vector then = centre_.equilibrium(Instant(law, contacts, xi + ahead_), roles_, rest_, now);
+    for (std::size_t k = 0; k < dimension(); ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      dy[slot_ + k] = (then[axis] - now[axis]) / ahead_;
+    }
+  }
+  /// Rate of the work of one wall.
+  /// @param now       of the contact's coordinate
+  /// @param velocity  of the centre
+  [[nodiscard]] double power(const Law& law, const Contact& c, std::size_t i, double xi, std::span<const double> y,
+                             const typename Contact::Slope& now, const Vector& velocity) const {
+    if (c.is_force_controlled()) {
+      const double force = c.touches() ? std::max(0.0, c.drive().value(xi)) : 0.0;
+      return force > 0.0 ? c.power(law, xi, now) - force * centre_.along(i, velocity) : 0.0;
+    }
+    const double d = displacement(law, c, i, c.drive().value(xi), y);
+    return c.bears(law, d) ? law.force(c.branch(), d) * c.drive().rate() : 0.0;
+  }
+  [[nodiscard]] Vector velocity(const Law& law, std::span<const Contact> contacts, double xi,
+                                std::span<const double> y) {
+    for (std::size_t i = 0; i < contacts.size(); ++i) rates_[i] = contacts[i].drive().rate();
+    return centre_.velocity(Instant(law, contacts, xi), roles_, rates_, position(y));
+  }
+
+  // --- the mode
+
+  /// Takes up the ramps of a step.
+  void begin_step(std::span<const Contact> contacts) {
+    ahead_ = std::clamp(k_distance_ahead / fastest_wall(contacts), k_least_ahead, k_most_ahead);
+  }
+  /// Decides which walls touch, which bear and which contacts turn in the mode that begins, by evaluating a little
+  /// ahead: these depend on each other through the centre, so assume, evaluate, correct, and repeat.
+  /// @param is_decided  contact -> whether a guard has just decided that for it
+  /// @param is_seen     contact -> whether touching is an event
+  template <class IsDecided, class IsSeen>
+  std::optional<DomainEnd> find(Law& law, std::span<Contact> contacts, double xi, std::span<const double> y,
+                                IsDecided&& is_decided, IsSeen&& is_seen, std::vector<Event>& log) {
+    rest_ = position(y);
+    for (std::size_t round = 0; round <= 4 * contacts.size() + 8; ++round) {
+      Vector then = rest_;
+      centre_.find_roles(Instant(law, contacts, xi), Instant(law, contacts, xi + ahead_), then, roles_);
+      bool has_changed = false;
+      for (std::size_t i = 0; i < contacts.size(); ++i) {
+        Contact& c = contacts[i];
+        if (c.is_force_controlled() || is_decided(i)) continue;
+        const Change change{.now = c.drive().value(xi) + centre_.along(i, rest_) - law.opening(c.branch()),
+                            .then = overlap_as_touching(law, contacts, i, xi + ahead_, then),
+                            .turning = xi == 0.0 ? "load-reversal" : "retreat"};
+        find_touch(law, c, change, is_seen(i), log);
+        if (const auto end = find_branch(law, c, change, log, has_changed)) return end;
+      }
+      if (!has_changed) return std::nullopt;
+    }
+    throw DomainError(Limit::no_consistent_regimes);
+  }
+
+  // --- guards of the contacts that depend on where the centre is
+
+  enum GuardKind : int { k_made, k_boundary, k_lost, k_retreat };
+  /// Calls add(kind, direction, name, target) for each guard of a contact. The target of a boundary is a displacement,
+  /// those of the others are overlaps.
+  template <class Add>
+  void arm_guards(const Law& law, const Contact& c, std::size_t i, double xi, Add&& add) const {
+    const double overlap = c.drive().value(xi) + centre_.along(i, rest_) - law.opening(c.branch());
+    if (!c.touches()) {
+      add(k_made, 1, c.made_event(law), overlap >= -k_touch ? k_touch : 0.0);
+      return;
+    }
+    add(k_lost, -1, "contact-lost", overlap <= k_touch ? -k_touch : 0.0);
+    if (const auto ahead = c.next(law)) add(k_boundary, 1, ahead->event, ahead->position);
+    if (c.is_on_primary_branch() && roles_[i] == Role::bearing) add(k_retreat, -1, "retreat", 0.0);
+  }
+  [[nodiscard]] double guard_value(const Law& law, std::span<const Contact> contacts, std::size_t i, int kind,
+                                   double target, double xi, std::span<const double> y) {
+    const WallDrive& drive = contacts[i].drive();
+    if (kind == k_retreat) {
+      const Vector rate = velocity(law, contacts, xi, y);
+      // A contact at rest has a rate of round-off.
+      const double fastest = std::max(rate.norm(), fastest_wall(contacts));
+      return (drive.rate() + centre_.along(i, rate) + k_at_rest * fastest) / reach_;
+    }
+    if (kind == k_boundary) return (drive.value(xi) + carried(i, y) - target) / reach_;
+    return (overlap_as_touching(law, contacts, i, xi, position(y)) - target) / reach_;
+  }
+
+ private:
+  /// How far ahead of an instant, in step coordinates, the mode that begins there is decided: briefer ones are not
+  /// seen. Farther where walls hardly move, so that they go by more than round-off.
+  static constexpr double k_least_ahead = 1e-6;
+  static constexpr double k_most_ahead = 1e-3;
+  static constexpr double k_distance_ahead = 1e-9;  ///< over R0
+  /// Changes of displacements over that which are round-off.
+  static constexpr double k_no_change = 1e-14;
+  /// Gap or overlap of a wall that is where it meets the particle: it is lost where the gap would be larger.
+  static constexpr double k_touch = 1e-12;
+  /// Rate of a contact's displacement over the fastest one that is round-off.
+  static constexpr double k_at_rest = 1e-9;
+
+  /// The walls around the centre at one instant.
+  class Instant final : public CentreWalls {
+   public:
+    Instant(const Law& law, std::span<const Contact> contacts, double xi) : law_(law), contacts_(contacts), xi_(xi) {}
+    [[nodiscard]] std::optional<double> prescribed_force(std::size_t i) const override {
+      const Contact& c = contacts_[i];
+      if (!c.is_force_controlled()) return std::nullopt;
+      return c.touches() ? c.drive().value(xi_) : 0.0;
+    }
+    [[nodiscard]] double overlap(std::size_t i) const override {
+      return contacts_[i].drive().value(xi_) - law_.opening(contacts_[i].branch());
+    }
+    [[nodiscard]] Force force(std::size_t i, double overlap) const override {
+      const auto& branch = contacts_[i].branch();
+      const double d = law_.opening(branch) + overlap;
+      return {law_.force(branch, d), law_.slope(branch, d)};
+    }
+    [[nodiscard]] double overlap_under(std::size_t i, double force) const override {
+      const auto& branch = contacts_[i].branch();
+      return law_.displacement(branch, force) - law_.opening(branch);
+    }
+
+   private:
+    const Law& law_;
+    std::span<const Contact> contacts_;
+    double xi_;
+  };
+
+  /// Overlap of a contact where a mode begins, and a little later.
+  struct Change {
+    double now = 0.0;
+    double then = 0.0;
+    std::string_view turning{};  ///< event of beginning to unload
+  };
+
+  [[nodiscard]] std::size_t dimension() const noexcept { return static_cast<std::size_t>(centre_.dimension()); }
+  [[nodiscard]] Vector position(std::span<const double> y) const noexcept {
+    Vector c = Vector::Zero();
+    for (std::size_t k = 0; k < dimension(); ++k) c[static_cast<Eigen::Index>(k)] = y[slot_ + k];
+    return c;
+  }
+  /// Rate of the fastest wall under displacement control.
+  [[nodiscard]] static double fastest_wall(std::span<const Contact> contacts) noexcept {
+    double fastest = 0.0;
+    for (const Contact& c : contacts) {
+      if (!c.is_force_controlled()) fastest = std::max(fastest, std::abs(c.drive().rate()));
+    }
+    return fastest;
+  }
+  /// How far a contact is past where wall and particle meet. An idle wall that touches has an overlap of nothing: it
+  /// shows by the one that it would have if it did not push.
+  [[nodiscard]] double overlap_as_touching(const Law& law, std::span<const Contact> contacts, std::size_t i, double xi,
+                                           const Vector& c) {
+    if (roles_[i] == Role::idle) return centre_.unpushed_overlap(i, Instant(law, contacts, xi), roles_, rest_, c);
+    return contacts[i].drive().value(xi) + centre_.along(i, c) - law.opening(contacts[i].branch());
+  }
+  /// Decides whether a contact that is where wall and particle meet touches. Farther away, a guard tells when that is.
+  static void find_touch(Law& law, Contact& c, const Change& change, bool is_seen, std::vector<Event>& log) {
+    const bool will_touch = change.then > k_no_change;
+    if (will_touch && !c.touches() && change.now >= -k_touch) c.make(law, is_seen, log);
+    if (!will_touch && c.touches() && change.now <= k_touch) c.lose(law, log);
+  }
+  /// Decides whether a contact that touches turns, or goes on beyond a boundary.
+  static std::optional<DomainEnd> find_branch(Law& law, Contact& c, const Change& change, std::vector<Event>& log,
+                                              bool& has_changed) {
+    if (!c.touches()) return std::nullopt;
+    const double opening = law.opening(c.branch());
+    if (change.then < change.now - k_no_change && c.is_on_primary_branch() && change.now > k_no_change) {
+      c.turn(law, opening + change.now, change.turning, log);
+      has_changed = true;
+    } else if (change.then > change.now + k_no_change) {
+      while (const auto ahead = c.next(law)) {
+        const double overlap = ahead->position - opening;
+        if (!(change.then > overlap) || change.now < overlap - k_no_change) break;
+        if (const auto end = c.pass(law, *ahead, log)) return end;
+        has_changed = true;
+      }
+    }
+    return std::nullopt;
+  }
+
+  FreeCentre centre_;
+  std::size_t slot_ = 0;  ///< in y, of the first coordinate of the centre
+  double reach_ = 1.0;
+  Vector rest_ = Vector::Zero();  ///< of the centre, where the present mode began
+  std::vector<Role> roles_;
+  double ahead_ = k_least_ahead;
+  std::vector<double> rates_;  ///< of what the program prescribes
+};
+
+}  // namespace monograin::contacts

@@ -1,0 +1,305 @@
+#include "contacts/centre/free_centre.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "system/limit.hpp"
+
+namespace monograin::contacts {
+namespace {
+
+constexpr double k_round_off = 4.0 * std::numeric_limits<double>::epsilon();
+// A wall that is not farther away than this may be touched and left within an instant.
+constexpr double k_near = 1e-5;
+// Stiffness over the greatest one that is comparable with it.
+constexpr double k_comparable = 1e-3;
+// Share of the prescribed forces that their balance may leave where nothing bears.
+constexpr double k_cancelled = 1e-9;
+constexpr int k_most_steps = 200;
+// A step is long enough where it takes this much off the slope of the energy along it, and short enough where it does
+// not lead as far up again.
+constexpr double k_descent = 0.9;
+constexpr int k_most_sections = 60;
+
+}  // namespace
+
+FreeCentre::FreeCentre(std::span<const ContactClass> classes)
+    : lines_(classes, true),
+      loads_(lines_.size()),
+      forces_(classes.size()),
+      overlaps_(classes.size()),
+      gone_in_(classes.size()),
+      bears_(classes.size()) {
+  for (const ContactClass& c : classes) counts_.push_back(c.multiplicity());
+  to_clear_.reserve(classes.size());
+}
+
+/// Forces and stiffnesses of the contacts along their lines.
+void FreeCentre::sum_up(const CentreWalls& walls, std::span<const Role> roles, const Vector& c) {
+  std::ranges::fill(loads_, Load{});
+  const double distance = c.norm();
+  double magnitudes = 0.0;
+  prescribed_ = 0.0;
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    forces_[i] = 0.0;
+    overlaps_[i] = -std::numeric_limits<double>::infinity();
+    if (!acts(i)) continue;
+    const double along = lines_.along(i);
+    Load& line = loads_[lines_.line_of(i)];
+    if (const auto prescribed = walls.prescribed_force(i)) {
+      line.force += counts_[i] * *prescribed * along;
+      prescribed_ += counts_[i] * std::abs(*prescribed);
+      continue;
+    }
+    const double undisplaced = walls.overlap(i);
+    overlaps_[i] = undisplaced + lines_.arm(i).dot(c);
+    if (roles[i] != Role::bearing || !(overlaps_[i] > 0.0)) continue;
+    const auto [force, slope] = walls.force(i, overlaps_[i]);
+    forces_[i] = force;
+    line.force += counts_[i] * force * along;
+    line.stiffness += counts_[i] * slope * along * along;
+    magnitudes += counts_[i] * (force + slope * std::max({1.0, std::abs(undisplaced), distance}));
+  }
+  round_off_ = k_round_off * (magnitudes + prescribed_);
+}
+
+FreeCentre::Vector FreeCentre::net_force() const noexcept {
+  Vector sum = Vector::Zero();
+  for (std::size_t line = 0; line < loads_.size(); ++line) sum += loads_[line].force * lines_.direction(line);
+  return sum;
+}
+
+/// Newton's step towards the balance where contacts of comparable stiffness bear in all directions; none elsewhere.
+std::optional<FreeCentre::Vector> FreeCentre::step_of_all(const Vector& net) const {
+  Matrix stiffness = Matrix::Zero();
+  for (std::size_t line = 0; line < loads_.size(); ++line) {
+    const Vector& direction = lines_.direction(line);
+    if (loads_[line].stiffness > 0.0) stiffness += (loads_[line].stiffness * direction) * direction.transpose();
+  }
+  const double largest = stiffness.diagonal().maxCoeff();
+  for (int k = dimension(); k < 3; ++k) stiffness(k, k) = largest;
+  Matrix inverse;
+  double determinant = 0.0;
+  bool is_regular = false;
+  stiffness.computeInverseAndDetWithCheck(inverse, determinant, is_regular, 0.0);
+  // No eigenvalue is less than the determinant over the square of the trace.
+  if (!(determinant > k_comparable * largest * largest * largest)) return std::nullopt;
+  return -inverse * net;
+}
+
+/// Newton's step towards the balance along the directions of a basis.
+FreeCentre::Vector FreeCentre::step(const Matrix& basis) const {
+  return lines_.step(
+      basis, [this](std::size_t line) { return loads_[line].stiffness; },
+      [this](std::size_t line) { return loads_[line].force; });
+}
+
+FreeCentre::Matrix FreeCentre::stiffest_directions() const {
+  return lines_.stiffest_directions([this](std::size_t line) { return loads_[line].stiffness; });
+}
+
+/// Where nothing bears a push it takes the centre to the nearest wall in its path, so far in that this bears it.
+FreeCentre::Vector FreeCentre::flight(const CentreWalls& walls, std::span<const Role> roles, const Vector& push,
+                                      const Vector& c) const {
+  const double size = push.norm();
+  const Vector path = -push / size;
+  std::optional<std::size_t> nearest;
+  double distance = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    const double approach = lines_.arm(i).dot(path);
+    if (roles[i] != Role::bearing || walls.prescribed_force(i) || approach <= CentreLines::k_no_direction) continue;
+    const double gap = std::max(0.0, -(walls.overlap(i) + lines_.arm(i).dot(c)));
+    if (gap / approach >= distance) continue;
+    nearest = i;
+    distance = gap / approach;
+  }
+  if (!nearest) throw DomainError(Limit::centre_driven_away);
+  const double approach = lines_.arm(*nearest).dot(path);
+  const double overlap = walls.overlap_under(*nearest, size / (counts_[*nearest] * approach));
+  return (distance + overlap / approach) * path;
+}
+
+/// How much of a step leads to where the energy along it no longer falls. The slope of a convex energy only grows.
+double FreeCentre::share_of_step(const CentreWalls& walls, std::span<const Role> roles, const Vector& c,
+                                 const Vector& step) {
+  const double first = net_force().dot(step);
+  const auto slope = [&](double share) {
+    sum_up(walls, roles, c + share * step);
+    return net_force().dot(step);
+  };
+  double low = 0.0;
+  double high = 1.0;
+  double now = slope(high);
+  if (now <= -k_descent * first) return high;
+  for (int k = 0; k < k_most_sections && std::abs(now) > -k_descent * first; ++k) {
+    const double middle = std::midpoint(low, high);
+    now = slope(middle);
+    (now > 0.0 ? high : low) = middle;
+  }
+  return low > 0.0 ? low : high;
+}
+
+/// Makes contacts that bear less than a force as stiff as under that: at first touch they have no stiffness.
+void FreeCentre::lend_stiffness(const CentreWalls& walls, std::span<const Role> roles, double force) {
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    if (roles[i] != Role::bearing || !(overlaps_[i] > 0.0) || forces_[i] >= force) continue;
+    const double along = lines_.along(i);
+    const double now = walls.force(i, overlaps_[i]).slope;
+    const double under = walls.force(i, walls.overlap_under(i, force)).slope;
+    loads_[lines_.line_of(i)].stiffness += counts_[i] * std::max(0.0, under - now) * along * along;
+  }
+}
+
+FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const Role> roles, Vector c) {
+  double last = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < k_most_steps; ++k) {
+    sum_up(walls, roles, c);
+    const Vector net = net_force();
+    lend_stiffness(walls, roles, net.norm());
+    Vector borne = net;
+    Vector wanted = Vector::Zero();
+    const auto quick = step_of_all(net);
+    is_held_ = quick.has_value();
+    if (quick) {
+      wanted = *quick;
+    } else {
+      const Matrix basis = stiffest_directions();
+      borne = basis * (basis.transpose() * net);
+      if (const Vector left = net - borne; left.norm() > std::max(round_off_, k_cancelled * prescribed_)) {
+        c += flight(walls, roles, left, c);
+        continue;
+      }
+      wanted = step(basis);
+    }
+    if (borne.norm() <= round_off_) return c + wanted;
+    const double share = share_of_step(walls, roles, c, wanted);
+    c += share * wanted;
+    // Round-off of the position is all that is left.
+    const double size = share * wanted.norm();
+    if (size <= k_round_off * std::max(1.0, c.norm()) && size >= 0.5 * last) return c;
+    last = size;
+  }
+  throw DomainError(Limit::no_solution, "the balance of forces on the free centre was not found");
+}
+
+/// True if contacts bear in all directions, none of them below resolution, where the last search has ended.
+bool FreeCentre::is_held() const noexcept {
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    if (forces_[i] > 0.0 && !(forces_[i] > round_off_ && overlaps_[i] > k_resolution)) return false;
+  }
+  return is_held_;
+}
+
+/// Finds the contacts that bear at the last sums.
+/// @param least_overlap  of a contact that does
+/// @return basis of the directions in which they do
+FreeCentre::Matrix FreeCentre::held_directions(const CentreWalls& walls, double least_overlap) {
+  for (Load& line : loads_) line.stiffness = 0.0;
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    const double least_force = least_overlap > 0.0 ? round_off_ : 0.0;
+    bears_[i] = forces_[i] > least_force && overlaps_[i] > least_overlap;
+    if (!bears_[i]) continue;
+    const double along = lines_.along(i);
+    loads_[lines_.line_of(i)].stiffness += counts_[i] * walls.force(i, overlaps_[i]).slope * along * along;
+  }
+  return stiffest_directions();
+}
+
+/// Moves the centre by the least by which none of the walls overlaps.
+/// @param along  projector on the directions in which it may move
+/// @return false, and c as it was, if there is no such position
+bool FreeCentre::clear(std::span<const std::size_t> walls, const Matrix& along, Vector& c) const {
+  Vector now = c;
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const std::size_t i = walls[k];
+    const double overlap = gone_in_[i] + lines_.arm(i).dot(now);
+    if (overlap <= k_round_off) continue;
+    const Vector path = along * lines_.arm(i);
+    const double share = path.squaredNorm();
+    if (!(share > CentreLines::k_no_direction * CentreLines::k_no_direction)) return false;
+    now = c - path * ((gone_in_[i] + lines_.arm(i).dot(c)) / share);
+    if (!clear(walls.first(k), along - path * path.transpose() / share, now)) return false;
+  }
+  c = now;
+  return true;
+}
+
+/// Clears the walls that do not bear, but for one.
+bool FreeCentre::clear_all_but(std::optional<std::size_t> left_out, const CentreWalls& walls,
+                               std::span<const Role> roles, Vector& c) {
+  to_clear_.clear();
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    if (!acts(i) || roles[i] == Role::away || walls.prescribed_force(i) || i == left_out) continue;
+    gone_in_[i] = walls.overlap(i);
+    if (!bears_[i] && across_held(i) > CentreLines::k_no_direction) to_clear_.push_back(i);
+  }
+  Matrix free = Matrix::Zero();
+  free.topLeftCorner(dimension(), dimension()).setIdentity();
+  return clear(to_clear_, free - held_directions_ * held_directions_.transpose(), c);
+}
+
+/// Component of a mean normal across the directions in which contacts bear.
+double FreeCentre::across_held(std::size_t i) const {
+  return (lines_.arm(i) - held_directions_ * (held_directions_.transpose() * lines_.arm(i))).norm();
+}
+
+/// Moves the centre along directions in which no contact bears to where it was when the mode began, and out of the path
+/// of walls that push it.
+/// @param left_out  a wall that does not
+FreeCentre::Vector FreeCentre::with_loose_directions(const CentreWalls& walls, std::span<const Role> roles,
+                                                     const Vector& rest, const Vector& balanced,
+                                                     std::optional<std::size_t> left_out) {
+  for (const double least_overlap : {k_resolution, 0.0}) {
+    held_directions_ = held_directions(walls, least_overlap);
+    if (dimension() == 0 || held_directions_.col(dimension() - 1).squaredNorm() > 0.0) return balanced;
+    Vector c = rest + held_directions_ * (held_directions_.transpose() * (balanced - rest));
+    // Walls that leave no room bear, however little.
+    if (clear_all_but(left_out, walls, roles, c) || least_overlap == 0.0) return c;
+  }
+  return balanced;
+}
+
+FreeCentre::Vector FreeCentre::equilibrium(const CentreWalls& walls, std::span<const Role> roles, const Vector& rest,
+                                           const Vector& guess) {
+  const Vector balanced = balance(walls, roles, guess);
+  return is_held() ? balanced : with_loose_directions(walls, roles, rest, balanced, std::nullopt);
+}
+
+double FreeCentre::unpushed_overlap(std::size_t i, const CentreWalls& walls, std::span<const Role> roles,
+                                    const Vector& rest, const Vector& guess) {
+  const Vector c = with_loose_directions(walls, roles, rest, balance(walls, roles, guess), i);
+  return walls.overlap(i) + lines_.arm(i).dot(c);
+}
+
+void FreeCentre::find_roles(const CentreWalls& now, const CentreWalls& then, Vector& c, std::span<Role> roles) {
+  const Vector rest = c;
+  std::ranges::fill(roles, Role::bearing);
+  c = with_loose_directions(then, roles, rest, balance(then, roles, rest), std::nullopt);
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    const bool bears_now = !now.prescribed_force(i) && now.overlap(i) + lines_.arm(i).dot(rest) > k_resolution;
+    if (bears_now || bears_[i] || across_held(i) <= CentreLines::k_no_direction) continue;
+    const bool is_near = then.prescribed_force(i) || then.overlap(i) + lines_.arm(i).dot(c) > -k_near;
+    roles[i] = is_near ? Role::idle : Role::away;
+  }
+}
+
+FreeCentre::Vector FreeCentre::velocity(const CentreWalls& walls, std::span<const Role> roles,
+                                        std::span<const double> rates, const Vector& c) {
+  sum_up(walls, roles, c);
+  for (Load& line : loads_) line.force = 0.0;
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    if (!acts(i)) continue;
+    double rate = 0.0;
+    if (walls.prescribed_force(i))
+      rate = rates[i];
+    else if (forces_[i] > 0.0)
+      rate = rates[i] * walls.force(i, overlaps_[i]).slope;
+    loads_[lines_.line_of(i)].force += counts_[i] * rate * lines_.along(i);
+  }
+  return step(stiffest_directions());
+}
+
+}  // namespace monograin::contacts

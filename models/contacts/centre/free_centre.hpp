@@ -1,0 +1,128 @@
+/// Equilibrium of a particle whose centre is free, under unilateral contacts with walls.
+///
+/// The centre c minimises a convex function: the energy of the contacts whose walls have a prescribed displacement,
+/// less the work of the prescribed forces. Newton's method with the contacts' tangent stiffness finds it. Directions in
+/// which no contact bears are not determined by that: there the centre stays where the mode began, unless idle walls
+/// (which touch and bear nothing) would go into the particle; then it moves by the least that clears them. A loose
+/// particle is carried along in this way.
+///
+/// Overlaps below 1e-13 R0, and forces below the round-off of the balance, count as none. Lengths are over R0, forces
+/// over any one unit.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "contacts/centre/centre_lines.hpp"
+
+namespace monograin::contacts {
+
+/// What a class of walls does to a free centre in a mode.
+enum class Role : std::uint8_t {
+  away,     ///< nothing
+  bearing,  ///< its contact bears where it overlaps
+  idle      ///< it bears nothing; where it touches, it pushes the centre along
+};
+
+/// Walls around a free centre at one instant of the program.
+class CentreWalls {
+ public:
+  virtual ~CentreWalls() = default;
+
+  struct Force {
+    double value = 0.0;
+    double slope = 0.0;  ///< with the overlap, >= 0
+  };
+  /// Force that the program prescribes the walls of a class; none where it prescribes their displacement.
+  [[nodiscard]] virtual std::optional<double> prescribed_force(std::size_t i) const = 0;
+  /// How far a wall is past where its contact begins to bear, the centre being where it started; negative for a gap.
+  [[nodiscard]] virtual double overlap(std::size_t i) const = 0;
+  /// Force of a contact at an overlap > 0.
+  [[nodiscard]] virtual Force force(std::size_t i, double overlap) const = 0;
+  /// Overlap under a force > 0.
+  [[nodiscard]] virtual double overlap_under(std::size_t i, double force) const = 0;
+
+ protected:
+  CentreWalls() = default;
+  CentreWalls(const CentreWalls&) = default;
+  CentreWalls& operator=(const CentreWalls&) = default;
+};
+
+class FreeCentre {
+ public:
+  using Vector = CentreLines::Vector;
+  /// Smallest overlap of a contact that bears: below, it only touches.
+  static constexpr double k_resolution = 1e-13;
+  explicit FreeCentre(std::span<const ContactClass> classes);
+
+  [[nodiscard]] int dimension() const noexcept { return lines_.dimension(); }
+  /// By how much the walls of a class press on where the centre moves to c.
+  [[nodiscard]] double along(std::size_t i, const Vector& c) const noexcept { return lines_.arm(i).dot(c); }
+  [[nodiscard]] Eigen::Vector3d in_space(const Vector& c) const noexcept { return lines_.in_space(c); }
+
+  /// Where the centre is in a mode.
+  /// @param rest   where it was when the mode began
+  /// @param guess  a position near to the solution
+  /// @throws DomainError where prescribed forces drive it away: no wall is in the path
+  [[nodiscard]] Vector equilibrium(const CentreWalls& walls, std::span<const Role> roles, const Vector& rest,
+                                   const Vector& guess);
+  /// Its velocity, from the rates of what is prescribed, where contacts bear.
+  /// @param rates  of displacements and forces
+  [[nodiscard]] Vector velocity(const CentreWalls& walls, std::span<const Role> roles, std::span<const double> rates,
+                                const Vector& c);
+  /// Decides the roles of the walls in the mode that begins now, at an instant just after.
+  /// @param c  in: where the centre is now; out: where it is then
+  void find_roles(const CentreWalls& now, const CentreWalls& then, Vector& c, std::span<Role> roles);
+  /// Overlap that an idle wall would have if it did not push the centre: negative where it does not touch.
+  [[nodiscard]] double unpushed_overlap(std::size_t i, const CentreWalls& walls, std::span<const Role> roles,
+                                        const Vector& rest, const Vector& guess);
+
+ private:
+  using Matrix = CentreLines::Matrix;
+  /// Forces and stiffness along a line.
+  struct Load {
+    double force = 0.0;
+    double stiffness = 0.0;
+  };
+
+  [[nodiscard]] bool acts(std::size_t i) const noexcept { return lines_.acts(i); }
+  void sum_up(const CentreWalls& walls, std::span<const Role> roles, const Vector& c);
+  [[nodiscard]] Vector net_force() const noexcept;
+  [[nodiscard]] Matrix stiffest_directions() const;
+  [[nodiscard]] std::optional<Vector> step_of_all(const Vector& net) const;
+  [[nodiscard]] Vector step(const Matrix& basis) const;
+  [[nodiscard]] bool is_held() const noexcept;
+  [[nodiscard]] Vector flight(const CentreWalls& walls, std::span<const Role> roles, const Vector& push,
+                              const Vector& c) const;
+  [[nodiscard]] double share_of_step(const CentreWalls& walls, std::span<const Role> roles, const Vector& c,
+                                     const Vector& step);
+  void lend_stiffness(const CentreWalls& walls, std::span<const Role> roles, double force);
+  [[nodiscard]] Vector balance(const CentreWalls& walls, std::span<const Role> roles, Vector c);
+  [[nodiscard]] Matrix held_directions(const CentreWalls& walls, double least_overlap);
+  [[nodiscard]] Vector with_loose_directions(const CentreWalls& walls, std::span<const Role> roles, const Vector& rest,
+                                             const Vector& balanced, std::optional<std::size_t> left_out);
+  [[nodiscard]] bool clear(std::span<const std::size_t> walls, const Matrix& along, Vector& c) const;
+  [[nodiscard]] bool clear_all_but(std::optional<std::size_t> left_out, const CentreWalls& walls,
+                                   std::span<const Role> roles, Vector& c);
+  [[nodiscard]] double across_held(std::size_t i) const;
+
+  CentreLines lines_;
+  std::vector<double> counts_;  ///< walls of each class
+
+  // Of the last sums.
+  std::vector<Load> loads_;     ///< of the lines
+  std::vector<double> forces_;  ///< of one wall of each class
+  double round_off_ = 0.0;      ///< of the balance of forces
+  bool is_held_ = false;        ///< contacts of comparable stiffness bear in all directions
+  double prescribed_ = 0.0;     ///< sum of the magnitudes of prescribed forces
+  // Work space, so that nothing is allocated while integrating.
+  std::vector<double> overlaps_;
+  std::vector<double> gone_in_;  ///< overlaps with the centre where it started
+  std::vector<char> bears_;      ///< whether a contact did when directions that are held were last asked for
+  Matrix held_directions_ = Matrix::Zero();  ///< and these
+  std::vector<std::size_t> to_clear_;
+};
+
+}  // namespace monograin::contacts

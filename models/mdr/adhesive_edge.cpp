@@ -1,0 +1,87 @@
+#include "mdr/adhesive_edge.hpp"
+
+#include <cmath>
+
+namespace monograin::mdr {
+namespace {
+
+// Over its radius, a displacement of a sticking edge that is round-off.
+constexpr double k_edge_rounding = 1e-8;
+
+/// Stretch of the springs at a sticking edge, negative where they are stretched, over that which tears them.
+double stretch_left(const AdhesiveEdge& edge, const Frame& frame, const Adhesion& adhesion, double offset) noexcept {
+  const double w = frame.displacement - profile_height(frame.indenter, edge.radius);
+  const double stretch = critical_stretch(adhesion.composite_modulus, adhesion.surface_energy, edge.radius);
+  return stretch == 0.0 ? w : w / stretch + offset;
+}
+
+}  // namespace
+
+PullOff pull_off_of(const Indenter& indenter, const Adhesion& adhesion) {
+  const auto& [modulus, surface_energy] = adhesion;
+  const auto state = [&, modulus = modulus, surface_energy = surface_energy](Control control) {
+    return peel_state(indenter, modulus, surface_energy, critical_radius(indenter, modulus, surface_energy, control));
+  };
+  return {indenter, state(Control::displacement), state(Control::force)};
+}
+
+std::optional<AdhesiveEdge> AdhesiveEdge::torn(const PeelState& critical) const noexcept {
+  if (radius <= critical.contact_radius) return std::nullopt;
+  return AdhesiveEdge{Edge::peeling, radius};
+}
+
+AdhesiveEdge AdhesiveEdge::set_back(const Indenter& indenter, double displacement_1d) const noexcept {
+  // The profile becomes steeper outwards, and is steeper at the edge than this; an edge of no radius stays as it is.
+  const double steepness = (profile_height(indenter, radius) - profile_height(indenter, 0.5 * radius)) / (0.5 * radius);
+  const double distance = displacement_1d / steepness;
+  return distance < k_edge_rounding * radius ? AdhesiveEdge{motion, radius - distance} : *this;
+}
+
+Contact peeling_contact(const Frame& frame, const Adhesion& adhesion, const PullOff& pull_off,
+                        bool returns_beyond_pull_off) {
+  const PeelState& limit = pull_off.by_displacement;
+  if (returns_beyond_pull_off && frame.displacement < limit.displacement_1d) {
+    return sticking_contact(frame, adhesion.composite_modulus, limit.contact_radius);
+  }
+  return peeling_contact(frame, adhesion.composite_modulus, adhesion.surface_energy, limit.contact_radius);
+}
+
+double sticking_displacement(const Indenter& indenter, double composite_modulus, double a, double force) noexcept {
+  if (!(a > 0.0)) return 0.0;
+  return profile_height(indenter, a) +
+         (force - free_force(indenter, composite_modulus, a)) / (2.0 * composite_modulus * a);
+}
+
+double follow_guard(const AdhesiveEdge& edge, const Frame& frame, const Adhesion& adhesion) noexcept {
+  return stretch_left(edge, frame, adhesion, 0.0);
+}
+
+double peel_guard(const AdhesiveEdge& edge, const Frame& frame, const Adhesion& adhesion) noexcept {
+  return stretch_left(edge, frame, adhesion, 1.0);
+}
+
+double pull_off_guard(const PullOff& pull_off, const Frame& frame) noexcept {
+  const double critical = pull_off.by_displacement.displacement_1d;
+  return (frame.displacement - critical) / std::abs(critical);
+}
+
+double pull_off_guard(const PullOff& pull_off, double force) noexcept {
+  const double critical = pull_off.by_force.force;
+  return (force - critical) / std::abs(critical);
+}
+
+double press_rate(const Frame& frame, const Frame::Change& change, double contact_radius, double overlap_rate,
+                  double growth) noexcept {
+  const EdgePress press = edge_press(frame, change, contact_radius);
+  const double by_overlap = press.by_overlap * overlap_rate;
+  const double by_radius = press.by_radius * growth;
+  const double scale = std::abs(by_overlap) + std::abs(by_radius);
+  return scale > 0.0 ? (by_overlap + by_radius) / scale : 0.0;
+}
+
+double unpeeled_stiffness(const AdhesiveEdge& edge, const Contact& contact, double composite_modulus,
+                          double by_overlap) noexcept {
+  return edge.peels() ? 2.0 * composite_modulus * contact.contact_radius * by_overlap : std::abs(contact.by_overlap);
+}
+
+}  // namespace monograin::mdr

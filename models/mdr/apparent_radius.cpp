@@ -1,0 +1,62 @@
+#include "mdr/apparent_radius.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace monograin::mdr {
+namespace {
+
+// By how much the squared sine of half the angle between opposite walls falls short of 1 for round-off.
+constexpr double k_opposite = 5e-13;
+
+}  // namespace
+
+bool opens_gate(RadiusRule rule, const GrowthDrive& drive) noexcept {
+  // A contact that keeps up with its wall displaces nothing.
+  const bool is_idle = !drive.is_force_controlled && std::abs(drive.inward_rate) <= drive.least_rate;
+  if (rule == RadiusRule::seed && !is_idle) return true;
+  const bool is_driven = drive.is_force_controlled ? drive.rises : drive.inward_rate > drive.least_rate;
+  return drive.is_on_primary_branch && is_driven;
+}
+
+double VolumeBalance::volume_ratio() const noexcept {
+  // There is no smaller volume; fixed steps end beyond it.
+  const double w = std::min(relative_compression, 0.25);
+  return 1.0 - 2.0 * w / (1.0 + std::sqrt(1.0 - 4.0 * w));
+}
+
+double growth_drive(double demand, double time_scale, bool withdraws, bool is_compressible) noexcept {
+  if (time_scale > 0.0) return demand / time_scale;
+  if (demand != 0.0) return std::copysign(1.0, demand);
+  // First touch, or the last one: of two things that vanish, the elastic volume vanishes last.
+  return is_compressible == withdraws ? 1.0 : -1.0;
+}
+
+std::vector<CapPair> cap_pairs_of(std::span<const ContactClass> classes) {
+  std::vector<CapPair> pairs;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    for (std::size_t j = i; j < classes.size(); ++j) {
+      double half_sine = 1.0;
+      for (std::size_t m = 0; m < classes[i].normals.size(); ++m) {
+        for (std::size_t n = (i == j ? m + 1 : 0); n < classes[j].normals.size(); ++n) {
+          half_sine = std::min(half_sine, 0.5 * (classes[i].normals[m] - classes[j].normals[n]).norm());
+        }
+      }
+      if (half_sine * half_sine < 1.0 - k_opposite) {
+        pairs.push_back({static_cast<int>(i), static_cast<int>(j), half_sine});
+      }
+    }
+  }
+  return pairs;
+}
+
+double cap_guard(const CapPair& pair, double first_overlap, double second_overlap, double r) noexcept {
+  // A cap of overlap d covers an angle a on either side of its normal with sin(a/2)^2 = d/(2 R). Caps meet where their
+  // angles add up to that between the normals; half of each, because the cosines of small angles have no digits left.
+  const double scale = 0.5 / (1.0 + r);
+  const double first = std::clamp(first_overlap * scale, 0.0, 1.0);
+  const double second = std::clamp(second_overlap * scale, 0.0, 1.0);
+  return std::sqrt(first * (1.0 - second)) + std::sqrt(second * (1.0 - first)) - pair.half_sine;
+}
+
+}  // namespace monograin::mdr

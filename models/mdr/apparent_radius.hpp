@@ -1,0 +1,158 @@
+/// Growth of the apparent radius: the volume balance of all contacts, its rate, and the rules that open the gate.
+///
+/// Lengths in R0, stresses in any one unit; r = (R - R0)/R0. While the radius grows, the volume that contact caps cut
+/// off the apparent sphere, less what the contacts compress elastically, stays constant:
+///   V_geo,Q(R, delta_o) - V_Q(R, delta_o) = C
+/// over the contacts Q that take part in the growth. Volumes are divided by 4 pi R0^3.
+/// Source: 002_000df8fc37500451.txt, eqs. (37) and (38) in the form that can be integrated.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "mdr/contact_branch.hpp"
+#include "system/walls.hpp"
+
+namespace monograin::mdr {
+
+/// Which contacts make the apparent radius grow, and when.
+enum class RadiusRule {
+  gated,    ///< all touching contacts; only while a contact at its largest overlap is driven inwards
+  yielded,  ///< yielded contacts at their largest overlap; only while one of them is driven inwards
+  seed,     ///< all touching contacts; always (eq. 37 to the letter)
+  fixed     ///< R = R0 for ever
+};
+
+/// True if a contact in a regime takes part in the growth.
+[[nodiscard]] inline bool takes_part(RadiusRule rule, Regime regime) noexcept {
+  switch (rule) {
+    case RadiusRule::gated:
+    case RadiusRule::seed:
+      return touches(regime);
+    case RadiusRule::yielded:
+      return regime == Regime::fully_plastic;
+    case RadiusRule::fixed:
+      return false;
+  }
+  return false;
+}
+
+/// How one contact that takes part in the growth moves.
+struct GrowthDrive {
+  double inward_rate = 0.0;  ///< rate of its wall, inwards positive
+  double least_rate = 0.0;   ///< below which that is round-off
+  bool is_force_controlled = false;
+  bool rises = false;  ///< a prescribed force grows
+  bool is_on_primary_branch = false;
+};
+/// True if such a contact opens the gate for growth.
+[[nodiscard]] bool opens_gate(RadiusRule rule, const GrowthDrive& drive) noexcept;
+
+/// Part of one class of contacts in the volume balance.
+struct VolumeTerm {
+  double count;
+  const Contact& contact;
+  double displacement;  ///< wall displacement relative to the centre
+  double overlap;
+  double rate_by_time;    ///< rate of the displacement at fixed R
+  double rate_by_growth;  ///< its derivative by R, where the force is prescribed
+};
+
+/// The volume balance and its partial derivatives at an instant.
+struct VolumeBalance {
+  double relative_compression = 0.0;  ///< w of all contacts: 1 - 4w > 0 while the volume is defined
+  double under_root = 1.0;            ///< 1 - 4w of those in Q
+  double value = 0.0;                 ///< V_geo,Q - V_Q
+  double by_radius = 0.0;             ///< walls under force moving as that asks for
+  double by_radius_at_rest = 0.0;     ///< by_radius where every wall stands still
+  double by_time = 0.0;
+  double time_scale = 0.0;  ///< sum of the magnitudes in by_time
+
+  /// Volume of the particle over that of the undeformed one.
+  [[nodiscard]] double volume_ratio() const noexcept;
+  /// Share of the particle's surface that growth has for itself between walls that stand still, whatever prescribes
+  /// where they do: the model ends where it is used up, under every control.
+  [[nodiscard]] double free_surface_at_rest(double r) const noexcept {
+    return by_radius_at_rest / ((1.0 + r) * (1.0 + r));
+  }
+};
+
+/// Sums the volume balance up over the contacts in Q.
+class VolumeSum {
+ public:
+  /// @param virial_of_all  sum of force times distance from the centre over all contacts
+  /// @param virial         of those in Q
+  VolumeSum(double bulk_compliance, double virial_of_all, double virial) noexcept
+      : w_(k_scale * bulk_compliance * virial) {
+    sum_.under_root = 1.0 - 4.0 * w_;
+    root_ = std::sqrt(sum_.under_root);
+    weight_ = k_per_solid_angle * bulk_compliance / root_;
+    sum_.relative_compression = k_scale * bulk_compliance * virial_of_all;
+  }
+
+  /// Adds a class of contacts in Q.
+  /// @return the derivative of the balance by the displacement of its walls
+  double add(const VolumeTerm& term, double radius) noexcept {
+    const Contact& c = term.contact;
+    const double distance = 1.0 - term.displacement;
+    caps_ += term.count * term.overlap * term.overlap * (3.0 * radius - term.overlap);
+    overlaps_ += term.count * term.overlap;
+    const double cap_rate = 0.25 * term.overlap * (2.0 * radius - term.overlap);
+    const double volume_rate = weight_ * (c.by_overlap * distance - c.force);
+    const double by_displacement = term.count * (volume_rate - cap_rate);
+    sum_.by_time += by_displacement * term.rate_by_time;
+    sum_.time_scale += term.count * (std::abs(volume_rate) + std::abs(cap_rate)) * std::abs(term.rate_by_time);
+    by_radius_ += term.count * weight_ * (c.by_overlap + c.by_radius) * distance;
+    of_walls_ += by_displacement * term.rate_by_growth;
+    return by_displacement;
+  }
+
+  [[nodiscard]] const VolumeBalance& balance(double r) noexcept {
+    const double radius = 1.0 + r;
+    sum_.value = r * (1.0 + r * (1.0 + k_third * r)) - k_twelfth * caps_ + 2.0 * k_third * w_ / (1.0 + root_);
+    sum_.by_radius_at_rest = by_radius_ + (radius * radius - 0.5 * radius * overlaps_);
+    sum_.by_radius = sum_.by_radius_at_rest + of_walls_;
+    return sum_;
+  }
+
+ private:
+  // Divisions by these would be a good part of what summing up takes.
+  static constexpr double k_per_solid_angle = 0.25 * std::numbers::inv_pi;
+  static constexpr double k_scale = 3.0 * k_per_solid_angle;
+  static constexpr double k_third = 1.0 / 3.0;
+  static constexpr double k_twelfth = 1.0 / 12.0;
+
+  double w_ = 0.0;
+  double root_ = 1.0;
+  double weight_ = 0.0;
+  double caps_ = 0.0;
+  double overlaps_ = 0.0;
+  double by_radius_ = 0.0;
+  double of_walls_ = 0.0;  ///< part of by_radius
+  VolumeBalance sum_;
+};
+
+/// Demand for growth over the magnitudes it is the difference of: -1 where elastic volume loss rules, +1 where the caps
+/// do. The demand itself starts at zero with every first touch, and near nu = 0.5 comes back to zero within no time: as
+/// a root function it would be taken to leave where it has already returned.
+/// @param demand          rate of volume that wants to become growth
+/// @param time_scale      of VolumeBalance
+/// @param withdraws       contacts in Q are only left
+/// @param is_compressible  elastic volume vanishes last, with the square root of the overlap
+[[nodiscard]] double growth_drive(double demand, double time_scale, bool withdraws, bool is_compressible) noexcept;
+
+/// Two walls, maybe of one class, whose contact caps may meet.
+struct CapPair {
+  int first = 0;           ///< contact class
+  int second = 0;          ///< contact class
+  double half_sine = 0.0;  ///< sine of half the smallest angle between two of their normals
+  bool have_met = false;   ///< caps have met and not parted since
+};
+/// All pairs but those on opposite sides, which meet only where the particle is squeezed to nothing.
+[[nodiscard]] std::vector<CapPair> cap_pairs_of(std::span<const ContactClass> classes);
+/// Guard: >= 0 where the caps of two contacts intersect.
+[[nodiscard]] double cap_guard(const CapPair& pair, double first_overlap, double second_overlap, double r) noexcept;
+
+}  // namespace monograin::mdr

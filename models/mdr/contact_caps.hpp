@@ -1,0 +1,44 @@
+/// Caps of contacts that meet: the source's model ends where they intersect.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mdr/particle.hpp"
+#include "system/hybrid_system.hpp"
+
+namespace monograin::mdr {
+
+class ContactCaps {
+ public:
+  /// None where the apparent radius does not grow.
+  explicit ContactCaps(const Setup& setup)
+      : pairs_(setup.grows() ? cap_pairs_of(setup.classes) : std::vector<CapPair>{}),
+        stops_(setup.settings.stops_at_cap_intersection) {}
+
+  /// Before the first step: no caps have met.
+  void start() noexcept {
+    for (CapPair& pair : pairs_) pair.have_met = false;
+    first_radius_.reset();
+  }
+  [[nodiscard]] std::span<const CapPair> pairs() const noexcept { return pairs_; }
+  [[nodiscard]] bool both_touch(const Particle& p, std::size_t pair) const noexcept;
+  /// >= 0 where the caps of a pair intersect.
+  [[nodiscard]] double guard(const Particle& p, std::size_t pair) const;
+
+  /// @return the reason to stop, if that was asked for
+  std::optional<DomainEnd> meet(std::size_t pair, double r, std::vector<Event>& log);
+  /// A contact may be made within the cap of another one, which no guard meets.
+  std::optional<DomainEnd> meet_at_once(const Particle& p, std::vector<Event>& log);
+
+  /// Apparent radius over R0 at which caps met for the first time.
+  [[nodiscard]] std::optional<double> first_radius() const noexcept { return first_radius_; }
+
+ private:
+  std::vector<CapPair> pairs_;
+  bool stops_ = false;
+  std::optional<double> first_radius_;
+};
+
+}  // namespace monograin::mdr

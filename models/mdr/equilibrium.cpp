@@ -1,0 +1,92 @@
+#include "mdr/equilibrium.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "mdr/centre_search.hpp"
+#include "system/limit.hpp"
+
+namespace monograin::mdr {
+namespace {
+
+constexpr int k_most_corrections = 60;
+// Step of the growing radius after which the next one is round-off, where all that depends on it is smooth.
+constexpr double k_last_step = 1e-10;
+// Steps that are round-off, where they do not become shorter.
+constexpr double k_least_step = 1e-12;
+
+}  // namespace
+
+void move_centre_and_walls(Particle& p, double xi, std::span<double> y) {
+  p.move_walls(xi, y);
+  if (p.centre().is_free()) move_centre(p, xi, y);
+  p.record_walls(xi, y);
+}
+
+void complete(Particle& p, double xi, std::span<double> y) {
+  if (!p.mode.is_growing) y[k_radius] = p.mode.held_radius;
+  const bool may_peel_off = p.centre().is_free() && weakest_contact(p);
+  bool is_balanced = true;
+  try {
+    move_centre_and_walls(p, xi, y);
+  } catch (const std::domain_error&) {
+    // A guess beyond pull-off leads to there, where the force that is left is least.
+    is_balanced = false;
+    if (!may_peel_off || !leave_saddle(p, xi, y, is_balanced)) throw;
+  }
+  if (!may_peel_off) return;
+  if (is_balanced) leave_saddle(p, xi, y, is_balanced);
+  p.record_walls(xi, y);
+}
+
+void grow(Particle& p, double xi, std::span<double> y) {
+  const int count = p.centre().count();
+  double below = -std::numeric_limits<double>::infinity();
+  double above = std::numeric_limits<double>::infinity();
+  double step_size = std::numeric_limits<double>::infinity();
+  // Quadratic convergence: below this the next step is rounding, unless square roots still converge, of the force
+  // of what touches a free centre or of an edge next to pull-off.
+  const double last_step =
+      !p.centre().is_free() && !p.peels_anywhere() ? k_last_step : 2.0 * std::numeric_limits<double>::epsilon();
+  for (int iteration = 0; iteration < k_most_corrections; ++iteration) {
+    p.move_walls(xi, y);
+    p.evaluate(xi, y);
+    double slope = p.at().volume.by_radius;
+    double defect = p.at().volume.value - p.mode.frozen_balance;
+    CentreVector to_balance = CentreVector::Zero();
+    CentreVector by_radius = CentreVector::Zero();
+    if (p.centre().is_free()) {
+      to_balance = p.centre().step();
+      by_radius = p.centre().by_radius();
+      slope += p.at().volume_by_centre.dot(by_radius);
+      defect += p.at().volume_by_centre.dot(to_balance);
+    }
+    if (!(slope > 0.0)) throw DomainError(Limit::free_surface_used_up);
+    double step = std::clamp(-defect / slope, -0.1, 0.1);
+    // The balance rises with the radius, but has a kink where a wall under force pulls off: a step over that, and one
+    // back, may lead to and fro without end. What has been seen on either side bounds the next radius.
+    if (!p.centre().is_free()) {
+      (defect < 0.0 ? below : above) = y[k_radius];
+      const double next = y[k_radius] + step;
+      const bool is_bounded = std::isfinite(above - below);
+      if (std::abs(step) >= std::max(last_step, k_least_step) && is_bounded && (next <= below || next >= above)) {
+        step = std::midpoint(below, above) - y[k_radius];
+      }
+    }
+    y[k_radius] += step;
+    const CentreVector centre_step = to_balance + step * by_radius;
+    if (count > 0) set_centre(y, count, centre_of(y, count) + centre_step);
+    const double size = std::max(std::abs(step), centre_step.norm());
+    if (size < last_step) return;
+    // A centre that soft contacts hold goes to and fro by more than that.
+    const bool is_balanced = std::abs(step) < k_least_step && p.centre().force().norm() <= p.force_rounding();
+    if (size >= 0.5 * step_size && (size < k_least_step || is_balanced)) return;
+    step_size = size;
+  }
+  throw DomainError(Limit::free_surface_used_up);
+}
+
+}  // namespace monograin::mdr

@@ -1,0 +1,123 @@
+/// Balance of the forces on the free centre of a particle: what contacts do to it, and how it moves for that.
+///
+/// Contacts push it along the lines of contacts/centre/centre_lines.hpp. Lengths in R0.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "contacts/centre/centre_lines.hpp"
+
+namespace monograin::mdr {
+
+using CentreVector = contacts::CentreLines::Vector;
+using CentreMatrix = contacts::CentreLines::Matrix;
+
+/// Load of a class of contacts on the centre, per wall, towards the centre positive.
+struct CentreLoad {
+  double count = 1.0;
+  double force = 0.0;
+  double force_by_time = 0.0;
+  double force_by_radius = 0.0;
+  double stiffness = 0.0;
+  double tangent_stiffness = 0.0;  ///< no less than that of a touch
+};
+
+/// Tangent stiffness of the centre in its softest direction, over what it would be if no edge peeled and no contact
+/// were softened past its peak.
+struct CentreStiffness {
+  double value = 0.0;
+  CentreVector direction = CentreVector::Zero();
+};
+
+class FreeCentre {
+ public:
+  static constexpr double k_no_direction = contacts::CentreLines::k_no_direction;
+
+  FreeCentre() = default;
+  /// @param is_free  false: nothing moves the centre
+  FreeCentre(std::span<const ContactClass> classes, bool is_free) : lines_(classes, is_free), loads_(lines_.size()) {}
+
+  /// Free directions, 0 to 3.
+  [[nodiscard]] int count() const noexcept { return lines_.dimension(); }
+  [[nodiscard]] bool is_free() const noexcept { return count() > 0; }
+  /// Mean normal of a class along the free directions.
+  [[nodiscard]] const CentreVector& direction(std::size_t i) const noexcept { return lines_.arm(i); }
+  /// True if a contact of the class acts on the centre.
+  [[nodiscard]] bool acts(std::size_t i) const noexcept { return is_free() && lines_.acts(i); }
+  /// A vector along the free directions, in space.
+  [[nodiscard]] Eigen::Vector3d in_space(const CentreVector& vector) const { return lines_.in_space(vector); }
+
+  /// Forgets all loads.
+  void clear() noexcept;
+  void add(std::size_t i, const CentreLoad& added) noexcept;
+  /// Sums the loads of all lines up. Contacts that are first touched have no stiffness yet: along their lines their
+  /// tangents serve.
+  void sum_up() noexcept;
+  [[nodiscard]] const CentreVector& force() const noexcept { return force_; }
+  [[nodiscard]] const CentreMatrix& stiffness() const noexcept { return stiffness_; }
+
+  // Displacements of the centre; none along directions in which no contact constrains it.
+
+  /// Cancels the net force, by the stiffnesses, or by the tangent ones.
+  [[nodiscard]] CentreVector step() const { return step_along(&Load::stiffness, &Load::force); }
+  [[nodiscard]] CentreVector tangent_step() const { return step_along(&Load::tangent_stiffness, &Load::force); }
+  /// Cancels it by the stiffnesses that keep_stiffness() saw.
+  [[nodiscard]] CentreVector step_of_kept() const { return step_along(&Load::kept_stiffness, &Load::force); }
+  void keep_stiffness() noexcept;
+  /// Rates with the step coordinate and with the radius.
+  [[nodiscard]] CentreVector by_time() const { return step_along(&Load::tangent_stiffness, &Load::force_by_time); }
+  [[nodiscard]] CentreVector by_radius() const { return step_along(&Load::tangent_stiffness, &Load::force_by_radius); }
+
+  /// Projector on the directions in which no contact constrains the centre.
+  /// @param constrains  contact class -> whether it does
+  template <class Constrains>
+  [[nodiscard]] CentreMatrix unconstrained(Constrains&& constrains) {
+    for (Load& load : loads_) load.held = 0.0;
+    for (std::size_t i = 0; i < lines_.classes(); ++i) {
+      if (constrains(i)) load(i).held += lines_.along(i) * lines_.along(i);
+    }
+    return unconstrained_directions();
+  }
+  /// @param stiffness_of  contact class, component of its mean normal along its line -> its tangent stiffness along
+  /// that
+  ///                      line, and the one without peeling and softening
+  template <class StiffnessOf>
+  [[nodiscard]] CentreStiffness softest(StiffnessOf&& stiffness_of) {
+    for (Load& load : loads_) load.held = load.unsoftened = 0.0;
+    for (std::size_t i = 0; i < lines_.classes(); ++i) {
+      const auto [held, unsoftened] = stiffness_of(i, lines_.along(i));
+      load(i).held += held;
+      load(i).unsoftened += unsoftened;
+    }
+    return softest_direction();
+  }
+
+ private:
+  /// Of a line.
+  struct Load {
+    double force = 0.0;  ///< net force, and its partial derivatives
+    double force_by_time = 0.0;
+    double force_by_radius = 0.0;
+    double stiffness = 0.0;
+    double tangent_stiffness = 0.0;
+    double kept_stiffness = 0.0;
+    double held = 0.0;        ///< work space of unconstrained() and softest()
+    double unsoftened = 0.0;  ///< work space of softest()
+  };
+  /// Along the line of a class.
+  [[nodiscard]] Load& load(std::size_t i) noexcept { return loads_[lines_.line_of(i)]; }
+  [[nodiscard]] CentreMatrix stiffest_directions(double Load::*stiffness) const {
+    return lines_.stiffest_directions([&](std::size_t line) { return loads_[line].*stiffness; });
+  }
+  [[nodiscard]] CentreVector step_along(double Load::*stiffness, double Load::*force) const;
+  [[nodiscard]] CentreMatrix unconstrained_directions() const;
+  [[nodiscard]] CentreStiffness softest_direction() const;
+
+  contacts::CentreLines lines_;
+  std::vector<Load> loads_;
+  CentreVector force_ = CentreVector::Zero();
+  CentreMatrix stiffness_ = CentreMatrix::Zero();
+};
+
+}  // namespace monograin::mdr

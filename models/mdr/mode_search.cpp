@@ -1,0 +1,650 @@
+#include "mdr/mode_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "mdr/adhesion_validity.hpp"
+#include "mdr/centre_search.hpp"
+#include "mdr/equilibrium.hpp"
+#include "mdr/guards.hpp"
+#include "mdr/support.hpp"
+#include "system/limit.hpp"
+
+namespace monograin::mdr {
+namespace {
+
+// Share of an unloading branch that is left when it counts as loaded to its end together with another event.
+constexpr double k_passed = 1e-2;
+// Under force a wall would go back by what is missing of its force, over the stiffness of a plastic contact, which is
+// less by many orders.
+constexpr double k_passed_by_force = 1e-6;
+// A free centre that has gone this far (over R0) within an instant has sprung.
+constexpr double k_spring = 1e-9;
+// How long after an instant the sign of a demand for growth is asked for that is balanced there.
+constexpr double k_just_after = 1e-9;
+
+/// Takes the events of a contact out again, those from an index on.
+void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
+  const auto first = log.begin() + static_cast<std::ptrdiff_t>(std::min(from, log.size()));
+  const auto is_its = [i](const Event& event) { return event.contact_class == static_cast<int>(i); };
+  log.erase(std::remove_if(first, log.end(), is_its), log.end());
+}
+
+Event event_of(std::string_view name, std::size_t i) { return {name, static_cast<int>(i)}; }
+
+const PullOff& pull_off_of(const Particle& p, std::size_t i) {
+  const ContactBranch& branch = p.branch(i);
+  return branch.pull_off(p.law(), branch.frame(p.law(), p.at().r, p.contact(i).overlap).indenter);
+}
+
+/// Asks whether the model's convex indenter, which knows no yielding in tension, will do for a contact that begins to
+/// unload (F.7).
+std::optional<Diagnostic> check_adhesion(const Particle& p, std::size_t i) {
+  const Material& material = p.law().material;
+  const Control control = p.is_loaded(i) ? Control::force : Control::displacement;
+  const double critical = pull_off_of(p, i).under(control).contact_radius;
+  const double peak = peak_radius_over_initial_radius(p.contact(i).displacement, material.yield_overlap_ratio);
+  const double zone = plastic_zone_size(material.composite_modulus, p.law().surface_energy, material.yield_stress);
+  switch (adhesion_validity(critical, peak, zone)) {
+    case AdhesionValidity::valid:
+      break;
+    case AdhesionValidity::peak_failure:
+      return Diagnostic{"pull-off is not predicted well: the contact's middle is dented beyond its critical radius",
+                        "critical radius over that of the ring", critical / peak};
+    case AdhesionValidity::yielding_failure:
+      return Diagnostic{
+          "pull-off is not predicted well: yielding at the contact's edge is not small-scale (15 and more)",
+          "critical diameter over the plastic zone", 2.0 * critical / zone};
+  }
+  return std::nullopt;
+}
+
+/// Distance of an elastic contact from where it yields, over the overlap there, that counts as none. Contacts that
+/// balance each other on a free centre yield together, and their overlaps agree to the round-off of lengths only.
+double nearness_of_yield(const Particle& p, std::size_t i) noexcept {
+  if (!p.centre().acts(i)) return k_touch;
+  return std::max(k_touch, std::min(k_together, k_resolution / p.law().material.yield_overlap_ratio));
+}
+
+}  // namespace
+
+DomainEnd centre_reached(int contact_class) {
+  return {{"limit", contact_class}, {Limit::wall_at_centre, contact_class, "distance/R0", k_least_distance}};
+}
+
+void ModeSearch::begin(const Particle& particle) {
+  p_ = particle;
+  has_turned_.assign(p_.size(), false);
+  has_resumed_.assign(p_.size(), false);
+  is_left_.assign(p_.size(), false);
+  edges_before_.resize(p_.size());
+  for (std::size_t i = 0; i < p_.size(); ++i) edges_before_[i] = p_.branch(i).edge.motion;
+  growth_.reset();
+  has_jumped_ = false;
+  validity_.reset();
+}
+
+void ModeSearch::close_with(std::size_t i, std::vector<Event>& log) { balance_touch(p_, i, true, log); }
+
+// --- guards that have fired
+
+std::optional<DomainEnd> ModeSearch::apply(std::span<const Guard> fired, double xi, std::span<double> y,
+                                           ContactCaps& caps, std::vector<Event>& log) {
+  p_.evaluated(xi, y);
+  const Motion now = p_.motion(p_.mode.is_growing);
+  std::optional<bool> growth;
+  bool others_fired = false;
+  std::optional<DomainEnd> end;
+  for (const Guard& guard : fired) {
+    if (is_moot(guard, now)) continue;
+    switch (guard.kind) {
+      case k_growth_on:
+      case k_growth_off:
+        growth = guard.kind == k_growth_on;  // resolve() logs it
+        break;
+      case k_greatest_tension:
+      case k_least_tension:
+      case k_tension_falls:
+      case k_tension_rises:
+        if (is_extremum(guard, now)) log.push_back({guard.name, guard.index});
+        break;
+      case k_softened:
+      case k_caps:
+      case k_singular:
+      case k_covered:
+      case k_greatest_force:
+      case k_volume:
+      case k_centre_reached:
+        if (const auto limit = end_of(guard, caps, log)) end = limit;
+        break;
+      default:
+        others_fired = apply_transition(guard, y, now, log) || others_fired;
+        break;
+    }
+  }
+  if (!others_fired) growth_ = growth;
+  if (end && (log.empty() || log.back().name != end->event.name)) log.push_back(end->event);
+  return end;
+}
+
+/// True for a guard that has fired and that another transition at this instant, or round-off, leaves without meaning.
+bool ModeSearch::is_moot(const Guard& guard, const Motion& now) const {
+  // The guard of intersecting caps carries the number of their pair, not of a contact class.
+  if (guard.kind == k_caps) return false;
+  const auto i = static_cast<std::size_t>(std::max(0, guard.index));
+  const ContactBranch& branch = p_.branch(i);
+  const auto has_another_edge = [&] {
+    // Another guard of the same edge has changed it at this instant, or its contact is back at its largest overlap,
+    // where edges only follow.
+    return !branch.touches() || branch.is_on_primary_branch || edges_before_[i] != branch.edge.motion;
+  };
+  switch (guard.kind) {
+    case k_made:
+    case k_dent_touched:
+      return branch.touches();  // closed already, together with the contact it balances
+    case k_lost:
+      return !branch.touches();
+    case k_retreat:
+    case k_yield:
+      return p_.is_idle(i);  // has nothing to unload from, nor to yield by
+    case k_peel:
+    case k_turn:
+      return has_another_edge();
+    case k_follow:
+      return has_another_edge() || edge_rate(p_, i, now) <= k_at_rest;
+    case k_reload: {
+      // Nor is a branch at its end that is as short as what counts as zero.
+      if (branch.regime != Regime::unloading) return false;
+      const double overlap = p_.contact(i).overlap;
+      const double passed = p_.is_loaded(i) ? k_passed_by_force : k_passed;
+      return unloading_fraction(branch.shape(p_.law(), p_.at().r, overlap), overlap) > passed;
+    }
+    default:
+      return false;
+  }
+}
+
+/// @return whether the growth has to be decided anew
+bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const Motion& now, std::vector<Event>& log) {
+  const auto i = static_cast<std::size_t>(std::max(0, guard.index));
+  const auto weakest = weakest_contact(p_);
+  switch (guard.kind) {
+    case k_yield:
+      p_.set_branch(i, p_.branch(i).yielded(p_.law(), p_.at().r));
+      has_jumped_ = has_jumped_ || p_.is_loaded(i);
+      break;
+    case k_reload:
+      p_.set_branch(i, p_.branch(i).reloaded());
+      break;
+    case k_made:
+    case k_dent_touched:
+      p_.set_branch(i, p_.branch(i).made());
+      log.push_back({guard.name, guard.index});
+      balance_touch(p_, i, true, log);
+      return true;
+    case k_lost:
+      p_.lose(i);
+      log.push_back({guard.name, guard.index});
+      balance_touch(p_, i, false, log);
+      return true;
+    case k_follow:
+      p_.set_branch(i, p_.branch(i).with_edge({}));
+      break;
+    case k_retreat:
+      start_unloading(i, guard.name, log);
+      return true;
+    case k_turn:
+      // Through infinity: what holds the centre gives way, and no edge has turned.
+      if (weakest && centre_stiffness(p_).value < k_at_fold)
+        separate(*weakest, y, log);
+      else
+        stick(i, log);
+      has_turned_[i] = true;
+      return true;
+    case k_peel:
+      // Beside stiff contacts the rate of what turns with them has fewer digits.
+      if (edge_rate(p_, i, now) >= -k_at_rest || std::abs(overlap_rate(p_, i, now)) <= k_at_rest) {
+        // An edge that has just turned sticks where it would peel, and leaves with the square of its displacement:
+        // found to be past that by round-off, it would be found there again.
+        const Frame at = p_.branch(i).frame(p_.law(), p_.at().r, p_.contact(i).overlap);
+        const double rounding = edge_rounding(p_, i) * at.by_overlap;
+        p_.set_branch(i, p_.branch(i).with_edge(p_.branch(i).edge.set_back(at.indenter, rounding)));
+        return false;
+      }
+      start_peeling(i, y, log);
+      return true;
+    case k_pull_off:
+      if (p_.branch(i).edge.peels()) separate(i, y, log);
+      return true;
+    default:  // k_unstable
+      // Unless another contact has pulled off at this instant.
+      if (weakest) separate(*weakest, y, log);
+      return true;
+  }
+  log.push_back({guard.name, guard.index});
+  return true;
+}
+
+std::optional<DomainEnd> ModeSearch::end_of(const Guard& guard, ContactCaps& caps, std::vector<Event>& log) {
+  const Event event{guard.name, guard.index};
+  const auto i = static_cast<std::size_t>(std::max(0, guard.index));
+  switch (guard.kind) {
+    case k_softened:
+      return DomainEnd{
+          event,
+          {Limit::centre_softening, -1, "their stiffness over that of shallow contacts", centre_stiffness(p_).value}};
+    case k_caps:
+      return caps.meet(i, p_.at().r, log);
+    case k_singular:
+    case k_covered:
+      return DomainEnd{event, {Limit::free_surface_used_up, -1, "growth slope D_eff/(4 pi R^2)", k_least_slope}};
+    case k_greatest_force:
+      return DomainEnd{event, {Limit::greatest_force, guard.index, "stiffness left", stiffness_left(p_, i)}};
+    case k_volume:
+      return DomainEnd{event, {Limit::half_volume, -1, "V/V0", 0.5}};
+    default:
+      return centre_reached(guard.index);
+  }
+}
+
+/// True if the force of a contact that pulls goes through an extremum where the guard has fired. One that presses has
+/// come back from that with a rate.
+bool ModeSearch::is_extremum(const Guard& guard, const Motion& now) const {
+  const auto i = static_cast<std::size_t>(guard.index);
+  const ContactBranch& branch = p_.branch(i);
+  if (branch.edge.motion != edges_before_[i] || !branch.touches() || !(p_.contact(i).contact.force < 0.0)) return false;
+  return guard.kind == k_greatest_tension ||
+         (guard.kind == k_least_tension && force_rate(p_, i, now) > -2.0 * k_steady_force);
+}
+
+// --- deciding a mode
+
+void ModeSearch::resolve(double xi, std::span<double> y, std::vector<Event>& log) {
+  const bool was_growing = p_.mode.is_growing;
+  made_.clear();
+  runs_away_ = false;
+  p_.mode.loads_on.assign(p_.size(), false);
+  has_resumed_.assign(p_.size(), false);
+  if (!has_jumped_) balance_anew(xi, y, log);
+  p_.mode.held_radius = y[k_radius];
+  const std::vector<double> first_state(y.begin(), y.end());
+  const std::vector<ContactBranch> first_branches = p_.branches();
+  const std::size_t first_logged = log.size();
+  const std::size_t first_made = made_.size();
+  for (std::size_t round = 0;; ++round) {
+    if (round == most_rounds()) {
+      // Where it would run away in a mode that has been tried, the radius goes to and fro with a contact.
+      if (runs_away_) throw DomainError(Limit::free_surface_used_up);
+      if (has_resumed_ == p_.mode.loads_on) throw DomainError(Limit::no_consistent_regimes);
+      // A contact that turns at its largest overlap, and once it has turned goes on beyond that, loads on as it does in
+      // the middle of a step, where its rate is round-off when it turns.
+      std::ranges::copy(first_state, y.begin());
+      p_.set_branches(first_branches);
+      log.resize(first_logged);
+      made_.resize(first_made);
+      growth_.reset();
+      p_.mode.loads_on = has_resumed_;
+      round = 0;
+    }
+    if (!improve(xi, y, log)) break;
+  }
+  check_support(p_);
+  if (p_.mode.is_growing != was_growing) log.push_back({p_.mode.is_growing ? "growth-on" : "growth-off"});
+  log.insert(log.end(), made_.begin(), made_.end());
+  accept(xi, y);
+}
+
+/// Corrects the mode where it is not consistent with the motion in it.
+/// @return false where it is
+bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log) {
+  p_.mode.is_growing = growth_ ? *growth_ : wants_growth(xi, y);
+  p_.evaluated(xi, y);
+  const std::size_t events_before = log.size();
+  if (lose_idle_contacts(p_, xi, y, is_left_, log)) {
+    // A contact that is lost has drawn the centre along in the search for the balance.
+    if (!has_jumped_) complete(p_, xi, y);
+    growth_.reset();
+    return true;
+  }
+  const Motion now = p_.motion(p_.mode.is_growing);
+  runs_away_ = runs_away_ || (p_.mode.is_growing && now.free_surface(y[k_radius]) < k_least_slope);
+  bool has_changed = false;
+  std::vector<std::size_t> just_loaded;
+  for (std::size_t i = 0; i < p_.size(); ++i) {
+    const bool was_open = !p_.branch(i).touches();
+    has_changed = resolve_contact(i, xi, y, now, log) || has_changed;
+    if (was_open && p_.is_loaded(i) && p_.branch(i).touches()) just_loaded.push_back(i);
+  }
+  if (!has_changed) {
+    // Several edges that peel at once may not hold the centre from the start: past already, the guard of that would
+    // not be met.
+    const auto weakest = weakest_contact(p_);
+    if (!weakest || centre_stiffness_guard(p_) >= 0.0) return false;
+    separate(*weakest, y, log);
+  }
+  // No guard is met by a wall that a force presses on from the start.
+  for (const std::size_t i : just_loaded) balance_touch(p_, i, true, made_);
+  // Where a contact has pulled off, the others have to balance anew.
+  if (!has_jumped_ && p_.law().adheres()) balance_anew(xi, y, log);
+  if (!has_jumped_ && !p_.law().adheres()) p_.move_walls(xi, y);
+  // A contact that has just been made carries no force yet and leaves the growth guard's decision standing.
+  if (log.size() > events_before) growth_.reset();
+  return true;
+}
+
+/// Freezes what stays constant in the mode that was found.
+void ModeSearch::accept(double xi, std::span<double> y) {
+  const Evaluation& at = p_.evaluated(xi, y);
+  p_.mode.frozen_balance = p_.mode.is_growing ? at.volume.value : 0.0;
+  // Past already, its guard would not be met.
+  if (p_.mode.is_growing && std::min(p_.motion(true).free_surface(y[k_radius]),
+                                     at.volume.free_surface_at_rest(y[k_radius])) < k_least_slope) {
+    throw DomainError(Limit::free_surface_used_up);
+  }
+  for (std::size_t i = 0; i < p_.size(); ++i) {
+    if (has_greatest_force(p_, i) && stiffness_left(p_, i) < k_last_stiffness)
+      throw DomainError({Limit::greatest_force, static_cast<int>(i), "stiffness left", stiffness_left(p_, i)});
+  }
+  if (!p_.centre().is_free()) return;
+  p_.mode.held_centre = centre_of(y, p_.centre().count());
+  p_.mode.unconstrained = unconstrained_directions(p_);
+  for (std::size_t i = 0; i < p_.size(); ++i) {
+    const bool may_pull = !p_.branch(i).edge.follows();
+    p_.set_bears(i, !p_.centre().acts(i) || is_supported(p_, i) || (may_pull && is_supported(p_, i, -1.0)));
+  }
+}
+
+/// True if the radius starts to grow, or goes on growing, at this instant.
+bool ModeSearch::wants_growth(double xi, std::span<double> y) {
+  if (!p_.setup().grows()) return false;
+  p_.evaluated(xi, y);
+  const Motion now = p_.motion(false);
+  if (!gate_is_open(p_, now)) return false;
+  double drive = growth_drive(p_, now);
+  // A contact under force moves without bound at the instant at which it is made.
+  bool is_singular = false;
+  for (std::size_t i = 0; i < p_.size(); ++i) {
+    is_singular = is_singular || (p_.is_loaded(i) && p_.takes_part(i) && p_.drive(i).rate() > 0.0 &&
+                                  !(p_.contact(i).contact.by_overlap > 0.0));
+  }
+  if (is_singular || std::abs(drive) <= k_touch) {
+    // Balanced to round-off, or undefined: the sign just after decides.
+    p_.move_walls(xi + k_just_after, y);
+    p_.evaluate(xi + k_just_after, y);
+    drive = growth_drive(p_, p_.motion(false));
+    p_.move_walls(xi, y);
+    p_.evaluate(xi, y);
+  }
+  return drive > 0.0;
+}
+
+/// Moves centre and walls to where they belong in the present mode. Where a contact has pulled off, a free centre
+/// springs to another equilibrium, and the other contacts go there along their own branches: back from their largest
+/// overlap, on beyond it, their edges stretched or pressed.
+void ModeSearch::balance_anew(double xi, std::span<double> y, std::vector<Event>& log) {
+  if (!p_.centre().is_free() || !p_.law().adheres()) {
+    complete(p_, xi, y);
+    return;
+  }
+  p_.evaluate(xi, y);
+  spring_ = {.branches = p_.branches(), .overlaps = {}, .logged = log.size(), .made = made_.size()};
+  for (std::size_t i = 0; i < p_.size(); ++i) spring_.overlaps.push_back(p_.contact(i).overlap);
+  for (std::size_t round = 0; round < most_rounds(); ++round) {
+    const std::vector<double> trial(y.begin(), y.end());
+    bool has_arrived = true;
+    try {
+      complete(p_, xi, y);
+    } catch (const std::domain_error&) {
+      // Its present branch does not lead a contact so far: as far as it does, and on from there.
+      std::ranges::copy(trial, y.begin());
+      if (!approach_balance(p_, xi, y)) throw;
+      has_arrived = false;
+    }
+    p_.evaluate(xi, y);
+    bool has_changed = false;
+    for (std::size_t i = 0; i < p_.size(); ++i) has_changed = follow_jump(i, xi, y, log) || has_changed;
+    if (has_changed) continue;
+    if (has_arrived) return;
+    break;
+  }
+  throw DomainError(Limit::no_consistent_regimes);
+}
+
+/// Leads a contact along its branches to where a free centre has sprung.
+/// @return whether its branch has changed
+bool ModeSearch::follow_jump(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log) {
+  if (p_.is_loaded(i)) return false;
+  const double r = y[k_radius];
+  const double jump = p_.contact(i).overlap - spring_.overlaps[i];
+  // A contact that was led in on the path there, to touch, to yield or to reload, may be led back again: each time it
+  // is found anew how far it has come from where it was.
+  const ContactBranch& before = spring_.branches[i];
+  const ContactBranch last = p_.branch(i);
+  const bool has_entered = last.is_on_primary_branch && (!before.is_on_primary_branch || last.regime != before.regime);
+  if (has_entered) {
+    p_.set_branch(i, before);
+    p_.evaluate_contact(i, p_.contact(i).displacement, r);
+    forget_events(i, spring_.logged, log);
+    forget_events(i, spring_.made, made_);
+  }
+  if (std::abs(jump) <= k_spring) return has_entered;
+  // A contact that turns back turns where it came from.
+  const bool turns = jump < 0.0 && p_.branch(i).touches() && p_.branch(i).edge.follows();
+  if (turns) p_.evaluate_contact(i, spring_.overlaps[i] - r, r);
+  p_.assume_rate(i, jump);
+  // A dent may be touched and passed at once: in between it would have no force.
+  std::size_t changes = 0;
+  while (resolve_contact(i, xi, y, Motion{}, log)) {
+    if (++changes > most_rounds()) throw DomainError(Limit::no_consistent_regimes);
+  }
+  const bool is_as_last =
+      p_.branch(i).regime == last.regime && p_.branch(i).is_on_primary_branch == last.is_on_primary_branch;
+  return has_entered ? !is_as_last : changes > 0;
+}
+
+// --- contacts whose guards are past already and moving on
+
+ModeSearch::Tendency ModeSearch::tendency(std::size_t i, double xi, const Motion& now) const {
+  const ContactBranch& branch = p_.branch(i);
+  const bool is_loaded = p_.is_loaded(i);
+  const double of_wall = wall_rate(p_, i, now);
+  const double of_overlap = overlap_rate(p_, i, now);
+  Tendency result;
+  // At the very start of growth its rate is zero, and about to be positive.
+  result.is_carried = p_.mode.is_growing && !is_loaded && of_wall >= -k_touch;
+  result.moves_in = of_overlap > k_touch || result.is_carried;
+  const bool moves_out = of_overlap < -k_touch && !result.is_carried;
+  const bool is_shifted = p_.law().is_shifted();
+  result.retreats = !p_.mode.loads_on[i] && (is_shifted ? of_wall < -k_touch : moves_out);
+  result.advances = is_shifted ? of_wall > k_touch : result.moves_in;
+  // A force that is about to vanish, and was found to do so together with another event, presses no more.
+  const bool is_vanishing =
+      p_.drive(i).rate() < 0.0 && contact_guard(p_, k_made, i, xi, p_.contact(i).overlap) < k_together;
+  result.is_pressed = is_loaded && p_.drive(i).value(xi) > 0.0 && !is_vanishing;
+  // A dent opens and closes where its own depth says so, which moves with the radius too.
+  const bool is_dent = branch.regime == Regime::unloading || branch.regime == Regime::separated;
+  const double of_dent = is_dent && !is_loaded ? edge_rate(p_, i, now) : of_overlap;
+  result.closes = of_dent > k_touch || result.is_carried;
+  result.opens = of_dent < -k_touch && !result.is_carried;
+  return result;
+}
+
+/// @return whether anything changed
+bool ModeSearch::resolve_contact(std::size_t i, double xi, std::span<double> y, const Motion& now,
+                                 std::vector<Event>& log) {
+  const Tendency tends = tendency(i, xi, now);
+  const double overlap = p_.contact(i).overlap;
+  const auto closes_at = [&](GuardKind kind) { return contact_guard(p_, kind, i, xi, overlap) >= -k_touch; };
+  const std::string_view why = xi == 0.0 ? "load-reversal" : "retreat";
+  switch (p_.branch(i).regime) {
+    case Regime::open:
+      if (is_left_[i] || !(tends.moves_in || tends.is_pressed) || !closes_at(k_made)) return false;
+      p_.set_branch(i, p_.branch(i).made());
+      made_.push_back(event_of("contact-made", i));
+      return true;
+    case Regime::separated:
+      if (is_left_[i] || !(tends.closes || tends.is_pressed) || !closes_at(k_dent_touched)) return false;
+      p_.set_branch(i, p_.branch(i).made());
+      log.push_back(event_of("dent-touched", i));
+      return true;
+    case Regime::elastic:
+      if (resolve_elastic(i, xi, tends, log)) return true;
+      if (p_.is_idle(i)) return false;
+      break;
+    case Regime::fully_plastic:
+      if (!tends.retreats) return false;
+      start_unloading(i, why, log);
+      return true;
+    case Regime::unloading:
+      break;
+  }
+  return !p_.branch(i).is_on_primary_branch && resolve_below_largest(i, xi, y, now, tends, log);
+}
+
+bool ModeSearch::resolve_elastic(std::size_t i, double xi, const Tendency& tends, std::vector<Event>& log) {
+  const ContactBranch& branch = p_.branch(i);
+  const double overlap = p_.contact(i).overlap;
+  const bool retreats = branch.is_on_primary_branch && tends.retreats;
+  const bool is_idle = p_.is_idle(i);
+  const bool is_past_opening = is_idle && tends.opens && contact_guard(p_, k_lost, i, xi, overlap) <= k_touch;
+  // Where its force is about to pull before a contact has borne any, there is no edge that could stick.
+  const bool is_unborne = !is_idle && retreats && p_.is_loaded(i) && !tends.is_pressed && overlap < k_resolution;
+  if (is_past_opening || is_unborne) {
+    p_.lose(i);
+    log.push_back(event_of("contact-lost", i));
+    return true;
+  }
+  if (is_idle) return false;
+  if (retreats) {
+    start_unloading(i, xi == 0.0 ? "load-reversal" : "retreat", log);
+    return true;
+  }
+  if (branch.may_yield(p_.law()) && tends.moves_in &&
+      -contact_guard(p_, k_yield, i, xi, overlap) <= nearness_of_yield(p_, i)) {
+    p_.set_branch(i, branch.yielded(p_.law(), p_.at().r));
+    log.push_back(event_of("yield", i));
+    return true;
+  }
+  return false;
+}
+
+bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<double> y, const Motion& now,
+                                       const Tendency& tends, std::vector<Event>& log) {
+  const double overlap = p_.contact(i).overlap;
+  const double passed = tends.advances ? contact_guard(p_, k_reload, i, xi, overlap) : -1.0;
+  if (passed >= -k_touch) {
+    // A contact that has turned at this instant stays where it is: from one evaluation to the next the sign of its rate
+    // changes.
+    if (!has_turned_[i] || primary_branch_rate(p_, i, now) > k_at_rest || passed > k_touch) {
+      has_resumed_[i] = has_turned_[i];
+      p_.set_branch(i, p_.branch(i).reloaded());
+      log.push_back(event_of("reload", i));
+      return true;
+    }
+    // Passed by round-off, the guard would not be met.
+    if (passed > 0.0) p_.set_branch(i, p_.branch(i).with_largest(p_.law(), p_.at().r, overlap));
+  }
+  if (p_.law().adheres()) return resolve_edge(i, xi, y, now, tends.is_carried, log);
+  // No force presses a wall on what is left of its contact: whether that ends does not wait for the radius to grow.
+  const bool is_let_go = p_.is_loaded(i) && p_.drive(i).start() <= 0.0 && p_.drive(i).end() <= 0.0;
+  if ((tends.opens || is_let_go) && contact_guard(p_, k_lost, i, xi, overlap) <= k_touch) {
+    p_.lose(i);
+    log.push_back(event_of("contact-lost", i));
+    return true;
+  }
+  return false;
+}
+
+/// Edge of an adhesive contact below its largest overlap.
+/// @return whether anything changed
+bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_carried,
+                              std::vector<Event>& log) {
+  const double rate = edge_rate(p_, i, now);
+  const bool moves_in = rate > k_at_rest || is_carried;
+  const bool moves_out = rate < -k_at_rest && !is_carried;
+  const double overlap = p_.contact(i).overlap;
+  const auto is_past = [&](GuardKind kind, double sign) {
+    return sign * edge_guard(p_, kind, i, xi, overlap) >= -k_touch;
+  };
+  // A contact that has turned at this instant is at rest: from one evaluation to the next the sign of its rate changes.
+  const bool is_at_rest = has_turned_[i] && std::abs(overlap_rate(p_, i, now)) <= k_at_rest;
+  switch (p_.branch(i).edge.motion) {
+    case Edge::following:
+      if (!moves_out) return false;
+      stick(i, log);
+      return true;
+    case Edge::sticking:
+      if (is_at_rest) return false;
+      if (moves_in && is_past(k_follow, 1.0)) {
+        p_.set_branch(i, p_.branch(i).with_edge({}));
+        log.push_back(event_of("follow", i));
+        return true;
+      }
+      if (!moves_out || !is_past(k_peel, -1.0)) return false;
+      start_peeling(i, y, log);
+      return true;
+    case Edge::peeling:
+      // A force that is held where only a displacement could be has the edge run away.
+      if (is_past(k_pull_off, -1.0) && (moves_out || p_.is_loaded(i))) {
+        separate(i, y, log);
+        return true;
+      }
+      if (rate < 0.0 && !is_carried) return false;
+      stick(i, log);
+      has_turned_[i] = true;
+      return true;
+  }
+  return false;
+}
+
+// --- transitions
+
+void ModeSearch::start_unloading(std::size_t i, std::string_view why, std::vector<Event>& log) {
+  p_.set_branch(i, p_.branch(i).unloaded(p_.law(), p_.at().r, p_.contact(i).overlap));
+  has_turned_[i] = true;
+  log.push_back(event_of(why, i));
+  if (!p_.law().adheres()) return;
+  stick(i, log);
+  if (!validity_) validity_ = check_adhesion(p_, i);
+}
+
+void ModeSearch::stick(std::size_t i, std::vector<Event>& log) {
+  p_.set_branch(i, p_.branch(i).with_edge({Edge::sticking, p_.contact(i).contact.contact_radius}));
+  log.push_back(event_of("stick", i));
+}
+
+/// The springs at a sticking edge tear: it recedes in equilibrium, or, within the critical radius, at once.
+void ModeSearch::start_peeling(std::size_t i, std::span<double> y, std::vector<Event>& log) {
+  const Control control = p_.is_loaded(i) ? Control::force : Control::displacement;
+  const std::optional<AdhesiveEdge> peeling = p_.branch(i).edge.torn(pull_off_of(p_, i).under(control));
+  if (!peeling) {
+    separate(i, y, log);
+    return;
+  }
+  p_.set_branch(i, p_.branch(i).with_edge(*peeling));
+  log.push_back(event_of("peel", i));
+}
+
+/// Pull-off: the edge is no longer stable, and the contact opens at once.
+void ModeSearch::separate(std::size_t i, std::span<double> y, std::vector<Event>& log) {
+  const AdhesiveEdge& edge = p_.branch(i).edge;
+  const bool is_touch = edge.sticks() && edge.radius == 0.0;
+  if (p_.is_loaded(i)) {
+    const Instant& now = p_.contact(i);
+    // The wall keeps the work done on it so far. Where the contact holds negative energy, the load has at least to
+    // supply that in the snap.
+    const double supplied = std::max(0.0, -p_.energy(i, PlasticPart::recoverable));
+    y[k_work] += p_.count(i) * (now.contact.force * now.position + supplied);
+  }
+  p_.set_branch(i, p_.branch(i).with_edge({}));
+  p_.lose(i);
+  log.push_back(event_of(is_touch ? "contact-lost" : "pull-off", i));
+  if (!p_.centre().is_free()) return;
+  // A free centre springs back from there: what peeled on the other side is relieved.
+  for (std::size_t j = 0; j < p_.size(); ++j) {
+    if (p_.branch(j).edge.peels() && !p_.is_loaded(j)) stick(j, log);
+  }
+}
+
+}  // namespace monograin::mdr

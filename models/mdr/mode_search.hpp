@@ -1,0 +1,104 @@
+/// Search for the mode of the MDR particle at an instant: branch of every contact and growth of the radius depend on
+/// each other, so the search assumes a mode, evaluates it, corrects it, and repeats until it is consistent.
+///
+/// It works on a copy of the particle, which takes effect where the caller takes it over.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "mdr/contact_caps.hpp"
+#include "mdr/particle.hpp"
+#include "system/hybrid_system.hpp"
+
+namespace monograin::mdr {
+
+/// A wall has reached the centre of the particle.
+[[nodiscard]] DomainEnd centre_reached(int contact_class);
+
+class ModeSearch {
+ public:
+  explicit ModeSearch(const Particle& particle) : p_(particle) {}
+
+  /// Begins another search, from the mode of a particle.
+  void begin(const Particle& particle);
+  /// The particle in the mode that was found; after an exception, in the one that was tried last.
+  [[nodiscard]] Particle& particle() noexcept { return p_; }
+
+  /// Applies what guards that have fired change, and what they decide about the growth.
+  /// @return the reason to stop, if the equations end here
+  std::optional<DomainEnd> apply(std::span<const Guard> fired, double xi, std::span<double> y, ContactCaps& caps,
+                                 std::vector<Event>& log);
+  /// Closes the nearest walls together with a contact that a force begins to press.
+  void close_with(std::size_t i, std::vector<Event>& log);
+  /// Finds the mode, with centre and walls where they belong in it.
+  /// @throws std::domain_error where there is none
+  void resolve(double xi, std::span<double> y, std::vector<Event>& log);
+
+  /// Warning about the first adhesive contact to unload in this search for which the model is not valid.
+  [[nodiscard]] const std::optional<Diagnostic>& validity() const noexcept { return validity_; }
+
+ private:
+  /// How a contact is about to move.
+  struct Tendency {
+    bool is_carried = false;  ///< by the growth, at its very start
+    bool moves_in = false;
+    bool retreats = false;    ///< from its largest overlap
+    bool advances = false;    ///< beyond it
+    bool is_pressed = false;  ///< by a prescribed force
+    bool closes = false;
+    bool opens = false;
+  };
+
+  /// Where a free centre springs from.
+  struct Spring {
+    std::vector<ContactBranch> branches;
+    std::vector<double> overlaps;
+    std::size_t logged = 0;
+    std::size_t made = 0;
+  };
+
+  [[nodiscard]] bool is_moot(const Guard& guard, const Motion& now) const;
+  bool apply_transition(const Guard& guard, std::span<double> y, const Motion& now, std::vector<Event>& log);
+  [[nodiscard]] std::optional<DomainEnd> end_of(const Guard& guard, ContactCaps& caps, std::vector<Event>& log);
+  [[nodiscard]] bool is_extremum(const Guard& guard, const Motion& now) const;
+
+  [[nodiscard]] bool improve(double xi, std::span<double> y, std::vector<Event>& log);
+  void accept(double xi, std::span<double> y);
+  [[nodiscard]] bool wants_growth(double xi, std::span<double> y);
+  void balance_anew(double xi, std::span<double> y, std::vector<Event>& log);
+  [[nodiscard]] bool follow_jump(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log);
+
+  [[nodiscard]] Tendency tendency(std::size_t i, double xi, const Motion& now) const;
+  bool resolve_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log);
+  bool resolve_elastic(std::size_t i, double xi, const Tendency& tends, std::vector<Event>& log);
+  bool resolve_below_largest(std::size_t i, double xi, std::span<double> y, const Motion& now, const Tendency& tends,
+                             std::vector<Event>& log);
+  bool resolve_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_carried,
+                    std::vector<Event>& log);
+
+  void start_unloading(std::size_t i, std::string_view why, std::vector<Event>& log);
+  void stick(std::size_t i, std::vector<Event>& log);
+  void start_peeling(std::size_t i, std::span<double> y, std::vector<Event>& log);
+  void separate(std::size_t i, std::span<double> y, std::vector<Event>& log);
+  /// After which a mode is taken to have none that agrees with it.
+  [[nodiscard]] std::size_t most_rounds() const noexcept { return 4 * p_.size() + 8; }
+
+  Particle p_;
+  std::vector<bool> has_turned_;   ///< started to unload at this instant
+  std::vector<bool> has_resumed_;  ///< started to unload at this instant, and loaded on beyond its largest overlap
+  std::vector<bool> is_left_;      ///< left, at this instant, by a centre that forces press elsewhere
+  std::vector<Edge> edges_before_;
+  Spring spring_;
+  std::vector<Event> made_;     ///< contacts made in the search, which are logged at its end
+  std::optional<bool> growth_;  ///< what a growth guard has just decided; none: the sign of the demand decides
+  /// The force of a contact has jumped, and its wall has not given way yet: the balance is frozen as it is now, and
+  /// when the wall gives way the radius follows it, if need be back by a little.
+  bool has_jumped_ = false;
+  bool runs_away_ = false;  ///< the radius would, in a mode that has been tried
+  std::optional<Diagnostic> validity_;
+};
+
+}  // namespace monograin::mdr

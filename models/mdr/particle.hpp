@@ -1,0 +1,209 @@
+/// The MDR particle in one mode, under one step of a program: its contacts and their sums at a state, and their rates.
+///
+/// Lengths in R0; stresses in the yield stress (in E* where nothing yields). Source: 002_000df8fc37500451.txt, stated
+/// as a continuous-time model: the published time-step recipe is its first-order explicit scheme.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "contacts/wall_drive.hpp"
+#include "mdr/setup.hpp"
+#include "system/undefined.hpp"
+
+namespace monograin::mdr {
+
+/// Share of the forces on a free centre that is round-off in their balance.
+inline constexpr double k_no_force = 1e-9;
+
+/// One contact class at an instant.
+struct Instant {
+  double displacement = 0.0;  ///< displacement of the wall relative to the present centre
+  double position = 0.0;      ///< displacement of the wall towards the initial position of the centre
+  double overlap = 0.0;
+  Contact contact;
+  double rate_by_time = 0.0;    ///< rate of the displacement with xi, at fixed R and centre
+  double rate_by_growth = 0.0;  ///< its derivative by R, where the force is prescribed
+};
+
+/// All contacts at a state, and what they sum up to. Depends on the state, the program and the branches of the
+/// contacts.
+struct Evaluation {
+  double r = 0.0;
+  double longest = 1.0;  ///< longest length that an overlap is a difference of
+  std::vector<Instant> contacts;
+  VolumeBalance volume;
+  FreeCentre centre;
+  CentreVector volume_by_centre = CentreVector::Zero();  ///< derivative of the volume balance
+  double power = 0.0;       ///< d(work)/dxi, less d(force times displacement) where the force is prescribed
+  double force_work = 0.0;  ///< force times displacement of those contacts
+  /// Stored energy where no part of it is open to question, once it has been asked for.
+  std::optional<double> energy{};
+};
+
+/// Rates with the step coordinate.
+struct Motion {
+  double demand = 0.0;  ///< rate of volume that wants to become growth
+  double slope = 0.0;   ///< D_eff/(4 pi): growth rate = demand/slope
+  double growth = 0.0;  ///< dr/dxi
+  CentreVector centre = CentreVector::Zero();
+
+  /// Share of the particle's surface that growth has for itself while the program moves the walls.
+  [[nodiscard]] double free_surface(double r) const noexcept { return slope / ((1.0 + r) * (1.0 + r)); }
+};
+
+/// Equations that apply between two transitions.
+struct Mode {
+  bool is_growing = false;
+  double held_radius = 0.0;                           ///< r while it is held
+  double frozen_balance = 0.0;                        ///< C while it grows
+  CentreVector held_centre = CentreVector::Zero();    ///< position of a free centre where the mode began
+  CentreMatrix unconstrained = CentreMatrix::Zero();  ///< projector on the directions in which nothing holds it
+  /// Contacts that start to unload at their largest overlap, and would load on at once: taken to load on.
+  std::vector<bool> loads_on;
+};
+
+class Particle {
+ public:
+  explicit Particle(std::shared_ptr<const Setup> setup);
+  /// Brings mode and branches back to what they are before the first step.
+  void start();
+
+  [[nodiscard]] const Setup& setup() const noexcept { return *setup_; }
+  [[nodiscard]] const ContactLaw& law() const noexcept { return setup_->law; }
+  [[nodiscard]] const FreeCentre& centre() const noexcept { return at_.centre; }
+  [[nodiscard]] FreeCentre& centre() noexcept { return at_.centre; }
+  [[nodiscard]] std::size_t size() const noexcept { return branches_.size(); }
+  [[nodiscard]] double count(std::size_t i) const noexcept { return setup_->counts[i]; }
+
+  // Program.
+
+  void set_drives(std::span<const Ramp> ramps);
+  [[nodiscard]] const contacts::WallDrive& drive(std::size_t i) const noexcept { return drives_[i]; }
+  [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return drives_[i].is_force_controlled(); }
+  /// Largest rate of a wall under displacement control; 1 where none moves.
+  [[nodiscard]] double speed_scale() const noexcept;
+
+  // Branches and mode.
+
+  [[nodiscard]] const ContactBranch& branch(std::size_t i) const noexcept { return branches_[i]; }
+  [[nodiscard]] const std::vector<ContactBranch>& branches() const noexcept { return branches_; }
+  void set_branch(std::size_t i, const ContactBranch& branch);
+  /// A wall leaves the particle or its dent, and stays where it is.
+  void lose(std::size_t i) { set_branch(i, branches_[i].lost(at_.contacts[i].displacement)); }
+  void set_branches(const std::vector<ContactBranch>& branches);
+  [[nodiscard]] bool takes_part(std::size_t i) const noexcept {
+    return mdr::takes_part(setup_->settings.radius_rule, branches_[i].regime);
+  }
+  [[nodiscard]] bool peels_anywhere() const noexcept;
+  /// A contact that no others balance bears nothing: what the search for the balance leaves of its force is another one
+  /// at every instant, and does no work.
+  void set_bears(std::size_t i, bool bears);
+
+  Mode mode{};
+
+  // Evaluation at a state.
+
+  /// @throws std::domain_error where the volume of the particle is not defined
+  const Evaluation& evaluate(double xi, std::span<const double> y);
+  /// Without asking whether the volume of the particle is defined.
+  const Evaluation& evaluate_forces(double xi, std::span<const double> y);
+  /// Takes what evaluate_forces() found at a state for evaluate().
+  void accept_volume(double xi, std::span<const double> y);
+  /// evaluate(), unless the last one was for that state.
+  const Evaluation& evaluated(double xi, std::span<const double> y);
+  [[nodiscard]] const Evaluation& at() const noexcept { return at_; }
+  [[nodiscard]] const Instant& contact(std::size_t i) const noexcept { return at_.contacts[i]; }
+  /// Force times displacement of the contacts under force, and nothing else of the evaluation.
+  [[nodiscard]] double force_work(std::span<const double> y);
+  /// Evaluates one contact elsewhere, and nothing else.
+  void evaluate_contact(std::size_t i, double displacement, double r);
+  /// Takes a wall to move at a rate, at fixed R: that of a jump whose other end is known.
+  void assume_rate(std::size_t i, double rate) noexcept;
+  [[nodiscard]] double energy(std::size_t i, PlasticPart part) const;
+  [[nodiscard]] double energy(PlasticPart part);
+
+  [[nodiscard]] Motion motion(bool growing) const;
+  /// @throws std::domain_error where the free surface is used up
+  [[nodiscard]] Motion growing_motion() const;
+
+  // Walls at a state.
+
+  /// Displacement towards a wall by which the centre has come.
+  [[nodiscard]] double carried_by_centre(std::size_t i, std::span<const double> y) const noexcept;
+  /// Moves the walls under force to their displacements under it, at a given radius.
+  void move_walls(double xi, std::span<double> y) const;
+  /// Writes the unknowns of walls that are under force at other times only.
+  void record_walls(double xi, std::span<double> y) const noexcept;
+
+  // Round-off of a free centre.
+
+  [[nodiscard]] double magnitude_of_forces() const noexcept;
+  /// Largest net force on the centre that is round-off of forces that balance.
+  [[nodiscard]] double force_rounding() const;
+  /// Overlap of a contact that only touches a free centre: round-off of lengths, and what the round-off of other forces
+  /// presses it in by, which may bear much more and be much stiffer.
+  [[nodiscard]] double resolution() const;
+  /// True for an idle contact: the wall touches a particle with a free centre and carries no load. Its overlap and the
+  /// rate of that are round-off; it leaves no dent, and is lost when the gap exceeds the resolution.
+  [[nodiscard]] bool is_idle(std::size_t i) const { return centre().acts(i) && is_idle_touch(i); }
+
+ private:
+  [[nodiscard]] double prescribed_position(std::size_t i, double xi) const noexcept;
+  void sum_up(double xi);
+  void load_centre(std::size_t i);
+  void set_rates_under_force(std::size_t i);
+  [[nodiscard]] bool is_slight(std::size_t i);
+  [[nodiscard]] bool is_idle_touch(std::size_t i) const;
+  [[nodiscard]] bool is_below_resolution(double overlap) const;
+
+  std::shared_ptr<const Setup> setup_;
+  std::vector<contacts::WallDrive> drives_;
+  std::vector<CentreVector> supports_;  ///< work space of is_slight()
+  std::vector<bool> may_be_slight_;     ///< a force within the step that is round-off beside the others
+  std::vector<ContactBranch> branches_;
+  std::vector<bool> bears_;
+  std::uint64_t revision_ = 0;  ///< counts changes of all that an evaluation depends on beside the state
+  Evaluation at_;
+  double at_xi_ = k_nan;
+  std::vector<double> at_y_;
+  std::uint64_t at_revision_ = 0;
+};
+
+// --- rates of one contact
+
+/// d(delta_o)/dxi of a wall, towards the centre positive.
+[[nodiscard]] double inward_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
+/// Rate of a wall inwards, of order one. Under force only the sign means something: what the force asks for over the
+/// sum of that and what the growth takes away.
+[[nodiscard]] double wall_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
+/// Rate of the overlap, in the units of wall_rate().
+[[nodiscard]] double overlap_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
+/// Rate of the quantity that defines the largest overlap: the overlap itself, or the displacement of the wall with
+/// delta_max_rule = shifted.
+[[nodiscard]] double primary_branch_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
+/// Rate at which the springs at the edge of a contact are pressed (+) or stretched (-), of order one.
+[[nodiscard]] double edge_rate(const Particle& p, std::size_t i, const Motion& motion);
+/// Rate of a contact's force, over what the walls' motion makes of the force of an edge that sticks.
+[[nodiscard]] double force_rate(const Particle& p, std::size_t i, const Motion& motion);
+/// Rate of the largest overlap if this contact began to unload here, times the ratio of stiffnesses. A contact that
+/// would load again as soon as it unloads alternates between the two without end: it stays on its loading branch until
+/// this rate is negative.
+[[nodiscard]] double rate_if_unloaded(Particle& p, std::size_t i, double xi, std::span<const double> y);
+
+// --- growth
+
+/// True if the rule lets the radius grow under this motion of the contacts.
+[[nodiscard]] bool gate_is_open(const Particle& p, const Motion& motion);
+/// Demand for growth over the magnitudes it is the difference of.
+[[nodiscard]] double growth_drive(const Particle& p, const Motion& motion) noexcept;
+
+/// True for a plastic contact under a prescribed force: at a given radius it bears no more than a largest one.
+[[nodiscard]] bool has_greatest_force(const Particle& p, std::size_t i) noexcept;
+/// Stiffness of a contact over that of a plastic one at no overlap.
+[[nodiscard]] double stiffness_left(const Particle& p, std::size_t i) noexcept;
+
+}  // namespace monograin::mdr

@@ -1,0 +1,80 @@
+/// Constants of a run of the MDR particle: settings, law and units, contact classes, and the unknowns in y.
+///
+/// Unknowns: r = (R - R0)/R0, the work of the walls, with a free centre its displacement along the directions in which
+/// the walls can move it, and the displacement of every wall whose force is prescribed at some time. Where a force is
+/// prescribed, the work is counted less force times displacement, -int delta_o dF: unlike int F d(delta_o) it has no
+/// singularity where a contact is made or snaps off. Lengths in R0; stresses in the yield stress (in E* where nothing
+/// yields).
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "mdr/apparent_radius.hpp"
+#include "mdr/contact_branch.hpp"
+#include "mdr/free_centre.hpp"
+#include "system/hybrid_system.hpp"
+#include "system/walls.hpp"
+
+namespace monograin::mdr {
+
+struct Settings {
+  double initial_radius = 0.0;                                    ///< R0 [m], > 0
+  double youngs_modulus = 0.0;                                    ///< E [Pa], > 0
+  double poisson_ratio = 0.0;                                     ///< in (-1, 0.5]
+  double yield_stress = std::numeric_limits<double>::infinity();  ///< Y [Pa], > 0; infinity: elastic throughout
+  double surface_energy = 0.0;                                    ///< dg of the particle-wall contact [J/m2], >= 0
+  ElasticProfile elastic_profile = ElasticProfile::ellipse;
+  RadiusRule radius_rule = RadiusRule::yielded;
+  DeltaMaxRule delta_max_rule = DeltaMaxRule::running_maximum;
+  std::shared_ptr<const PressureCurve> pressure_curve{};  ///< p_Y/Y over delta/R; null: the source's exponential
+  bool stops_at_cap_intersection = false;
+  bool centre_is_free = false;  ///< the centre moves so that the wall forces balance
+  /// Largest displacement [m] and force [N] the program asks of a wall: how large the unknowns become, which absolute
+  /// tolerances are relative to. 0: not said.
+  double largest_displacement = 0.0;
+  double largest_force = 0.0;
+};
+
+// Indices of the unknowns in y.
+inline constexpr std::size_t k_radius = 0;  ///< r = (R - R0)/R0
+inline constexpr std::size_t k_work = 1;
+inline constexpr std::size_t k_centre = 2;  ///< first free direction of the centre; the others follow
+[[nodiscard]] constexpr std::size_t centre_index(int k) noexcept { return k_centre + static_cast<std::size_t>(k); }
+/// Displacement of the centre in a state.
+[[nodiscard]] CentreVector centre_of(std::span<const double> y, int free_count) noexcept;
+void set_centre(std::span<double> y, int free_count, const CentreVector& centre) noexcept;
+
+/// Constants of a run.
+struct Setup {
+  Setup(const Settings& given, std::vector<ContactClass> contact_classes);
+
+  Settings settings;
+  ContactLaw law;            ///< stresses over the stress unit, lengths over R0
+  double stress_unit = 1.0;  ///< [Pa]
+  std::vector<ContactClass> classes;
+  std::vector<double> counts;           ///< walls of each class
+  bool takes_forces = false;            ///< whether any class ever does
+  FreeCentre centre;                    ///< without loads
+  std::vector<std::size_t> wall_index;  ///< in y, of the displacement of each class that takes a force; else 0
+
+  [[nodiscard]] double length_unit() const noexcept { return settings.initial_radius; }
+  [[nodiscard]] double force_unit() const noexcept { return stress_unit * length_unit() * length_unit(); }
+  [[nodiscard]] bool grows() const noexcept { return settings.radius_rule != RadiusRule::fixed; }
+  [[nodiscard]] std::vector<Unknown> unknowns() const;
+  [[nodiscard]] std::size_t unknown_count() const noexcept {
+    return centre_index(centre.count()) +
+           static_cast<std::size_t>(std::ranges::count_if(classes, &ContactClass::takes_force));
+  }
+  /// Largest displacement that the program makes of any wall, over R0; 1 where it does not say.
+  [[nodiscard]] double largest_overlap_expected() const;
+  /// Growth of the radius up to a displacement.
+  [[nodiscard]] double growth_scale(double displacement) const noexcept;
+  /// Work of one wall up to a displacement, whichever is less of an elastic and a fully plastic contact.
+  [[nodiscard]] double work_scale(double displacement) const noexcept;
+};
+
+}  // namespace monograin::mdr

@@ -1,0 +1,304 @@
+// Contacts that support a free centre, and idle contacts that it leaves.
+
+#include "mdr/support.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "mdr/guards.hpp"
+#include "reaction_cone.hpp"
+#include "system/limit.hpp"
+
+namespace monograin::mdr {
+namespace {
+
+// Share of a push that its balance may leave.
+constexpr double k_balanced = 1e-10;
+// Share of the path on which a push takes a free centre that counts as away from a wall.
+constexpr double k_moved_away = 1e-6;
+constexpr int k_most_steps = 200;
+// Stiffness, over that of the stiffest direction, of one that no contact constrains.
+constexpr double k_no_stiffness_ratio = 1e-12;
+
+/// A wall that can only push a free centre out of its path.
+struct IdleWall {
+  std::size_t contact = 0;
+  double rate = 0.0;  ///< of its overlap, where none of them pushes
+};
+
+/// Measures the displacement of the centre by the overlaps of contacts of these normals: between walls that are nearly
+/// opposite it is far longer than they are. Blind to directions in which no contact constrains the centre.
+Eigen::Matrix3d measure_by_overlaps(std::span<const Eigen::Vector3d> normals, std::span<const double> weights) {
+  Eigen::Matrix3d held = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < normals.size(); ++k) held += weights[k] * normals[k] * normals[k].transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(held);
+  const double least = k_no_stiffness_ratio * directions.eigenvalues().maxCoeff();
+  const Eigen::Vector3d lengths =
+      directions.eigenvalues().unaryExpr([=](double value) { return value > least ? 1.0 / std::sqrt(value) : 0.0; });
+  return lengths.asDiagonal() * directions.eigenvectors().transpose();
+}
+
+/// Overlaps to which contacts of these normals, whose forces go with their overlaps to the 3/2, come under a push, over
+/// the displacement of the centre, up to a factor: Newton on the least of a convex energy.
+std::vector<double> overlaps_under_push(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> normals,
+                                        std::vector<double> weights) {
+  for (const double most = std::ranges::max(weights); double& weight : weights) weight /= most;
+  const Eigen::Matrix3d measure = measure_by_overlaps(normals, weights);
+  const Eigen::Vector3d load = (measure * push).normalized();
+  std::vector<Eigen::Vector3d> measured;
+  for (const Eigen::Vector3d& normal : normals) measured.emplace_back(measure * normal);
+  Eigen::Vector3d path = Eigen::Vector3d::Zero();
+  const auto energy = [&](const Eigen::Vector3d& at) {
+    double sum = load.dot(at);
+    for (std::size_t k = 0; k < measured.size(); ++k)
+      sum += 0.4 * weights[k] * std::pow(std::max(0.0, measured[k].dot(at)), 2.5);
+    return sum;
+  };
+  for (int iteration = 0; iteration < k_most_steps; ++iteration) {
+    Eigen::Vector3d slope = load;
+    Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+    for (std::size_t k = 0; k < measured.size(); ++k) {
+      const double root = std::sqrt(std::max(0.0, measured[k].dot(path)));
+      slope += weights[k] * root * root * root * measured[k];
+      stiffness += 1.5 * weights[k] * root * measured[k] * measured[k].transpose();
+    }
+    if (slope.norm() < k_balanced) break;
+    // Where nothing is pressed as yet there is no stiffness.
+    stiffness.diagonal().array() += slope.norm();
+    Eigen::Vector3d step = -stiffness.ldlt().solve(slope);
+    const double before = energy(path);
+    while (energy(path + step) >= before && step.norm() > k_balanced * path.norm()) step *= 0.5;
+    path += step;
+  }
+  std::vector<double> overlaps;
+  for (const Eigen::Vector3d& normal : measured) overlaps.push_back(normal.dot(path) / path.norm());
+  return overlaps;
+}
+
+/// Distance of a wall from touching the fresh particle or its dent.
+double distance_to_touch(const Particle& p, std::size_t i) {
+  const int kind = p.branch(i).regime == Regime::separated ? k_dent_touched : k_made;
+  return std::abs(contact_guard(p, kind, i, 0.0, p.contact(i).overlap));
+}
+
+/// True if contacts that touch, or are about to, can balance a push of one on the free centre.
+bool may_be_supported(const Particle& p, std::size_t i) {
+  std::vector<CentreVector> others;
+  for (std::size_t j = 0; j < p.size(); ++j) {
+    if (j == i || !p.centre().acts(j)) continue;
+    if (!p.branch(j).touches() && (p.is_loaded(j) || distance_to_touch(p, j) > k_together)) continue;
+    others.push_back(p.centre().direction(j).normalized());
+  }
+  return in_reaction_cone(p.centre().direction(i), others);
+}
+
+/// The contact that closes or opens together with another one: the nearest of those that do so within the integration
+/// error, and to open has nothing that balances it.
+std::optional<std::size_t> nearest_partner(const Particle& p, std::size_t i, bool is_made) {
+  std::optional<std::size_t> next;
+  double nearest = k_together;
+  for (std::size_t j = 0; j < p.size(); ++j) {
+    if (j == i || p.is_loaded(j) || !p.centre().acts(j) || p.branch(j).touches() == is_made) continue;
+    const double distance =
+        is_made ? distance_to_touch(p, j) : std::abs(contact_guard(p, k_lost, j, 0.0, p.contact(j).overlap));
+    if (distance > nearest || (!is_made && is_supported(p, j))) continue;
+    next = j;
+    nearest = distance;
+  }
+  return next;
+}
+
+/// True if forces press a free centre against idle contacts: those that bear already cannot balance them by themselves,
+/// now or at the end of the step.
+bool idle_contacts_have_to_bear(const Particle& p, double xi) {
+  std::vector<CentreVector> bearing;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!p.branch(i).touches() || p.is_loaded(i) || p.is_idle(i) || !p.centre().acts(i)) continue;
+    bearing.push_back(p.centre().direction(i).normalized());
+    if (!p.branch(i).edge.follows()) bearing.emplace_back(-p.centre().direction(i).normalized());
+  }
+  const double least = k_no_force * largest_prescribed_force(p);
+  const auto is_borne = [&](const CentreVector& push) {
+    return push.norm() <= least || in_reaction_cone(push, bearing);
+  };
+  return !is_borne(prescribed_push(p, xi)) || !is_borne(prescribed_push(p, 1.0));
+}
+
+/// Adds to a velocity of the centre the least by which none of the walls goes into the particle. One that the least for
+/// those before it lets in keeps up with the centre in the end.
+/// @param along  projector on the directions in which nothing else holds the centre
+/// @return false, and the velocity as it was, if there is none
+bool push_out(const Particle& p, std::span<const IdleWall> walls, const CentreMatrix& along, CentreVector& velocity) {
+  CentreVector now = velocity;
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const CentreVector& normal = p.centre().direction(walls[k].contact);
+    const double rate = walls[k].rate + normal.dot(now);
+    if (rate <= k_touch * (1.0 + now.norm())) continue;
+    const CentreVector path = along * normal;
+    const double share = path.squaredNorm();
+    if (!(share > FreeCentre::k_no_direction * FreeCentre::k_no_direction)) return false;
+    now = velocity - path * ((walls[k].rate + normal.dot(velocity)) / share);
+    if (!push_out(p, walls.first(k), along - path * path.transpose() / share, now)) return false;
+  }
+  velocity = now;
+  return true;
+}
+
+/// Velocity of the centre that idle walls add to what it has without them, if they leave it a way out; and the rates of
+/// their overlaps without it.
+std::optional<CentreVector> velocity_of(Particle& p, std::span<IdleWall> walls, double xi, std::span<const double> y) {
+  const std::vector<ContactBranch> before = p.branches();
+  for (const IdleWall& wall : walls) p.lose(wall.contact);
+  p.evaluate(xi, y);
+  const Motion now = p.motion(p.mode.is_growing);
+  for (IdleWall& wall : walls) wall.rate = overlap_rate(p, wall.contact, now);
+  CentreVector velocity = CentreVector::Zero();
+  const bool is_free = push_out(p, walls, unconstrained_directions(p), velocity);
+  p.set_branches(before);
+  p.evaluate(xi, y);
+  return is_free ? std::optional(velocity) : std::nullopt;
+}
+
+/// Loses the idle contacts that the centre leaves where forces begin to press it: contacts give way
+/// with the force to the 2/3, beside which walls stand still at first. Which of them will bear cannot be decided one by
+/// one, nor where those to be left still pull in the search for the balance.
+/// @return whether there are any
+bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std::vector<bool>& is_left,
+                    std::vector<Event>& log) {
+  const std::vector<ContactBranch> before = p.branches();
+  for (const IdleWall& wall : walls) p.lose(wall.contact);
+  const CentreMatrix along = unconstrained_directions(p);
+  p.set_branches(before);
+  const double least = k_no_force * largest_prescribed_force(p);
+  const CentreVector push = along * prescribed_push(p, 1.0);
+  if (push.norm() <= least) return false;
+  // Forces begin with a step: once contacts have given way to one, however small, walls may have caught up.
+  if (xi > 0.0 || (along * prescribed_push(p, xi)).norm() > p.force_rounding()) return false;
+  std::vector<CentreVector> normals;
+  for (const IdleWall& wall : walls) normals.emplace_back(along * p.centre().direction(wall.contact));
+  std::vector<CentreVector> units;
+  for (const CentreVector& normal : normals) {
+    if (normal.norm() > FreeCentre::k_no_direction) units.push_back(normal.normalized());
+  }
+  if (!in_reaction_cone(push, units)) return false;
+  std::vector<double> weights;
+  for (const IdleWall& wall : walls)
+    weights.push_back(p.count(wall.contact) *
+                      p.branch(wall.contact).tangent_stiffness(p.law(), p.contact(wall.contact).contact));
+  const std::vector<double> overlaps = overlaps_under_push(push, normals, weights);
+  bool has_left = false;
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const std::size_t i = walls[k].contact;
+    if (!(overlaps[k] < -k_moved_away)) continue;
+    p.lose(i);
+    is_left[i] = true;
+    log.push_back({"contact-lost", static_cast<int>(i)});
+    has_left = true;
+  }
+  return has_left;
+}
+
+}  // namespace
+
+bool is_supported(const Particle& p, std::size_t i, double side) {
+  std::vector<CentreVector> others;
+  return is_supported(p, i, side, others);
+}
+
+bool is_supported(const Particle& p, std::size_t i, double side, std::vector<CentreVector>& others) {
+  others.clear();
+  for (std::size_t j = 0; j < p.size(); ++j) {
+    if (j == i || !p.branch(j).touches() || !p.centre().acts(j)) continue;
+    others.push_back(p.centre().direction(j).normalized());
+    if (!p.branch(j).edge.follows()) others.emplace_back(-p.centre().direction(j).normalized());
+  }
+  return in_reaction_cone(side * p.centre().direction(i), others);
+}
+
+CentreMatrix unconstrained_directions(Particle& p) {
+  return p.centre().unconstrained([&](std::size_t i) { return p.branch(i).touches() && !p.is_loaded(i); });
+}
+
+CentreVector prescribed_push(const Particle& p, double xi) noexcept {
+  CentreVector sum = CentreVector::Zero();
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!p.is_loaded(i) || !p.branch(i).touches()) continue;
+    sum += p.count(i) * p.drive(i).value(xi) * p.centre().direction(i);
+  }
+  return sum;
+}
+
+double largest_prescribed_force(const Particle& p) noexcept {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.branch(i).touches() && p.is_loaded(i)) largest = std::max(largest, p.count(i) * p.drive(i).size());
+  }
+  return largest;
+}
+
+void check_support(Particle& p) {
+  if (!p.centre().is_free()) return;
+  const double largest = largest_prescribed_force(p);
+  if (largest == 0.0) return;
+  const CentreMatrix unconstrained = unconstrained_directions(p);
+  const double left =
+      std::max((unconstrained * prescribed_push(p, 0.0)).norm(), (unconstrained * prescribed_push(p, 1.0)).norm());
+  if (left > k_no_force * largest) {
+    throw DomainError(Limit::centre_driven_away);
+  }
+}
+
+void balance_touch(Particle& p, std::size_t i, bool is_made, std::vector<Event>& log) {
+  if (!p.centre().acts(i) || p.law().adheres()) return;
+  // Walls that cannot balance it have not met the particle with it, however near they are.
+  if (is_made && !may_be_supported(p, i)) return;
+  while (!is_made || !is_supported(p, i)) {
+    const std::optional<std::size_t> next = nearest_partner(p, i, is_made);
+    if (!next) return;
+    const bool is_dent = p.branch(*next).regime == Regime::separated;
+    if (is_made) {
+      p.set_branch(*next, p.branch(*next).made());
+    } else {
+      p.lose(*next);
+    }
+    log.push_back({!is_made ? "contact-lost" : is_dent ? "dent-touched" : "contact-made", static_cast<int>(*next)});
+  }
+}
+
+bool lose_idle_contacts(Particle& p, double xi, std::span<const double> y, std::vector<bool>& is_left,
+                        std::vector<Event>& log) {
+  std::vector<IdleWall> walls;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.is_idle(i)) walls.push_back({i});
+  }
+  if (walls.empty()) return false;
+  std::vector<IdleWall> unopposed = walls;
+  std::erase_if(unopposed, [&](const IdleWall& wall) { return is_supported(p, wall.contact); });
+  std::optional<CentreVector> velocity;
+  if (idle_contacts_have_to_bear(p, xi)) {
+    if (lose_unpressed(p, walls, xi, is_left, log)) return true;
+  } else {
+    velocity = velocity_of(p, walls, xi, y);
+  }
+  if (!velocity && !unopposed.empty()) {
+    walls = unopposed;
+    velocity = velocity_of(p, walls, xi, y);
+  }
+  if (!velocity) return false;
+  // Beside stiff contacts these rates have fewer digits; what leaves more slowly is lost when it has gone.
+  const double least = -k_at_rest * (1.0 + velocity->norm());
+  bool has_left = false;
+  for (const IdleWall& wall : walls) {
+    const std::size_t i = wall.contact;
+    if (!(wall.rate + p.centre().direction(i).dot(*velocity) < least)) continue;
+    p.lose(i);
+    log.push_back({"contact-lost", static_cast<int>(i)});
+    has_left = true;
+  }
+  return has_left;
+}
+
+}  // namespace monograin::mdr

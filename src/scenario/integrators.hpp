@@ -1,0 +1,42 @@
+/// Names of the integrators that a scenario may ask for: the one place where they are spelled.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace monograin::integrators {
+
+inline constexpr const char* k_auto = "auto";  ///< the cheapest that reaches the accuracy
+inline constexpr const char* k_direct = "direct";
+inline constexpr const char* k_cvode_bdf = "cvode-bdf";
+inline constexpr const char* k_cvode_adams = "cvode-adams";
+inline constexpr const char* k_ida = "ida";
+inline constexpr const char* k_arkode_erk = "arkode-erk";
+inline constexpr const char* k_arkode_dirk = "arkode-dirk";
+inline constexpr const char* k_odeint_dopri5 = "odeint-dopri5";
+inline constexpr const char* k_odeint_fehlberg78 = "odeint-fehlberg78";
+inline constexpr const char* k_odeint_bulirsch_stoer = "odeint-bulirsch-stoer";
+inline constexpr const char* k_odeint_rosenbrock4 = "odeint-rosenbrock4";
+inline constexpr const char* k_gsl_rk8pd = "gsl-rk8pd";
+inline constexpr const char* k_gsl_msadams = "gsl-msadams";
+inline constexpr const char* k_gsl_msbdf = "gsl-msbdf";
+inline constexpr const char* k_explicit = "explicit";  ///< forward Euler
+
+/// All of them, in the order in which they are listed to users.
+inline constexpr std::array<std::string_view, 15> k_all{k_auto,
+                                                        k_direct,
+                                                        k_cvode_bdf,
+                                                        k_cvode_adams,
+                                                        k_ida,
+                                                        k_arkode_erk,
+                                                        k_arkode_dirk,
+                                                        k_odeint_dopri5,
+                                                        k_odeint_fehlberg78,
+                                                        k_odeint_bulirsch_stoer,
+                                                        k_odeint_rosenbrock4,
+                                                        k_gsl_rk8pd,
+                                                        k_gsl_msadams,
+                                                        k_gsl_msbdf,
+                                                        k_explicit};
+
+}  // namespace monograin::integrators

@@ -1,0 +1,220 @@
+// What the atlas leaves: figures and tables.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "figure/markdown.hpp"
+#include "figure/page.hpp"
+#include "study/atlas/atlas.hpp"
+#include "system/undefined.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Cell {
+  const char* heading;
+  double (*value)(const BranchComparison& line);
+  int digits;  ///< in Markdown; CSV has all
+};
+
+/// What a line of a table says after its label.
+constexpr Cell k_cells[] = {
+    {"reversal", [](const BranchComparison& line) { return line.reversal; }, 3},
+    {"area_error", [](const BranchComparison& line) { return line.area_error; }, 3},
+    {"peak_error", [](const BranchComparison& line) { return line.peak_error; }, 3},
+    {"slope", [](const BranchComparison& line) { return line.slope; }, 3},
+    {"reference_slope", [](const BranchComparison& line) { return line.reference_slope; }, 3},
+    {"slope_ratio", [](const BranchComparison& line) { return line.slope / line.reference_slope; }, 3},
+    {"residual", [](const BranchComparison& line) { return line.residual; }, 4},
+    {"reference_residual", [](const BranchComparison& line) { return line.reference_residual; }, 4},
+    {"residual_ratio", [](const BranchComparison& line) { return line.residual / line.reference_residual; }, 3},
+    {"coverage", [](const BranchComparison& line) { return line.coverage; }, 3},
+};
+
+[[nodiscard]] std::string shown_number(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : std::string("-");
+}
+
+using Row = MarkdownRow;
+
+[[nodiscard]] std::vector<Row> rows_of(const ComparisonTable& table) {
+  std::vector<Row> rows{{"case"}};
+  for (const Cell& cell : k_cells) rows.front().emplace_back(cell.heading);
+  std::ranges::for_each(rows.front(), [](std::string& heading) { std::ranges::replace(heading, '_', ' '); });
+  for (const ComparisonRow& row : table.rows) {
+    for (const BranchComparison& line : row.lines) {
+      rows.push_back({row.label});
+      for (const Cell& cell : k_cells) rows.back().push_back(shown_number(cell.value(line), cell.digits));
+    }
+  }
+  return rows;
+}
+
+/// Half a unit in the last place of a printed number: how far it may be from the value it stands for.
+[[nodiscard]] double rounding_of(const std::string& printed) {
+  const std::size_t point = printed.find('.');
+  const std::size_t decimals = point == std::string::npos ? 0 : printed.size() - point - 1;
+  return 0.5 * std::pow(10.0, -static_cast<double>(decimals));
+}
+
+[[nodiscard]] double printed_number(const ValueRow& row) {
+  double number = k_nan;
+  if (!row.printed.empty()) std::from_chars(row.printed.data(), row.printed.data() + row.printed.size(), number);
+  return number;
+}
+
+[[nodiscard]] bool has_references(const ValueTable& table) {
+  return std::ranges::any_of(table.rows, [](const ValueRow& row) { return row.reference.has_value(); });
+}
+
+/// Values beside those of a file.
+[[nodiscard]] std::vector<Row> referenced_rows(const ValueTable& table) {
+  std::vector<Row> rows{{"quantity", "computed", "reference", "difference", "relative", "remark"}};
+  for (const ValueRow& row : table.rows) {
+    const double reference = row.reference.value_or(k_nan);
+    rows.push_back({row.label, fmt::format("{:.5g}", row.value), shown_number(reference, 5),
+                    shown_number(row.value - reference, 3), shown_number((row.value - reference) / reference, 3),
+                    row.remark});
+  }
+  return rows;
+}
+
+[[nodiscard]] std::vector<Row> rows_of(const ValueTable& table) {
+  if (has_references(table)) return referenced_rows(table);
+  constexpr double k_on_the_edge = 1.0 + 1e-9;  // a value of exactly half a unit may be rounded either way
+  const bool has_printed = std::ranges::any_of(table.rows, [](const ValueRow& row) { return !row.printed.empty(); });
+  std::vector<Row> rows;
+  if (!has_printed) {
+    const bool has_remarks = std::ranges::any_of(table.rows, [](const ValueRow& row) { return !row.remark.empty(); });
+    rows.push_back({"quantity", "computed"});
+    for (const ValueRow& row : table.rows) {
+      rows.push_back({row.label, std::isfinite(row.value) ? fmt::format("{:#.10g}", row.value) : "-"});
+    }
+    for (std::size_t k = 0; has_remarks && k <= table.rows.size(); ++k) {
+      rows[k].push_back(k == 0 ? "remark" : table.rows[k - 1].remark);
+    }
+    return rows;
+  }
+  rows.push_back({"quantity", "computed", "printed", "difference", "rounded to it", "remark"});
+  for (const ValueRow& row : table.rows) {
+    const double difference = row.value - printed_number(row);
+    const bool is_rounded_to = std::abs(difference) <= k_on_the_edge * rounding_of(row.printed);
+    rows.push_back({row.label, fmt::format("{:.8g}", row.value), row.printed.empty() ? "-" : row.printed,
+                    shown_number(difference, 3), row.printed.empty() ? "-" : (is_rounded_to ? "yes" : "no"),
+                    row.remark});
+  }
+  return rows;
+}
+
+[[nodiscard]] std::string csv_text(const AtlasFigure& figure) {
+  std::ostringstream out;
+  write_csv(tables_csv(figure), out);
+  return out.str();
+}
+
+constexpr const char* k_about_comparisons =
+    "Loading up to each reversal: area error sqrt(int (model - reference)^2 dx)/int |reference| dx, peak error\n"
+    "max |model - reference|/reference at the reversal, and the share of the loading that the model covers.\n"
+    "Unloading from there: mean slope while the first 5 % of y go, residual x where y vanishes, and both over those\n"
+    "of the reference. A hyphen: y does not vanish, or the curve does not turn back there.\n";
+constexpr const char* k_about_values =
+    "Values as the laws give them; where the source prints one, whether it is the same rounded to as many digits.\n"
+    "A hyphen: there is none.\n";
+constexpr const char* k_about_references = "Values as the laws give them, beside the means of reference values.\n";
+
+/// Titles and labels of a table for CSV; rows refer to them by number.
+struct Words {
+  Column titles{.name = "table", .unit = {}, .labels = {}};
+  Column labels{.name = "case", .unit = {}, .labels = {}};
+
+  [[nodiscard]] std::vector<double> last() const {
+    return {static_cast<double>(titles.labels.size() - 1), static_cast<double>(labels.labels.size() - 1)};
+  }
+};
+
+}  // namespace
+
+std::string tables_text(const AtlasFigure& figure) {
+  if (figure.tables.empty() && figure.value_tables.empty()) return {};
+  const bool is_referenced = std::ranges::any_of(figure.value_tables, has_references);
+  const char* about = !figure.tables.empty() ? k_about_comparisons
+                      : is_referenced        ? k_about_references
+                                             : k_about_values;
+  std::string text = fmt::format("# {}\n\n{}", figure.title, about);
+  const auto append = [&text](const auto& table) {
+    text += fmt::format("\n## {}\n\n", table.title);
+    append_markdown(text, rows_of(table));
+  };
+  std::ranges::for_each(figure.tables, append);
+  std::ranges::for_each(figure.value_tables, append);
+  return text;
+}
+
+Table tables_csv(const AtlasFigure& figure) {
+  Words words;
+  const bool is_referenced = std::ranges::any_of(figure.value_tables, has_references);
+  std::vector<std::vector<double>> rows;
+  for (const ComparisonTable& table : figure.tables) {
+    words.titles.labels.push_back(table.title);
+    for (const ComparisonRow& row : table.rows) {
+      words.labels.labels.push_back(row.label);
+      for (const BranchComparison& line : row.lines) {
+        rows.push_back(words.last());
+        for (const Cell& cell : k_cells) rows.back().push_back(cell.value(line));
+      }
+    }
+  }
+  for (const ValueTable& table : figure.value_tables) {
+    words.titles.labels.push_back(table.title);
+    for (const ValueRow& row : table.rows) {
+      words.labels.labels.push_back(row.label);
+      rows.push_back(words.last());
+      rows.back().insert(rows.back().end(), {row.value, printed_number(row)});
+      if (is_referenced) rows.back().push_back(row.reference.value_or(k_nan));
+    }
+  }
+  std::vector<Column> columns{std::move(words.titles), std::move(words.labels)};
+  const auto add = [&columns](const char* heading) { columns.push_back({.name = heading, .unit = {}, .labels = {}}); };
+  if (figure.tables.empty()) {
+    for (const char* heading : {"computed", "printed"}) add(heading);
+    if (is_referenced) add("reference");
+  } else {
+    for (const Cell& cell : k_cells) add(cell.heading);
+  }
+  Table csv(std::move(columns));
+  csv.header = {{"title", figure.title}, {"source", figure.source}};
+  for (const auto& row : rows) csv.append(row);
+  return csv;
+}
+
+std::vector<fs::path> write_atlas(const std::vector<AtlasFigure>& figures, const fs::path& folder) {
+  std::vector<fs::path> written;
+  std::vector<figure::FigureFiles> files;
+  for (const AtlasFigure& made : figures) {
+    if (!made.chart.panels.empty()) files.emplace_back(folder / fmt::format("{}.{}", made.name, made.format));
+  }
+  auto next = files.begin();
+  for (const AtlasFigure& made : figures) {
+    if (!made.chart.panels.empty()) {
+      const figure::FigureFiles& figure = *next++;
+      figure.write(figure::chart_data(made.chart, fmt::format("{}; {}", made.title, made.source)),
+                   figure::chart_script(made.chart, figure.format(), figure.figure_name(), figure.data_name()));
+      written.push_back(figure.figure());
+    }
+    if (const std::string tables = tables_text(made); !tables.empty()) {
+      fs::create_directories(folder);
+      figure::write_whole(folder / (made.name + ".csv"), csv_text(made));
+      figure::write_whole(folder / (made.name + ".md"), tables);
+      written.insert(written.end(), {folder / (made.name + ".csv"), folder / (made.name + ".md")});
+    }
+  }
+  return written;
+}
+
+}  // namespace monograin

@@ -1,0 +1,280 @@
+#include "study/calibrate/calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "engine/drive.hpp"
+#include "scenario/faults.hpp"
+#include "scenario/integrators.hpp"
+#include "system/undefined.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr double k_direct_noise = 1e-13;     // of a response without time integration
+constexpr std::size_t k_curve_points = 400;  // of the curve between the data
+constexpr double k_high_correlation = 0.95;  // of two parameters
+constexpr double k_poor = 0.1;               // relative standard error
+
+/// Relative error of the responses.
+double noise_of(const Scenario& scenario) {
+  const Scene scene = make_scene(scenario);
+  return choose_integrator(scenario.numerics.integrator, *scene.system).used == integrators::k_direct
+             ? k_direct_noise
+             : scenario.numerics.rtol;
+}
+
+/// x with further values in between, so that a curve through it is smooth.
+std::vector<double> refined(std::span<const double> x) {
+  const std::size_t parts = std::max<std::size_t>(1, k_curve_points / x.size());
+  std::vector<double> result{x.front()};
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    for (std::size_t k = 1; k < parts; ++k) {
+      result.push_back(std::lerp(x[i - 1], x[i], static_cast<double>(k) / static_cast<double>(parts)));
+    }
+    result.push_back(x[i]);
+  }
+  return result;
+}
+
+/// The response of one curve's scenario as the residuals of a problem, with the parameters of a fit.
+class Response {
+ public:
+  Response(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<double>& x)
+      : calibration_(calibration),
+        replay_(curve.scenario, {curve.driven, calibration.y.observable, curve.control, curve.start}, x) {}
+
+  bool operator()(std::span<const double> parameters, std::span<double> response) {
+    for (std::size_t k = 0; k < parameters.size(); ++k) replay_.set(calibration_.free[k].key.path, parameters[k]);
+    return replay_.run(response);
+  }
+
+  [[nodiscard]] const Replay& replay() const noexcept { return replay_; }
+
+ private:
+  const Calibration& calibration_;
+  Replay replay_;
+};
+
+/// A curve's share of values that are kept row by row.
+template <class T>
+std::span<T> rows_of(std::vector<T>& values, const MeasuredCurve& curve) {
+  return std::span(values).subspan(curve.begin, curve.end - curve.begin);
+}
+
+std::vector<double> x_of(const Calibration& calibration, const MeasuredCurve& curve) {
+  const auto begin = calibration.x.values.begin();
+  return {begin + static_cast<std::ptrdiff_t>(curve.begin), begin + static_cast<std::ptrdiff_t>(curve.end)};
+}
+
+class Fit {
+ public:
+  Fit(const Calibration& calibration, const LeastSquaresProblem::Progress& progress)
+      : calibration_(calibration), procedures_(model_fits(calibration)), response_(calibration.x.values.size()) {
+    for (const MeasuredCurve& curve : calibration.curves) {
+      responses_.emplace_back(calibration, curve, x_of(calibration, curve));
+    }
+    for (std::size_t row = 0; row < calibration.weights.size(); ++row) {
+      if (calibration.weights[row] > 0.0) rows_.push_back(row);
+    }
+    problem_.parameters.assign(calibration.free.begin(), calibration.free.end());
+    begin_at(procedures_.starts);
+    problem_.residual_count = rows_.size();
+    problem_.loss = calibration.loss;
+    problem_.noise = noise_of(calibration.scenario);
+    problem_.progress = progress;
+    problem_.residuals = [this](std::span<const double> parameters, std::span<double> residuals) {
+      if (failing(parameters) < responses_.size()) return false;
+      for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const std::size_t row = rows_[i];
+        residuals[i] = calibration_.weights[row] * (calibration_.y.values[row] - response_[row]);
+      }
+      return true;
+    };
+  }
+  Fit(const Fit&) = delete;
+  Fit& operator=(const Fit&) = delete;
+
+  CalibrationResult run() {
+    auto solution = minimise(problem_);
+    if (!solution) no_response();
+    CalibrationResult result;
+    result.solution = std::move(*solution);
+    const std::vector<double>& parameters = result.solution.parameters;
+    result.procedures = procedures_;
+    if (!procedures_.fits.empty()) {
+      result.procedures.fits.push_back(measured_fit(calibration_, procedures_, parameters));
+    }
+    result.uncertainty = uncertainty_of(problem_, result.solution, residual_jacobian(problem_, parameters),
+                                        rows_.size(), calibration_.confidence);
+    for (const MeasuredCurve& curve : calibration_.curves) {
+      const std::vector<double> x = x_of(calibration_, curve);
+      append(curve_through(curve, x, result), result.fit);
+      result.curves.push_back(curve_through(curve, refined(x), result));
+    }
+    result.points = rows_.size();
+    for (const Response& response : responses_) {
+      result.program_steps += response.replay().scenario().loading.steps.size();
+    }
+    add_statistics(result);
+    add_notes(result);
+    return result;
+  }
+
+ private:
+  /// Further places to begin at, where the user has not given one.
+  void begin_at(const std::map<std::string, double>& starts) {
+    for (std::size_t k = 0; k < problem_.parameters.size(); ++k) {
+      BoundedParameter& parameter = problem_.parameters[k];
+      const auto found = starts.find(calibration_.free[k].key.path);
+      if (found == starts.end() || parameter.start) continue;
+      if (found->second >= parameter.lower && found->second <= parameter.upper) parameter.start = found->second;
+    }
+  }
+
+  /// Runs all curves. @return the first that cannot be followed; their number where all can
+  std::size_t failing(std::span<const double> parameters) {
+    for (std::size_t c = 0; c < responses_.size(); ++c) {
+      if (!responses_[c](parameters, rows_of(response_, calibration_.curves[c]))) return c;
+    }
+    return responses_.size();
+  }
+
+  static void append(const FittedCurve& part, FittedCurve& whole) {
+    whole.x.insert(whole.x.end(), part.x.begin(), part.x.end());
+    whole.y.insert(whole.y.end(), part.y.begin(), part.y.end());
+    whole.band.insert(whole.band.end(), part.band.begin(), part.band.end());
+  }
+
+  /// No place of the scan has a response: says what happens in the middle of the bounds.
+  [[noreturn]] void no_response() {
+    std::vector<double> middle;
+    for (const FreeParameter& parameter : calibration_.free)
+      middle.push_back(std::midpoint(parameter.lower, parameter.upper));
+    // Where the middle can be followed, the corners could not.
+    const std::size_t failed = failing(middle) % responses_.size();
+    const Replay& replay = responses_[failed].replay();
+    const MeasuredCurve& curve = calibration_.curves[failed];
+    throw_fault(
+        {curve.file, calibration_.lines[curve.begin + replay.failed_at()]},
+        fmt::format("the scenario cannot follow the data beyond this row with any parameters that were tried: {}; "
+                    "expected other bounds, or data that model '{}' can follow",
+                    replay.problem(), calibration_.scenario.model));
+  }
+
+  [[nodiscard]] FittedCurve curve_through(const MeasuredCurve& measured, const std::vector<double>& x,
+                                          const CalibrationResult& result) {
+    Response response_through(calibration_, measured, x);
+    LeastSquaresProblem problem = problem_;
+    problem.residual_count = x.size();
+    problem.residuals = [&response_through](std::span<const double> parameters, std::span<double> response) {
+      return response_through(parameters, response);
+    };
+    FittedCurve curve{x, std::vector<double>(x.size(), k_nan), std::vector<double>(x.size(), k_nan)};
+    if (!response_through(result.solution.parameters, curve.y)) return curve;
+    const Eigen::MatrixXd gradients = residual_jacobian(problem, result.solution.parameters);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      curve.band[i] = result.uncertainty.half_width(gradients.row(static_cast<Eigen::Index>(i)).transpose());
+    }
+    return curve;
+  }
+
+  void add_statistics(CalibrationResult& result) const {
+    const std::vector<double>& y = calibration_.y.values;
+    double mean = 0.0;
+    for (const std::size_t row : rows_) mean += y[row] / static_cast<double>(rows_.size());
+    double about_mean = 0.0;
+    double about_fit = 0.0;
+    for (const std::size_t row : rows_) {
+      const double residual = y[row] - result.fit.y[row];
+      about_mean += (y[row] - mean) * (y[row] - mean);
+      about_fit += residual * residual;
+      if (std::abs(residual) <= result.largest) continue;
+      result.largest = std::abs(residual);
+      result.largest_at = row;
+    }
+    for (const double r : result.solution.residuals) result.sum_of_squares += r * r;
+    result.rms = std::sqrt(about_fit / static_cast<double>(rows_.size()));
+    result.r_squared = about_mean > 0.0 ? 1.0 - about_fit / about_mean : k_nan;
+  }
+
+  void add_notes(CalibrationResult& result) const {
+    using Bound = LeastSquaresSolution::Bound;
+    const LeastSquaresSolution& solution = result.solution;
+    const auto note = [&result](std::string text) { result.notes.push_back(std::move(text)); };
+    for (std::size_t k = 0; k < calibration_.free.size(); ++k) {
+      const FreeParameter& parameter = calibration_.free[k];
+      const std::string& path = parameter.key.path;
+      if (!result.uncertainty.is_determined[k]) {
+        note(
+            fmt::format("the data do not determine '{}': other values of it, alone or together with other parameters, "
+                        "fit as well",
+                        path));
+      } else if (solution.bounds[k] != Bound::none) {
+        note(fmt::format("'{}' sits at its {} bound; it has no interval there", path,
+                         solution.bounds[k] == Bound::lower ? "lower" : "upper"));
+      } else if (result.uncertainty.half_width(k) > 0.5 * (parameter.upper - parameter.lower)) {
+        note(fmt::format("the data hardly determine '{}': its interval is wider than its bounds", path));
+      }
+    }
+    if (result.uncertainty.degrees_of_freedom == 0) {
+      note(
+          fmt::format("{} parameters for {} points: the fit leaves nothing to estimate errors from; no errors and no "
+                      "intervals",
+                      calibration_.free.size(), rows_.size()));
+    }
+    if (!solution.has_converged) note("the search ended before its steps had vanished; the fit may not be the best");
+    if (solution.failures > 0) {
+      note(fmt::format("{} of {} trial runs ended early, outside the model's domain, and were passed over",
+                       solution.failures, solution.evaluations));
+    }
+    for (const MeasuredCurve& curve : calibration_.curves) {
+      const std::vector<double> x = x_of(calibration_, curve);
+      const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
+      if (changed != x.end() && *changed < x.front() && x.front() > curve.start) {
+        note("the data begin with unloading; the particle is loaded to their first row from rest");
+      }
+    }
+    note_correlations(result);
+  }
+
+  /// Pairs of parameters of which the data tell little more than a combination.
+  void note_correlations(CalibrationResult& result) const {
+    for (std::size_t i = 0; i < calibration_.free.size(); ++i) {
+      for (std::size_t j = i + 1; j < calibration_.free.size(); ++j) {
+        const double correlation = result.uncertainty.correlation(i, j);
+        if (!(std::abs(correlation) > k_high_correlation)) continue;
+        // The one of which the data know less.
+        const auto relative = [&](std::size_t k) {
+          return result.uncertainty.standard_error(k) / std::abs(result.solution.parameters[k]);
+        };
+        const std::size_t poor = relative(i) > relative(j) ? i : j;
+        if (!(relative(poor) > k_poor)) continue;
+        result.notes.push_back(fmt::format(
+            "the data determine '{}' poorly, to {:.0f} %: its correlation with '{}' is {:.3f}; hold one of them if it "
+            "is known otherwise",
+            calibration_.free[poor].key.path, 100.0 * relative(poor), calibration_.free[i + j - poor].key.path,
+            correlation));
+      }
+    }
+  }
+
+  const Calibration& calibration_;
+  ModelFits procedures_;
+  std::vector<Response> responses_;  ///< of the curves
+  std::vector<double> response_;     ///< in every row
+  std::vector<std::size_t> rows_;    ///< that take part
+  LeastSquaresProblem problem_;
+};
+
+}  // namespace
+
+CalibrationResult calibrate(const Calibration& calibration, const LeastSquaresProblem::Progress& progress) {
+  return Fit(calibration, progress).run();
+}
+
+}  // namespace monograin

@@ -1,0 +1,125 @@
+/// Calibration: numbers of a scenario fitted to measured data, with what is known of their uncertainty.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "history/staged_folder.hpp"
+#include "numerics/least_squares.hpp"
+#include "numerics/uncertainty.hpp"
+#include "scenario/numbers.hpp"
+#include "scenario/scenario.hpp"
+#include "study/calibrate/model_fit.hpp"
+#include "study/calibrate/replay.hpp"
+
+namespace monograin {
+
+/// A number of the scenario that is sought.
+struct FreeParameter : BoundedParameter {
+  NumberKey key;
+  std::string unit;          ///< that of its lower bound as given, which it is shown in; empty for a pure number
+  double unit_factor = 1.0;  ///< one unit in SI
+};
+
+/// What a column of the data holds.
+struct MeasuredQuantity {
+  std::string observable;    ///< as in a history: "axial.force"
+  std::string unit;          ///< as given; values are SI
+  double unit_factor = 1.0;  ///< one unit in SI
+  std::string si;            ///< SI unit
+  std::vector<double> values;
+};
+
+/// One of the measured curves: rows of the data, and the scenario that follows them.
+struct MeasuredCurve {
+  std::size_t begin = 0;  ///< its rows among all
+  std::size_t end = 0;
+  std::string file;
+  std::string text;
+  std::vector<std::string> overrides;  ///< of the scenario, for this curve
+  Scenario scenario;                   ///< with them
+  std::string driven;                  ///< observable that x holds
+  Step::Kind control = Step::Kind::displacement;
+  double start = 0.0;  ///< of x, before the first step [SI]
+};
+
+/// A calibration file with all that it names, checked. The rows of its curves follow one another.
+struct Calibration {
+  std::string name;  ///< of the file, without folder and extension
+  std::string file;
+  std::string text;
+  std::string title;
+  Scenario scenario;  ///< with its own steps
+  std::string scenario_text;
+  std::vector<MeasuredCurve> curves;  ///< at least one
+  MeasuredQuantity x;
+  MeasuredQuantity y;
+  std::string weighting;           ///< absolute, relative, column, area
+  std::vector<double> weights;     ///< factors of y's residuals [1/SI], >= 0; 0: a row that only drives
+  std::vector<std::size_t> lines;  ///< of the rows in their data file
+  std::vector<FreeParameter> free;
+  LossFunction loss;
+  double confidence = 0.95;
+
+  /// Rows that take part in the fit.
+  [[nodiscard]] std::size_t counted() const noexcept;
+  /// The curve that a row is of.
+  [[nodiscard]] const MeasuredCurve& curve_of(std::size_t row) const noexcept;
+};
+
+/// Names of the data's files, without their folders.
+[[nodiscard]] std::string data_names(const Calibration& calibration);
+
+/// Reads and checks a calibration file, its scenario and its data.
+/// @throws ScenarioError with all faults of all three
+[[nodiscard]] Calibration read_calibration(const std::filesystem::path& file);
+
+/// A curve of the fitted scenario, with its band.
+struct FittedCurve {
+  std::vector<double> x;
+  std::vector<double> y;
+  std::vector<double> band;  ///< half its width; nan where there is none
+};
+
+struct CalibrationResult {
+  LeastSquaresSolution solution;
+  Uncertainty uncertainty;
+  ModelFits procedures;             ///< of the model's own, and this fit by their measures; empty: it has none
+  FittedCurve fit;                  ///< at the data
+  std::vector<FittedCurve> curves;  ///< in between, too: one for each measured curve
+  std::size_t points = 0;           ///< rows that take part
+  std::size_t program_steps = 0;    ///< of the loading made from the data
+  double sum_of_squares = 0.0;      ///< of weighted residuals
+  double rms = 0.0;                 ///< of residuals [SI of y], over all rows that take part
+  double largest = 0.0;             ///< of their magnitudes
+  std::size_t largest_at = 0;       ///< its row
+  double r_squared = 0.0;           ///< 1 - sum (y - fit)^2 / sum (y - mean)^2, unweighted
+  std::vector<std::string> notes;   ///< what the user should know
+};
+
+/// Fits. @throws ScenarioError where the scenario cannot follow the data with any of the parameters tried
+[[nodiscard]] CalibrationResult calibrate(const Calibration& calibration,
+                                          const LeastSquaresProblem::Progress& progress = {});
+
+/// The scenario with the fitted numbers, to 17 digits, and its own loading; all else as its author wrote it.
+[[nodiscard]] std::string fitted_scenario_text(const Calibration& calibration, const CalibrationResult& result);
+
+/// Parameters, intervals, correlations and residuals, for a reader.
+[[nodiscard]] std::string calibration_text(const Calibration& calibration, const CalibrationResult& result);
+
+/// The file whose presence tells that a folder holds a calibration.
+inline constexpr const char* k_calibration_marker = "calibration.json";
+
+/// Writes fit.csv, fitted.toml with the tables it names, calibration.json and figure.svg with its script and data, all
+/// of them or none.
+/// @param folder  made with k_calibration_marker
+/// @return why there is no figure; empty: there is
+/// @throws std::runtime_error naming what could not be written
+[[nodiscard]] std::string write_calibration(const Calibration& calibration, const CalibrationResult& result,
+                                            StagedFolder& folder);
+
+}  // namespace monograin

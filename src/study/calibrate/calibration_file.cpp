@@ -1,0 +1,534 @@
+// Reading of calibration files.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "scenario/document.hpp"
+#include "scenario/edit.hpp"
+#include "scenario/measured_data.hpp"
+#include "scenario/section.hpp"
+#include "scenario/text_file.hpp"
+#include "scenario/units.hpp"
+#include "scenario/words.hpp"
+#include "study/calibrate/calibration.hpp"
+#include "study/calibrate/calibration_language.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace calibration;
+
+constexpr std::size_t k_largest_data = 16U * 1024U * 1024U;
+constexpr double k_ratio_for_log = 100.0;  // of bounds: from here on their parameter is sought in its logarithm
+constexpr std::size_t k_most_zeros = 20;   // that are reported one by one
+
+/// The dimension whose SI unit this is.
+std::optional<Dimension> dimension_of(std::string_view si) {
+  for (const Dimension dimension : {Dimension::length, Dimension::stress, Dimension::force}) {
+    if (dimension_info(dimension).si == si) return dimension;
+  }
+  return std::nullopt;
+}
+
+/// What a file says of one column.
+struct ColumnSpec {
+  ColumnRequest request;
+  std::string quantity;  ///< empty: that of the heading
+  std::string unit;      ///< empty: that of the heading
+  SourceLocation quantity_at;
+  SourceLocation unit_at;
+};
+
+class CalibrationReader {
+ public:
+  explicit CalibrationReader(const fs::path& file) : named_(file), file_(name_of_file(file)), reading_{faults_} {}
+
+  Calibration read() {
+    auto [text, problem] = read_text_file(named_, k_largest_text, FileKind::any);
+    if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a calibration file");
+    made_.text = std::move(text);
+    made_.file = file_.string();
+    made_.name = file_.stem().string();
+    const toml::table tree = parse_document(made_.text, made_.file);
+    const bool scenario_is_table = tree["scenario"].is_table();
+    const Keys keys = root_keys(scenario_is_table, tree["data"].is_array());
+    const SourceLocation top{made_.file};
+    const Section root(reading_, {&tree, top, "the calibration"}, keys);
+    made_.title = root.text("title");
+    has_scenario_ = read_own_scenario(root, scenario_is_table);
+    read_fit(root);
+    if (root.has("data")) read_data(root);
+    if (root.has("free") && has_scenario_) read_free(root);
+    faults_.throw_if_any();
+    check_count(root);
+    faults_.throw_if_any();
+    return std::move(made_);
+  }
+
+ private:
+  /// The scenario with overrides, from wherever it stands.
+  [[nodiscard]] Scenario scenario_with(const std::vector<std::string>& overrides) const {
+    return scenario_file_ == made_.file ? parse_scenario_table(made_.text, "scenario", made_.file, overrides)
+                                        : read_scenario(scenario_file_, overrides);
+  }
+
+  bool read_own_scenario(const Section& root, bool is_table) {
+    if (!root.has("scenario")) return false;
+    try {
+      if (is_table) {
+        scenario_file_ = made_.file;
+        made_.scenario = scenario_with({});
+        made_.scenario_text = text_of_table(made_.text, "scenario", made_.file);
+      } else {
+        const std::string name = root.text("scenario");
+        if (name.empty()) return false;
+        const fs::path path = file_.parent_path() / name;
+        if (!fs::is_regular_file(path)) {
+          faults_.add(
+              root.value_place("scenario"),
+              fmt::format("scenario = \"{}\": there is no such file ({}); expected a path relative to this file",
+                          shown(name), on_one_line(path.string())));
+          return false;
+        }
+        scenario_file_ = path.string();
+        made_.scenario = scenario_with({});
+        made_.scenario_text = made_.scenario.text;
+      }
+      measurable_ = measurable_in(made_.scenario);
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) faults_.add(fault.where, fault.message);
+      return false;
+    }
+    reading_.initial_radius = made_.scenario.radius;
+    check_walls(root);
+    return true;
+  }
+
+  /// The data tell one program, which all walls that move are to follow.
+  void check_walls(const Section& root) {
+    for (const WallSpec& wall : made_.scenario.loading.walls) {
+      if (wall.is_fixed || wall.steps.empty()) continue;
+      faults_.add(root.value_place("scenario"),
+                  fmt::format("wall '{}' of the scenario has steps of its own, and the data drive all walls alike; "
+                              "expected walls that are fixed or follow [[loading.steps]]",
+                              wall.name));
+    }
+    if (measurable_.drives.empty()) faults_.add(root.value_place("scenario"), "the scenario has no wall that moves");
+    check_lateral(made_.scenario, root.value_place("scenario"));
+  }
+
+  /// The data stand in for all steps, and tell of one direction only.
+  void check_lateral(const Scenario& scenario, const SourceLocation& where) {
+    const bool has_lateral =
+        std::ranges::any_of(scenario.loading.steps, [](const Step& step) { return step.lateral.has_value(); });
+    if (!has_lateral) return;
+    faults_.add(where,
+                "the scenario's steps prescribe the lateral direction too, and the data drive the axial one alone; "
+                "expected a scenario whose configuration says what happens laterally: simple, die or hydrostatic");
+  }
+
+  void read_fit(const Section& root) {
+    const Keys keys = fit_keys();
+    const std::size_t before = faults_.size();
+    const Section fit(reading_, root.table("fit", "[fit]"), keys);
+    if (faults_.size() > before) return;
+    const std::string loss = fit.text("loss");
+    made_.loss.kind = static_cast<Loss>(std::ranges::find(k_losses, loss) - k_losses.begin());
+    made_.loss.scale = fit.number("loss_scale").value_or(1.0);
+    made_.confidence = fit.number("confidence").value_or(made_.confidence);
+    const bool is_linear = made_.loss.kind == Loss::linear;
+    if (is_linear && fit.has("loss_scale")) {
+      faults_.add(fit.key_place("loss_scale"), "key 'loss_scale' is not used by the linear loss");
+    } else if (!is_linear && !fit.has("loss_scale")) {
+      faults_.add(fit.value_place("loss"), fmt::format("loss = \"{}\" needs a scale; expected for example "
+                                                       "loss_scale = 0.01, a share of the largest |y|",
+                                                       loss));
+    }
+  }
+
+  // --- data
+
+  void read_data(const Section& root) {
+    const std::vector<Section::Origin> curves = root.tables("data", "[[data]]");
+    if (curves.empty()) return read_curve(root.table("data", "[data]"));
+    for (const Section::Origin& origin : curves) read_curve(origin);
+  }
+
+  void read_curve(const Section::Origin& origin) {
+    const auto is_table = [&origin](std::string_view key) {
+      const toml::node* node = origin.table->get(key);
+      return node != nullptr && node->is_table();
+    };
+    const Keys keys = data_keys(is_table("x"), is_table("y"));
+    const std::size_t before = faults_.size();
+    const Section data(reading_, origin, keys);
+    const bool is_clean = faults_.size() == before;
+    const std::string weighting = data.text("weights");
+    if (made_.curves.empty()) made_.weighting = weighting;
+    if (weighting != made_.weighting) {
+      faults_.add(data.value_place("weights"),
+                  fmt::format("weights = \"{}\": those of the first curve are \"{}\"; expected the same for all",
+                              weighting, made_.weighting));
+    }
+    std::vector<ColumnSpec> specs{column_spec(data, "x", is_table("x")), column_spec(data, "y", is_table("y"))};
+    if (weighting == "column") {
+      if (!data.has_or_misspells("weight_column")) {
+        faults_.add(data.value_place("weights"),
+                    "weights = \"column\" needs the column; expected for example weight_column = \"weight[-]\"");
+      }
+      specs.push_back(column_spec(data, "weight_column", false));
+    } else if (is_clean && data.has("weight_column")) {
+      faults_.add(data.key_place("weight_column"),
+                  fmt::format("key 'weight_column' belongs to weights = \"column\"; this is \"{}\"", weighting));
+    }
+
+    const std::string name = data.text("file");
+    if (name.empty()) return;
+    const fs::path path = file_.parent_path() / name;
+    auto [text, problem] = read_text_file(path, k_largest_data);
+    if (problem.empty() && text.size() > k_largest_data) {
+      problem = fmt::format("the file is too large; expected at most {} MiB", k_largest_data >> 20U);
+    }
+    if (!problem.empty()) {
+      return faults_.add(data.value_place("file"),
+                         fmt::format("file = \"{}\": {} ({}); expected a path relative to this file", shown(name),
+                                     problem, on_one_line(path.string())));
+    }
+    MeasuredCurve curve;
+    curve.begin = curve.end = made_.lines.size();
+    curve.file = path.string();
+    std::vector<ColumnRequest> wanted;
+    for (const ColumnSpec& spec : specs) wanted.push_back(spec.request);
+    MeasuredData measured = parse_measured(text, curve.file, wanted, faults_);
+    curve.text = std::move(measured.text);
+    curve.overrides = data.texts("set");
+    take_scenario(data, curve);
+    const MeasuredQuantity x = quantity(specs[0], measured.columns[0]);
+    const MeasuredQuantity y = quantity(specs[1], measured.columns[1]);
+    if (!x.observable.empty()) check_drive(specs[0], x, curve);
+    std::vector<double> weights;
+    if (faults_.size() == before && !y.values.empty()) weights = weights_of(measured, x, y, curve.file);
+    if (faults_.size() > before) return;
+    curve.end += measured.lines.size();
+    append(measured.lines, made_.lines);
+    append(weights, made_.weights);
+    add_quantity(x, specs[0], made_.x);
+    add_quantity(y, specs[1], made_.y);
+    made_.curves.push_back(std::move(curve));
+  }
+
+  template <class T>
+  static void append(const std::vector<T>& part, std::vector<T>& whole) {
+    whole.insert(whole.end(), part.begin(), part.end());
+  }
+
+  /// A column of one more curve; residuals can only be put together if all are of one quantity.
+  void add_quantity(const MeasuredQuantity& added, const ColumnSpec& spec, MeasuredQuantity& quantity) {
+    if (made_.curves.empty()) {
+      quantity = added;
+    } else if (added.observable != quantity.observable) {
+      faults_.add(spec.quantity_at, fmt::format("'{}' is not what the first curve has, '{}'; expected the same columns",
+                                                added.observable, quantity.observable));
+    } else {
+      append(added.values, quantity.values);
+    }
+  }
+
+  /// The scenario with the curve's overrides, and what can be measured in it.
+  void take_scenario(const Section& data, MeasuredCurve& curve) {
+    if (!has_scenario_) return;
+    try {
+      curve.scenario = curve.overrides.empty() ? made_.scenario : scenario_with(curve.overrides);
+      measurable_ = measurable_in(curve.scenario);
+      if (!curve.overrides.empty()) check_lateral(curve.scenario, data.value_place("set"));
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) faults_.add(data.value_place("set"), fault.message);
+      return;
+    }
+    if (curve.scenario.model != made_.scenario.model) {
+      faults_.add(data.value_place("set"),
+                  fmt::format("the scenario's model is '{}'; expected the same for every curve", made_.scenario.model));
+    }
+  }
+
+  [[nodiscard]] ColumnSpec column_spec(const Section& data, std::string_view key, bool is_table) {
+    if (!is_table) {
+      const std::string name = data.text(key);
+      return {.request = {name, data.value_place(key), fmt::format("{} = \"{}\"", key, shown(name))},
+              .quantity = {},
+              .unit = {},
+              .quantity_at = data.value_place(key),
+              .unit_at = data.value_place(key)};
+    }
+    const Keys keys = column_keys();
+    const Section column(reading_, data.table(key, std::string(key)), keys);
+    const std::string name = column.text("column");
+    return {.request = {name, column.value_place("column"), fmt::format("column = \"{}\"", shown(name))},
+            .quantity = column.text("quantity"),
+            .unit = column.text("unit"),
+            .quantity_at = column.value_place("quantity"),
+            .unit_at = column.value_place("unit")};
+  }
+
+  /// The column in SI; without an observable where something is wrong with it, or with the scenario.
+  [[nodiscard]] MeasuredQuantity quantity(const ColumnSpec& spec, const MeasuredColumn& column) {
+    MeasuredQuantity result;
+    if (column.heading.empty() || !has_scenario_ || measurable_.drives.empty()) return result;
+    const std::string name = spec.quantity.empty() ? std::string(name_in(column.heading)) : spec.quantity;
+    const Measurable::Column* found = measurable_.find(measurable_.prefix() + name);
+    if (found == nullptr) found = measurable_.find(name);
+    if (found == nullptr) {
+      unknown_quantity(name, spec);
+      return result;
+    }
+    result.unit = spec.unit.empty() ? std::string(unit_in(column.heading)) : spec.unit;
+    result.si = found->unit;
+    const auto factor = unit_factor(result, spec);
+    if (!factor) return result;
+    result.unit_factor = *factor;
+    result.observable = found->name;
+    result.values = column.values;
+    for (double& value : result.values) value *= *factor;
+    return result;
+  }
+
+  void unknown_quantity(const std::string& name, const ColumnSpec& spec) {
+    const std::string own = measurable_.prefix();
+    std::vector<std::string_view> names;
+    for (const Measurable::Column& column : measurable_.columns) {
+      std::string_view known = column.name;
+      if (known.starts_with(own)) known.remove_prefix(own.size());
+      names.push_back(known);
+    }
+    const std::string hint = did_you_mean(name, names);
+    faults_.add(spec.quantity_at, fmt::format("'{}' is no quantity of this scenario; expected one of {}{}{}",
+                                              shown(name), listed(names), hint,
+                                              spec.quantity.empty() && hint.empty()
+                                                  ? ", or { column = \"...\", quantity = \"...\", unit = \"...\" }"
+                                                  : ""));
+  }
+
+  [[nodiscard]] std::optional<double> unit_factor(const MeasuredQuantity& column, const ColumnSpec& spec) {
+    if (column.unit == column.si) return 1.0;
+    const auto dimension = dimension_of(column.si);
+    if (!dimension) {
+      faults_.add(spec.unit_at, fmt::format("unknown unit '{}'; expected '{}'", shown(column.unit), column.si));
+      return std::nullopt;
+    }
+    const ParsedQuantity one = parse_quantity("1 " + column.unit, *dimension, made_.scenario.radius);
+    if (!one.value) {
+      const std::string_view noun = dimension_info(*dimension).noun;
+      faults_.add(
+          spec.unit_at,
+          column.unit.empty()
+              ? fmt::format("{}: the heading has no unit; expected {} such as '{}[{}]', or {{ column = \"...\", "
+                            "quantity = \"...\", unit = \"...\" }}",
+                            spec.request.naming, noun, shown(spec.request.name), column.si)
+              : fmt::format("{}: {}", spec.request.naming, one.problem));
+    }
+    return one.value;
+  }
+
+  void check_drive(const ColumnSpec& spec, const MeasuredQuantity& x, MeasuredCurve& curve) {
+    const auto drive = std::ranges::find(measurable_.drives, x.observable, &Measurable::Drive::column);
+    if (drive == measurable_.drives.end()) {
+      std::vector<std::string_view> columns;
+      for (const Measurable::Drive& possible : measurable_.drives) columns.push_back(possible.column);
+      return faults_.add(spec.quantity_at, fmt::format("'{}' cannot drive the particle; expected one of {}",
+                                                       x.observable, listed(columns)));
+    }
+    curve.driven = drive->column;
+    curve.control = drive->kind;
+    curve.start = drive->start;
+    const DataProgram program = program_through(x.values, curve.control, curve.start);
+    if (!x.values.empty() && program.steps.empty()) {
+      faults_.add(spec.request.where,
+                  fmt::format("{}: it never changes; expected data along a loading path", spec.request.naming));
+    }
+  }
+
+  [[nodiscard]] std::vector<double> weights_of(const MeasuredData& measured, const MeasuredQuantity& x,
+                                               const MeasuredQuantity& quantity, const std::string& file) {
+    const std::vector<double>& y = quantity.values;
+    double largest = 0.0;
+    for (const double value : y) largest = std::max(largest, std::abs(value));
+    const auto at = [&](std::size_t row, std::size_t column) {
+      return SourceLocation{file, measured.lines[row], measured.columns[column].at[row]};
+    };
+    if (largest == 0.0) {
+      faults_.add(at(0, 1), "y is zero in every row; there is nothing to fit");
+      return {};
+    }
+    std::vector<double> weights(y.size(), 1.0 / largest);
+    if (made_.weighting == "area") weigh_by_path(x.values, weights);
+    std::size_t found = 0;
+    for (std::size_t row = 0; row < y.size() && found < k_most_zeros; ++row) {
+      if (made_.weighting == "relative") {
+        weights[row] = 1.0 / std::abs(y[row]);
+        if (y[row] != 0.0) continue;
+        ++found;
+        faults_.add(at(row, 1), "y = 0 has no relative weight; expected other weights, or a file without this row");
+      } else if (made_.weighting == "column") {
+        const double factor = measured.columns[2].values[row];
+        weights[row] *= factor;
+        if (factor >= 0.0) continue;
+        ++found;
+        faults_.add(at(row, 2),
+                    fmt::format("weight = {}: expected 0 (the row only drives the particle) or more", factor));
+      }
+    }
+    return weights;
+  }
+
+  /// The roots of the trapezoidal rule's weights, along the path of x; 1 on the mean.
+  static void weigh_by_path(const std::vector<double>& x, std::vector<double>& weights) {
+    double path = 0.0;
+    for (std::size_t row = 1; row < x.size(); ++row) path += std::abs(x[row] - x[row - 1]);
+    for (std::size_t row = 0; row < x.size(); ++row) {
+      const double before = row > 0 ? std::abs(x[row] - x[row - 1]) : 0.0;
+      const double after = row + 1 < x.size() ? std::abs(x[row + 1] - x[row]) : 0.0;
+      weights[row] *= std::sqrt(0.5 * (before + after) / path * static_cast<double>(x.size()));
+    }
+  }
+
+  // --- free parameters
+
+  void read_free(const Section& root) {
+    const std::vector<NumberKey> numbers = number_keys(made_.scenario);
+    const Keys keys = free_keys(numbers);
+    const std::vector<ForeignKey> foreign = foreign_keys(root.table("free", "").table);
+    const Section free(reading_, root.table("free", "[free]"), keys, foreign);
+    std::vector<std::pair<SourceLocation, const NumberKey*>> found;
+    for (const NumberKey& number : numbers) {
+      if (free.has(number.path)) found.emplace_back(free.key_place(number.path), &number);
+    }
+    // In the order of the file, not of the model.
+    std::ranges::sort(found, {}, [](const auto& entry) { return std::pair(entry.first.line, entry.first.column); });
+    if (found.size() > k_most_parameters) {
+      faults_.add(found[k_most_parameters].first,
+                  fmt::format("{} parameters are free; expected at most {}", found.size(), k_most_parameters));
+    }
+    for (const auto& [where, number] : found) read_bounds(free, *number);
+  }
+
+  /// Keys that stand in the scenario, or are written so that TOML takes them apart.
+  [[nodiscard]] static std::vector<ForeignKey> foreign_keys(const toml::table* table) {
+    std::vector<ForeignKey> foreign;
+    for (const auto& [key, node] : *table) {
+      const std::string_view name = key.str();
+      const toml::table* inner = node.as_table();
+      if (name == "particle.radius") {
+        foreign.push_back({name, "cannot be free: lengths of the scenario may be given in R0"});
+      } else if (inner != nullptr && !inner->contains("from") && name.find('.') == std::string_view::npos) {
+        foreign.push_back({name,
+                           "is a table; expected the whole path in quotes, for example "
+                           "\"material.youngs_modulus\" = { from = ..., to = ... }"});
+      }
+    }
+    return foreign;
+  }
+
+  void read_bounds(const Section& free, const NumberKey& number) {
+    const Keys keys = bounds_keys(number);
+    const Section::Origin origin = free.table(number.path, fmt::format("\"{}\"", number.path));
+    const Section bounds(reading_, origin, keys);
+    const auto from = bounds.number("from");
+    const auto to = bounds.number("to");
+    FreeParameter parameter;
+    parameter.key = number;
+    if (!from || !to) return;
+    if (!(*from < *to)) {
+      return faults_.add(bounds.value_place("to"),
+                         fmt::format("to = {} is not above from = {}; expected bounds the other way round",
+                                     shown(*origin.table->get("to")), shown(*origin.table->get("from"))));
+    }
+    parameter.lower = *from;
+    parameter.upper = *to;
+    parameter.start = bounds.number("start");
+    if (parameter.start && (*parameter.start < *from || *parameter.start > *to)) {
+      faults_.add(bounds.value_place("start"),
+                  fmt::format("start = {} is not between the bounds", shown(*origin.table->get("start"))));
+    }
+    const std::string scale = bounds.text("scale");
+    parameter.is_logarithmic = scale.empty() ? *from > 0.0 && *to >= k_ratio_for_log * *from : scale == "log";
+    if (parameter.is_logarithmic && *from <= 0.0) {
+      faults_.add(bounds.value_place("scale"), "scale = \"log\" needs bounds above zero");
+    }
+    set_unit(parameter, *origin.table->get("from"));
+    check_place(free, parameter);
+    made_.free.push_back(std::move(parameter));
+  }
+
+  /// The unit of a bound, which is a bare number where it is in SI.
+  static void set_unit(FreeParameter& parameter, const toml::node& bound) {
+    const Dimension dimension = parameter.key.dimension;
+    parameter.unit = dimension_info(dimension).si;
+    if (const auto* text = bound.as_string()) {
+      parameter.unit = parse_quantity(text->get(), dimension, std::nullopt).unit;
+      parameter.unit_factor = parse_quantity("1 " + parameter.unit, dimension, std::nullopt).value.value_or(1.0);
+    }
+  }
+
+  /// Whether a number can be put into the scenario's text, so that what has been fitted can be run.
+  void check_place(const Section& free, const FreeParameter& parameter) {
+    const std::string& path = parameter.key.path;
+    try {
+      const std::string text =
+          with_values(made_.scenario_text, {{path, fmt::format("{:e}", parameter.start.value_or(parameter.lower))}});
+      static_cast<void>(parse_scenario(text, scenario_file_));
+    } catch (const ScenarioError& error) {
+      faults_.add(free.key_place(path), fmt::format("the scenario does not take '{}': {}", path,
+                                                    on_one_line(error.faults().front().message)));
+    } catch (const std::runtime_error&) {
+      faults_.add(free.key_place(path),
+                  fmt::format("the scenario does not give '{}', and has no table with a header to put it in; expected "
+                              "it there, with any value",
+                              path));
+    }
+  }
+
+  void check_count(const Section& root) {
+    const std::size_t points = made_.counted();
+    if (points >= made_.free.size()) return;
+    faults_.add(root.value_place("free"),
+                fmt::format("{} parameters cannot be fitted to {} point{}; expected at least as many points",
+                            made_.free.size(), points, points == 1 ? "" : "s"));
+  }
+
+  fs::path named_;  ///< as on the command line
+  fs::path file_;
+  FaultList faults_;
+  Reading reading_;
+  Calibration made_;
+  std::string scenario_file_;
+  Measurable measurable_;
+  bool has_scenario_ = false;
+};
+
+}  // namespace
+
+std::size_t Calibration::counted() const noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }));
+}
+
+const MeasuredCurve& Calibration::curve_of(std::size_t row) const noexcept {
+  return *std::ranges::find_if(curves, [row](const MeasuredCurve& curve) { return row < curve.end; });
+}
+
+std::string data_names(const Calibration& calibration) {
+  std::vector<std::string> names;
+  for (const MeasuredCurve& curve : calibration.curves) names.push_back(fs::path(curve.file).filename().string());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+Calibration read_calibration(const fs::path& file) { return CalibrationReader(file).read(); }
+
+}  // namespace monograin

@@ -1,0 +1,430 @@
+// What a calibration leaves: text, tables, a figure and a scenario.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "figure/chart.hpp"
+#include "figure/figure.hpp"
+#include "figure/page.hpp"
+#include "history/run.hpp"
+#include "scenario/edit.hpp"
+#include "study/calibrate/calibration.hpp"
+#include "study/calibrate/calibration_language.hpp"
+#include "system/undefined.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Bound = LeastSquaresSolution::Bound;
+
+constexpr const char* k_figure = "figure.svg";
+
+std::string_view word_of(Bound bound) {
+  switch (bound) {
+    case Bound::none:
+      return "";
+    case Bound::lower:
+      return "lower";
+    case Bound::upper:
+      return "upper";
+  }
+  return "";
+}
+
+/// A number that a reader may compare with others.
+std::string shown_number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; }
+
+std::string with_unit(double value, const std::string& unit) {
+  return unit.empty() || !std::isfinite(value) ? shown_number(value) : shown_number(value) + ' ' + unit;
+}
+
+/// A parameter's interval, within its bounds where it would reach beyond them.
+std::pair<double, double> interval_of(const CalibrationResult& result, std::size_t k) {
+  const double half = result.uncertainty.half_width(k);
+  return {result.solution.parameters[k] - half, result.solution.parameters[k] + half};
+}
+
+// --- text
+
+using Row = std::vector<std::string>;
+
+/// Rows with their cells below each other, the first column to the left and the others to the right.
+std::string aligned(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const Row& row : rows) {
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      text += k == 0 ? fmt::format("{:<{}}", row[k], widths[k]) : fmt::format("  {:>{}}", row[k], widths[k]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string parameter_table(const Calibration& calibration, const CalibrationResult& result) {
+  const std::string level = fmt::format("{:g} % interval", 100.0 * result.uncertainty.level);
+  std::vector<Row> rows{{"parameter", "SI", "value", "std. error", level, ""}};
+  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
+    const FreeParameter& parameter = calibration.free[k];
+    const auto own = [&](double si) { return si / parameter.unit_factor; };
+    const auto [lower, upper] = interval_of(result, k);
+    const Bound bound = result.solution.bounds[k];
+    std::string remark;
+    if (bound != Bound::none) remark = fmt::format("at its {} bound", word_of(bound));
+    if (!result.uncertainty.is_determined[k]) remark = "not determined";
+    rows.push_back({parameter.key.path, fmt::format("{:.10g}", result.solution.parameters[k]),
+                    with_unit(own(result.solution.parameters[k]), parameter.unit),
+                    with_unit(own(result.uncertainty.standard_error(k)), parameter.unit),
+                    std::isfinite(lower)
+                        ? fmt::format("{} ... {}", shown_number(own(lower)), with_unit(own(upper), parameter.unit))
+                        : "-",
+                    remark});
+  }
+  return aligned(rows);
+}
+
+std::string correlation_table(const Calibration& calibration, const CalibrationResult& result) {
+  std::vector<Row> rows{{"correlation"}};
+  for (const FreeParameter& parameter : calibration.free) rows.front().push_back(parameter.key.path);
+  for (std::size_t i = 0; i < calibration.free.size(); ++i) {
+    rows.push_back({calibration.free[i].key.path});
+    for (std::size_t j = 0; j < calibration.free.size(); ++j) {
+      const double value = result.uncertainty.correlation(i, j);
+      rows.back().push_back(std::isfinite(value) ? fmt::format("{:.4f}", value) : "-");
+    }
+  }
+  return aligned(rows);
+}
+
+/// The model's own procedures, and this fit by their measures.
+std::string procedure_table(const ModelFits& procedures) {
+  std::vector<Row> rows{{"procedure"}};
+  rows.front().insert(rows.front().end(), procedures.keys.begin(), procedures.keys.end());
+  rows.front().insert(rows.front().end(), {"area error", "peak error"});
+  for (const ProcedureFit& fit : procedures.fits) {
+    rows.push_back({fit.procedure});
+    for (const double value : fit.parameters) rows.back().push_back(fmt::format("{:.10g}", value));
+    rows.back().push_back(fmt::format("{:.8f}", fit.area_error));
+    rows.back().push_back(fmt::format("{:.8f}", fit.peak_error));
+  }
+  return aligned(rows);
+}
+
+bool has_errors(const CalibrationResult& result) {
+  for (std::size_t k = 0; k < result.solution.parameters.size(); ++k) {
+    if (std::isfinite(result.uncertainty.standard_error(k))) return true;
+  }
+  return false;
+}
+
+// --- files
+
+void write_csv_file(const Table& table, const fs::path& file) {
+  std::ostringstream text;
+  write_csv(table, text);
+  figure::write_whole(file, text.str());
+}
+
+Table fit_table(const Calibration& calibration, const CalibrationResult& result) {
+  const MeasuredQuantity& x = calibration.x;
+  const MeasuredQuantity& y = calibration.y;
+  const std::string inverse = "1/" + y.si;
+  std::vector<Column> columns{{x.observable, x.si, {}}, {y.observable, y.si, {}}, {"fit", y.si, {}},
+                              {"residual", y.si, {}},   {"band_lower", y.si, {}}, {"band_upper", y.si, {}},
+                              {"weight", inverse, {}}};
+  const bool has_several = calibration.curves.size() > 1;
+  if (has_several) columns.push_back({"curve", "", {}});
+  Table table(std::move(columns));
+  table.header = {{"program", fmt::format("monograin {}", version())},
+                  {"calibration", calibration.name},
+                  {"scenario", calibration.scenario.name},
+                  {"scenario_digest", scenario_digest(calibration.scenario)},
+                  {"model", calibration.scenario.model},
+                  {"data", calibration.curves.front().file},
+                  {"band", fmt::format("confidence band of the fit at level {:g}", result.uncertainty.level)}};
+  for (std::size_t c = 1; c < calibration.curves.size(); ++c) {
+    table.header.emplace_back(fmt::format("data_{}", c + 1), calibration.curves[c].file);
+  }
+  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
+    table.header.emplace_back(calibration.free[k].key.path, fmt::format("{:.17g}", result.solution.parameters[k]));
+  }
+  for (std::size_t row = 0; row < x.values.size(); ++row) {
+    const double fit = result.fit.y[row];
+    const double band = result.fit.band[row];
+    std::vector<double> cells{x.values[row], y.values[row],           fit, y.values[row] - fit, fit - band,
+                              fit + band,    calibration.weights[row]};
+    if (has_several) {
+      cells.push_back(static_cast<double>(&calibration.curve_of(row) - calibration.curves.data() + 1));
+    }
+    table.append(cells);
+  }
+  return table;
+}
+
+/// "contact_radius" as it begins a label.
+std::string label_of(const MeasuredQuantity& quantity) {
+  std::string name = quantity.observable.substr(quantity.observable.rfind('.') + 1);
+  std::ranges::replace(name, '_', ' ');
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  const std::string unit = quantity.unit == "R0" ? "{/Helvetica-Oblique R}_0" : quantity.unit;
+  return quantity.unit == "-" ? name : fmt::format("{} [{}]", name, unit);
+}
+
+std::vector<double> in_unit(const std::vector<double>& values, const MeasuredQuantity& quantity) {
+  std::vector<double> result = values;
+  for (double& value : result) value /= quantity.unit_factor;
+  return result;
+}
+
+/// What tells a curve from the others.
+std::string name_of(const MeasuredCurve& curve) {
+  return curve.overrides.empty() ? fs::path(curve.file).stem().string()
+                                 : fmt::format("{}", fmt::join(curve.overrides, ", "));
+}
+
+figure::Chart chart_of(const Calibration& calibration, const CalibrationResult& result) {
+  using Style = figure::ChartSeries::Style;
+  const std::string x_label = label_of(calibration.x);
+  const std::string y_label = label_of(calibration.y);
+  figure::ChartPanel curves{.x = {.label = x_label}, .y = {.label = y_label}};
+  figure::ChartPanel rest{.x = {.label = x_label}, .y = {.label = "Data - fit: " + y_label}};
+  rest.y.label[rest.y.label.find(y_label)] = static_cast<char>(std::tolower(y_label[0]));
+  const std::vector<double> x = in_unit(calibration.x.values, calibration.x);
+  const std::vector<double> y = in_unit(calibration.y.values, calibration.y);
+  for (std::size_t c = 0; c < calibration.curves.size(); ++c) {
+    const MeasuredCurve& measured = calibration.curves[c];
+    const FittedCurve& fitted = result.curves[c];
+    const bool is_only_one = calibration.curves.size() == 1;
+    const std::string suffix = is_only_one ? "" : ": " + figure::verbatim_text(name_of(measured));
+    const auto own_colour = is_only_one ? std::nullopt : std::optional(c);
+    const std::vector<double> curve_x = in_unit(fitted.x, calibration.x);
+    const std::vector<double> curve_y = in_unit(fitted.y, calibration.y);
+    const auto band = [&](const std::vector<double>& middle) {
+      figure::ChartBand made{.legend = fmt::format("{:g} % confidence band", 100.0 * result.uncertainty.level),
+                             .colour = 0x9FC5E8,
+                             .x = curve_x,
+                             .lower = middle,
+                             .upper = middle};
+      for (std::size_t i = 0; i < middle.size(); ++i) {
+        made.lower[i] -= fitted.band[i] / calibration.y.unit_factor;
+        made.upper[i] += fitted.band[i] / calibration.y.unit_factor;
+      }
+      return made;
+    };
+    if (result.uncertainty.degrees_of_freedom > 0) {
+      curves.bands.push_back(band(curve_y));
+      rest.bands.push_back(band(std::vector<double>(curve_x.size(), 0.0)));
+    }
+    std::vector<double> own_x;
+    std::vector<double> own_y;
+    std::vector<double> residuals;
+    for (std::size_t row = measured.begin; row < measured.end; ++row) {
+      own_x.push_back(x[row]);
+      own_y.push_back(y[row]);
+      residuals.push_back(calibration.weights[row] > 0.0 ? y[row] - result.fit.y[row] / calibration.y.unit_factor
+                                                         : k_nan);
+    }
+    curves.series.push_back({.legend = "fit" + suffix, .style = Style::solid, .colour = c, .x = curve_x, .y = curve_y});
+    curves.series.push_back(
+        {.legend = "data" + suffix, .style = Style::points, .colour = own_colour, .x = own_x, .y = own_y});
+    rest.series.push_back(
+        {.legend = "data" + suffix, .style = Style::points, .colour = own_colour, .x = own_x, .y = residuals});
+  }
+  return {{std::move(curves), std::move(rest)}};
+}
+
+/// @return why there is no figure
+std::string draw(const Calibration& calibration, const CalibrationResult& result, const fs::path& folder) {
+  try {
+    const figure::FigureFiles files(folder / k_figure);
+    const figure::Chart chart = chart_of(calibration, result);
+    files.write(figure::chart_data(chart, fmt::format("{}: {}", calibration.name, data_names(calibration))),
+                figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
+  } catch (const FigureError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+Json parameters_json(const Calibration& calibration, const CalibrationResult& result) {
+  Json parameters = Json::array();
+  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
+    const FreeParameter& parameter = calibration.free[k];
+    const auto [lower, upper] = interval_of(result, k);
+    const Bound bound = result.solution.bounds[k];
+    parameters.push_back({{"key", parameter.key.path},
+                          {"value", result.solution.parameters[k]},
+                          {"standard_error", result.uncertainty.standard_error(k)},
+                          {"interval", {lower, upper}},
+                          {"bounds", {parameter.lower, parameter.upper}},
+                          {"at_bound", bound == Bound::none ? Json() : Json(word_of(bound))},
+                          {"is_determined", static_cast<bool>(result.uncertainty.is_determined[k])},
+                          {"unit", parameter.unit},
+                          {"value_in_unit", result.solution.parameters[k] / parameter.unit_factor}});
+  }
+  return parameters;
+}
+
+Json matrix_json(std::size_t size, const std::function<double(std::size_t, std::size_t)>& entry) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < size; ++i) {
+    Json row = Json::array();
+    for (std::size_t j = 0; j < size; ++j) row.push_back(entry(i, j));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+Json minima_json(const CalibrationResult& result) {
+  Json minima = Json::array();
+  for (const LocalMinimum& minimum : result.solution.minima) {
+    minima.push_back({{"parameters", minimum.parameters}, {"cost", minimum.cost}});
+  }
+  return minima;
+}
+
+Json procedures_json(const ModelFits& procedures) {
+  Json fits = Json::array();
+  for (const ProcedureFit& fit : procedures.fits) {
+    Json parameters = Json::object();
+    for (std::size_t k = 0; k < procedures.keys.size(); ++k) parameters[procedures.keys[k]] = fit.parameters[k];
+    fits.push_back({{"procedure", fit.procedure},
+                    {"parameters", std::move(parameters)},
+                    {"area_error", fit.area_error},
+                    {"peak_error", fit.peak_error}});
+  }
+  return fits;
+}
+
+/// One curve, or a list of them, as the calibration's file has it.
+Json data_json(const Calibration& calibration) {
+  Json list = Json::array();
+  for (const MeasuredCurve& curve : calibration.curves) {
+    list.push_back({{"file", curve.file}, {"text", curve.text}});
+    if (!curve.overrides.empty()) list.back()["set"] = curve.overrides;
+  }
+  return list.size() == 1 ? list.front() : list;
+}
+
+/// Numbers that are undefined become null.
+Json to_json(const Calibration& calibration, const CalibrationResult& result) {
+  const LeastSquaresSolution& solution = result.solution;
+  const Uncertainty& uncertainty = result.uncertainty;
+  const std::size_t p = calibration.free.size();
+  return {{"calibration", calibration.name},
+          {"title", calibration.title},
+          {"parameters", parameters_json(calibration, result)},
+          {"covariance", matrix_json(p,
+                                     [&](std::size_t i, std::size_t j) {
+                                       return uncertainty.covariance(static_cast<Eigen::Index>(i),
+                                                                     static_cast<Eigen::Index>(j));
+                                     })},
+          {"correlation", matrix_json(p,
+                                      [&](std::size_t i, std::size_t j) {
+                                        const bool has_both = std::isfinite(uncertainty.standard_error(i) +
+                                                                            uncertainty.standard_error(j));
+                                        return has_both ? uncertainty.correlation(i, j) : k_nan;
+                                      })},
+          {"statistics",
+           {{"points", result.points},
+            {"degrees_of_freedom", uncertainty.degrees_of_freedom},
+            {"level", uncertainty.level},
+            {"t_quantile", uncertainty.t_quantile},
+            {"cost", solution.cost},
+            {"sum_of_squares", result.sum_of_squares},
+            {"rms", result.rms},
+            {"largest", result.largest},
+            {"largest_in_line", calibration.lines[result.largest_at]},
+            {"r_squared", result.r_squared}}},
+          {"fit",
+           {{"x", {{"quantity", calibration.x.observable}, {"unit", calibration.x.si}}},
+            {"y", {{"quantity", calibration.y.observable}, {"unit", calibration.y.si}}},
+            {"weights", calibration.weighting},
+            {"loss", calibration::k_losses[static_cast<std::size_t>(calibration.loss.kind)]},
+            {"loss_scale", calibration.loss.kind == Loss::linear ? Json() : Json(calibration.loss.scale)},
+            {"has_converged", solution.has_converged},
+            {"evaluations", solution.evaluations},
+            {"failed_evaluations", solution.failures},
+            {"program_steps", result.program_steps},
+            {"minima", minima_json(result)},
+            {"procedures", procedures_json(result.procedures)}}},
+          {"notes", result.notes},
+          {"versions", {{"monograin", version()}, {"compiler", __VERSION__}}},
+          {"scenario",
+           {{"name", calibration.scenario.name},
+            {"model", calibration.scenario.model},
+            {"digest", scenario_digest(calibration.scenario)},
+            {"text", calibration.scenario_text}}},
+          {"data", data_json(calibration)},
+          {"text", calibration.text}};
+}
+
+/// Files that options name lie beside the fitted scenario, under the option's name.
+std::string table_name(const std::string& option) { return option + ".csv"; }
+
+}  // namespace
+
+std::string fitted_scenario_text(const Calibration& calibration, const CalibrationResult& result) {
+  std::vector<TextEdit> edits;
+  std::string head = fmt::format("# Numbers fitted by monograin calibrate ({}, {} points of {}):\n", calibration.name,
+                                 result.points, data_names(calibration));
+  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
+    const FreeParameter& parameter = calibration.free[k];
+    const double value = result.solution.parameters[k];
+    std::string digits = fmt::format("{:.17g}", value);
+    if (digits.find_first_of(".e") == std::string::npos) digits += ".0";
+    edits.push_back({parameter.key.path, digits});
+    const double half = result.uncertainty.half_width(k) / parameter.unit_factor;
+    head += fmt::format("#   {} = {}{}\n", parameter.key.path, with_unit(value / parameter.unit_factor, parameter.unit),
+                        std::isfinite(half) ? fmt::format(" +- {}", with_unit(half, parameter.unit)) : "");
+  }
+  for (const auto& [option, curve] : calibration.scenario.curves) {
+    edits.push_back({calibration.scenario.model + '.' + option, '"' + table_name(option) + '"'});
+  }
+  return head + with_values(calibration.scenario_text, edits);
+}
+
+std::string calibration_text(const Calibration& calibration, const CalibrationResult& result) {
+  const MeasuredQuantity& y = calibration.y;
+  const auto in_y = [&y](double value) { return with_unit(value / y.unit_factor, y.unit == "-" ? "" : y.unit); };
+  const fs::path worst = calibration.curve_of(result.largest_at).file;
+  const std::string of_file = calibration.curves.size() > 1 ? worst.filename().string() + ", " : "";
+  std::string text = parameter_table(calibration, result) + '\n';
+  if (calibration.free.size() > 1 && has_errors(result)) text += correlation_table(calibration, result) + '\n';
+  if (!result.procedures.fits.empty()) text += procedure_table(result.procedures) + '\n';
+  std::vector<Row> rows{{"points", fmt::format("{}", result.points)},
+                        {"degrees of freedom", fmt::format("{}", result.uncertainty.degrees_of_freedom)},
+                        {"sum of squares (weighted)", shown_number(result.sum_of_squares)},
+                        {"rms residual", in_y(result.rms)},
+                        {"largest residual", fmt::format("{} ({}line {})", in_y(result.largest), of_file,
+                                                         calibration.lines[result.largest_at])},
+                        {"R^2", std::isfinite(result.r_squared) ? fmt::format("{:.8f}", result.r_squared) : "-"}};
+  if (calibration.loss.kind != Loss::linear) rows.push_back({"cost (with loss)", shown_number(result.solution.cost)});
+  return text + aligned(rows);
+}
+
+std::string write_calibration(const Calibration& calibration, const CalibrationResult& result, StagedFolder& folder) {
+  write_csv_file(fit_table(calibration, result), folder.path() / "fit.csv");
+  figure::write_whole(folder.path() / "fitted.toml", fitted_scenario_text(calibration, result));
+  for (const auto& [option, curve] : calibration.scenario.curves) {
+    figure::write_whole(folder.path() / table_name(option), curve.text);
+  }
+  figure::write_whole(folder.path() / k_calibration_marker,
+                      to_json(calibration, result).dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  const std::string problem = draw(calibration, result, folder.path());
+  folder.publish();
+  return problem;
+}
+
+}  // namespace monograin

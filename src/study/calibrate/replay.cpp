@@ -1,0 +1,155 @@
+#include "study/calibrate/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "catalogue.hpp"
+#include "engine/drive.hpp"
+#include "scenario/numbers.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr double k_no_change = 1e-12;  // of the largest value; the engine resolves 1e-13 of a step
+
+constexpr double k_same_force = 1e-6;  // as prescribed, of the largest
+
+std::size_t place_of(const HybridSystem& system, std::string_view column) {
+  const auto found = std::ranges::find(system.observables(), column, &Observable::name);
+  if (found == system.observables().end()) throw std::logic_error(fmt::format("no observable '{}'", column));
+  return static_cast<std::size_t>(found - system.observables().begin());
+}
+
+/// Keeps two columns at the output points.
+class ColumnSink final : public HistorySink {
+ public:
+  using Rows = std::vector<std::array<double, 2>>;
+
+  ColumnSink(HybridSystem& system, const ReplayColumns& columns, Rows& rows)
+      : system_(system),
+        observed_(system.observables().size()),
+        places_{place_of(system, columns.driven), place_of(system, columns.watched)},
+        rows_(rows) {}
+
+  void observe(double /*time*/, int /*step*/, double xi, std::span<const double> y) override {
+    system_.observe(xi, y, observed_);
+  }
+  void append(RowSide side) override {
+    if (side == RowSide::output) rows_.push_back({observed_[places_[0]], observed_[places_[1]]});
+  }
+  void event(const Event& /*event*/) override {}
+
+ private:
+  HybridSystem& system_;
+  std::vector<double> observed_;
+  std::array<std::size_t, 2> places_;
+  Rows& rows_;
+};
+
+}  // namespace
+
+DataProgram program_through(std::span<const double> values, Step::Kind kind, double start) {
+  DataProgram program;
+  double largest = std::abs(start);
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+
+  std::vector<double> passed{start};  // the values at the instants, the start's first
+  for (const double value : values) {
+    if (std::abs(value - passed.back()) > k_no_change * largest) passed.push_back(value);
+    program.rows.push_back(passed.size() - 1);
+  }
+  for (std::size_t first = 0; first + 1 < passed.size();) {
+    const auto rises = [&](std::size_t k) { return passed[k + 1] > passed[k]; };
+    std::size_t last = first + 1;
+    while (last + 1 < passed.size() && rises(last) == rises(first)) ++last;
+    const auto begin = static_cast<double>(program.steps.size());
+    for (std::size_t k = first + 1; k <= last; ++k) {
+      program.times.push_back(begin + (passed[k] - passed[first]) / (passed[last] - passed[first]));
+    }
+    program.steps.push_back(
+        {.kind = kind, .target = passed[last], .duration = 1.0, .rate = {}, .until = {}, .where = {}});
+    first = last;
+  }
+  return program;
+}
+
+const Measurable::Column* Measurable::find(std::string_view name) const noexcept {
+  const auto found = std::ranges::find(columns, name, &Column::name);
+  return found == columns.end() ? nullptr : &*found;
+}
+
+Measurable measurable_in(const Scenario& scenario) {
+  const Scene scene = make_scene(scenario);
+  Measurable measurable;
+  for (std::size_t c = 0; c < scene.classes.size(); ++c) {
+    if (scene.channels[c].program.empty()) continue;
+    const std::string& name = scene.classes[c].name;
+    measurable.driven.push_back(name);
+    measurable.drives.push_back({name + ".displacement", Step::Kind::displacement, scene.channels[c].at_rest.start});
+    measurable.drives.push_back({name + ".force", Step::Kind::force, 0.0});
+  }
+  if (scene.classes.empty()) {
+    std::vector<double> y(scene.system->unknowns().size());
+    scene.system->start(y);
+    for (const DriveKey& drive : find_model(scenario.model)->drives) {
+      measurable.drives.push_back({std::string(drive.column.empty() ? drive.name : drive.column),
+                                   ramp_of(drive.control), scene.system->controlled(drive.control, 0, 0.0, y)});
+    }
+  }
+  for (const Observable& observable : scene.system->observables()) {
+    if (observable.words.empty()) measurable.columns.push_back({observable.name, observable.unit});
+  }
+  return measurable;
+}
+
+Replay::Replay(Scenario scenario, ReplayColumns columns, std::vector<double> values)
+    : scenario_(std::move(scenario)),
+      integrator_(choose_integrator(scenario_.numerics.integrator, *make_scene(scenario_).system).used),
+      columns_(std::move(columns)),
+      values_(std::move(values)) {
+  DataProgram program = program_through(values_, columns_.control, columns_.start);
+  scenario_.loading.steps = std::move(program.steps);
+  scenario_.output.times = std::move(program.times);
+  rows_ = std::move(program.rows);
+  // What else is prescribed is that of the program whatever happens; a force is not borne where a contact has been
+  // lost.
+  for (const double value : values_) resolution_ = std::max(resolution_, k_same_force * std::abs(value));
+  if (columns_.control != Step::Kind::force) resolution_ = std::numeric_limits<double>::infinity();
+}
+
+void Replay::set(std::string_view path, double value) { set_number(scenario_, path, value); }
+
+bool Replay::run(std::span<double> response) {
+  seen_.clear();
+  try {
+    Scene scene = make_scene(scenario_);
+    ColumnSink sink(*scene.system, columns_, seen_);
+    const Tolerances tolerances{scenario_.numerics.rtol, scenario_.numerics.atol};
+    problem_ = drive(scene, integrator_, tolerances, scenario_.output, sink).message;
+  } catch (const std::domain_error& error) {
+    problem_ = error.what();
+  } catch (const std::invalid_argument& error) {  // constants for which the model has no law
+    problem_ = error.what();
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    failed_at_ = i;
+    if (rows_[i] >= seen_.size()) return false;
+    const auto [driven, watched] = seen_[rows_[i]];
+    if (std::abs(driven - values_[i]) > resolution_) {
+      problem_ = fmt::format("{} is {:.6g} where {:.6g} is prescribed", columns_.driven, driven, values_[i]);
+      return false;
+    }
+    if (!std::isfinite(watched)) {
+      problem_ = fmt::format("{} has no value there", columns_.watched);
+      return false;
+    }
+    response[i] = watched;
+  }
+  return true;
+}
+
+}  // namespace monograin

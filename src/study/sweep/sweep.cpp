@@ -1,0 +1,327 @@
+#include "study/sweep/sweep.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "history/run.hpp"
+#include "history/staged_folder.hpp"
+#include "scenario/text_file.hpp"
+#include "scenario/words.hpp"
+#include "study/sweep/sweep_journal.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* k_results = "results.csv";
+constexpr const char* k_journal_extension = ".journal";
+constexpr std::string_view k_program_line = "# program: monograin ";
+constexpr std::size_t k_largest_results = std::size_t{4} << 30U;
+constexpr const char* k_digest_line = "# sweep_digest: ";
+
+// --- one run
+
+/// A row and the headings of its cells.
+struct Outcome {
+  SweepRow row;
+  std::string columns;
+};
+
+/// A text that can be a cell.
+[[nodiscard]] std::string plain(std::string text) {
+  for (char& c : text) {
+    if (c == ',') c = ';';
+    if (c == '"') c = '\'';
+    if (static_cast<unsigned char>(c) < 0x20U) c = ' ';
+  }
+  return text;
+}
+
+/// Columns that count rows say nothing of a whole run.
+[[nodiscard]] bool is_counter(const Column& column) { return column.name == "step" || column.name == "row"; }
+
+/// The largest value of a column; undefined ones do not count.
+[[nodiscard]] double largest(const Table& history, std::size_t column) {
+  double result = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t row = 0; row < history.row_count(); ++row) result = std::fmax(result, history.at(row, column));
+  return result;
+}
+
+/// Final and largest values of a history's columns.
+void summarise(const Table& history, Outcome& outcome) {
+  std::vector<std::string> headings;
+  std::vector<std::string> cells;
+  const auto add = [&](std::string_view prefix, const Column& column, std::string cell) {
+    headings.push_back(fmt::format("{}.{}", prefix, column.heading()));
+    cells.push_back(std::move(cell));
+  };
+  const std::vector<Column>& columns = history.columns();
+  const std::size_t last = history.row_count() - 1;
+  for (std::size_t k = 0; history.row_count() > 0 && k < columns.size(); ++k) {
+    if (is_counter(columns[k])) continue;
+    add("end", columns[k],
+        columns[k].holds_words() ? std::string(history.word(last, k)) : csv_number(history.at(last, k)));
+  }
+  for (std::size_t k = 0; history.row_count() > 0 && k < columns.size(); ++k) {
+    if (is_counter(columns[k]) || columns[k].holds_words()) continue;
+    add("max", columns[k], csv_number(largest(history, k)));
+  }
+  outcome.columns = fmt::format("{}", fmt::join(headings, ","));
+  outcome.row.cells = fmt::format("{}", fmt::join(cells, ","));
+}
+
+[[nodiscard]] std::string messages_of(const ScenarioError& error) {
+  std::vector<std::string_view> messages;
+  for (const Fault& fault : error.faults()) messages.emplace_back(fault.message);
+  return fmt::format("{}", fmt::join(messages, "; "));
+}
+
+void keep_history(const Table& history, const fs::path& file) {
+  std::ostringstream text;
+  write_csv(history, text);
+  write_text_file(file, text.view());
+}
+
+/// @param histories  folder for the run's history; empty: it is not kept
+[[nodiscard]] Outcome run_one(const Sweep& sweep, std::size_t index, const fs::path& histories) {
+  Outcome outcome;
+  outcome.row.run = index + 1;
+  std::optional<Run> run;
+  try {
+    run = run_scenario(sweep.scenario.with(overrides_of(sweep, index)));
+  } catch (const ScenarioError& error) {
+    outcome.row.status = "refused";
+    outcome.row.reason = plain(messages_of(error));
+  } catch (const std::exception& error) {  // a bug of the program costs this run, not the sweep
+    outcome.row.status = to_string(RunStatus::failed);
+    outcome.row.reason = plain(in_own_words(error));
+  }
+  if (!run) return outcome;
+  outcome.row.status = to_string(run->record.status);
+  outcome.row.reason = plain(run->record.message);
+  summarise(run->record.history, outcome);
+  if (!histories.empty()) keep_history(run->record.history, histories / fmt::format("{}.csv", index + 1));
+  return outcome;
+}
+
+// --- the folder
+
+[[nodiscard]] fs::path journal_file(const SweepOptions& options) {
+  const auto [index, count] = options.shard;
+  return options.folder / (count == 1 ? fmt::format("sweep{}", k_journal_extension)
+                                      : fmt::format("sweep-{}-of-{}{}", index, count, k_journal_extension));
+}
+
+[[nodiscard]] std::vector<fs::path> journals_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == k_journal_extension) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+[[nodiscard]] bool has_results(const Sweep& sweep, const fs::path& folder) {
+  std::ifstream in(folder / k_results);
+  for (std::string line; std::getline(in, line) && line.starts_with('#');) {
+    if (line == k_digest_line + sweep.digest) return true;
+  }
+  return false;
+}
+
+void prepare(const fs::path& folder) {
+  if (fs::exists(folder / "run.json")) {
+    throw std::runtime_error(fmt::format("{}: is the folder of a run; choose another folder with -o", folder.string()));
+  }
+  const fs::path results = folder / k_results;
+  if (fs::exists(fs::symlink_status(results)) &&
+      !read_text_file(results, k_largest_results).text.starts_with(k_program_line)) {
+    throw std::runtime_error(
+        fmt::format("{}: is none that monograin has written, and would be replaced; choose another folder with -o",
+                    results.string()));
+  }
+  prepare_folder(folder);
+}
+
+/// Held by the process that makes results.csv of a folder's journals, so that no two do.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    flock(descriptor_, LOCK_EX);
+  }
+  ~FolderLock() { close(descriptor_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+// --- all runs
+
+/// The finished runs of all journals.
+class Rows {
+ public:
+  Rows(const Sweep& sweep, const fs::path& folder) : sweep_(sweep), places_(sweep.runs.size()) {
+    for (const fs::path& file : journals_in(folder)) {
+      records_.push_back(read_journal(file, sweep.digest));
+      for (std::size_t i = 0; i < records_.back().rows.size(); ++i) {
+        Place& place = places_.at(records_.back().rows[i].run - 1);
+        if (!place.is_there) place = {true, records_.size() - 1, i};
+      }
+    }
+  }
+
+  [[nodiscard]] bool has(std::size_t run) const { return places_[run].is_there; }
+  [[nodiscard]] std::size_t count() const {
+    return static_cast<std::size_t>(std::ranges::count(places_, true, &Place::is_there));
+  }
+
+  /// The results, all runs being there.
+  [[nodiscard]] std::string text() const {
+    const std::vector<std::string> columns = all_columns();
+    std::string text = fmt::format("{}{}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\n", k_program_line, version(),
+                                   sweep_.name, k_digest_line, sweep_.digest, sweep_.design, sweep_.scenario_name);
+    text += "run";
+    for (const SweepFactor& factor : sweep_.factors) text += ',' + factor.heading();
+    text += ",status,reason";
+    for (const std::string& column : columns) text += ',' + column;
+    text += '\n';
+    std::unordered_map<std::string, std::vector<std::size_t>> targets;  // of each layout's cells
+    std::vector<std::string_view> cells;
+    for (std::size_t run = 0; run < places_.size(); ++run) {
+      const SweepRow& row = row_of(run);
+      const std::string& layout = layout_of(run);
+      const auto [target, is_new] = targets.try_emplace(layout);
+      if (is_new) {
+        for (const std::string_view heading : split(layout)) {
+          target->second.push_back(static_cast<std::size_t>(std::ranges::find(columns, heading) - columns.begin()));
+        }
+      }
+      cells.assign(columns.size(), "nan");
+      const std::vector<std::string_view> own = split(row.cells);
+      for (std::size_t k = 0; k < own.size(); ++k) cells[target->second[k]] = own[k];
+      text += fmt::format("{}", run + 1);
+      for (const SweepValue& value : sweep_.runs[run]) text += ',' + cell_of(value);
+      text += fmt::format(",{},{}", row.status, row.reason);
+      for (const std::string_view cell : cells) (text += ',') += cell;
+      text += '\n';
+    }
+    return text;
+  }
+
+ private:
+  struct Place {
+    bool is_there = false;
+    std::size_t record = 0;
+    std::size_t row = 0;
+  };
+
+  [[nodiscard]] const SweepRow& row_of(std::size_t run) const {
+    return records_[places_[run].record].rows[places_[run].row];
+  }
+  [[nodiscard]] const std::string& layout_of(std::size_t run) const {
+    return records_[places_[run].record].layouts.at(row_of(run).layout);
+  }
+
+  [[nodiscard]] static std::vector<std::string_view> split(std::string_view text) {
+    std::vector<std::string_view> cells;
+    while (!text.empty()) {
+      const std::size_t comma = std::min(text.find(','), text.size());
+      cells.push_back(text.substr(0, comma));
+      text.remove_prefix(std::min(comma + 1, text.size()));
+    }
+    return cells;
+  }
+
+  /// The columns of all runs, those of earlier runs first, final values before largest ones.
+  [[nodiscard]] std::vector<std::string> all_columns() const {
+    std::vector<std::string> columns;
+    const std::string* last = nullptr;
+    for (std::size_t run = 0; run < places_.size(); ++run) {
+      const std::string& layout = layout_of(run);
+      if (&layout == last) continue;
+      last = &layout;
+      for (const std::string_view heading : split(layout)) {
+        if (std::ranges::find(columns, heading) == columns.end()) columns.emplace_back(heading);
+      }
+    }
+    std::stable_partition(columns.begin(), columns.end(),
+                          [](const std::string& column) { return column.starts_with("end."); });
+    return columns;
+  }
+
+  const Sweep& sweep_;
+  std::vector<SweepRecord> records_;
+  std::vector<Place> places_;  ///< of every run
+};
+
+void run_all(const Sweep& sweep, const SweepOptions& options, const std::vector<std::size_t>& runs,
+             SweepJournal& journal) {
+  const fs::path histories = sweep.keeps_histories ? options.folder / "histories" : fs::path();
+  if (!histories.empty()) fs::create_directories(histories);
+  const int threads = options.threads > 0 ? options.threads : oneapi::tbb::info::default_concurrency();
+  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
+                                          static_cast<std::size_t>(threads));
+  std::mutex mutex;
+  std::size_t done = 0;
+  oneapi::tbb::task_arena(threads).execute([&] {
+    oneapi::tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
+      const Outcome outcome = run_one(sweep, runs[i], histories);
+      const std::scoped_lock lock(mutex);
+      journal.append(outcome.row, outcome.columns);
+      if (options.progress) options.progress(++done, runs.size());
+    });
+  });
+}
+
+}  // namespace
+
+SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
+  prepare(options.folder);
+  if (has_results(sweep, options.folder)) return {.runs_before = sweep.runs.size()};
+  SweepOutcome outcome;
+  {
+    SweepJournal journal(journal_file(options), sweep.digest);
+    std::vector<std::size_t> runs;
+    const Rows rows(sweep, options.folder);
+    outcome.runs_before = rows.count();
+    for (std::size_t run = options.shard.index - 1; run < sweep.runs.size(); run += options.shard.count) {
+      if (!rows.has(run)) runs.push_back(run);
+    }
+    run_all(sweep, options, runs, journal);
+    outcome.runs_now = runs.size();
+  }
+  const FolderLock lock(options.folder);
+  if (has_results(sweep, options.folder)) return outcome;  // another shard was the last
+  const Rows rows(sweep, options.folder);
+  outcome.runs_missing = sweep.runs.size() - rows.count();
+  if (outcome.runs_missing > 0) return outcome;
+  write_text_file(options.folder / k_results, rows.text());
+  sync_to_disk(options.folder / k_results);
+  sync_to_disk(options.folder);
+  for (const fs::path& file : journals_in(options.folder)) fs::remove(file);
+  return outcome;
+}
+
+}  // namespace monograin

@@ -1,0 +1,640 @@
+#include "study/sweep/sweep_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "history/run.hpp"
+#include "scenario/document.hpp"
+#include "scenario/key_path.hpp"
+#include "scenario/overrides.hpp"
+#include "scenario/section.hpp"
+#include "scenario/text_file.hpp"
+#include "scenario/words.hpp"
+#include "study/formula/constraint.hpp"
+#include "study/sweep/design_table.hpp"
+#include "study/sweep/factor.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = KeySpec::Kind;
+
+constexpr double k_most_runs = 1e6;
+constexpr double k_most_maxpro_runs = 1e5;
+constexpr std::array<std::string_view, 3> k_designs{"grid", "table", "maxpro"};
+
+// --- the language
+
+std::vector<KeySpec> root_keys(bool contains_scenario) {
+  return {
+      {.name = "scenario",
+       .meaning = "scenario that is varied, or the name of its file",
+       .kind = contains_scenario ? Kind::table : Kind::file,
+       .is_required = true,
+       .example = contains_scenario ? "[scenario]" : "\"die.toml\""},
+      {.name = "design",
+       .meaning = "how the runs are chosen",
+       .kind = Kind::choice,
+       .choices = {k_designs.begin(), k_designs.end()},
+       .default_value = k_designs.front()},
+      {.name = "runs",
+       .meaning = "number of runs of a space-filling design",
+       .kind = Kind::integer,
+       .range = {.lower = 2.0, .upper = k_most_maxpro_runs},
+       .example = "100",
+       .only_with = "maxpro"},
+      {.name = "seed",
+       .meaning = "seed of a space-filling design",
+       .kind = Kind::integer,
+       .range = {.lower = 0.0, .upper = 1e15},
+       .default_value = 1.0,
+       .only_with = "maxpro"},
+      {.name = "table",
+       .meaning = "file with one column per key",
+       .kind = Kind::file,
+       .example = "\"runs.csv\"",
+       .only_with = "table"},
+      {.name = "histories", .meaning = "keep the history of every run", .kind = Kind::toggle, .default_value = false},
+      {.name = "vary",
+       .meaning = "the keys that are varied, and over what",
+       .kind = Kind::table,
+       .may_be_empty = false,
+       .example = "[vary]"},
+      {.name = "constraints",
+       .meaning = "inequalities between varied keys, in SI",
+       .kind = Kind::texts,
+       .example = "[\"100 <= material.youngs_modulus / material.yield_stress\"]"},
+  };
+}
+
+[[nodiscard]] std::string override_text(const std::string& key, const SweepValue& value, bool is_toggle) {
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}={}", key, *number);
+  const std::string& word = std::get<std::string>(value);
+  return fmt::format("{}={}", key, is_toggle ? word : in_quotes(word));
+}
+
+class SweepReader {
+ public:
+  explicit SweepReader(const fs::path& file) : named_(file), file_(name_of_file(file)), reading_{faults_} {}
+
+  [[nodiscard]] Sweep read() {
+    auto [text, problem] = read_text_file(named_, k_largest_text, FileKind::any);
+    if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a sweep file");
+    digested_ = text;
+    const toml::table tree = parse_document(text, file_.string());
+    const std::vector<KeySpec> keys = root_keys(tree["scenario"].is_table());
+    const SourceLocation top{file_.string()};
+    const Section root(reading_, {&tree, top, "the sweep"}, keys);
+    design_ = root.text("design");
+    check_keys_of_design(root, keys);
+    read_scenario_of(root, tree, text);
+    if (!scenario_) faults_.throw_if_any();  // nobody knows which keys there are
+    read_radius();
+
+    read_factors(root);
+    read_constraints(root);
+    if (design_ == "table") {
+      read_table(root);
+    } else if (design_ == "grid") {
+      make_grid();
+    } else {
+      make_maxpro(root);
+    }
+    faults_.throw_if_any();
+    check_runs();
+    faults_.throw_if_any();
+    digest_varied_files();
+
+    Sweep sweep{.name = file_.stem().string(),
+                .design = design_,
+                .factors = {},
+                .runs = std::move(runs_),
+                .left_out = left_out_,
+                .points = std::move(points_),
+                .scenario = std::move(*scenario_),
+                .scenario_name = scenario_name_,
+                .keeps_histories = root.toggle("histories").value_or(false),
+                .digest = text_digest(fmt::format("monograin {}\n{}", version(), digested_))};
+    for (const Factor& factor : factors_) {
+      sweep.factors.push_back({factor.key, factor.unit(), factor.is_toggle()});
+    }
+    return sweep;
+  }
+
+ private:
+  void check_keys_of_design(const Section& root, const std::vector<KeySpec>& keys) {
+    for (const KeySpec& spec : keys) {
+      if (!spec.only_with.empty() && spec.only_with != design_ && root.has(spec.name)) {
+        faults_.add(root.key_place(spec.name),
+                    fmt::format("key '{}' goes with design = \"{}\" only", spec.name, spec.only_with));
+      }
+    }
+    std::vector<std::string_view> needed{"vary"};
+    if (design_ == "maxpro") needed = {"runs", "vary"};
+    if (design_ == "table") needed = {"table"};
+    for (const std::string_view key : needed) {
+      if (root.has_or_misspells(key)) continue;
+      faults_.add(root.place(), fmt::format("key '{}' is missing for design = \"{}\"; expected for example {}", key,
+                                            design_, example_line(*find_key(keys, key))));
+    }
+  }
+
+  // --- the scenario
+
+  void read_scenario_of(const Section& root, const toml::table& tree, const std::string& text) {
+    if (const toml::table* table = tree["scenario"].as_table()) {
+      scenario_tree_ = *table;
+      scenario_.emplace(text, "scenario", file_.string());
+      scenario_name_ = file_.stem().string();
+      scenario_folder_ = file_.parent_path();
+      return;
+    }
+    const std::string name = root.text("scenario");
+    if (name.empty()) return;
+    const fs::path file = file_.parent_path() / name;
+    const auto [scenario_text, problem] = read_text_file(file, k_largest_text);
+    if (!problem.empty()) {
+      faults_.add(root.value_place("scenario"),
+                  fmt::format("scenario = \"{}\": {} ({}); expected a scenario file, its path relative to the sweep's "
+                              "folder",
+                              shown(name), problem, on_one_line(file.string())));
+      return;
+    }
+    try {
+      scenario_tree_ = parse_document(scenario_text, file.string());
+      scenario_.emplace(scenario_text, file.string());
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) faults_.add(fault.where, fault.message);
+    }
+    scenario_name_ = file.stem().string();
+    scenario_folder_ = file.parent_path();
+    digested_ += '\n' + scenario_text;
+  }
+
+  void read_radius() {
+    const KeyAnswer radius = key_at("particle.radius", scenario_tree_, {});
+    const toml::node* node = scenario_tree_.at_path("particle.radius").node();
+    if (!radius.spec || node == nullptr) return;
+    const auto text = node->value<std::string>();
+    if (const auto [value, problem] = read_value(*radius.spec, text ? *text : shown(*node), {}); value) {
+      base_radius_ = value->number;
+    }
+  }
+
+  /// The key's spec in the language of the scenario's model, or of one that it is varied over.
+  [[nodiscard]] KeyAnswer find_spec(const std::string& key) const {
+    KeyAnswer answer = key_at(key, scenario_tree_, scenario_tree_["model"].value_or(std::string()));
+    for (const std::string& model : models_) {
+      KeyAnswer other = key_at(key, scenario_tree_, model);
+      if (!other.spec) continue;
+      if (answer.spec) {
+        // What one model accepts need not be refused for another.
+        answer.spec->choices.insert(answer.spec->choices.end(), other.spec->choices.begin(), other.spec->choices.end());
+      } else {
+        answer = std::move(other);
+      }
+    }
+    return answer;
+  }
+
+  /// A factor for the key, or a fault at its place.
+  [[nodiscard]] std::optional<Factor> make_factor(const std::string& key, const SourceLocation& where) {
+    KeyAnswer answer = find_spec(key);
+    // A pair is varied as the single number that may stand for it.
+    if (answer.spec && answer.spec->kind == KeySpec::Kind::pair) answer.spec->kind = KeySpec::Kind::quantity;
+    if (answer.spec && !can_be_varied(answer.spec->kind)) {
+      const bool is_table = answer.spec->kind == Kind::table;
+      answer.problem = is_table ? fmt::format(
+                                      "'{0}' is a table; expected the path of one of its keys in quotes, such as "
+                                      "\"{0}.KEY\"",
+                                      shown(key))
+                                : fmt::format("'{}' has no single value that could be varied", shown(key));
+    }
+    if (!answer.problem.empty()) {
+      faults_.add(where, answer.problem);
+      return std::nullopt;
+    }
+    return Factor{.key = key, .spec = std::move(*answer.spec), .where = where, .range = {}, .values = {}};
+  }
+
+  // --- [vary]
+
+  void read_factors(const Section& root) {
+    if (!root.has("vary")) return;
+    const Section::Origin vary = root.table("vary", "[vary]");
+    std::vector<std::pair<SourceLocation, std::string>> entries;
+    for (const auto& [key, node] : *vary.table) entries.emplace_back(place_of(key.source(), vary.place), key.str());
+    std::ranges::sort(entries, {}, [](const auto& entry) { return std::pair(entry.first.line, entry.first.column); });
+    read_models(vary);
+    for (const auto& [where, key] : entries) {
+      std::optional<Factor> factor = make_factor(key, where);
+      are_keys_known_ = are_keys_known_ && factor;
+      if (!factor) continue;
+      const toml::node& node = *vary.table->get(key);
+      const SourceLocation place = place_of(node.source(), where);
+      if (const toml::table* table = node.as_table()) {
+        read_levels(reading_, *table, place, design_ == "grid", *factor);
+      } else {
+        faults_.add(place, fmt::format("{} = {}: expected {} or {{ values = [...] }}", shown(key), shown(node),
+                                       k_example_range));
+      }
+      factors_.push_back(std::move(*factor));
+    }
+  }
+
+  /// The models that the sweep goes over, whose languages all count.
+  void read_models(const Section::Origin& vary) {
+    if (const toml::array* models = (*vary.table)["model"]["values"].as_array()) {
+      for (const toml::node& model : *models) models_.push_back(model.value_or(std::string()));
+    }
+  }
+
+  // --- constraints
+
+  void read_constraints(const Section& root) {
+    const std::vector<std::string> texts = root.texts("constraints");
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+      const SourceLocation where = root.value_place("constraints", i);
+      report_at(where, texts[i], [&] { constraints_.push_back({Constraint(texts[i]), texts[i], where}); });
+    }
+  }
+
+  template <class Action>
+  void report_at(SourceLocation where, const std::string& text, Action action) {
+    try {
+      action();
+    } catch (const ExpressionError& error) {
+      where.column += 1 + error.offset();  // after the quote
+      faults_.add(where, fmt::format("\"{}\": {}", shown(text), error.what()));
+    }
+  }
+
+  /// Whether all names in the constraints are keys that have a number; a fault for each that is not.
+  void check_constraint_names(bool takes_lists) {
+    if (!are_keys_known_) return;  // a name may be a key that is misspelt in [vary]
+    std::vector<std::string_view> names;
+    for (const Factor& factor : factors_) {
+      if (factor.is_number() && (takes_lists || factor.values.empty())) names.push_back(factor.key);
+    }
+    for (const PlacedConstraint& entry : constraints_) {
+      SourceLocation where = entry.where;
+      try {
+        static_cast<void>(entry.constraint.holds([&](std::string_view name) {
+          return std::ranges::find(names, name) == names.end() ? std::nullopt : std::optional(1.0);
+        }));
+      } catch (const ExpressionError& error) {
+        where.column += 1 + error.offset();
+        const std::string suggestion = did_you_mean(error.unknown_name(), names);
+        faults_.add(where, fmt::format("\"{}\": {}{}", shown(entry.text), error.what(),
+                                       suggestion.empty() ? "; expected one of " + listed(names) : suggestion));
+      }
+    }
+  }
+
+  /// The first constraint that a run breaks, or nullptr.
+  [[nodiscard]] const std::string* broken_constraint(const std::vector<SweepValue>& run) const {
+    const Constraint::Lookup lookup = [&](std::string_view name) -> std::optional<double> {
+      for (std::size_t f = 0; f < factors_.size(); ++f) {
+        if (factors_[f].key != name) continue;
+        const auto* number = std::get_if<double>(&run[f]);
+        return number == nullptr ? std::nullopt : std::optional(*number);
+      }
+      return std::nullopt;
+    };
+    for (const PlacedConstraint& entry : constraints_) {
+      if (!entry.constraint.holds(lookup)) return &entry.text;
+    }
+    return nullptr;
+  }
+
+  // --- the runs
+
+  /// The values of a run in SI, which needs its radius.
+  [[nodiscard]] std::vector<SweepValue> resolved(const std::vector<FactorValue>& values) const {
+    double radius = base_radius_;
+    for (std::size_t f = 0; f < factors_.size(); ++f) {
+      if (factors_[f].key == "particle.radius") radius = values[f].number;
+    }
+    std::vector<SweepValue> run;
+    for (std::size_t f = 0; f < factors_.size(); ++f) {
+      if (factors_[f].is_number()) {
+        run.emplace_back(values[f].is_in_radii ? values[f].number * radius : values[f].number);
+      } else {
+        run.emplace_back(values[f].word);
+      }
+    }
+    return run;
+  }
+
+  void make_grid() {
+    check_constraint_names(true);
+    if (faults_.size() > 0) return;
+    double count = 1.0;
+    for (Factor& factor : factors_) {
+      if (factor.range) {
+        for (int i = 0; i < factor.range->points; ++i) {
+          factor.values.push_back(factor.range->at(static_cast<double>(i) / (factor.range->points - 1)));
+        }
+      }
+      count *= static_cast<double>(factor.values.size());
+    }
+    if (count > k_most_runs) {
+      faults_.add(factors_.front().where,
+                  fmt::format("the grid has {:g} points; expected at most {:g}", count, k_most_runs));
+      return;
+    }
+    std::vector<FactorValue> values(factors_.size());
+    for (std::size_t point = 0; point < static_cast<std::size_t>(count); ++point) {
+      std::size_t rest = point;  // the last key changes fastest
+      for (std::size_t f = factors_.size(); f-- > 0; rest /= factors_[f].values.size()) {
+        values[f] = factors_[f].values[rest % factors_[f].values.size()];
+      }
+      std::vector<SweepValue> run = resolved(values);
+      if (broken_constraint(run) == nullptr) {
+        runs_.push_back(std::move(run));
+      } else {
+        ++left_out_;
+      }
+    }
+    if (runs_.empty()) faults_.add(constraints_.front().where, "no point of the grid meets the constraints");
+  }
+
+  void make_maxpro(const Section& root) {
+    check_constraint_names(false);
+    if (faults_.size() > 0) return;
+    DesignSpace space{.factors = 0, .level_count = 0, .contains = {}};
+    std::size_t combinations = 1;
+    for (const Factor& factor : factors_) {
+      if (factor.range) {
+        ++space.factors;
+      } else {
+        combinations *= factor.values.size();
+        space.level_count = combinations;
+      }
+    }
+    const auto runs = static_cast<std::size_t>(root.number("runs").value_or(0.0));
+    if (space.factors == 0) {
+      faults_.add(factors_.front().where, fmt::format("a space-filling design needs a range, for example {}; for lists "
+                                                      "alone take design = \"grid\"",
+                                                      k_example_range));
+    }
+    if (runs % combinations != 0) {
+      faults_.add(root.value_place("runs"),
+                  fmt::format("runs = {}: expected a multiple of {}, the number of combinations of listed values", runs,
+                              combinations));
+    }
+    if (faults_.size() > 0) return;
+    if (!constraints_.empty()) {
+      space.contains = [this](std::span<const double> point) {
+        return broken_constraint(resolved(values_at(point, 0))) == nullptr;
+      };
+    }
+    try {
+      points_ = maxpro_design(space, runs, static_cast<std::uint64_t>(root.number("seed").value_or(1.0)));
+    } catch (const std::domain_error& error) {
+      faults_.add(root.value_place(constraints_.empty() ? "runs" : "constraints"), error.what());
+      return;
+    }
+    for (std::size_t i = 0; i < runs; ++i) {
+      runs_.push_back(resolved(values_at(points_.point(i), points_.levels.empty() ? 0 : points_.levels[i])));
+    }
+  }
+
+  /// The values of a point of the cube at a level of the product of all lists.
+  [[nodiscard]] std::vector<FactorValue> values_at(std::span<const double> point, std::size_t level) const {
+    std::vector<FactorValue> values(factors_.size());
+    std::size_t axis = point.size();
+    for (std::size_t f = factors_.size(); f-- > 0;) {
+      const Factor& factor = factors_[f];
+      if (factor.range) {
+        values[f] = factor.range->at(point[--axis]);
+      } else {
+        values[f] = factor.values[level % factor.values.size()];
+        level /= factor.values.size();
+      }
+    }
+    return values;
+  }
+
+  // --- a table
+
+  void read_table(const Section& root) {
+    const std::string name = root.text("table");
+    if (name.empty()) return;
+    const fs::path file = file_.parent_path() / name;
+    const auto [text, problem] = read_text_file(file, k_largest_text);
+    if (!problem.empty() || text.size() > k_largest_text) {
+      faults_.add(
+          root.value_place("table"),
+          fmt::format("table = \"{}\": {} ({}); expected a table with a column for each key, its path relative "
+                      "to the sweep's folder",
+                      shown(name), problem.empty() ? "the file is too large" : problem, on_one_line(file.string())));
+      return;
+    }
+    digested_ += '\n' + text;
+    const DesignTable table = parse_design_table(text, file.string(), faults_);
+    const std::vector<std::string> units = take_columns(table);
+    if (faults_.size() > 0) return;
+    check_constraint_names(true);
+    for (const auto& row : table.rows) {
+      if (faults_.size() < k_most_table_faults) take_row(row, units);
+    }
+    if (faults_.size() == 0) points_ = points_of(table.rows.size());
+  }
+
+  /// Puts the factors into the order of the columns; those that [vary] tells of keep what it says.
+  std::vector<std::string> take_columns(const DesignTable& table) {
+    for (const DesignTable::Cell& cell : table.headings) {
+      if (cell.text.starts_with("model") && parse_design_heading(cell.text).key == "model") {
+        const auto column = static_cast<std::size_t>(&cell - table.headings.data());
+        for (const auto& row : table.rows) {
+          if (std::ranges::find(models_, row[column].text) == models_.end()) models_.push_back(row[column].text);
+        }
+      }
+    }
+    std::vector<Factor> declared = std::exchange(factors_, {});
+    std::vector<std::string> units;
+    for (const DesignTable::Cell& cell : table.headings) {
+      const auto [key, unit] = parse_design_heading(cell.text);
+      if (std::ranges::find(factors_, key, &Factor::key) != factors_.end()) {
+        faults_.add(cell.where, fmt::format("two columns are for '{}'", shown(key)));
+        continue;
+      }
+      const auto known = std::ranges::find(declared, key, &Factor::key);
+      std::optional<Factor> factor = known != declared.end() ? *known : make_factor(key, cell.where);
+      if (!factor) continue;
+      if (const std::string problem = unit_problem(factor->spec, unit); !problem.empty()) {
+        faults_.add(cell.where, fmt::format("{}: {}", shown(cell.text), problem));
+      }
+      factors_.push_back(std::move(*factor));
+      units.push_back(unit);
+    }
+    for (const Factor& factor : declared) {
+      if (!table.headings.empty() && std::ranges::find(factors_, factor.key, &Factor::key) == factors_.end()) {
+        faults_.add(factor.where, fmt::format("the table has no column for '{}'", factor.key));
+      }
+    }
+    return units;
+  }
+
+  void take_row(const std::vector<DesignTable::Cell>& row, const std::vector<std::string>& units) {
+    std::vector<FactorValue> values;
+    for (std::size_t f = 0; f < row.size(); ++f) {
+      const Factor& factor = factors_[f];
+      const auto report = [&](std::string_view problem) {
+        faults_.add(row[f].where, fmt::format("{} = {}: {}", factor.key, shown(row[f].text), problem));
+      };
+      const auto [value, problem] = read_value(factor.spec, row[f].text, units[f]);
+      if (!value) {
+        report(problem);
+        return;
+      }
+      if (!factor.admits(*value)) report("is outside of what [vary] gives for this key");
+      values.push_back(*value);
+    }
+    std::vector<SweepValue> run = resolved(values);
+    if (const std::string* broken = broken_constraint(run)) {
+      faults_.add(row.front().where, fmt::format("the row breaks the constraint \"{}\"", *broken));
+    }
+    raw_.push_back(std::move(values));
+    runs_.push_back(std::move(run));
+  }
+
+  /// The table's rows in the cube: numbers between the ends that [vary] gives, else between their own smallest and
+  /// largest; words and listed values as levels.
+  [[nodiscard]] Design points_of(std::size_t rows) const {
+    Design design{.factors = 0, .level_count = 0, .coordinates = {}, .levels = {}};
+    std::vector<std::optional<FactorRange>> ranges;
+    for (std::size_t f = 0; f < factors_.size(); ++f) {
+      const Factor& factor = factors_[f];
+      std::optional<FactorRange> range = factor.range;
+      if (!range && factor.is_number() && factor.values.empty()) {
+        const auto [least, most] = std::ranges::minmax(raw_, {}, [f](const auto& row) { return row[f].number; });
+        range = FactorRange{.from = least[f], .to = most[f]};
+      }
+      if (range) ++design.factors;
+      ranges.push_back(std::move(range));
+    }
+    std::map<std::vector<FactorValue>, std::size_t> levels;
+    for (std::size_t i = 0; i < rows; ++i) {
+      std::vector<FactorValue> listed_values;
+      for (std::size_t f = 0; f < factors_.size(); ++f) {
+        if (ranges[f]) {
+          design.coordinates.push_back(ranges[f]->share_of(raw_[i][f].number));
+        } else {
+          listed_values.push_back(raw_[i][f]);
+        }
+      }
+      if (design.factors < factors_.size()) {
+        design.levels.push_back(levels.try_emplace(std::move(listed_values), levels.size()).first->second);
+      }
+    }
+    design.level_count = levels.size();
+    return design;
+  }
+
+  // --- runs against the scenario
+
+  /// Refuses a sweep whose scenario is itself at fault: whatever a run sets, the scenario's own text has a fault. The
+  /// first run that is accepted tells which files the scenario names, which decide on the results too.
+  void check_runs() {
+    std::optional<std::vector<Fault>> own;
+    for (const std::vector<SweepValue>& run : runs_) {
+      try {
+        const Scenario scenario = scenario_->with(overrides(run));
+        for (const auto& [option, curve] : scenario.curves) digested_ += '\n' + curve.text;
+        return;
+      } catch (const ScenarioError& error) {
+        if (own && own->empty()) continue;
+        own.emplace();
+        std::ranges::copy_if(error.faults(), std::back_inserter(*own),
+                             [](const Fault& fault) { return !is_override(fault.where); });
+      }
+    }
+    for (const Fault& fault : own.value_or(std::vector<Fault>{})) faults_.add(fault.where, fault.message);
+  }
+
+  void digest_varied_files() {
+    for (std::size_t f = 0; f < factors_.size(); ++f) {
+      if (factors_[f].spec.kind != Kind::file) continue;
+      std::set<std::string> names;
+      for (const std::vector<SweepValue>& run : runs_) names.insert(std::get<std::string>(run[f]));
+      for (const std::string& name : names) {
+        digested_ += '\n' + read_text_file(scenario_folder_ / name, k_largest_text).text;
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> overrides(const std::vector<SweepValue>& run) const {
+    std::vector<std::string> texts;
+    for (std::size_t f = 0; f < factors_.size(); ++f) {
+      texts.push_back(override_text(factors_[f].key, run[f], factors_[f].is_toggle()));
+    }
+    return texts;
+  }
+
+  struct PlacedConstraint {
+    Constraint constraint;
+    std::string text;
+    SourceLocation where;
+  };
+
+  fs::path named_;  ///< as on the command line
+  fs::path file_;
+  FaultList faults_;
+  Reading reading_;
+  std::string design_;
+  std::string digested_;  ///< the texts that decide on the results
+  toml::table scenario_tree_;
+  std::optional<ScenarioTemplate> scenario_;
+  std::string scenario_name_;
+  fs::path scenario_folder_;
+  std::vector<std::string> models_;  ///< that the sweep goes over
+  std::vector<Factor> factors_;
+  bool are_keys_known_ = true;  ///< every key in [vary] is one
+  std::vector<PlacedConstraint> constraints_;
+  std::vector<std::vector<FactorValue>> raw_;  ///< of a table
+  std::vector<std::vector<SweepValue>> runs_;
+  double base_radius_ = 1.0;  ///< the scenario's own [m]; where it has none that can be read, its check will tell
+  std::size_t left_out_ = 0;
+  Design points_;
+};
+
+}  // namespace
+
+Sweep read_sweep(const fs::path& file) { return SweepReader(file).read(); }
+
+std::vector<std::string> overrides_of(const Sweep& sweep, std::size_t run) {
+  std::vector<std::string> texts;
+  for (std::size_t f = 0; f < sweep.factors.size(); ++f) {
+    texts.push_back(override_text(sweep.factors[f].key, sweep.runs[run][f], sweep.factors[f].is_toggle));
+  }
+  return texts;
+}
+
+std::string cell_of(const SweepValue& value) {
+  const auto* number = std::get_if<double>(&value);
+  return number == nullptr ? std::get<std::string>(value) : csv_number(*number);
+}
+
+std::string design_text(const Sweep& sweep) {
+  std::vector<std::string> cells;
+  for (const SweepFactor& factor : sweep.factors) cells.push_back(factor.heading());
+  std::string text = fmt::format("# program: monograin {}\n# sweep: {}\n# design: {}\n{}\n", version(), sweep.name,
+                                 sweep.design, fmt::join(cells, ","));
+  for (const std::vector<SweepValue>& run : sweep.runs) {
+    std::ranges::transform(run, cells.begin(), cell_of);
+    text += fmt::format("{}\n", fmt::join(cells, ","));
+  }
+  return text;
+}
+
+}  // namespace monograin

@@ -1,0 +1,56 @@
+/// Sweep files: one scenario, the keys that are varied, and the runs this makes.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "history/table.hpp"
+#include "scenario/scenario.hpp"
+#include "study/sweep/design.hpp"
+
+namespace monograin {
+
+/// A key that is varied.
+struct SweepFactor {
+  std::string key;         ///< path as of `--set`
+  std::string unit;        ///< SI, "-" of a pure number; empty: its values are words
+  bool is_toggle = false;  ///< its words are true and false
+
+  /// As in the results: "material.yield_stress[Pa]".
+  [[nodiscard]] std::string heading() const { return Column{key, unit, {}}.heading(); }
+};
+
+/// What one run sets a key to: a number in SI, or a word.
+using SweepValue = std::variant<double, std::string>;
+
+struct Sweep {
+  std::string name;    ///< of the file, without folder and extension
+  std::string design;  ///< grid, table, maxpro
+  std::vector<SweepFactor> factors;
+  std::vector<std::vector<SweepValue>> runs;  ///< in the order of the design; a value for every factor
+  std::size_t left_out = 0;                   ///< points of a grid that the constraints exclude
+  Design points;                              ///< the runs as points of a cube
+  ScenarioTemplate scenario;
+  std::string scenario_name;
+  bool keeps_histories = false;
+  std::string digest;  ///< of all that decides on the results: sweep, scenario, tables, program version
+};
+
+/// Reads and checks a sweep file with its scenario and table, which are sought from its folder, and makes its runs.
+///
+/// A run that the language refuses, such as one with a Poisson's ratio of 0.6, is no fault of the file.
+/// @throws ScenarioError with every fault found
+[[nodiscard]] Sweep read_sweep(const std::filesystem::path& file);
+
+/// What a run sets, as `key=value`.
+[[nodiscard]] std::vector<std::string> overrides_of(const Sweep& sweep, std::size_t run);
+
+/// A value as a cell of a CSV file.
+[[nodiscard]] std::string cell_of(const SweepValue& value);
+
+/// The runs as a CSV table that `design = "table"` reads back, bit by bit.
+[[nodiscard]] std::string design_text(const Sweep& sweep);
+
+}  // namespace monograin

@@ -1,0 +1,132 @@
+#include "study/sweep/sweep_journal.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "scenario/text_file.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What a line is about, before its first comma.
+constexpr std::string_view k_journal = "monograin-sweep";
+constexpr std::string_view k_columns = "columns";
+constexpr std::string_view k_row = "row";
+constexpr std::size_t k_digest_length = 16;
+
+[[noreturn]] void fail(const fs::path& file, std::string_view problem) {
+  throw std::runtime_error(fmt::format("{}: {}", file.string(), problem));
+}
+
+[[nodiscard]] std::string line_digest(std::string_view payload) {
+  return fmt::format("{:016x}", XXH3_64bits(payload.data(), payload.size()));
+}
+
+/// The content of a line without its digest, or nothing where the line is not as it was written.
+[[nodiscard]] std::optional<std::string_view> payload_of(std::string_view line) {
+  if (line.size() <= k_digest_length || line[k_digest_length] != ' ') return std::nullopt;
+  const std::string_view payload = line.substr(k_digest_length + 1);
+  return line.substr(0, k_digest_length) == line_digest(payload) ? std::optional(payload) : std::nullopt;
+}
+
+/// Takes what is before the next comma off the text.
+std::string_view take_cell(std::string_view& text) {
+  const std::size_t comma = std::min(text.find(','), text.size());
+  const std::string_view cell = text.substr(0, comma);
+  text.remove_prefix(std::min(comma + 1, text.size()));
+  return cell;
+}
+
+[[nodiscard]] std::size_t to_count(std::string_view cell) {
+  std::size_t count = 0;
+  std::from_chars(cell.data(), cell.data() + cell.size(), count);
+  return count;
+}
+
+}  // namespace
+
+SweepRecord read_journal(const fs::path& file, const std::string& digest) {
+  const auto [text, problem] = read_text_file(file, std::numeric_limits<std::size_t>::max());
+  if (!problem.empty()) fail(file, problem);
+  SweepRecord record;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t end = rest.find('\n');
+    if (end == std::string_view::npos) break;
+    const std::optional<std::string_view> payload = payload_of(rest.substr(0, end));
+    const bool is_first = record.length == 0;
+    if (!payload && is_first) fail(file, "is not the journal of a sweep; remove it, or choose another folder with -o");
+    if (!payload) break;
+    std::string_view cells = *payload;
+    const std::string_view kind = take_cell(cells);
+    if (is_first && (kind != k_journal || cells != digest)) {
+      fail(file,
+           "is the journal of another sweep, or of this one before its sweep file, its scenario, a table or the "
+           "program changed; remove it to begin anew, or choose another folder with -o");
+    }
+    if (kind == k_columns) {
+      record.layouts.emplace_back(cells);
+    } else if (kind == k_row) {
+      SweepRow row;
+      row.run = to_count(take_cell(cells));
+      row.status = take_cell(cells);
+      row.reason = take_cell(cells);
+      row.layout = to_count(take_cell(cells));
+      row.cells = cells;
+      record.rows.push_back(std::move(row));
+    }
+    record.length += end + 1;
+    rest.remove_prefix(end + 1);
+  }
+  return record;
+}
+
+SweepJournal::SweepJournal(fs::path file, const std::string& digest) : file_(std::move(file)) {
+  descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (descriptor_ < 0) fail(file_, fmt::format("cannot be written: {}", std::strerror(errno)));
+  try {
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) fail(file_, "another process is at work on this sweep");
+    const SweepRecord record = read_journal(file_, digest);
+    if (ftruncate(descriptor_, static_cast<off_t>(record.length)) != 0) {
+      fail(file_, fmt::format("cannot be written: {}", std::strerror(errno)));
+    }
+    for (const std::string& columns : record.layouts) layouts_.emplace(columns, layouts_.size());
+    if (record.length == 0) write(fmt::format("{},{}", k_journal, digest));
+  } catch (...) {
+    close(descriptor_);
+    throw;
+  }
+}
+
+SweepJournal::~SweepJournal() { close(descriptor_); }
+
+void SweepJournal::append(const SweepRow& row, const std::string& columns) {
+  const auto [layout, is_new] = layouts_.emplace(columns, layouts_.size());
+  if (is_new) write(fmt::format("{},{}", k_columns, columns));
+  write(fmt::format("{},{},{},{},{},{}", k_row, row.run, row.status, row.reason, layout->second, row.cells));
+}
+
+void SweepJournal::write(const std::string& payload) {
+  const std::string line = fmt::format("{} {}\n", line_digest(payload), payload);
+  for (std::string_view rest = line; !rest.empty();) {
+    const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(file_, fmt::format("cannot be written: {}", std::strerror(errno)));
+    rest.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+}  // namespace monograin

@@ -1,0 +1,506 @@
+#include "verify/bench/bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "engine/linear_algebra_clock.hpp"
+#include "history/run.hpp"
+#include "scenario/document.hpp"
+#include "scenario/integrators.hpp"
+#include "scenario/section.hpp"
+#include "scenario/text_file.hpp"
+#include "scene/scene.hpp"
+#include "system/undefined.hpp"
+#include "verify/probe/profiled_system.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr double k_tightest = 1e-13;     ///< of references
+constexpr int k_rounds = 50;             ///< in which the runs are made
+constexpr double k_too_long = 1.0;       ///< a run after which tighter tolerances are left out [s]
+constexpr double k_profile_time = 0.02;  ///< for which a history is profiled [s]
+constexpr int k_evaluations = 16;        ///< of the law at each output point, to time them
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+double absolute_tolerance(const Scenario& scenario, double rtol) {
+  return rtol * scenario.numerics.atol / scenario.numerics.rtol;
+}
+
+RunRecord run_once(const Scenario& scenario, const std::string& integrator, double rtol, double* seconds = nullptr) {
+  Scene scene = make_scene(scenario);
+  const auto start = Clock::now();
+  RunRecord record = record_run(scene, integrator, {rtol, absolute_tolerance(scenario, rtol)}, scenario.output);
+  if (seconds != nullptr) *seconds = seconds_since(start);
+  return record;
+}
+
+/// How long one run takes, recording included, set-up of the scene not.
+double time_once(const Scenario& scenario, const std::string& integrator, double rtol) {
+  double seconds = 0.0;
+  static_cast<void>(run_once(scenario, integrator, rtol, &seconds));
+  return seconds;
+}
+
+// --- errors
+
+bool is_state(const Column& column) {
+  return column.name.ends_with(".force") || column.name.ends_with(".displacement") ||
+         column.name.starts_with("stress") || column.name.starts_with("strain") || column.name == "apparent_radius" ||
+         column.name == "packing_fraction" || column.name == "work";
+}
+
+/// The output points of a history, by step of the program: rows around events stand elsewhere in another run.
+std::vector<std::vector<std::size_t>> output_rows(const Table& history) {
+  const std::size_t step = *history.find("step");
+  const std::size_t side = *history.find("row");
+  std::vector<std::vector<std::size_t>> rows;
+  for (std::size_t i = 0; i < history.row_count(); ++i) {
+    if (history.at(i, side) != static_cast<double>(RowSide::output)) continue;
+    rows.resize(static_cast<std::size_t>(history.at(i, step)));
+    rows.back().push_back(i);
+  }
+  return rows;
+}
+
+struct CurveError {
+  double whole = 0.0;
+  double end = 0.0;
+};
+
+/// The largest difference over the largest value, of any column of the state. A step that a condition ends may have an
+/// output point more or less.
+CurveError curve_error(const Table& reference, const Table& other) {
+  const auto rows = output_rows(reference);
+  const auto others = output_rows(other);
+  CurveError error;
+  if (rows.size() != others.size()) return {k_nan, k_nan};
+  for (std::size_t c = 0; c < reference.columns().size(); ++c) {
+    if (!is_state(reference.columns()[c])) continue;
+    const auto other_c = other.find(reference.columns()[c].name);
+    if (!other_c) continue;
+    double largest = 0.0;
+    double worst = 0.0;
+    for (std::size_t i = 0; i < reference.row_count(); ++i) {
+      if (std::isfinite(reference.at(i, c))) largest = std::max(largest, std::abs(reference.at(i, c)));
+    }
+    if (largest == 0.0) continue;
+    for (std::size_t step = 0; step < rows.size(); ++step) {
+      for (std::size_t j = 0; j < std::min(rows[step].size(), others[step].size()); ++j) {
+        const double difference = std::abs(reference.at(rows[step][j], c) - other.at(others[step][j], *other_c));
+        if (!std::isnan(difference)) worst = std::max(worst, difference);
+      }
+    }
+    const double last =
+        std::abs(reference.at(reference.row_count() - 1, c) - other.at(other.row_count() - 1, *other_c));
+    error.whole = std::max(error.whole, std::max(worst, last) / largest);
+    error.end = std::max(error.end, last / largest);
+  }
+  return error;
+}
+
+/// Of the events' times over the whole time; nan where there are others, or in another order.
+double event_error(const RunRecord& reference, const RunRecord& other) {
+  const Table& a = reference.events;
+  const Table& b = other.events;
+  const double whole = reference.history.at(reference.history.row_count() - 1, *reference.history.find("time"));
+  if (a.row_count() != b.row_count()) return k_nan;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.row_count(); ++i) {
+    for (const char* name : {"event", "class"}) {
+      if (a.word(i, *a.find(name)) != b.word(i, *b.find(name))) return k_nan;
+    }
+    largest = std::max(largest, std::abs(a.at(i, *a.find("time")) - b.at(i, *b.find("time"))));
+  }
+  return whole > 0.0 ? largest / whole : largest;
+}
+
+// --- times
+
+/// Times one evaluation of the law wherever a row is recorded.
+class EvaluationTimer final : public HistorySink {
+ public:
+  explicit EvaluationTimer(HybridSystem& system)
+      : system_(system), state_(system.unknowns().size()), rates_(system.unknowns().size()) {}
+
+  void observe(double, int, double xi, std::span<const double> y) override {
+    const auto start = Clock::now();
+    for (int k = 0; k < k_evaluations; ++k) {
+      std::ranges::copy(y, state_.begin());
+      if (system_.is_solvable())
+        system_.solve(xi, state_);
+      else
+        system_.rates(xi, state_, rates_);
+    }
+    seconds_ += seconds_since(start);
+    count_ += k_evaluations;
+  }
+  void append(RowSide) override {}
+  void event(const Event&) override {}
+
+  [[nodiscard]] double mean() const { return seconds_ / static_cast<double>(std::max(1L, count_)); }
+
+ private:
+  HybridSystem& system_;
+  std::vector<double> state_, rates_;
+  double seconds_ = 0.0;
+  long count_ = 0;
+};
+
+double time_evaluation(const Scenario& scenario, const std::string& integrator) {
+  double best = k_nan;
+  for (int i = 0; i < k_rounds; ++i) {
+    Scene scene = make_scene(scenario);
+    EvaluationTimer timer(*scene.system);
+    const Tolerances tolerances{scenario.numerics.rtol, scenario.numerics.atol};
+    static_cast<void>(drive(scene, integrator, tolerances, scenario.output, timer));
+    best = std::fmin(best, timer.mean());
+  }
+  return best;
+}
+
+/// Runs of one thing, as long as they take together.
+struct Timing {
+  double fastest = 0.0;
+  double median = 0.0;
+};
+
+/// What is timed, and how long its runs have taken.
+class Stopwatch {
+ public:
+  /// @param run  one run, and how long it took
+  explicit Stopwatch(std::function<double()> run) : run_(std::move(run)) {}
+
+  /// Runs it until its runs have taken so long together, and at least once.
+  void run_for(double least_time) {
+    while (times_.empty() || total_ < least_time) {
+      times_.push_back(run_());
+      total_ += times_.back();
+    }
+  }
+
+  [[nodiscard]] Timing timing() const {
+    std::vector<double> times = times_;
+    std::ranges::sort(times);
+    return {times.front(), times[times.size() / 2]};
+  }
+
+ private:
+  std::function<double()> run_;
+  std::vector<double> times_;
+  double total_ = 0.0;
+};
+
+/// Things that are to be compared, all in turn, for a short time each: a machine that is slower or faster for a while
+/// is so for all of them.
+void time_in_turn(std::vector<Stopwatch>& watches, double least_time) {
+  for (int round = 1; round <= k_rounds; ++round) {
+    for (Stopwatch& watch : watches) watch.run_for(least_time * round / k_rounds);
+  }
+}
+
+// --- a scene
+
+/// What errors are measured against.
+struct Standard {
+  std::string integrator;
+  RunRecord record;
+};
+
+/// Two different methods as exact as they get. Of integrators of the explicit form, one that is one-step, the other
+/// multi-step.
+std::pair<Standard, Standard> standards_of(const Scenario& scenario) {
+  const bool is_solvable = make_scene(scenario).system->is_solvable();
+  const std::string first = is_solvable ? integrators::k_direct : integrators::k_arkode_erk;
+  const std::string second = is_solvable ? integrators::k_arkode_erk : integrators::k_cvode_adams;
+  return {{first, run_once(scenario, first, k_tightest)}, {second, run_once(scenario, second, k_tightest)}};
+}
+
+/// All of a point but its times.
+BenchPoint measure_point(const Scenario& scenario, const std::string& name, const std::string& integrator, double rtol,
+                         const Standard& standard) {
+  BenchPoint point{.integrator = name, .rtol = rtol, .statistics = {}, .fault = {}};
+  const RunRecord record = run_once(scenario, integrator, rtol, &point.fastest);
+  point.statistics = record.statistics;
+  point.curve_error = point.end_error = point.event_error = k_nan;
+  if (record.status != standard.record.status) {
+    point.fault = record.message.empty() ? "does not end where the reference does" : record.message;
+    return point;
+  }
+  const CurveError error = curve_error(standard.record.history, record.history);
+  point.curve_error = error.whole;
+  point.end_error = error.end;
+  point.event_error = event_error(standard.record, record);
+  return point;
+}
+
+std::vector<std::string> all_integrators() {
+  std::vector<std::string> names{integrators::k_auto};
+  for (const std::string_view name : integrator_names()) names.emplace_back(name);
+  return names;
+}
+
+std::vector<double> decades() {
+  std::vector<double> tolerances;
+  for (int k = 2; k <= 13; ++k) tolerances.push_back(std::pow(10.0, -k));
+  return tolerances;
+}
+
+/// The two walls of simple compression, and four beside the particle that it never reaches.
+Scenario with_walls_out_of_reach(Scenario simple) {
+  Loading& loading = simple.loading;
+  loading.configuration = Loading::Configuration::walls;
+  const double gap = 2.0 * simple.radius;
+  const auto wall = [](const char* name, const std::array<double, 3>& normal, double off) {
+    return WallSpec{.name = name, .normal = normal, .gap = off, .is_fixed = off > 0.0, .steps = {}, .where = {}};
+  };
+  loading.walls = {wall("axial", {0.0, 0.0, 1.0}, 0.0),      wall("axial-", {0.0, 0.0, -1.0}, 0.0),
+                   wall("lateral-x+", {1.0, 0.0, 0.0}, gap), wall("lateral-x-", {-1.0, 0.0, 0.0}, gap),
+                   wall("lateral-y+", {0.0, 1.0, 0.0}, gap), wall("lateral-y-", {0.0, -1.0, 0.0}, gap)};
+  return simple;
+}
+
+}  // namespace
+
+BenchList read_bench_list(const fs::path& file) {
+  using Kind = KeySpec::Kind;
+  static const std::vector<KeySpec> root_keys{
+      {.name = "scene", .meaning = "scenes to measure", .kind = Kind::tables, .is_required = true},
+      {.name = "saving", .meaning = "scenes that are spared something", .kind = Kind::tables}};
+  static const KeySpec scenario_key{.name = "scenario",
+                                    .meaning = "scenario file, sought from this file's folder",
+                                    .is_required = true,
+                                    .example = "\"../die.toml\""};
+  static const KeySpec set_key{.name = "set",
+                               .meaning = "overrides of the scenario",
+                               .kind = Kind::texts,
+                               .example = "[\"material.yield_stress=20 MPa\"]"};
+  static const std::vector<KeySpec> scene_keys{
+      {.name = "name", .meaning = "name of the scene", .is_required = true, .example = "\"die\""},
+      {.name = "title", .meaning = "what it is", .is_required = true, .example = "\"Die compaction\""},
+      scenario_key,
+      set_key};
+  static const std::vector<KeySpec> saving_keys{
+      {.name = "what", .meaning = "what is not computed", .is_required = true, .example = "\"no adhesion\""},
+      {.name = "name", .meaning = "name of both scenes", .is_required = true, .example = "\"simple\""},
+      scenario_key,
+      set_key,
+      {.name = "without",
+       .meaning = "the scene that computes it",
+       .kind = Kind::table,
+       .is_required = true,
+       .example = "without = { scenario = \"../die.toml\" }"}};
+  static const std::vector<KeySpec> without_keys{scenario_key, set_key};
+  const auto [text, problem] = read_text_file(file, k_largest_text);
+  if (!problem.empty()) throw_fault({file.string()}, problem);
+  const toml::table tree = parse_document(text, file.string());
+  FaultList faults;
+  Reading reading{faults};
+  const SourceLocation top{file.string()};
+  const Section root(reading, {&tree, top, "the file"}, root_keys);
+  const auto scenario_of = [&](const Section& section) -> std::optional<Scenario> {
+    if (section.text("scenario").empty()) return std::nullopt;
+    try {
+      return read_scenario(file.parent_path() / section.text("scenario"), section.texts("set"));
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) faults.add(fault.where, fault.message);
+      return std::nullopt;
+    }
+  };
+  BenchList list;
+  for (const auto& table : root.tables("scene", "[[scene]]")) {
+    const Section section(reading, table, scene_keys);
+    const auto scenario = scenario_of(section);
+    if (!scenario) continue;
+    list.scenes.push_back(*scenario);
+    list.scenes.back().name = section.text("name");
+    list.scenes.back().title = section.text("title");
+  }
+  for (const auto& table : root.tables("saving", "[[saving]]")) {
+    const Section section(reading, table, saving_keys);
+    const auto spared = scenario_of(section);
+    const auto without = scenario_of(Section(reading, section.table("without", "without"), without_keys));
+    if (spared && without) list.savings.push_back({section.text("what"), section.text("name"), *spared, *without});
+  }
+  faults.throw_if_any();
+  return list;
+}
+
+BenchScene measure_scene(const Scenario& scenario, const BenchSettings& settings, const std::function<void()>& shown) {
+  const std::vector<std::string> names = settings.integrators.empty() ? all_integrators() : settings.integrators;
+  const std::vector<double> tolerances = settings.tolerances.empty() ? decades() : settings.tolerances;
+  const auto [first, second] = standards_of(scenario);
+  BenchScene result{.name = scenario.name,
+                    .title = scenario.title,
+                    .chosen = {},
+                    .reference = first.integrator,
+                    .check = second.integrator,
+                    .points = {}};
+  result.agreement = curve_error(first.record.history, second.record.history).whole;
+  result.rows = first.record.history.row_count();
+  Stopwatch setup([&] {
+    const auto start = Clock::now();
+    static_cast<void>(make_scene(scenario));
+    return seconds_since(start);
+  });
+  setup.run_for(settings.least_time);
+  result.setup = setup.timing().fastest;
+  const Scene scene = make_scene(scenario);
+  std::vector<Stopwatch> watches;
+  for (const std::string& name : names) {
+    for (const double rtol : tolerances) {
+      const IntegratorChoice choice = choose_integrator(name, *scene.system);
+      if (name == integrators::k_auto) result.chosen = choice.used;
+      if (choice.used == integrators::k_direct && !scene.system->is_solvable()) break;
+      const Standard& standard = choice.used == first.integrator ? second : first;
+      result.points.push_back(measure_point(scenario, name, choice.used, rtol, standard));
+      watches.emplace_back([&scenario, used = choice.used, rtol] { return time_once(scenario, used, rtol); });
+      if (shown) shown();
+      if (result.points.back().fastest > k_too_long) break;
+    }
+  }
+  time_in_turn(watches, settings.least_time);
+  for (std::size_t i = 0; i < watches.size(); ++i) {
+    const Timing timing = watches[i].timing();
+    result.points[i].fastest = timing.fastest;
+    result.points[i].median = timing.median;
+  }
+  result.evaluation = time_evaluation(scenario, first.integrator);
+  return result;
+}
+
+BenchProfile profile_scene(const Scenario& scenario, const std::string& name) {
+  const std::string integrator = choose_integrator(name, *make_scene(scenario).system).used;
+  BenchProfile profile{.scene = scenario.name, .integrator = integrator};
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<Stopwatch> watches;
+  watches.emplace_back([&] { return time_once(scenario, integrator, scenario.numerics.rtol); });
+  // Of several runs the one that others have disturbed least, as of those without a look at their parts.
+  watches.emplace_back([&] {
+    SystemProfile system;
+    const LinearAlgebraClock clock;
+    Scene scene = make_scene(scenario);
+    scene.system = profiled(std::move(scene.system), system);
+    const auto start = Clock::now();
+    static_cast<void>(record_run(scene, integrator, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output));
+    const double seconds = seconds_since(start);
+    if (seconds < least) {
+      least = seconds;
+      profile.law = system.law.seconds;
+      profile.law_calls = system.law.calls;
+      profile.guards = system.guards.seconds;
+      profile.recording = system.recording.seconds;
+      profile.linear_algebra = clock.seconds();
+    }
+    return seconds;
+  });
+  time_in_turn(watches, k_profile_time);
+  profile.total = watches[0].timing().fastest;
+  return profile;
+}
+
+std::vector<BenchSaving> measure_savings(const BenchSettings& settings, const std::vector<BenchPair>& listed) {
+  const auto scene_of = [](std::vector<std::string> overrides) {
+    return parse_scenario(default_scenario_text(), "die.toml", overrides);
+  };
+  struct Measured {
+    std::function<double()> run;
+    RunRecord record;
+  };
+  using Alter = std::function<Scene(const Scenario&)>;
+  const Alter as_it_is = [](const Scenario& scenario) { return make_scene(scenario); };
+  const auto measure = [](const Scenario& scenario, const std::string& integrator, const Alter& made) {
+    const auto once = [scenario, integrator, made](double& seconds) {
+      Scene scene = made(scenario);
+      const auto start = Clock::now();
+      RunRecord record =
+          record_run(scene, integrator, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
+      seconds = seconds_since(start);
+      return record;
+    };
+    const auto timed = [once] {
+      double seconds = 0.0;
+      static_cast<void>(once(seconds));
+      return seconds;
+    };
+    double seconds = 0.0;
+    return Measured{timed, once(seconds)};
+  };
+  std::vector<BenchSaving> savings;
+  const auto add = [&](std::string what, std::string scene, const Measured& saved, const Measured& undone) {
+    std::vector<Stopwatch> watches{Stopwatch(saved.run), Stopwatch(undone.run)};
+    time_in_turn(watches, settings.least_time);
+    savings.push_back({.what = std::move(what),
+                       .scene = std::move(scene),
+                       .time = watches[0].timing().fastest,
+                       .undone = watches[1].timing().fastest,
+                       .difference = curve_error(saved.record.history, undone.record.history).whole});
+  };
+
+  const Scenario die = scene_of({});
+  const Measured direct = measure(die, integrators::k_direct, as_it_is);
+  const Measured bdf = measure(die, integrators::k_cvode_bdf, as_it_is);
+  add("walls that share a history are one class", "die, direct", direct,
+      measure(die, integrators::k_direct, [](const Scenario& scenario) { return make_scene(scenario, false); }));
+  add("nothing is integrated where a state can be solved for", "die, direct / cvode-bdf", direct, bdf);
+  add("no algebraic unknowns where there is an explicit form", "die, cvode-bdf / ida", bdf,
+      measure(die, integrators::k_ida, as_it_is));
+  using System = std::unique_ptr<HybridSystem>;
+  const auto wrapped = [](const std::function<System(System)>& wrap) -> Alter {
+    return [wrap](const Scenario& scenario) {
+      Scene scene = make_scene(scenario);
+      scene.system = wrap(std::move(scene.system));
+      return scene;
+    };
+  };
+  add("work in closed form where there is one", "die, direct", direct,
+      measure(die, integrators::k_direct, wrapped(always_integrated)));
+  // A saving this small shows only beside a system that is wrapped as well.
+  for (const char* integrator : {integrators::k_direct, integrators::k_cvode_bdf}) {
+    const auto looking = [&](double factor) {
+      return measure(die, integrator,
+                     wrapped([factor](System system) { return looking_beyond(std::move(system), factor); }));
+    };
+    add("no guard that cannot fire before the end of a step", fmt::format("die, {}", integrator), looking(1.0),
+        looking(10.0));
+  }
+  add("observables only at output points", "die, direct", direct,
+      measure(die, integrators::k_direct, wrapped(always_observed)));
+  add("observables only at output points", "die, cvode-bdf", bdf,
+      measure(die, integrators::k_cvode_bdf, wrapped(always_observed)));
+
+  const std::string simple = "loading.configuration=simple";
+  const Scenario plain = scene_of({simple});
+  const Scenario sticky = scene_of({simple, "material.surface_energy=1e-12"});
+  const Measured uniaxial = measure(plain, integrators::k_direct, as_it_is);
+  add("no adhesion where the surface energy is zero", "simple, direct, against 1e-12 J/m2", uniaxial,
+      measure(sticky, integrators::k_direct, as_it_is));
+  add("no contacts where nothing can touch", "simple, direct, against 4 walls out of reach", uniaxial,
+      measure(with_walls_out_of_reach(plain), integrators::k_direct, as_it_is));
+  for (const BenchPair& pair : listed) {
+    add(pair.what, pair.name, measure(pair.spared, integrators::k_direct, as_it_is),
+        measure(pair.without, integrators::k_direct, as_it_is));
+  }
+  return savings;
+}
+
+double time_to_error(const BenchScene& scene, std::string_view integrator, double error) {
+  double least = k_nan;
+  for (const BenchPoint& point : scene.points) {
+    if (point.integrator == integrator && point.curve_error <= error) least = std::fmin(least, point.fastest);
+  }
+  return least;
+}
+
+}  // namespace monograin

@@ -1,0 +1,325 @@
+#include "verify/probe/profiled_system.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace monograin {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using State = std::span<double>;
+using View = std::span<const double>;
+
+/// What a reading of the clock takes [s], where nothing else takes the processor.
+double clock_cost() {
+  constexpr int k_readings = 100;
+  double least = std::numeric_limits<double>::infinity();
+  for (int batch = 0; batch < 20; ++batch) {
+    const auto start = Clock::now();
+    Clock::time_point last = start;
+    for (int i = 0; i < k_readings; ++i) last = Clock::now();
+    least = std::min(least, std::chrono::duration<double>(last - start).count() / k_readings);
+  }
+  return least;
+}
+
+/// Passes everything on to another system.
+class Wrapped : public HybridSystem {
+ public:
+  explicit Wrapped(std::unique_ptr<HybridSystem> system) : system_(std::move(system)) {}
+
+  [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return system_->unknowns(); }
+  [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return system_->classes(); }
+  void start(State y) override { system_->start(y); }
+  void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
+    system_->begin_step(ramps, y, log);
+  }
+  [[nodiscard]] std::function<void()> checkpoint() override { return system_->checkpoint(); }
+  void complete(double xi, State y) override { system_->complete(xi, y); }
+  void rates(double xi, View y, State dy) override { system_->rates(xi, y, dy); }
+  void all_rates(double xi, View y, State dy) override { system_->all_rates(xi, y, dy); }
+  void residual(double xi, View y, View dy, State res) override { system_->residual(xi, y, dy, res); }
+  [[nodiscard]] bool is_semi_explicit() const noexcept override { return system_->is_semi_explicit(); }
+  [[nodiscard]] bool has_corrections() const noexcept override { return system_->has_corrections(); }
+  [[nodiscard]] double error_gain() const noexcept override { return system_->error_gain(); }
+  [[nodiscard]] bool is_solvable() const noexcept override { return system_->is_solvable(); }
+  void solve(double xi, State y) override { system_->solve(xi, y); }
+  double leave_singularity(double xi, State y) override { return system_->leave_singularity(xi, y); }
+  [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
+    return system_->closed_quadrature(xi, y);
+  }
+  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return system_->guards(); }
+  void guard_values(double xi, View y, State values) override { system_->guard_values(xi, y, values); }
+  std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, State y,
+                                std::vector<Event>& log) override {
+    return system_->fire(fired, xi, y, log);
+  }
+  [[nodiscard]] std::span<const Observable> observables() const noexcept override { return system_->observables(); }
+  void observe(double xi, View y, State values) override { system_->observe(xi, y, values); }
+  [[nodiscard]] double quantity(Quantity quantity, int channel, double xi, View y) override {
+    return system_->quantity(quantity, channel, xi, y);
+  }
+  [[nodiscard]] double controlled(Control control, int channel, double xi, View y) override {
+    return system_->controlled(control, channel, xi, y);
+  }
+  [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, View y) override {
+    return system_->surface(contact_class, xi, y);
+  }
+  [[nodiscard]] bool is_open(int contact_class) const noexcept override { return system_->is_open(contact_class); }
+  [[nodiscard]] bool contacts_adhere() const noexcept override { return system_->contacts_adhere(); }
+  [[nodiscard]] std::optional<Difficulty> difficulty(double xi, View y) override { return system_->difficulty(xi, y); }
+  [[nodiscard]] std::vector<Diagnostic> warnings() const override { return system_->warnings(); }
+  void branch_reach(View y, State reach) const override { system_->branch_reach(y, reach); }
+
+ private:
+  std::unique_ptr<HybridSystem> system_;
+};
+
+class Profiled final : public Wrapped {
+ public:
+  Profiled(std::unique_ptr<HybridSystem> system, SystemProfile& profile)
+      : Wrapped(std::move(system)), profile_(profile), clock_cost_(clock_cost()) {}
+
+  void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
+    time(profile_.law, [&] { Wrapped::begin_step(ramps, y, log); });
+  }
+  void complete(double xi, State y) override {
+    time(profile_.law, [&] { Wrapped::complete(xi, y); });
+  }
+  void rates(double xi, View y, State dy) override {
+    time(profile_.law, [&] { Wrapped::rates(xi, y, dy); });
+  }
+  void all_rates(double xi, View y, State dy) override {
+    time(profile_.law, [&] { Wrapped::all_rates(xi, y, dy); });
+  }
+  void residual(double xi, View y, View dy, State res) override {
+    time(profile_.law, [&] { Wrapped::residual(xi, y, dy, res); });
+  }
+  void solve(double xi, State y) override {
+    time(profile_.law, [&] { Wrapped::solve(xi, y); });
+  }
+  [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
+    std::optional<double> result;
+    time(profile_.law, [&] { result = Wrapped::closed_quadrature(xi, y); });
+    return result;
+  }
+  void guard_values(double xi, View y, State values) override {
+    time(profile_.guards, [&] { Wrapped::guard_values(xi, y, values); });
+  }
+  std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, State y,
+                                std::vector<Event>& log) override {
+    std::optional<DomainEnd> result;
+    time(profile_.law, [&] { result = Wrapped::fire(fired, xi, y, log); });
+    return result;
+  }
+  void observe(double xi, View y, State values) override {
+    time(profile_.recording, [&] { Wrapped::observe(xi, y, values); });
+  }
+
+ private:
+  /// Also where the work ends by an exception.
+  template <class Work>
+  void time(SystemProfile::Share& share, Work&& work) {
+    struct Lap {
+      SystemProfile::Share& share;
+      double clock_cost;
+      Clock::time_point start = Clock::now();
+      ~Lap() {
+        share.seconds += std::chrono::duration<double>(Clock::now() - start).count() - clock_cost;
+        ++share.calls;
+      }
+    };
+    const Lap lap{share, clock_cost_};
+    work();
+  }
+
+  SystemProfile& profile_;
+  double clock_cost_;
+};
+
+class Limited final : public Wrapped {
+ public:
+  Limited(std::unique_ptr<HybridSystem> system, double end) : Wrapped(std::move(system)), end_(end) {}
+
+  void rates(double xi, View y, State dy) override {
+    check_time();
+    Wrapped::rates(xi, y, dy);
+  }
+  void residual(double xi, View y, View dy, State res) override {
+    check_time();
+    Wrapped::residual(xi, y, dy, res);
+  }
+  void solve(double xi, State y) override {
+    check_time();
+    Wrapped::solve(xi, y);
+  }
+  void guard_values(double xi, View y, State values) override {
+    check_time();
+    Wrapped::guard_values(xi, y, values);
+  }
+
+ private:
+  /// A thread has had a processor for no longer than has gone by, which is cheaper to know.
+  void check_time() {
+    const Clock::time_point now = Clock::now();
+    if (now < next_look_) return;
+    const double left = end_ - thread_seconds();
+    if (!(left > 0.0)) throw OutOfTime();
+    next_look_ = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(left));
+  }
+
+  double end_;
+  Clock::time_point next_look_;
+};
+
+class AlwaysObserved final : public Wrapped {
+ public:
+  explicit AlwaysObserved(std::unique_ptr<HybridSystem> system)
+      : Wrapped(std::move(system)), values_(observables().size()) {}
+
+  void rates(double xi, View y, State dy) override {
+    Wrapped::rates(xi, y, dy);
+    observe(xi, y, values_);
+  }
+  void residual(double xi, View y, View dy, State res) override {
+    Wrapped::residual(xi, y, dy, res);
+    observe(xi, y, values_);
+  }
+  void solve(double xi, State y) override {
+    Wrapped::solve(xi, y);
+    observe(xi, y, values_);
+  }
+
+ private:
+  std::vector<double> values_;
+};
+
+class AlwaysIntegrated final : public Wrapped {
+ public:
+  using Wrapped::Wrapped;
+  [[nodiscard]] std::optional<double> closed_quadrature(double, View) override { return std::nullopt; }
+};
+
+class Disturbed final : public Wrapped {
+ public:
+  Disturbed(std::unique_ptr<HybridSystem> system, const std::array<double, 2>& shares)
+      : Wrapped(std::move(system)), shares_(shares), shown_(unknowns().size()) {}
+
+  void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
+    disturb(y);
+    Wrapped::begin_step(ramps, y, log);
+  }
+  void observe(double xi, View y, State values) override {
+    std::ranges::copy(y, shown_.begin());
+    disturb(shown_);
+    try {
+      Wrapped::complete(xi, shown_);
+      Wrapped::observe(xi, shown_, values);
+    } catch (const std::domain_error&) {
+      Wrapped::observe(xi, y, values);  // next to a limit
+    }
+  }
+
+ private:
+  void disturb(State y) const {
+    for (std::size_t k = 0; k < y.size(); ++k) {
+      const Unknown& unknown = unknowns()[k];
+      if (unknown.kind == Unknown::Kind::differential && !unknown.is_dependent) y[k] *= 1.0 + shares_[k % 2];
+    }
+  }
+
+  std::array<double, 2> shares_;
+  std::vector<double> shown_;
+};
+
+class LookingBeyond final : public Wrapped {
+ public:
+  LookingBeyond(std::unique_ptr<HybridSystem> system, double factor)
+      : Wrapped(std::move(system)), factor_(factor), inner_rates_(unknowns().size()) {}
+
+  void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
+    longer_.assign(ramps.begin(), ramps.end());
+    for (Ramp& ramp : longer_) ramp.end = std::lerp(ramp.start, ramp.end, factor_);
+    Wrapped::begin_step(longer_, y, log);
+  }
+  void complete(double xi, State y) override { Wrapped::complete(inner(xi), y); }
+  void rates(double xi, View y, State dy) override {
+    Wrapped::rates(inner(xi), y, dy);
+    for (double& rate : dy) rate /= factor_;
+  }
+  void all_rates(double xi, View y, State dy) override {
+    Wrapped::all_rates(inner(xi), y, dy);
+    for (double& rate : dy) rate /= factor_;
+  }
+  void residual(double xi, View y, View dy, State res) override {
+    std::ranges::transform(dy, inner_rates_.begin(), [this](double rate) { return factor_ * rate; });
+    Wrapped::residual(inner(xi), y, inner_rates_, res);
+  }
+  void solve(double xi, State y) override { Wrapped::solve(inner(xi), y); }
+  [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
+    return Wrapped::closed_quadrature(inner(xi), y);
+  }
+  void guard_values(double xi, View y, State values) override { Wrapped::guard_values(inner(xi), y, values); }
+  std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, State y,
+                                std::vector<Event>& log) override {
+    return Wrapped::fire(fired, inner(xi), y, log);
+  }
+  void observe(double xi, View y, State values) override { Wrapped::observe(inner(xi), y, values); }
+  [[nodiscard]] double quantity(Quantity quantity, int channel, double xi, View y) override {
+    return Wrapped::quantity(quantity, channel, inner(xi), y);
+  }
+  [[nodiscard]] double controlled(Control control, int channel, double xi, View y) override {
+    return Wrapped::controlled(control, channel, inner(xi), y);
+  }
+  [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, View y) override {
+    return Wrapped::surface(contact_class, inner(xi), y);
+  }
+
+ private:
+  [[nodiscard]] double inner(double xi) const noexcept { return xi / factor_; }
+
+  double factor_;
+  std::vector<Ramp> longer_;
+  std::vector<double> inner_rates_;
+};
+
+}  // namespace
+
+std::unique_ptr<HybridSystem> profiled(std::unique_ptr<HybridSystem> system, SystemProfile& profile) {
+  return std::make_unique<Profiled>(std::move(system), profile);
+}
+
+std::unique_ptr<HybridSystem> always_observed(std::unique_ptr<HybridSystem> system) {
+  return std::make_unique<AlwaysObserved>(std::move(system));
+}
+
+double thread_seconds() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::unique_ptr<HybridSystem> limited(std::unique_ptr<HybridSystem> system, double end) {
+  return std::make_unique<Limited>(std::move(system), end);
+}
+
+std::unique_ptr<HybridSystem> looking_beyond(std::unique_ptr<HybridSystem> system, double factor) {
+  return std::make_unique<LookingBeyond>(std::move(system), factor);
+}
+
+std::unique_ptr<HybridSystem> disturbed(std::unique_ptr<HybridSystem> system, const std::array<double, 2>& shares) {
+  return std::make_unique<Disturbed>(std::move(system), shares);
+}
+
+std::unique_ptr<HybridSystem> always_integrated(std::unique_ptr<HybridSystem> system) {
+  return std::make_unique<AlwaysIntegrated>(std::move(system));
+}
+
+}  // namespace monograin

@@ -1,0 +1,208 @@
+#include "verify/regress/regress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+
+#include "history/compare.hpp"
+#include "history/run.hpp"
+#include "scenario/integrators.hpp"
+#include "scenario/text_file.hpp"
+#include "scene/scene.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The direct form reproduces a stored curve but for the rounding of another compiler or library.
+constexpr double k_direct_tolerance = 1e-10;
+// Integrated curves: so many times their rtol.
+constexpr double k_rtol_multiple = 50.0;
+// Of that, what a stored curve may be wrong that had to be integrated itself.
+constexpr double k_tighter = 1e-2;
+
+constexpr std::size_t k_most_faults = 4;  // of one run: one change may touch every column
+constexpr std::string_view k_events_suffix = ".events.csv";
+
+constexpr std::array<std::string_view, 4> k_integrators{integrators::k_direct, integrators::k_cvode_adams,
+                                                        integrators::k_cvode_bdf, integrators::k_ida};
+
+bool has_direct_form(const Scenario& scenario) { return make_scene(scenario).system->is_solvable(); }
+
+std::vector<fs::path> scenario_files(const fs::path& folder) {
+  if (!fs::is_directory(folder)) {
+    throw std::runtime_error(
+        fmt::format("{}: no such folder; run this in the project's folder, or name it", folder.string()));
+  }
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  if (files.empty()) throw std::runtime_error(fmt::format("{}: holds no scenario (.toml) to run", folder.string()));
+  std::ranges::sort(files);
+  return files;
+}
+
+Run run_with(Scenario scenario, std::string_view integrator) {
+  scenario.numerics.integrator = integrator;
+  return run_scenario(scenario);
+}
+
+/// A history with the squares of contact radii: they begin like a root, of which an overlap that is wrong by 1e-12
+/// makes a millionth where an event has just been reached.
+Table with_smooth_columns(const Table& history) {
+  Table smooth(history.columns());
+  std::vector<double> row;
+  for (std::size_t i = 0; i < history.row_count(); ++i) {
+    row.assign(history.row(i).begin(), history.row(i).end());
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (history.columns()[c].name.find(".contact_radius") != std::string::npos) row[c] *= row[c];
+    }
+    smooth.append(row);
+  }
+  return smooth;
+}
+
+/// Collects the faults of one run as one sentence.
+class FaultText {
+ public:
+  void add(std::string fault) {
+    if (++count_ <= k_most_faults) text_ += (text_.empty() ? "" : "; ") + fault;
+  }
+  [[nodiscard]] std::string text() const {
+    return count_ <= k_most_faults ? text_ : fmt::format("{}; and {} more", text_, count_ - k_most_faults);
+  }
+
+ private:
+  std::string text_;
+  std::size_t count_ = 0;
+};
+
+void add_gaps(const Comparison& run_to_stored, const Comparison& stored_to_run, FaultText& faults) {
+  for (const Gap& gap : run_to_stored.gaps) faults.add(fmt::format("{} {}", gap.column, gap.problem));
+  for (const Gap& gap : stored_to_run.gaps) {
+    if (std::ranges::find(run_to_stored.gaps, gap.column, &Gap::column) != run_to_stored.gaps.end()) continue;
+    faults.add(fmt::format("stored {} {}", gap.column, gap.problem));
+  }
+}
+
+void compare_with_stored(const Run& run, const fs::path& curves, RegressionResult& result) {
+  const fs::path curve = curves / (run.scenario.name + ".csv");
+  if (!fs::exists(curve)) {
+    result.fault = fmt::format("{} is missing; 'monograin regress --accept' stores it", curve.string());
+    return;
+  }
+  const Table history = read_csv(curve);
+  const Table events = read_csv(curves / (run.scenario.name + std::string(k_events_suffix)));
+  FaultText faults;
+  if (history.header_value("scenario_digest") != scenario_digest(run.scenario)) {
+    faults.add("the scenario has changed since its curve was stored");
+  }
+  if (run.record.status != RunStatus::complete) faults.add(run.record.message);
+  const Comparison of_events = compare_events(events, run.record.events);
+  for (const Gap& gap : of_events.gaps) faults.add(fmt::format("{} {}", gap.column, gap.problem));
+  if (of_events.gaps.empty()) result.event_time = of_events.curves.empty() ? 0.0 : of_events.curves.front().linf;
+  const Table expected = with_smooth_columns(history);
+  const Table now = with_smooth_columns(run.record.history);
+  const Comparison of_run = compare_tables(expected, now, "time", "");
+  // The run may have something that the stored curve lacks, too.
+  add_gaps(of_run, compare_tables(now, expected, "time", ""), faults);
+  for (const CurveDifference& difference : of_run.curves) {
+    if (difference.linf <= result.difference) continue;
+    result.difference = difference.linf;
+    result.column = difference.y;
+  }
+  result.fault = faults.text();
+}
+
+RegressionResult compare(const Run& run, const fs::path& curves) {
+  RegressionResult result{.scenario = run.scenario.name, .integrator = run.integrator.used, .column = {}, .fault = {}};
+  result.tolerance = run.integrator.is_direct() ? k_direct_tolerance : k_rtol_multiple * run.scenario.numerics.rtol;
+  try {
+    compare_with_stored(run, curves, result);
+  } catch (const std::runtime_error& error) {
+    result.fault = error.what();
+  }
+  return result;
+}
+
+/// Stored curves that no scenario stands for any more.
+std::vector<RegressionResult> orphaned_curves(const std::vector<fs::path>& scenarios, const fs::path& curves) {
+  std::set<std::string> names;
+  for (const fs::path& file : scenarios) names.insert(file.stem().string());
+  std::vector<RegressionResult> results;
+  std::vector<fs::path> files;
+  if (fs::is_directory(curves)) files.assign(fs::directory_iterator(curves), fs::directory_iterator());
+  std::ranges::sort(files);
+  for (const fs::path& file : files) {
+    std::string name = file.filename().string();
+    if (!name.ends_with(".csv")) continue;
+    const std::size_t suffix = name.ends_with(k_events_suffix) ? k_events_suffix.size() : 4;
+    name.erase(name.size() - suffix);
+    if (!names.insert(name).second) continue;
+    results.push_back(
+        {.scenario = name,
+         .integrator = {},
+         .column = {},
+         .fault = fmt::format("{} has no scenario; remove it, or bring {}.toml back", file.string(), name)});
+  }
+  return results;
+}
+
+void store(const fs::path& file, const Table& table) {
+  std::ostringstream text;
+  write_csv(table, text);
+  write_text_file(file, text.view());
+}
+
+}  // namespace
+
+std::vector<RegressionResult> regress(const fs::path& scenarios, const fs::path& curves) {
+  const std::vector<fs::path> files = scenario_files(scenarios);
+  std::vector<RegressionResult> results = orphaned_curves(files, curves);
+  for (const fs::path& file : files) {
+    const Scenario scenario = read_scenario(file);
+    const bool has_direct = has_direct_form(scenario);
+    for (const std::string_view integrator : k_integrators) {
+      if (has_direct || integrator != integrators::k_direct)
+        results.push_back(compare(run_with(scenario, integrator), curves));
+    }
+  }
+  return results;
+}
+
+std::vector<RegressionResult> accept_curves(const fs::path& scenarios, const fs::path& curves) {
+  fs::create_directories(curves);
+  const std::vector<fs::path> files = scenario_files(scenarios);
+  std::vector<RegressionResult> results = orphaned_curves(files, curves);
+  for (const fs::path& file : files) {
+    Scenario scenario = read_scenario(file);
+    const bool has_direct = has_direct_form(scenario);
+    if (!has_direct) {
+      scenario.numerics.rtol *= k_tighter;
+      scenario.numerics.atol *= k_tighter;
+    }
+    Run run = run_with(scenario, has_direct ? integrators::k_direct : integrators::k_cvode_bdf);
+    results.push_back(compare(run, curves));
+    if (run.record.status != RunStatus::complete) {
+      throw std::runtime_error(fmt::format("{}: does not run to its end: {}", file.string(), run.record.message));
+    }
+    const std::pair<std::string, std::string> claim{
+        "accuracy", has_direct ? "direct solution, 1e-12 of each column's largest magnitude"
+                               : fmt::format("integrated, {:g} of each column's largest magnitude",
+                                             k_rtol_multiple * scenario.numerics.rtol)};
+    for (Table* table : {&run.record.history, &run.record.events}) table->header.push_back(claim);
+    store(curves / (run.scenario.name + ".csv"), run.record.history);
+    store(curves / (run.scenario.name + std::string(k_events_suffix)), run.record.events);
+  }
+  return results;
+}
+
+}  // namespace monograin

@@ -1,0 +1,590 @@
+#include "verify/stress/check/checks.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "catalogue.hpp"
+#include "scenario/integrators.hpp"
+#include "scene/scene.hpp"
+#include "system/undefined.hpp"
+#include "verify/probe/profiled_system.hpp"
+#include "verify/stress/check/distance.hpp"
+#include "verify/stress/check/events.hpp"
+#include "verify/stress/check/turn.hpp"
+#include "verify/stress/check/variants.hpp"
+
+namespace monograin {
+namespace {
+
+// What a scene does with changed data is measured by a few samples of all directions; the worst is a few times worse.
+constexpr double k_sample_multiple = 10.0;
+constexpr std::uint64_t k_samples = 8;  // in pairs
+// A run is stuck that takes so many times as long as the scene's own, or its reference.
+constexpr double k_patience = 4.0;
+// Overlaps over R0 below which there is nothing but round-off (docs/limits.md).
+constexpr double k_resolution = 1e-12;
+// Sum of the squares of normals along a direction that they do not span: rounding.
+constexpr double k_same_directions = 1e-9;
+constexpr double k_slower = 1e6;
+constexpr Magnification k_magnification{.length = 731.0585, .stress = 1.618034e-5};
+// Turned copies of a scene that a limit has ended, and by how many more their distance from each other is measured.
+constexpr std::uint64_t k_rotations = 4;
+// Relative tolerance of the integrated forms that the direct one is held against.
+constexpr double k_form_rtol = 1e-8;
+
+/// The larger of two, of which not a number is the largest.
+double worse(double a, double b) { return a > b || std::isnan(a) ? a : b; }
+
+std::string quoted(const Run& run) {
+  return fmt::format("'{}'", run.record.status == RunStatus::complete ? "complete" : run.record.message);
+}
+
+double end_time(const Run& run) { return run.record.history.at(run.record.history.row_count() - 1, 0); }
+
+/// Whether two runs end at one instant, to a tolerance, where plastic strain grows without bound: the strain runs
+/// through other limits there, and either may be the one that is met.
+bool run_away_together(const Run& a, const Run& b, double tolerance) {
+  const auto runs_away = [](const Run& run) { return run.record.limit == Limit::loss_of_uniqueness; };
+  if (!runs_away(a) && !runs_away(b)) return false;
+  return std::abs(end_time(a) - end_time(b)) <= tolerance * std::max(end_time(a), end_time(b));
+}
+
+/// How long the step in which a run has ended takes: as its program says, or where that gives a rate, as a ramp of the
+/// largest value that was recorded of what it controls.
+double seconds_of_last_step(const Run& run) {
+  const Table& table = run.record.history;
+  const auto index = static_cast<std::size_t>(table.at(table.row_count() - 1, *table.find("step"))) - 1;
+  double seconds = 0.0;
+  for (const Channel& channel : make_scene(run.scenario).channels) {
+    if (index >= channel.program.size()) continue;
+    const Step& step = channel.program[index];
+    if (step.duration) return *step.duration;
+    if (!step.rate) continue;
+    const bool is_length = step.kind == Step::Kind::displacement || step.kind == Step::Kind::detach;
+    const double least = is_length ? run.scenario.radius : 0.0;
+    const double largest = largest_of_kind(table, is_length ? "displacement" : "force");
+    seconds = std::max(seconds, std::max({least, largest, std::abs(step.target)}) / *step.rate);
+  }
+  return seconds;
+}
+
+/// How far apart the ends of two runs are, over the step in which the first has ended.
+double ends_apart(const Run& a, const Run& b) {
+  const double apart = std::abs(end_time(a) - end_time(b));
+  return apart <= k_stress_rounding * end_time(a) ? 0.0 : apart / seconds_of_last_step(a);
+}
+
+/// Whether a limit ends a run where another one that goes on has a corner of the program: where that leads to a limit
+/// and no farther, rounding decides.
+bool stops_at_corner(const Run& run, const Run& other, double tolerance) {
+  if (run.record.status == RunStatus::complete) return false;
+  const Table& events = other.record.events;
+  const auto name = *events.find("event");
+  const double near = tolerance * seconds_of_last_step(run) + k_stress_rounding * end_time(run);
+  for (std::size_t row = 0; row < events.row_count(); ++row) {
+    if (events.word(row, name) == "step-end" && std::abs(events.at(row, 0) - end_time(run)) <= near) return true;
+  }
+  return false;
+}
+
+/// Where the first of those runs that a limit has ended stands.
+double first_end(const std::vector<Run>& runs) {
+  double first = std::numeric_limits<double>::infinity();
+  for (const Run& run : runs) {
+    if (run.record.status == RunStatus::complete) continue;
+    first = std::min(first, end_time(run));
+  }
+  return first;
+}
+
+/// Whether a free centre lies elsewhere in one row than in another, by as much as two such places may differ by.
+bool is_elsewhere(const Run& run, std::size_t row, std::size_t other, double tolerance, double negligible) {
+  const Table& table = run.record.history;
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    if (!table.columns()[c].name.starts_with("centre_")) continue;
+    const double way = std::abs(table.at(row, c) - table.at(other, c));
+    if (way > tolerance * largest_magnitude(table, c) + negligible * run.scenario.radius) return true;
+  }
+  return false;
+}
+
+/// Whether a free centre that nothing holds any more lies elsewhere than at first: walls that bear nothing have taken
+/// it along, and do not take it back.
+bool is_left_elsewhere(const Run& run, double tolerance, double negligible) {
+  const Table& table = run.record.history;
+  const std::size_t last = table.row_count() - 1;
+  const double least = tolerance * largest_of_kind(table, "force");
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    if (kind_of(table.columns()[c]) == "force" && std::abs(table.at(last, c)) > least) return false;
+  }
+  return is_elsewhere(run, 0, last, tolerance, negligible);
+}
+
+/// Whether contacts hold a centre in every direction in a row. Walls that follow a force do not. Along what is left,
+/// walls that bear nothing take it along.
+bool is_held(const Run& run, std::span<const ContactClass> classes, std::size_t row, double tolerance) {
+  const Table& table = run.record.history;
+  const double least = tolerance * largest_of_kind(table, "force");
+  Eigen::Matrix3d hold = Eigen::Matrix3d::Zero();
+  for (const ContactClass& c : classes) {
+    const auto force = table.find(c.name + ".force");
+    if (c.takes_force || !force || !(std::abs(table.at(row, *force)) > least)) continue;
+    for (const Eigen::Vector3d& normal : c.normals) hold += normal * normal.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hold, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[0] > k_same_directions;
+}
+
+/// Whether an integrator has given up for a stated reason, which says nothing of how the scene goes on.
+bool has_given_up(const Run& run) { return run.record.status == RunStatus::failed && !stated_end(run).empty(); }
+
+/// Whether contacts are nowhere deeper than what is rounding in lengths of the order of R0.
+bool is_below_resolution(const Run& run) {
+  return run.scenario.radius > 0.0 && deepest_overlap(run.record.history) < k_resolution * run.scenario.radius;
+}
+
+class SceneCheck {
+ public:
+  SceneCheck(const Scenario& scenario, const StressEffort& effort)
+      : scenario_(scenario), effort_(effort), end_(thread_seconds() + effort.seconds) {}
+
+  StressVerdict verdict() {
+    try {
+      check_all();
+    } catch (const OutOfTime&) {
+      // Where the scene itself or its reference has taken much of the time, what they would be compared with does, too.
+      verdict_.is_cut_short = seconds_of_run() < k_patience * own_seconds_;
+      if (!verdict_.is_cut_short) {
+        report(k_time_rule,
+               fmt::format("{} runs have not come to an end within {:g} s", verdict_.runs, effort_.seconds));
+      }
+    }
+    return std::move(verdict_);
+  }
+
+ private:
+  void check_all() {
+    const std::optional<Run> run = try_run(scenario_, "the scene");
+    own_seconds_ = seconds_of_run();
+    if (!run) return;
+    own_ = &*run;
+    verdict_.end = stated_end(*run);
+    verdict_.violations = check_run(*run);
+    // What is broken already would be found again by every comparison.
+    if (!verdict_.violations.empty()) return;
+    // The scheme without error control says nothing of how near it comes; its copies take the same steps.
+    if (run->integrator.used == integrators::k_explicit) {
+      reference_ = run;
+      compares_curves_ = false;
+      tolerance_ = own_tolerance(*run);
+      share_ = k_stress_rounding;
+      return check_copies(*run);
+    }
+    const bool has_ended = run->record.status != RunStatus::complete;
+    // Rows at an integrator's own steps have none beside them in other runs, and contacts of rounding have no curves.
+    // Where a limit has ended them, others have to end there, too.
+    compares_curves_ = scenario_.output.points > 0 && !is_below_resolution(*run);
+    if (!compares_curves_ && !has_ended) return;
+
+    const bool is_direct = run->integrator.is_direct();
+    reference_ = is_direct ? run : try_run(as_reference(scenario_), "reference form");
+    if (!reference_) return;
+    // What takes its time takes as long beside it.
+    own_seconds_ = std::max(own_seconds_, seconds_of_run());
+    if (!is_direct) verdict_.violations = check_run(*reference_);
+    if (!verdict_.violations.empty()) return;
+    measure_tolerance();
+    if (!is_direct) compare("agreement", *reference_, *run);
+    if (scenario_.output.points > 0 && !has_given_up(*run)) {
+      check_rate(*run);
+      check_restart(*run);
+      check_retrace(*run);
+    }
+    check_copies(*run);
+  }
+
+  /// What the scene's own run may be wrong by.
+  void measure_tolerance() {
+    const bool is_direct = own_->integrator.is_direct();
+    share_ = is_direct ? k_stress_rounding : std::max(scenario_.numerics.rtol, k_finest_rtol);
+    tolerance_ = std::max(own_tolerance(*own_), own_tolerance(*reference_));
+    nothing_ = {.unit = {.length = scenario_.radius, .stress = softest(scenario_)},
+                .share = is_direct ? k_stress_rounding : own_absolute_tolerance(*own_),
+                .energy_share = direct_work_tolerance(*own_),
+                .step_share = tolerance_,
+                .length = k_stress_rounding * scenario_.radius};
+  }
+
+  // --- copies of the scene that must do what it does
+
+  /// All copies of a scene that a limit has ended; of a complete one those that the effort asks for.
+  void check_copies(const Run& run) {
+    constexpr std::uint64_t k_kinds = 4;
+    const bool needs_all = run.record.status != RunStatus::complete || effort_.copies == StressEffort::k_all_copies;
+    const std::uint64_t kind = effort_.copies % k_kinds;
+    const std::uint64_t which = effort_.copies / k_kinds;
+    if (needs_all || kind == 0) check_scale(run);
+    if (needs_all || kind == 1) check_order(run);
+    for (std::uint64_t sample = 0; sample < k_rotations; ++sample) {
+      if (needs_all || (kind == 2 && which % k_rotations == sample)) check_turned(run, sample);
+    }
+    if (run.integrator.used == integrators::k_explicit) return;
+    const bool is_direct = run.integrator.is_direct();
+    if ((needs_all || (kind == 3 && which % 2 == 0)) && run.integrator.used != integrators::k_ida)
+      check_form(run, integrators::k_ida);
+    if ((needs_all || (kind == 3 && which % 2 == 1)) && (is_direct || run.integrator.used == integrators::k_ida)) {
+      check_form(run, integrators::k_cvode_bdf);
+    }
+  }
+
+  void check_scale(const Run& run) {
+    if (const auto other = try_run(magnified(scenario_, k_magnification), "larger and softer")) {
+      compare("scale", run, *other, {.larger = k_magnification, .is_same_form = true});
+    }
+  }
+
+  void check_order(const Run& run) {
+    const std::optional<Scenario> copy = reordered(scenario_);
+    const std::optional<Run> other = copy ? try_run(*copy, "reordered") : std::nullopt;
+    if (other) compare("order", by_wall(run), by_wall(*other), {.is_same_form = true, .copies = turned_copies(0)});
+  }
+
+  /// The run of a turned copy, turned back; nothing where there is none.
+  std::optional<Run> turned_back(std::uint64_t sample) {
+    const Eigen::Matrix3d rotation = stress_rotation(sample);
+    const std::optional<Scenario> copy = turned(scenario_, rotation);
+    const std::optional<Run> run = copy ? try_run(*copy, "turned") : std::nullopt;
+    return run ? std::optional(by_wall(*run, rotation)) : std::nullopt;
+  }
+
+  /// Turned copies beside one of them: normals are rounded, too, and how far such copies are from each other shows what
+  /// that does to the scene.
+  std::function<std::vector<Run>()> turned_copies(std::uint64_t sample) {
+    return [this, sample] {
+      std::vector<Run> copies;
+      for (std::uint64_t k = 1; k <= k_rotations; ++k) {
+        if (auto copy = turned_back(sample + k)) copies.push_back(std::move(*copy));
+      }
+      return copies;
+    };
+  }
+
+  void check_turned(const Run& run, std::uint64_t sample) {
+    const std::optional<Run> other = turned_back(sample);
+    if (other) compare("turned", by_wall(run), *other, {.is_same_form = true, .copies = turned_copies(sample)});
+  }
+
+  /// The direct form against an integrated one, an explicit form against the implicit one.
+  void check_form(const Run& run, const char* integrator) {
+    Scenario other = with_integrator(scenario_, integrator);
+    if (run.integrator.is_direct()) {
+      other.numerics.rtol = k_form_rtol;
+      other.numerics.atol = 1e-4 * k_form_rtol;
+    }
+    SceneCheck check(other, effort_);
+    check.end_ = end_;
+    check.reference_ = reference_;
+    check.compares_curves_ = compares_curves_;
+    const std::optional<Run> integrated = check.try_run(other, "another form");
+    if (integrated) {
+      check.own_ = &*integrated;
+      check.verdict_.violations = check_run(*integrated);
+      check.measure_tolerance();
+      if (check.verdict_.violations.empty()) check.compare("form", *reference_, *integrated);
+    }
+    verdict_.runs += check.verdict_.runs;
+    verdict_.is_ill_conditioned |= check.verdict_.is_ill_conditioned;
+    for (Violation& violation : check.verdict_.violations) report(violation.check, std::move(violation.detail));
+  }
+
+  [[nodiscard]] double seconds_of_run() const { return thread_seconds() - run_begin_; }
+
+  [[nodiscard]] Run run_limited(const Scenario& scenario, const SystemWrapper& wrap = {}) {
+    run_begin_ = thread_seconds();
+    return effort_.make_run(scenario, [&](std::unique_ptr<HybridSystem> system) {
+      return limited(wrap ? wrap(std::move(system)) : std::move(system), end_);
+    });
+  }
+
+  std::optional<Run> try_run(const Scenario& scenario, std::string_view what) {
+    ++verdict_.runs;
+    try {
+      return run_limited(scenario);
+    } catch (const OutOfTime&) {
+      throw;
+    } catch (const std::exception& error) {
+      verdict_.violations.push_back({"exception", fmt::format("{}: {}", what, error.what())});
+      return std::nullopt;
+    }
+  }
+
+  /// Reference runs of a scene with data changed by up to that share.
+  std::vector<Run> runs_beside(const Scenario& scenario, double share) {
+    std::vector<Run> runs;
+    for (std::uint64_t sample = 0; sample < k_samples; ++sample) {
+      ++verdict_.runs;
+      try {
+        runs.push_back(run_limited(as_reference(changed(scenario, share, sample))));
+      } catch (const OutOfTime&) {
+        throw;
+      } catch (const std::exception&) {
+        continue;  // changed out of what is admissible
+      }
+    }
+    return runs;
+  }
+
+  const std::vector<Run>& neighbours() {
+    if (!neighbours_) neighbours_ = runs_beside(scenario_, share_);
+    return *neighbours_;
+  }
+
+  /// How far changed data take what is measured between two runs.
+  template <class Measure>
+  double spread(const Run& reference, const std::vector<Run>& runs, Measure&& measure) {
+    double widest = runs.empty() ? k_nan : 0.0;
+    for (const Run& run : runs) widest = worse(measure(reference, run), widest);
+    return widest;
+  }
+
+  /// How far the scene's own form carries on errors of its states, which a reference in closed form does not have. One
+  /// that is integrated carries on those of its own, but may know its states better than to what is tolerated of a
+  /// step.
+  template <class Measure>
+  double spread_of_states(Measure&& measure) {
+    if (own_->integrator.is_direct()) return 0.0;
+    double widest = 0.0;
+    // By as much as they may be off, less what the samples are counted by.
+    const double most = (reference_->integrator.is_direct() ? tolerance_ : share_) / k_sample_multiple;
+    for (const auto& shares : {std::array{most, most}, {-most, -most}, {most, -most}, {-most, most}}) {
+      ++verdict_.runs;
+      try {
+        const Run run = run_limited(
+            scenario_, [&](std::unique_ptr<HybridSystem> system) { return disturbed(std::move(system), shares); });
+        const double apart = measure(*own_, run);
+        if (std::isfinite(apart)) widest = std::max(widest, apart);
+      } catch (const OutOfTime&) {
+        throw;
+      } catch (const std::exception&) {
+        continue;  // changed out of what is admissible
+      }
+    }
+    return widest;
+  }
+
+  /// Whether something holds of the reference and of its neighbours, those farthest away included that an integrator
+  /// with the errors it may have cannot tell from it.
+  template <class Property>
+  bool all_share(Property&& property) {
+    const auto own = property(*reference_);
+    const auto has_it = [&](const Run& run) { return property(run) == own; };
+    if (!far_neighbours_) far_neighbours_ = runs_beside(scenario_, tolerance_);
+    return std::ranges::all_of(neighbours(), has_it) && std::ranges::all_of(*far_neighbours_, has_it);
+  }
+
+  [[nodiscard]] Distance distance_of(const Run& a, const Run& b, const Magnification& larger, double last) const {
+    if (!compares_curves_) return {};
+    return distance_between(a.record.history, b.record.history, nothing_, larger, last);
+  }
+  [[nodiscard]] Distance between(const Run& a, const Run& b, const Magnification& larger = {}) const {
+    return distance_of(a, b, larger, std::numeric_limits<double>::infinity());
+  }
+
+  /// At the last rows of two runs; not a number where either has not come to its end.
+  [[nodiscard]] Distance between_ends(const Run& a, const Run& b) const {
+    if (a.record.status != RunStatus::complete || b.record.status != RunStatus::complete) return {k_nan, {}, 0.0};
+    const Table& first = a.record.history;
+    const Table& second = b.record.history;
+    return distance_at(first, second, {{first.row_count() - 1, second.row_count() - 1}}, nothing_);
+  }
+
+  /// What two runs that are compared have to do with each other.
+  struct Kinship {
+    Magnification larger = {};  ///< the second by the first
+    bool is_same_form = false;  ///< whether the first gives up where the second does
+    /// Runs whose distance from each other is allowed.
+    std::function<std::vector<Run>()> copies = [] { return std::vector<Run>(); };
+  };
+
+  void compare(const char* check, const Run& expected, const Run& actual) {
+    compare(check, expected, actual, Kinship());
+  }
+
+  void compare(const char* check, const Run& expected, const Run& actual, const Kinship& kinship) {
+    const bool is_cut_short = !kinship.is_same_form && (has_given_up(actual) || has_given_up(expected));
+    const bool has_limit = expected.record.status != RunStatus::complete;
+    const bool runs_away = run_away_together(actual, expected, tolerance_);
+    const bool has_same_end = is_cut_short || stated_end(actual) == stated_end(expected) || runs_away;
+    const double ends = is_cut_short || runs_away || !has_limit || !has_same_end ? 0.0 : ends_apart(expected, actual);
+    const Distance apart = between(expected, actual, kinship.larger);
+    const EventNames expected_events = is_cut_short ? EventNames{} : sorted_events(expected);
+    const EventNames events = is_cut_short ? EventNames{} : sorted_events(actual);
+    if (has_same_end && ends <= tolerance_ && events == expected_events && apart.value <= tolerance_) return;
+
+    // A spread that is no number is without bounds: an empty column, or data that cannot be changed.
+    const std::vector<Run> copies = kinship.copies();
+    const auto curves_apart = [this](const Run& a, const Run& b) { return between(a, b).value; };
+    double widest = spread(*reference_, neighbours(), curves_apart);
+    if (!copies.empty()) widest = worse(widest, spread(copies.front(), copies, curves_apart));
+    // Where changed data have met a limit already, a state is not determined.
+    const Distance known = distance_of(expected, actual, kinship.larger, first_end(neighbours()));
+    const auto is_beyond = [&](double spread) { return !(known.value <= tolerance_ + k_sample_multiple * spread); };
+    const bool is_apart = is_beyond(widest) && is_beyond(spread_of_states(curves_apart));
+    // Where a decision is as near as errors are large, either way is right.
+    const bool is_toss = events != expected_events && !all_share(sorted_events);
+    if (is_apart && !std::isnan(widest) && !is_toss) {
+      report(check, fmt::format("{} differs by {:.3g}, above {:.3g} ({:.3g} with data changed by {:.1g}), t = {:.9g} s",
+                                known.column, known.value, tolerance_, widest, share_, known.time));
+      return;
+    }
+    // A copy does what the scene does but for rounding, which decides only of limits that the program just reaches.
+    const bool is_met_at_corner =
+        stops_at_corner(expected, actual, tolerance_) || stops_at_corner(actual, expected, tolerance_);
+    if (!has_same_end && ((kinship.is_same_form && !is_met_at_corner) || all_share(stated_end))) {
+      report(check, fmt::format("ends {} against {}", quoted(actual), quoted(expected)));
+      return;
+    }
+    if (ends > tolerance_ && all_share(stated_end)) {
+      double of_ends = spread(*reference_, neighbours(), ends_apart);
+      if (!copies.empty()) of_ends = worse(of_ends, spread(copies.front(), copies, ends_apart));
+      of_ends = std::max(of_ends, spread_of_states(ends_apart));
+      if (ends > tolerance_ + k_sample_multiple * of_ends) {
+        report(check, fmt::format("ends {:.3g} of a step apart, above {:.3g} ({:.3g} with changed data): {} against {}",
+                                  ends, tolerance_, of_ends, quoted(actual), quoted(expected)));
+        return;
+      }
+    }
+    const bool is_complete = has_same_end && stated_end(actual) == "complete";
+    const bool are_crowded = coincide_with_others(actual, missing_from(expected_events, events), tolerance_) &&
+                             coincide_with_others(expected, missing_from(events, expected_events), tolerance_);
+    if (is_complete && events != expected_events && !are_crowded && !is_toss) {
+      report(fmt::format("{}-events", check), first_difference(events, expected_events));
+      return;
+    }
+    verdict_.is_ill_conditioned = true;
+  }
+
+  /// Reports a broken rule once: the first of several copies that break it says enough.
+  void report(std::string check, std::string detail) {
+    if (std::ranges::count(verdict_.violations, check, &Violation::check) > 0) return;
+    verdict_.violations.push_back({std::move(check), std::move(detail)});
+  }
+
+  /// A program knows its steps, not the seconds that they take: no digit may depend on them.
+  void check_rate(const Run& run) {
+    const std::optional<Run> other = try_run(slower(scenario_, k_slower), "slower");
+    if (!other) return;
+    const Distance apart = distance_between(run.record.history, other->record.history);
+    if (apart.value > 0.0 || std::isnan(apart.value)) {
+      report("rate", fmt::format("{} differs by {:.3g}, t = {:.9g} s", apart.column, apart.value, apart.time));
+    } else if (stated_end(run) != stated_end(*other) || sorted_events(run) != sorted_events(*other)) {
+      report("rate", fmt::format("ends {} against {}", quoted(*other), quoted(run)));
+    }
+  }
+
+  /// A program that stops in the middle of a step and goes on ends where it would have ended.
+  void check_restart(const Run& run) {
+    std::size_t cut = 0;
+    const std::optional<Scenario> halves = halved(scenario_, cut);
+    if (!halves || run.record.status != RunStatus::complete) return;
+    const std::optional<Run> other = try_run(*halves, "cut in two");
+    if (!other || has_given_up(*other)) return;
+    const Distance apart = between_ends(run, *other);
+    if (apart.value <= tolerance_) return;
+    const double widest =
+        spread(*reference_, neighbours(), [this](const Run& a, const Run& b) { return between_ends(a, b).value; });
+    const auto is_within = [&](double spread) { return apart.value <= tolerance_ + k_sample_multiple * spread; };
+    // Two runs each have errors of their own, which the scene carries on.
+    if (std::isnan(widest) || is_within(widest) ||
+        is_within(spread_of_states([this](const Run& a, const Run& b) { return between(a, b).value; }))) {
+      verdict_.is_ill_conditioned = true;
+      return;
+    }
+    report("restart",
+           fmt::format("step {} in two: {} at the end differs by {:.3g}, above {:.3g} ({:.3g} with changed data); {}",
+                       cut + 1, apart.column, apart.value, tolerance_, widest, quoted(*other)));
+  }
+
+  /// An elastic law goes back the way it came.
+  void check_retrace(const Run& of_scene) {
+    const std::optional<Scenario> there = forth_and_back(scenario_);
+    if (!there || !(is_elastic(scenario_) || stays_elastic(of_scene))) return;
+    const std::optional<Run> run = try_run(*there, "forth and back");
+    if (!run || run->record.status != RunStatus::complete || is_below_resolution(*run)) return;
+    if (is_left_elsewhere(*run, tolerance_, nothing_.share)) return;
+    const Table& table = run->record.history;
+    const std::vector<std::size_t> rows = output_rows(table);
+    const auto points = static_cast<std::size_t>(scenario_.output.points);
+    if (rows.size() != 2 * points + 1) return;
+    const Scene scene = make_scene(*there);
+    std::vector<std::pair<std::size_t, std::size_t>> pairs, pairs_elsewhere;
+    for (std::size_t k = 0; k < points; ++k) {
+      const std::size_t row = rows[k];
+      const std::size_t back = rows[2 * points - k];
+      const bool has_own_place =
+          is_held(*run, scene.classes, row, tolerance_) || !is_elsewhere(*run, row, back, tolerance_, nothing_.share);
+      (has_own_place ? pairs : pairs_elsewhere).emplace_back(row, back);
+    }
+    // Where a centre lies that contacts do not hold depends on how it came there; what they bear does not.
+    Negligible nothing_there = nothing_;
+    nothing_there.has_any_place = true;
+    Distance apart = distance_at(table, table, pairs, nothing_);
+    const Distance apart_elsewhere = distance_at(table, table, pairs_elsewhere, nothing_there);
+    if (apart_elsewhere.value > apart.value || std::isnan(apart_elsewhere.value)) apart = apart_elsewhere;
+    if (apart.value <= tolerance_) return;
+    const double widest =
+        spread(*run, runs_beside(*there, share_), [this](const Run& a, const Run& b) { return between(a, b).value; });
+    if (std::isnan(widest) || apart.value <= tolerance_ + k_sample_multiple * widest) {
+      verdict_.is_ill_conditioned = true;
+      return;
+    }
+    report("retrace", fmt::format("{} differs by {:.3g}, above {:.3g} ({:.3g} with changed data), from t = {:.9g} s on",
+                                  apart.column, apart.value, tolerance_, widest, apart.time));
+  }
+
+  const Scenario& scenario_;
+  StressEffort effort_;
+  double end_;
+  double run_begin_ = thread_seconds();  ///< of the last run
+  double own_seconds_ = 0.0;             ///< that the scene's own run, or its reference, has taken
+  const Run* own_ = nullptr;             ///< the scene's run, while all is checked
+  std::optional<Run> reference_;
+  double tolerance_ = 0.0;
+  Negligible nothing_;
+  bool compares_curves_ = true;
+  double share_ = 0.0;  ///< of the data, that errors of the runs amount to
+  std::optional<std::vector<Run>> neighbours_, far_neighbours_;
+  StressVerdict verdict_;
+};
+
+}  // namespace
+
+double most_seconds_of(const Scenario& scenario) {
+  constexpr double k_of_scene = 30.0;
+  constexpr double k_of_step = 1.0;
+  return std::max(k_of_scene, k_of_step * static_cast<double>(step_count(scenario)));
+}
+
+StressVerdict check_scene(const Scenario& scenario, const StressEffort& effort) {
+  return SceneCheck(scenario, effort).verdict();
+}
+
+StressVerdict check_scene(const Scenario& scenario) {
+  return check_scene(scenario, {.seconds = most_seconds_of(scenario)});
+}
+
+}  // namespace monograin

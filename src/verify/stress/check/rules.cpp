@@ -1,0 +1,473 @@
+#include "verify/stress/check/rules.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "catalogue.hpp"
+#include "reaction_cone.hpp"
+#include "scenario/integrators.hpp"
+#include "scenario/model_input.hpp"
+#include "scene/scene.hpp"
+#include "verify/stress/check/distance.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
+
+// Error of a controlled integrator over its rtol (docs/accuracy.md).
+constexpr double k_rtol_multiple = 100.0;
+// The multiple for each step of a long program: errors of work have one sign, and add up (measured: 16).
+constexpr double k_rtol_multiple_of_step = 25.0;
+// Two runs of the direct form: each is polished to 1e-12 of the largest values, and work is a sum of
+// quadratures.
+constexpr double k_direct_tolerance = 1e-10;
+// Error of that work over the tolerance it is asked for (measured: 0.0014).
+constexpr double k_direct_work = 1e-2;
+// Fall of the dissipation from which on models warn, over the work.
+constexpr double k_tolerated_loss = 1e-6;
+// Events of one step of the program; a fifty-fold of what scenes show.
+constexpr std::size_t k_most_events_per_step = 200;
+// Where growth ends again and again, events between.
+constexpr std::size_t k_most_events_between_ends = 10;
+// Evaluations of equations and guards for each row, event and step of the program. Of 1,761 drawn scenes half of the
+// direct runs need 3 or fewer, 99 % 102, the worst 159. Of the integrated ones half need 7 to 162, by integrator, 99 %
+// 103 to 2,214, the worst 3,566.
+constexpr long k_most_work_direct = 1000;
+constexpr double k_most_work_integrated = 20000.0;
+// Resultant of unit normals below which a class of walls does not act on the centre.
+constexpr double k_no_direction = 1e-6;
+// Of what is left of a force's way; of the largest force, what is small beside it.
+constexpr double k_little = 1e-3;
+// Gaps at which a wall touches, over how deep a program presses: as well as that places are known.
+constexpr double k_touch = 1e-9;
+// What laws leave of forces that balance, over these: walls that align but for more than that balance no others.
+constexpr double k_left_over = 1e-9;
+
+double material(const Scenario& scenario, const char* key) {
+  const auto found = scenario.material.find(key);
+  return found == scenario.material.end() ? 0.0 : found->second;
+}
+
+Dimension find_dimension(const std::string& model, std::string_view key) {
+  const std::span<const QuantityKey> keys = find_model(model)->material;
+  return std::ranges::find(keys, key, &QuantityKey::name)->dimension;
+}
+
+double stiffest_modulus(const Run& run) {
+  double stiffest = 0.0;
+  for (const auto& [key, value] : run.scenario.material) {
+    if (find_dimension(run.scenario.model, key) == Dimension::stress) stiffest = std::max(stiffest, value);
+  }
+  return stiffest;
+}
+
+/// Rounding of an energy, overlaps being differences of lengths of the order of R0; or what an integrator takes for
+/// nothing.
+double energy_floor(const Run& run) {
+  const double negligible = run.integrator.is_direct() ? 0.0 : own_absolute_tolerance(run) * softest(run.scenario);
+  return std::max(k_stress_rounding * stiffest_modulus(run), negligible) * std::pow(run.scenario.radius, 3);
+}
+
+/// Rounding of the force of a contact that goes back, for the same reason: how stiff that is does not show in a curve
+/// along which the particle grows.
+double force_floor(const Run& run, std::size_t row, const std::string& wall) {
+  const auto contact_radius = run.record.history.find(wall + ".contact_radius");
+  if (!contact_radius) return 0.0;
+  return k_stress_rounding * 2.0 * stiffest_modulus(run) * run.record.history.at(row, *contact_radius) *
+         run.scenario.radius;
+}
+
+using Violations = std::vector<Violation>;
+
+void check_end(const Run& run, Violations& found) {
+  if (!stated_end(run).empty()) return;
+  const bool has_failed = run.record.status == RunStatus::failed;
+  found.push_back({has_failed ? "solver" : "unstated-limit", run.record.message});
+}
+
+/// Rows of a table as models see them.
+class TableRows final : public HistoryRows {
+ public:
+  explicit TableRows(const Table& table) : table_(table) {}
+  [[nodiscard]] std::size_t row_count() const noexcept override { return table_.row_count(); }
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view column) const noexcept override {
+    return table_.find(column);
+  }
+  [[nodiscard]] double at(std::size_t row, std::size_t column) const override { return table_.at(row, column); }
+  [[nodiscard]] std::string_view word(std::size_t row, std::size_t column) const override {
+    return table_.word(row, column);
+  }
+  [[nodiscard]] double largest_magnitude(std::size_t column) const override {
+    return monograin::largest_magnitude(table_, column);
+  }
+
+ private:
+  const Table& table_;
+};
+
+void check_numbers(const Run& run, const CheckedRun& checked, Violations& found) {
+  const Table& table = run.record.history;
+  const auto may_be_undefined = find_model(run.scenario.model)->may_be_undefined;
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    const Column& column = table.columns()[c];
+    if (column.holds_words()) continue;
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+      if (std::isfinite(table.at(row, c))) continue;
+      const bool may_be = may_be_undefined != nullptr && may_be_undefined(checked, row, column.name);
+      if (may_be && std::isnan(table.at(row, c))) continue;
+      found.push_back({"no-number", fmt::format("{} = {} in row {}, t = {:.9g} s", column.name, table.at(row, c), row,
+                                                table.at(row, 0))});
+      return;
+    }
+  }
+}
+
+void check_forces(const Run& run, Violations& found) {
+  // A fixed step does not end where a contact opens.
+  if (material(run.scenario, "surface_energy") > 0.0 || run.integrator.used == integrators::k_explicit) return;
+  const Table& table = run.record.history;
+  const double scale = largest_of_kind(table, "force");
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    if (kind_of(table.columns()[c]) != "force") continue;
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+      if (!(table.at(row, c) < -own_tolerance(run) * scale)) continue;
+      found.push_back({"tension", fmt::format("{} = {:.6g} N of at most {:.6g} N at t = {:.9g} s",
+                                              table.columns()[c].name, table.at(row, c), scale, table.at(row, 0))});
+      return;
+    }
+  }
+}
+
+/// What the walls of a class are to press with at the end of a step, counted from 0; nothing where a displacement is
+/// prescribed.
+std::optional<double> prescribed_force(const Channel& channel, std::size_t step) {
+  std::optional<double> force;
+  for (std::size_t k = 0; k <= step && k < channel.program.size(); ++k) {
+    const Step& planned = channel.program[k];
+    if (planned.kind == Step::Kind::force)
+      force = planned.target;
+    else if (planned.kind != Step::Kind::hold)
+      force.reset();
+  }
+  return force;
+}
+
+/// The column that shows what a channel of the program prescribes; none where it need not come to that: contacts of a
+/// free centre move with it, and no wall pulls one that does not adhere, or may have snapped off.
+std::optional<std::string> column_of(const Scenario& scenario, const Scene& scene, const Channel& channel,
+                                     const Step& step) {
+  const auto control = control_of(step.kind);
+  if (!control) return std::nullopt;
+  const Model& model = *find_model(scenario.model);
+  if (!model.has_walls()) {
+    const bool is_lateral = &channel != &scene.channels.front();
+    const auto drives = is_lateral ? model.lateral_drives : model.drives;
+    const DriveKey& drive = *std::ranges::find(drives, *control, &DriveKey::control);
+    return std::string(drive.column.empty() ? drive.name : drive.column);
+  }
+  if (*control == Control::displacement && scenario.loading.centre_is_free) return std::nullopt;
+  const bool may_open = step.target < 0.0 || material(scenario, "surface_energy") > 0.0;
+  if (*control == Control::force && may_open) return std::nullopt;
+  return fmt::format("{}.{}", channel.name, *control == Control::force ? "force" : "displacement");
+}
+
+/// What the last step prescribes is reached, unless something else may end it.
+void check_program(const Run& run, Violations& found) {
+  if (run.record.status != RunStatus::complete) return;
+  const Table& table = run.record.history;
+  const Scene scene = make_scene(run.scenario);
+  const auto has_last_step = [&](const Channel& channel) { return channel.program.size() == scene.step_count(); };
+  const auto may_end_early = [&](const Channel& channel) {
+    return has_last_step(channel) &&
+           (!channel.program.back().until.empty() || channel.program.back().kind == Step::Kind::detach);
+  };
+  if (std::ranges::any_of(scene.channels, may_end_early)) return;
+  for (const Channel& channel : scene.channels) {
+    if (!has_last_step(channel)) continue;
+    const double target = channel.program.back().target;
+    const auto name = column_of(run.scenario, scene, channel, channel.program.back());
+    if (!name) continue;
+    const std::size_t column = *table.find(*name);
+    const std::size_t last_row = table.row_count() - 1;
+    const double last = table.at(last_row, column);
+    const double scale = std::max(std::abs(target), largest_magnitude(table, column));
+    // What is rounded: strains of order one, lengths of the order of R0.
+    const double unit = scene.classes.empty() ? 1.0 : name->ends_with("displacement") ? run.scenario.radius : 0.0;
+    // The force of a shallow contact is known as well as its overlap, a difference of such lengths.
+    double by_overlap = 0.0;
+    if (name->ends_with("force")) {
+      by_overlap = std::max(change_with_overlap(table, last_row, column, k_stress_rounding * run.scenario.radius),
+                            force_floor(run, last_row, channel.name));
+    }
+    if (std::abs(last - target) <= own_tolerance(run) * scale + k_stress_rounding * unit + by_overlap) continue;
+    found.push_back({"program", fmt::format("{} ends {:.3g} off {:.9g}", *name, last - target, target)});
+    return;
+  }
+}
+
+/// How deep a program presses at most, as far as contacts are not as wide as the particle.
+double deepest_asked_for(const Scenario& scenario, const Scene& scene) {
+  const Model& model = *find_model(scenario.model);
+  const ModelInput input = model_input(scenario);
+  double deepest = 0.0;
+  for (const Channel& channel : scene.channels) {
+    for (const Step& step : channel.program) {
+      if (step.kind == Step::Kind::displacement) deepest = std::max(deepest, step.target);
+      if (step.kind != Step::Kind::force || !(step.target > 0.0) || model.reach == nullptr) continue;
+      const Until until{.quantity = Quantity::force, .value = step.target};
+      deepest = std::max(deepest, model.reach(input, until).displacement);
+    }
+  }
+  return std::min(deepest, scenario.radius);
+}
+
+/// That forces drive the centre away holds only where no contacts that touch could balance them.
+void check_hold(const Run& run, Violations& found) {
+  if (run.record.limit != Limit::centre_driven_away || material(run.scenario, "surface_energy") > 0.0) return;
+  const Table& table = run.record.history;
+  const std::size_t last = table.row_count() - 1;
+  const auto step = static_cast<std::size_t>(table.at(last, *table.find("step"))) - 1;
+  const Scene scene = make_scene(run.scenario);
+  std::vector<std::pair<double, Eigen::Vector3d>> pushes;  // by prescribed forces, and their normals
+  double largest = 0.0;
+  std::vector<Eigen::Vector3d> others, bearing;
+  const double touch = k_touch * deepest_asked_for(run.scenario, scene);
+  for (std::size_t c = 0; c < scene.classes.size(); ++c) {
+    const ContactClass& contact_class = scene.classes[c];
+    Eigen::Vector3d normals = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& normal : contact_class.normals) normals += normal;
+    if (normals.norm() < k_no_direction) continue;
+    const auto at_end = [&](const char* column) {
+      return table.at(last, *table.find(fmt::format("{}.{}", contact_class.name, column)));
+    };
+    const std::string_view regime = table.word(last, *table.find(contact_class.name + ".regime"));
+    // Where contacts bear, they lift the surface of this law elsewhere: the overlap is no gap there.
+    const double overlap = at_end("overlap");
+    const bool touches = find_model(run.scenario.model)->moves_surface ? regime != "open" || std::abs(overlap) <= touch
+                                                                       : overlap >= -touch && regime != "separated";
+    if (const auto force = prescribed_force(scene.channels[c], step)) {
+      // A little later, as others may have yet to begin.
+      pushes.emplace_back(std::lerp(at_end("force"), *force, k_little), normals);
+      largest = std::max(largest, pushes.back().first);
+    } else if (touches) {
+      others.push_back(normals.normalized());
+      if (at_end("force") > 0.0) bearing.push_back(others.back());
+    }
+  }
+  Eigen::Vector3d push = Eigen::Vector3d::Zero();
+  Eigen::Vector3d small_push = Eigen::Vector3d::Zero();
+  for (const auto& [force, normals] : pushes) (force < k_little * largest ? small_push : push) += force * normals;
+  if (!(push.norm() > 0.0) || !in_reaction_cone(push, others, k_left_over)) return;
+  // Beside forces so much larger it is not seen whether the small ones can be balanced. Where contacts bear, they may
+  // also give way.
+  for (const Eigen::Vector3d& normal : bearing) others.push_back(-normal);
+  if (small_push.norm() > 0.0 && !in_reaction_cone(small_push, others, k_left_over)) return;
+  found.push_back(
+      {"held-centre", fmt::format("contacts that touch could balance the forces of '{}'", run.record.message)});
+}
+
+void check_energy(const Run& run, Violations& found) {
+  const Table& table = run.record.history;
+  const auto work = table.find("work");
+  const auto stored = table.find("stored_energy");
+  const auto dissipation = table.find("dissipation");
+  if (!work || !stored) return;
+  const double scale = std::max(largest_magnitude(table, *work), largest_magnitude(table, *stored));
+  if (scale == 0.0) return;
+  // Fixed steps control no error.
+  if (run.integrator.used == integrators::k_explicit) return;
+  const bool is_conservative = is_elastic(run.scenario);
+  // What integrators make of a law that keeps its energy is found where they are compared with the direct form, with
+  // what the scene magnifies.
+  if (is_conservative && !run.integrator.is_direct()) return;
+  // A law that gives back more than was put in has to say so.
+  const bool is_warned = run.record.creates_energy;
+  const double of_run = run.integrator.is_direct() ? direct_work_tolerance(run) : own_tolerance(run);
+  const double share = is_conservative ? k_direct_tolerance : k_tolerated_loss;
+  const double most = (share + of_run) * scale + energy_floor(run);
+  double highest = 0.0;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const double lost = table.at(row, *work) - table.at(row, *stored);
+    if (dissipation) {
+      const double gap = lost - table.at(row, *dissipation);
+      // Their sum is rounded once or twice.
+      if (std::abs(gap) > 8.0 * k_epsilon * scale) {
+        found.push_back(
+            {"energy-balance", fmt::format("work - stored energy - dissipation = {:.3g} of {:.6g} J, t = {:.9g} s", gap,
+                                           scale, table.at(row, 0))});
+        return;
+      }
+    }
+    if (is_conservative && std::abs(lost) > most) {
+      found.push_back({"elastic-energy", fmt::format("work - stored energy = {:.3g} of {:.6g} J, t = {:.9g} s", lost,
+                                                     scale, table.at(row, 0))});
+      return;
+    }
+    highest = std::max(highest, lost);
+    if (highest - lost > most && !is_warned) {
+      found.push_back(
+          {"energy-made", fmt::format("the dissipation falls by {:.3g} of {:.6g} J without a warning, t = {:.9g} s",
+                                      highest - lost, scale, table.at(row, 0))});
+      return;
+    }
+  }
+}
+
+/// Whether modes may answer each other without end: those of contacts that adhere to a free centre, or to a particle
+/// that grows until one is touched and no longer while it is (docs/limits.md).
+bool may_go_on(const Run& run) {
+  if (!(material(run.scenario, "surface_energy") > 0.0)) return false;
+  if (run.scenario.loading.centre_is_free) return true;
+  const Table& events = run.record.events;
+  const auto name = *events.find("event");
+  std::size_t ends = 0;
+  for (std::size_t row = 0; row < events.row_count(); ++row) ends += events.word(row, name) == "growth-off" ? 1 : 0;
+  return ends * k_most_events_between_ends >= k_most_events_per_step;
+}
+
+/// The reason of a failed run, if docs/limits.md names it; else empty.
+std::string stated_failure(const Run& run) {
+  const RunRecord& record = run.record;
+  if (!record.failure) return "";
+  const Failure failure = *record.failure;
+  if (!run.integrator.is_direct() && run.scenario.numerics.rtol < k_finest_rtol) return "tolerance of round-off";
+  if (failure == Failure::endless_events || failure == Failure::chattering) {
+    return may_go_on(run) ? "events without end" : "";
+  }
+  const bool is_too_much_work = failure == Failure::too_much_work;
+  // A material by itself may be so stiff that no method is quick.
+  const bool may_be_stiff = !suits_stiff_equations(run.integrator.used) || !find_model(run.scenario.model)->has_walls();
+  if (is_too_much_work && may_be_stiff) return "stiff equations";
+  if (!record.difficulty || (is_too_much_work && record.difficulty == Difficulty::soft_centre)) return "";
+  return std::string(advice(*record.difficulty));
+}
+
+void check_events(const Run& run, Violations& found) {
+  std::map<double, std::size_t> counts;
+  const Table& events = run.record.events;
+  const auto step = *events.find("step");
+  const auto name = *events.find("event");
+  for (std::size_t row = 0; row < events.row_count(); ++row) {
+    // Caps that meet change nothing: a wall that comes in meets those of all others.
+    if (events.word(row, name) == "caps-intersect") continue;
+    if (++counts[events.at(row, step)] == k_most_events_per_step && !may_go_on(run)) {
+      found.push_back(
+          {"endless-events", fmt::format("{} events in step {}", k_most_events_per_step, events.at(row, step))});
+    }
+  }
+  const auto time = *run.record.history.find("time");
+  for (std::size_t row = 1; row < run.record.history.row_count(); ++row) {
+    const double before = run.record.history.at(row - 1, time);
+    const double now = run.record.history.at(row, time);
+    if (now >= before) continue;
+    found.push_back({"time", fmt::format("goes back from {} s to {} s", before, now)});
+    return;
+  }
+}
+
+/// A run takes work in proportion to what it shows. Fixed steps are as many as the tolerance says, and methods that are
+/// not made for stiff equations take many where these are; the program itself says when they are too many.
+void check_work(const Run& run, Violations& found) {
+  if (!suits_stiff_equations(run.integrator.used)) return;
+  // As a method of order 4 needs more at a finer tolerance.
+  const double finer = std::pow(std::max(1.0, 1e-8 / run.scenario.numerics.rtol), 0.25);
+  const long most = run.integrator.is_direct() ? k_most_work_direct : std::lround(k_most_work_integrated * finer);
+  const Statistics& done = run.record.statistics;
+  const long work = done.rhs_evaluations + done.guard_evaluations;
+  const auto shown =
+      static_cast<long>(run.record.history.row_count() + run.record.events.row_count() + step_count(run.scenario));
+  if (work <= most * shown) return;
+  found.push_back({"work", fmt::format("{} evaluations, {} for each of {} rows, events and steps, above {}", work,
+                                       work / shown, shown, most)});
+}
+
+}  // namespace
+
+double softest(const Scenario& scenario) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const QuantityKey& key : find_model(scenario.model)->material) {
+    const auto found = scenario.material.find(std::string(key.name));
+    if (key.dimension == Dimension::stress && found != scenario.material.end() && found->second > 0.0) {
+      least = std::min(least, found->second);
+    }
+  }
+  return least;
+}
+
+bool is_elastic(const Scenario& scenario) {
+  const auto is_elastic = find_model(scenario.model)->is_elastic;
+  return is_elastic != nullptr && is_elastic(model_input(scenario));
+}
+
+bool stays_elastic(const Run& run) {
+  if (find_model(run.scenario.model)->has_walls()) return false;
+  const Table& events = run.record.events;
+  const auto event = *events.find("event");
+  for (std::size_t row = 0; row < events.row_count(); ++row) {
+    if (events.word(row, event) == "yield") return false;
+  }
+  return true;
+}
+
+std::size_t step_count(const Scenario& scenario) {
+  std::size_t count = scenario.loading.steps.size();
+  for (const WallSpec& wall : scenario.loading.walls) count = std::max(count, wall.steps.size());
+  return count;
+}
+
+double direct_work_tolerance(const Run& run) {
+  return run.integrator.is_direct() ? k_direct_work * run.scenario.numerics.rtol : 0.0;
+}
+
+double own_tolerance(const Run& run) {
+  if (run.integrator.is_direct()) return k_direct_tolerance;
+  const auto steps = static_cast<double>(step_count(run.scenario));
+  return std::max(k_rtol_multiple, k_rtol_multiple_of_step * steps) *
+         std::max(run.scenario.numerics.rtol, k_finest_rtol);
+}
+
+double own_absolute_tolerance(const Run& run) {
+  if (run.integrator.is_direct()) return k_stress_rounding;
+  return own_tolerance(run) / run.scenario.numerics.rtol * run.scenario.numerics.atol;
+}
+
+std::vector<Violation> check_run(const Run& run) {
+  Violations found;
+  const TableRows rows(run.record.history);
+  const Scene scene = make_scene(run.scenario);
+  const ModelInput input = model_input(run.scenario);
+  const CheckedRun checked{input, rows, scene.classes, own_tolerance(run), k_stress_rounding};
+  check_end(run, found);
+  check_numbers(run, checked, found);
+  check_forces(run, found);
+  check_hold(run, found);
+  check_energy(run, found);
+  check_events(run, found);
+  check_work(run, found);
+  // Fixed steps control no error, and have none of these.
+  if (run.integrator.used == integrators::k_explicit) return found;
+  check_program(run, found);
+  if (const auto check = find_model(run.scenario.model)->check) check(checked, found);
+  return found;
+}
+
+std::string stated_end(const Run& run) {
+  const RunRecord& record = run.record;
+  if (record.status == RunStatus::complete) return "complete";
+  if (record.status == RunStatus::failed) return stated_failure(run);
+  // Two sentences for one place: walls push the centre where forces do.
+  if (record.limit == Limit::centre_driven_away) return std::string(code(Limit::centre_not_held));
+  const bool is_stated = record.limit && record.limit != Limit::no_solution && record.limit != Limit::unequal_durations;
+  return is_stated ? std::string(code(*record.limit)) : std::string();
+}
+
+}  // namespace monograin

@@ -1,0 +1,91 @@
+// Which rooms include which: the part of the layering that no linker sees.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace monograin::rooms_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rooms of src/ from left to right; those of a group know nothing of each other.
+const std::vector<std::vector<std::string>> k_rooms{{"numerics"},
+                                                    {"scenario"},
+                                                    {"scene"},
+                                                    {"engine"},
+                                                    {"history"},
+                                                    {"figure"},
+                                                    {"study/formula"},
+                                                    {"study/sweep", "study/calibrate", "study/atlas"},
+                                                    {"verify/probe"},
+                                                    {"verify/bench", "verify/regress", "verify/stress"},
+                                                    {"cli"}};
+
+/// What the rooms know of models: what a model is, and the list of all.
+const std::set<std::string> k_of_all_models{"catalogue.hpp", "reaction_cone.hpp", "stress", "system"};
+
+/// Group of the room that a file is in, and its name; the number of groups where it is in none.
+std::pair<std::size_t, std::string> room_of(const std::string& path) {
+  for (std::size_t group = 0; group < k_rooms.size(); ++group) {
+    for (const std::string& room : k_rooms[group]) {
+      if (path.starts_with(room + "/")) return {group, room};
+    }
+  }
+  return {k_rooms.size(), {}};
+}
+
+std::vector<std::string> includes_of(const fs::path& file) {
+  std::vector<std::string> included;
+  std::ifstream stream(file);
+  constexpr std::string_view k_begin = "#include \"";
+  for (std::string line; std::getline(stream, line);) {
+    if (line.starts_with(k_begin)) {
+      included.push_back(line.substr(k_begin.size(), line.rfind('"') - k_begin.size()));
+    }
+  }
+  return included;
+}
+
+template <class Visit>
+void for_each_source(const std::string& folder, Visit visit) {
+  const fs::path root = fs::path(MONOGRAIN_SOURCE_DIR) / folder;
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".hpp" && extension != ".cpp") continue;
+    visit(fs::relative(entry.path(), root).string(), includes_of(entry.path()));
+  }
+}
+
+TEST(Rooms, IncludeOnlyWhatIsOnTheirLeft) {
+  std::size_t files = 0;
+  for_each_source("src", [&](const std::string& file, const std::vector<std::string>& included) {
+    ++files;
+    const auto [group, room] = room_of(file);
+    ASSERT_LT(group, k_rooms.size()) << file << " is in no room";
+    for (const std::string& header : included) {
+      const auto [other_group, other] = room_of(header);
+      const bool is_of_models = k_of_all_models.contains(header.substr(0, header.find('/')));
+      EXPECT_TRUE(is_of_models || other == room || other_group < group) << file << " includes " << header;
+    }
+  });
+  EXPECT_GT(files, 150U);
+}
+
+TEST(Rooms, ModelsIncludeOnlyModels) {
+  for_each_source("models", [](const std::string& file, const std::vector<std::string>& included) {
+    for (const std::string& header : included) {
+      EXPECT_TRUE(fs::exists(fs::path(MONOGRAIN_SOURCE_DIR) / "models" / header)) << file << " includes " << header;
+    }
+  });
+}
+
+}  // namespace
+}  // namespace monograin::rooms_test

@@ -1,0 +1,791 @@
+// Calibration: parameters found again, errors in closed form, faults of files, and what is written.
+
+#include "study/calibrate/calibration.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "elastic/hertz.hpp"
+#include "history/run.hpp"
+#include "history/table.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/text_file.hpp"
+
+namespace monograin::calibration_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double k_radius = 0.01;
+constexpr double k_poisson = 0.22;
+
+constexpr const char* k_hertz = R"(model = "hertz"
+[particle]
+radius = "10 mm"
+[material]
+youngs_modulus = "70 GPa"
+poisson_ratio = 0.22
+[loading]
+configuration = "simple"
+[[loading.steps]]
+displacement = "0.01 R0"
+duration = "1 s"
+)";
+
+constexpr const char* k_mdr = R"(model = "mdr"
+[particle]
+radius = "10 mm"
+[material]
+youngs_modulus = "1 GPa"
+poisson_ratio = 0.3
+yield_stress = "40 MPa"
+[loading]
+configuration = "simple"
+[[loading.steps]]
+displacement = "0.3 R0"
+duration = "1 s"
+)";
+
+constexpr const char* k_calibration = R"(scenario = "s.toml"
+[data]
+file = "d.csv"
+x = "displacement[m]"
+y = "force[N]"
+[free]
+"material.youngs_modulus" = { from = "10 GPa", to = "300 GPa" }
+)";
+
+constexpr const char* k_data = "displacement[m],force[N]\n1e-5,35\n2e-5,100\n3e-5,180\n";
+
+std::string replaced(std::string text, const std::string& old, const std::string& by) {
+  const std::size_t at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return at == std::string::npos ? text : text.replace(at, old.size(), by);
+}
+
+/// Force per modulus of the Hertz scenario.
+double hertz_force_per_modulus(double displacement) {
+  return hertz_force(1.0 / (1.0 - k_poisson * k_poisson), k_radius, displacement);
+}
+
+struct Row {
+  double x;
+  double y;
+  double weight = 1.0;
+};
+
+std::string csv_of(const std::vector<Row>& rows, const std::string& headings) {
+  std::string text = "# synthetic\n" + headings + '\n';
+  for (const Row& row : rows) text += fmt::format("{:.17g},{:.17g},{:.17g}\n", row.x, row.y, row.weight);
+  return text;
+}
+
+class CalibrationTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write("s.toml", k_hertz);
+    write("c.toml", k_calibration);
+    write("d.csv", k_data);
+  }
+
+  void write(const std::string& name, const std::string& text) const { write_text(folder() / name, text); }
+  [[nodiscard]] std::string text_of(const fs::path& file) const { return read_text(folder() / file); }
+
+  [[nodiscard]] Calibration read() const { return read_calibration(folder() / "c.toml"); }
+
+  /// The messages with which c.toml is refused, without the folder.
+  [[nodiscard]] std::vector<std::string> faults() const {
+    std::vector<std::string> messages;
+    try {
+      static_cast<void>(read());
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) {
+        messages.push_back(fmt::format("{}:{}:{}: {}", fs::path(fault.where.file).filename().string(), fault.where.line,
+                                       fault.where.column, fault.message));
+      }
+    }
+    return messages;
+  }
+
+  /// Rows at output points of a scenario that is run with a program of its own.
+  [[nodiscard]] static std::vector<Row> measure(const std::string& scenario, const std::vector<std::string>& overrides,
+                                                const std::string& x = "axial.displacement",
+                                                const std::string& y = "axial.force") {
+    const Table history = run_scenario(parse_scenario(scenario, "s.toml", overrides)).record.history;
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < history.row_count(); ++i) {
+      if (history.at(i, *history.find("row")) != 0.0) continue;
+      rows.push_back({history.at(i, *history.find(x)), history.at(i, *history.find(y))});
+    }
+    return rows;
+  }
+
+  [[nodiscard]] const fs::path& folder() const { return folder_.path(); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+constexpr const char* k_two_free = R"(scenario = "s.toml"
+[data]
+file = "d.csv"
+x = "axial.displacement[m]"
+y = "axial.force[N]"
+[free]
+"material.youngs_modulus" = { from = "0.1 GPa", to = "10 GPa" }
+"material.yield_stress" = { from = "5 MPa", to = "200 MPa" }
+)";
+
+// --- fits
+
+TEST_F(CalibrationTest, FindsTheParametersOfExactDataWithUnloadingAndReloading) {
+  write("s.toml", k_mdr);
+  write("c.toml", k_two_free);
+  const auto rows = measure(
+      k_mdr,
+      {"material.youngs_modulus=1.3e9", "material.yield_stress=3.1e7", "output.points=12",
+       "loading.steps=[{displacement='0.2 R0',duration=1},{displacement='0.19 R0',duration=1},{displacement='0.25 "
+       "R0',duration=1},{displacement='0.235 R0',duration=1}]"});
+  write("d.csv", csv_of(rows, "axial.displacement[m],axial.force[N],w"));
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_EQ(result.program_steps, 4U);
+  EXPECT_NEAR(result.solution.parameters[0] / 1.3e9, 1.0, 1e-9);
+  EXPECT_NEAR(result.solution.parameters[1] / 3.1e7, 1.0, 1e-9);
+  EXPECT_TRUE(result.solution.has_converged);
+  // No interpolation: the model is evaluated at each datum.
+  EXPECT_LT(result.largest, 1e-9 * 1e4);
+  EXPECT_GT(result.r_squared, 1.0 - 1e-15);
+}
+
+TEST_F(CalibrationTest, FindsTheParametersOfForceDrivenData) {
+  write("s.toml", k_mdr);
+  write("c.toml", replaced(replaced(k_two_free, "x = \"axial.displacement[m]\"", "x = \"force[kN]\""),
+                           "y = \"axial.force[N]\"", "y = \"displacement[R0]\""));
+  auto rows = measure(k_mdr,
+                      {"material.youngs_modulus=1.3e9", "material.yield_stress=3.1e7", "output.points=10",
+                       "loading.steps=[{force='5 kN',duration=1},{force='2 kN',duration=1}]"},
+                      "axial.force", "axial.displacement");
+  for (Row& row : rows) {
+    row.x /= 1e3;
+    row.y /= k_radius;
+  }
+  write("d.csv", csv_of(rows, "force[kN],displacement[R0],w"));
+  const CalibrationResult result = calibrate(read());
+  EXPECT_NEAR(result.solution.parameters[0] / 1.3e9, 1.0, 1e-8);
+  EXPECT_NEAR(result.solution.parameters[1] / 3.1e7, 1.0, 1e-8);
+}
+
+constexpr const char* k_powder = R"(model = "material-point"
+[material]
+preset = "MCC PH-200"
+relative_density = 0.45
+yield_pressure = "5 MPa"
+eta = 4
+[loading]
+configuration = "die"
+[[loading.steps]]
+strain = -0.3
+duration = "1 s"
+[numerics]
+rtol = 1e-6
+)";
+
+constexpr const char* k_hardening = R"(scenario = "s.toml"
+[data]
+file = "d.csv"
+x = "X"
+y = "Y"
+[free]
+"material.yield_pressure" = { from = "2 MPa", to = "20 MPa" }
+"material.eta" = { from = 2, to = 10 }
+)";
+
+// Loading, unloading and reloading in a die, by the method that integrates.
+TEST_F(CalibrationTest, FindsTheHardeningOfAMaterialPoint) {
+  write("s.toml", k_powder);
+  write("c.toml", replaced(replaced(k_hardening, "\"X\"", "\"strain_axial\""), "\"Y\"", "\"stress_axial\""));
+  const auto rows =
+      measure(k_powder,
+              {"material.yield_pressure=8.61e6", "material.eta=6.11", "output.points=5",
+               "loading.steps=[{strain=-0.2,duration=1},{strain=-0.19,duration=1},{strain=-0.25,duration=1}]"},
+              "strain_axial", "stress_axial");
+  write("d.csv", csv_of(rows, "strain_axial[-],stress_axial[Pa],w"));
+  const CalibrationResult result = calibrate(read());
+  EXPECT_EQ(result.program_steps, 3U);
+  EXPECT_NEAR(result.solution.parameters[0] / 8.61e6, 1.0, 1e-6);
+  EXPECT_NEAR(result.solution.parameters[1] / 6.11, 1.0, 1e-6);
+  EXPECT_TRUE(result.solution.has_converged);
+}
+
+// Density over pressure: the stress drives.
+TEST_F(CalibrationTest, FindsTheHardeningBehindDensities) {
+  write("s.toml", k_powder);
+  write("c.toml",
+        replaced(replaced(replaced(k_hardening, "\"X\"", "\"stress_axial\""), "\"Y\"", "\"relative_density\""),
+                 "\"material.yield_pressure\" = { from = \"2 MPa\", to = \"20 MPa\" }\n", ""));
+  const auto rows = measure(
+      k_powder,
+      {"material.eta=6.11", "output.points=6",
+       "loading.steps=[{stress='-15 MPa',duration=1},{stress='-10 MPa',duration=1},{stress='-40 MPa',duration=1}]"},
+      "stress_axial", "relative_density");
+  write("d.csv", csv_of(rows, "stress_axial[Pa],relative_density[-],w"));
+  const CalibrationResult result = calibrate(read());
+  EXPECT_NEAR(result.solution.parameters[0] / 6.11, 1.0, 1e-6);
+  EXPECT_TRUE(result.solution.has_converged);
+}
+
+// Numbers for which there is no yield surface are passed over.
+TEST_F(CalibrationTest, TriesNoMaterialWithoutAYieldSurface) {
+  write("s.toml", k_powder);
+  write("c.toml", R"(scenario = "s.toml"
+[data]
+file = "d.csv"
+x = "strain_axial"
+y = "stress_axial"
+[free]
+"material.eps0" = { from = -0.4, to = 1.4, start = 0.3 }
+)");
+  write("d.csv", csv_of(measure(k_powder, {"output.points=12"}, "strain_axial", "stress_axial"),
+                        "strain_axial[-],stress_axial[Pa],w"));
+  const CalibrationResult result = calibrate(read());
+  EXPECT_NEAR(result.solution.parameters[0], 0.147, 1e-6);
+  EXPECT_GT(result.solution.failures, 0U);
+}
+
+TEST_F(CalibrationTest, DataDriveTheAxialDirectionAlone) {
+  const std::string steps = "strain = -0.3\n";
+  write("s.toml",
+        replaced(replaced(k_powder, "\"die\"", "\"triaxial\""), steps, steps + "lateral_stress = \"-1 MPa\"\n"));
+  write("c.toml", replaced(replaced(k_hardening, "\"X\"", "\"strain_axial\""), "\"Y\"", "\"stress_axial\""));
+  write("d.csv", "strain_axial[-],stress_axial[Pa]\n-0.1,-1e6\n-0.2,-2e6\n-0.3,-4e6\n");
+  const auto messages = faults();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_TRUE(messages[0].starts_with("c.toml:1:12: the scenario's steps prescribe the lateral direction too"))
+      << messages[0];
+}
+
+/// Noisy Hertz data, for which the fit has a closed form: force is linear in Young's modulus.
+std::vector<Row> noisy_hertz() {
+  std::mt19937 generator(11);
+  std::normal_distribution<double> noise;
+  std::vector<Row> rows;
+  for (int i = 1; i <= 25; ++i) {
+    const double x = 4e-6 * i;
+    rows.push_back({x, 70e9 * hertz_force_per_modulus(x) * (1.0 + 0.03 * noise(generator)), 0.1 + 0.05 * i});
+  }
+  return rows;
+}
+
+struct ClosedForm {
+  double modulus;
+  double standard_error;
+};
+
+/// @param weight  factor of each residual
+template <class Weight>
+ClosedForm closed_form(const std::vector<Row>& rows, Weight weight) {
+  double cc = 0.0;
+  double cp = 0.0;
+  for (const Row& row : rows) {
+    const double c = weight(row) * hertz_force_per_modulus(row.x);
+    cc += c * c;
+    cp += c * weight(row) * row.y;
+  }
+  const double modulus = cp / cc;
+  double squares = 0.0;
+  for (const Row& row : rows) {
+    squares += std::pow(weight(row) * (row.y - modulus * hertz_force_per_modulus(row.x)), 2);
+  }
+  return {modulus, std::sqrt(squares / static_cast<double>(rows.size() - 1) / cc)};
+}
+
+TEST_F(CalibrationTest, StandardErrorsAreThoseOfTheLinearFitInClosedForm) {
+  const auto rows = noisy_hertz();
+  write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
+  const std::vector<std::pair<std::string, ClosedForm>> cases{
+      {"weights = \"absolute\"", closed_form(rows, [](const Row&) { return 1.0; })},
+      {"weights = \"relative\"", closed_form(rows, [](const Row& row) { return 1.0 / row.y; })},
+      {"weights = \"column\"\nweight_column = \"w\"", closed_form(rows, [](const Row& row) { return row.weight; })}};
+  for (const auto& [weights, expected] : cases) {
+    write("c.toml", replaced(k_calibration, "[free]", weights + "\n[free]"));
+    const CalibrationResult result = calibrate(read());
+    EXPECT_NEAR(result.solution.parameters[0] / expected.modulus, 1.0, 1e-9) << weights;
+    EXPECT_NEAR(result.uncertainty.standard_error(0) / expected.standard_error, 1.0, 1e-7) << weights;
+    EXPECT_EQ(result.uncertainty.degrees_of_freedom, 24U);
+    // The band of a proportional law is proportional to it.
+    const double share = result.uncertainty.half_width(0) / expected.modulus;
+    for (const std::size_t row : {3U, 24U}) {
+      EXPECT_NEAR(result.fit.band[row] / (share * result.fit.y[row]), 1.0, 1e-7) << weights;
+    }
+  }
+}
+
+TEST_F(CalibrationTest, ARowOfWeightZeroOnlyDrives) {
+  auto rows = noisy_hertz();
+  for (Row& row : rows) row.weight = 1.0;
+  rows[5].weight = 0.0;
+  rows[5].y *= 100.0;
+  write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
+  write("c.toml", replaced(k_calibration, "[free]", "weights = \"column\"\nweight_column = \"w\"\n[free]"));
+  const CalibrationResult result = calibrate(read());
+  rows.erase(rows.begin() + 5);
+  const ClosedForm expected = closed_form(rows, [](const Row&) { return 1.0; });
+  EXPECT_NEAR(result.solution.parameters[0] / expected.modulus, 1.0, 1e-9);
+  EXPECT_NEAR(result.uncertainty.standard_error(0) / expected.standard_error, 1.0, 1e-7);
+  EXPECT_EQ(result.points, 24U);
+}
+
+TEST_F(CalibrationTest, ARobustLossForgetsAnOutlier) {
+  auto rows = noisy_hertz();
+  const double before = closed_form(rows, [](const Row&) { return 1.0; }).modulus;
+  rows[20].y *= 3.0;
+  write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
+  EXPECT_GT(calibrate(read()).solution.parameters[0] / before, 1.05);
+  for (const char* loss : {"huber", "soft-l1", "cauchy"}) {
+    write("c.toml", std::string(k_calibration) + fmt::format("[fit]\nloss = \"{}\"\nloss_scale = 0.005\n", loss));
+    const CalibrationResult result = calibrate(read());
+    EXPECT_NEAR(result.solution.parameters[0] / before, 1.0, 0.02) << loss;
+    EXPECT_NEAR(result.uncertainty.standard_error(0) / before, 0.005, 0.005) << loss;
+  }
+}
+
+TEST_F(CalibrationTest, AParameterAtItsBoundHasNoInterval) {
+  write("d.csv", csv_of(noisy_hertz(), "displacement[m],force[N],w"));
+  write("c.toml", replaced(k_calibration, "300 GPa", "50 GPa"));
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_EQ(result.solution.parameters[0], 50e9);
+  EXPECT_NE(calibration_text(calibration, result).find("at its upper bound"), std::string::npos);
+  ASSERT_FALSE(result.notes.empty());
+  EXPECT_NE(result.notes[0].find("sits at its upper bound"), std::string::npos) << result.notes[0];
+}
+
+TEST_F(CalibrationTest, SaysWhatTheDataDoNotDetermine) {
+  // Elastic data know nothing of a yield stress that is never reached.
+  write("s.toml", replaced(k_mdr, "40 MPa", "400 MPa"));
+  write("c.toml", replaced(k_two_free, "from = \"5 MPa\", to = \"200 MPa\"", "from = \"300 MPa\", to = \"400 MPa\""));
+  const auto rows = measure(k_mdr, {"material.yield_stress=3.5e8", "output.points=10",
+                                    "loading.steps=[{displacement='0.01 R0',duration=1}]"});
+  write("d.csv", csv_of(rows, "axial.displacement[m],axial.force[N],w"));
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_NEAR(result.solution.parameters[0] / 1e9, 1.0, 1e-9);
+  EXPECT_EQ(result.uncertainty.is_determined, (std::vector{true, false}));
+  EXPECT_NE(calibration_text(calibration, result).find("not determined"), std::string::npos);
+}
+
+TEST_F(CalibrationTest, AsManyPointsAsParametersGiveAFitWithoutErrors) {
+  write("d.csv", fmt::format("displacement[m],force[N]\n1e-4,{:.17g}\n", 123e9 * hertz_force_per_modulus(1e-4)));
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_NEAR(result.solution.parameters[0] / 123e9, 1.0, 1e-11);
+  EXPECT_TRUE(std::isnan(result.uncertainty.standard_error(0)));
+  ASSERT_FALSE(result.notes.empty());
+  EXPECT_NE(result.notes.back().find("no errors and no intervals"), std::string::npos) << result.notes.back();
+}
+
+TEST_F(CalibrationTest, ColumnsMayBeNamedAndMeasuredOtherwise) {
+  std::vector<Row> rows;
+  for (int i = 1; i <= 5; ++i) rows.push_back({2e-3 * i, 70.0 * hertz_force_per_modulus(2e-3 * i * k_radius) * 1e9});
+  write("d.csv", csv_of(rows, "gamma_over_2R[-],P[N],w"));
+  write("c.toml", replaced(replaced(k_calibration, "\"displacement[m]\"",
+                                    "{ column = \"gamma_over_2R[-]\", quantity = \"displacement\", unit = \"R0\" }"),
+                           "\"force[N]\"", "{ column = \"P\", quantity = \"axial.force\", unit = \"N\" }"));
+  EXPECT_NEAR(calibrate(read()).solution.parameters[0] / 70e9, 1.0, 1e-11);
+}
+
+TEST_F(CalibrationTest, DisplacementsBeginAtTheGapOfTheirWall) {
+  write("s.toml", replaced(k_hertz, "configuration = \"simple\"\n", R"(configuration = "walls"
+wall = [{ name = "near", normal = [0, 0, 1] },
+        { name = "far", normal = [0, 0, -1], gap = "1 mm" }]
+)"));
+  std::vector<Row> rows;
+  for (int i = -5; i <= 5; ++i) rows.push_back({2e-5 * i, 70e9 * hertz_force_per_modulus(2e-5 * i)});
+  write("c.toml", replaced(replaced(k_calibration, "\"displacement", "\"far.displacement"), "\"force", "\"far.force"));
+  write("d.csv", csv_of(rows, "far.displacement[m],far.force[N],w"));
+  const CalibrationResult result = calibrate(read());
+  EXPECT_NEAR(result.solution.parameters[0] / 70e9, 1.0, 1e-11);
+  EXPECT_EQ(result.program_steps, 1U);
+}
+
+TEST_F(CalibrationTest, ARunWithAFreeCentreReturnsItsOwnParameters) {
+  // The punch goes twice as far as either contact is deep; the data hold its own travel.
+  for (const char* model : {"hertz", "nonlocal"}) {
+    const std::string scenario = replaced(replaced(k_hertz, "model = \"hertz\"", fmt::format("model = \"{}\"", model)),
+                                          "configuration = \"simple\"\n", R"(configuration = "walls"
+centre = "equilibrium"
+wall = [{ name = "punch", normal = [0, 0, 1] }, { name = "anvil", normal = [0, 0, -1], fixed = true }]
+)");
+    write("s.toml", scenario);
+    write("c.toml",
+          replaced(replaced(k_calibration, "\"displacement", "\"punch.displacement"), "\"force", "\"punch.force"));
+    const auto rows =
+        measure(scenario, {"material.youngs_modulus=65e9", "output.points=9"}, "punch.displacement", "punch.force");
+    write("d.csv", csv_of(rows, "punch.displacement[m],punch.force[N],w"));
+    EXPECT_NEAR(calibrate(read()).solution.parameters[0] / 65e9, 1.0, 1e-9) << model;
+  }
+}
+
+TEST_F(CalibrationTest, OtherQuantitiesCanBeFitted) {
+  std::vector<Row> rows;
+  for (int i = 1; i <= 5; ++i) {
+    const double x = 2e-5 * i;  // a^2 = R x
+    rows.push_back({x, 70e9 * hertz_force_per_modulus(x) / (3.14159265358979324 * k_radius * x) / 1e6});
+  }
+  write("d.csv", csv_of(rows, "displacement[m],pressure[MPa],w"));
+  write("c.toml", replaced(k_calibration, "force[N]", "pressure[MPa]"));
+  EXPECT_NEAR(calibrate(read()).solution.parameters[0] / 70e9, 1.0, 1e-11);
+}
+
+TEST_F(CalibrationTest, TheScenarioMayStandInTheFileItself) {
+  write("d.csv", csv_of(noisy_hertz(), "displacement[m],force[N],w"));
+  const double modulus = calibrate(read()).solution.parameters[0];
+  std::string own = replaced(k_hertz, "model", "[scenario]\nmodel");
+  for (const char* table : {"[particle]", "[material]", "[loading]", "[[loading.steps]]"}) {
+    const std::string name = table;
+    own =
+        replaced(own, name, replaced(name, name[1] == '[' ? "[[" : "[", name[1] == '[' ? "[[scenario." : "[scenario."));
+  }
+  write("c.toml", replaced(k_calibration, "scenario = \"s.toml\"\n", "") + own);
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_EQ(result.solution.parameters[0], modulus);
+  const Scenario fitted = parse_scenario(fitted_scenario_text(calibration, result), "fitted.toml");
+  EXPECT_EQ(fitted.material.at("youngs_modulus"), modulus);
+}
+
+TEST(DataProgram, HasAStepForEachStretchAndAnInstantForEachValue) {
+  const std::vector<double> x{0.0, 1.0, 4.0, 4.0, 2.0, 3.0};
+  const DataProgram program = program_through(x, Step::Kind::displacement, 0.0);
+  ASSERT_EQ(program.steps.size(), 3U);
+  EXPECT_EQ(program.steps[0].target, 4.0);
+  EXPECT_EQ(program.steps[1].target, 2.0);
+  EXPECT_EQ(program.steps[2].target, 3.0);
+  EXPECT_EQ(program.times, (std::vector{0.25, 1.0, 2.0, 3.0}));
+  EXPECT_EQ(program.rows, (std::vector<std::size_t>{0, 1, 2, 2, 3, 4}));
+}
+
+// --- what is written
+
+TEST_F(CalibrationTest, TheFittedScenarioIsTheOldOneWithTheNumbersPutIn) {
+  write("d.csv", csv_of(noisy_hertz(), "displacement[m],force[N],w"));
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  const std::string text = fitted_scenario_text(calibration, result);
+  const Scenario fitted = parse_scenario(text, "fitted.toml");
+  EXPECT_EQ(fitted.material.at("youngs_modulus"), result.solution.parameters[0]);
+  EXPECT_EQ(fitted.loading.steps.size(), 1U);
+  EXPECT_EQ(fitted.loading.steps[0].target, 0.01 * k_radius);
+}
+
+std::string written(const Calibration& calibration, const CalibrationResult& result, const fs::path& target) {
+  StagedFolder staged(target, k_calibration_marker);
+  return write_calibration(calibration, result, staged);
+}
+
+TEST_F(CalibrationTest, TablesThatTheScenarioNamesGoWithIt) {
+  write("s.toml", std::string(k_mdr) + "[mdr]\npressure_table = \"p.csv\"\n");
+  write("p.csv", "x,p\n0,2.75\n0.1,2.5\n0.5,1.9\n2,1.5\n");
+  write("c.toml", replaced(k_two_free, "\"material.youngs_modulus\" = { from = \"0.1 GPa\", to = \"10 GPa\" }\n", ""));
+  write("d.csv", "axial.displacement[m],axial.force[N]\n1e-4,150\n5e-4,1500\n1e-3,3500\n");
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_EQ(written(calibration, result, folder() / "out"), "");
+  fs::remove(folder() / "p.csv");
+  const Scenario fitted = read_scenario(folder() / "out/fitted.toml");
+  EXPECT_EQ(fitted.material.at("yield_stress"), result.solution.parameters[0]);
+  EXPECT_EQ(fitted.curves.at("pressure_table").x.size(), 4U);
+}
+
+TEST_F(CalibrationTest, FilesHoldDataFitAndStatistics) {
+  const auto rows = noisy_hertz();
+  write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_EQ(written(calibration, result, folder() / "out"), "");
+  const Table fit = read_csv(folder() / "out/fit.csv");
+  ASSERT_EQ(fit.row_count(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(fit.column("axial.force[N]")[i], rows[i].y);
+    EXPECT_EQ(fit.column("residual")[i], rows[i].y - fit.column("fit")[i]);
+    EXPECT_LT(fit.column("band_lower")[i], fit.column("fit")[i]);
+    EXPECT_GT(fit.column("band_upper")[i], fit.column("fit")[i]);
+  }
+  const auto json = nlohmann::json::parse(text_of("out/calibration.json"));
+  EXPECT_EQ(json["parameters"][0]["key"], "material.youngs_modulus");
+  EXPECT_EQ(json["parameters"][0]["value"].get<double>(), result.solution.parameters[0]);
+  EXPECT_EQ(json["parameters"][0]["standard_error"].get<double>(), result.uncertainty.standard_error(0));
+  EXPECT_EQ(json["parameters"][0]["unit"], "GPa");
+  EXPECT_EQ(json["statistics"]["points"], 25);
+  EXPECT_EQ(json["correlation"][0][0], 1.0);
+  for (const char* file : {"figure.svg", "figure.gp", "figure.dat"}) {
+    EXPECT_GT(fs::file_size(folder() / "out" / file), 300U) << file;
+  }
+}
+
+TEST_F(CalibrationTest, ANewResultReplacesItsFilesAndNoOthers) {
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  static_cast<void>(written(calibration, result, folder() / "out"));
+  write("out/notes.txt", "keep me");
+  write("out/fit.csv", "old");
+  static_cast<void>(written(calibration, result, folder() / "out"));
+  EXPECT_EQ(text_of("out/notes.txt"), "keep me");
+  EXPECT_NE(text_of("out/fit.csv"), "old");
+  fs::create_directory(folder() / "mine");
+  write("mine/notes.txt", "keep me");
+  EXPECT_THROW(static_cast<void>(written(calibration, result, folder() / "mine")), std::runtime_error);
+  EXPECT_EQ(text_of("mine/notes.txt"), "keep me");
+}
+
+// --- faults
+
+struct FaultCase {
+  const char* name;
+  const char* file;  ///< c.toml, d.csv or s.toml
+  const char* old;   ///< what is replaced in it; empty: all of it
+  const char* by;
+  const char* message;  ///< how the first fault begins
+};
+
+class CalibrationFaults : public CalibrationTest, public ::testing::WithParamInterface<FaultCase> {};
+
+TEST_P(CalibrationFaults, AreReportedWithTheirPlace) {
+  const FaultCase& c = GetParam();
+  const std::string name = c.file;
+  const std::string text = name == "c.toml" ? k_calibration : name == "d.csv" ? k_data : k_hertz;
+  write(name, *c.old == '\0' ? c.by : replaced(text, c.old, c.by));
+  const auto messages = faults();
+  ASSERT_FALSE(messages.empty());
+  EXPECT_EQ(messages[0].substr(0, std::string(c.message).size()), c.message) << fmt::format("{}", messages[0]);
+}
+
+constexpr FaultCase k_faults[] = {
+    {"NotToml", "c.toml", "[data]", "[data", "c.toml:2:6: not valid TOML"},
+    {"UnknownKey", "c.toml", "[data]", "scenaro = 1\n[data]",
+     "c.toml:2:1: unknown key 'scenaro' in the calibration; did you mean 'scenario'?"},
+    {"NoScenario", "c.toml", "scenario = \"s.toml\"\n", "", "c.toml:1:1: key 'scenario' is missing in the calibration"},
+    {"NoSuchScenario", "c.toml", "\"s.toml\"", "\"t.toml\"",
+     "c.toml:1:12: scenario = \"t.toml\": there is no such file"},
+    {"FaultInScenario", "s.toml", "youngs_modulus", "youngs_moduls", "s.toml:5:1: unknown key 'youngs_moduls'"},
+    {"NoData", "c.toml", "[data]\n", "[dta]\n",
+     "c.toml:2:2: unknown key 'dta' in the calibration; did you mean 'data'?"},
+    {"NoSuchData", "c.toml", "\"d.csv\"", "\"e.csv\"", "c.toml:3:8: file = \"e.csv\": there is no such file"},
+    {"MissingColumn", "c.toml", "force[N]", "forse[N]", "c.toml:5:5: y = \"forse[N]\": "},
+    {"XIsNoDrive", "c.toml", "x = \"displacement[m]\"",
+     "x = { column = \"displacement[m]\", quantity = \"contact_radius\", unit = \"m\" }",
+     "c.toml:4:46: 'axial.contact_radius' cannot drive the particle; expected one of axial.displacement, axial.force"},
+    {"QuantityMisspelt", "c.toml", "x = \"displacement[m]\"",
+     "x = { column = \"displacement[m]\", quantity = \"displacment\", unit = \"m\" }",
+     "c.toml:4:46: 'displacment' is no quantity of this scenario; expected one of "},
+    {"UnitMisspelt", "c.toml", "x = \"displacement[m]\"",
+     "x = { column = \"displacement[m]\", quantity = \"displacement\", unit = \"mmm\" }",
+     "c.toml:4:69: column = \"displacement[m]\": unknown unit 'mmm'; expected a length"},
+    {"WeightsUnknown", "c.toml", "[free]", "weights = \"relativ\"\n[free]",
+     "c.toml:6:11: weights = \"relativ\": expected one of absolute, relative, column, area; did you mean 'relative'?"},
+    {"WeightColumnMissing", "c.toml", "[free]", "weights = \"column\"\n[free]",
+     "c.toml:6:11: weights = \"column\" needs the column"},
+    {"WeightColumnUnused", "c.toml", "[free]", "weight_column = \"w\"\n[free]",
+     "c.toml:6:1: key 'weight_column' belongs to weights = \"column\"; this is \"absolute\""},
+    {"LossWithoutScale", "c.toml", "[free]", "[fit]\nloss = \"huber\"\n[free]",
+     "c.toml:7:8: loss = \"huber\" needs a scale"},
+    {"ScaleWithoutLoss", "c.toml", "[free]", "[fit]\nloss_scale = 0.1\n[free]",
+     "c.toml:7:1: key 'loss_scale' is not used by the linear loss"},
+    {"NothingFree", "c.toml", "\"material.youngs_modulus\" = { from = \"10 GPa\", to = \"300 GPa\" }\n", "",
+     "c.toml:6:1: free = an empty table: expected a table"},
+    {"FreeUnknown", "c.toml", "material.youngs_modulus", "material.youngs_modulos",
+     "c.toml:7:1: unknown key 'material.youngs_modulos' in [free]; did you mean 'material.youngs_modulus'?"},
+    {"FreeIsNoNumber", "c.toml", "material.youngs_modulus", "loading.configuration",
+     "c.toml:7:1: unknown key 'loading.configuration' in [free]; expected one of material.youngs_modulus, "
+     "material.poisson_ratio"},
+    {"FreeRadius", "c.toml", "material.youngs_modulus", "particle.radius",
+     "c.toml:7:1: key 'particle.radius' cannot be free: lengths of the scenario may be given in R0"},
+    {"FreeWithoutQuotes", "c.toml", "\"material.youngs_modulus\"", "material.youngs_modulus",
+     "c.toml:7:1: key 'material' is a table; expected the whole path in quotes"},
+    {"BoundsInverted", "c.toml", "from = \"10 GPa\", to = \"300 GPa\"", "from = \"300 GPa\", to = \"10 GPa\"",
+     "c.toml:7:54: to = \"10 GPa\" is not above from = \"300 GPa\""},
+    {"BoundMissing", "c.toml", ", to = \"300 GPa\"", "",
+     "c.toml:7:29: key 'to' is missing in \"material.youngs_modulus\"; expected for example to = \"50 MPa\""},
+    {"BoundInWrongUnit", "c.toml", "10 GPa", "10 mm", "c.toml:7:38: from = \"10 mm\": unknown unit 'mm'"},
+    {"BoundOutOfRange", "c.toml", "10 GPa", "-10 GPa", "c.toml:7:38: from = \"-10 GPa\": out of range"},
+    {"StartOutside", "c.toml", "to = \"300 GPa\"", "to = \"300 GPa\", start = \"1 GPa\"",
+     "c.toml:7:72: start = \"1 GPa\" is not between the bounds"},
+    {"EmptyFile", "d.csv", "", "", "d.csv:1:1: the file is empty; expected a row of headings"},
+    {"OnlyHeadings", "d.csv", "", "displacement[m],force[N]\n", "d.csv:1:1: the file has headings but no data"},
+    {"NoHeadings", "d.csv", "displacement[m],force[N]\n", "",
+     "d.csv:1:1: a number where a row of headings is expected"},
+    {"RaggedRow", "d.csv", "2e-5,100", "2e-5,100,7", "d.csv:3:1: 3 cells where there are 2 headings"},
+    {"NotANumber", "d.csv", "100", "1oo", "d.csv:3:6: force[N] = 1oo: expected a finite number"},
+    {"Nan", "d.csv", "100", "nan", "d.csv:3:6: force[N] = nan: expected a finite number"},
+    {"EmptyCell", "d.csv", "2e-5,", ",", "d.csv:3:1: displacement[m] = (nothing): expected a finite number"},
+    {"TwoHeadings", "d.csv", "force[N]", "displacement[m]", "c.toml:5:5: y = \"force[N]\": "},
+    {"NeverChanges", "d.csv", "", "displacement[m],force[N]\n0,1\n0,2\n",
+     "c.toml:4:5: x = \"displacement[m]\": it never "},
+    {"AllZero", "d.csv", "", "displacement[m],force[N]\n1e-5,0\n2e-5,0\n", "d.csv:2:6: y is zero in every row"},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, CalibrationFaults, ::testing::ValuesIn(k_faults),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST_F(CalibrationTest, AllFaultsAreReportedAtOnce) {
+  write("c.toml", replaced(replaced(k_calibration, "file", "fil"), "to = \"300 GPa\"", "to = \"3 kg\""));
+  EXPECT_EQ(faults().size(), 2U);
+  write("c.toml", replaced(k_calibration, "from = \"10 GPa\"", "from = \"10 kg\""));
+  write("s.toml", replaced(k_hertz, "\"hertz\"", "\"hertzz\""));
+  write("d.csv", "displacement[m],force[N]\n1,x\ny,2\n");
+  const auto messages = faults();
+  EXPECT_EQ(messages.size(), 3U) << "one in the scenario, two in the data";
+}
+
+TEST_F(CalibrationTest, HeadingsTellQuantityAndUnit) {
+  write("c.toml", replaced(k_calibration, "force[N]", "force"));
+  const auto complaint = [this](const std::string& heading) {
+    write("d.csv", replaced(k_data, "force[N]", heading));
+    const auto messages = faults();
+    return messages.empty() ? std::string() : messages[0];
+  };
+  EXPECT_EQ(complaint("force[mN]"), "");
+  EXPECT_EQ(complaint("force[lbf]"),
+            "c.toml:5:5: y = \"force\": unknown unit 'lbf'; expected a force, for example \"10 N\"");
+  EXPECT_EQ(complaint("force").substr(0, 72),
+            "c.toml:5:5: y = \"force\": the heading has no unit; expected a force such ");
+  write("c.toml", replaced(k_calibration, "force[N]", "load"));
+  EXPECT_EQ(complaint("load[N]").substr(0, 73),
+            "c.toml:5:5: 'load' is no quantity of this scenario; expected one of work,");
+}
+
+TEST_F(CalibrationTest, DataThatBeginWithUnloadingAreReachedFromRest) {
+  write("d.csv", fmt::format("displacement[m],force[N]\n3e-5,{:.17g}\n2e-5,{:.17g}\n",
+                             70e9 * hertz_force_per_modulus(3e-5), 70e9 * hertz_force_per_modulus(2e-5)));
+  const CalibrationResult result = calibrate(read());
+  EXPECT_NEAR(result.solution.parameters[0] / 70e9, 1.0, 1e-11);
+  EXPECT_EQ(result.program_steps, 2U);
+  ASSERT_FALSE(result.notes.empty());
+  EXPECT_NE(result.notes.back().find("begin with unloading"), std::string::npos) << result.notes.back();
+}
+
+TEST_F(CalibrationTest, ANumberThatTheScenarioHasNoPlaceForIsRefused) {
+  std::string inline_material =
+      replaced(k_mdr, "[material]\nyoungs_modulus = \"1 GPa\"\npoisson_ratio = 0.3\nyield_stress = \"40 MPa\"\n", "");
+  write("s.toml", "material = { youngs_modulus = 1e9, poisson_ratio = 0.3, yield_stress = 4e7 }\n" + inline_material);
+  EXPECT_TRUE(faults().empty());
+  write("c.toml", replaced(replaced(k_calibration, "youngs_modulus", "surface_energy"), "\"10 GPa\", to = \"300 GPa\"",
+                           "0, to = 1"));
+  const auto messages = faults();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0].find("c.toml:7:1: the scenario does not give 'material.surface_energy'"), 0U) << messages[0];
+}
+
+TEST_F(CalibrationTest, MoreParametersThanPointsAreRefused) {
+  write("c.toml", std::string(k_calibration) + "\"material.poisson_ratio\" = { from = 0, to = 0.5 }\n");
+  write("d.csv", "displacement[m],force[N]\n1e-5,35\n");
+  const auto messages = faults();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0], "c.toml:6:1: 2 parameters cannot be fitted to 1 point; expected at least as many points");
+}
+
+TEST_F(CalibrationTest, AZeroHasNoRelativeWeight) {
+  write("c.toml", replaced(k_calibration, "[free]", "weights = \"relative\"\n[free]"));
+  write("d.csv", "displacement[m],force[N]\n0,0\n1e-5,35\n");
+  const auto messages = faults();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0].find("d.csv:2:3: y = 0 has no relative weight"), 0U) << messages[0];
+}
+
+TEST_F(CalibrationTest, WallsWithProgramsOfTheirOwnAreRefused) {
+  write("s.toml", replaced(k_hertz, "configuration = \"simple\"\n", R"(configuration = "walls"
+wall = [{ name = "a", normal = [0, 0, 1], steps = [{ displacement = "1 mm", duration = 1 }] },
+        { name = "b", normal = [0, 0, -1] }]
+)"));
+  const auto messages = faults();
+  ASSERT_FALSE(messages.empty());
+  EXPECT_EQ(messages[0].find("c.toml:1:12: wall 'a' of the scenario has steps of its own"), 0U) << messages[0];
+}
+
+TEST_F(CalibrationTest, DataThatNoParametersCanFollowAreRefusedWithTheRow) {
+  // A particle without adhesion bears no tension.
+  write("c.toml", replaced(replaced(k_calibration, "displacement[m]", "force[N]"), "y = \"force[N]\"",
+                           "y = \"displacement[m]\""));
+  write("d.csv", "force[N],displacement[m]\n10,1e-6\n-10,0\n-20,0\n");
+  const Calibration calibration = read();
+  try {
+    static_cast<void>(calibrate(calibration));
+    FAIL() << "no error";
+  } catch (const ScenarioError& error) {
+    const Fault& fault = error.faults().front();
+    EXPECT_EQ(fs::path(fault.where.file).filename(), "d.csv");
+    EXPECT_EQ(fault.where.line, 3U);
+    EXPECT_NE(fault.message.find("cannot follow the data beyond this row"), std::string::npos) << fault.message;
+  }
+}
+
+// --- several curves
+
+constexpr const char* k_two_curves = R"(scenario = "s.toml"
+[[data]]
+file = "d.csv"
+x = "displacement[m]"
+y = "force[N]"
+[[data]]
+file = "e.csv"
+set = ["material.poisson_ratio=0.4"]
+x = "displacement[m]"
+y = "force[N]"
+[free]
+"material.youngs_modulus" = { from = "10 GPa", to = "300 GPa" }
+)";
+
+TEST_F(CalibrationTest, FitsSeveralCurvesTogetherEachWithItsOverrides) {
+  const auto curve = [](double poisson, std::initializer_list<double> displacements) {
+    std::string text = "displacement[m],force[N]\n";
+    for (const double d : displacements) {
+      text += fmt::format("{:.17g},{:.17g}\n", d, hertz_force(70e9 / (1.0 - poisson * poisson), k_radius, d));
+    }
+    return text;
+  };
+  write("d.csv", curve(0.22, {1e-5, 2e-5, 3e-5}));
+  write("e.csv", curve(0.4, {2e-5, 1e-5}));
+  write("c.toml", k_two_curves);
+  const Calibration calibration = read();
+  ASSERT_EQ(calibration.curves.size(), 2U);
+  EXPECT_EQ(calibration.curves[1].begin, 3U);
+  EXPECT_EQ(calibration.curves[1].end, 5U);
+  EXPECT_EQ(calibration.counted(), 5U);
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_NEAR(result.solution.parameters[0] / 70e9, 1.0, 1e-9);
+  EXPECT_LT(result.sum_of_squares, 1e-18);
+  EXPECT_EQ(result.fit.y.size(), 5U);
+  EXPECT_EQ(result.curves.size(), 2U);
+  EXPECT_EQ(result.program_steps, 3U);  // the second curve turns
+  EXPECT_EQ(written(calibration, result, folder() / "out"), "");
+  const Table fit = read_csv(folder() / "out" / "fit.csv");
+  EXPECT_EQ(fit.column("curve"), (std::vector<double>{1, 1, 1, 2, 2}));
+  const auto json = nlohmann::json::parse(text_of("out/calibration.json"));
+  ASSERT_EQ(json.at("data").size(), 2U);
+  EXPECT_EQ(json.at("data")[1].at("set")[0], "material.poisson_ratio=0.4");
+}
+
+TEST_F(CalibrationTest, ReportsTheFaultsOfEveryCurve) {
+  write("e.csv", k_data);
+  write("c.toml", replaced(k_two_curves, "poisson_ratio=0.4", "poisson_ratio=0.7"));
+  EXPECT_EQ(faults(),
+            (std::vector<std::string>{"c.toml:8:7: poisson_ratio = 0.7: out of range; expected a number above "
+                                      "-1 and up to 0.5"}));
+  write("c.toml", replaced(k_two_curves, "poisson_ratio=0.4\"]", "poisson_ratio=0.4\"]\nweights = \"relative\""));
+  EXPECT_EQ(faults(), (std::vector<std::string>{"c.toml:9:11: weights = \"relative\": those of the first curve are "
+                                                "\"absolute\"; expected the same for all"}));
+  write("c.toml", replaced(k_two_curves, "file = \"e.csv\"", "file = \"absent.csv\""));
+  ASSERT_EQ(faults().size(), 1U);
+  EXPECT_TRUE(faults()[0].starts_with("c.toml:7:8: file = \"absent.csv\"")) << faults()[0];
+}
+
+}  // namespace
+}  // namespace monograin::calibration_test

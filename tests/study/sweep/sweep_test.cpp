@@ -1,0 +1,421 @@
+#include "study/sweep/sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "history/run.hpp"
+#include "history/table.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/text_file.hpp"
+
+namespace monograin::sweep_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* k_scenario = R"toml(model = "mdr"
+[particle]
+radius = "2 mm"
+[material]
+youngs_modulus = "1 GPa"
+poisson_ratio = 0.3
+yield_stress = "20 MPa"
+[loading]
+configuration = "simple"
+steps = [{ displacement = "0.1 R0", duration = "1 s" }, { force = "0 N", duration = "1 s" }]
+[output]
+points = 4
+)toml";
+
+constexpr const char* k_grid = R"toml(scenario = "small.toml"
+[vary]
+"material.poisson_ratio" = { from = 0.2, to = 0.6, points = 5 }
+"loading.configuration" = { values = ["simple", "die", "hydrostatic"] }
+)toml";
+
+class SweepFiles : public ::testing::Test {
+ protected:
+  SweepFiles() { write("small.toml", k_scenario); }
+
+  void write(const std::string& file, const std::string& text) const { write_text(path(file), text); }
+  [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
+
+  [[nodiscard]] Sweep read(const std::string& text) const {
+    write("sweep.toml", text);
+    return read_sweep(path("sweep.toml"));
+  }
+
+  /// Every fault of the file, without its folder.
+  [[nodiscard]] std::vector<std::string> faults_of(const std::string& text) const {
+    std::vector<std::string> faults;
+    try {
+      static_cast<void>(read(text));
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) {
+        faults.push_back(fs::path(fault.where.file).filename().string() + ":" + std::to_string(fault.where.line) + ":" +
+                         std::to_string(fault.where.column) + ": " + fault.message);
+      }
+    }
+    return faults;
+  }
+
+  /// The results of a sweep in a folder of that name.
+  [[nodiscard]] std::string results(const Sweep& sweep, const std::string& name, int threads = 1) const {
+    static_cast<void>(run_sweep(sweep, {.folder = path(name), .threads = threads, .shard = {}, .progress = {}}));
+    return read_text(path(name) / "results.csv");
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+double number(const Sweep& sweep, std::size_t run, std::size_t factor) {
+  return std::get<double>(sweep.runs[run][factor]);
+}
+
+// --- designs
+
+TEST_F(SweepFiles, AGridTakesAllCombinationsTheLastKeyFastest) {
+  const Sweep sweep = read(R"toml(scenario = "small.toml"
+[vary]
+"material.yield_stress" = { from = "1 MPa", to = "100 MPa", points = 3, scale = "log" }
+"loading.configuration" = { values = ["die", "simple"] }
+)toml");
+  ASSERT_EQ(sweep.runs.size(), 6U);
+  EXPECT_EQ(sweep.factors[0].heading(), "material.yield_stress[Pa]");
+  EXPECT_EQ(sweep.factors[1].heading(), "loading.configuration");
+  EXPECT_EQ(number(sweep, 0, 0), 1e6);
+  EXPECT_NEAR(number(sweep, 2, 0), 1e7, 1e-8);
+  EXPECT_EQ(number(sweep, 4, 0), 1e8);
+  EXPECT_EQ(overrides_of(sweep, 1)[1], "loading.configuration=\"simple\"");
+}
+
+TEST_F(SweepFiles, AGridLeavesOutWhatTheConstraintsExclude) {
+  const Sweep sweep = read(R"toml(scenario = "small.toml"
+constraints = ["material.youngs_modulus / material.yield_stress >= 50"]
+[vary]
+"material.youngs_modulus" = { values = ["1 GPa", "2 GPa"] }
+"material.yield_stress" = { values = ["10 MPa", 30e6] }
+)toml");
+  ASSERT_EQ(sweep.runs.size(), 3U);
+  EXPECT_EQ(sweep.left_out, 1U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_GE(number(sweep, i, 0) / number(sweep, i, 1), 50.0);
+}
+
+TEST_F(SweepFiles, ATableTakesAnyUnitTheProjectKnows) {
+  write("runs.csv",
+        "# a comment\nmaterial.youngs_modulus[GPa], material.poisson_ratio[-] ,loading.steps[0].displacement[R0],"
+        "particle.radius,mdr.strict\n\n2,0.25,0.1,1 mm,true\n3,+0.3,0.2,0.004,false\n");
+  const Sweep sweep = read("scenario = \"small.toml\"\ndesign = \"table\"\ntable = \"runs.csv\"\n");
+  ASSERT_EQ(sweep.runs.size(), 2U);
+  EXPECT_EQ(number(sweep, 1, 0), 3e9);
+  EXPECT_EQ(number(sweep, 1, 1), 0.3);
+  EXPECT_EQ(number(sweep, 0, 2), 0.1 * 0.001) << "R0 is that of the run";
+  EXPECT_EQ(number(sweep, 1, 2), 0.2 * 0.004);
+  EXPECT_EQ(overrides_of(sweep, 0)[4], "mdr.strict=true");
+  for (std::size_t run = 0; run < 2; ++run)
+    EXPECT_NO_THROW(static_cast<void>(sweep.scenario.with(overrides_of(sweep, run))));
+}
+
+constexpr const char* k_space_filling = R"toml(scenario = "small.toml"
+design = "maxpro"
+runs = 24
+constraints = ["100 <= material.youngs_modulus / material.yield_stress <= 200"]
+[vary]
+"material.youngs_modulus" = { from = "1 GPa", to = "10 GPa", scale = "log" }
+"loading.configuration" = { values = ["simple", "die"] }
+"material.yield_stress" = { from = "10 MPa", to = "100 MPa" }
+"loading.centre" = { values = ["fixed", "equilibrium"] }
+)toml";
+
+TEST_F(SweepFiles, ASpaceFillingDesignMeetsItsConstraintsAndSharesOutAllCombinations) {
+  const Sweep sweep = read(k_space_filling);
+  ASSERT_EQ(sweep.runs.size(), 24U);
+  std::multiset<std::pair<std::string, std::string>> combinations;
+  for (std::size_t i = 0; i < 24; ++i) {
+    const double ratio = number(sweep, i, 0) / number(sweep, i, 2);
+    EXPECT_TRUE(ratio >= 100.0 && ratio <= 200.0) << "run " << i + 1 << ": " << ratio;
+    combinations.emplace(cell_of(sweep.runs[i][1]), cell_of(sweep.runs[i][3]));
+  }
+  for (const char* configuration : {"simple", "die"}) {
+    for (const char* centre : {"fixed", "equilibrium"}) EXPECT_EQ(combinations.count({configuration, centre}), 6U);
+  }
+}
+
+TEST_F(SweepFiles, ADesignThatWasWrittenIsReadBackBitByBit) {
+  const Sweep made = read(k_space_filling);
+  write("design.csv", design_text(made));
+  const Sweep sweep = read("scenario = \"small.toml\"\ndesign = \"table\"\ntable = \"design.csv\"\n");
+  EXPECT_EQ(sweep.runs, made.runs);
+  EXPECT_EQ(design_text(read(k_space_filling)), design_text(made)) << "the same file, the same design";
+}
+
+TEST_F(SweepFiles, AScenarioMayBePartOfTheSweep) {
+  std::string text =
+      "[vary]\n\"material.poisson_ratio\" = { values = [0.2, 0.3] }\n[scenario]\n" + std::string(k_scenario);
+  for (const char* table : {"particle", "material", "loading", "output"}) {
+    text.replace(text.find("[" + std::string(table) + "]"), 1, "[scenario.");
+  }
+  const Sweep sweep = read(text);
+  EXPECT_EQ(sweep.scenario.with(overrides_of(sweep, 0)).material.at("poisson_ratio"), 0.2);
+}
+
+// --- faults
+
+TEST_F(SweepFiles, AllFaultsAreReportedAtOnceAndAtTheirPlaces) {
+  EXPECT_EQ(
+      faults_of(R"toml(scenario = "small.toml"
+histories = 3
+runs = 5
+constraints = ["1 <"]
+[vary]
+"material.poison_ratio" = { from = 0.2, to = 0.6 }
+"loading.configuration" = { values = ["simple", "dia"] }
+"material.yield_stress" = { from = "10 MPA", to = "100 MPa" }
+"material.youngs_modulus" = { from = "1 GPa", to = "2 GPa", values = ["3 GPa"] }
+"loading.steps[0].displacment" = { values = ["0.1 R0"] }
+"loading.steps[7].displacement" = { values = ["0.1 R0"] }
+"loading.centre" = "fixed"
+material.surface_energy = { values = [1] }
+)toml"),
+      (std::vector<std::string>{
+          "sweep.toml:2:13: histories = 3: expected true or false",
+          "sweep.toml:3:1: key 'runs' goes with design = \"maxpro\" only",
+          "sweep.toml:4:20: \"1 <\": expected a number or a name",
+          "sweep.toml:6:1: unknown key 'poison_ratio'; did you mean 'poisson_ratio'?",
+          "sweep.toml:7:49: loading.configuration = dia: expected one of simple, die, hydrostatic, oblique-die, "
+          "walls; did you mean 'die'?",
+          "sweep.toml:8:36: from = \"10 MPA\": unknown unit 'MPA'; expected a stress, for example \"50 MPa\"",
+          "sweep.toml:9:29: \"material.youngs_modulus\": expected either { from = 0.2, to = 0.48 } or { values = "
+          "[...] }",
+          "sweep.toml:10:1: unknown key 'displacment'; did you mean 'displacement'?",
+          "sweep.toml:11:1: the scenario has nothing at 'loading.steps[7].displacement'",
+          "sweep.toml:12:20: loading.centre = \"fixed\": expected { from = 0.2, to = 0.48 } or { values = [...] }",
+          "sweep.toml:13:1: 'material' is a table; expected the path of one of its keys in quotes, such as "
+          "\"material.KEY\"",
+      }));
+}
+
+TEST_F(SweepFiles, ATablesFaultsBearItsPlaces) {
+  write("runs.csv", "material.yield_stress[MPA],material.poison_ratio,loading.configuration\n1,0.3,simple\n");
+  const std::string text = "scenario = \"small.toml\"\ndesign = \"table\"\ntable = \"runs.csv\"\n";
+  EXPECT_EQ(
+      faults_of(text),
+      (std::vector<std::string>{
+          "runs.csv:1:1: material.yield_stress[MPA]: unknown unit 'MPA'; expected a stress, for example \"50 MPa\"",
+          "runs.csv:1:28: unknown key 'poison_ratio'; did you mean 'poisson_ratio'?",
+      }));
+  write("runs.csv", "material.yield_stress[MPa],loading.configuration\n1,simple\nmuch,simple\n3\n4,dei\n");
+  EXPECT_EQ(faults_of(text), (std::vector<std::string>{"runs.csv:4:1: the row has 1 cells, but there are 2 headings"}));
+  write("runs.csv", "material.yield_stress[MPa],loading.configuration\n1,simple\nmuch,simple\n 4 , dei\n");
+  EXPECT_EQ(faults_of(text),
+            (std::vector<std::string>{
+                "runs.csv:3:1: material.yield_stress = much: it does not begin with a number; expected a stress, for "
+                "example \"50 MPa\"",
+                "runs.csv:4:6: loading.configuration = dei: expected one of simple, die, hydrostatic, oblique-die, "
+                "walls; did you mean 'die'?",
+            }));
+  write("runs.csv", "material.yield_stress[MPa]\n10\n30\n");
+  EXPECT_EQ(faults_of(text + "constraints = [\"material.yield_stress < 2e7\"]\n"),
+            (std::vector<std::string>{"runs.csv:3:1: the row breaks the constraint \"material.yield_stress < 2e7\""}));
+}
+
+TEST_F(SweepFiles, ASpaceFillingDesignNeedsARangeAndAMultipleOfItsLevels) {
+  const std::string head = "scenario = \"small.toml\"\ndesign = \"maxpro\"\nruns = 10\n";
+  EXPECT_EQ(
+      faults_of(head + "[vary]\n\"loading.configuration\" = { values = [\"simple\", \"die\", \"hydrostatic\"] }\n")
+          .size(),
+      2U);
+  const auto impossible = faults_of(head +
+                                    "constraints = [\"material.poisson_ratio > 1\"]\n[vary]\n"
+                                    "\"material.poisson_ratio\" = { from = 0.2, to = 0.3 }\n");
+  ASSERT_EQ(impossible.size(), 1U);
+  EXPECT_NE(impossible[0].find("sweep.toml:4:15: "), std::string::npos) << impossible[0];
+}
+
+TEST_F(SweepFiles, AFaultOfTheScenarioItselfIsAFault) {
+  std::string broken = k_scenario;
+  broken.replace(broken.find("youngs_modulus"), 14, "yuongs_modulus");
+  broken.replace(broken.find("20 MPa"), 6, "20 MPA");
+  write("small.toml", broken);
+  EXPECT_EQ(faults_of(k_grid), (std::vector<std::string>{
+                                   "small.toml:5:1: unknown key 'yuongs_modulus' in [material]; did you mean "
+                                   "'youngs_modulus'?",
+                                   "small.toml:7:16: yield_stress = \"20 MPA\": unknown unit 'MPA'; expected a stress, "
+                                   "for example \"50 MPa\""}));
+}
+
+TEST_F(SweepFiles, AScenarioNeedNotHaveWhatIsVaried) {
+  std::string incomplete = k_scenario;
+  incomplete.replace(incomplete.find("poisson_ratio = 0.3"), 19, "");
+  write("small.toml", incomplete);
+  EXPECT_EQ(read(k_grid).runs.size(), 15U);
+}
+
+// --- runs
+
+TEST_F(SweepFiles, EveryRunIsARowWithEndAndLargestValues) {
+  const Sweep sweep = read(k_grid);
+  static_cast<void>(results(sweep, "out"));
+  const Table table = read_csv(path("out") / "results.csv");
+  ASSERT_EQ(table.row_count(), 15U);
+  EXPECT_EQ(table.header_value("sweep_digest"), sweep.digest);
+  const auto run =
+      run_scenario(read_scenario(path("small.toml"), {"material.poisson_ratio=0.3", "loading.configuration=die"}));
+  const std::vector<double> force = run.record.history.column("axial.force");
+  const std::size_t row = 4;  // second ratio, second configuration
+  EXPECT_EQ(table.column("material.poisson_ratio")[row], 0.3);
+  EXPECT_EQ(table.word(row, *table.find("status")), "complete");
+  EXPECT_EQ(table.column("max.axial.force")[row], *std::ranges::max_element(force));
+  EXPECT_EQ(table.column("end.axial.force")[row], force.back());
+  EXPECT_GT(table.column("max.lateral.force")[row], 0.0);
+  EXPECT_TRUE(std::isnan(table.column("max.lateral.force")[3])) << "configuration simple has no lateral walls";
+  EXPECT_EQ(table.word(3, *table.find("end.lateral.regime")), "nan");
+}
+
+TEST_F(SweepFiles, WhatCannotBeRunIsARowWithTheReason) {
+  write("small.toml", std::string(k_scenario).replace(std::string(k_scenario).find("0.1 R0"), 6, "0.4 R0"));
+  static_cast<void>(results(read(k_grid), "out"));
+  const Table table = read_csv(path("out") / "results.csv");
+  const auto status = *table.find("status");
+  const auto reason = *table.find("reason");
+  EXPECT_EQ(table.word(2, status), "stopped") << "hydrostatic, beyond the domain of the model";
+  EXPECT_NE(table.word(2, reason).find("free surface"), std::string_view::npos) << table.word(2, reason);
+  EXPECT_GT(table.column("end.time")[2], 0.0) << "values up to there are kept";
+  for (std::size_t row = 12; row < 15; ++row) {
+    EXPECT_EQ(table.word(row, status), "refused");
+    EXPECT_EQ(table.word(row, reason), "poisson_ratio = 0.6: out of range; expected a number above -1 and up to 0.5");
+    EXPECT_TRUE(std::isnan(table.column("max.axial.force")[row]));
+  }
+}
+
+TEST_F(SweepFiles, TheResultsDoNotDependOnTheNumberOfThreads) {
+  const Sweep sweep = read(k_grid);
+  const std::string one = results(sweep, "one", 1);
+  EXPECT_FALSE(one.empty());
+  EXPECT_EQ(one, results(sweep, "two", 2));
+  EXPECT_EQ(one, results(sweep, "eight", 8));
+}
+
+TEST_F(SweepFiles, HistoriesAreKeptIfAskedFor) {
+  const Sweep sweep = read("histories = true\n" + std::string(k_grid));
+  static_cast<void>(results(sweep, "out"));
+  const Table history = read_csv(path("out") / "histories" / "5.csv");
+  EXPECT_EQ(history.column("axial.force").back(), read_csv(path("out") / "results.csv").column("end.axial.force")[4]);
+  EXPECT_FALSE(fs::exists(path("out") / "histories" / "15.csv")) << "a run that was refused has no history";
+}
+
+// --- going on
+
+/// The journal of a sweep that was stopped after all runs but before its results were written.
+class StoppedSweep : public SweepFiles {
+ protected:
+  StoppedSweep() {
+    static_cast<void>(run_sweep(sweep_, {.folder = path("shard"), .threads = 1, .shard = {1, 2}, .progress = {}}));
+    journal_ = read_text(path("shard") / "sweep-1-of-2.journal");
+  }
+
+  Sweep sweep_ = read(k_grid);
+  std::string whole_ = results(sweep_, "whole");
+  std::string journal_;
+};
+
+TEST_F(StoppedSweep, GoesOnFromAJournalThatWasCutAtAnyByte) {
+  ASSERT_GT(journal_.size(), 1000U);
+  for (std::size_t length = 0; length <= journal_.size(); length += length < 200 ? 1 : 97) {
+    fs::remove_all(path("cut"));
+    fs::create_directory(path("cut"));
+    write("cut/sweep.journal", journal_.substr(0, length));
+    ASSERT_EQ(results(sweep_, "cut"), whole_) << "cut after " << length << " of " << journal_.size() << " bytes";
+    ASSERT_FALSE(fs::exists(path("cut/sweep.journal")));
+  }
+}
+
+TEST_F(StoppedSweep, DoesNotDoAgainWhatIsDone) {
+  fs::create_directory(path("cut"));
+  write("cut/sweep.journal", journal_);
+  const SweepOutcome outcome = run_sweep(sweep_, {.folder = path("cut"), .threads = 1, .shard = {}, .progress = {}});
+  EXPECT_EQ(outcome.runs_before, 8U);
+  EXPECT_EQ(outcome.runs_now, 7U);
+  EXPECT_EQ(run_sweep(sweep_, {.folder = path("cut"), .threads = 1, .shard = {}, .progress = {}}).runs_now, 0U);
+}
+
+TEST_F(StoppedSweep, RefusesTheJournalOfAnotherSweep) {
+  for (const char* file : {"sweep.journal", "sweep-2-of-2.journal"}) {
+    fs::create_directories(path("cut"));
+    write(std::string("cut/") + file, journal_);
+    const Sweep changed = read("# changed\n" + std::string(k_grid));
+    try {
+      static_cast<void>(results(changed, "cut"));
+      ADD_FAILURE() << "the journal was taken";
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("remove it to begin anew"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(read_text(path("cut") / file), journal_) << "it is left as it was";
+    fs::remove_all(path("cut"));
+  }
+}
+
+TEST_F(StoppedSweep, RefusesAFileThatIsNoJournal) {
+  fs::create_directory(path("cut"));
+  write("cut/sweep.journal", "dear diary\n");
+  EXPECT_THROW(static_cast<void>(results(sweep_, "cut")), std::runtime_error);
+  EXPECT_EQ(read_text(path("cut/sweep.journal")), "dear diary\n");
+}
+
+TEST_F(StoppedSweep, RepeatsARowThatWasDamaged) {
+  fs::create_directory(path("cut"));
+  std::string damaged = journal_;
+  damaged[damaged.rfind("complete")] = 'C';
+  write("cut/sweep.journal", damaged);
+  EXPECT_EQ(results(sweep_, "cut"), whole_);
+}
+
+TEST_F(StoppedSweep, ChangedScenariosAndTablesChangeTheDigest) {
+  const std::string digest = sweep_.digest;
+  write("small.toml", std::string(k_scenario) + "# changed\n");
+  EXPECT_NE(read(k_grid).digest, digest);
+}
+
+TEST_F(StoppedSweep, ShardsMergeToTheSameBytesInWhateverOrder) {
+  for (const std::vector<std::size_t>& order : {std::vector<std::size_t>{1, 2, 3, 4}, {4, 2, 1, 3}}) {
+    fs::remove_all(path("shards"));
+    for (const std::size_t index : order) {
+      EXPECT_FALSE(fs::exists(path("shards/results.csv")));
+      const SweepOutcome outcome =
+          run_sweep(sweep_, {.folder = path("shards"), .threads = 1, .shard = {index, 4}, .progress = {}});
+      EXPECT_EQ(outcome.runs_missing == 0, index == order.back());
+    }
+    EXPECT_EQ(read_text(path("shards/results.csv")), whole_);
+    EXPECT_EQ(std::distance(fs::directory_iterator(path("shards")), fs::directory_iterator{}), 1);
+  }
+}
+
+TEST_F(StoppedSweep, ACallWithoutShardDoesWhatShardsHaveLeft) {
+  static_cast<void>(run_sweep(sweep_, {.folder = path("left"), .threads = 1, .shard = {2, 3}, .progress = {}}));
+  EXPECT_EQ(results(sweep_, "left"), whole_);
+}
+
+TEST_F(StoppedSweep, TellsOfItsProgress) {
+  std::size_t calls = 0;
+  std::size_t last = 0;
+  static_cast<void>(
+      run_sweep(sweep_, {.folder = path("told"), .threads = 2, .shard = {}, .progress = [&](auto done, auto of) {
+                           EXPECT_EQ(done, ++calls);
+                           EXPECT_EQ(of, 15U);
+                           last = done;
+                         }}));
+  EXPECT_EQ(last, 15U);
+}
+
+TEST_F(StoppedSweep, RefusesTheFolderOfARun) {
+  fs::create_directory(path("run"));
+  write("run/run.json", "{}");
+  EXPECT_THROW(static_cast<void>(results(sweep_, "run")), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace monograin::sweep_test
