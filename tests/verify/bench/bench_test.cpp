@@ -166,7 +166,8 @@ TEST(BenchProfile, LooksOnOnly) {
     expect_looks_on_only(scenario, {"direct", "cvode-bdf", "ida"});
   }
   // A singular start, which none of the bench's own scenes has.
-  expect_looks_on_only(read_scenario(MONOGRAIN_SOURCE_DIR "/tests/study/findings/force-against-a-standing-wall.toml"),
+  expect_looks_on_only(read_scenario(MONOGRAIN_SOURCE_DIR "/tests/findings/nonlocal/false-end/"
+                                                          "force-against-a-resting-wall.toml"),
                        {"direct", "cvode-bdf"});
 }
 
