@@ -24,7 +24,7 @@ function(monograin_room name)
     target_compile_definitions(monograin_${name} PRIVATE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
   endif()
   # All objects of the room, with what it stands on: a use of a room on its right is an error of the linker.
-  if(MONOGRAIN_BUILD_TESTS)
+  if(MONOGRAIN_BUILD_TESTS AND NOT MONOGRAIN_SANITIZE)
     add_executable(monograin_${name}_links "${PROJECT_SOURCE_DIR}/cmake/empty.cpp" $<TARGET_OBJECTS:monograin_${name}>)
     set_target_properties(monograin_${name}_links PROPERTIES UNITY_BUILD OFF)
     target_link_libraries(monograin_${name}_links PRIVATE $<TARGET_PROPERTY:monograin_${name},LINK_LIBRARIES>)

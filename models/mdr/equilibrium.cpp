@@ -12,7 +12,7 @@
 namespace monograin::mdr {
 namespace {
 
-constexpr int k_most_corrections = 60;
+constexpr int k_most_steps = 60;
 // Step of the growing radius after which the next one is round-off, where all that depends on it is smooth.
 constexpr double k_last_step = 1e-10;
 // Steps that are round-off, where they do not become shorter.
@@ -51,7 +51,7 @@ void grow(Particle& p, double xi, std::span<double> y) {
   // of what touches a free centre or of an edge next to pull-off.
   const double last_step =
       !p.centre().is_free() && !p.peels_anywhere() ? k_last_step : 2.0 * std::numeric_limits<double>::epsilon();
-  for (int iteration = 0; iteration < k_most_corrections; ++iteration) {
+  for (int iteration = 0; iteration < k_most_steps; ++iteration) {
     p.move_walls(xi, y);
     p.evaluate(xi, y);
     double slope = p.at().volume.by_radius;
