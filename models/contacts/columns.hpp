@@ -2,6 +2,8 @@
 /// is found, so that the list of columns and a row of them cannot disagree.
 #pragma once
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <span>
 #include <string>
@@ -58,6 +60,12 @@ inline void add_contact_columns(const std::string& contact_class, std::span<cons
 /// Appends the columns of a free centre.
 inline void add_centre_columns(std::vector<Observable>& columns) {
   for (const char* axis : {"centre_x", "centre_y", "centre_z"}) columns.push_back({axis, "m", {}});
+}
+
+/// Writes them: the last of a row.
+/// @param displacement  of the centre, in space [m]
+inline void write_centre_columns(const Eigen::Vector3d& displacement, std::span<double> values) {
+  std::ranges::copy(displacement, values.last(3).begin());
 }
 
 /// Columns of a particle whose contacts share nothing else: its energies, then those of every class.

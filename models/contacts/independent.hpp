@@ -194,14 +194,17 @@ class IndependentContacts final : public HybridSystem {
   }
 
   void guard_values(double xi, std::span<const double> y, std::span<double> values) override {
+    const bool asks_for_velocity =
+        centre_ && std::ranges::find(guards_, int{Centre::k_retreat}, &Guard::kind) != guards_.end();
+    const FreeCentre::Vector velocity = asks_for_velocity ? centre_velocity(xi, y) : FreeCentre::Vector::Zero();
     for (std::size_t g = 0; g < guards_.size(); ++g) {
-      if (follows_centre(static_cast<std::size_t>(guards_[g].index))) {
-        const auto i = static_cast<std::size_t>(guards_[g].index);
-        values[g] = centre_->guard_value(law_, contacts_, i, guards_[g].kind, targets_[g], xi, y);
+      const auto i = static_cast<std::size_t>(guards_[g].index);
+      if (follows_centre(i)) {
+        values[g] = centre_->guard_value(law_, contacts_, i, guards_[g].kind, targets_[g], xi, y, velocity);
         continue;
       }
       // Ramps are as short as contacts are shallow.
-      const WallDrive& ramp = drive(static_cast<std::size_t>(guards_[g].index));
+      const WallDrive& ramp = drive(i);
       values[g] = (ramp.value(xi) - targets_[g]) / ramp.size();
     }
   }
@@ -249,9 +252,7 @@ class IndependentContacts final : public HybridSystem {
     columns_.write(
         energies, contacts_.size(),
         [&](std::size_t i) { return visible(i, xi, displacements_[leading(i)], carried(i, y)); }, values);
-    if (!centre_) return;
-    const Eigen::Vector3d centre = centre_->in_space(y) * length_;
-    std::ranges::copy(centre, values.end() - centre.size());
+    if (centre_) write_centre_columns(centre_->in_space(y) * length_, values);
   }
 
   /// @throws std::logic_error for what the law does not have

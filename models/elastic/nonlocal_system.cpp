@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "contacts/centre/centre_lines.hpp"
 #include "contacts/columns.hpp"
 #include "system/difficulty.hpp"
 #include "system/undefined.hpp"
@@ -102,10 +103,8 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
     unknowns_.push_back(
         {c.name, Unknown::Kind::differential, c.takes_force ? std::pow(depth, k_force_power) : depth, true});
   }
-  constexpr std::array<std::string_view, 3> centre_names{"centre displacement 1", "centre displacement 2",
-                                                         "centre displacement 3"};
   for (std::size_t k = 0; k < contacts_.free_count(); ++k) {
-    unknowns_.push_back({.name = centre_names[k],
+    unknowns_.push_back({.name = contacts::k_centre_unknowns[k],
                          .kind = Unknown::Kind::differential,
                          .scale = depth,
                          .is_implicitly_algebraic = true,
@@ -147,9 +146,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
     contacts::add_contact_columns(c.name, k_regime_words, observables_);
     observables_.push_back({c.name + ".contact_radius_deformed", "m", {}});
   }
-  if (settings_.centre == Centre::free) {
-    for (const char* axis : {"centre_x", "centre_y", "centre_z"}) observables_.push_back({axis, "m", {}});
-  }
+  if (settings_.centre == Centre::free) contacts::add_centre_columns(observables_);
 }
 
 void System::start(std::span<double> y) {

@@ -104,7 +104,7 @@ class FreeCentre {
   }
 
  private:
-  /// Of a line.
+  /// Loads along a line.
   struct Load {
     double force = 0.0;  ///< net force, and its partial derivatives
     double force_by_time = 0.0;

@@ -33,14 +33,12 @@ double regime_word(const ContactBranch& branch) noexcept {
 System::System(std::shared_ptr<const Setup> setup)
     : setup_(std::move(setup)),
       unknowns_(setup_->unknowns()),
-      columns_(true, true, regime_words(*setup_), setup_->classes),
+      columns_(true, true, regime_words(*setup_), setup_->classes, setup_->settings.centre_is_free),
       now_{.particle = Particle(setup_), .caps = ContactCaps(*setup_)},
       search_(now_.particle),
       trial_(unknowns_.size()) {
   if (setup_->grows()) observables_ = {{"apparent_radius", "m", {}}, {"volume", "m3", {}}};
   observables_.insert(observables_.end(), columns_.observables().begin(), columns_.observables().end());
-  if (!setup_->settings.centre_is_free) return;
-  for (const char* axis : {"centre_x", "centre_y", "centre_z"}) observables_.push_back({axis, "m", {}});
 }
 
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
@@ -68,9 +66,8 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   columns_.write({work * energy_unit, stored * energy_unit, (work - stored) * energy_unit}, now_.particle.size(),
                  row_of, values);
   if (!setup_->settings.centre_is_free) return;
-  const Eigen::Vector3d centre = now_.particle.centre().in_space(centre_of(y, now_.particle.centre().count()));
-  const std::span<double> last = values.last(3);
-  for (std::size_t k = 0; k < 3; ++k) last[k] = centre[static_cast<Eigen::Index>(k)] * length;
+  const FreeCentre& centre = now_.particle.centre();
+  contacts::write_centre_columns(centre.in_space(centre_of(y, centre.count())) * length, values);
 }
 
 /// The contact that a row of the history shows.

@@ -12,9 +12,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::array<std::string_view, 3> k_centre_names{"centre displacement 1", "centre displacement 2",
-                                                         "centre displacement 3"};
-
 }  // namespace
 
 CentreVector centre_of(std::span<const double> y, int free_count) noexcept {
@@ -51,7 +48,7 @@ std::vector<Unknown> Setup::unknowns() const {
       {"apparent radius growth (R - R0)/R0", Unknown::Kind::differential, growth_scale(reach), true},
       {"work", Unknown::Kind::quadrature, work_scale(reach), false}};
   for (int k = 0; k < centre.count(); ++k) {
-    list.push_back({.name = k_centre_names[static_cast<std::size_t>(k)],
+    list.push_back({.name = contacts::k_centre_unknowns[static_cast<std::size_t>(k)],
                     .kind = Unknown::Kind::algebraic,
                     .scale = reach,
                     .is_implicitly_algebraic = true,

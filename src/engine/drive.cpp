@@ -18,6 +18,7 @@
 
 #include "engine/guard_set.hpp"
 #include "engine/program_notes.hpp"
+#include "engine/step_plan.hpp"
 #include "scenario/integrators.hpp"
 
 namespace monograin {
@@ -37,53 +38,8 @@ constexpr long k_most_evaluations = 10;
 constexpr int k_most_events = 1000;
 // Finer tolerances may be below the rounding of a scene's own equations.
 constexpr double k_surest_rtol = 1e-11;
-// Durations of walls that end their steps together (relative).
-constexpr double k_same_duration = 1e-9;
 // An output time that counts as the program's end (relative).
 constexpr double k_same_instant = 1e-12;
-
-/// The run has left the model's domain.
-struct Stop {
-  LimitPoint point;
-  std::string message;
-};
-
-/// A quantity of a condition: its word in scenario files and its unit.
-struct QuantityWords {
-  Quantity quantity;
-  std::string_view name;
-  std::string_view unit;
-  bool is_of_contact;  ///< each contact class has its own
-};
-
-constexpr std::array k_quantities{
-    QuantityWords{Quantity::force, "force", "N", true},
-    QuantityWords{Quantity::displacement, "displacement", "m", true},
-    QuantityWords{Quantity::pressure, "pressure", "Pa", true},
-    QuantityWords{Quantity::contact_radius, "contact_radius", "m", true},
-    QuantityWords{Quantity::apparent_radius, "apparent_radius", "m", false},
-    QuantityWords{Quantity::stress_axial, "stress_axial", "Pa", false},
-    QuantityWords{Quantity::stress_lateral, "stress_lateral", "Pa", false},
-    QuantityWords{Quantity::relative_density, "relative_density", "", false},
-};
-
-const QuantityWords& words_of(Quantity quantity) {
-  return *std::ranges::find(k_quantities, quantity, &QuantityWords::quantity);
-}
-
-std::string with_unit(double value, Quantity quantity) {
-  const std::string_view unit = words_of(quantity).unit;
-  return fmt::format("{:.6g}{}{}", value, unit.empty() ? "" : " ", unit);
-}
-
-/// One step of the program, worked out from where its channels stand when it begins.
-struct Plan {
-  std::vector<Ramp> ramps;
-  double duration = -1.0;  ///< [s]; negative while no channel has said
-  std::vector<Condition> conditions;
-  std::vector<std::string> ending_events;
-  std::vector<int> detaching;  ///< classes that are withdrawn until they are open
-};
 
 // Step coordinate of the output point at the end of a step that may end early, wherever that will be.
 constexpr double k_at_end = std::numeric_limits<double>::infinity();
@@ -150,7 +106,7 @@ class Drive {
     system_.start(y_);
     std::vector<Event> log;
     for (step_ = 0; step_ < scene_.step_count(); ++step_) {
-      plan_ = make_plan();
+      plan_ = plan_step(scene_, step_, held_, guard_set_, xi_, y_);
       xi_ = 0.0;
       if (step_ > 0) {
         // The rows before this corner stand already; what comes after belongs to the step that begins.
@@ -201,55 +157,6 @@ class Drive {
   // --- the program
   // ----------------------------------------------------------------------------------------------------------
 
-  [[nodiscard]] Plan make_plan() {
-    Plan plan;
-    for (std::size_t c = 0; c < scene_.channels.size(); ++c) {
-      plan.ramps.push_back(held_[c]);
-      const std::vector<Step>& program = scene_.channels[c].program;
-      if (step_ < program.size()) add_to_plan(program[step_], static_cast<int>(c), plan);
-    }
-    return plan;
-  }
-
-  void add_to_plan(const Step& step, int channel, Plan& plan) {
-    Ramp& ramp = plan.ramps.back();
-    // A ramp starts from the present value of what it controls from here on.
-    const auto take_control = [&](Control control) {
-      if (ramp.control == control) return;
-      const double present = system_.controlled(control, channel, xi_, y_);
-      ramp = {present, present, control};
-    };
-    if (const auto control = control_of(step.kind)) {
-      take_control(*control);
-      ramp.end = step.target;
-      // The value at which a condition has ended the last step has the error of an integrator: a ramp to it goes
-      // nowhere.
-      if (guard_set_.has_ended_at(*control, channel, ramp.end)) ramp.start = ramp.end;
-    } else if (step.kind == Step::Kind::detach) {
-      take_control(Control::displacement);
-      // One apparent radius back: farther than any contact stays closed.
-      ramp.end = ramp.start - system_.quantity(Quantity::apparent_radius, channel, xi_, y_);
-      plan.detaching.push_back(channel);
-    }
-    for (const Until& until : step.until) {
-      if (until.is_event())
-        plan.ending_events.push_back(until.event);
-      else
-        plan.conditions.push_back({until.quantity, channel, until.value});
-    }
-    if (!step.duration && !step.rate) return;  // takes as long as the others
-    const double duration = step.duration ? *step.duration : std::abs(ramp.end - ramp.start) / *step.rate;
-    if (plan.duration >= 0.0 &&
-        std::abs(duration - plan.duration) > k_same_duration * std::max(duration, plan.duration)) {
-      throw Stop{
-          {.limit = Limit::unequal_durations},
-          fmt::format("step {}: the walls of class '{}' need {:.6g} s where others need {:.6g} s, and steps end "
-                      "together; give equal durations",
-                      step_ + 1, scene_.channels[static_cast<std::size_t>(channel)].name, duration, plan.duration)};
-    }
-    plan.duration = std::max(plan.duration, duration);
-  }
-
   /// What a channel keeps when nothing else is said: the end of its ramp, or where that was interrupted. A wall whose
   /// contact has snapped off bears no force any more.
   [[nodiscard]] Ramp where_it_stands(int channel) {
@@ -265,14 +172,6 @@ class Drive {
     });
   }
 
-  /// A condition in the words of the scenario, e.g. "until axial.force = 1000 N".
-  [[nodiscard]] std::string condition_text(const Condition& condition) const {
-    const QuantityWords& words = words_of(condition.quantity);
-    const Channel& channel = scene_.channels[static_cast<std::size_t>(condition.channel)];
-    return fmt::format("until {}{}{} = {}", words.is_of_contact ? channel.name : "", words.is_of_contact ? "." : "",
-                       words.name, with_unit(condition.target, condition.quantity));
-  }
-
   /// Notes of a step that none of its conditions has ended.
   void note_unmet_conditions() {
     for (std::size_t i = 0; i < plan_.conditions.size(); ++i) {
@@ -281,7 +180,7 @@ class Drive {
       const double end = system_.quantity(condition.quantity, condition.channel, xi_, y_);
       const bool has_gone_away = std::abs(end - condition.target) > std::abs(begin - condition.target);
       notes_.add(step_ + 1,
-                 fmt::format("{} was never met{}", condition_text(condition),
+                 fmt::format("{} was never met{}", condition_text(scene_, condition),
                              has_gone_away ? ": it lay behind where the step began" : ""),
                  fmt::format(" ({} at its beginning, {} at its end)", with_unit(begin, condition.quantity),
                              with_unit(end, condition.quantity)));
@@ -338,7 +237,7 @@ class Drive {
     outputs_.clear();
     if (const auto held = guard_set_.held_at_begin()) {
       notes_.add(step_ + 1,
-                 condition_text(plan_.conditions[*held]) + " holds where the step begins, and ends it there");
+                 condition_text(scene_, plan_.conditions[*held]) + " holds where the step begins, and ends it there");
       return true;
     }
     if (has_ending_event(log)) return true;
@@ -680,7 +579,7 @@ class Drive {
   ProgramNotes notes_;
 
   std::size_t step_ = 0;
-  Plan plan_;
+  StepPlan plan_;
   double step_start_ = 0.0;  ///< [s]
   double xi_ = 0.0;          ///< present step coordinate
   std::vector<OutputPoint> outputs_;

@@ -79,7 +79,7 @@ constexpr std::array<NamedMethod, 11> k_of_explicit_form{{
     {integrators::k_gsl_msbdf, GslMethod::msbdf, true},
 }};
 
-/// What "auto" integrates with.
+/// Integrators that "auto" stands for where the states are not solved for directly.
 const std::string& switching_name() {
   static const std::string k_name =
       fmt::format("{}, {} where stiff", integrators::k_odeint_dopri5, integrators::k_cvode_bdf);

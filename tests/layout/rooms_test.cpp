@@ -29,7 +29,7 @@ const std::vector<std::vector<std::string>> k_rooms{{"numerics"},
                                                     {"verify/bench", "verify/regress", "verify/stress"},
                                                     {"cli"}};
 
-/// What the rooms know of models: what a model is, and the list of all.
+/// Headers of models that rooms may include: they say what a model is, and list all.
 const std::set<std::string> k_of_all_models{"catalogue.hpp", "reaction_cone.hpp", "stress", "system"};
 
 /// Group of the room that a file is in, and its name; the number of groups where it is in none.

@@ -8,13 +8,19 @@
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
+#include <array>
 #include <cmath>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "system/walls.hpp"
 
 namespace monograin::contacts {
+
+/// Names of the unknowns of a centre, along its free directions.
+inline constexpr std::array<std::string_view, 3> k_centre_unknowns{"centre displacement 1", "centre displacement 2",
+                                                                   "centre displacement 3"};
 
 class CentreLines {
  public:

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -26,10 +25,8 @@ class CentreMode {
   /// @param reach  largest displacement that is expected
   CentreMode(std::span<const ContactClass> classes, double reach, std::vector<Unknown>& unknowns)
       : centre_(classes), slot_(unknowns.size()), reach_(reach), roles_(classes.size()), rates_(classes.size()) {
-    static constexpr std::array<std::string_view, 3> k_names{"centre displacement 1", "centre displacement 2",
-                                                             "centre displacement 3"};
     for (std::size_t k = 0; k < dimension(); ++k) {
-      unknowns.push_back({.name = k_names[k],
+      unknowns.push_back({.name = k_centre_unknowns[k],
                           .kind = Unknown::Kind::algebraic,
                           .scale = reach,
                           .is_implicitly_algebraic = true,
@@ -94,7 +91,11 @@ class CentreMode {
 
   /// Takes up the ramps of a step.
   void begin_step(std::span<const Contact> contacts) {
-    ahead_ = std::clamp(k_distance_ahead / fastest_wall(contacts), k_least_ahead, k_most_ahead);
+    fastest_wall_ = 0.0;
+    for (const Contact& c : contacts) {
+      if (!c.is_force_controlled()) fastest_wall_ = std::max(fastest_wall_, std::abs(c.drive().rate()));
+    }
+    ahead_ = std::clamp(k_distance_ahead / fastest_wall_, k_least_ahead, k_most_ahead);
   }
   /// Decides which walls touch, which bear and which contacts turn in the mode that begins, by evaluating a little
   /// ahead: these depend on each other through the centre, so assume, evaluate, correct, and repeat.
@@ -138,14 +139,14 @@ class CentreMode {
     if (const auto ahead = c.next(law)) add(k_boundary, 1, ahead->event, ahead->position);
     if (c.is_on_primary_branch() && roles_[i] == Role::bearing) add(k_retreat, -1, "retreat", 0.0);
   }
+  /// @param velocity  of the centre; only a guard of retreat asks for it
   [[nodiscard]] double guard_value(const Law& law, std::span<const Contact> contacts, std::size_t i, int kind,
-                                   double target, double xi, std::span<const double> y) {
+                                   double target, double xi, std::span<const double> y, const Vector& velocity) {
     const WallDrive& drive = contacts[i].drive();
     if (kind == k_retreat) {
-      const Vector rate = velocity(law, contacts, xi, y);
       // A contact at rest has a rate of round-off.
-      const double fastest = std::max(rate.norm(), fastest_wall(contacts));
-      return (drive.rate() + centre_.along(i, rate) + k_at_rest * fastest) / reach_;
+      const double fastest = std::max(velocity.norm(), fastest_wall_);
+      return (drive.rate() + centre_.along(i, velocity) + k_at_rest * fastest) / reach_;
     }
     if (kind == k_boundary) return (drive.value(xi) + carried(i, y) - target) / reach_;
     return (overlap_as_touching(law, contacts, i, xi, position(y)) - target) / reach_;
@@ -205,14 +206,6 @@ class CentreMode {
     for (std::size_t k = 0; k < dimension(); ++k) c[static_cast<Eigen::Index>(k)] = y[slot_ + k];
     return c;
   }
-  /// Rate of the fastest wall under displacement control.
-  [[nodiscard]] static double fastest_wall(std::span<const Contact> contacts) noexcept {
-    double fastest = 0.0;
-    for (const Contact& c : contacts) {
-      if (!c.is_force_controlled()) fastest = std::max(fastest, std::abs(c.drive().rate()));
-    }
-    return fastest;
-  }
   /// How far a contact is past where wall and particle meet. An idle wall that touches has an overlap of nothing: it
   /// shows by the one that it would have if it did not push.
   [[nodiscard]] double overlap_as_touching(const Law& law, std::span<const Contact> contacts, std::size_t i, double xi,
@@ -250,6 +243,7 @@ class CentreMode {
   double reach_ = 1.0;
   Vector rest_ = Vector::Zero();  ///< of the centre, where the present mode began
   std::vector<Role> roles_;
+  double fastest_wall_ = 0.0;  ///< rate of the fastest one under displacement control
   double ahead_ = k_least_ahead;
   std::vector<double> rates_;  ///< of what the program prescribes
 };

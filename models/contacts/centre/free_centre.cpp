@@ -269,9 +269,9 @@ FreeCentre::Vector FreeCentre::equilibrium(const CentreWalls& walls, std::span<c
 }
 
 double FreeCentre::unpushed_overlap(std::size_t i, const CentreWalls& walls, std::span<const Role> roles,
-                                    const Vector& rest, const Vector& guess) {
-  const Vector c = with_loose_directions(walls, roles, rest, balance(walls, roles, guess), i);
-  return walls.overlap(i) + lines_.arm(i).dot(c);
+                                    const Vector& rest, const Vector& c) {
+  sum_up(walls, roles, c);
+  return walls.overlap(i) + lines_.arm(i).dot(with_loose_directions(walls, roles, rest, c, i));
 }
 
 void FreeCentre::find_roles(const CentreWalls& now, const CentreWalls& then, Vector& c, std::span<Role> roles) {

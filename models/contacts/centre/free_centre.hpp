@@ -19,7 +19,7 @@
 
 namespace monograin::contacts {
 
-/// What a class of walls does to a free centre in a mode.
+/// Part that a class of walls plays for a free centre in a mode.
 enum class Role : std::uint8_t {
   away,     ///< nothing
   bearing,  ///< its contact bears where it overlaps
@@ -76,8 +76,9 @@ class FreeCentre {
   /// @param c  in: where the centre is now; out: where it is then
   void find_roles(const CentreWalls& now, const CentreWalls& then, Vector& c, std::span<Role> roles);
   /// Overlap that an idle wall would have if it did not push the centre: negative where it does not touch.
+  /// @param c  where the centre is
   [[nodiscard]] double unpushed_overlap(std::size_t i, const CentreWalls& walls, std::span<const Role> roles,
-                                        const Vector& rest, const Vector& guess);
+                                        const Vector& rest, const Vector& c);
 
  private:
   using Matrix = CentreLines::Matrix;
@@ -111,7 +112,7 @@ class FreeCentre {
   CentreLines lines_;
   std::vector<double> counts_;  ///< walls of each class
 
-  // Of the last sums.
+  // Results of the last sums.
   std::vector<Load> loads_;     ///< of the lines
   std::vector<double> forces_;  ///< of one wall of each class
   double round_off_ = 0.0;      ///< of the balance of forces

@@ -9,8 +9,8 @@
 namespace monograin {
 namespace {
 
-/// Of the classes in turn: yellow where the model holds and two blues where it does not, as in the source, in colours
-/// of the same palette as all others.
+/// Colours of the classes in turn: yellow where the model holds and two blues where it does not, as in the source, from
+/// the palette of all figures.
 constexpr std::array<unsigned, 3> k_colours{0xF0E442u, 0x56B4E9u, 0x0072B2u};
 
 /// Share of a row by which boxes overlap the next one: a renderer would leave a hair of white between them.

@@ -75,7 +75,7 @@ struct BenchPair {
   Scenario without;
 };
 
-/// What is measured where no scene is named.
+/// Scenes and savings that are measured where no scene is named.
 struct BenchList {
   std::vector<Scenario> scenes;
   std::vector<BenchPair> savings;

@@ -1,4 +1,4 @@
-/// What contacts do to the free centre of a particle, and how it moves for that.
+/// A free centre moves by the loads of its contacts.
 
 #include "mdr/free_centre.hpp"
 

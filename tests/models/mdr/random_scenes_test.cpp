@@ -273,7 +273,7 @@ double distance_from_program(const TestRun& result) {
 
 // --- scenes solved at every instant
 
-/// What is measured of one scene against the most it may be.
+/// Holds a measured value of one scene against the most it may be.
 void check(std::uint64_t seed, const char* what, double value, double most, Breaches& breaches) {
   if (!(value <= most)) breaches.add(seed, fmt::format("{} {:.3g}, above {:.3g}", what, value, most));
 }

@@ -183,8 +183,8 @@ Candidates smaller_than(const StressScene& scene) {
   return std::move(smaller.candidates());
 }
 
-/// What is counted in the order in which candidates give it up; a scene only changes for one that comes before it.
-/// Digits in the text, so that a rounder number is smaller.
+/// Size of a scene: the characters of its text, so that a rounder number is smaller. A scene only changes for a smaller
+/// one.
 std::size_t size_of(const StressScene& scene) { return scenario_text(scene).size(); }
 
 }  // namespace

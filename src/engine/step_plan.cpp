@@ -1,0 +1,109 @@
+#include "engine/step_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+namespace monograin {
+namespace {
+
+// Durations of walls that end their steps together (relative).
+constexpr double k_same_duration = 1e-9;
+
+/// A quantity of a condition: its word in scenario files and its unit.
+struct QuantityWords {
+  Quantity quantity;
+  std::string_view name;
+  std::string_view unit;
+  bool is_of_contact;  ///< each contact class has its own
+};
+
+constexpr std::array k_quantities{
+    QuantityWords{Quantity::force, "force", "N", true},
+    QuantityWords{Quantity::displacement, "displacement", "m", true},
+    QuantityWords{Quantity::pressure, "pressure", "Pa", true},
+    QuantityWords{Quantity::contact_radius, "contact_radius", "m", true},
+    QuantityWords{Quantity::apparent_radius, "apparent_radius", "m", false},
+    QuantityWords{Quantity::stress_axial, "stress_axial", "Pa", false},
+    QuantityWords{Quantity::stress_lateral, "stress_lateral", "Pa", false},
+    QuantityWords{Quantity::relative_density, "relative_density", "", false},
+};
+
+const QuantityWords& words_of(Quantity quantity) {
+  return *std::ranges::find(k_quantities, quantity, &QuantityWords::quantity);
+}
+
+/// A ramp from the present value of what a step controls in a channel.
+/// @param held  what the channel keeps when the step says nothing
+Ramp ramp_of(const Step& step, int channel, const Ramp& held, HybridSystem& system, const GuardSet& guard_set,
+             double xi, std::span<const double> y) {
+  const bool is_detaching = step.kind == Step::Kind::detach;
+  const std::optional<Control> control = is_detaching ? Control::displacement : control_of(step.kind);
+  if (!control) return held;
+  Ramp ramp = held;
+  if (ramp.control != *control) {
+    const double present = system.controlled(*control, channel, xi, y);
+    ramp = {present, present, *control};
+  }
+  if (is_detaching) {
+    // One apparent radius back: farther than any contact stays closed.
+    ramp.end = ramp.start - system.quantity(Quantity::apparent_radius, channel, xi, y);
+    return ramp;
+  }
+  ramp.end = step.target;
+  // The value at which a condition has ended the last step has the error of an integrator: a ramp to it goes nowhere.
+  if (guard_set.has_ended_at(*control, channel, ramp.end)) ramp.start = ramp.end;
+  return ramp;
+}
+
+}  // namespace
+
+StepPlan plan_step(const Scene& scene, std::size_t step, std::span<const Ramp> held, const GuardSet& guard_set,
+                   double xi, std::span<const double> y) {
+  StepPlan plan;
+  for (std::size_t c = 0; c < scene.channels.size(); ++c) {
+    const Channel& channel = scene.channels[c];
+    plan.ramps.push_back(held[c]);
+    if (step >= channel.program.size()) continue;
+    const Step& of_channel = channel.program[step];
+    const int index = static_cast<int>(c);
+    const Ramp& ramp = plan.ramps.back() = ramp_of(of_channel, index, held[c], *scene.system, guard_set, xi, y);
+    if (of_channel.kind == Step::Kind::detach) plan.detaching.push_back(index);
+    for (const Until& until : of_channel.until) {
+      if (until.is_event())
+        plan.ending_events.push_back(until.event);
+      else
+        plan.conditions.push_back({until.quantity, index, until.value});
+    }
+    if (!of_channel.duration && !of_channel.rate) continue;  // takes as long as the others
+    const double duration =
+        of_channel.duration ? *of_channel.duration : std::abs(ramp.end - ramp.start) / *of_channel.rate;
+    if (plan.duration >= 0.0 &&
+        std::abs(duration - plan.duration) > k_same_duration * std::max(duration, plan.duration)) {
+      throw Stop{{.limit = Limit::unequal_durations},
+                 fmt::format("step {}: the walls of class '{}' need {:.6g} s where others need {:.6g} s, and steps end "
+                             "together; give equal durations",
+                             step + 1, channel.name, duration, plan.duration)};
+    }
+    plan.duration = std::max(plan.duration, duration);
+  }
+  return plan;
+}
+
+std::string condition_text(const Scene& scene, const Condition& condition) {
+  const QuantityWords& words = words_of(condition.quantity);
+  const Channel& channel = scene.channels[static_cast<std::size_t>(condition.channel)];
+  return fmt::format("until {}{}{} = {}", words.is_of_contact ? channel.name : "", words.is_of_contact ? "." : "",
+                     words.name, with_unit(condition.target, condition.quantity));
+}
+
+std::string with_unit(double value, Quantity quantity) {
+  const std::string_view unit = words_of(quantity).unit;
+  return fmt::format("{:.6g}{}{}", value, unit.empty() ? "" : " ", unit);
+}
+
+}  // namespace monograin
