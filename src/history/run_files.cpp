@@ -82,14 +82,17 @@ Json to_json(const Run& run) {
 
 }  // namespace
 
+std::string run_json(const Run& run) {
+  // Nobody checks that the comments in a table are UTF-8.
+  return to_json(run).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
 void write_run(Run& run, StagedFolder& folder, const std::function<void(const fs::path&)>& draw) {
   const auto start = std::chrono::steady_clock::now();
   write_table(run.record.history, folder.path() / "history.csv");
   write_table(run.record.events, folder.path() / "events.csv");
   run.timings.output = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  // Nobody checks that the comments in a table are UTF-8.
-  write_text_file(folder.path() / k_run_marker,
-                  to_json(run).dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  write_text_file(folder.path() / k_run_marker, run_json(run));
   if (draw) draw(folder.path());
   folder.publish();
 }
