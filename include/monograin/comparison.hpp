@@ -19,12 +19,12 @@ struct CurveDifference {
   double linf_at = 0.0;  ///< x where the largest difference is
   double l2 = 0.0;       ///< sqrt( int (b - a)^2 dx / int a^2 dx )
 
-  /// sqrt( int (b - a)^2 dx ) / int |a| dx: 001_3cd85d3b0dc520cf.txt, eq. 7, |a| added for curves that change sign.
+  /// sqrt( int (b - a)^2 dx ) / int |a| dx: Edmans and Sinka (n.d.), eq. 7, |a| added for curves that change sign.
   /// Without dimension only where x is (the source's is displacement over radius); a uniform relative error r of a
   /// straight line from 0 to x_max gives 2 r/sqrt(3 x_max).
   double area_error = 0.0;
   /// max |b - a| / |a(x_max)|, a where it first reaches its largest x (max |a| if it is zero there):
-  /// 001_3cd85d3b0dc520cf.txt, eq. 8, which lacks the absolute value.
+  /// Edmans and Sinka (n.d.), eq. 8, which lacks the absolute value.
   double peak_error = 0.0;
   /// Share of the path of a, measured along x, on which b could be compared; below 1 where b ends early, or where only
   /// one of the two is defined.

@@ -30,7 +30,7 @@ std::vector<Wall> preset_walls(const CheckedScenario& scenario) {
   add_pair(lateral + "-x", lateral, Eigen::Vector3d::UnitX(), lateral_steps);
   add_pair(lateral + "-y", lateral, Eigen::Vector3d::UnitY(), lateral_steps);
   if (loading.configuration == Loading::Configuration::oblique_die) {
-    // In the y-z plane, the angle counted from y (003_97bacd62ecebe201.txt).
+    // In the y-z plane, the angle counted from y (Agarwal and Gonzalez, 2018).
     const double c = std::cos(loading.oblique_angle);
     const double s = std::sin(loading.oblique_angle);
     add_pair("oblique-1", "oblique", {0.0, c, s}, {});
