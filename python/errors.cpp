@@ -1,8 +1,7 @@
 // Exceptions of the program as those of the package.
 
 #include "bindings.hpp"
-#include "scenario/scenario.hpp"
-#include "study/formula/expression.hpp"
+#include "monograin/faults.hpp"
 
 namespace monograin::python {
 namespace {
@@ -15,7 +14,7 @@ std::string file_of(const SourceLocation& where) {
   return "replace '" + where.file.substr(k_override.size());
 }
 
-void raise(const ScenarioError& error) {
+void raise_faults(const ScenarioError& error) {
   const py::module_ errors = py::module_::import("monograin.errors");
   py::list faults;
   for (const Fault& fault : error.faults()) {
@@ -32,9 +31,7 @@ void add_errors(py::module_& /*module*/) {
     try {
       if (pending) std::rethrow_exception(pending);
     } catch (const ScenarioError& error) {
-      raise(error);
-    } catch (const ExpressionError& error) {
-      PyErr_SetString(error.unknown_name().empty() ? PyExc_ValueError : PyExc_KeyError, error.what());
+      raise_faults(error);
     }
   });
 }

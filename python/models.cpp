@@ -95,7 +95,7 @@ py::dict as_python(const Model& model) {
 
 }  // namespace
 
-void add_catalogue(py::module_& module) {
+void add_models(py::module_& module) {
   module.def("models", [] {
     py::list models;
     for (const Model& model : model_catalogue()) models.append(as_python(model));

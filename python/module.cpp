@@ -2,16 +2,16 @@
 // The package's Python files add both.
 
 #include "bindings.hpp"
-#include "history/run.hpp"
+#include "monograin/version.hpp"
 
 PYBIND11_MODULE(_core, module) {
   using namespace monograin::python;
   module.attr("__version__") = std::string(monograin::version());
   add_errors(module);
-  add_table(module);
-  add_prepared(module);
+  add_history(module);
   add_scenario(module);
+  add_prepared(module);
   add_studies(module);
-  add_catalogue(module);
+  add_models(module);
   add_laws(module);
 }

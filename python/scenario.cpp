@@ -1,113 +1,88 @@
 // Scenarios and their runs.
 
-#include <pybind11/numpy.h>
+#include "scenario.hpp"
+
 #include <pybind11/stl.h>
 
 #include <chrono>
+#include <filesystem>
 
+#include "api/checked.hpp"
 #include "bindings.hpp"
-#include "figure/figure.hpp"
-#include "history/run_files.hpp"
-#include "prepared.hpp"
-#include "run.hpp"
-#include "scenario/words.hpp"
+#include "history/run.hpp"
+#include "monograin/run.hpp"
 #include "scene/scene.hpp"
 #include "study/atlas/profile.hpp"
 
 namespace monograin::python {
 namespace {
 
-template <class Read>
-NamedScenario timed(Read&& read, std::string origin) {
+/// @throws ScenarioError with every fault
+SoundScenario checked_scenario(Scenario source) {
   const auto start = std::chrono::steady_clock::now();
-  NamedScenario named{.scenario = read(), .origin = std::move(origin)};
-  named.parse_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return named;
+  SoundScenario made{.source = std::move(source), .checked = {}};
+  made.checked = checked(made.source);
+  made.parse_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return made;
 }
 
-SharedRun run(const NamedScenario& named) {
+SoundScenario parse_sound(std::string text, std::string origin, std::vector<std::string> overrides) {
+  return checked_scenario(Scenario::parse(std::move(text), std::move(origin), std::move(overrides)));
+}
+
+SoundScenario read_sound(const std::string& file) {
+  // The room of the language has a function of that name, too.
+  Scenario (*const read)(const std::filesystem::path&) = read_scenario;
+  return checked_scenario(read(file));
+}
+
+RunResult run_sound(const SoundScenario& scenario) {
   const py::gil_scoped_release released;
-  Run result = run_scenario(named.scenario);
-  result.timings.parse = named.parse_time;
-  return SharedRun(std::move(result));
+  Run run = run_scenario(scenario.checked);
+  run.timings.parse = scenario.parse_time;
+  return RunResult(std::make_shared<const Run>(std::move(run)));
 }
 
-/// Writes the files of a run. @return why there is no figure, though one was asked for; empty: there is no such reason
-std::string save(const SharedRun& shared, const std::string& folder, bool draws_figure) {
-  const py::gil_scoped_release released;
-  std::string no_figure;
-  const auto draw = [&](const std::filesystem::path& staged) {
-    try {
-      draw_runs({staged}, staged / "figure.svg");
-    } catch (const std::exception& error) {
-      no_figure = in_own_words(error);
-    }
-  };
-  StagedFolder staged{std::filesystem::path(folder)};
-  write_run(*shared.run, staged, draws_figure ? draw : std::function<void(const std::filesystem::path&)>());
-  return no_figure;
-}
-
-py::list parameters(const NamedScenario& named) {
+py::list parameters_of(const SoundScenario& scenario) {
   py::list list;
-  for (const auto& [name, value, unit, symbol] : derived_parameters(named.scenario)) {
+  for (const auto& [name, value, unit, symbol] : derived_parameters(scenario.checked)) {
     list.append(py::make_tuple(name, value, unit, symbol));
   }
   return list;
 }
 
-py::object limit_of(const SharedRun& shared) {
-  const auto& limit = shared.run->record.limit;
-  return limit ? py::object(py::str(std::string(code(*limit)))) : py::none();
+History profile_of(const SoundScenario& scenario, double time) {
+  const py::gil_scoped_release released;
+  return history_of(contact_profiles(scenario.checked, time));
 }
 
 }  // namespace
 
-NamedScenario NamedScenario::parse(const std::string& text, const std::string& origin,
-                                   const std::vector<std::string>& overrides) {
-  return timed([&] { return parse_scenario(text, origin, overrides); }, origin);
-}
-
-NamedScenario NamedScenario::read(const std::string& file, const std::vector<std::string>& overrides) {
-  return timed([&] { return read_scenario(file, overrides); }, file);
-}
-
-SharedRun::SharedRun(Run result) : run(std::make_shared<Run>(std::move(result))) {
-  history = std::make_shared<TableView>(std::shared_ptr<const Table>(run, &run->record.history));
-  events = std::make_shared<TableView>(std::shared_ptr<const Table>(run, &run->record.events));
-}
-
 void add_scenario(py::module_& module) {
-  py::class_<NamedScenario>(module, "Scenario")
-      .def_static("parse", &NamedScenario::parse)
-      .def_static("read", &NamedScenario::read)
-      .def_property_readonly("text", [](const NamedScenario& named) { return named.scenario.text; })
-      .def_readonly("origin", &NamedScenario::origin)
-      .def_property_readonly("overrides", [](const NamedScenario& named) { return named.scenario.overrides; })
-      .def_property_readonly("name", [](const NamedScenario& named) { return named.scenario.name; })
-      .def_property_readonly("title", [](const NamedScenario& named) { return named.scenario.title; })
-      .def_property_readonly("model", [](const NamedScenario& named) { return named.scenario.model; })
-      .def("run", &run)
-      .def("prepare",
-           [](const NamedScenario& named, std::vector<std::string> keys) {
-             return std::make_shared<Prepared>(named.scenario, named.origin, std::move(keys));
-           })
-      .def("parameters", &parameters);
-  py::class_<SharedRun>(module, "Run")
-      .def_property_readonly("status",
-                             [](const SharedRun& shared) { return std::string(to_string(shared.run->record.status)); })
-      .def_property_readonly("message", [](const SharedRun& shared) { return shared.run->record.message; })
-      .def_property_readonly("limit", &limit_of)
-      .def_property_readonly("warnings", [](const SharedRun& shared) { return shared.run->record.warnings; })
-      .def_readonly("history", &SharedRun::history)
-      .def_readonly("events", &SharedRun::events)
-      .def("json", [](const SharedRun& shared) { return run_json(*shared.run); })
-      .def("profile",
-           [](const SharedRun& shared, double time) {
-             const py::gil_scoped_release released;
-             return view_of(contact_profiles(shared.run->scenario, time));
-           })
-      .def("save", &save);
+  py::class_<SoundScenario>(module, "Scenario")
+      .def_static("parse", &parse_sound)
+      .def_static("read", &read_sound)
+      .def_property_readonly("text", [](const SoundScenario& scenario) { return scenario.source.text(); })
+      .def_property_readonly("origin", [](const SoundScenario& scenario) { return scenario.source.origin(); })
+      .def_property_readonly("overrides", [](const SoundScenario& scenario) { return scenario.source.overrides(); })
+      .def_property_readonly("name", [](const SoundScenario& scenario) { return scenario.checked.name; })
+      .def_property_readonly("title", [](const SoundScenario& scenario) { return scenario.checked.title; })
+      .def_property_readonly("model", [](const SoundScenario& scenario) { return scenario.checked.model; })
+      .def("run", &run_sound)
+      .def("parameters", &parameters_of)
+      .def("profile", &profile_of);
+  py::class_<RunResult>(module, "Run")
+      .def_property_readonly("status", [](const RunResult& run) { return to_string(run.status); })
+      .def_readonly("message", &RunResult::message)
+      .def_readonly("limit", &RunResult::limit)
+      .def_readonly("warnings", &RunResult::warnings)
+      .def_readonly("history", &RunResult::history)
+      .def_readonly("events", &RunResult::events)
+      .def("json", &RunResult::json)
+      .def("save", [](const RunResult& run, const std::string& folder) {
+        const py::gil_scoped_release released;
+        run.save(folder);
+      });
 }
 
 }  // namespace monograin::python

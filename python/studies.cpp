@@ -1,6 +1,5 @@
 // Sweeps, calibrations and comparisons.
 
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <cmath>
@@ -10,7 +9,6 @@
 #include "interruptible.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/sweep/sweep.hpp"
-#include "table.hpp"
 
 namespace monograin::python {
 namespace {
@@ -46,7 +44,7 @@ struct Fitted {
   std::string scenario_text;
   std::vector<std::string> notes;
   std::string no_figure;
-  std::shared_ptr<TableView> fit;
+  History fit;
 };
 
 /// @param output      folder for the files of the program; empty: none are written
@@ -70,7 +68,7 @@ Fitted calibrate_file(const std::string& file, const std::string& output, double
                   .scenario_text = fitted_scenario_text(calibration, result),
                   .notes = result.notes,
                   .no_figure = {},
-                  .fit = view_of(fit_table(calibration, result))};
+                  .fit = history_of(fit_table(calibration, result))};
     if (!output.empty()) {
       StagedFolder staged(output, k_calibration_marker);
       fitted.no_figure = write_calibration(calibration, result, staged);
@@ -102,11 +100,11 @@ void add_studies(py::module_& module) {
       .def_readonly("no_figure", &Fitted::no_figure)
       .def_readonly("fit", &Fitted::fit);
   module.def("calibrate", &calibrate_file);
-  module.def("compare_tables", [](const TableView& a, const TableView& b, const std::string& x, const std::string& y) {
-    return as_python(compare_tables(a.table(), b.table(), x, y));
+  module.def("compare_tables", [](const History& a, const History& b, const std::string& x, const std::string& y) {
+    return as_python(compare(a, b, x, y));
   });
   module.def("compare_events",
-             [](const TableView& a, const TableView& b) { return as_python(compare_events(a.table(), b.table())); });
+             [](const History& a, const History& b) { return as_python(compare_events(a.table(), b.table())); });
 }
 
 }  // namespace monograin::python

@@ -70,7 +70,7 @@ class Posterior:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--steps", type=int, default=1000, help="of every walker [%(default)s]")
-    parser.add_argument("--walkers", type=int, default=16, help="[%(default)s]")
+    parser.add_argument("--walkers", type=int, default=32, help="[%(default)s]")
     parser.add_argument("--seed", type=int, default=1, help="[%(default)s]")
     parser.add_argument("--tolerance", type=float, help="largest share of a standard error, e.g. 0.01")
     options = parser.parse_args()
@@ -86,11 +86,12 @@ def main() -> int:
     errors = np.array([parameter.standard_error for parameter in calibration.parameters.values()])
     np.random.seed(options.seed)
     start = values + errors * np.random.standard_normal((options.walkers, len(values)))
-    sampler = emcee.EnsembleSampler(options.walkers, len(values), posterior)
+    # Proposals from a density of the other walkers: successive samples are nearly independent.
+    sampler = emcee.EnsembleSampler(options.walkers, len(values), posterior, moves=emcee.moves.KDEMove())
     sampler.run_mcmc(start, options.steps)
 
     chain = sampler.get_chain(discard=options.steps // 10, flat=True)
-    independent = len(chain) / sampler.get_autocorr_time(quiet=True).max()
+    independent = len(chain) / sampler.get_autocorr_time(tol=0).max()
     print(f"{options.walkers * options.steps} runs, {independent:.0f} independent samples, ", end="")
     print(f"each standard deviation known to {100.0 / np.sqrt(2.0 * independent):.1f} %")
     worst = 0.0

@@ -7,10 +7,9 @@ from typing import Any, Iterable, Literal, Sequence, Union, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _core
 from .errors import Interrupted
 from .runs import Run, Scenario, checked
-
-_STATUSES = np.array(["pending", "complete", "stopped", "failed", "refused"])
 
 
 class Prepared:
@@ -21,7 +20,7 @@ class Prepared:
 
     def __init__(self, scenario: Scenario, keys: Iterable[str]) -> None:
         self._scenario = scenario
-        self._core = scenario._core.prepare(list(keys))
+        self._core = _core.Prepared(scenario._core, list(keys))
 
     @property
     def scenario(self) -> Scenario:
@@ -45,7 +44,9 @@ class Prepared:
             SolverError: as in :meth:`monograin.Scenario.run`.
             ValueError: for another number of values.
         """
-        return checked(Run(self._core.run(np.ascontiguousarray(values, dtype=float))), check)
+        numbers = np.array(values, dtype=float)
+        core = self._core.run(numbers)
+        return checked(Run(core, lambda: self._scenario.replace(dict(zip(self.keys, numbers.tolist())))), check)
 
     @overload
     def map(
@@ -66,20 +67,18 @@ class Prepared:
             samples: array of shape (n, keys) in SI units; of one key also (n,).
             columns: formulas of the history's columns that give one number each, such as ``"max(axial.force)"`` or
                 ``"end(apparent_radius) / 0.01"``: numbers, names of columns, ``+ - * / ^``, brackets, ``sqrt`` and other
-                functions, and ``min``, ``max``, ``last`` (the last value that is defined) and ``end`` (that of the last
-                row).
+                functions, and ``min``, ``max`` and ``end`` (the last value) of those that are defined.
             threads: 0 for one for each core.
             statuses: whether to return how the runs ended as well.
 
         Returns:
-            Array of shape (n, columns). A run that stops at a limit of its model counts up to there. A row is nan where
-            the solver gave up or the scenario refuses the values. With ``statuses``, also an array of n words:
+            Array of shape (n, columns). A run that stops at a limit of its model, or whose solver gives up, counts up to
+            there. A row is nan where the scenario refuses the values. With ``statuses``, also an array of n words:
             ``"complete"``, ``"stopped"``, ``"failed"`` or ``"refused"``.
 
         Raises:
-            KeyError: for a formula with a name that is no column.
-            ValueError: for a text that is no formula, a formula that gives more than one number, and samples of another
-                shape.
+            ValueError: for a text that is no formula, a name in it that is no column, a formula that gives more than one
+                number, and samples of another shape.
             Interrupted: on Ctrl-C, with the rows that are there already. It is a ``KeyboardInterrupt``.
         """
         if threads < 0:
@@ -91,13 +90,14 @@ class Prepared:
             values = values[:, np.newaxis]
         if values.ndim != 2 or values.shape[1] != len(self.keys):
             raise ValueError(f"samples of shape {values.shape} for {len(self.keys)} keys; expected (n, {len(self.keys)})")
-        table = np.full((len(values), len(columns)), np.nan)
-        codes = np.zeros(len(values), dtype=np.int8)
-        try:
-            self._core.map(values, list(columns), threads, table, codes)
-        except KeyboardInterrupt as interrupt:
-            raise Interrupted(table, _STATUSES[codes]) from interrupt
-        return (table, _STATUSES[codes]) if statuses else table
+        results, words, raised = self._core.map(values, list(columns), threads)
+        table = results.reshape(len(values), len(columns))
+        ends = np.array([word or "pending" for word in words], dtype=str)
+        if isinstance(raised, KeyboardInterrupt):
+            raise Interrupted(table, ends) from raised
+        if raised is not None:
+            raise raised
+        return (table, ends) if statuses else table
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (Prepared, (self._scenario, self.keys))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-import warnings
-from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional, Union
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Optional, Union
 
 from numpy.typing import NDArray
 
@@ -56,7 +55,7 @@ class Scenario:
             ScenarioError: with every fault, also where there is no such file.
         """
         scenario = cls.__new__(cls)
-        scenario._core = _core.Scenario.read(os.fspath(path), [])
+        scenario._core = _core.Scenario.read(os.fspath(path))
         return scenario
 
     def replace(self, values: Mapping[str, Any]) -> Scenario:
@@ -113,7 +112,7 @@ class Scenario:
             SolverError: with the run up to there, where the solver gave up and ``check`` is true.
             ScenarioError: where the programs of the walls do not go together.
         """
-        return checked(Run(self._core.run()), check)
+        return checked(Run(self._core.run(), lambda: self), check)
 
     def prepare(self, keys: Iterable[str]) -> Prepared:
         """Prepares many runs that differ in some numbers: the scenario's text is read once.
@@ -158,10 +157,16 @@ class Run:
     ``run["axial.force"]`` is a column of the history, see :class:`monograin.Table`. ``len(run)`` is its number of rows.
     """
 
-    def __init__(self, core: _core.Run) -> None:
+    def __init__(self, core: _core.Run, scenario: Callable[[], Scenario]) -> None:
         self._core = core
+        self._scenario = scenario
         self._history = Table(core.history)
         self._events = Table(core.events)
+
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario that was run."""
+        return self._scenario()
 
     @property
     def status(self) -> str:
@@ -176,7 +181,7 @@ class Run:
     @property
     def limit(self) -> Optional[str]:
         """Code of the limit that stopped the run, such as ``"walls-meet"``; None if none did."""
-        return self._core.limit
+        return self._core.limit or None
 
     @property
     def warnings(self) -> list[str]:
@@ -245,19 +250,16 @@ class Run:
 
         return _figure.of_run(self)
 
-    def save(self, folder: Path, *, figure: bool = False) -> None:
+    def save(self, folder: Path) -> None:
         """Writes ``history.csv``, ``events.csv`` and ``run.json`` as ``monograin run -o`` does, all of them or none.
 
         Args:
             folder: is made if it does not exist. Files of an earlier run in it are replaced, others stay.
-            figure: whether to draw ``figure.svg`` with gnuplot. A figure that cannot be drawn is a Python warning.
 
         Raises:
             RuntimeError: naming what could not be written, or a folder that holds files but no run.
         """
-        no_figure = self._core.save(os.fspath(folder), figure)
-        if no_figure:
-            warnings.warn(f"no figure: {no_figure}", RuntimeWarning, stacklevel=2)
+        self._core.save(os.fspath(folder))
 
     def profile(self, time: float) -> Table:
         """Returns pressure and surface under the contacts at one instant. Runs the scenario again up to there.
@@ -274,7 +276,7 @@ class Run:
             RuntimeError: where the model has no profile, the run does not come to that instant, or no contact is closed
                 then.
         """
-        return Table(self._core.profile(time))
+        return Table(self.scenario._core.profile(time))
 
     def __repr__(self) -> str:
         why = f" ({self.message})" if self.message else ""

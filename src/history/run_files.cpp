@@ -28,7 +28,7 @@ void write_table(const Table& table, const fs::path& file) {
 Json versions() { return {{"monograin", version()}, {"sundials", sundials_version()}, {"compiler", __VERSION__}}; }
 
 /// What the files hold that options name, so that the run can be repeated without them.
-Json files_of(const Scenario& scenario) {
+Json files_of(const CheckedScenario& scenario) {
   Json files = Json::object();
   for (const auto& [option, curve] : scenario.curves) {
     files[scenario.model + '.' + option] = {{"name", std::get<std::string>(scenario.options.at(option))},
@@ -38,7 +38,7 @@ Json files_of(const Scenario& scenario) {
 }
 
 Json to_json(const Run& run) {
-  const Scenario& scenario = run.scenario;
+  const CheckedScenario& scenario = run.scenario;
   const RunRecord& record = run.record;
   const Statistics& s = record.statistics;
   Json classes = Json::array();
@@ -97,7 +97,7 @@ void write_run(Run& run, StagedFolder& folder, const std::function<void(const fs
   folder.publish();
 }
 
-Scenario scenario_of_run(const fs::path& folder) {
+CheckedScenario scenario_of_run(const fs::path& folder) {
   const fs::path file = folder / k_run_marker;
   const auto [text, problem] = read_text_file(file, k_largest_run);
   if (!problem.empty() || text.size() > k_largest_run) {

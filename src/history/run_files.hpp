@@ -12,9 +12,9 @@ namespace monograin {
 
 /// The scenario of a run, from its folder: with the overrides and the tables it had then, wherever those are now.
 /// @throws std::runtime_error where there is no run.json, or none that holds a scenario
-[[nodiscard]] Scenario scenario_of_run(const std::filesystem::path& folder);
+[[nodiscard]] CheckedScenario scenario_of_run(const std::filesystem::path& folder);
 
-/// What run.json holds: how the run ended, what it took, and the scenario with all that it needs to be repeated.
+/// Text of run.json.
 [[nodiscard]] std::string run_json(const Run& run);
 
 /// Writes a run into its folder, whole or not at all.

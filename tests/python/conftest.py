@@ -15,8 +15,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="session")
 def program() -> pathlib.Path:
-    """The program, of the same sources: MONOGRAIN_PROGRAM, or that of the release build."""
-    path = pathlib.Path(os.environ.get("MONOGRAIN_PROGRAM", ROOT / "build" / "release" / "monograin"))
+    """The program, of the same sources: MONOGRAIN_PROGRAM, or that of tools/demo."""
+    path = pathlib.Path(os.environ.get("MONOGRAIN_PROGRAM", ROOT / "build" / "demo" / "monograin"))
     if not path.is_file():
         pytest.skip(f"{path}: there is no program to compare with; tools/python-test builds it")
     return path

@@ -18,7 +18,7 @@ from numpy.testing import assert_array_equal
 import monograin as mg
 
 KEYS = ["material.youngs_modulus", "material.yield_stress", "loading.steps[0].displacement"]
-COLUMNS = ["max(axial.force)", "end(apparent_radius)", "last(axial.force) / max(axial.force)"]
+COLUMNS = ["max(axial.force)", "end(apparent_radius)", "end(axial.force) / max(axial.force)"]
 
 
 @pytest.fixture(scope="module")
@@ -81,14 +81,20 @@ def test_a_key_that_is_none_is_a_fault():
 
 
 def test_a_formula_that_is_none_is_an_error(prepared, samples):
-    with pytest.raises(KeyError, match="axial.forse"):
+    with pytest.raises(ValueError, match="axial.forse"):
         prepared.map(samples, ["max(axial.forse)"])
     with pytest.raises(ValueError, match="expected an operator"):
         prepared.map(samples, ["max(axial.force) max"])
-    with pytest.raises(ValueError, match="one for each row"):
+    with pytest.raises(ValueError, match="a value for each row"):
         prepared.map(samples, ["axial.force"])
     with pytest.raises(ValueError, match="list of formulas"):
         prepared.map(samples, "max(axial.force)")
+
+
+def test_a_prepared_run_knows_its_scenario(prepared, samples):
+    run = prepared.run(samples[0])
+    assert_array_equal(run.scenario.run()["axial.force"], run["axial.force"])
+    assert len(run.profile(0.5)) > 100
 
 
 def test_samples_of_another_shape_are_an_error(prepared):
