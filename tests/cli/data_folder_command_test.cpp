@@ -1,4 +1,5 @@
-// Where the program takes the definitions from that come with it; tests/install_test does the same for an installation.
+// Where the program takes the definitions from that come with it. For an installation tests/install/program_test.sh
+// sees to that.
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@ set -euo pipefail
 
 usage() {
   cat <<'END'
-Usage: tests/install_test BUILD | tests/install_test --program FILE
+Usage: tests/install/program_test.sh BUILD | tests/install/program_test.sh --program FILE
 
 Installs the build in the folder BUILD, or takes the installed program FILE, and runs from an empty folder: a ready
 scenario with its figure, a page of the atlas, and a scene of the bench.
@@ -28,7 +28,7 @@ fi
 data=$(dirname "$(dirname "$program")")/share/monograin
 
 fail() {
-  echo "tests/install_test: $*" >&2
+  echo "tests/install/program_test.sh: $*" >&2
   exit 1
 }
 
