@@ -1,0 +1,78 @@
+"""Configuration of the documentation site. `tools/docs` builds it."""
+
+import pathlib
+import re
+import sys
+
+DOCS = pathlib.Path(__file__).resolve().parent
+ROOT = DOCS.parent
+GENERATED = DOCS / "generated"
+
+cmake_project = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+project = "monograin"
+release = re.search(r"project\(monograin VERSION ([0-9.]+)", cmake_project).group(1)
+version = release
+author = "the authors of monograin"
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.mathjax",
+    "sphinxcontrib.bibtex",
+    "sphinx_copybutton",
+    "breathe",
+]
+exclude_patterns = ["generated/*.md"]  # parts that pages include
+language = "en"
+nitpicky = True
+# Names of the standard library and of numpy, whose own sites are not asked.
+nitpick_ignore_regex = [
+    (r"cpp:.*", r"(std|fmt|Eigen)(::.*)?"),
+    (r"cpp:.*", r"(size_t|uint\d+_t|int\d+_t)"),
+    (r"py:.*", r"(np|numpy|pandas|matplotlib|os|pathlib|collections|typing|npt)\..*"),
+    (r"py:.*", r"(optional|array_like|callable|scalar|shape|default|ndarray|ArrayLike|NDArray|DataFrame).*"),
+]
+
+# --- Markdown
+myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+myst_update_mathjax = False
+
+# --- formulas: a copy of Debian's MathJax, so that the pages need no network
+mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML"
+mathjax2_config = {"messageStyle": "none", "tex2jax": {"processClass": "math", "ignoreClass": "document"}}
+
+# --- references
+bibtex_bibfiles = ["generated/references.bib"]
+bibtex_default_style = "unsrt"
+bibtex_reference_style = "author_year"
+
+# --- code
+copybutton_prompt_text = "$ "
+copybutton_only_copy_prompt_lines = True
+breathe_projects = {"monograin": str(GENERATED / "doxygen" / "xml")}
+breathe_default_project = "monograin"
+breathe_domain_by_extension = {"hpp": "cpp"}
+autodoc_member_order = "bysource"
+autodoc_typehints = "description"
+sys.path.insert(0, str(ROOT / "build" / "docs" / "python"))
+
+# --- looks
+html_theme = "furo"
+html_title = f"monograin {release}"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_show_sphinx = False
+html_copy_source = False
+pygments_style = "friendly"
+pygments_dark_style = "monokai"
+
+
+def link_tables(_app, _name, source):
+    """Links to tables of plots/ lead to their pages (docs/generate.py writes these)."""
+    source[0] = re.sub(r"\]\((?:\.\./)+plots/([\w-]+)\.md\)", r"](/tables/\1.md)", source[0])
+
+
+def setup(app):
+    app.connect("source-read", link_tables)
