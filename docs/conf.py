@@ -13,6 +13,7 @@ project = "monograin"
 release = re.search(r"project\(monograin VERSION ([0-9.]+)", cmake_project).group(1)
 version = release
 author = "the authors of monograin"
+html_show_copyright = False
 
 extensions = [
     "myst_parser",

@@ -57,10 +57,15 @@ DIMENSIONS = {
 # Words of plots/laws-fe.csv that are models.
 MODEL_WORDS = ("hertz", "mdr", "semimech", "hardening", "nonlocal", "compressible")
 
+# Keys in the order in which a scenario file is written.
+ORDER = ("title", "model", "particle", "material", "loading", "output", "numerics", "configuration", "centre", "angle",
+         "oblique_walls", "name", "normal", "gap", "fixed", "wall", "duration", "rate", "until", "steps", "integrator",
+         "rtol", "atol")
+
 # What a column holds; of the columns of a contact class the name after the class.
 COLUMNS = {
     "time": "time since the start of the program",
-    "step": "number of the step of the program, from 0",
+    "step": "number of the step of the program, from 1",
     "row": "0 at an output point, -1 just before and 1 just after an event or a corner of the program",
     "apparent_radius": "radius of the sphere whose caps the contacts cut off",
     "volume": "volume of the particle",
@@ -221,6 +226,8 @@ def accepts(schema):
     if "anyOf" in schema:
         parts = [accepts(part) for part in schema["anyOf"]]
         return " or ".join(dict.fromkeys(parts))
+    if schema.get("type") == "string" and schema.get("minLength"):
+        return "name of a file"
     kinds = {"string": "text", "integer": "whole number", "number": "number"}
     kind = schema.get("type")
     return kinds.get(kind) or fail(f"a kind of value that this script does not know: {schema}")
@@ -293,17 +300,17 @@ def write_language(schema):
     text = "### At the top of the file\n\n"
     root = {name: value for name, value in walls.items() if name != "mdr"}
     root["model"] = {**root["model"], "enum": [ref["$ref"].rsplit("/", 1)[1] for ref in schema["oneOf"]]}
-    text += key_table(root, definitions["mdr"]["required"], (), ("title", "model"))
+    text += key_table(root, definitions["mdr"]["required"], (), ORDER)
     text += "\n### `[particle]`\n\n" + key_table(walls["particle"]["properties"], walls["particle"]["required"])
-    text += "\n### `[loading]`\n\n" + key_table(keys, ["configuration", "steps"])
-    text += "\n### `[[loading.wall]]`\n\n" + key_table(wall["properties"], wall["required"])
+    text += "\n### `[loading]`\n\n" + key_table(keys, ["configuration", "steps"], (), ORDER)
+    text += "\n### `[[loading.wall]]`\n\n" + key_table(wall["properties"], wall["required"], (), ORDER)
     text += "\n### `[[loading.steps]]`\n\nA step has one of these forms, told by its first key.\n"
     for key, form in steps_of(definitions["mdr-step"]):
-        text += f"\n`{key}`\n\n" + key_table(form["properties"], form["required"])
+        text += f"\n`{key}`\n\n" + key_table(form["properties"], form["required"], (), (key, *ORDER))
     text += "\n### `until`\n\nOne or several conditions; the first that is met ends the step.\n\n"
     text += key_table(until_of(definitions["mdr-step"]), [])
     text += "\n### `[output]`\n\n" + key_table(walls["output"]["properties"], [])
-    text += "\n### `[numerics]`\n\n" + key_table(walls["numerics"]["properties"], [])
+    text += "\n### `[numerics]`\n\n" + key_table(walls["numerics"]["properties"], [], (), ORDER)
     write("scenario-keys.md", text)
 
     units = {}
@@ -455,7 +462,7 @@ def write_models(program, schema, ready):
         if "particle" not in properties:
             page += "## Steps\n\n"
             for key, form in steps_of(schema["definitions"][f"{name}-step"]):
-                page += f"`{key}`\n\n" + key_table(form["properties"], form["required"]) + "\n"
+                page += f"`{key}`\n\n" + key_table(form["properties"], form["required"], (), (key, *ORDER)) + "\n"
             page += "Conditions of `until`:\n\n"
             page += key_table(until_of(schema["definitions"][f"{name}-step"]), []) + "\n"
         if "configurations" in sections:
@@ -538,8 +545,16 @@ def rows_of(file):
         return list(csv.DictReader(line for line in stream if not line.startswith("#")))
 
 
+SPACE = "\u00a0"  # keeps a number and its unit in one line
+
+
 def percent(value):
-    return f"{100 * float(value):.3g} %"
+    return f"{100 * float(value):.3g}{SPACE}%"
+
+
+def microseconds(seconds):
+    micro = 1e6 * float(seconds)
+    return f"{micro:.3g}{SPACE}µs" if micro < 999.5 else f"{micro / 1000:.3g}{SPACE}ms"
 
 
 def write_measurements():
@@ -547,12 +562,20 @@ def write_measurements():
     last = {}
     for row in rows_of(ROOT / "plots" / "laws-fe.csv"):
         last[row["table"], row["case"]] = row  # rows of a case go on to larger displacements
-    lines = []
+    by_scene = {}
     for (scene, case), row in last.items():
         material, _, law = case.rpartition(": ")
-        lines.append([scene, material, f"`{law}`" if law in MODEL_WORDS else law, f"{float(row['reversal']):.3g}",
-                      percent(row["peak_error"]), f"{float(row['area_error']):.3g}", percent(row["coverage"])])
-    write("distance.md", table(["scene", "case", "law", "up to δ/R0", "peak error", "area error", "covered"], lines))
+        by_scene.setdefault(scene, []).append(
+            [material, re.sub(rf"\b({'|'.join(MODEL_WORDS)})\b", r"`\1`", law, count=1), f"{float(row['reversal']):.3g}",
+             percent(row["peak_error"]), f"{float(row['area_error']):.3g}", percent(row["coverage"])])
+    text = ""
+    for scene, lines in by_scene.items():
+        text += f"\n**{scene}**\n\n"
+        heading = ["case", "law", "up to δ/R0", "peak error", "area error", "covered"]
+        if all(line[0] == "" for line in lines):
+            heading, lines = heading[1:], [line[1:] for line in lines]
+        text += table(heading, lines)
+    write("distance.md", text)
 
     measured = {}
     for row in rows_of(ROOT / "plots" / "bench.csv"):
@@ -566,9 +589,24 @@ def write_measurements():
 
         auto, bdf = at("auto"), at("cvode-bdf")
         ratio = float(bdf["fastest[s]"]) / float(auto["fastest[s]"])
-        lines.append([titles[scene], f"{1e6 * float(auto['fastest[s]']):.3g} µs", f"{float(auto['curve_error']):.1g}",
-                      f"{1e6 * float(bdf['fastest[s]']):.3g} µs", f"{float(bdf['curve_error']):.1g}", f"{ratio:.3g}"])
+        lines.append([titles[scene], microseconds(auto["fastest[s]"]), f"{float(auto['curve_error']):.1g}",
+                      microseconds(bdf["fastest[s]"]), f"{float(bdf['curve_error']):.1g}", f"{ratio:.3g}"])
     write("cost.md", table(["scene", "`auto`", "its error", "`cvode-bdf`", "its error", "time ratio"], lines))
+    write_equal_errors()
+
+
+def write_equal_errors():
+    """Columns of the table "auto" of plots/bench.md, and the largest advantage of another method in it."""
+    text = (ROOT / "plots" / "bench.md").read_text(encoding="utf-8").split("## `auto`")[1].split("\n## ")[0]
+    rows = [[part.strip() for part in line.strip("|\n").split("|")] for line in text.splitlines() if line.startswith("|")]
+    heading, rows = rows[0], rows[2:]
+    most = max(float(row[heading.index(f"at {error}")]) for row in rows for error in ("1e-04", "1e-06", "1e-08", "1e-10"))
+    shown = ["scene", "is", "bdf at 1e-04", "bdf at 1e-08", "bdf at its own"]
+    lines = [[row[heading.index(name)] for name in shown] for row in rows]
+    write("equal-errors.md",
+          f"At errors of 1e-4, 1e-6, 1e-8 and 1e-10 the time of `auto` is at most {most:.3g} times that of the fastest other "
+          "method, in any scene. The time of `cvode-bdf`, the standard code for stiff equations, over that of `auto`:\n\n"
+          + table(["scene", "`auto` is", "at 1e-4", "at 1e-8", "at the error of `auto`"], lines))
 
 
 def write_tables():
@@ -585,6 +623,23 @@ def draw_comparison(program, scratch):
     run(program, "run", ROOT / "scenarios" / "die.toml", "--set", "material.yield_stress=30 MPa", "-o", softer, "--quiet")
     run(program, "plot", scratch / "die", softer, "-o", scratch / "both.svg")
     shutil.copy(scratch / "both.svg", GENERATED / "figures" / "both.svg")
+
+
+def block_of(page, name):
+    """A block of a page that its mark calls a file."""
+    text = (DOCS / page).read_text(encoding="utf-8")
+    found = re.search(rf"<!-- test: file {re.escape(name)} -->\n```\w+\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    return found.group(1) if found else fail(f"docs/{page} has no block for the file {name}")
+
+
+def draw_own_figure(program, scratch):
+    """The figure that the definition in "Getting started" draws."""
+    (scratch / "paper").mkdir()
+    write("mine.toml", block_of("getting-started.md", "mine.toml"), scratch)
+    definition = block_of("getting-started.md", "paper/yield.toml").replace('format = "pdf"', 'format = "svg"')
+    write("yield.toml", definition, scratch / "paper")
+    run(program, "atlas", "yield", "--plots", scratch / "paper")
+    shutil.copy(scratch / "paper" / "yield.svg", GENERATED / "figures" / "yield.svg")
 
 
 def draw_calibration(program, scratch):
@@ -682,6 +737,7 @@ def main():
         ready = run_ready_scenarios(program, pathlib.Path(scratch))
         draw_calibration(program, pathlib.Path(scratch))
         draw_comparison(program, pathlib.Path(scratch))
+        draw_own_figure(program, pathlib.Path(scratch))
     models = write_models(program, schema, ready)
     write_language(schema)
     write_measurements()
