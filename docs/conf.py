@@ -2,7 +2,6 @@
 
 import pathlib
 import re
-import sys
 
 DOCS = pathlib.Path(__file__).resolve().parent
 ROOT = DOCS.parent
@@ -35,6 +34,13 @@ nitpick_ignore_regex = [
     (r"py:.*", r"(optional|array_like|callable|scalar|shape|default|ndarray|ArrayLike|NDArray|DataFrame).*"),
 ]
 
+# Types of the headers that are only declared: their definitions are not part of the interface.
+nitpick_ignore = [("cpp:identifier", "monograin")] + [
+    ("cpp:identifier", name)
+    for header in (ROOT / "include").rglob("*.hpp")
+    for name in re.findall(r"^(?:class|struct) (\w+);", header.read_text(encoding="utf-8"), re.MULTILINE)
+]
+
 # --- Markdown
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
@@ -46,7 +52,7 @@ mathjax2_config = {"messageStyle": "none", "tex2jax": {"processClass": "math", "
 
 # --- references
 bibtex_bibfiles = ["generated/references.bib"]
-bibtex_default_style = "unsrt"
+bibtex_default_style = "plain"
 bibtex_reference_style = "author_year"
 
 # --- code
@@ -54,10 +60,10 @@ copybutton_prompt_text = "$ "
 copybutton_only_copy_prompt_lines = True
 breathe_projects = {"monograin": str(GENERATED / "doxygen" / "xml")}
 breathe_default_project = "monograin"
+breathe_show_include = False
 breathe_domain_by_extension = {"hpp": "cpp"}
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
-sys.path.insert(0, str(ROOT / "build" / "docs" / "python"))
 
 # --- looks
 html_theme = "furo"

@@ -27,6 +27,8 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+import types
+from xml.etree import ElementTree
 
 DOCS = pathlib.Path(__file__).resolve().parent
 ROOT = DOCS.parent
@@ -679,10 +681,15 @@ def write_examples():
 
 
 def write_python_api():
-    sys.path.insert(0, str(ROOT / "build" / "docs" / "python"))
     if importlib.util.find_spec("monograin") is not None:
-        write("python-api.md", "```{eval-rst}\n.. automodule:: monograin\n   :members:\n   :undoc-members:\n```\n")
-        return "the package"
+        package = importlib.import_module("monograin")
+        modules = ["monograin"] + [f"monograin.{name}" for name in package.__all__
+                                   if isinstance(getattr(package, name), types.ModuleType)]
+        text = ""
+        for module in modules:
+            text += f"## `{module}`\n\n```{{eval-rst}}\n.. automodule:: {module}\n   :members:\n   :undoc-members:\n```\n\n"
+        write("python-api.md", text)
+        return f"{', '.join(modules)} of {pathlib.Path(package.__file__).parent}"
     if (ROOT / "python").is_dir():
         fail("the tree has a package in python/, but this interpreter cannot import monograin; run tools/docs, which "
              "builds it, or install it")
@@ -690,8 +697,40 @@ def write_python_api():
     return "left out: the tree has no folder python/"
 
 
+def declarations_of(xml, header):
+    """A directive of breathe for everything that a header declares; first its own description."""
+    index = ElementTree.parse(xml / "index.xml")
+    kinds = {compound.get("refid"): compound.get("kind") for compound in index.iter("compound")}
+    for refid, kind in kinds.items():
+        if kind != "file":
+            continue
+        file = ElementTree.parse(xml / f"{refid}.xml").find("compounddef")
+        if file.find("location").get("file") == header:
+            break
+    else:
+        fail(f"doxygen has not read {header}")
+    brief = " ".join("".join(file.find("briefdescription").itertext()).split())
+    parts = [f"{brief}\n\n"] if brief else []
+    for inner in file.findall("innerclass"):
+        # What is declared here only stands in another file, or nowhere.
+        if inner.get("refid") in kinds and inner.text.count("::") == 1:
+            own = ElementTree.parse(xml / f"{inner.get('refid')}.xml").find("compounddef")
+            if own.find("location").get("bodyfile") == header or own.find("location").get("file") == header:
+                kind = kinds[inner.get("refid")]
+                parts.append(f"```{{doxygen{kind}}} {inner.text}\n:members:\n:undoc-members:\n```\n\n")
+    namespace = ElementTree.parse(xml / "namespacemonograin.xml").find("compounddef")
+    members = [member for member in namespace.iter("memberdef") if member.find("location").get("file") == header]
+    functions = [member.findtext("name") for member in namespace.iter("memberdef") if member.get("kind") == "function"]
+    for member in members:
+        kind, name = member.get("kind"), member.findtext("name")
+        arguments = member.findtext("argsstring") if kind == "function" and functions.count(name) > 1 else ""
+        arguments = re.sub(r"\)[^)]*$", ")", arguments)
+        parts.append(f"```{{doxygen{kind}}} monograin::{name}{arguments}\n```\n\n")
+    return parts
+
+
 def write_cpp_api():
-    headers = sorted((ROOT / "include" / "monograin").rglob("*.hpp"))
+    headers = sorted((ROOT / "include" / "monograin").glob("*.hpp"))
     if not headers:
         write("cpp-api.md", "```{note}\nThis version of monograin comes without installed headers.\n```\n")
         return "left out: the tree has no include/monograin/*.hpp"
@@ -701,7 +740,7 @@ def write_cpp_api():
     settings = {
         "PROJECT_NAME": "monograin",
         "INPUT": ROOT / "include" / "monograin",
-        "RECURSIVE": "YES",
+        "RECURSIVE": "NO",
         "FILE_PATTERNS": "*.hpp",
         "OUTPUT_DIRECTORY": output,
         "GENERATE_HTML": "NO",
@@ -720,9 +759,8 @@ def write_cpp_api():
     text = ""
     for header in headers:
         name = header.relative_to(ROOT / "include").as_posix()
-        text += f"## `<{name}>`\n\n```{{doxygenfile}} {name}\n:sections: briefdescription detaileddescription "
-        text += "innernamespace innerclass define enum func typedef var public-type public-func public-static-func "
-        text += "public-attrib public-static-attrib\n```\n\n"
+        declared = declarations_of(output / "xml", name)
+        text += f"## `<{name}>`\n\n" + "".join(declared)
     write("cpp-api.md", text)
     return f"{len(headers)} headers"
 
