@@ -26,6 +26,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import textwrap
 import tomllib
 import types
 from xml.etree import ElementTree
@@ -336,7 +337,7 @@ def sections_of(text):
         if line and not line.startswith(" "):
             name, _, rest = line.partition(": ")
             current = name.strip()
-            sections[current] = [rest] if rest else []
+            sections.setdefault(current, []).extend([rest] if rest else [])
         elif line.strip():
             sections[current].append(line)
     return sections
@@ -440,7 +441,8 @@ def write_models(program, schema, ready):
         definition = schema["definitions"][name]
         properties = definition["properties"]
         page = f"# Model `{name}`\n\n{summary[0].upper()}{summary[1:]}.\n\n"
-        page += f"Source: {sections['source'][0]}.\n\n"
+        sources = [f"- {line}" for line in sections.get("reference", []) + sections.get("source", [])]
+        page += "Sources:\n\n" + "\n".join(sources) + "\n\n"
         page += f"Equations, figures and limits of the law: {{doc}}`/theory/{name}`.\n\n"
         if "material" in properties:
             material = properties["material"]
@@ -511,15 +513,24 @@ def write_models(program, schema, ready):
     return names
 
 
+def wrapped(text):
+    """A help text with lines that fit on a page; what a line says goes on where it began."""
+    lines = []
+    for line in text.splitlines():
+        column = re.match(r"(  \S.*?\s{2,})?", line).end()
+        lines += textwrap.wrap(line, 92, subsequent_indent=" " * column, break_on_hyphens=False) or [""]
+    return "\n".join(lines) + "\n"
+
+
 def write_commands(program):
     top = run(program, "--help")
-    text = f"```text\n{top}```\n"
+    text = f"```text\n{wrapped(top)}```\n"
     block = top.split("Subcommands:", 1)
     if len(block) != 2:
         fail("'monograin --help' lists no subcommands")
     commands = re.findall(r"^  (\S+)", block[1].split("\n\n")[0], re.MULTILINE)
     for command in commands:
-        text += f"\n## `monograin {command}`\n\n```text\n{run(program, command, '--help')}```\n"
+        text += f"\n## `monograin {command}`\n\n```text\n{wrapped(run(program, command, '--help'))}```\n"
     write("commands.md", text)
     return commands
 

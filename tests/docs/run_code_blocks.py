@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the code blocks of README.md and of the documentation.
+"""Runs the code blocks of README.md, of the documentation and of models/README.md.
 
 Usage: tests/docs/run_code_blocks.py --program FILE [--python FILE] [PAGE...]
 
@@ -10,7 +10,8 @@ run one after the other, with the program on the PATH:
     console   lines that begin with "$ " are commands; they print what stands below them, "..." for any text
     toml      a scenario, a sweep, a calibration or a figure definition that the program has to accept
     python    has to end without an exception; skipped, and counted, where the interpreter has no package monograin
-    cpp, cmake, Dockerfile  cannot be run here: need a mark
+    cpp       has to compile as a part of the tree
+    cmake     cannot be run here: needs a mark
 
 Blocks in other languages (text, json) are no code. A comment on the line before a block changes what is done with it:
 
@@ -35,8 +36,8 @@ from dataclasses import dataclass
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 MADE = ("docs/generated/", "docs/reference/models/", "docs/tables/")  # by docs/generate.py
-RUN_LANGUAGES = ("sh", "console", "toml", "python")
-MARKED_LANGUAGES = ("cpp", "cmake", "dockerfile")
+RUN_LANGUAGES = ("sh", "console", "toml", "python", "cpp")
+MARKED_LANGUAGES = ("cmake", "dockerfile")
 LONGEST = 600  # seconds that a block may take
 
 
@@ -137,6 +138,10 @@ class Page:
             self.run_console(block.text, code)
         elif block.language == "python":
             self.expect(code, self.call(self.python, "-", text=block.text))
+        elif block.language == "cpp":
+            folders = [part for folder in ("include", "models", "src") for part in ("-I", ROOT / folder)]
+            self.expect(code, self.call("g++", "-std=c++20", "-fsyntax-only", *folders, "-isystem", "/usr/include/eigen3",
+                                        "-x", "c++", "-", text=block.text))
         else:
             self.run_toml(block, code)
 
@@ -191,7 +196,7 @@ def main():
     arguments = parser.parse_args()
     program = pathlib.Path(arguments.program).resolve()
     python_runs = has_package(arguments.python)
-    pages = arguments.pages or ["README.md"] + sorted(
+    pages = arguments.pages or ["README.md", "models/README.md"] + sorted(
         page.relative_to(ROOT).as_posix() for page in (ROOT / "docs").rglob("*.md")
         if not page.relative_to(ROOT).as_posix().startswith(MADE))
 
