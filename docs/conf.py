@@ -3,6 +3,8 @@
 import pathlib
 import re
 
+from sphinx.ext import napoleon
+
 DOCS = pathlib.Path(__file__).resolve().parent
 ROOT = DOCS.parent
 GENERATED = DOCS / "generated"
@@ -31,6 +33,8 @@ nitpick_ignore_regex = [
     (r"cpp:.*", r"(std|fmt|Eigen)(::.*)?"),
     (r"cpp:.*", r"(size_t|uint\d+_t|int\d+_t)"),
     (r"py:.*", r"(np|numpy|pandas|matplotlib|os|pathlib|collections|typing|npt)\..*"),
+    # Types that are no part of the interface, and sentences that begin as a type does.
+    (r"py:.*", r"(_core\..*|Path|[a-z_]+|\w+ .*)"),
     (r"py:.*", r"(optional|array_like|callable|scalar|shape|default|ndarray|ArrayLike|NDArray|DataFrame).*"),
 ]
 
@@ -63,6 +67,7 @@ breathe_default_project = "monograin"
 breathe_show_include = False
 breathe_domain_by_extension = {"hpp": "cpp"}
 autodoc_member_order = "bysource"
+napoleon_use_ivar = True
 autodoc_typehints = "description"
 
 # --- looks
@@ -74,6 +79,17 @@ html_show_sphinx = False
 html_copy_source = False
 pygments_style = "friendly"
 pygments_dark_style = "monokai"
+
+
+process_docstring = napoleon._process_docstring
+
+
+def process_docstring_of_property(app, what, *rest):
+    """Reads a property's docstring as that of a method: "Curves: a table" does not begin with a type there."""
+    process_docstring(app, "method" if what in ("attribute", "property") else what, *rest)
+
+
+napoleon._process_docstring = process_docstring_of_property
 
 
 def link_tables(_app, _name, source):

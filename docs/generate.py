@@ -691,16 +691,24 @@ def write_examples():
     return len(files)
 
 
+def public_modules(module):
+    """The names of a module and of the modules that it, and they in turn, name in __all__."""
+    names = [module.__name__]
+    for name in getattr(module, "__all__", []):
+        if isinstance(getattr(module, name), types.ModuleType):
+            names += public_modules(getattr(module, name))
+    return names
+
+
 def write_python_api():
     if importlib.util.find_spec("monograin") is not None:
         package = importlib.import_module("monograin")
-        modules = ["monograin"] + [f"monograin.{name}" for name in package.__all__
-                                   if isinstance(getattr(package, name), types.ModuleType)]
+        modules = public_modules(package)
         text = ""
         for module in modules:
             text += f"## `{module}`\n\n```{{eval-rst}}\n.. automodule:: {module}\n   :members:\n   :undoc-members:\n```\n\n"
         write("python-api.md", text)
-        return f"{', '.join(modules)} of {pathlib.Path(package.__file__).parent}"
+        return f"{len(modules)} modules of {pathlib.Path(package.__file__).parent}"
     if (ROOT / "python").is_dir():
         fail("the tree has a package in python/, but this interpreter cannot import monograin; run tools/docs, which "
              "builds it, or install it")
