@@ -69,6 +69,7 @@ breathe_domain_by_extension = {"hpp": "cpp"}
 autodoc_member_order = "bysource"
 napoleon_use_ivar = True
 autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
 
 # --- looks
 html_theme = "furo"
@@ -92,6 +93,11 @@ def process_docstring_of_property(app, what, *rest):
 napoleon._process_docstring = process_docstring_of_property
 
 
+def skip_fields(_app, _what, _name, member, skip, _options):
+    """Leaves out fields of named tuples, which the text of their class describes."""
+    return skip or type(member).__name__ == "_tuplegetter"
+
+
 def link_tables(_app, _name, source):
     """Links to tables of plots/ lead to their pages (docs/generate.py writes these)."""
     source[0] = re.sub(r"\]\((?:\.\./)+plots/([\w-]+)\.md\)", r"](/tables/\1.md)", source[0])
@@ -99,3 +105,4 @@ def link_tables(_app, _name, source):
 
 def setup(app):
     app.connect("source-read", link_tables)
+    app.connect("autodoc-skip-member", skip_fields)

@@ -676,15 +676,22 @@ def write_examples():
             text = "```{note}\nThis version of monograin comes without its C++ examples.\n```\n"
         write(f"example-{name}.md", text)
     text = ""
-    files = sorted((ROOT / "examples" / "python").glob("*.py"))
+    # The first run comes first.
+    files = sorted((ROOT / "examples" / "python").glob("*.py"), key=lambda file: (not file.stem.startswith("first"), file.name))
     for file in files:
-        documentation = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8")))
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        documentation = ast.get_docstring(tree)
         if not documentation:
             fail(f"{file.relative_to(ROOT)} does not begin with a text that says what it shows")
         title, _, rest = documentation.partition("\n")
-        text += f"### {title.rstrip('.')}\n\n{rest.strip()}\n\n" if rest.strip() else f"### {title.rstrip('.')}\n\n"
-        text += f"`examples/python/{file.name}`:\n\n```{{literalinclude}} /../examples/python/{file.name}\n"
-        text += ":language: python\n```\n\n"
+        # A line on its own, indented, says how to call the program.
+        usage = re.findall(r"^ {4}(\S.*)$", rest, re.MULTILINE)
+        rest = re.sub(r"^ {4}\S.*$", "", rest, flags=re.MULTILINE).strip()
+        heading, _, more = title.rstrip(".").partition(": ")
+        text += f"## {heading}\n\n" + (f"{more[0].upper()}{more[1:]}. " if more else "") + f"{rest}\n\n"
+        text += f"`examples/python/{file.name}`" + (f", called as `{usage[0]}`" if usage else "") + ":\n\n"
+        text += f"```{{literalinclude}} /../examples/python/{file.name}\n:language: python\n"
+        text += f":lines: {tree.body[0].end_lineno + 2}-\n```\n\n"
     if not files and (ROOT / "python").is_dir():
         fail("pages show examples/python/*.py, of which there are none")
     write("python-examples.md", text or "```{note}\nThis version of monograin comes without its Python examples.\n```\n")
@@ -706,7 +713,7 @@ def write_python_api():
         modules = public_modules(package)
         text = ""
         for module in modules:
-            text += f"## `{module}`\n\n```{{eval-rst}}\n.. automodule:: {module}\n   :members:\n   :undoc-members:\n```\n\n"
+            text += f"## `{module}`\n\n```{{eval-rst}}\n.. automodule:: {module}\n   :members:\n```\n\n"
         write("python-api.md", text)
         return f"{len(modules)} modules of {pathlib.Path(package.__file__).parent}"
     if (ROOT / "python").is_dir():
