@@ -684,9 +684,9 @@ def write_examples():
         if not documentation:
             fail(f"{file.relative_to(ROOT)} does not begin with a text that says what it shows")
         title, _, rest = documentation.partition("\n")
-        # A line on its own, indented, says how to call the program.
-        usage = re.findall(r"^ {4}(\S.*)$", rest, re.MULTILINE)
-        rest = re.sub(r"^ {4}\S.*$", "", rest, flags=re.MULTILINE).strip()
+        # A line on its own says how to call the program.
+        usage = re.findall(r"^ *(python3 .*)$", rest, re.MULTILINE)
+        rest = re.sub(r"^ *python3 .*$", "", rest, flags=re.MULTILINE).strip()
         heading, _, more = title.rstrip(".").partition(": ")
         text += f"## {heading}\n\n" + (f"{more[0].upper()}{more[1:]}. " if more else "") + f"{rest}\n\n"
         text += f"`examples/python/{file.name}`" + (f", called as `{usage[0]}`" if usage else "") + ":\n\n"
