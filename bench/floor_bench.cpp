@@ -30,13 +30,13 @@ namespace fs = std::filesystem;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// A scenario of the folder of ready ones, as the list of the command `bench` has it: twenty output points a step.
-Scenario ready_scenario(const std::string& file, std::vector<std::string> overrides = {}) {
+CheckedScenario ready_scenario(const std::string& file, std::vector<std::string> overrides = {}) {
   overrides.emplace_back("output.points=20");
   return read_scenario(fs::path(MONOGRAIN_SOURCE_DIR) / "scenarios" / file, overrides);
 }
 
 /// The scenario's history by the integrator that it chooses.
-RunRecord history_of(const Scenario& scenario, double* seconds = nullptr) {
+RunRecord history_of(const CheckedScenario& scenario, double* seconds = nullptr) {
   Scene scene = make_scene(scenario);
   const std::string integrator = choose_integrator(scenario.numerics.integrator, *scene.system).used;
   const auto start = Clock::now();
@@ -78,7 +78,8 @@ double seconds_of_one(const std::vector<Place>& places, Law&& law) {
 }
 
 template <class Place, class Law>
-void time_history(benchmark::State& state, const Scenario& scenario, const std::vector<Place>& places, Law&& law) {
+void time_history(benchmark::State& state, const CheckedScenario& scenario, const std::vector<Place>& places,
+                  Law&& law) {
   double fastest = std::numeric_limits<double>::infinity();
   for (auto _ : state) {
     double seconds = 0.0;
@@ -102,7 +103,7 @@ void plastic_history(benchmark::State& state, const std::string& file, const std
     double x = 0.0;
     bool is_lateral = false;
   };
-  const Scenario scenario = ready_scenario(file, overrides);
+  const CheckedScenario scenario = ready_scenario(file, overrides);
   const plastic::Law law = plastic_law_of(scenario);
   const auto* semimech = std::get_if<plastic::SemimechLaw>(&law);
   const bool is_die = semimech != nullptr && semimech->configuration == plastic::Configuration::die;
@@ -133,7 +134,7 @@ void compressible_history(benchmark::State& state) {
     UnloadingCurve curve;
     double d = 0.0;
   };
-  const Scenario scenario = ready_scenario("compressible.toml");
+  const CheckedScenario scenario = ready_scenario("compressible.toml");
   const CompressibleLaw law = compressible_law_of(scenario);
   const RunRecord record = history_of(scenario);
   const Columns history(record.history);
@@ -161,7 +162,7 @@ void material_point_history(benchmark::State& state) {
     double p = 0.0;
     double s = 0.0;
   };
-  const Scenario scenario =
+  const CheckedScenario scenario =
       ready_scenario("material-point.toml",
                      {"loading.steps=[{strain=-0.25,duration=1},{strain=-0.24,duration=1},{strain=-0.26,duration=1}]"});
   const Parameters parameters =
@@ -183,7 +184,7 @@ void material_point_history(benchmark::State& state) {
 }
 
 void packing_history(benchmark::State& state) {
-  const Scenario scenario = ready_scenario("packing.toml");
+  const CheckedScenario scenario = ready_scenario("packing.toml");
   const packing::Law law = packing_law_of(scenario);
   const RunRecord record = history_of(scenario);
   const Columns history(record.history);

@@ -13,7 +13,7 @@
 namespace monograin {
 namespace {
 
-RunRecord history(const Scenario& scenario, const std::string& integrator, double rtol) {
+RunRecord history(const CheckedScenario& scenario, const std::string& integrator, double rtol) {
   Scene scene = make_scene(scenario);
   return record_run(scene, integrator, {rtol, 1e-4 * rtol}, scenario.output);
 }
@@ -37,7 +37,7 @@ double force_error(const Table& reference, const Table& other) {
 }
 
 void default_scene(benchmark::State& state, const std::string& integrator) {
-  const Scenario scenario = parse_scenario(default_scenario_text(), "die.toml");
+  const CheckedScenario scenario = parse_scenario(default_scenario_text(), "die.toml");
   const double rtol = std::pow(10.0, -static_cast<double>(state.range(0)));
   RunRecord record;
   for (auto _ : state) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <limits>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "elastic/line_contact.hpp"
 #include "elastic/nonlocal_coupling.hpp"
@@ -58,10 +60,23 @@ constexpr std::array k_functions{
   }
 MONOGRAIN_MODELS(MONOGRAIN_DECLARE)
 
-std::span<const Model> model_catalogue() noexcept {
+namespace {
+
+std::vector<Model>& all_models() {
 #define MONOGRAIN_CALL(folder, function) folder::function(),
-  static const std::array k_models{MONOGRAIN_MODELS(MONOGRAIN_CALL)};
-  return k_models;
+  static std::vector<Model> models{MONOGRAIN_MODELS(MONOGRAIN_CALL)};
+  return models;
+}
+
+}  // namespace
+
+std::span<const Model> model_catalogue() noexcept { return all_models(); }
+
+void add_model(const Model& model) {
+  if (find_model(model.name) != nullptr) {
+    throw std::invalid_argument("there is a model '" + std::string(model.name) + "' already; expected another name");
+  }
+  all_models().push_back(model);
 }
 
 const Model* find_model(std::string_view name) noexcept {

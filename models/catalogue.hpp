@@ -11,6 +11,10 @@ namespace monograin {
 /// All models this version can run, in the order in which they are listed to users.
 [[nodiscard]] std::span<const Model> model_catalogue() noexcept;
 
+/// Adds a model behind the others. To be called before a scenario is read, from one thread.
+/// @throws std::invalid_argument where the name is taken
+void add_model(const Model& model);
+
 /// The entry of that name, or nullptr.
 [[nodiscard]] const Model* find_model(std::string_view name) noexcept;
 

@@ -121,7 +121,7 @@ UnloadingCurve unloading_from(const LoadingLaw& law, double hertz_stiffness, con
   const UnloadingShape shape = rule.at(largest);
   const double force = loading_force(law, largest);
   const double recovery = std::cbrt(force / hertz_stiffness);
-  const double length = recovery * recovery / shape.stiffness_ratio;  // 001_3cd85d3b0dc520cf.txt, eqs. 11 and 12
+  const double length = recovery * recovery / shape.stiffness_ratio;  // Edmans and Sinka (n.d.), eqs. 11 and 12
   return {.largest = largest,
           .force = force,
           .length = std::min(length, largest),

@@ -2,7 +2,7 @@
 ///
 /// d is the displacement of a wall over R0 and f its force over pi R0^2 sigma_y0, sigma_y0 the hydrostatic yield
 /// pressure at the reference density; work is over pi R0^3 sigma_y0. Every contact depends on its own wall alone.
-/// Source: 001_3cd85d3b0dc520cf.txt, eqs. 6 and 9 to 14.
+/// Source: Edmans and Sinka (n.d.), eqs. 6 and 9 to 14.
 #pragma once
 
 #include <span>
@@ -14,7 +14,7 @@ namespace monograin::compressible {
 /// Displacement over R0 at which the source's data, and with them the law, end.
 inline constexpr double k_largest_displacement = 0.5;
 
-/// First loading (001_3cd85d3b0dc520cf.txt, eq. 6):
+/// First loading (Edmans and Sinka, n.d., eq. 6):
 ///
 ///   f = k d                           up to delta_t
 ///   f = k delta_t exp(a (d - delta_t))  beyond

@@ -1,6 +1,6 @@
 /// Fits of the contact law to a force-displacement curve: the source's nested procedure, made exact, and the joint fit
 /// of all three parameters; and of the unloading curve.
-/// Source: 001_3cd85d3b0dc520cf.txt, section 6.1 and eqs. 7, 8, 11 and 13.
+/// Source: Edmans and Sinka (n.d.), section 6.1 and eqs. 7, 8, 11 and 13.
 #pragma once
 
 #include <optional>

@@ -19,7 +19,7 @@
 /// that end of the segment is reached in one direction only, and only if the program moves the pressure that way. If it
 /// does not, the state tends to that place (critical state) without reaching it.
 ///
-/// Source: 001_3cd85d3b0dc520cf.txt, sections 2 and 3; Table 3 as corrected.
+/// Source: Edmans and Sinka (n.d.), sections 2 and 3; Table 3 as corrected.
 #pragma once
 
 #include <array>

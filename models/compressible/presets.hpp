@@ -9,7 +9,7 @@ namespace monograin::compressible {
 
 /// Rows of Tables 4 and 6 (whole materials) and of Table 5 (their stiffness ratio only). A model takes from them the
 /// keys that it has.
-/// Source: 001_3cd85d3b0dc520cf.txt. Values are those at the reference density, 0.4 or 0.7.
+/// Source: Edmans and Sinka (n.d.). Values are those at the reference density, 0.4 or 0.7.
 [[nodiscard]] std::span<const Preset> presets() noexcept;
 
 }  // namespace monograin::compressible

@@ -3,7 +3,7 @@
 /// Stresses are in units of the hydrostatic yield pressure at the reference density; signs are tension positive. The
 /// state variable phi is minus the volumetric plastic strain (Drucker-Prager cap, von Mises double cap) or the
 /// accumulated deviatoric plastic strain (von Mises).
-/// Source: 001_3cd85d3b0dc520cf.txt, sections 2 and 3.
+/// Source: Edmans and Sinka (n.d.), sections 2 and 3.
 #pragma once
 
 namespace monograin::compressible {

@@ -1,5 +1,5 @@
 /// Parameters of the contact law from those of the material, by the regressions over the source's simulations.
-/// Source: 001_3cd85d3b0dc520cf.txt, appendix A, eqs. A.1 to A.3, two coefficients corrected.
+/// Source: Edmans and Sinka (n.d.), appendix A, eqs. A.1 to A.3, two coefficients corrected.
 #pragma once
 
 #include <optional>

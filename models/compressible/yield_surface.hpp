@@ -2,7 +2,7 @@
 ///
 /// p is tension positive, s axial minus lateral stress, q = |s|. Every segment's formula goes on smoothly beyond the
 /// segment's ends, so that trial steps and roots may look there.
-/// Source: 001_3cd85d3b0dc520cf.txt, Tables 2 and 3 (with eps = (pi4 - pi3)/pi2, corrected).
+/// Source: Edmans and Sinka (n.d.), Tables 2 and 3 (with eps = (pi4 - pi3)/pi2, corrected).
 #pragma once
 
 #include <optional>

@@ -7,7 +7,7 @@ namespace monograin {
 ///
 /// @param youngs_modulus  E [Pa], > 0
 /// @param poisson_ratio   nu, in (-1, 0.5]
-/// Source: 002_000df8fc37500451.txt, eq. 3 with a rigid second body.
+/// Source: Zunker and Kamrin (2024), eq. 3 with a rigid second body.
 [[nodiscard]] double composite_modulus(double youngs_modulus, double poisson_ratio) noexcept;
 
 /// Normal force of an elastic sphere pressed by a rigid flat wall [N], F = (4/3) E* sqrt(R) delta^(3/2).
@@ -16,7 +16,7 @@ namespace monograin {
 /// @param radius             R [m], > 0
 /// @param overlap            delta [m], approach of wall and centre since first touch; <= 0: no contact, gives 0
 /// @return force [N], compression positive; C1 in delta, the second derivative grows without bound as delta -> 0+
-/// Source: Hertz (1882); 002_000df8fc37500451.txt, eq. 25. Valid while the contact radius is well below R (not
+/// Source: Hertz (1882); Zunker and Kamrin (2024), eq. 25. Valid while the contact radius is well below R (not
 /// checked).
 [[nodiscard]] double hertz_force(double composite_modulus, double radius, double overlap) noexcept;
 

@@ -5,7 +5,7 @@
 ///
 ///   b/R = sqrt(8 S/(pi E*)),   delta/D = (2 S/(pi E*)) (2 ln(4 R/b) - 1)
 ///
-/// Source: K.L. Johnson, Contact Mechanics (1985), section 5.6; for the disc of 004_9c343b0bc13eca8e.txt, section 3.
+/// Source: Johnson (1985), Contact Mechanics, section 5.6; for the disc of Nezamabadi et al. (2022), section 3.
 #pragma once
 
 namespace monograin {

@@ -17,7 +17,7 @@
 ///
 /// over all walls is positive definite. Its smallest eigenvalue is the margin: 1 unloaded, 0 at the limit of
 /// applicability, where the stiffness becomes infinite and the path turns back.
-/// Source: 003_97bacd62ecebe201.txt, sections 2 to 4. Elastic: no memory, unloading retraces loading.
+/// Source: Agarwal and Gonzalez (2018), sections 2 to 4. Elastic: no memory, unloading retraces loading.
 #pragma once
 
 #include <Eigen/Core>

@@ -2,7 +2,7 @@
 /// approach and the radius of other contacts.
 ///
 /// theta in (0, pi] is the angle between the normals of two walls, x = a/R the radius of the contact that is acted
-/// upon. Compliances are over 1/(E R); nu in [0, 0.5]. Source, unless said otherwise: 003_97bacd62ecebe201.txt.
+/// upon. Compliances are over 1/(E R); nu in [0, 0.5]. Source, unless said otherwise: Agarwal and Gonzalez (2018).
 #pragma once
 
 #include <Eigen/Core>

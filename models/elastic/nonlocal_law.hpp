@@ -4,7 +4,7 @@
 /// Everything is a function of the signed square of the contact radius, s = a^2 in contact and s = -gap (over R)
 /// without: the laws are smooth in it down to first touch, where force and contact radius have infinite derivatives.
 /// Lengths are over R, forces over E* R^2, pressures over E*, energies over E* R^3, with E* = E/(1 - nu^2).
-/// Source: 003_97bacd62ecebe201.txt, section 4 and appendix B, with all curvature sums equal to 1.
+/// Source: Agarwal and Gonzalez (2018), section 4 and appendix B, with all curvature sums equal to 1.
 #pragma once
 
 #include <array>

@@ -7,7 +7,7 @@
 /// ds/dxi from the same matrix; implicit, the equations themselves.
 ///
 /// Elastic: a contact has no memory, and the work of the walls is the stored energy. Lengths over R0, forces over E
-/// R0^2. Source: 003_97bacd62ecebe201.txt.
+/// R0^2. Source: Agarwal and Gonzalez (2018).
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 /// An elastic particle between rigid walls with its centre fixed: Hertz's law at every contact. Lengths in R0, stresses
-/// in E*. Source: Hertz (1882); 002_000df8fc37500451.txt, eq. 25.
+/// in E*. Source: Hertz (1882); Zunker and Kamrin (2024), eq. 25.
 #pragma once
 
 #include <array>

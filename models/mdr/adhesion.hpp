@@ -4,7 +4,7 @@
 /// stand for |x| < a. The springs at the edge are stretched by -w(a) = g(a) - delta_1D, and tear where that reaches
 /// Dl(a) = sqrt(2 pi a dg/E*). Functions are homogeneous: lengths in any one unit, stresses in any one unit, the
 /// surface energy dg (of the particle-wall contact) in stress times length. Forces are positive in compression.
-/// Source: 002_000df8fc37500451.txt, sections 3.2 and 6, Appendix A.
+/// Source: Zunker and Kamrin (2024), sections 3.2 and 6, Appendix A.
 #pragma once
 
 #include "mdr/contact.hpp"

@@ -1,6 +1,6 @@
 /// The map of where the model's pull-off can be trusted: test F.7 on contacts of flattened particles.
 ///
-/// Source: 002_000df8fc37500451.txt, Appendix F.2 (F.7, Fig. F.21). Lengths are in R0.
+/// Source: Zunker and Kamrin (2024), Appendix F.2 (F.7, Fig. F.21). Lengths are in R0.
 #pragma once
 
 #include "mdr/adhesion_validity.hpp"

@@ -4,7 +4,7 @@
 /// off the apparent sphere, less what the contacts compress elastically, stays constant:
 ///   V_geo,Q(R, delta_o) - V_Q(R, delta_o) = C
 /// over the contacts Q that take part in the growth. Volumes are divided by 4 pi R0^3.
-/// Source: 002_000df8fc37500451.txt, eqs. (37) and (38) in the form that can be integrated.
+/// Source: Zunker and Kamrin (2024), eqs. (37) and (38) in the form that can be integrated.
 #pragma once
 
 #include <cmath>

@@ -1,7 +1,7 @@
 /// Force, contact radius and stored energy of one contact of the MDR model, without adhesion.
 ///
 /// Every function is homogeneous: lengths in any one unit, stresses in any one unit. Overlaps and forces are positive
-/// in compression. Derivatives are exact. Source, unless said otherwise: 002_000df8fc37500451.txt.
+/// in compression. Derivatives are exact. Source, unless said otherwise: Zunker and Kamrin (2024).
 #pragma once
 
 #include <limits>

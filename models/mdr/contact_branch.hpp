@@ -1,7 +1,7 @@
 /// Branch of one contact of an MDR particle: what it remembers, its force and energy there, and its transitions.
 ///
 /// Lengths in R0, stresses in any one unit; r = (R - R0)/R0 is the growth of the apparent radius. Functions know one
-/// contact alone: no wall, no step of a program, no other contact. Source: 002_000df8fc37500451.txt.
+/// contact alone: no wall, no step of a program, no other contact. Source: Zunker and Kamrin (2024).
 #pragma once
 
 #include "mdr/adhesive_edge.hpp"

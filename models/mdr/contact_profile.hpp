@@ -2,7 +2,7 @@
 ///
 /// One form serves all contacts whose image is an indenter: elastic ones, yielded ones at and below their largest
 /// overlap, each with or without adhesion. Every function is homogeneous: lengths in any one unit, stresses in any one
-/// unit. Source, unless said otherwise: 002_000df8fc37500451.txt.
+/// unit. Source, unless said otherwise: Zunker and Kamrin (2024).
 #pragma once
 
 #include <vector>

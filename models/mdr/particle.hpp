@@ -1,6 +1,6 @@
 /// The MDR particle in one mode, under one step of a program: its contacts and their sums at a state, and their rates.
 ///
-/// Lengths in R0; stresses in the yield stress (in E* where nothing yields). Source: 002_000df8fc37500451.txt, stated
+/// Lengths in R0; stresses in the yield stress (in E* where nothing yields). Source: Zunker and Kamrin (2024), stated
 /// as a continuous-time model: the published time-step recipe is its first-order explicit scheme.
 #pragma once
 

@@ -1,6 +1,6 @@
 /// Mean pressure of a fully plastic contact over the yield stress, p_Y/Y, as a function of x = delta/R: the one
 /// ingredient of the MDR model that is fitted to computed contacts, and so the one that another material replaces.
-/// Source: 002_000df8fc37500451.txt, eq. 28.
+/// Source: Zunker and Kamrin (2024), eq. 28.
 #pragma once
 
 #include <cstddef>

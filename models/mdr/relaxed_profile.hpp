@@ -3,7 +3,7 @@
 /// The profile of a strongly flattened particle is concave in the middle and convex at the edge. Once its whole disc
 /// has been closed by compression, the contact stays compact: its edge recedes in equilibrium and turns unstable
 /// outside the ring where the image has its minimum. Functions are homogeneous: lengths in any one unit, stresses in
-/// any one unit. Source: 002_000df8fc37500451.txt, sections 3.2 and Appendix F.2.
+/// any one unit. Source: Zunker and Kamrin (2024), sections 3.2 and Appendix F.2.
 #pragma once
 
 #include <array>

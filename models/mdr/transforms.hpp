@@ -7,7 +7,7 @@
 /// distance to the edge is not in a rounded r. A callable of two arguments, r and half the chord sqrt(a^2 - r^2), is
 /// given both and loses none. A jump of the integrand, or a logarithm at the axis, costs time and leaves an error of
 /// 1e-6 or 1e-8 of it. What the callables throw passes through; NaN in gives NaN out. Every function is homogeneous:
-/// lengths in any one unit, stresses in any one unit. Source: 002_000df8fc37500451.txt, section 3.1.
+/// lengths in any one unit, stresses in any one unit. Source: Zunker and Kamrin (2024), section 3.1.
 #pragma once
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>

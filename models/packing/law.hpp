@@ -10,7 +10,7 @@
 ///   packing
 ///            sigma_p = sigma_y + sigma_e H/(E + H) exactly, without any 0/0 for H = 0
 ///
-/// Equations are those of 004_9c343b0bc13eca8e.txt; 6, 13 and 22 corrected in sign (as printed they are negative where
+/// Equations are those of Nezamabadi et al. (2022); 6, 13 and 22 corrected in sign (as printed they are negative where
 /// the packing is compressed).
 #pragma once
 

@@ -8,7 +8,7 @@
 ///
 /// alone. Lengths are over R, pressures over the strength S (the yield stress, or the strength of a power law), forces
 /// over S R^2, works over S R^3. Monotonic loading only: the source has no law for unloading.
-/// Source, unless said otherwise: 000_34f0f4b3689a4570.txt.
+/// Source, unless said otherwise: Shahin (2021).
 #pragma once
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 ///
 /// The contact is fully plastic from first touch; an enclosed particle stiffens from x_Hmin on until it fills its cell
 /// at x_zp, where the pressure is infinite (it is incompressible). Source, unless said otherwise:
-/// 000_34f0f4b3689a4570.txt, chapter 3.
+/// Shahin (2021), chapter 3.
 #pragma once
 
 #include "plastic/compression.hpp"

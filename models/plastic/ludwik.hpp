@@ -3,7 +3,7 @@
 ///   Ludwik:    sigma = Y + K eps_pl^(1/n),  eps = eps_pl + sigma/E;  sigma = E eps below Y
 ///   Hollomon:  sigma = kappa eps^mu,  mu = 1/m
 ///
-/// Source, unless said otherwise: 000_34f0f4b3689a4570.txt, eqs. 2.1-2.3 and 3.1-3.3.
+/// Source, unless said otherwise: Shahin (2021), eqs. 2.1-2.3 and 3.1-3.3.
 #pragma once
 
 namespace monograin::plastic {

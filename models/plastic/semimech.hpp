@@ -5,7 +5,7 @@
 /// compression has the first three only. The contact radius is one series throughout. In the elastic regime the
 /// pressure is Hertz's but the contact radius is not, so the force is D1^2 times Hertz's (1.35 to 3.07 times for
 /// E/((1-nu^2) Y) from 22 to 6000).
-/// Source, unless said otherwise: 000_34f0f4b3689a4570.txt, chapter 2.
+/// Source, unless said otherwise: Shahin (2021), chapter 2.
 #pragma once
 
 #include <vector>

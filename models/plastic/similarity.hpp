@@ -3,7 +3,7 @@
 ///
 /// Small strains only (no check here).
 /// mu = 1/m in [0, 1] throughout; mu = 0 is ideal plasticity.
-/// Source, unless said otherwise: 000_34f0f4b3689a4570.txt, section 2.2 and appendix B.
+/// Source, unless said otherwise: Shahin (2021), section 2.2 and appendix B.
 #pragma once
 
 #include "plastic/compression.hpp"

@@ -43,18 +43,18 @@ int bench_against_fe(const BenchOptions& options) {
 }
 
 /// The scenes that are named, in the list or as scenario files; all of the list where none is.
-std::vector<Scenario> chosen_scenes(const BenchOptions& options, const std::vector<Scenario>& listed) {
+std::vector<CheckedScenario> chosen_scenes(const BenchOptions& options, const std::vector<CheckedScenario>& listed) {
   if (options.scenes.empty()) return listed;
-  std::vector<Scenario> chosen;
+  std::vector<CheckedScenario> chosen;
   for (const std::string& name : options.scenes) {
-    const auto found = std::ranges::find(listed, name, &Scenario::name);
+    const auto found = std::ranges::find(listed, name, &CheckedScenario::name);
     if (found != listed.end()) {
       chosen.push_back(*found);
     } else if (fs::path(name).extension() == ".toml") {
       chosen.push_back(read_scenario(name, {}, FileKind::any));
     } else {
       std::string names;
-      for (const Scenario& scene : listed) names += (names.empty() ? "" : ", ") + scene.name;
+      for (const CheckedScenario& scene : listed) names += (names.empty() ? "" : ", ") + scene.name;
       throw UsageError(
           fmt::format("{}: no such scene in {}, nor a scenario file (.toml); there are {}", name, options.list, names));
     }
@@ -85,13 +85,13 @@ int bench(const BenchOptions& options) {
                             return fs::path(name).extension() != ".toml";
                           });
   const BenchList list = needs_list ? read_bench_list(options.list) : BenchList{};
-  const std::vector<Scenario> scenarios = chosen_scenes(options, list.scenes);
+  const std::vector<CheckedScenario> scenarios = chosen_scenes(options, list.scenes);
   prepare_folder(options.output);
   std::vector<BenchScene> scenes;
   std::vector<BenchProfile> profiles;
   {
     ProgressBar bar("scenes");
-    for (const Scenario& scenario : scenarios) {
+    for (const CheckedScenario& scenario : scenarios) {
       const std::size_t done = scenes.size();
       scenes.push_back(measure_scene(scenario, settings, [&] { bar.show(done, scenarios.size()); }));
       if (!options.profiles) continue;

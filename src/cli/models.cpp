@@ -130,7 +130,7 @@ void print_model(const Model& model) {
 }
 
 /// Derived constants of a scenario's material and particle.
-void print_parameters(const Scenario& scenario) {
+void print_parameters(const CheckedScenario& scenario) {
   for (const auto& [name, value, unit, symbol] : derived_parameters(scenario)) {
     print_data("{:<28}{:.17g} {}{}\n", name, value, unit, symbol.empty() ? "" : fmt::format("  {}", symbol));
   }
@@ -150,7 +150,7 @@ int run_models(const ModelsOptions& options) {
       print_model(*model);
     return k_success;
   }
-  const Scenario scenario = read_scenario(options.file, {}, FileKind::any);
+  const CheckedScenario scenario = read_scenario(options.file, {}, FileKind::any);
   if (model != nullptr && scenario.model != model->name) {
     throw UsageError(fmt::format("{}: its model is '{}', not '{}'", options.file, scenario.model, model->name));
   }

@@ -30,7 +30,7 @@ struct RunOptions {
 };
 
 struct Job {
-  Scenario scenario;
+  CheckedScenario scenario;
   fs::path folder;
   std::unique_ptr<StagedFolder> staged;
   double parse_time = 0.0;
@@ -64,7 +64,7 @@ std::vector<Job> read_jobs(const RunOptions& options) {
 }
 
 /// The folder's name below `runs` or below -o: runs with other overrides of one scenario stand side by side.
-std::string folder_name(const Scenario& scenario) {
+std::string folder_name(const CheckedScenario& scenario) {
   if (scenario.overrides.empty()) return scenario.name;
   std::vector<std::string> overrides = scenario.overrides;
   // Only among those of one key the order counts.

@@ -31,7 +31,7 @@ struct CommandOptions {
 /// Checks given scenarios, such as those that a stress test has left.
 int check_files(const std::vector<std::string>& files) {
   int code = k_success;
-  std::vector<Scenario> scenarios;
+  std::vector<CheckedScenario> scenarios;
   for (const std::string& file : files) scenarios.push_back(read_scenario(file, {}, FileKind::any));
   for (std::size_t i = 0; i < files.size(); ++i) {
     const StressVerdict verdict = check_scene(scenarios[i]);

@@ -6,18 +6,11 @@
 #include <vector>
 
 #include "engine/integrator.hpp"
+#include "monograin/status.hpp"
 #include "scenario/scenario.hpp"
 #include "scene/scene.hpp"
 
 namespace monograin {
-
-enum class RunStatus {
-  complete,
-  stopped,  ///< left the model's domain
-  failed    ///< the solver gave up
-};
-
-[[nodiscard]] std::string_view to_string(RunStatus status) noexcept;
 
 /// Where a row of the history stands: at an output point, or just before or after an event or corner.
 enum class RowSide : signed char { before = -1, output = 0, after = 1 };

@@ -40,7 +40,7 @@ constexpr std::pair<std::string_view, std::string_view> k_symbols[] = {
 };
 
 std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
-  const Scenario& scenario = run.scenario;
+  const CheckedScenario& scenario = run.scenario;
   std::vector<std::pair<std::string, std::string>> header{{"program", fmt::format("monograin {}", version())},
                                                           {"scenario", scenario.name},
                                                           {"scenario_digest", scenario_digest(scenario)},
@@ -69,7 +69,7 @@ std::string text_digest(std::string_view text) {
   return fmt::format("xxh128:{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-std::string scenario_digest(const Scenario& scenario) {
+std::string scenario_digest(const CheckedScenario& scenario) {
   std::string text = scenario.text;
   for (const std::string& override_text : scenario.overrides) text += "\n--set " + override_text;
   for (const auto& [option, curve] : scenario.curves) text += "\n--file " + option + '\n' + curve.text;
@@ -88,7 +88,7 @@ RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances
   return record;
 }
 
-Run run_scenario(const Scenario& scenario, const SystemWrapper& wrapped) {
+Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped) {
   Run run;
   run.scenario = scenario;
   Stopwatch watch;

@@ -9,6 +9,7 @@
 
 #include "engine/drive.hpp"
 #include "history/table.hpp"
+#include "monograin/version.hpp"
 #include "scenario/scenario.hpp"
 
 namespace monograin {
@@ -41,7 +42,7 @@ struct Timings {
 using SystemWrapper = std::function<std::unique_ptr<HybridSystem>(std::unique_ptr<HybridSystem>)>;
 
 struct Run {
-  Scenario scenario;
+  CheckedScenario scenario;
   RunRecord record;
   IntegratorChoice integrator;
   std::vector<ClassSummary> classes;
@@ -51,14 +52,12 @@ struct Run {
 
 /// Runs a checked scenario. Histories and events carry the header lines that make their files self-describing.
 /// @param wrapped  takes the scene's system before it runs, and returns what is to run in its place
-[[nodiscard]] Run run_scenario(const Scenario& scenario, const SystemWrapper& wrapped = {});
+[[nodiscard]] Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped = {});
 
 /// Digest of a text, e.g. "xxh128:3f...".
 [[nodiscard]] std::string text_digest(std::string_view text);
 
 /// Digest of a scenario's text, its overrides and the files its options name.
-[[nodiscard]] std::string scenario_digest(const Scenario& scenario);
-
-[[nodiscard]] std::string_view version() noexcept;
+[[nodiscard]] std::string scenario_digest(const CheckedScenario& scenario);
 
 }  // namespace monograin

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 
 #include "history/run.hpp"
 #include "history/staged_folder.hpp"
@@ -11,7 +12,10 @@ namespace monograin {
 
 /// The scenario of a run, from its folder: with the overrides and the tables it had then, wherever those are now.
 /// @throws std::runtime_error where there is no run.json, or none that holds a scenario
-[[nodiscard]] Scenario scenario_of_run(const std::filesystem::path& folder);
+[[nodiscard]] CheckedScenario scenario_of_run(const std::filesystem::path& folder);
+
+/// Text of run.json.
+[[nodiscard]] std::string run_json(const Run& run);
 
 /// Writes a run into its folder, whole or not at all.
 /// @param draw  called with the folder before it is published, for figures; may be empty

@@ -38,7 +38,7 @@ PlannedStep planned(const Step& step) {
 
 }  // namespace
 
-ModelInput model_input(const Scenario& scenario) {
+ModelInput model_input(const CheckedScenario& scenario) {
   const Model& model = *find_model(scenario.model);
   ModelInput input{.radius = scenario.radius,
                    .values = scenario.material,

@@ -7,6 +7,6 @@
 namespace monograin {
 
 /// Refers to the scenario, which has to outlive it.
-[[nodiscard]] ModelInput model_input(const Scenario& scenario);
+[[nodiscard]] ModelInput model_input(const CheckedScenario& scenario);
 
 }  // namespace monograin

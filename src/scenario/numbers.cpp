@@ -21,7 +21,7 @@ void append_quantities(std::vector<NumberKey>& numbers, std::string_view table, 
 
 }  // namespace
 
-std::vector<NumberKey> number_keys(const Scenario& scenario) {
+std::vector<NumberKey> number_keys(const CheckedScenario& scenario) {
   const Language& language = language_of(scenario.model);
   std::vector<NumberKey> numbers;
   append_quantities(numbers, "material", language.material);
@@ -33,7 +33,7 @@ std::vector<NumberKey> number_keys(const Scenario& scenario) {
   return numbers;
 }
 
-void set_number(Scenario& scenario, std::string_view path, double value) {
+void set_number(CheckedScenario& scenario, std::string_view path, double value) {
   if (path == k_angle) {
     scenario.loading.oblique_angle = value;
   } else if (path.starts_with(k_material)) {

@@ -20,11 +20,11 @@ struct NumberKey {
 
 /// Those of a checked scenario: the constants of its material, the numbers among its model's options, and what its
 /// configuration adds to them.
-[[nodiscard]] std::vector<NumberKey> number_keys(const Scenario& scenario);
+[[nodiscard]] std::vector<NumberKey> number_keys(const CheckedScenario& scenario);
 
 /// Sets one of them. What it accepts is not checked again: see the key's range.
 /// @param value  [SI]
 /// @throws std::logic_error for another path
-void set_number(Scenario& scenario, std::string_view path, double value);
+void set_number(CheckedScenario& scenario, std::string_view path, double value);
 
 }  // namespace monograin

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "scenario/document.hpp"
@@ -77,7 +79,8 @@ class Override {
  public:
   Override(const std::string& text, FaultList& faults) : text_(text), here_{origin_of(text)}, faults_(faults) {}
 
-  void apply(toml::table& root) {
+  /// @param number  the value, where it is known; none: it is read
+  void apply(toml::table& root, std::optional<double> number = {}) {
     const std::size_t equals = text_.find('=');
     if (equals == std::string::npos) return fault("expected key=value");
     const auto path = parse_key_path(trimmed_key(equals));
@@ -85,7 +88,7 @@ class Override {
       return fault(fmt::format("'{}' is not the path of a key; expected for example loading.steps[0].rate",
                                shown(std::string_view(text_).substr(0, equals))));
     }
-    std::optional<toml::table> holder = parse_value(equals);
+    std::optional<toml::table> holder = number ? holder_of(*number) : parse_value(equals);
     if (!holder) return;
     put(root, *path, *holder);
   }
@@ -116,6 +119,19 @@ class Override {
     }
   }
 
+  /// A whole number is an integer, as it is in a text.
+  static toml::table holder_of(double number) {
+    constexpr double k_largest_integer = 1e15;
+    const bool is_integer = std::trunc(number) == number && std::abs(number) < k_largest_integer;
+    toml::table holder;
+    if (is_integer) {
+      holder.insert("x", static_cast<std::int64_t>(number));
+    } else {
+      holder.insert("x", number);
+    }
+    return holder;
+  }
+
   std::nullopt_t report(const ScenarioError& error) {
     for (const Fault& problem : error.faults()) faults_.add(problem.where, problem.message);
     return std::nullopt;
@@ -136,19 +152,23 @@ class Override {
     toml::table* table = as_table(node, key);
     if (table == nullptr) return nullptr;
     if (toml::node* next = table->get(key)) return next;
-    if (!wants_table) {
-      fault(fmt::format("there is no '{}' to pick an entry from", key));
-      return nullptr;
-    }
-    toml::table made = parse_document("x={}", here_.file);
+    toml::table made = made_empty(wants_table);
     insert(*table, key, made.begin()->second);
     return table->get(key);
   }
 
-  toml::node* descend(toml::node& node, std::size_t index, bool /*wants_table*/) {
+  toml::node* descend(toml::node& node, std::size_t index, bool wants_table) {
     toml::array* array = as_array(node, index);
-    return array == nullptr ? nullptr : array->get(index);
+    if (array == nullptr) return nullptr;
+    if (index == array->size()) {
+      toml::table made = made_empty(wants_table);
+      append(*array, made.begin()->second);
+    }
+    return array->get(index);
   }
+
+  /// A table with an empty table or array as its only entry.
+  toml::table made_empty(bool is_table) { return parse_document(is_table ? "x={}" : "x=[]", here_.file); }
 
   void place(toml::node& node, const std::string& key, toml::node& value) {
     if (toml::table* table = as_table(node, key)) insert(*table, key, value);
@@ -157,9 +177,14 @@ class Override {
   void place(toml::node& node, std::size_t index, toml::node& value) {
     toml::array* array = as_array(node, index);
     if (array == nullptr) return;
+    if (index == array->size()) return append(*array, value);
     value.visit([&](auto& concrete) {
       array->insert(array->erase(array->cbegin() + static_cast<std::ptrdiff_t>(index)), std::move(concrete));
     });
+  }
+
+  static void append(toml::array& array, toml::node& value) {
+    value.visit([&](auto& concrete) { array.push_back(std::move(concrete)); });
   }
 
   void insert(toml::table& table, const std::string& key, toml::node& value) {
@@ -175,11 +200,12 @@ class Override {
     return table;
   }
 
+  /// The node as an array that has the index, or of which it is the next one.
   toml::array* as_array(toml::node& node, std::size_t index) {
     toml::array* array = node.as_array();
     if (array == nullptr) {
       fault(fmt::format("index [{}] cannot be used on {}; expected an array", index, shown(node)));
-    } else if (index >= array->size()) {
+    } else if (index > array->size()) {
       fault(fmt::format("index [{}] is out of range; the array has {} entries, counted from 0", index, array->size()));
       return nullptr;
     }
@@ -215,6 +241,10 @@ std::string in_quotes(std::string_view text) {
 
 void apply_override(toml::table& root, const std::string& text, FaultList& faults) {
   Override(text, faults).apply(root);
+}
+
+void apply_number(toml::table& root, const std::string& text, double number, FaultList& faults) {
+  Override(text, faults).apply(root, number);
 }
 
 bool is_override(const SourceLocation& where) noexcept { return where.file.starts_with(k_prefix); }

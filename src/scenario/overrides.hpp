@@ -25,9 +25,15 @@ using PathPart = std::variant<std::string, std::size_t>;
 
 /// Puts the value of one `key=value` text into the tree; nodes made this way give the override as their file.
 ///
+/// An index one past the end of an array appends to it.
+///
 /// A path that leads nowhere and a value that is broken TOML are added to `faults`; the tree is then unchanged, but for
 /// tables made on the way.
 void apply_override(toml::table& root, const std::string& text, FaultList& faults);
+
+/// Puts a number into the tree, which its text would put there, without reading the text.
+/// @param text  `key=number`
+void apply_number(toml::table& root, const std::string& text, double number, FaultList& faults);
 
 /// Whether the place is in an override rather than in a file.
 [[nodiscard]] bool is_override(const SourceLocation& where) noexcept;

@@ -28,7 +28,7 @@ std::string model_to_check_against(const toml::table& root) {
   return nearest.empty() ? word : std::string(nearest);
 }
 
-void read_particle(Reading& reading, const Section& root, const Language& language, Scenario& scenario) {
+void read_particle(Reading& reading, const Section& root, const Language& language, CheckedScenario& scenario) {
   if (language.particle.empty()) return;
   const Section particle(reading, root.table("particle", "[particle]"), language.particle);
   if (const auto radius = particle.number("radius")) {
@@ -38,7 +38,7 @@ void read_particle(Reading& reading, const Section& root, const Language& langua
 }
 
 /// The power law that a table `ludwik` stands for, as strength and hardening_exponent.
-void read_ludwik(Reading& reading, const Section& material, const Language& language, Scenario& scenario) {
+void read_ludwik(Reading& reading, const Section& material, const Language& language, CheckedScenario& scenario) {
   const std::size_t faults_before = reading.faults.size();
   const Section section(reading, material.table("ludwik", "ludwik"), language.ludwik);
   for (const char* key : {"strength", "hardening_exponent"}) {
@@ -76,7 +76,7 @@ std::optional<OptionValue> option_value(const Section& options, const KeySpec& s
 }
 
 /// What the named preset says of keys that are not given, and what is missing all the same.
-void read_preset(Reading& reading, const Section& material, const Language& language, Scenario& scenario) {
+void read_preset(Reading& reading, const Section& material, const Language& language, CheckedScenario& scenario) {
   const auto presets = language.model->presets;
   const std::string name = material.text("preset");
   if (const auto preset = std::ranges::find(presets, name, &Preset::name); preset != presets.end()) {
@@ -102,7 +102,7 @@ void read_preset(Reading& reading, const Section& material, const Language& lang
   }
 }
 
-void read_material(Reading& reading, const Section& root, const Language& language, Scenario& scenario) {
+void read_material(Reading& reading, const Section& root, const Language& language, CheckedScenario& scenario) {
   const Section material(reading, root.table("material", "[material]"), language.material, language.foreign_material);
   for (const QuantityKey& key : language.model->material) {
     if (const auto value = material.number(key.name)) scenario.material.emplace(key.name, *value);
@@ -130,7 +130,7 @@ FileText text_in(const FileTexts& files, const std::string& name) {
 
 /// The curve in the file that an option names, if it names one.
 void read_curve_of(Reading& reading, const Section& options, const KeySpec& spec, const std::filesystem::path& folder,
-                   const FileTexts* files, Scenario& scenario) {
+                   const FileTexts* files, CheckedScenario& scenario) {
   const std::string name = options.text(spec.name);
   if (name.empty()) return;
   const std::string naming = fmt::format("{} = \"{}\"", spec.name, shown(name));
@@ -141,7 +141,7 @@ void read_curve_of(Reading& reading, const Section& options, const KeySpec& spec
 }
 
 void read_options(Reading& reading, const Section& root, const Language& language, const std::string& origin,
-                  const FileTexts* files, Scenario& scenario) {
+                  const FileTexts* files, CheckedScenario& scenario) {
   const std::string name(language.model->name);
   const Section options(reading, root.table(name, "[" + name + "]"), language.options);
   const std::filesystem::path folder = std::filesystem::path(origin).parent_path();
@@ -151,7 +151,7 @@ void read_options(Reading& reading, const Section& root, const Language& languag
   }
 }
 
-void read_output(Reading& reading, const Section& root, const Language& language, Scenario& scenario) {
+void read_output(Reading& reading, const Section& root, const Language& language, CheckedScenario& scenario) {
   const Section output(reading, root.table("output", "[output]"), language.output);
   scenario.output.times = output.numbers("times");
   // The default number of points is that of a scenario without times.
@@ -169,7 +169,7 @@ void read_output(Reading& reading, const Section& root, const Language& language
   }
 }
 
-void read_numerics(Reading& reading, const Section& root, const Language& language, Scenario& scenario) {
+void read_numerics(Reading& reading, const Section& root, const Language& language, CheckedScenario& scenario) {
   const Section numerics(reading, root.table("numerics", "[numerics]"), language.numerics);
   scenario.numerics.integrator = numerics.text("integrator");
   scenario.numerics.rtol = numerics.number("rtol").value_or(0.0);
@@ -178,13 +178,14 @@ void read_numerics(Reading& reading, const Section& root, const Language& langua
 
 }  // namespace
 
-Scenario read_tree(const toml::table& tree, const std::string& origin, const FileTexts* files, FaultList& faults) {
+CheckedScenario read_tree(const toml::table& tree, const std::string& origin, const FileTexts* files,
+                          FaultList& faults) {
   const Language& language = language_of(model_to_check_against(tree));
   Reading reading{faults};
   const SourceLocation top{origin};
   const Section root(reading, {&tree, top, "the scenario"}, language.root, language.foreign_tables);
 
-  Scenario scenario;
+  CheckedScenario scenario;
   scenario.title = root.text("title");
   scenario.model = root.text("model");
   read_particle(reading, root, language, scenario);

@@ -13,7 +13,7 @@ namespace monograin {
 /// Fills all of a scenario but its name, text and overrides. What comes back is only meaningful if nothing was added
 /// to `faults`.
 /// @param files  texts of all files that the tree may name; nullptr: they are read from disk, beside `origin`
-[[nodiscard]] Scenario read_tree(const toml::table& root, const std::string& origin, const FileTexts* files,
-                                 FaultList& faults);
+[[nodiscard]] CheckedScenario read_tree(const toml::table& root, const std::string& origin, const FileTexts* files,
+                                        FaultList& faults);
 
 }  // namespace monograin

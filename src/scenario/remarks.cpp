@@ -13,7 +13,7 @@ namespace {
 constexpr double k_same_instant = 1e-12;
 
 /// Programs of all walls, or the one of a model without walls.
-std::vector<std::vector<Step>> programs_of(const Scenario& scenario) {
+std::vector<std::vector<Step>> programs_of(const CheckedScenario& scenario) {
   std::vector<std::vector<Step>> programs{scenario.loading.steps};
   for (const WallSpec& wall : scenario.loading.walls) programs.push_back(wall.steps);
   return programs;
@@ -30,7 +30,7 @@ std::optional<double> duration_of(const std::vector<Step>& program, std::size_t 
 }
 
 /// Latest end of a program [s]: conditions may end its steps earlier. None where that depends on the run.
-std::optional<double> latest_end(const Scenario& scenario) {
+std::optional<double> latest_end(const CheckedScenario& scenario) {
   const auto programs = programs_of(scenario);
   std::size_t count = 0;
   for (const auto& program : programs) count = std::max(count, program.size());
@@ -48,12 +48,12 @@ std::optional<double> latest_end(const Scenario& scenario) {
 
 }  // namespace
 
-std::optional<std::string> remark_on_points(const Scenario& scenario) {
+std::optional<std::string> remark_on_points(const CheckedScenario& scenario) {
   if (scenario.output.times.empty() || scenario.output.points == 0) return std::nullopt;
   return fmt::format("[output] points = {} is ignored: times say where the rows are", scenario.output.points);
 }
 
-std::optional<std::string> remark_on_times(const Scenario& scenario) {
+std::optional<std::string> remark_on_times(const CheckedScenario& scenario) {
   const std::vector<double>& times = scenario.output.times;
   const std::optional<double> end = latest_end(scenario);
   if (!end) return std::nullopt;

@@ -9,9 +9,9 @@
 namespace monograin {
 
 /// Says that `points` are ignored where `times` are given, if both are.
-[[nodiscard]] std::optional<std::string> remark_on_points(const Scenario& scenario);
+[[nodiscard]] std::optional<std::string> remark_on_points(const CheckedScenario& scenario);
 
 /// Says how many output times lie beyond the latest end that the program may have, if any do and that end is known.
-[[nodiscard]] std::optional<std::string> remark_on_times(const Scenario& scenario);
+[[nodiscard]] std::optional<std::string> remark_on_times(const CheckedScenario& scenario);
 
 }  // namespace monograin

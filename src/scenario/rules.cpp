@@ -29,7 +29,7 @@ SourceLocation place_of_key(const toml::table& tree, const std::string& origin, 
 }
 
 void check_objections(Reading& reading, const toml::table& tree, const std::string& origin, const Model& model,
-                      const Scenario& scenario) {
+                      const CheckedScenario& scenario) {
   for (const Objection& objection : model.objections(model_input(scenario))) {
     reading.faults.add(objection.step ? scenario.loading.steps[*objection.step].where
                                       : place_of_key(tree, origin, model.name, objection.key),
@@ -95,7 +95,7 @@ void check_only_loading(Reading& reading, std::span<const Step> program, double 
 }  // namespace
 
 void check_rules(Reading& reading, const toml::table& tree, const std::string& origin, const Language& language,
-                 const Scenario& scenario) {
+                 const CheckedScenario& scenario) {
   if (language.model->objections != nullptr) check_objections(reading, tree, origin, *language.model, scenario);
   if (language.model->least_wall_angle > 0.0) {
     check_wall_angles(reading, tree, origin, *language.model, scenario.loading);

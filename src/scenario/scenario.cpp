@@ -6,8 +6,10 @@
 
 #include "scenario/document.hpp"
 #include "scenario/faults.hpp"
+#include "scenario/key_path.hpp"
 #include "scenario/overrides.hpp"
 #include "scenario/reader.hpp"
+#include "scenario/words.hpp"
 
 namespace monograin {
 namespace {
@@ -32,16 +34,22 @@ toml::table parse_table(std::string_view text, std::string_view key, const std::
   return std::move(*table);
 }
 
-Scenario parse_tree(toml::table& root, std::string_view text, const std::string& origin,
-                    const std::vector<std::string>& overrides, const FileTexts* files = nullptr) {
-  FaultList faults;
-  for (const std::string& override_text : overrides) apply_override(root, override_text, faults);
-  Scenario scenario = read_tree(root, origin, files, faults);
+/// @param overrides  that the tree has already, for the record
+CheckedScenario parse_tree(const toml::table& root, std::string_view text, const std::string& origin,
+                           std::vector<std::string> overrides, FaultList& faults, const FileTexts* files = nullptr) {
+  CheckedScenario scenario = read_tree(root, origin, files, faults);
   faults.throw_if_any();
   scenario.name = name_of(origin);
   scenario.text = text;
-  scenario.overrides = overrides;
+  scenario.overrides = std::move(overrides);
   return scenario;
+}
+
+CheckedScenario override_and_parse(toml::table root, std::string_view text, const std::string& origin,
+                                   const std::vector<std::string>& overrides, const FileTexts* files = nullptr) {
+  FaultList faults;
+  for (const std::string& override_text : overrides) apply_override(root, override_text, faults);
+  return parse_tree(root, text, origin, overrides, faults, files);
 }
 
 }  // namespace
@@ -50,28 +58,68 @@ struct ScenarioTemplate::Document {
   std::string text;
   std::string key;  ///< of the scenario's table; empty: the whole text
   std::string origin;
+  std::vector<std::string> overrides;
   toml::table root;
+
+  /// A scenario of a copy of the tree, changed by apply(copy, faults).
+  template <class Apply>
+  [[nodiscard]] CheckedScenario changed(const std::vector<std::string>& more, Apply&& apply) const {
+    std::vector<std::string> all = overrides;
+    all.insert(all.end(), more.begin(), more.end());
+    try {
+      toml::table copy = root;
+      FaultList faults;
+      apply(copy, more, faults);
+      return parse_tree(copy, text, origin, all, faults);
+    } catch (const ScenarioError&) {
+      // A copy does not know its places, so that faults are located in the text itself.
+      return key.empty() ? parse_scenario(text, origin, all) : parse_scenario_table(text, key, origin, all);
+    }
+  }
 };
 
-ScenarioTemplate::ScenarioTemplate(std::string_view text, const std::string& origin)
-    : document_(new Document{std::string(text), {}, origin, parse_document(text, origin)}) {}
+ScenarioTemplate::ScenarioTemplate(std::string_view text, const std::string& origin,
+                                   std::vector<std::string> overrides) {
+  toml::table root = parse_document(text, origin);
+  FaultList faults;
+  for (const std::string& override_text : overrides) apply_override(root, override_text, faults);
+  faults.throw_if_any();
+  document_.reset(new Document{std::string(text), {}, origin, std::move(overrides), std::move(root)});
+}
 
 ScenarioTemplate::ScenarioTemplate(std::string_view text, std::string_view key, const std::string& origin)
-    : document_(new Document{std::string(text), std::string(key), origin, parse_table(text, key, origin)}) {}
+    : document_(new Document{std::string(text), std::string(key), origin, {}, parse_table(text, key, origin)}) {}
 
 ScenarioTemplate::~ScenarioTemplate() = default;
 ScenarioTemplate::ScenarioTemplate(ScenarioTemplate&&) noexcept = default;
 ScenarioTemplate& ScenarioTemplate::operator=(ScenarioTemplate&&) noexcept = default;
 
-Scenario ScenarioTemplate::with(const std::vector<std::string>& overrides) const {
-  const auto& [text, key, origin, root] = *document_;
-  try {
-    toml::table copy = root;
-    return parse_tree(copy, text, origin, overrides);
-  } catch (const ScenarioError&) {
-    // A copy does not know its places, so that faults are located in the text itself.
-    return key.empty() ? parse_scenario(text, origin, overrides) : parse_scenario_table(text, key, origin, overrides);
-  }
+CheckedScenario ScenarioTemplate::with(const std::vector<std::string>& overrides) const {
+  return document_->changed(overrides, [](toml::table& root, const std::vector<std::string>& texts, FaultList& faults) {
+    for (const std::string& text : texts) apply_override(root, text, faults);
+  });
+}
+
+CheckedScenario ScenarioTemplate::with_numbers(std::span<const std::string> keys,
+                                               std::span<const double> numbers) const {
+  std::vector<std::string> overrides;
+  for (std::size_t k = 0; k < keys.size(); ++k) overrides.push_back(fmt::format("{}={}", keys[k], numbers[k]));
+  return document_->changed(overrides,
+                            [&](toml::table& root, const std::vector<std::string>& texts, FaultList& faults) {
+                              for (std::size_t k = 0; k < texts.size(); ++k) {
+                                apply_number(root, texts[k], numbers[k], faults);
+                              }
+                            });
+}
+
+std::string ScenarioTemplate::problem_of_number(const std::string& key) const {
+  using Kind = KeySpec::Kind;
+  const toml::table& root = document_->root;
+  const KeyAnswer answer = key_at(key, root, root["model"].value_or(std::string()));
+  if (!answer.spec) return answer.problem;
+  const Kind kind = answer.spec->kind;
+  if (kind == Kind::quantity || kind == Kind::integer || kind == Kind::pair) return {};
+  return fmt::format("'{}' takes no number", shown(key));
 }
 
 std::optional<Control> control_of(Step::Kind kind) noexcept {
@@ -109,25 +157,24 @@ Step::Kind ramp_of(Control control) noexcept {
   return Step::Kind::hold;
 }
 
-Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides, FileKind kind) {
+CheckedScenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                              FileKind kind) {
   return parse_scenario(read_file(file, kind), name_of_file(file, kind).string(), overrides);
 }
 
-Scenario parse_scenario(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides) {
-  toml::table root = parse_document(text, origin);
-  return parse_tree(root, text, origin, overrides);
+CheckedScenario parse_scenario(std::string_view text, const std::string& origin,
+                               const std::vector<std::string>& overrides) {
+  return override_and_parse(parse_document(text, origin), text, origin, overrides);
 }
 
-Scenario parse_recorded_scenario(std::string_view text, const std::string& origin,
-                                 const std::vector<std::string>& overrides, const FileTexts& files) {
-  toml::table root = parse_document(text, origin);
-  return parse_tree(root, text, origin, overrides, &files);
+CheckedScenario parse_recorded_scenario(std::string_view text, const std::string& origin,
+                                        const std::vector<std::string>& overrides, const FileTexts& files) {
+  return override_and_parse(parse_document(text, origin), text, origin, overrides, &files);
 }
 
-Scenario parse_scenario_table(std::string_view text, std::string_view key, const std::string& origin,
-                              const std::vector<std::string>& overrides) {
-  toml::table root = parse_table(text, key, origin);
-  return parse_tree(root, text, origin, overrides);
+CheckedScenario parse_scenario_table(std::string_view text, std::string_view key, const std::string& origin,
+                                     const std::vector<std::string>& overrides) {
+  return override_and_parse(parse_table(text, key, origin), text, origin, overrides);
 }
 
 }  // namespace monograin

@@ -1,4 +1,4 @@
-/// A scenario: checked data, in SI units, of what a scenario file says.
+/// A checked scenario: data, in SI units, of what a scenario file says.
 #pragma once
 
 #include <array>
@@ -6,40 +6,19 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <stdexcept>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "monograin/faults.hpp"
 #include "scenario/integrators.hpp"
 #include "scenario/text_file.hpp"
 #include "system/model.hpp"
 #include "system/walls.hpp"
 
 namespace monograin {
-
-/// A place in a text that a user wrote: a file, or an override given on the command line.
-struct SourceLocation {
-  std::string file;
-  std::size_t line = 1;
-  std::size_t column = 1;
-};
-
-struct Fault {
-  SourceLocation where;
-  std::string message;
-};
-
-/// All faults of a scenario, in the order of their places. what() has one line per fault: `file:line:column: message`.
-class ScenarioError : public std::runtime_error {
- public:
-  explicit ScenarioError(std::vector<Fault> faults);
-  [[nodiscard]] const std::vector<Fault>& faults() const noexcept { return faults_; }
-
- private:
-  std::vector<Fault> faults_;
-};
 
 /// One step of the program of a wall, a packing or a material point. Cycles are already written out. Of duration and
 /// rate exactly one is given; in a channel that follows another one, none: it takes as long.
@@ -94,7 +73,7 @@ struct Numerics {
   double atol = 1e-12;  ///< relative to the state's own scale
 };
 
-struct Scenario {
+struct CheckedScenario {
   std::string name;  ///< file name without folder and extension; names the run's folder
   std::string text;  ///< the file as it was read
   std::vector<std::string> overrides;
@@ -112,8 +91,9 @@ struct Scenario {
 /// A scenario's text, parsed once to be checked many times, each time with other values of some keys.
 class ScenarioTemplate {
  public:
+  /// @param overrides  of every scenario that is made
   /// @throws ScenarioError where the text is not TOML; what it says is not checked here
-  ScenarioTemplate(std::string_view text, const std::string& origin);
+  ScenarioTemplate(std::string_view text, const std::string& origin, std::vector<std::string> overrides = {});
   /// The table of that name in a larger document; see parse_scenario_table.
   ScenarioTemplate(std::string_view text, std::string_view key, const std::string& origin);
   ~ScenarioTemplate();
@@ -123,7 +103,14 @@ class ScenarioTemplate {
   /// The checked scenario, with `key=value` overrides as read_scenario takes them. Its steps and walls do not know
   /// their places in the text. May be called from many threads.
   /// @throws ScenarioError with every fault of the text and the overrides
-  [[nodiscard]] Scenario with(const std::vector<std::string>& overrides) const;
+  [[nodiscard]] CheckedScenario with(const std::vector<std::string>& overrides) const;
+
+  /// The checked scenario with numbers in SI at some keys: as with() of their texts, which are not read.
+  /// @throws ScenarioError, as above
+  [[nodiscard]] CheckedScenario with_numbers(std::span<const std::string> keys, std::span<const double> numbers) const;
+
+  /// Why a key cannot be set to a number; empty: it can.
+  [[nodiscard]] std::string problem_of_number(const std::string& key) const;
 
  private:
   struct Document;
@@ -137,24 +124,27 @@ class ScenarioTemplate {
 ///                   index in brackets picks from an array: `loading.steps[0].displacement=0.3`. Checked like the file.
 /// @throws ScenarioError with every fault found: wrong syntax, unknown or missing keys, types, units, ranges,
 /// combinations
-[[nodiscard]] Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
-                                     FileKind kind = FileKind::regular);
+[[nodiscard]] CheckedScenario read_scenario(const std::filesystem::path& file,
+                                            const std::vector<std::string>& overrides = {},
+                                            FileKind kind = FileKind::regular);
 
 /// The same from a text in memory; `origin` stands for the file's name in messages and names the scenario.
-[[nodiscard]] Scenario parse_scenario(std::string_view text, const std::string& origin,
-                                      const std::vector<std::string>& overrides = {});
+[[nodiscard]] CheckedScenario parse_scenario(std::string_view text, const std::string& origin,
+                                             const std::vector<std::string>& overrides = {});
 
 /// Texts of the files that a scenario names, by the names that it has for them.
 using FileTexts = std::map<std::string, std::string>;
 
 /// A scenario that was recorded with the files that it names. No file is opened: one that is not in `files` is reported
 /// as missing.
-[[nodiscard]] Scenario parse_recorded_scenario(std::string_view text, const std::string& origin,
-                                               const std::vector<std::string>& overrides, const FileTexts& files);
+[[nodiscard]] CheckedScenario parse_recorded_scenario(std::string_view text, const std::string& origin,
+                                                      const std::vector<std::string>& overrides,
+                                                      const FileTexts& files);
 
 /// The same from a table of a larger document, which is the scenario's text then; places are those in the document.
-[[nodiscard]] Scenario parse_scenario_table(std::string_view text, std::string_view key, const std::string& origin,
-                                            const std::vector<std::string>& overrides = {});
+[[nodiscard]] CheckedScenario parse_scenario_table(std::string_view text, std::string_view key,
+                                                   const std::string& origin,
+                                                   const std::vector<std::string>& overrides = {});
 
 /// Text of the scenario that `monograin run` takes when no file is named.
 [[nodiscard]] std::string_view default_scenario_text() noexcept;

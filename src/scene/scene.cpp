@@ -14,7 +14,7 @@
 namespace monograin {
 namespace {
 
-std::vector<Wall> preset_walls(const Scenario& scenario) {
+std::vector<Wall> preset_walls(const CheckedScenario& scenario) {
   const Loading& loading = scenario.loading;
   const bool is_hydrostatic = loading.configuration == Loading::Configuration::hydrostatic;
   const std::vector<Step> lateral_steps = is_hydrostatic ? loading.steps : std::vector<Step>{};
@@ -30,7 +30,7 @@ std::vector<Wall> preset_walls(const Scenario& scenario) {
   add_pair(lateral + "-x", lateral, Eigen::Vector3d::UnitX(), lateral_steps);
   add_pair(lateral + "-y", lateral, Eigen::Vector3d::UnitY(), lateral_steps);
   if (loading.configuration == Loading::Configuration::oblique_die) {
-    // In the y-z plane, the angle counted from y (003_97bacd62ecebe201.txt).
+    // In the y-z plane, the angle counted from y (Agarwal and Gonzalez, 2018).
     const double c = std::cos(loading.oblique_angle);
     const double s = std::sin(loading.oblique_angle);
     add_pair("oblique-1", "oblique", {0.0, c, s}, {});
@@ -81,7 +81,7 @@ constexpr double k_least_depth = 1e-12;
 constexpr double k_same_depth = 1e-6;
 
 /// Whether a free centre may leave its place: classes of walls that push it to no side keep it there.
-bool may_move_centre(const Scenario& scenario, const std::vector<ContactClass>& classes) {
+bool may_move_centre(const CheckedScenario& scenario, const std::vector<ContactClass>& classes) {
   constexpr double k_no_push = 1e-6;  // of unit normals
   return scenario.loading.centre_is_free && std::ranges::any_of(classes, [](const ContactClass& c) {
            Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -203,7 +203,8 @@ double largest_target(const Program& program, const std::vector<Channel>& channe
 }
 
 /// Channels of a model without walls. A lateral one follows the steps, and takes as long as they do.
-std::vector<Channel> channels_without_walls(const Scenario& scenario, const std::vector<RestingChannel>& at_rest) {
+std::vector<Channel> channels_without_walls(const CheckedScenario& scenario,
+                                            const std::vector<RestingChannel>& at_rest) {
   std::vector<Channel> channels;
   for (const RestingChannel& rest : at_rest) {
     Channel& channel = channels.emplace_back(Channel{std::string(rest.name), rest.at_rest, {}});
@@ -224,7 +225,7 @@ std::vector<Channel> channels_without_walls(const Scenario& scenario, const std:
 }
 
 /// Contact classes of the walls and their channels.
-void add_walls(const Scenario& scenario, bool merges_walls, Scene& scene) {
+void add_walls(const CheckedScenario& scenario, bool merges_walls, Scene& scene) {
   const std::vector<Wall> walls = make_walls(scenario);
   std::vector<std::size_t> class_of(walls.size());
   if (merges_walls) {
@@ -267,7 +268,7 @@ std::size_t Scene::step_count() const noexcept {
   return count;
 }
 
-std::vector<Wall> make_walls(const Scenario& scenario) {
+std::vector<Wall> make_walls(const CheckedScenario& scenario) {
   if (scenario.loading.configuration != Loading::Configuration::walls) return preset_walls(scenario);
   std::vector<Wall> walls;
   for (const WallSpec& spec : scenario.loading.walls) {
@@ -278,7 +279,7 @@ std::vector<Wall> make_walls(const Scenario& scenario) {
   return walls;
 }
 
-Scene make_scene(const Scenario& scenario, bool merges_walls) {
+Scene make_scene(const CheckedScenario& scenario, bool merges_walls) {
   const Model& model = *find_model(scenario.model);
   const ModelInput input = model_input(scenario);
   const bool has_walls = model.has_walls();
@@ -310,7 +311,7 @@ Scene make_scene(const Scenario& scenario, bool merges_walls) {
   return scene;
 }
 
-std::vector<DerivedParameter> derived_parameters(const Scenario& scenario) {
+std::vector<DerivedParameter> derived_parameters(const CheckedScenario& scenario) {
   const Model& model = *find_model(scenario.model);
   std::vector<DerivedParameter> list;
   if (scenario.radius > 0.0) list.push_back({"radius", scenario.radius, "m"});

@@ -39,7 +39,7 @@ struct Scene {
 };
 
 /// Walls of a scenario: those of the preset configuration, or the free ones.
-[[nodiscard]] std::vector<Wall> make_walls(const Scenario& scenario);
+[[nodiscard]] std::vector<Wall> make_walls(const CheckedScenario& scenario);
 
 /// Groups walls that symmetry makes share one history: two walls are of one class if a rotation or reflection of the
 /// whole wall set takes one to the other and every wall to one with the same program and gap.
@@ -48,9 +48,9 @@ struct Scene {
 
 /// @param merges_walls  false: every wall is a class of its own (to test the merging)
 /// @throws ScenarioError where the walls' programs do not go together
-[[nodiscard]] Scene make_scene(const Scenario& scenario, bool merges_walls = true);
+[[nodiscard]] Scene make_scene(const CheckedScenario& scenario, bool merges_walls = true);
 
 /// Particle, material and the constants that follow from them before anything moves.
-[[nodiscard]] std::vector<DerivedParameter> derived_parameters(const Scenario& scenario);
+[[nodiscard]] std::vector<DerivedParameter> derived_parameters(const CheckedScenario& scenario);
 
 }  // namespace monograin

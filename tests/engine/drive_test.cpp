@@ -20,11 +20,11 @@ namespace {
 
 using enum Quantity;
 
-Scenario hertz_pair(std::vector<Step> steps, int points = 4) {
+CheckedScenario hertz_pair(std::vector<Step> steps, int points = 4) {
   return with_points(hertz_scenario(Configuration::simple, std::move(steps)), points);
 }
 
-Scenario die(std::vector<Step> steps) { return mdr_scenario(Configuration::die, 20.0, 0.3, std::move(steps)); }
+CheckedScenario die(std::vector<Step> steps) { return mdr_scenario(Configuration::die, 20.0, 0.3, std::move(steps)); }
 
 double hertz(double displacement) { return hertz_force(composite_modulus(1.0, 0.3), 1.0, displacement); }
 
@@ -43,7 +43,7 @@ using Rows = std::vector<std::pair<double, int>>;
 /// The forward Euler scheme at a tolerance that is its step.
 double accuracy(std::string_view integrator) { return integrator == "explicit" ? 1e-4 : 1e-7; }
 
-TestRun run_with(const Scenario& scenario, std::string_view integrator) {
+TestRun run_with(const CheckedScenario& scenario, std::string_view integrator) {
   return run(scenario, integrator, relative(integrator == "explicit" ? 1e-5 : 1e-8));
 }
 
@@ -74,12 +74,12 @@ TEST(Rows, StandAtOutputPointsAndOnBothSidesOfACorner) {
 }
 
 TEST(Rows, StandOnBothSidesOfAnEvent) {
-  const Scenario scenario = between(hertz_pair({}, 1), {wall("a", {0, 0, 1}, path({0.3}), 0.1)});
+  const CheckedScenario scenario = between(hertz_pair({}, 1), {wall("a", {0, 0, 1}, path({0.3}), 0.1)});
   EXPECT_EQ(rows(run(scenario)), (Rows{{0, 0}, {0.25, -1}, {0.25, 1}, {1, -1}, {1, 0}, {1, 1}}));
 }
 
 TEST(Rows, OfAnOutputPointOnAnEventStandBetweenItsSides) {
-  const Scenario scenario = between(hertz_pair({}, 4), {wall("a", {0, 0, 1}, path({0.3}), 0.1)});
+  const CheckedScenario scenario = between(hertz_pair({}, 4), {wall("a", {0, 0, 1}, path({0.3}), 0.1)});
   const TestRun result = run(scenario);
   EXPECT_EQ(rows(result),
             (Rows{{0, 0}, {0.25, -1}, {0.25, 0}, {0.25, 1}, {0.5, 0}, {0.75, 0}, {1, -1}, {1, 0}, {1, 1}}));
@@ -89,7 +89,7 @@ TEST(Rows, OfAnOutputPointOnAnEventStandBetweenItsSides) {
 }
 
 TEST(Rows, StandAtAskedInstants) {
-  Scenario scenario = hertz_pair(path({0.1, 0.2}));
+  CheckedScenario scenario = hertz_pair(path({0.1, 0.2}));
   scenario.output.times = {0.1, 0.25, 1.0, 1.75};
   EXPECT_EQ(rows(run(scenario)),
             (Rows{{0, 0}, {0.1, 0}, {0.25, 0}, {1, -1}, {1, 0}, {1, 1}, {1.75, 0}, {2, -1}, {2, 1}}));
@@ -190,7 +190,7 @@ TEST(Rows, OfAStepThatALimitEndsBeforeItsConditionDivideWhatItCovers) {
 }
 
 TEST(Rows, OfAnEarlyEndLeaveTheRunAsItIsWithoutThem) {
-  const Scenario scenario = die({ramp(0.3), until(ramp(0.0), force, 0.01), detach(0.5), ramp(0.4)});
+  const CheckedScenario scenario = die({ramp(0.3), until(ramp(0.0), force, 0.01), detach(0.5), ramp(0.4)});
   for (const std::string_view integrator : integrator_names()) {
     const TestRun few = run_with(with_points(scenario, 1), integrator);
     const TestRun many = run_with(with_points(scenario, 50), integrator);
@@ -205,7 +205,7 @@ TEST(Rows, OfAnEarlyEndLeaveTheRunAsItIsWithoutThem) {
 }
 
 TEST(OutputTimes, BeyondTheEndOfTheProgramAreNoted) {
-  Scenario scenario = hertz_pair({ramp(0.2), until(ramp(0.0), force, hertz(0.1))});
+  CheckedScenario scenario = hertz_pair({ramp(0.2), until(ramp(0.0), force, hertz(0.1))});
   scenario.output.times = {0.5, 1.25, 1.75, 3.0};
   const TestRun result = run(scenario);
   ASSERT_EQ(result.record.warnings.size(), 1U);
@@ -272,7 +272,7 @@ TEST(Steps, ThatWithdrawAnOpenWallEndAtOnce) {
 }
 
 TEST(Steps, OfWallsThatNeedDifferentTimesStopTheRun) {
-  const Scenario scenario =
+  const CheckedScenario scenario =
       between(hertz_pair({}), {wall("a", {0, 0, 1}, {ramp(0.1, 1.0)}), wall("b", {1, 0, 0}, {ramp(0.1, 2.0)})});
   const TestRun result = run(scenario);
   EXPECT_EQ(result.record.status, RunStatus::stopped);
@@ -372,7 +372,7 @@ TEST(Conditions, HoldingWhereTheirStepBeginsEndItThere) {
 }
 
 TEST(Conditions, OfNoForceAreMetInMidAirWhereAContactAdheres) {
-  Scenario scenario = mdr_scenario(Configuration::simple, 20.0, 0.3, {ramp(0.05), until(ramp(0.0), force, 0.0)});
+  CheckedScenario scenario = mdr_scenario(Configuration::simple, 20.0, 0.3, {ramp(0.05), until(ramp(0.0), force, 0.0)});
   scenario.material["surface_energy"] = 1e-4;
   for (const std::string_view integrator : integrator_names()) {
     const TestRun result = run_with(scenario, integrator);
@@ -401,7 +401,7 @@ TEST(Conditions, MetAtTheVeryEndOfARampAreMet) {
 }
 
 TEST(Conditions, EndTheStepOfAllWalls) {
-  const Scenario scenario = between(
+  const CheckedScenario scenario = between(
       hertz_pair({}), {wall("a", {0, 0, 1}, {until(ramp(0.4), displacement, 0.1)}), wall("b", {1, 0, 0}, {ramp(0.2)})});
   const TestRun result = run(scenario);
   EXPECT_NEAR(result.last("time"), 0.25, 1e-15);

@@ -17,8 +17,8 @@ namespace {
 const char* const k_scenes[] = {"die",      "adhesion",  "force",    "cycles", "late-wall",
                                 "semimech", "hardening", "nonlocal", "hertz"};
 
-Scenario scene(const std::string& name) {
-  Scenario scenario = read_scenario(MONOGRAIN_SOURCE_DIR "/scenarios/" + name + ".toml");
+CheckedScenario scene(const std::string& name) {
+  CheckedScenario scenario = read_scenario(MONOGRAIN_SOURCE_DIR "/scenarios/" + name + ".toml");
   scenario.output.points = 20;
   return scenario;
 }
@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(All, AnyIntegrator, ::testing::ValuesIn(controlled()), 
 });
 
 TEST_P(AnyIntegrator, GetsBetterWithItsTolerance) {
-  const Scenario scenario = scene("die");
+  const CheckedScenario scenario = scene("die");
   const TestRun direct = run(scenario);
   for (const double rtol : {1e-4, 1e-6, 1e-8, 1e-10}) {
     const TestRun now = run(scenario, GetParam(), relative(rtol));
@@ -62,7 +62,7 @@ TEST_P(AnyIntegrator, GetsBetterWithItsTolerance) {
 }
 
 TEST(FixedSteps, ConvergeWithTheirLength) {
-  const Scenario scenario = scene("die");
+  const CheckedScenario scenario = scene("die");
   const TestRun direct = run(scenario);
   double last = 1.0;
   for (const double rtol : {1e-2, 1e-3, 1e-4}) {

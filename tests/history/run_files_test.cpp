@@ -16,8 +16,8 @@ namespace {
 
 const std::string k_table = "x,p\n0,2.75\n0.1,2.1\n0.2,1.7\n0.5,1.2\n";
 
-Scenario with_table(const std::string& text) {
-  Scenario scenario = mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.05}));
+CheckedScenario with_table(const std::string& text) {
+  CheckedScenario scenario = mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.05}));
   scenario.options["pressure_table"] = std::string("p.csv");
   scenario.curves["pressure_table"] = {text, {0.0, 0.1, 0.2, 0.5}, {2.75, 2.1, 1.7, 1.2}};
   return scenario;

@@ -123,7 +123,7 @@ class PressureTable : public ::testing::Test {
     std::ofstream(folder_.path() / name, std::ios::binary) << text;
   }
   /// A scenario in the folder, whose [mdr] has this line; its faults, with the folder's path cut out.
-  [[nodiscard]] Scenario read(const std::string& line, const std::vector<std::string>& overrides = {}) const {
+  [[nodiscard]] CheckedScenario read(const std::string& line, const std::vector<std::string>& overrides = {}) const {
     write("s.toml", with_more("[mdr]\n" + line + "\n"));
     return read_scenario(folder_.path() / "s.toml", overrides);
   }
@@ -148,7 +148,7 @@ class PressureTable : public ::testing::Test {
 
 TEST_F(PressureTable, IsSoughtInTheScenariosFolder) {
   write("p.csv", k_good_table);
-  const Scenario scenario = read("pressure_table = \"p.csv\"");
+  const CheckedScenario scenario = read("pressure_table = \"p.csv\"");
   ASSERT_EQ(scenario.curves.count("pressure_table"), 1U);
   EXPECT_EQ(scenario.curves.at("pressure_table").text, k_good_table);
   EXPECT_EQ(std::get<std::string>(scenario.options.at("pressure_table")), "p.csv");
@@ -156,7 +156,7 @@ TEST_F(PressureTable, IsSoughtInTheScenariosFolder) {
 
 TEST_F(PressureTable, MayBeNamedByItsFullPath) {
   write("p.csv", k_good_table);
-  const Scenario scenario = read("pressure_table = \"" + (folder_.path() / "p.csv").string() + "\"");
+  const CheckedScenario scenario = read("pressure_table = \"" + (folder_.path() / "p.csv").string() + "\"");
   EXPECT_EQ(scenario.curves.at("pressure_table").x.size(), 4U);
 }
 
@@ -204,7 +204,7 @@ class UnloadingTable : public ::testing::Test {
     return messages([&] { static_cast<void>(read(options)); });
   }
 
-  [[nodiscard]] Scenario read(const std::string& options = {}) const {
+  [[nodiscard]] CheckedScenario read(const std::string& options = {}) const {
     const auto file = folder_.path() / "s.toml";
     std::ofstream(file, std::ios::binary)
         << "model = \"compressible\"\n[particle]\nradius = 1\n[material]\nstiffness_ratio = 100\nshear_ratio = 1\n"

@@ -22,7 +22,7 @@ const std::string k_ramp = "[[loading.steps]]\npacking_fraction = 0.95\nduration
 const std::string k_plastic = "hardening_modulus = \"1 MPa\"";
 
 TEST(Drives, AreReadWithTheirUnitsAndDefaults) {
-  const Scenario scenario = parse_scenario(
+  const CheckedScenario scenario = parse_scenario(
       "model = \"packing\"\n[[loading.steps]]\npacking_fraction = 0.9\nrate = \"50 %/s\"\n[[loading.steps]]\n"
       "stress = \"0.9 MPa\"\nrate = \"100 kPa/s\"\nuntil = { event = \"full\" }\n[[loading.steps]]\nhold = true\n"
       "duration = 1\n[[loading.steps]]\ncycle = 2\nsteps = [{ strain = 0.15, duration = 1 }]\n",

@@ -38,7 +38,7 @@ TEST(Edit, PutsAValueInThePlaceOfTheOldOneAndNothingElse) {
 
 TEST(Edit, PutsAnAbsentKeyBelowTheHeaderOfItsTable) {
   const std::string text = with_values(k_scenario, {{"material.surface_energy", "0.25"}, {"loading.angle", "0.5"}});
-  const Scenario scenario = parse_scenario(text, "edited.toml");
+  const CheckedScenario scenario = parse_scenario(text, "edited.toml");
   EXPECT_EQ(scenario.material.at("surface_energy"), 0.25);
   EXPECT_EQ(scenario.loading.oblique_angle, 0.5);
   EXPECT_NE(text.find("# of the grain\nsurface_energy = 0.25\n"), std::string::npos) << text;
@@ -64,12 +64,12 @@ material = { youngs_modulus = 12345678901.234567, poisson_ratio = 0.3 }
 configuration = "simple"
 steps = [{ displacement = "0.1 R0", duration = "1 s" }]
 )";
-  const Scenario scenario = parse_scenario(text_of_table(document, "scenario", "d.toml"), "d.toml");
+  const CheckedScenario scenario = parse_scenario(text_of_table(document, "scenario", "d.toml"), "d.toml");
   EXPECT_EQ(scenario.material.at("youngs_modulus"), 12345678901.234567);
 }
 
 TEST(Numbers, AreThoseThatStandOnTheirOwn) {
-  const Scenario scenario = parse_scenario(k_scenario, "s.toml");
+  const CheckedScenario scenario = parse_scenario(k_scenario, "s.toml");
   std::vector<std::string> paths;
   for (const NumberKey& number : number_keys(scenario)) paths.push_back(number.path);
   EXPECT_EQ(paths, (std::vector<std::string>{"material.youngs_modulus", "material.poisson_ratio",
@@ -77,10 +77,10 @@ TEST(Numbers, AreThoseThatStandOnTheirOwn) {
 }
 
 TEST(Numbers, SettingOneIsLikeWritingItIntoTheFile) {
-  Scenario scenario = parse_scenario(k_scenario, "s.toml");
+  CheckedScenario scenario = parse_scenario(k_scenario, "s.toml");
   for (const NumberKey& number : number_keys(scenario)) {
     set_number(scenario, number.path, 0.125);
-    const Scenario written = parse_scenario(k_scenario, "s.toml", {number.path + "=0.125"});
+    const CheckedScenario written = parse_scenario(k_scenario, "s.toml", {number.path + "=0.125"});
     const std::string key = number.path.substr(number.path.find('.') + 1);
     if (key == "angle") {
       EXPECT_EQ(scenario.loading.oblique_angle, written.loading.oblique_angle);

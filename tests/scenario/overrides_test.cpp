@@ -9,7 +9,7 @@
 namespace monograin::overrides_test {
 namespace {
 
-Scenario with(const std::vector<std::string>& overrides) {
+CheckedScenario with(const std::vector<std::string>& overrides) {
   return parse_scenario(k_good_scenario, "die.toml", overrides);
 }
 
@@ -60,7 +60,7 @@ TEST_P(OverrideFaults, NameTheOverride) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Scenario, OverrideFaults,
+    CheckedScenario, OverrideFaults,
     ::testing::Values(
         OverrideRow{"NoValue", "foo", "1:1: expected key=value"},
         OverrideRow{"NoKey", "=3", "1:1: '' is not the path of a key; expected for example loading.steps[0].rate"},
@@ -70,10 +70,13 @@ INSTANTIATE_TEST_SUITE_P(
                     "1:1: 'a[1' is not the path of a key; expected for example loading.steps[0].rate"},
         OverrideRow{"NegativeIndex", "a[-1]=3",
                     "1:1: 'a[-1]' is not the path of a key; expected for example loading.steps[0].rate"},
-        OverrideRow{"IndexOutOfRange", "loading.steps[1].duration=3",
-                    "1:1: index [1] is out of range; the array has 1 entries, counted from 0"},
+        OverrideRow{"IndexOutOfRange", "loading.steps[2].duration=3",
+                    "1:1: index [2] is out of range; the array has 1 entries, counted from 0"},
         OverrideRow{"IndexIntoTable", "loading[0]=1", "1:1: index [0] cannot be used on a table; expected an array"},
-        OverrideRow{"IndexIntoNothing", "mdr[0]=1", "1:1: there is no 'mdr' to pick an entry from"},
+        OverrideRow{
+            "IndexPastTheEnd", "loading.steps[1].duration=3",
+            "1:3: the step has nothing to do; expected exactly one of displacement, force, hold, detach, cycle"},
+        OverrideRow{"IndexIntoNothing", "mdr[0]=1", "1:3: mdr = an array: expected a table, written [mdr]"},
         OverrideRow{"ThroughAValue", "particle.radius.x=3", "1:1: 'x' cannot be set inside \"10 mm\""},
         OverrideRow{"UnknownUnit", "particle.radius=5 mn",
                     "1:17: radius = \"5 mn\": unknown unit 'mn'; expected a length, for example \"10 mm\""},

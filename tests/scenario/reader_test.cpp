@@ -10,12 +10,12 @@
 namespace monograin::reader_test {
 namespace {
 
-Scenario good(std::string_view text, const std::vector<std::string>& overrides = {}) {
+CheckedScenario good(std::string_view text, const std::vector<std::string>& overrides = {}) {
   return parse_scenario(text, "folder/die.toml", overrides);
 }
 
 TEST(Scenario, IsReadInSi) {
-  const Scenario scenario = good(k_good_scenario);
+  const CheckedScenario scenario = good(k_good_scenario);
   EXPECT_EQ(scenario.name, "die");
   EXPECT_EQ(scenario.title, "t");
   EXPECT_EQ(scenario.model, "mdr");
@@ -34,7 +34,7 @@ TEST(Scenario, IsReadInSi) {
 }
 
 TEST(Scenario, HasDefaultsFilledIn) {
-  const Scenario scenario = good(k_good_scenario);
+  const CheckedScenario scenario = good(k_good_scenario);
   EXPECT_EQ(scenario.material.at("surface_energy"), 0.0);
   EXPECT_EQ(std::get<std::string>(scenario.options.at("radius_rule")), "yielded");
   EXPECT_EQ(std::get<std::string>(scenario.options.at("elastic_profile")), "ellipse");
@@ -49,19 +49,19 @@ TEST(Scenario, HasDefaultsFilledIn) {
 }
 
 TEST(Scenario, KeepsItsTextAndOverrides) {
-  const Scenario scenario = good(k_good_scenario, {"title=x"});
+  const CheckedScenario scenario = good(k_good_scenario, {"title=x"});
   EXPECT_EQ(scenario.text, k_good_scenario);
   EXPECT_EQ(scenario.overrides, std::vector<std::string>{"title=x"});
 }
 
 TEST(Scenario, TakesBareNumbersAsSi) {
-  const Scenario scenario = good(with_line(4, "radius = 2"));
+  const CheckedScenario scenario = good(with_line(4, "radius = 2"));
   EXPECT_EQ(scenario.radius, 2.0);
   EXPECT_DOUBLE_EQ(scenario.loading.steps[0].target, 0.2) << "R0 is the initial radius";
 }
 
 TEST(Scenario, TakesTheInitialRadiusAsAUnitWhereverTheParticleStands) {
-  const Scenario scenario = good(
+  const CheckedScenario scenario = good(
       "model = \"hertz\"\n[loading]\nconfiguration = \"simple\"\n"
       "steps = [{ displacement = \"R0\", rate = \"R0/s\" }, { displacement = \"-0.5 R0\", rate = \"2 R0/s\" }]\n"
       "[material]\nyoungs_modulus = 1e9\npoisson_ratio = 0\n[particle]\nradius = 0.5\n");
@@ -72,7 +72,7 @@ TEST(Scenario, TakesTheInitialRadiusAsAUnitWhereverTheParticleStands) {
 }
 
 TEST(Scenario, ReadsOutputAndNumerics) {
-  const Scenario scenario =
+  const CheckedScenario scenario =
       good(with_more("[output]\ntimes = [0, \"250 ms\", 0.5]\npoints = 0\n[numerics]\nintegrator = \"ida\"\nrtol = "
                      "1e-6\natol = 1e-9\n"));
   EXPECT_EQ(scenario.output.times, (std::vector<double>{0.0, 0.25, 0.5}));
@@ -83,13 +83,13 @@ TEST(Scenario, ReadsOutputAndNumerics) {
 }
 
 TEST(Scenario, ReadsOptionsOfItsModel) {
-  const Scenario scenario = good(with_more("[mdr]\nradius_rule = \"seed\"\nstrict = true\n"));
+  const CheckedScenario scenario = good(with_more("[mdr]\nradius_rule = \"seed\"\nstrict = true\n"));
   EXPECT_EQ(std::get<std::string>(scenario.options.at("radius_rule")), "seed");
   EXPECT_TRUE(std::get<bool>(scenario.options.at("strict")));
 }
 
 TEST(Scenario, ReadsDottedAndInlineTablesAlike) {
-  const Scenario scenario = good(
+  const CheckedScenario scenario = good(
       "model = \"hertz\"\nparticle.radius = \"1 mm\"\nmaterial = { youngs_modulus = 1e9, poisson_ratio = 0.2 }\n"
       "loading.configuration = \"die\"\nloading.steps = [{ hold = true, duration = 1 }]\n");
   EXPECT_EQ(scenario.radius, 1e-3);
@@ -181,7 +181,7 @@ TEST(Steps, UpToTheLimitAreAccepted) {
 // --- walls
 
 TEST(Loading, ReadsWallSets) {
-  const Scenario scenario = good(with_loading(
+  const CheckedScenario scenario = good(with_loading(
       "[loading]\nconfiguration = \"walls\"\ncentre = \"equilibrium\"\n[[loading.steps]]\nhold = true\nduration = 1\n"
       "[[loading.wall]]\nname = \"a\"\nnormal = [0, 0, 2]\n"
       "[[loading.wall]]\nname = \"b-1\"\nnormal = [0, 0.5, -1]\ngap = \"0.1 R0\"\nfixed = true\n"
@@ -217,7 +217,7 @@ TEST(ReadyScenarios, AreAllAccepted) {
   EXPECT_GE(files.size(), 8U);
   for (const auto& file : files) {
     EXPECT_NO_THROW({
-      const Scenario scenario = read_scenario(file);
+      const CheckedScenario scenario = read_scenario(file);
       EXPECT_EQ(scenario.name, file.stem().string());
       EXPECT_FALSE(scenario.title.empty()) << file;
     }) << file;
@@ -226,7 +226,7 @@ TEST(ReadyScenarios, AreAllAccepted) {
 
 TEST(ReadyScenarios, ContainTheBuiltInOne) {
   EXPECT_EQ(default_scenario_text(), read_text(std::filesystem::path(MONOGRAIN_SOURCE_DIR) / "scenarios/die.toml"));
-  const Scenario scenario = parse_scenario(default_scenario_text(), "die.toml");
+  const CheckedScenario scenario = parse_scenario(default_scenario_text(), "die.toml");
   EXPECT_EQ(scenario.name, "die");
   EXPECT_EQ(scenario.loading.steps.size(), 3U);
 }

@@ -27,11 +27,11 @@ const std::string k_lead =
     "exponent = 0.35001750087504373 }";
 
 TEST(Ludwik, StandsForThePowerLawNearestToIt) {
-  const Scenario scenario = parse_scenario(scenario_with("hardening", k_lead, k_ramp), "a.toml");
+  const CheckedScenario scenario = parse_scenario(scenario_with("hardening", k_lead, k_ramp), "a.toml");
   EXPECT_NEAR(scenario.material.at("strength"), 20.236e6, 1e3);
   EXPECT_NEAR(1.0 / scenario.material.at("hardening_exponent"), 4.349, 1e-3);
   const Lines exponent_alone{"material.ludwik.fit=exponent"};
-  const Scenario other = parse_scenario(scenario_with("similarity", k_lead, k_ramp), "a.toml", exponent_alone);
+  const CheckedScenario other = parse_scenario(scenario_with("similarity", k_lead, k_ramp), "a.toml", exponent_alone);
   EXPECT_EQ(other.material.at("strength"), 20.5e6);
   EXPECT_NEAR(1.0 / other.material.at("hardening_exponent"), 4.174, 1e-3);
   const Lines far{"material.ludwik.eps_max=1.5"};
@@ -71,7 +71,7 @@ TEST(CompressibleRules, AcceptMaterialsOfTheSourceAndNumbersOfTheUser) {
   EXPECT_EQ(faults_of(granule_with(k_granule, "")), Lines());
   const std::string other = "stiffness_ratio = 1000\nnu0 = 0.3\nyield_pressure = 1";
   EXPECT_EQ(faults_of(granule_with(other, "k = 2\ndelta_t = 0.1\na = 3\nalpha = 1\nbeta = 0.5")), Lines());
-  const Scenario scenario = parse_scenario(granule_with(k_granule, "k = 2"), "a.toml");
+  const CheckedScenario scenario = parse_scenario(granule_with(k_granule, "k = 2"), "a.toml");
   EXPECT_EQ(std::get<double>(scenario.options.at("k")), 2.0);
   EXPECT_FALSE(scenario.options.contains("alpha")) << "what is not given is not there";
 }
@@ -90,7 +90,7 @@ TEST(CompressibleRules, RefuseMaterialsWithoutARegressionAllAtOnce) {
 }
 
 TEST(CompressibleRules, TakePresets) {
-  const Scenario base = parse_scenario(granule_with("preset = \"Base case\"\nnu0 = 0.2", ""), "a.toml");
+  const CheckedScenario base = parse_scenario(granule_with("preset = \"Base case\"\nnu0 = 0.2", ""), "a.toml");
   EXPECT_EQ(base.material, (std::map<std::string, double>{{"stiffness_ratio", 100.0},
                                                           {"shear_ratio", 1.0},
                                                           {"tensile_ratio", 0.01},

@@ -13,9 +13,9 @@ namespace {
 
 using std::numbers::pi;
 
-Scenario scenario_of(Configuration configuration, const std::string& terms, int oblique_walls = 2,
-                     double poisson_ratio = 0.48) {
-  Scenario scenario = hertz_scenario(configuration, {ramp(0.1)});
+CheckedScenario scenario_of(Configuration configuration, const std::string& terms, int oblique_walls = 2,
+                            double poisson_ratio = 0.48) {
+  CheckedScenario scenario = hertz_scenario(configuration, {ramp(0.1)});
   scenario.model = "nonlocal";
   scenario.material["poisson_ratio"] = poisson_ratio;
   scenario.loading.oblique_angle = 37.5 * pi / 180.0;
@@ -26,7 +26,7 @@ Scenario scenario_of(Configuration configuration, const std::string& terms, int 
 }
 
 /// Displacement over R0 of the first driven wall at the limit of applicability.
-std::optional<double> limit_of(const Scenario& scenario) {
+std::optional<double> limit_of(const CheckedScenario& scenario) {
   for (const DerivedParameter& parameter : derived_parameters(scenario)) {
     if (parameter.name != "limit_displacement") continue;
     return std::isfinite(parameter.value) ? std::optional(parameter.value / scenario.radius) : std::nullopt;
@@ -68,7 +68,7 @@ TEST(NonlocalLimitOfAScenario, IsTheOneComputedElsewhere) {
 }
 
 TEST(NonlocalLimitOfAScenario, DoesNotDependOnHowFarTheProgramGoes) {
-  Scenario scenario = scenario_of(Configuration::die, "4");
+  CheckedScenario scenario = scenario_of(Configuration::die, "4");
   const double limit = *limit_of(scenario);
   for (const double target : {1e-3, 0.3, 0.9}) {
     scenario.loading.steps = {ramp(target)};
@@ -79,7 +79,7 @@ TEST(NonlocalLimitOfAScenario, DoesNotDependOnHowFarTheProgramGoes) {
 TEST(NonlocalLimitOfAScenario, IsNoneWhereTheWallsMeetOrAForceIsPrescribedOrNothingMoves) {
   EXPECT_FALSE(limit_of(scenario_of(Configuration::simple, "4")));
   EXPECT_FALSE(limit_of(scenario_of(Configuration::die, "inf", 2, 0.1))) << "as wide as the particle before";
-  Scenario scenario = scenario_of(Configuration::die, "4");
+  CheckedScenario scenario = scenario_of(Configuration::die, "4");
   scenario.loading.steps = {force_ramp(0.1)};
   EXPECT_FALSE(limit_of(scenario));
   scenario.loading.steps = {hold()};

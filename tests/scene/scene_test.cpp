@@ -21,10 +21,10 @@ std::vector<std::pair<std::string, double>> names_and_multiplicities(const Scene
 
 using Named = std::vector<std::pair<std::string, double>>;
 
-Scenario preset(Configuration configuration) { return hertz_scenario(configuration, path({0.1, 0.0})); }
+CheckedScenario preset(Configuration configuration) { return hertz_scenario(configuration, path({0.1, 0.0})); }
 
-Scenario oblique(int walls) {
-  Scenario scenario = preset(Configuration::oblique_die);
+CheckedScenario oblique(int walls) {
+  CheckedScenario scenario = preset(Configuration::oblique_die);
   scenario.loading.oblique_angle = 0.65;
   scenario.loading.oblique_walls = walls;
   return scenario;
@@ -49,7 +49,7 @@ TEST(Scene, TellsLateralWallsApartWhereSymmetryDoes) {
 }
 
 TEST(Scene, NamesTheClassesOfAFreeSetAfterTheirFirstWalls) {
-  const Scenario scenario =
+  const CheckedScenario scenario =
       between(hertz_scenario(Configuration::walls, {}),
               {wall("top", {0, 0, 2}, path({0.1})), wall("side", {1, 0, 0}, {}, 0.05),
                wall("bottom", {0, 0, -1}, path({0.1})), wall("other side", {-3, 0, 0}, {}, 0.05)});
@@ -72,13 +72,14 @@ TEST(Scene, GivesEveryWallAClassOfItsOwnWhenAsked) {
 
 TEST(Scene, CountsItsStepsByTheLongestProgram) {
   EXPECT_EQ(make_scene(preset(Configuration::die)).step_count(), 2u);
-  const Scenario scenario = between(hertz_scenario(Configuration::walls, {}),
-                                    {wall("a", {0, 0, 1}, path({0.1})), wall("b", {1, 0, 0}, path({0.1, 0.2, 0.3}))});
+  const CheckedScenario scenario =
+      between(hertz_scenario(Configuration::walls, {}),
+              {wall("a", {0, 0, 1}, path({0.1})), wall("b", {1, 0, 0}, path({0.1, 0.2, 0.3}))});
   EXPECT_EQ(make_scene(scenario).step_count(), 3u);
 }
 
 TEST(Scene, LetsWallsWithoutStepsFollowTheLoading) {
-  Scenario scenario = hertz_scenario(Configuration::walls, path({0.1}));
+  CheckedScenario scenario = hertz_scenario(Configuration::walls, path({0.1}));
   scenario.loading.walls = {wall("a", {0, 0, 1}), wall("b", {1, 0, 0})};
   scenario.loading.walls[0].is_fixed = false;
   const std::vector<Wall> walls = make_walls(scenario);
@@ -130,7 +131,7 @@ TEST(Scene, SaysWhatItSkips) {
   EXPECT_TRUE(skips(hydrostatic, "algebraic unknowns: displacements are prescribed"));
   EXPECT_FALSE(skips(hydrostatic, "yield"));
   EXPECT_TRUE(skips(make_scene(preset(Configuration::simple)), "yield and growth"));
-  Scenario free = preset(Configuration::die);
+  CheckedScenario free = preset(Configuration::die);
   free.loading.centre_is_free = true;
   EXPECT_TRUE(skips(make_scene(free), "by symmetry the wall forces balance"));
 }

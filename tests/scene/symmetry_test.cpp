@@ -21,7 +21,7 @@ Wall driven(const Eigen::Vector3d& normal, double displacement = 0.1) {
 Wall fixed(const Eigen::Vector3d& normal) { return {"", "", normal.normalized(), 0.0, {}}; }
 
 std::vector<Wall> walls_of(Configuration configuration, double angle = 0.0, int oblique_walls = 2) {
-  Scenario scenario = hertz_scenario(configuration, path({0.1}));
+  CheckedScenario scenario = hertz_scenario(configuration, path({0.1}));
   scenario.loading.oblique_angle = angle;
   scenario.loading.oblique_walls = oblique_walls;
   return make_walls(scenario);

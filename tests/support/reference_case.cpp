@@ -48,8 +48,8 @@ std::vector<Step> wall_program(const nlohmann::json& program, std::size_t wall) 
   return is_fixed ? std::vector<Step>{} : steps;
 }
 
-Scenario scenario_of(const nlohmann::json& json) {
-  Scenario scenario;
+CheckedScenario scenario_of(const nlohmann::json& json) {
+  CheckedScenario scenario;
   scenario.name = "reference";
   scenario.model = "mdr";
   scenario.radius = 1.0;

@@ -19,7 +19,7 @@ struct ReferenceEvent {
 
 struct ReferenceCase {
   Table table;
-  Scenario scenario;  ///< R0 = 1, E = 1; one output point per row-0 time
+  CheckedScenario scenario;  ///< R0 = 1, E = 1; one output point per row-0 time
   std::vector<ReferenceEvent> events;
   std::vector<int> walls;  ///< whose columns the file has
 };

@@ -10,8 +10,8 @@
 namespace monograin {
 namespace {
 
-Scenario unit_scenario(const std::string& model, Configuration configuration, std::vector<Step> steps) {
-  Scenario scenario;
+CheckedScenario unit_scenario(const std::string& model, Configuration configuration, std::vector<Step> steps) {
+  CheckedScenario scenario;
   scenario.name = "test";
   scenario.model = model;
   scenario.radius = 1.0;
@@ -70,13 +70,13 @@ std::vector<Step> path(const std::vector<double>& displacements) {
   return steps;
 }
 
-Scenario hertz_scenario(Configuration configuration, std::vector<Step> steps) {
+CheckedScenario hertz_scenario(Configuration configuration, std::vector<Step> steps) {
   return unit_scenario("hertz", configuration, std::move(steps));
 }
 
-Scenario mdr_scenario(Configuration configuration, double modulus_over_yield, double poisson_ratio,
-                      std::vector<Step> steps) {
-  Scenario scenario = unit_scenario("mdr", configuration, std::move(steps));
+CheckedScenario mdr_scenario(Configuration configuration, double modulus_over_yield, double poisson_ratio,
+                             std::vector<Step> steps) {
+  CheckedScenario scenario = unit_scenario("mdr", configuration, std::move(steps));
   scenario.material["poisson_ratio"] = poisson_ratio;
   scenario.material["yield_stress"] = 1.0 / modulus_over_yield;
   scenario.material["surface_energy"] = 0.0;
@@ -88,12 +88,12 @@ Scenario mdr_scenario(Configuration configuration, double modulus_over_yield, do
   return scenario;
 }
 
-Scenario with(Scenario scenario, const std::string& option, const std::string& word) {
+CheckedScenario with(CheckedScenario scenario, const std::string& option, const std::string& word) {
   scenario.options.at(option) = word;
   return scenario;
 }
 
-Scenario with_points(Scenario scenario, int points) {
+CheckedScenario with_points(CheckedScenario scenario, int points) {
   scenario.output.points = points;
   return scenario;
 }
@@ -107,20 +107,20 @@ WallSpec wall(const std::string& name, const Eigen::Vector3d& normal, std::vecto
           .where = {}};
 }
 
-Scenario between(Scenario scenario, std::vector<WallSpec> walls) {
+CheckedScenario between(CheckedScenario scenario, std::vector<WallSpec> walls) {
   scenario.loading.configuration = Configuration::walls;
   scenario.loading.steps.clear();
   scenario.loading.walls = std::move(walls);
   return scenario;
 }
 
-std::vector<WallSpec> written_out(const Scenario& scenario) {
+std::vector<WallSpec> written_out(const CheckedScenario& scenario) {
   std::vector<WallSpec> walls;
   for (const Wall& w : make_walls(scenario)) walls.push_back(wall(w.name, w.normal, w.steps, w.gap));
   return walls;
 }
 
-std::string describe(const Scenario& scenario) {
+std::string describe(const CheckedScenario& scenario) {
   std::string text = scenario.model;
   for (const Wall& w : make_walls(scenario)) {
     if (w.steps.empty()) continue;
@@ -177,7 +177,8 @@ double TestRun::at_event(std::string_view name, std::string_view column) const {
   return std::nan("");
 }
 
-TestRun run(const Scenario& scenario, std::string_view integrator, const Tolerances& tolerances, bool merges_walls) {
+TestRun run(const CheckedScenario& scenario, std::string_view integrator, const Tolerances& tolerances,
+            bool merges_walls) {
   TestRun result{make_scene(scenario, merges_walls), {}};
   result.record = record_run(result.scene, integrator, tolerances, scenario.output);
   return result;

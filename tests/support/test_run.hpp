@@ -32,23 +32,23 @@ inline constexpr const char* k_integrators[] = {"direct", "cvode-adams", "cvode-
 
 // --- scenarios
 
-[[nodiscard]] Scenario hertz_scenario(Configuration configuration, std::vector<Step> steps);
-[[nodiscard]] Scenario mdr_scenario(Configuration configuration, double modulus_over_yield, double poisson_ratio,
-                                    std::vector<Step> steps);
+[[nodiscard]] CheckedScenario hertz_scenario(Configuration configuration, std::vector<Step> steps);
+[[nodiscard]] CheckedScenario mdr_scenario(Configuration configuration, double modulus_over_yield, double poisson_ratio,
+                                           std::vector<Step> steps);
 /// The same with another option of the model, e.g. radius_rule = yielded.
-[[nodiscard]] Scenario with(Scenario scenario, const std::string& option, const std::string& word);
-[[nodiscard]] Scenario with_points(Scenario scenario, int points);
+[[nodiscard]] CheckedScenario with(CheckedScenario scenario, const std::string& option, const std::string& word);
+[[nodiscard]] CheckedScenario with_points(CheckedScenario scenario, int points);
 
 /// A wall of a free set; no steps: fixed.
 [[nodiscard]] WallSpec wall(const std::string& name, const Eigen::Vector3d& normal, std::vector<Step> steps = {},
                             double gap = 0.0);
 /// The same particle between free walls.
-[[nodiscard]] Scenario between(Scenario scenario, std::vector<WallSpec> walls);
+[[nodiscard]] CheckedScenario between(CheckedScenario scenario, std::vector<WallSpec> walls);
 /// The walls of a scenario written out as a free set.
-[[nodiscard]] std::vector<WallSpec> written_out(const Scenario& scenario);
+[[nodiscard]] std::vector<WallSpec> written_out(const CheckedScenario& scenario);
 
 /// One line that identifies a scenario in a failure message.
-[[nodiscard]] std::string describe(const Scenario& scenario);
+[[nodiscard]] std::string describe(const CheckedScenario& scenario);
 
 // --- runs
 
@@ -72,7 +72,7 @@ struct TestRun {
   [[nodiscard]] double at_event(std::string_view name, std::string_view column) const;
 };
 
-[[nodiscard]] TestRun run(const Scenario& scenario, std::string_view integrator = "direct",
+[[nodiscard]] TestRun run(const CheckedScenario& scenario, std::string_view integrator = "direct",
                           const Tolerances& tolerances = {}, bool merges_walls = true);
 /// atol far below rtol, so that rtol alone is tested.
 [[nodiscard]] inline Tolerances relative(double rtol) { return {.rtol = rtol, .atol = 1e-4 * rtol}; }

@@ -52,7 +52,7 @@ std::vector<FlattenedContact> flatten(double modulus_over_yield, double poisson_
 
   const AdhesionMap& map = offered_map();
   const double run_modulus = std::min(modulus_over_yield, map.stiffest_run);
-  Scenario scenario = parse_scenario(map.scenario, "adhesion map");
+  CheckedScenario scenario = parse_scenario(map.scenario, "adhesion map");
   scenario.material.at("poisson_ratio") = poisson_ratio;
   scenario.material.at("yield_stress") = 1.0 / run_modulus;
   // One metre in a second: the time is the displacement.

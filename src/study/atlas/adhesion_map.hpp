@@ -1,6 +1,6 @@
 /// Phase diagrams of adhesion: for which materials the model's pull-off can be trusted after how much flattening.
 ///
-/// Source: 002_000df8fc37500451.txt, Appendix F.2 (F.7, Fig. F.21). Lengths are in R0. Poisson's ratio, which enters
+/// Source: Zunker and Kamrin (2024), Appendix F.2 (F.7, Fig. F.21). Lengths are in R0. Poisson's ratio, which enters
 /// through the growth of the apparent radius, and xi are left open there.
 #pragma once
 

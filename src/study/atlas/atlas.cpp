@@ -180,13 +180,13 @@ class Scope {
 }
 
 /// Derived parameters as columns, a row for each scenario; nan where one of them lacks what the first has.
-[[nodiscard]] Table derived_table(std::span<const Scenario> scenarios) {
+[[nodiscard]] Table derived_table(std::span<const CheckedScenario> scenarios) {
   std::vector<Column> columns;
   for (const DerivedParameter& parameter : derived_parameters(scenarios.front())) {
     columns.push_back({.name = std::string(parameter.name), .unit = std::string(parameter.unit), .labels = {}});
   }
   Table table(std::move(columns));
-  for (const Scenario& scenario : scenarios) {
+  for (const CheckedScenario& scenario : scenarios) {
     const auto derived = derived_parameters(scenario);
     Values row;
     for (const Column& column : table.columns()) {
@@ -263,13 +263,13 @@ class FigureMaker {
       }
       return curves;
     }
-    const auto curve_from = [&](const Scenario& scenario) {
+    const auto curve_from = [&](const CheckedScenario& scenario) {
       const Table& table = spec.profile_at          ? profiles_of(scenario, *spec.profile_at)
                            : !spec.at_event.empty() ? states_at(scenario, spec.at_event)
                                                     : run_of(scenario).history;
       return curve_of(spec.x, spec.y, Scope(&table, derived_parameters(scenario), parameter), faults_);
     };
-    for (const Scenario& scenario : spec.scenarios) curves.push_back(curve_from(scenario));
+    for (const CheckedScenario& scenario : spec.scenarios) curves.push_back(curve_from(scenario));
     for (std::size_t k = 0; k < spec.references.size(); ++k) {
       const Values reference = curve_from(spec.references[k]).y;
       Values& y = curves[k].y;
@@ -285,7 +285,7 @@ class FigureMaker {
   }
 
   /// Runs a scenario; panels that show other columns of the same run share it.
-  [[nodiscard]] const RunRecord& run_of(const Scenario& scenario) {
+  [[nodiscard]] const RunRecord& run_of(const CheckedScenario& scenario) {
     const auto [entry, is_new] = runs_.try_emplace(scenario_digest(scenario));
     RunRecord& record = entry->second;
     if (!is_new) return record;
@@ -298,7 +298,7 @@ class FigureMaker {
   }
 
   /// The states just after the events of a name.
-  [[nodiscard]] const Table& states_at(const Scenario& scenario, const std::string& event) {
+  [[nodiscard]] const Table& states_at(const CheckedScenario& scenario, const std::string& event) {
     const auto [entry, is_new] = tables_.try_emplace(fmt::format("{} at {}", scenario_digest(scenario), event));
     if (!is_new) return entry->second;
     const RunRecord& record = run_of(scenario);
@@ -312,7 +312,7 @@ class FigureMaker {
   }
 
   /// Pressure and surface under the contacts of the first class.
-  [[nodiscard]] const Table& profiles_of(const Scenario& scenario, double time) {
+  [[nodiscard]] const Table& profiles_of(const CheckedScenario& scenario, double time) {
     const auto [entry, is_new] = tables_.try_emplace(fmt::format("{} at {}", scenario_digest(scenario), time));
     if (!is_new) return entry->second;
     const Table all = contact_profiles(scenario, time);

@@ -224,7 +224,7 @@ class DefinitionReader {
 
   /// Every model of the curve has to know the event.
   void check_event(const Section& section, const CurveSpec& spec) {
-    for (const Scenario& scenario : spec.scenarios) {
+    for (const CheckedScenario& scenario : spec.scenarios) {
       std::vector<std::string_view> names;
       for (const Term& event : find_model(scenario.model)->events) names.push_back(event.name);
       if (std::ranges::find(names, spec.at_event) != names.end()) continue;
@@ -360,8 +360,8 @@ class DefinitionReader {
   }
 
   /// The section's scenario; nothing where it has faults, each of which is reported where it stands.
-  [[nodiscard]] std::optional<Scenario> checked_scenario(const Section& section,
-                                                         const std::vector<Override>& overrides) {
+  [[nodiscard]] std::optional<CheckedScenario> checked_scenario(const Section& section,
+                                                                const std::vector<Override>& overrides) {
     std::vector<std::string> texts;
     for (const Override& entry : overrides) texts.push_back(entry.text);
     try {
@@ -381,7 +381,7 @@ class DefinitionReader {
     return std::nullopt;
   }
 
-  [[nodiscard]] Scenario scenario(const Section& curve, const std::vector<std::string>& overrides) {
+  [[nodiscard]] CheckedScenario scenario(const Section& curve, const std::vector<std::string>& overrides) {
     if (!curve.has("scenario")) {
       if (!has_scenario_) {
         throw_fault(curve.place(), "there is no scenario for this; expected scenario = \"FILE\" or a table [scenario]");

@@ -33,16 +33,16 @@ struct CurveSpec {
     double to = 1.0;
   };
 
-  std::vector<Scenario> scenarios;   ///< at least one, but for a formula that needs none
-  std::size_t sweep = 0;             ///< so many scenarios in a row are one curve of derived parameters; 0: runs
-  std::vector<std::string> legends;  ///< one for each curve, or one
+  std::vector<CheckedScenario> scenarios;  ///< at least one, but for a formula that needs none
+  std::size_t sweep = 0;                   ///< so many scenarios in a row are one curve of derived parameters; 0: runs
+  std::vector<std::string> legends;        ///< one for each curve, or one
   PlacedExpression x;
   PlacedExpression y;
   RowChoice rows = RowChoice::all;
   std::vector<figure::ChartSeries::Style> styles{figure::ChartSeries::Style::phases};  ///< likewise
   std::optional<std::size_t> colour;
   /// One for each scenario: y is then its distance from the reference's y, which is evaluated over the same rows.
-  std::vector<Scenario> references{};
+  std::vector<CheckedScenario> references{};
   std::optional<double> profile_at;  ///< [s]; then columns are those of contact profiles at that instant
   std::string at_event;  ///< then rows are the states just after events of this name; empty: those of the history
   std::optional<Parameter> parameter;
@@ -85,7 +85,7 @@ struct TableSpec {
 /// the mean of rows of a file.
 struct ValueSpec {
   std::string label;
-  std::optional<Scenario> scenario;  ///< absent only with a fault
+  std::optional<CheckedScenario> scenario;  ///< absent only with a fault
   PlacedExpression value;
   std::string printed;                  ///< a number; empty: none
   std::optional<PointsSpec> reference;  ///< its y are the rows

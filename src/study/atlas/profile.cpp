@@ -79,7 +79,7 @@ std::vector<double> of_class(const Table& profiles, std::size_t c, std::string_v
 
 }  // namespace
 
-Table contact_profiles(const Scenario& scenario, double time) {
+Table contact_profiles(const CheckedScenario& scenario, double time) {
   if (!find_model(scenario.model)->has_profile) {
     std::vector<std::string_view> names;
     for (const Model& model : model_catalogue()) {

@@ -15,7 +15,7 @@ namespace monograin {
 ///         none of contacts that are open then
 /// @throws std::runtime_error where the model has no profile, the run does not come to that instant, or no contact is
 /// closed then
-[[nodiscard]] Table contact_profiles(const Scenario& scenario, double time);
+[[nodiscard]] Table contact_profiles(const CheckedScenario& scenario, double time);
 
 /// Draws them: pressure over the yield stress where there is one, and the surface, loaded and relaxed. Beside the
 /// figure stand its script and data, and the table as CSV.

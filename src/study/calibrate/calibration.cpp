@@ -21,7 +21,7 @@ constexpr double k_high_correlation = 0.95;  // of two parameters
 constexpr double k_poor = 0.1;               // relative standard error
 
 /// Relative error of the responses.
-double noise_of(const Scenario& scenario) {
+double noise_of(const CheckedScenario& scenario) {
   const Scene scene = make_scene(scenario);
   return choose_integrator(scenario.numerics.integrator, *scene.system).used == integrators::k_direct
              ? k_direct_noise

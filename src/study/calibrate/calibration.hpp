@@ -41,7 +41,7 @@ struct MeasuredCurve {
   std::string file;
   std::string text;
   std::vector<std::string> overrides;  ///< of the scenario, for this curve
-  Scenario scenario;                   ///< with them
+  CheckedScenario scenario;            ///< with them
   std::string driven;                  ///< observable that x holds
   Step::Kind control = Step::Kind::displacement;
   double start = 0.0;  ///< of x, before the first step [SI]
@@ -53,7 +53,7 @@ struct Calibration {
   std::string file;
   std::string text;
   std::string title;
-  Scenario scenario;  ///< with its own steps
+  CheckedScenario scenario;  ///< with its own steps
   std::string scenario_text;
   std::vector<MeasuredCurve> curves;  ///< at least one
   MeasuredQuantity x;

@@ -75,7 +75,7 @@ class CalibrationReader {
 
  private:
   /// The scenario with overrides, from wherever it stands.
-  [[nodiscard]] Scenario scenario_with(const std::vector<std::string>& overrides) const {
+  [[nodiscard]] CheckedScenario scenario_with(const std::vector<std::string>& overrides) const {
     return scenario_file_ == made_.file ? parse_scenario_table(made_.text, "scenario", made_.file, overrides)
                                         : read_scenario(scenario_file_, overrides);
   }
@@ -126,7 +126,7 @@ class CalibrationReader {
   }
 
   /// The data stand in for all steps, and tell of one direction only.
-  void check_lateral(const Scenario& scenario, const SourceLocation& where) {
+  void check_lateral(const CheckedScenario& scenario, const SourceLocation& where) {
     const bool has_lateral =
         std::ranges::any_of(scenario.loading.steps, [](const Step& step) { return step.lateral.has_value(); });
     if (!has_lateral) return;

@@ -82,7 +82,7 @@ const Measurable::Column* Measurable::find(std::string_view name) const noexcept
   return found == columns.end() ? nullptr : &*found;
 }
 
-Measurable measurable_in(const Scenario& scenario) {
+Measurable measurable_in(const CheckedScenario& scenario) {
   const Scene scene = make_scene(scenario);
   Measurable measurable;
   for (std::size_t c = 0; c < scene.classes.size(); ++c) {
@@ -106,7 +106,7 @@ Measurable measurable_in(const Scenario& scenario) {
   return measurable;
 }
 
-Replay::Replay(Scenario scenario, ReplayColumns columns, std::vector<double> values)
+Replay::Replay(CheckedScenario scenario, ReplayColumns columns, std::vector<double> values)
     : scenario_(std::move(scenario)),
       integrator_(choose_integrator(scenario_.numerics.integrator, *make_scene(scenario_).system).used),
       columns_(std::move(columns)),

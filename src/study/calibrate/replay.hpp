@@ -48,7 +48,7 @@ struct Measurable {
 };
 
 /// @throws ScenarioError where the walls' programs do not go together
-[[nodiscard]] Measurable measurable_in(const Scenario& scenario);
+[[nodiscard]] Measurable measurable_in(const CheckedScenario& scenario);
 
 /// What drives a scenario, and what is looked at. Columns are observables: "axial.force".
 struct ReplayColumns {
@@ -62,7 +62,7 @@ struct ReplayColumns {
 class Replay {
  public:
   /// @param values  of the driven column
-  Replay(Scenario scenario, ReplayColumns columns, std::vector<double> values);
+  Replay(CheckedScenario scenario, ReplayColumns columns, std::vector<double> values);
 
   /// Sets one of the scenario's numbers, see number_keys. @param value  [SI]
   void set(std::string_view path, double value);
@@ -75,10 +75,10 @@ class Replay {
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
   /// The first of the values, counted from 0, that was not reached.
   [[nodiscard]] std::size_t failed_at() const noexcept { return failed_at_; }
-  [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
+  [[nodiscard]] const CheckedScenario& scenario() const noexcept { return scenario_; }
 
  private:
-  Scenario scenario_;
+  CheckedScenario scenario_;
   std::string integrator_;
   ReplayColumns columns_;
   std::vector<double> values_;

@@ -34,7 +34,7 @@ constexpr ValueFunction k_value_functions[] = {
     {"sinh", [](double x) { return std::sinh(x); }}, {"cosh", [](double x) { return std::cosh(x); }},
     {"tanh", [](double x) { return std::tanh(x); }}};
 
-constexpr std::array<std::string_view, 3> k_row_functions{"min", "max", "last"};
+constexpr std::array<std::string_view, 4> k_row_functions{"min", "max", "end", "last"};
 constexpr std::size_t k_longest = 400;  ///< which also bounds how deep brackets nest
 
 [[nodiscard]] bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
@@ -61,8 +61,8 @@ constexpr std::size_t k_longest = 400;  ///< which also bounds how deep brackets
   double result = std::numeric_limits<double>::quiet_NaN();
   for (const double value : values) {
     if (std::isnan(value)) continue;
-    const bool is_next =
-        std::isnan(result) || function == "last" || (function == "min" ? value < result : value > result);
+    const bool is_next = std::isnan(result) || function == "end" || function == "last" ||
+                         (function == "min" ? value < result : value > result);
     if (is_next) result = value;
   }
   return result;

@@ -549,7 +549,7 @@ class SweepReader {
     std::optional<std::vector<Fault>> own;
     for (const std::vector<SweepValue>& run : runs_) {
       try {
-        const Scenario scenario = scenario_->with(overrides(run));
+        const CheckedScenario scenario = scenario_->with(overrides(run));
         for (const auto& [option, curve] : scenario.curves) digested_ += '\n' + curve.text;
         return;
       } catch (const ScenarioError& error) {

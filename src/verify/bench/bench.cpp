@@ -34,11 +34,12 @@ constexpr int k_evaluations = 16;        ///< of the law at each output point, t
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-double absolute_tolerance(const Scenario& scenario, double rtol) {
+double absolute_tolerance(const CheckedScenario& scenario, double rtol) {
   return rtol * scenario.numerics.atol / scenario.numerics.rtol;
 }
 
-RunRecord run_once(const Scenario& scenario, const std::string& integrator, double rtol, double* seconds = nullptr) {
+RunRecord run_once(const CheckedScenario& scenario, const std::string& integrator, double rtol,
+                   double* seconds = nullptr) {
   Scene scene = make_scene(scenario);
   const auto start = Clock::now();
   RunRecord record = record_run(scene, integrator, {rtol, absolute_tolerance(scenario, rtol)}, scenario.output);
@@ -47,7 +48,7 @@ RunRecord run_once(const Scenario& scenario, const std::string& integrator, doub
 }
 
 /// How long one run takes, recording included, set-up of the scene not.
-double time_once(const Scenario& scenario, const std::string& integrator, double rtol) {
+double time_once(const CheckedScenario& scenario, const std::string& integrator, double rtol) {
   double seconds = 0.0;
   static_cast<void>(run_once(scenario, integrator, rtol, &seconds));
   return seconds;
@@ -158,7 +159,7 @@ class EvaluationTimer final : public HistorySink {
   long count_ = 0;
 };
 
-double time_evaluation(const Scenario& scenario, const std::string& integrator) {
+double time_evaluation(const CheckedScenario& scenario, const std::string& integrator) {
   double best = k_nan;
   for (int i = 0; i < k_rounds; ++i) {
     Scene scene = make_scene(scenario);
@@ -220,7 +221,7 @@ struct Standard {
 
 /// Two different methods as exact as they get. Of integrators of the explicit form, one that is one-step, the other
 /// multi-step.
-std::pair<Standard, Standard> standards_of(const Scenario& scenario) {
+std::pair<Standard, Standard> standards_of(const CheckedScenario& scenario) {
   const bool is_solvable = make_scene(scenario).system->is_solvable();
   const std::string first = is_solvable ? integrators::k_direct : integrators::k_arkode_erk;
   const std::string second = is_solvable ? integrators::k_arkode_erk : integrators::k_cvode_adams;
@@ -228,8 +229,8 @@ std::pair<Standard, Standard> standards_of(const Scenario& scenario) {
 }
 
 /// All of a point but its times.
-BenchPoint measure_point(const Scenario& scenario, const std::string& name, const std::string& integrator, double rtol,
-                         const Standard& standard) {
+BenchPoint measure_point(const CheckedScenario& scenario, const std::string& name, const std::string& integrator,
+                         double rtol, const Standard& standard) {
   BenchPoint point{.integrator = name, .rtol = rtol, .statistics = {}, .fault = {}};
   const RunRecord record = run_once(scenario, integrator, rtol, &point.fastest);
   point.statistics = record.statistics;
@@ -258,7 +259,7 @@ std::vector<double> decades() {
 }
 
 /// The two walls of simple compression, and four beside the particle that it never reaches.
-Scenario with_walls_out_of_reach(Scenario simple) {
+CheckedScenario with_walls_out_of_reach(CheckedScenario simple) {
   Loading& loading = simple.loading;
   loading.configuration = Loading::Configuration::walls;
   const double gap = 2.0 * simple.radius;
@@ -309,7 +310,7 @@ BenchList read_bench_list(const fs::path& file) {
   Reading reading{faults};
   const SourceLocation top{file.string()};
   const Section root(reading, {&tree, top, "the file"}, root_keys);
-  const auto scenario_of = [&](const Section& section) -> std::optional<Scenario> {
+  const auto scenario_of = [&](const Section& section) -> std::optional<CheckedScenario> {
     if (section.text("scenario").empty()) return std::nullopt;
     try {
       return read_scenario(file.parent_path() / section.text("scenario"), section.texts("set"));
@@ -337,7 +338,8 @@ BenchList read_bench_list(const fs::path& file) {
   return list;
 }
 
-BenchScene measure_scene(const Scenario& scenario, const BenchSettings& settings, const std::function<void()>& shown) {
+BenchScene measure_scene(const CheckedScenario& scenario, const BenchSettings& settings,
+                         const std::function<void()>& shown) {
   const std::vector<std::string> names = settings.integrators.empty() ? all_integrators() : settings.integrators;
   const std::vector<double> tolerances = settings.tolerances.empty() ? decades() : settings.tolerances;
   const auto [first, second] = standards_of(scenario);
@@ -380,7 +382,7 @@ BenchScene measure_scene(const Scenario& scenario, const BenchSettings& settings
   return result;
 }
 
-BenchProfile profile_scene(const Scenario& scenario, const std::string& name) {
+BenchProfile profile_scene(const CheckedScenario& scenario, const std::string& name) {
   const std::string integrator = choose_integrator(name, *make_scene(scenario).system).used;
   BenchProfile profile{.scene = scenario.name, .integrator = integrator};
   double least = std::numeric_limits<double>::infinity();
@@ -418,9 +420,9 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings, const st
     std::function<double()> run;
     RunRecord record;
   };
-  using Alter = std::function<Scene(const Scenario&)>;
-  const Alter as_it_is = [](const Scenario& scenario) { return make_scene(scenario); };
-  const auto measure = [](const Scenario& scenario, const std::string& integrator, const Alter& made) {
+  using Alter = std::function<Scene(const CheckedScenario&)>;
+  const Alter as_it_is = [](const CheckedScenario& scenario) { return make_scene(scenario); };
+  const auto measure = [](const CheckedScenario& scenario, const std::string& integrator, const Alter& made) {
     const auto once = [scenario, integrator, made](double& seconds) {
       Scene scene = made(scenario);
       const auto start = Clock::now();
@@ -448,17 +450,17 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings, const st
                        .difference = curve_error(saved.record.history, undone.record.history).whole});
   };
 
-  const Scenario die = scene_of({});
+  const CheckedScenario die = scene_of({});
   const Measured direct = measure(die, integrators::k_direct, as_it_is);
   const Measured bdf = measure(die, integrators::k_cvode_bdf, as_it_is);
   add("walls that share a history are one class", "die, direct", direct,
-      measure(die, integrators::k_direct, [](const Scenario& scenario) { return make_scene(scenario, false); }));
+      measure(die, integrators::k_direct, [](const CheckedScenario& scenario) { return make_scene(scenario, false); }));
   add("nothing is integrated where a state can be solved for", "die, direct / cvode-bdf", direct, bdf);
   add("no algebraic unknowns where there is an explicit form", "die, cvode-bdf / ida", bdf,
       measure(die, integrators::k_ida, as_it_is));
   using System = std::unique_ptr<HybridSystem>;
   const auto wrapped = [](const std::function<System(System)>& wrap) -> Alter {
-    return [wrap](const Scenario& scenario) {
+    return [wrap](const CheckedScenario& scenario) {
       Scene scene = make_scene(scenario);
       scene.system = wrap(std::move(scene.system));
       return scene;
@@ -481,8 +483,8 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings, const st
       measure(die, integrators::k_cvode_bdf, wrapped(always_observed)));
 
   const std::string simple = "loading.configuration=simple";
-  const Scenario plain = scene_of({simple});
-  const Scenario sticky = scene_of({simple, "material.surface_energy=1e-12"});
+  const CheckedScenario plain = scene_of({simple});
+  const CheckedScenario sticky = scene_of({simple, "material.surface_energy=1e-12"});
   const Measured uniaxial = measure(plain, integrators::k_direct, as_it_is);
   add("no adhesion where the surface energy is zero", "simple, direct, against 1e-12 J/m2", uniaxial,
       measure(sticky, integrators::k_direct, as_it_is));

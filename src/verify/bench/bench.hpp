@@ -71,13 +71,13 @@ struct BenchSaving {
 struct BenchPair {
   std::string what;
   std::string name;
-  Scenario spared;
-  Scenario without;
+  CheckedScenario spared;
+  CheckedScenario without;
 };
 
 /// Scenes and savings that are measured where no scene is named.
 struct BenchList {
-  std::vector<Scenario> scenes;
+  std::vector<CheckedScenario> scenes;
   std::vector<BenchPair> savings;
 };
 
@@ -85,11 +85,11 @@ struct BenchList {
 [[nodiscard]] BenchList read_bench_list(const std::filesystem::path& file);
 
 /// @param shown  called after each point
-[[nodiscard]] BenchScene measure_scene(const Scenario& scenario, const BenchSettings& settings,
+[[nodiscard]] BenchScene measure_scene(const CheckedScenario& scenario, const BenchSettings& settings,
                                        const std::function<void()>& shown);
 
 /// @param name  of an integrator, or "auto"
-[[nodiscard]] BenchProfile profile_scene(const Scenario& scenario, const std::string& name);
+[[nodiscard]] BenchProfile profile_scene(const CheckedScenario& scenario, const std::string& name);
 
 /// The savings that a scene can do without, each over the default scenario or one near to it, and those of the list.
 [[nodiscard]] std::vector<BenchSaving> measure_savings(const BenchSettings& settings,

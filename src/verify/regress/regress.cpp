@@ -34,7 +34,7 @@ constexpr std::string_view k_events_suffix = ".events.csv";
 constexpr std::array<std::string_view, 4> k_integrators{integrators::k_direct, integrators::k_cvode_adams,
                                                         integrators::k_cvode_bdf, integrators::k_ida};
 
-bool has_direct_form(const Scenario& scenario) { return make_scene(scenario).system->is_solvable(); }
+bool has_direct_form(const CheckedScenario& scenario) { return make_scene(scenario).system->is_solvable(); }
 
 std::vector<fs::path> scenario_files(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
@@ -50,7 +50,7 @@ std::vector<fs::path> scenario_files(const fs::path& folder) {
   return files;
 }
 
-Run run_with(Scenario scenario, std::string_view integrator) {
+Run run_with(CheckedScenario scenario, std::string_view integrator) {
   scenario.numerics.integrator = integrator;
   return run_scenario(scenario);
 }
@@ -168,7 +168,7 @@ std::vector<RegressionResult> regress(const fs::path& scenarios, const fs::path&
   const std::vector<fs::path> files = scenario_files(scenarios);
   std::vector<RegressionResult> results = orphaned_curves(files, curves);
   for (const fs::path& file : files) {
-    const Scenario scenario = read_scenario(file);
+    const CheckedScenario scenario = read_scenario(file);
     const bool has_direct = has_direct_form(scenario);
     for (const std::string_view integrator : k_integrators) {
       if (has_direct || integrator != integrators::k_direct)
@@ -183,7 +183,7 @@ std::vector<RegressionResult> accept_curves(const fs::path& scenarios, const fs:
   const std::vector<fs::path> files = scenario_files(scenarios);
   std::vector<RegressionResult> results = orphaned_curves(files, curves);
   for (const fs::path& file : files) {
-    Scenario scenario = read_scenario(file);
+    CheckedScenario scenario = read_scenario(file);
     const bool has_direct = has_direct_form(scenario);
     if (!has_direct) {
       scenario.numerics.rtol *= k_tighter;

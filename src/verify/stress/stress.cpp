@@ -40,7 +40,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 /// The verdict on a scene; nothing where it is not admissible.
 std::optional<StressVerdict> verdict_of(const StressScene& scene, const fs::path& tables, double seconds) {
   try {
-    const Scenario scenario = parse_stress_text(scenario_text(scene), tables);
+    const CheckedScenario scenario = parse_stress_text(scenario_text(scene), tables);
     return check_scene(scenario, {.seconds = std::min(seconds, most_seconds_of(scenario))});
   } catch (const ScenarioError&) {
     return std::nullopt;
@@ -58,7 +58,7 @@ CheckedScene check_drawn(std::uint64_t seed, std::uint64_t index, const fs::path
   const Clock::time_point start = Clock::now();
   try {
     checked.scene = draw_stress_scene(seed, index, tables);
-    const Scenario scenario = parse_stress_text(scenario_text(checked.scene), tables);
+    const CheckedScenario scenario = parse_stress_text(scenario_text(checked.scene), tables);
     checked.verdict = check_scene(scenario, {.seconds = most_seconds_of(scenario), .copies = index});
   } catch (const std::exception& error) {  // of the generator: a scene that is not admissible
     checked.verdict.violations.push_back({k_generator_rule, error.what()});

@@ -168,8 +168,8 @@ Step strain_and_stress(double axial_strain, double lateral_stress, double durati
   return step;
 }
 
-Scenario point(const Parameters& m, Configuration configuration, std::vector<Step> steps) {
-  Scenario scenario;
+CheckedScenario point(const Parameters& m, Configuration configuration, std::vector<Step> steps) {
+  CheckedScenario scenario;
   scenario.name = "point";
   scenario.model = "material-point";
   scenario.material = {{"yield_pressure", 1.0},
@@ -293,7 +293,7 @@ PointErrors errors_against(const PointReference& reference, const RunRecord& run
   return errors;
 }
 
-bool is_offered(std::string_view integrator, const Scenario& scenario) {
+bool is_offered(std::string_view integrator, const CheckedScenario& scenario) {
   return integrator != "direct" || make_scene(scenario).system->is_solvable();
 }
 

@@ -31,14 +31,14 @@ namespace monograin::compressible {
 [[nodiscard]] Step stresses(double axial, double lateral, double duration = 1.0);
 [[nodiscard]] Step strain_and_stress(double axial_strain, double lateral_stress, double duration = 1.0);
 
-[[nodiscard]] Scenario point(const Parameters& parameters, Configuration configuration, std::vector<Step> steps);
+[[nodiscard]] CheckedScenario point(const Parameters& parameters, Configuration configuration, std::vector<Step> steps);
 
 // --- reference histories
 
 /// A file of tests/models/compressible/reference with the scenario that its header describes.
 struct PointReference {
   Table table;
-  Scenario scenario;  ///< output at the file's instants that are not events
+  CheckedScenario scenario;  ///< output at the file's instants that are not events
 };
 inline constexpr const char* k_reference_points[] = {
     "mp01_vmdc_base_hydrostatic",    "mp02_vmdc_base_oedometric",      "mp03_vmdc_base_uniaxial_stress",
@@ -58,6 +58,6 @@ struct PointErrors {
 [[nodiscard]] PointErrors errors_against(const PointReference& reference, const RunRecord& run);
 
 /// Whether this integrator can run that scenario.
-[[nodiscard]] bool is_offered(std::string_view integrator, const Scenario& scenario);
+[[nodiscard]] bool is_offered(std::string_view integrator, const CheckedScenario& scenario);
 
 }  // namespace monograin::compressible

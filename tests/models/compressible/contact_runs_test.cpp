@@ -162,7 +162,7 @@ class StoredHistory : public ::testing::TestWithParam<std::string> {
   StoredHistory() : stored_(stored_history(GetParam())) {}
 
   [[nodiscard]] TestRun run_it(std::string_view integrator, const Tolerances& tolerances = {}) const {
-    Scenario scenario = compressible_scenario(Configuration::simple, stored_.numbers, path(stored_.targets));
+    CheckedScenario scenario = compressible_scenario(Configuration::simple, stored_.numbers, path(stored_.targets));
     scenario.output.points = 40;
     return run(scenario, integrator, tolerances);
   }
@@ -276,8 +276,8 @@ Case random_case(std::mt19937_64& generator, double stretch = 1.0) {
   return made;
 }
 
-Scenario scenario_of(const Case& made, Configuration configuration) {
-  Scenario scenario = compressible_scenario(configuration, made.numbers, steps_of(made.control, made.targets));
+CheckedScenario scenario_of(const Case& made, Configuration configuration) {
+  CheckedScenario scenario = compressible_scenario(configuration, made.numbers, steps_of(made.control, made.targets));
   scenario.output.points = 20;
   return scenario;
 }
@@ -331,7 +331,7 @@ TEST(CompressibleRuns, CountEveryWallOfEveryConfiguration) {
 TEST(CompressibleRuns, MeetTheParticleAcrossGapsWithPrescribedDisplacementsAndForces) {
   const CompressibleNumbers numbers;
   const Walk walk(numbers);
-  const Scenario scenario =
+  const CheckedScenario scenario =
       between(compressible_scenario(Configuration::walls, numbers, {}),
               {wall("a", {0, 0, 1}, {ramp(0.3), ramp(0.1)}), wall("b", {0, 0, -1}, {ramp(0.2), ramp(-0.05)}, 0.1),
                wall("c", {1, 0, 0}, {force_ramp(0.4), force_ramp(0.1)}, 0.05), wall("d", {0, 1, 0})});
@@ -405,7 +405,7 @@ TEST(CompressibleEvents, StopAtTheTransitionWhereTheSlopeJumps) {
   for (const bool by_force : {false, true}) {
     const double end = by_force ? static_cast<double>(Walk(numbers).loading(0.4L)) : 0.4;
     for (const char* integrator : k_integrators) {
-      Scenario scenario =
+      CheckedScenario scenario =
           compressible_scenario(Configuration::simple, numbers, {by_force ? force_ramp(end) : ramp(end)});
       const TestRun now = run(scenario, integrator);
       const auto d = now.column("axial.displacement");
@@ -451,7 +451,7 @@ TEST(CompressibleEvents, DoNotDependOnTheRate) {
 }
 
 TEST(CompressibleEvents, AreTheSameForWallsThatAreNotMerged) {
-  const Scenario scenario = compressible_scenario(Configuration::hydrostatic, {}, path({0.3, 0.2, 0.4}));
+  const CheckedScenario scenario = compressible_scenario(Configuration::hydrostatic, {}, path({0.3, 0.2, 0.4}));
   const TestRun merged = run(scenario);
   const TestRun apart = run(scenario, "direct", {}, false);
   EXPECT_EQ(apart.outputs_by_class("force").size(), 6u);
@@ -519,7 +519,7 @@ TEST_P(Tolerance, MeansSomething) {
                                                                       {Control::force, {0.8, 0.2, 1.4, 0.5}}};
   for (const auto& [control, targets] : programs) {
     const Expected expected = expected_history(Walk(numbers), control, targets, 20);
-    Scenario scenario = compressible_scenario(Configuration::simple, numbers, steps_of(control, targets));
+    CheckedScenario scenario = compressible_scenario(Configuration::simple, numbers, steps_of(control, targets));
     scenario.output.points = 20;
     std::vector<double> errors;
     for (const double rtol : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}) {
@@ -589,7 +589,7 @@ TEST(CompressibleWarnings, TellOfClippedAndOfFlatUnloadings) {
   EXPECT_TRUE(warnings_of({}, {0.4, 0.0}).empty());
 }
 
-Scenario granule(const std::string& material, const std::string& options = {}) {
+CheckedScenario granule(const std::string& material, const std::string& options = {}) {
   return parse_scenario(
       "model = \"compressible\"\n[particle]\nradius = \"2 mm\"\n[material]\nnu0 = 0.3\nyield_pressure "
       "= \"30 MPa\"\n" +
@@ -600,7 +600,7 @@ Scenario granule(const std::string& material, const std::string& options = {}) {
 }
 
 TEST(CompressibleWarnings, TellOfNumbersThatStandInAndOfExtrapolation) {
-  const auto warnings_of = [](const Scenario& scenario) { return run(scenario).record.warnings; };
+  const auto warnings_of = [](const CheckedScenario& scenario) { return run(scenario).record.warnings; };
   EXPECT_EQ(warnings_of(granule("stiffness_ratio = 100\nshear_ratio = 1\n", "alpha = 1.3\nbeta = 1.6\n")),
             std::vector<std::string>());
   EXPECT_EQ(
@@ -617,7 +617,7 @@ TEST(CompressibleWarnings, TellOfNumbersThatStandInAndOfExtrapolation) {
 
 TEST(CompressibleRuns, ScaleWithRadiusAndYieldPressure) {
   // Base case of the source, in units, against the same without.
-  const Scenario scenario = granule("stiffness_ratio = 100\nshear_ratio = 1\n", "alpha = 1.3\nbeta = 1.6\n");
+  const CheckedScenario scenario = granule("stiffness_ratio = 100\nshear_ratio = 1\n", "alpha = 1.3\nbeta = 1.6\n");
   const CompressibleNumbers numbers{.k = 3.8993577505742754,
                                     .delta_t = 0.1131952,
                                     .a = 3.6539749,
@@ -625,7 +625,7 @@ TEST(CompressibleRuns, ScaleWithRadiusAndYieldPressure) {
                                     .nu0 = 0.3,
                                     .alpha = 1.3,
                                     .beta = 1.6};
-  Scenario without = compressible_scenario(Configuration::simple, numbers, path({0.3, 0.2}));
+  CheckedScenario without = compressible_scenario(Configuration::simple, numbers, path({0.3, 0.2}));
   without.output.points = scenario.output.points;
   const TestRun in_units = run(scenario);
   const TestRun plain = run(without);
@@ -662,7 +662,7 @@ TEST(CompressibleRandomScenes, AreCompleteWithoutBlanks) {
   for (int i = 0; i < 2000; ++i) {
     const double stretch = i % 2 == 0 ? 1.0 : 4.0;
     const Case made = random_case(generator, stretch);
-    Scenario scenario = scenario_of(made, Configuration::simple);
+    CheckedScenario scenario = scenario_of(made, Configuration::simple);
     const double kind = share(generator);
     if (kind < 0.3) {
       scenario.loading.configuration = kind < 0.15 ? Configuration::die : Configuration::hydrostatic;

@@ -264,7 +264,7 @@ TEST_P(Independent, RunAgrees) {
                                                std::abs(marcher.plastic_deviator() - coarse.plastic_deviator()));
   ASSERT_LT(own_error, 1e-12) << "the marching itself";
   const auto [p, s] = marcher.stress();
-  const Scenario scenario = point(c.parameters, Configuration::strain_path, steps);
+  const CheckedScenario scenario = point(c.parameters, Configuration::strain_path, steps);
   for (const char* integrator : k_integrators) {
     if (!is_offered(integrator, scenario)) continue;
     for (const auto& [rtol, bound] : {std::pair(1e-8, 1e-7), std::pair(1e-11, 2e-10)}) {
@@ -306,7 +306,7 @@ std::vector<std::size_t> plastic_rows(const TestRun& run) {
 TEST(ClosedForm, HydrostaticCompressionAndTension) {
   for (Parameters m : {base_case(20.0, 0.8, 0.05), lactose(0.03)}) {
     for (const double target : {-0.09, 0.03}) {
-      const Scenario scenario = point(m, Configuration::hydrostatic, {strain(target)});
+      const CheckedScenario scenario = point(m, Configuration::hydrostatic, {strain(target)});
       const TestRun actual = run(scenario, "direct");
       ASSERT_EQ(actual.record.status, RunStatus::complete) << actual.record.message;
       const auto rows = plastic_rows(actual);
@@ -342,7 +342,7 @@ TEST(ClosedForm, UniaxialStressOfVonMises) {
 // Where Gamma <= 3 pi3, a bar of the double cap yields on the shear segment and stays there.
 TEST(ClosedForm, UniaxialStressOnTheShearSegmentIsPerfectlyPlastic) {
   const Parameters m = base_case(100.0, 0.5, 0.01);
-  const Scenario scenario = point(m, Configuration::simple, {strain(-0.1)});
+  const CheckedScenario scenario = point(m, Configuration::simple, {strain(-0.1)});
   for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
     const TestRun actual = run(scenario, integrator);
     EXPECT_NEAR(actual.time_of("yield"), 0.5 / 100.0 / 0.1, 1e-14);

@@ -20,7 +20,7 @@ const std::set<std::string> k_ends{"density-limit", "cap-centre-tensile", "cap-a
 struct RandomPoint {
   Parameters parameters;
   std::vector<std::array<double, 2>> corners;
-  [[nodiscard]] Scenario scenario() const {
+  [[nodiscard]] CheckedScenario scenario() const {
     std::vector<Step> steps;
     for (const auto& [axial, lateral] : corners) steps.push_back(strains(axial, lateral));
     return with_points(point(parameters, Configuration::strain_path, steps), 20);
@@ -95,7 +95,7 @@ TEST(RandomStrainPaths, StayOnTheSurfaceAndDissipate) {
   double apart = 0.0;
   for (int i = 0; i < 1000; ++i) {
     const RandomPoint draw = random_point(random);
-    const Scenario scenario = draw.scenario();
+    const CheckedScenario scenario = draw.scenario();
     const TestRun result = run(scenario, "cvode-bdf");
     ASSERT_NE(result.record.status, RunStatus::failed) << i << ": " << result.record.message;
     if (result.record.status == RunStatus::stopped) {
@@ -144,7 +144,8 @@ TEST(RandomStrainPaths, StayOnTheSurfaceAndDissipate) {
 // Stiffening stores part of the plastic work: without that the balance does not close.
 TEST(MaterialPoint, WorkIsStoredOrDissipated) {
   for (const Parameters& m : {base_case(), lactose(0.03), von_mises(3.0)}) {
-    Scenario scenario = with_points(point(m, Configuration::die, {strain(-0.1), strain(-0.095), strain(-0.15)}), 4000);
+    CheckedScenario scenario =
+        with_points(point(m, Configuration::die, {strain(-0.1), strain(-0.095), strain(-0.15)}), 4000);
     const TestRun result = run(scenario, "cvode-adams", relative(1e-10));
     const auto axial = result.column("strain_axial");
     const auto p = result.column("p");
@@ -184,9 +185,9 @@ TEST(MaterialPoint, WarnsOfNegativePlasticWork) {
 }
 
 TEST(MaterialPoint, DoesNotKnowTime) {
-  const Scenario slow =
+  const CheckedScenario slow =
       with_points(point(base_case(), Configuration::die, {strain(-0.2, 1e6), strain(-0.19, 1e-3)}), 50);
-  const Scenario fast =
+  const CheckedScenario fast =
       with_points(point(base_case(), Configuration::die, {strain(-0.2, 1e-4), strain(-0.19, 1e2)}), 50);
   for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
     const TestRun a = run(slow, integrator);
@@ -201,8 +202,8 @@ TEST(MaterialPoint, ForgetsHowAPathWasCutUp) {
   for (const Parameters& m : {base_case(), lactose(0.03), lactose(0.0), von_mises(3.0)}) {
     std::vector<Step> pieces;
     for (const double share : {0.03, 0.2, 0.21, 0.6, 0.95, 1.0}) pieces.push_back(strains(-0.15 * share, 0.02 * share));
-    const Scenario whole = point(m, Configuration::strain_path, {strains(-0.15, 0.02)});
-    const Scenario cut = point(m, Configuration::strain_path, pieces);
+    const CheckedScenario whole = point(m, Configuration::strain_path, {strains(-0.15, 0.02)});
+    const CheckedScenario cut = point(m, Configuration::strain_path, pieces);
     for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
       const TestRun a = run(whole, integrator);
       const TestRun b = run(cut, integrator);
@@ -218,7 +219,7 @@ TEST(MaterialPoint, ForgetsHowAPathWasCutUp) {
 
 TEST(MaterialPoint, ElasticCyclesClose) {
   for (const Parameters& m : {base_case(), lactose(0.03), von_mises(3.0)}) {
-    const Scenario scenario =
+    const CheckedScenario scenario =
         point(m, Configuration::strain_path, {strains(-3e-4, 0.0), strains(-1e-4, -1e-4), strains(0.0, 0.0)});
     const TestRun result = run(scenario, "ida");
     EXPECT_EQ(result.events(), std::vector<std::string>{});
@@ -246,7 +247,7 @@ TEST(MaterialPoint, TendsToTheCriticalStateWithoutAnEvent) {
       Parameters m = with_critical_state();
       m.model = model;
       if (model == YieldModel::dpc) m.transition_width = width;
-      const Scenario scenario = point(m, Configuration::simple, {strain(-1.0), strain(-1.5)});
+      const CheckedScenario scenario = point(m, Configuration::simple, {strain(-1.0), strain(-1.5)});
       for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
         const TestRun result = run(scenario, integrator);
         ASSERT_EQ(result.record.status, RunStatus::complete) << integrator << ": " << result.record.message;
@@ -268,7 +269,7 @@ TEST(MaterialPoint, HoldsWithoutUnloading) {
   Step hold_step;
   hold_step.kind = Step::Kind::hold;
   hold_step.duration = 1.0;
-  const Scenario scenario = point(base_case(), Configuration::die, {strain(-0.1), hold_step, strain(-0.15)});
+  const CheckedScenario scenario = point(base_case(), Configuration::die, {strain(-0.1), hold_step, strain(-0.15)});
   for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
     const TestRun result = run(scenario, integrator);
     ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
@@ -281,7 +282,7 @@ TEST(MaterialPoint, HoldsWithoutUnloading) {
 TEST(MaterialPoint, IsStiffInTension) {
   Parameters m = base_case();
   m.tensile_ratio = 0.003;
-  const Scenario scenario = with_points(point(m, Configuration::die, {strain(0.03)}), 10);
+  const CheckedScenario scenario = with_points(point(m, Configuration::die, {strain(0.03)}), 10);
   const TestRun a = run(scenario, "cvode-bdf");
   const TestRun b = run(scenario, "ida");
   ASSERT_EQ(a.record.status, RunStatus::complete) << a.record.message;
@@ -371,7 +372,7 @@ TEST(MaterialPoint, StopsWhereItsLawsEnd) {
   for (const End& end : ends()) {
     for (const auto configuration : {Configuration::hydrostatic, Configuration::die}) {
       const double strain_end = configuration == Configuration::die ? 3.0 * end.strain : end.strain;
-      const Scenario scenario = point(end.parameters, configuration, {strain(strain_end)});
+      const CheckedScenario scenario = point(end.parameters, configuration, {strain(strain_end)});
       for (const char* integrator : k_integrators) {
         if (!is_offered(integrator, scenario)) continue;
         const TestRun result = run(scenario, integrator);
@@ -392,7 +393,7 @@ TEST(MaterialPoint, StopsWhereRoundingOfStrainsWouldBeItsStress) {
   const Properties start = properties_at(m, 0.0);
   const double ratio = std::max(start.bulk_modulus.value, 3.0 * start.shear_modulus.value);
   const double phi = std::log(1e10 / ratio) / (m.xi - m.eta);
-  const Scenario scenario = point(m, Configuration::simple, {strain(-1.0)});
+  const CheckedScenario scenario = point(m, Configuration::simple, {strain(-1.0)});
   // Not ida, for which the material is too stiff before.
   for (const char* integrator : {"direct", "cvode-adams", "cvode-bdf"}) {
     const TestRun result = run(scenario, integrator);
@@ -442,7 +443,7 @@ double end_distance(const TestRun& a, const TestRun& b) {
 
 TEST(MaterialPoint, ConvergesWithTheToleranceOverEveryPath) {
   for (const Smooth& c : smooth_cases()) {
-    const Scenario scenario = with_points(point(c.parameters, c.configuration, c.steps), 1);
+    const CheckedScenario scenario = with_points(point(c.parameters, c.configuration, c.steps), 1);
     const TestRun exact = run(scenario, "cvode-bdf", relative(1e-13));
     ASSERT_EQ(exact.record.status, RunStatus::complete) << c.name << ": " << exact.record.message;
     for (const std::string integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
@@ -470,7 +471,7 @@ TEST(MaterialPoint, CurvesBetweenImplicitStepsConvergeWithTheTolerance) {
   for (const Smooth& c : smooth_cases()) {
     // Stiff: as many steps as that takes, ten thousands.
     if (c.configuration == Configuration::strain_path) continue;
-    const Scenario scenario = with_points(point(c.parameters, c.configuration, c.steps), 40);
+    const CheckedScenario scenario = with_points(point(c.parameters, c.configuration, c.steps), 40);
     const TestRun exact = run(scenario, "cvode-bdf", relative(1e-13));
     ASSERT_EQ(exact.record.status, RunStatus::complete) << c.name << ": " << exact.record.message;
     for (int digits = 3; digits <= 12; digits += 3) {

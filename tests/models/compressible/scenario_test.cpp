@@ -33,7 +33,8 @@ bool says(const std::string& text, const std::string& what) {
 }
 
 TEST(MaterialPointScenario, TakesAPreset) {
-  const Scenario scenario = parse_scenario(die("preset = \"MCC PH-200\"\nrelative_density = 0.5\nnu0 = 0.2"), "point");
+  const CheckedScenario scenario =
+      parse_scenario(die("preset = \"MCC PH-200\"\nrelative_density = 0.5\nnu0 = 0.2"), "point");
   EXPECT_EQ(scenario.material.at("yield_pressure"), 8.61e6);
   EXPECT_EQ(scenario.material.at("eta"), 6.11);
   EXPECT_EQ(scenario.material.at("nu0"), 0.2) << "given beside the preset";

@@ -16,9 +16,10 @@ struct CompressibleNumbers {
   double alpha = 1.2, beta = 2.0;
 };
 
-[[nodiscard]] inline Scenario compressible_scenario(Configuration configuration, const CompressibleNumbers& numbers,
-                                                    std::vector<Step> steps) {
-  Scenario scenario = hertz_scenario(configuration, std::move(steps));
+[[nodiscard]] inline CheckedScenario compressible_scenario(Configuration configuration,
+                                                           const CompressibleNumbers& numbers,
+                                                           std::vector<Step> steps) {
+  CheckedScenario scenario = hertz_scenario(configuration, std::move(steps));
   scenario.model = "compressible";
   scenario.material = {
       {"stiffness_ratio", numbers.stiffness_ratio}, {"nu0", numbers.nu0}, {"yield_pressure", 1.0 / std::numbers::pi}};

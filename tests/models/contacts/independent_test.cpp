@@ -120,7 +120,7 @@ constexpr const char* k_all_forms[] = {"direct", "cvode-adams",   "cvode-bdf",
 
 /// Runs a law in the scene of another model.
 template <class Law>
-TestRun run_law(const Scenario& scenario, std::string_view integrator, const Law& law = {},
+TestRun run_law(const CheckedScenario& scenario, std::string_view integrator, const Law& law = {},
                 const Tolerances& tolerances = {}) {
   TestRun result{make_scene(scenario), {}};
   const contacts::Settings settings{.initial_radius = scenario.radius};
@@ -129,7 +129,9 @@ TestRun run_law(const Scenario& scenario, std::string_view integrator, const Law
   return result;
 }
 
-Scenario pair_of_walls(std::vector<Step> steps) { return hertz_scenario(Configuration::simple, std::move(steps)); }
+CheckedScenario pair_of_walls(std::vector<Step> steps) {
+  return hertz_scenario(Configuration::simple, std::move(steps));
+}
 
 using Names = std::vector<std::string>;
 
@@ -150,7 +152,7 @@ TEST(IndependentContacts, BearTheForceOfTheLawUnderBothControls) {
 }
 
 TEST(IndependentContacts, ScaleWithRadiusAndUnitForce) {
-  Scenario scenario = pair_of_walls({ramp(1e-3)});
+  CheckedScenario scenario = pair_of_walls({ramp(1e-3)});
   scenario.radius = 0.01;
   const TestRun now = run_law<Spring>(scenario, "direct", {2e6});
   EXPECT_DOUBLE_EQ(now.last("axial.force"), 2e6 * 0.01 * 1e-3);
@@ -160,7 +162,8 @@ TEST(IndependentContacts, ScaleWithRadiusAndUnitForce) {
 
 TEST(IndependentContacts, TouchAcrossAGapAreLostAndTouchedAgain) {
   const auto steps = path({0.3, -0.2, 0.2});
-  const Scenario scenario = between(pair_of_walls({}), {wall("a", {0, 0, 1}, steps, 0.1), wall("b", {0, 0, -1})});
+  const CheckedScenario scenario =
+      between(pair_of_walls({}), {wall("a", {0, 0, 1}, steps, 0.1), wall("b", {0, 0, -1})});
   for (const char* form : k_all_forms) {
     const TestRun now = run_law<Spring>(scenario, form);
     EXPECT_EQ(now.events(), (Names{"a:contact-made", "a:load-reversal", "a:contact-lost", "a:contact-made"})) << form;
@@ -241,7 +244,7 @@ TEST(IndependentContacts, PassABoundaryOnceWhereAStepEndsThere) {
 
 TEST(IndependentContacts, LeaveNoDentWhereAWallHasOnlyTouched) {
   for (const char* form : k_all_forms) {
-    const Scenario touching =
+    const CheckedScenario touching =
         between(pair_of_walls({}), {wall("a", {0, 0, 1}, {until_event(ramp(0.1), "contact-made"), ramp(-0.1)}, 0.1)});
     EXPECT_EQ(run_law<Hysteretic>(touching, form).events(), (Names{"a:contact-made", "until-met", "a:contact-lost"}))
         << form;
@@ -274,7 +277,7 @@ TEST(IndependentContacts, MayFollowOthers) {
 }
 
 TEST(IndependentContacts, EndTheRunWhereALawHasNoUnloading) {
-  const Scenario scenario =
+  const CheckedScenario scenario =
       between(pair_of_walls({}), {wall("a", {0, 0, 1}, path({0.2, 0.1})), wall("b", {0, 0, -1}, path({0.3, 0.4}))});
   const TestRun now = run_law<Powerful>(scenario, "direct");
   EXPECT_EQ(now.record.limit, Limit::no_unloading_law);
@@ -291,7 +294,7 @@ TEST(IndependentContacts, BalanceTheirEnergies) {
     std::vector<double> targets;
     for (int k = 0; k < 6; ++k) targets.push_back(k % 2 == 0 ? k_end * share(generator) : 0.9 * share(generator) - 0.2);
     for (double& target : targets) target = std::min(target, k_end);
-    const Scenario scenario = with_points(hertz_scenario(Configuration::hydrostatic, path(targets)), 20);
+    const CheckedScenario scenario = with_points(hertz_scenario(Configuration::hydrostatic, path(targets)), 20);
     const TestRun closed = run_law<HystereticInClosedForm>(scenario, "direct");
     EXPECT_GE(least_dissipation(closed), -1e-14);
     EXPECT_LE(std::abs(lost_dissipation(closed)), 1e-14);

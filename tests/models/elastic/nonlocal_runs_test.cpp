@@ -20,8 +20,8 @@ namespace {
 
 using std::numbers::pi;
 
-Scenario nonlocal_scenario(Configuration configuration, double poisson_ratio, std::vector<Step> steps) {
-  Scenario scenario = hertz_scenario(configuration, std::move(steps));
+CheckedScenario nonlocal_scenario(Configuration configuration, double poisson_ratio, std::vector<Step> steps) {
+  CheckedScenario scenario = hertz_scenario(configuration, std::move(steps));
   scenario.model = "nonlocal";
   scenario.material["poisson_ratio"] = poisson_ratio;
   scenario.options = {{"terms", std::string("4")},
@@ -30,13 +30,13 @@ Scenario nonlocal_scenario(Configuration configuration, double poisson_ratio, st
   return scenario;
 }
 
-Scenario oblique(Scenario scenario, double angle, int walls = 2) {
+CheckedScenario oblique(CheckedScenario scenario, double angle, int walls = 2) {
   scenario.loading.oblique_angle = angle;
   scenario.loading.oblique_walls = walls;
   return scenario;
 }
 
-Scenario with_free_centre(Scenario scenario) {
+CheckedScenario with_free_centre(CheckedScenario scenario) {
   scenario.loading.centre_is_free = true;
   return scenario;
 }
@@ -46,7 +46,7 @@ Table reference(const std::string& file) {
 }
 
 /// The preset that a reference file is about.
-Scenario preset_of(const std::string& name, double poisson_ratio, std::vector<Step> steps) {
+CheckedScenario preset_of(const std::string& name, double poisson_ratio, std::vector<Step> steps) {
   if (name.starts_with("simple")) return nonlocal_scenario(Configuration::simple, poisson_ratio, std::move(steps));
   if (name.starts_with("hydrostatic")) {
     return nonlocal_scenario(Configuration::hydrostatic, poisson_ratio, std::move(steps));
@@ -61,9 +61,9 @@ Scenario preset_of(const std::string& name, double poisson_ratio, std::vector<St
 }
 
 /// The program of a reference file, recorded at its rows.
-Scenario case_of(const std::string& name, const Table& table) {
+CheckedScenario case_of(const std::string& name, const Table& table) {
   const double nu = std::stod(std::string(table.header_value("poisson_ratio")));
-  Scenario scenario;
+  CheckedScenario scenario;
   double start = 0.0;
   if (name == "die_gaps_unload_terms4") {
     const std::vector<Step> drive{ramp(0.35), ramp(-0.02)};
@@ -143,7 +143,7 @@ class NonlocalReference : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(NonlocalReference, IsMetInAllForms) {
   const Table table = reference(GetParam());
-  const Scenario scenario = case_of(GetParam(), table);
+  const CheckedScenario scenario = case_of(GetParam(), table);
   for (const char* integrator : k_integrators) {
     const double bound = integrator == std::string_view("direct") ? 1e-12 : 1e-6;
     EXPECT_LE(error_of(run(scenario, integrator), table, "a_prime_eq14_over_R"), bound) << integrator;
@@ -171,7 +171,7 @@ TEST(NonlocalEvents, FallWhereTheyWereComputedElsewhere) {
   int compared = 0;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     const std::string rule = word(row, "rule");
-    Scenario scenario = preset_of(word(row, "configuration"), 0.48, {ramp(0.6, 0.6)});
+    CheckedScenario scenario = preset_of(word(row, "configuration"), 0.48, {ramp(0.6, 0.6)});
     scenario.options["terms"] = std::to_string(static_cast<int>(table.at(row, *table.find("terms"))));
     scenario = with(scenario, "contact_radius_rule",
                     rule == "eq8"           ? "integral"
@@ -202,7 +202,7 @@ TEST(NonlocalEvents, FallWhereTheyWereComputedElsewhere) {
 TEST(NonlocalEvents, OfContactsMadeAndLostFallWhereTheyWereComputedElsewhere) {
   const Table table = reference("events_general");
   const Table curve = reference("die_gaps_unload_terms4");
-  const Scenario scenario = case_of("die_gaps_unload_terms4", curve);
+  const CheckedScenario scenario = case_of("die_gaps_unload_terms4", curve);
   for (const char* integrator : k_integrators) {
     const TestRun now = run(scenario, integrator);
     const bool is_direct = integrator == std::string_view("direct");
@@ -236,7 +236,7 @@ TEST(NonlocalEvents, WarnBeforeTheLimitAndStopThere) {
 
 TEST(NonlocalEvents, StopWhereAContactIsAsWideAsTheParticleOrWallsMeet) {
   // For nu = 0.3 a contact becomes as wide as the particle before the limit of applicability.
-  const Scenario wide = nonlocal_scenario(Configuration::die, 0.3, {ramp(0.98)});
+  const CheckedScenario wide = nonlocal_scenario(Configuration::die, 0.3, {ramp(0.98)});
   const TestRun now = run(wide);
   EXPECT_EQ(now.events().back(), "axial:radius-limit");
   EXPECT_NEAR(now.last("axial.contact_radius"), 1.0, 1e-12);
@@ -298,8 +298,8 @@ TEST(NonlocalRuns, AForcePressesAFreeParticleAgainstAFixedWallAsTwoForcesDo) {
   for (const char* influence : {"half-space", "sphere"}) {
     const TestRun both =
         run(with(nonlocal_scenario(Configuration::simple, 0.3, press_and_release), "influence", influence));
-    const Scenario walls = between(nonlocal_scenario(Configuration::walls, 0.3, {}),
-                                   {wall("a", {0.6, 0, -0.8}, press_and_release), wall("b", {-0.6, 0, 0.8})});
+    const CheckedScenario walls = between(nonlocal_scenario(Configuration::walls, 0.3, {}),
+                                          {wall("a", {0.6, 0, -0.8}, press_and_release), wall("b", {-0.6, 0, 0.8})});
     for (const char* integrator : k_integrators) {
       SCOPED_TRACE(std::string(integrator) + " " + influence);
       const TestRun now = run(with_free_centre(with(walls, "influence", influence)), integrator);
@@ -315,8 +315,8 @@ TEST(NonlocalRuns, AForcePressesAFreeParticleAgainstAFixedWallAsTwoForcesDo) {
 }
 
 TEST(NonlocalRuns, LeaveADisplacementThatOfTheWallItself) {
-  const Scenario walls = between(nonlocal_scenario(Configuration::walls, 0.3, {}),
-                                 {wall("top", {0, 0, 1}, path({0.1, 0.05})), wall("bottom", {0, 0, -1})});
+  const CheckedScenario walls = between(nonlocal_scenario(Configuration::walls, 0.3, {}),
+                                        {wall("top", {0, 0, 1}, path({0.1, 0.05})), wall("bottom", {0, 0, -1})});
   for (const char* integrator : k_integrators) {
     const TestRun now = run(with_free_centre(walls), integrator);
     EXPECT_EQ(now.outputs("top.displacement")[50], 0.1) << integrator;
@@ -332,8 +332,8 @@ TEST(NonlocalRuns, LeaveADisplacementThatOfTheWallItself) {
 
 TEST(NonlocalRuns, OfOneTermWithoutCouplingAreHertzian) {
   // A single driven wall under a fixed centre feels no other.
-  Scenario one = between(nonlocal_scenario(Configuration::walls, 0.3, {}),
-                         {wall("a", {0, 0, 1}, {ramp(0.1)}), wall("b", {0, 0, -1}, {}, 0.5)});
+  CheckedScenario one = between(nonlocal_scenario(Configuration::walls, 0.3, {}),
+                                {wall("a", {0, 0, 1}, {ramp(0.1)}), wall("b", {0, 0, -1}, {}, 0.5)});
   const TestRun now = run(with(one, "terms", "1"));
   EXPECT_NEAR(now.last("a.force"), 4.0 / 3.0 / 0.91 * std::pow(0.1, 1.5), 1e-15);
 }
@@ -345,13 +345,14 @@ TEST(NonlocalRuns, DoNotDependOnTheDirectionOfTheWalls) {
       // A free centre has a definite place only where the lateral walls are pressed from the start.
       const double gap = is_free ? 0.0 : 0.01;
       const double slant = is_free ? 0.0 : 0.3;
-      Scenario scenario = between(nonlocal_scenario(Configuration::walls, 0.45, {}),
-                                  {wall("a", rotation * Eigen::Vector3d(0, 0, 1), {ramp(0.2), ramp(0.1)}),
-                                   wall("b", rotation * Eigen::Vector3d(0, 0, -1), {ramp(0.15), force_ramp(0.05)}),
-                                   wall("c", rotation * Eigen::Vector3d(1, 0.3, 0.3 * slant)),
-                                   wall("d", rotation * Eigen::Vector3d(-1, 0.1, 0), {}, gap),
-                                   wall("e", rotation * Eigen::Vector3d(0.1, -1, slant)),
-                                   wall("f", rotation * Eigen::Vector3d(-0.2, 1, 0.5 * slant), {}, gap)});
+      CheckedScenario scenario =
+          between(nonlocal_scenario(Configuration::walls, 0.45, {}),
+                  {wall("a", rotation * Eigen::Vector3d(0, 0, 1), {ramp(0.2), ramp(0.1)}),
+                   wall("b", rotation * Eigen::Vector3d(0, 0, -1), {ramp(0.15), force_ramp(0.05)}),
+                   wall("c", rotation * Eigen::Vector3d(1, 0.3, 0.3 * slant)),
+                   wall("d", rotation * Eigen::Vector3d(-1, 0.1, 0), {}, gap),
+                   wall("e", rotation * Eigen::Vector3d(0.1, -1, slant)),
+                   wall("f", rotation * Eigen::Vector3d(-0.2, 1, 0.5 * slant), {}, gap)});
       return is_free ? with_free_centre(scenario) : scenario;
     };
     const TestRun straight = run(walls(Eigen::Matrix3d::Identity()));
@@ -371,7 +372,7 @@ TEST(NonlocalRuns, DoNotDependOnTheDirectionOfTheWalls) {
 TEST(NonlocalRuns, AreTheSameForWallsThatAreNotMerged) {
   for (const Configuration walls :
        {Configuration::simple, Configuration::die, Configuration::hydrostatic, Configuration::oblique_die}) {
-    const Scenario scenario = oblique(nonlocal_scenario(walls, 0.48, {ramp(0.15)}), 37.5 * pi / 180.0);
+    const CheckedScenario scenario = oblique(nonlocal_scenario(walls, 0.48, {ramp(0.15)}), 37.5 * pi / 180.0);
     const TestRun merged = run(scenario);
     const TestRun apart = run(scenario, "direct", {}, false);
     EXPECT_LE(difference(apart.outputs("work"), merged.outputs("work")), 1e-13);
@@ -382,7 +383,7 @@ TEST(NonlocalRuns, AreTheSameForWallsThatAreNotMerged) {
 // --- random wall sets
 
 /// 2 to 12 walls at least 15 degrees apart, with gaps and programs in and out by displacement or by force.
-Scenario random_walls(std::mt19937_64& generator) {
+CheckedScenario random_walls(std::mt19937_64& generator) {
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(generator); };
   const int count = 2 + static_cast<int>(uniform(0.0, 11.0));
   std::vector<Eigen::Vector3d> normals;
@@ -411,7 +412,7 @@ Scenario random_walls(std::mt19937_64& generator) {
     const double depth = uniform(0.0, 0.12);
     walls.push_back(wall(name, normals[i], {ramp(depth), ramp(uniform(-0.01, depth)), ramp(depth)}, gap));
   }
-  Scenario scenario = between(nonlocal_scenario(Configuration::walls, uniform(0.0, 0.499), {}), walls);
+  CheckedScenario scenario = between(nonlocal_scenario(Configuration::walls, uniform(0.0, 0.499), {}), walls);
   const char* const terms[] = {"1", "2", "3", "4", "inf"};
   scenario.options["terms"] = std::string(terms[static_cast<std::size_t>(uniform(0.0, 5.0))]);
   scenario.output.points = 5;
@@ -452,7 +453,7 @@ TEST(NonlocalRandomWalls, EndCompleteOrAtANamedLimitAndGiveEverythingBack) {
 TEST(NonlocalRandomWalls, AgreeInAllForms) {
   for (unsigned seed = 2001; seed <= 2060; ++seed) {
     std::mt19937_64 generator(seed);
-    const Scenario scenario = random_walls(generator);
+    const CheckedScenario scenario = random_walls(generator);
     const TestRun direct = run(scenario);
     if (direct.record.status != RunStatus::complete) continue;
     for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {

@@ -12,8 +12,8 @@
 namespace monograin::hertz_centre_test {
 namespace {
 
-Scenario cell(std::vector<WallSpec> walls) {
-  Scenario scenario = between(hertz_scenario(Configuration::walls, {}), std::move(walls));
+CheckedScenario cell(std::vector<WallSpec> walls) {
+  CheckedScenario scenario = between(hertz_scenario(Configuration::walls, {}), std::move(walls));
   scenario.loading.centre_is_free = true;
   return with_points(scenario, 8);
 }
@@ -21,7 +21,8 @@ Scenario cell(std::vector<WallSpec> walls) {
 double force_at(double overlap) { return hertz_force(composite_modulus(1.0, 0.3), 1.0, overlap); }
 
 TEST(LooseHertzParticle, IsCarriedToTheOtherWallAndSqueezedThere) {
-  const Scenario scenario = cell({wall("top", {0, 0, 1}, path({0.1}), 0.01), wall("bottom", {0, 0, -1}, {}, 0.01)});
+  const CheckedScenario scenario =
+      cell({wall("top", {0, 0, 1}, path({0.1}), 0.01), wall("bottom", {0, 0, -1}, {}, 0.01)});
   for (const char* integrator : k_integrators) {
     const TestRun result = run(scenario, integrator);
     ASSERT_EQ(result.record.status, RunStatus::complete) << integrator << ": " << result.record.message;
@@ -47,8 +48,9 @@ TEST(LooseHertzParticle, IsTakenByAForceToTheWallThatBearsIt) {
 }
 
 TEST(HertzCell, AtRightAnglesTakesAForceOnOneWallAndADisplacementOnAnother) {
-  const Scenario scenario = cell({wall("w0", {1, 0, 0}), wall("w1", {0, 1, 0}),
-                                  wall("w2", {-1, 0, 0}, {force_ramp(1e-3)}), wall("w3", {0, -1, 0}, path({0.01}))});
+  const CheckedScenario scenario =
+      cell({wall("w0", {1, 0, 0}), wall("w1", {0, 1, 0}), wall("w2", {-1, 0, 0}, {force_ramp(1e-3)}),
+            wall("w3", {0, -1, 0}, path({0.01}))});
   for (const char* integrator : k_integrators) {
     const TestRun result = run(scenario, integrator);
     ASSERT_EQ(result.record.status, RunStatus::complete) << integrator << ": " << result.record.message;
@@ -76,7 +78,7 @@ TEST(HertzCell, EndsAlikeTurnedAndInAnotherOrder) {
       }
     }
     if (std::ranges::all_of(walls, &WallSpec::is_fixed)) continue;
-    const auto unmerged = [](const Scenario& scenario) { return run(scenario, "direct", {}, false); };
+    const auto unmerged = [](const CheckedScenario& scenario) { return run(scenario, "direct", {}, false); };
     const TestRun expected = unmerged(cell(walls));
     stopped += expected.record.status == RunStatus::stopped ? 1 : 0;
     const Eigen::Quaterniond turn =

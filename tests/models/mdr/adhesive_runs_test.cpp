@@ -23,20 +23,20 @@ using Words = std::vector<std::string>;
 
 const double k_modulus = composite_modulus(1.0, 0.3);  // E*
 
-Scenario adhering(Scenario scenario, double surface_energy) {
+CheckedScenario adhering(CheckedScenario scenario, double surface_energy) {
   scenario.material["surface_energy"] = surface_energy;
   return scenario;
 }
 
 /// An elastic parabola of unit radius: the theory of Johnson, Kendall and Roberts.
-Scenario jkr(std::vector<Step> steps, double surface_energy = 1e-5) {
+CheckedScenario jkr(std::vector<Step> steps, double surface_energy = 1e-5) {
   return adhering(with(mdr_scenario(Configuration::simple, 50.0, 0.3, std::move(steps)), "elastic_profile", "parabola"),
                   surface_energy);
 }
 
 /// Unloading to a peeling edge, reversal, peeling again far into tension, reversal, reload past the old maximum,
 /// pull-off, renewed compression past the old maximum.
-Scenario plastic_cycles() {
+CheckedScenario plastic_cycles() {
   return adhering(mdr_scenario(Configuration::simple, 50.0, 0.3,
                                path({0.05, 0.04, 0.045, 0.03, 0.047, 0.06, 0.0, 0.04, 0.055, 0.065})),
                   1e-4);
@@ -295,7 +295,7 @@ TEST(MdrAdhesiveContact, TurnsItsEdgeOnceWhereTheRadiusGoesOnGrowing) {
   // the edge for a moment: the edge is turned a little after the wall, where the spring's displacement has no slope.
   for (const double modulus_over_yield : {25.0, 50.0, 100.0, 200.0}) {
     for (const double poisson_ratio : {0.0, 0.2}) {
-      const Scenario scenario =
+      const CheckedScenario scenario =
           with(adhering(mdr_scenario(Configuration::simple, modulus_over_yield, poisson_ratio, path({0.1, 0.0})), 1e-5),
                "radius_rule", "seed");
       const TestRun direct = run(scenario);
@@ -353,7 +353,7 @@ TEST(MdrAdhesiveContact, HasTheRadiusBetweenThatWithoutAdhesionAndThatInEquilibr
 
 TEST(MdrAdhesiveInvariance, OutputPointsDoNotMatter) {
   for (const char* integrator : k_integrators) {
-    for (const Scenario& scenario : {plastic_cycles(), jkr({ramp(0.005), force_ramp(-1e-4)})}) {
+    for (const CheckedScenario& scenario : {plastic_cycles(), jkr({ramp(0.005), force_ramp(-1e-4)})}) {
       const TestRun normal = run(with_points(scenario, 20), integrator);
       for (const int points : {2, 2000}) {
         const TestRun other = run(with_points(scenario, points), integrator);
@@ -367,11 +367,11 @@ TEST(MdrAdhesiveInvariance, OutputPointsDoNotMatter) {
 
 TEST(MdrAdhesiveInvariance, RateDoesNotMatter) {
   for (const char* integrator : k_integrators) {
-    for (const Scenario& scenario :
+    for (const CheckedScenario& scenario :
          {plastic_cycles(), jkr({ramp(0.005), force_ramp(1e-4), force_ramp(-1e-4), ramp(0.002)})}) {
       const TestRun normal = run(scenario, integrator);
       for (const double duration : {1e-9, 1e9}) {
-        Scenario other = scenario;
+        CheckedScenario other = scenario;
         for (Step& step : other.loading.steps) step.duration = duration;
         const Table table = run(other, integrator).record.history;
         ASSERT_EQ(table.row_count(), normal.record.history.row_count()) << integrator << ", " << duration;
@@ -387,7 +387,7 @@ TEST(MdrAdhesiveInvariance, RateDoesNotMatter) {
 }
 
 TEST(MdrAdhesiveInvariance, ToleranceMattersBySomeTensOfItself) {
-  for (const Scenario& scenario : {plastic_cycles(), jkr({ramp(0.005), force_ramp(-1e-4)})}) {
+  for (const CheckedScenario& scenario : {plastic_cycles(), jkr({ramp(0.005), force_ramp(-1e-4)})}) {
     const TestRun exact = run(scenario);
     for (const char* integrator : k_integrators) {
       for (const double rtol : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
@@ -406,7 +406,7 @@ TEST(MdrAdhesiveInvariance, UnitsDoNotMatter) {
   const TestRun unit = run(plastic_cycles());
   for (const double length : {1e-6, 1e3}) {
     for (const double stress : {1e-6, 1e9}) {
-      Scenario scenario = plastic_cycles();
+      CheckedScenario scenario = plastic_cycles();
       scenario.radius *= length;
       scenario.material["youngs_modulus"] *= stress;
       scenario.material["yield_stress"] *= stress;
@@ -429,7 +429,7 @@ TEST(MdrAdhesiveInvariance, UnitsDoNotMatter) {
 }
 
 TEST(MdrAdhesiveInvariance, MergingOfWallsDoesNotMatter) {
-  for (const Scenario& scenario :
+  for (const CheckedScenario& scenario :
        {plastic_cycles(), adhering(mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.2, 0.3})), 1e-4)}) {
     const TestRun merged = run(scenario);
     const TestRun single = run(scenario, "direct", {}, false);
@@ -471,13 +471,13 @@ TEST(MdrAdhesiveEnergyBalance, WorkIsStoredOrDissipated) {
 }
 
 TEST(MdrAdhesiveEnergyBalance, DissipationNeverFallsWhereOnlyPlasticFlowGrows) {
-  const Scenario scenarios[] = {
+  const CheckedScenario scenarios[] = {
       plastic_cycles(), adhering(mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.2, 0.3, 0.0, 0.35})), 1e-4),
       adhering(mdr_scenario(Configuration::hydrostatic, 50.0, 0.3, path({0.1, 0.05, 0.12, 0.0})), 1e-5),
       adhering(mdr_scenario(Configuration::simple, 30.0, 0.3,
                             {ramp(0.1), force_ramp(0.0), force_ramp(0.03), force_ramp(-0.01), ramp(0.12)}),
                1e-4)};
-  for (const Scenario& scenario : scenarios) {
+  for (const CheckedScenario& scenario : scenarios) {
     for (const char* integrator : k_integrators) {
       const TestRun result = run(with(scenario, "radius_rule", "yielded"), integrator);
       ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
@@ -516,7 +516,8 @@ TEST(MdrAdhesiveEnergyBalance, AClosedCycleDissipatesItsArea) {
 
 TEST(MdrAdhesiveDie, AgreesInAllForms) {
   for (const double dg : {1e-6, 1e-4}) {
-    const Scenario scenario = adhering(mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.2, 0.3, 0.0})), dg);
+    const CheckedScenario scenario =
+        adhering(mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.2, 0.3, 0.0})), dg);
     const TestRun direct = run(scenario);
     ASSERT_EQ(direct.record.status, RunStatus::complete) << direct.record.message;
     EXPECT_TRUE(direct.has_event("pull-off"));
@@ -536,7 +537,7 @@ TEST(MdrAdhesiveDie, AgreesInAllFormsWhileOnePairIsTornOffAndAnotherIsDrivenIn) 
     walls.push_back(wall("x" + end, sign * Eigen::Vector3d::UnitX(), path({0.0, 0.15, 0.2})));
   }
   for (const char* rule : {"gated", "yielded"}) {
-    const Scenario scenario =
+    const CheckedScenario scenario =
         with(adhering(between(mdr_scenario(Configuration::walls, 50.0, 0.3, {}), walls), 1e-5), "radius_rule", rule);
     const TestRun direct = run(scenario);
     ASSERT_EQ(direct.record.status, RunStatus::complete) << direct.record.message;

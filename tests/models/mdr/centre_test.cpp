@@ -12,21 +12,22 @@
 namespace monograin::centre_test {
 namespace {
 
-Scenario with_free_centre(Scenario scenario) {
+CheckedScenario with_free_centre(CheckedScenario scenario) {
   scenario.loading.centre_is_free = true;
   return scenario;
 }
 
 /// One driven wall above, one at rest below.
-Scenario press(const Scenario& particle, const std::vector<double>& displacements) {
+CheckedScenario press(const CheckedScenario& particle, const std::vector<double>& displacements) {
   return with_free_centre(between(particle, {wall("top", {0, 0, 1}, path(displacements)), wall("bottom", {0, 0, -1})}));
 }
 
-Scenario mdr_particle() { return mdr_scenario(Configuration::walls, 20.0, 0.3, {}); }
-Scenario hertz_particle() { return hertz_scenario(Configuration::walls, {}); }
+CheckedScenario mdr_particle() { return mdr_scenario(Configuration::walls, 20.0, 0.3, {}); }
+CheckedScenario hertz_particle() { return hertz_scenario(Configuration::walls, {}); }
 
 /// Three walls at rest below, at equal angles, and one driven wall above.
-Scenario tripod(const Scenario& particle, const std::vector<double>& displacements, double z = -1.0 / 3.0) {
+CheckedScenario tripod(const CheckedScenario& particle, const std::vector<double>& displacements,
+                       double z = -1.0 / 3.0) {
   std::vector<WallSpec> walls{wall("top", {0, 0, 1}, path(displacements))};
   for (int k = 0; k < 3; ++k) {
     const double angle = 2.0 * std::numbers::pi * k / 3.0;
@@ -37,7 +38,7 @@ Scenario tripod(const Scenario& particle, const std::vector<double>& displacemen
 }
 
 /// Three walls at rest without any symmetry, and one driven wall.
-Scenario crooked_tripod(const Scenario& particle, const std::vector<double>& displacements) {
+CheckedScenario crooked_tripod(const CheckedScenario& particle, const std::vector<double>& displacements) {
   return with_free_centre(
       between(particle, {wall("top", {0.1, -0.05, 1}, path(displacements)), wall("a", {0.9, 0.1, -0.5}),
                          wall("b", {-0.5, 0.7, -0.4}), wall("c", {-0.4, -0.8, -0.6})}));
@@ -92,7 +93,7 @@ TEST(FreeCentre, GivesEachContactOfAPairHalfTheDisplacement) {
 
 TEST(FreeCentre, NeedsNoUnknownWhereSymmetryHoldsIt) {
   for (const auto configuration : {Configuration::simple, Configuration::die, Configuration::hydrostatic}) {
-    const Scenario fixed = mdr_scenario(configuration, 20.0, 0.3, path({0.17, 0.16, 0.18}));
+    const CheckedScenario fixed = mdr_scenario(configuration, 20.0, 0.3, path({0.17, 0.16, 0.18}));
     const TestRun expected = run(fixed);
     const TestRun free = run(with_free_centre(fixed));
     EXPECT_FALSE(has_algebraic_unknowns(free.scene)) << describe(fixed);
@@ -102,7 +103,7 @@ TEST(FreeCentre, NeedsNoUnknownWhereSymmetryHoldsIt) {
 }
 
 TEST(FreeCentre, MovesOnlyInWaysThatKeepTheSymmetry) {
-  const auto free_count = [](const Scenario& scenario) {
+  const auto free_count = [](const CheckedScenario& scenario) {
     const Scene scene = make_scene(scenario);
     return std::ranges::count(scene.system->unknowns(), Unknown::Kind::algebraic, &Unknown::kind);
   };
@@ -111,7 +112,7 @@ TEST(FreeCentre, MovesOnlyInWaysThatKeepTheSymmetry) {
 }
 
 TEST(FreeCentre, BalancesTheForcesInEveryRow) {
-  for (const Scenario& scenario :
+  for (const CheckedScenario& scenario :
        {tripod(mdr_particle(), {0.4, 0.35, 0.45}), crooked_tripod(mdr_particle(), {0.4, 0.38, 0.45}),
         tripod(hertz_particle(), {0.2, -0.05, 0.1}), press(mdr_particle(), {0.4, 0.2, 0.5})}) {
     for (const char* integrator : k_integrators) {
@@ -125,7 +126,7 @@ TEST(FreeCentre, BalancesTheForcesInEveryRow) {
 }
 
 TEST(FreeCentre, IsTheSameInAllForms) {
-  for (const Scenario& scenario :
+  for (const CheckedScenario& scenario :
        {tripod(mdr_particle(), {0.4, 0.35, 0.45}), tripod(mdr_particle(), {0.3, 0.2, 0.35}, -0.8),
         crooked_tripod(mdr_particle(), {0.4, 0.38, 0.45})}) {
     for (const char* rule : {"gated", "yielded"}) {
@@ -149,7 +150,7 @@ TEST(FreeCentre, IsTheSameInAllForms) {
 }
 
 TEST(FreeCentre, ConservesEnergyInElasticContacts) {
-  for (const Scenario& scenario :
+  for (const CheckedScenario& scenario :
        {tripod(hertz_particle(), {0.2, 0.0}), crooked_tripod(hertz_particle(), {0.2, 0.0})}) {
     const TestRun result = run(scenario);
     const auto work = result.outputs("work");
@@ -162,7 +163,7 @@ TEST(FreeCentre, ConservesEnergyInElasticContacts) {
 }
 
 TEST(FreeCentre, DoesNotCreateEnergyWithTheYieldedRule) {
-  for (const Scenario& scenario :
+  for (const CheckedScenario& scenario :
        {tripod(mdr_particle(), {0.4, 0.3, 0.45}), crooked_tripod(mdr_particle(), {0.4, 0.3, 0.45})}) {
     EXPECT_GE(lost_dissipation(run(with(scenario, "radius_rule", "yielded"))), -1e-12) << describe(scenario);
   }
@@ -188,15 +189,15 @@ TEST(FreeCentre, ThatNothingHoldsIsCarriedByTheWallThatPushesIt) {
 TEST(FreeCentre, ThatIsLooseIsCarriedToTheOtherWallAndSqueezedThere) {
   // Also one that comes loose later: both walls leave it where it is, and the lower one comes back.
   const TestRun expected = run(press(mdr_particle(), {0.1}));
-  const Scenario gap =
+  const CheckedScenario gap =
       between(mdr_particle(), {wall("top", {0, 0, 1}, path({0.2})), wall("bottom", {0, 0, -1}, {}, 0.1)});
   for (const char* integrator : k_integrators) {
     const TestRun result = run(with_free_centre(gap), integrator);
     ASSERT_EQ(result.record.status, RunStatus::complete) << integrator << ": " << result.record.message;
     EXPECT_NEAR(result.last("bottom.force") / expected.last("bottom.force"), 1.0, 1e-7) << integrator;
   }
-  const Scenario let_go = between(mdr_particle(), {wall("top", {0, 0, 1}, path({0.2, 0.0, 0.0})),
-                                                   wall("bottom", {0, 0, -1}, path({0.2, 0.0, 0.4}))});
+  const CheckedScenario let_go = between(mdr_particle(), {wall("top", {0, 0, 1}, path({0.2, 0.0, 0.0})),
+                                                          wall("bottom", {0, 0, -1}, path({0.2, 0.0, 0.4}))});
   for (const char* integrator : k_integrators) {
     const TestRun result = run(with_free_centre(let_go), integrator);
     ASSERT_EQ(result.record.status, RunStatus::complete) << integrator << ": " << result.record.message;
@@ -223,7 +224,7 @@ double misplacement(const TestRun& result) {
 }
 
 TEST(FreeCentre, LeavesADisplacementThatOfTheWallItself) {
-  for (const Scenario& particle : {hertz_particle(), mdr_particle()}) {
+  for (const CheckedScenario& particle : {hertz_particle(), mdr_particle()}) {
     for (const char* integrator : k_integrators) {
       const TestRun result = run(press(particle, {0.04, 0.02}), integrator);
       const std::vector<double> top = result.outputs("top.displacement");
@@ -237,7 +238,7 @@ TEST(FreeCentre, LeavesADisplacementThatOfTheWallItself) {
 }
 
 TEST(FreeCentre, LeavesADisplacementThatOfTheWallItselfUnderForce) {
-  for (const Scenario& particle : {hertz_particle(), mdr_particle()}) {
+  for (const CheckedScenario& particle : {hertz_particle(), mdr_particle()}) {
     const TestRun result = run(with_free_centre(between(
         particle, {wall("top", {0, 0, 1}, {force_ramp(0.004), force_ramp(0.001)}), wall("bottom", {0, 0, -1})})));
     EXPECT_LE(misplacement(result), 1e-15) << particle.model;
@@ -248,7 +249,7 @@ TEST(FreeCentre, LeavesADisplacementThatOfTheWallItselfUnderForce) {
 }
 
 TEST(FreeCentre, MeetsAConditionByTheTravelOfTheWall) {
-  for (const Scenario& particle : {hertz_particle(), mdr_particle()}) {
+  for (const CheckedScenario& particle : {hertz_particle(), mdr_particle()}) {
     const Step step = until(ramp(0.1), Quantity::displacement, 0.04);
     const TestRun result =
         run(with_free_centre(between(particle, {wall("top", {0, 0, 1}, {step}), wall("bottom", {0, 0, -1})})));

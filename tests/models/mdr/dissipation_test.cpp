@@ -10,15 +10,15 @@
 namespace monograin::dissipation_test {
 namespace {
 
-TestRun run_finely(const Scenario& scenario) { return run(with_points(scenario, 400)); }
+TestRun run_finely(const CheckedScenario& scenario) { return run(with_points(scenario, 400)); }
 
 bool warns_of_created_energy(const TestRun& result) {
   return energy_warning(result.record.history, 1.0, "mdr", 0.0).has_value();
 }
 
 /// Pairs of walls along x, y and z, each with a program of its own.
-Scenario three_pairs(double modulus_over_yield, double poisson_ratio,
-                     const std::vector<std::vector<double>>& programs) {
+CheckedScenario three_pairs(double modulus_over_yield, double poisson_ratio,
+                            const std::vector<std::vector<double>>& programs) {
   std::vector<WallSpec> walls;
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d normal = Eigen::Vector3d::Unit(axis);
@@ -30,7 +30,7 @@ Scenario three_pairs(double modulus_over_yield, double poisson_ratio,
 }
 
 /// The programs over which the energy balance of the three radius rules was compared.
-std::vector<Scenario> programs(double modulus_over_yield, double poisson_ratio) {
+std::vector<CheckedScenario> programs(double modulus_over_yield, double poisson_ratio) {
   return {mdr_scenario(Configuration::simple, modulus_over_yield, poisson_ratio, path({0.45})),
           mdr_scenario(Configuration::die, modulus_over_yield, poisson_ratio, path({0.43, 0.0})),
           mdr_scenario(Configuration::hydrostatic, modulus_over_yield, poisson_ratio, path({0.2})),
@@ -41,7 +41,7 @@ std::vector<Scenario> programs(double modulus_over_yield, double poisson_ratio) 
 TEST(MdrDissipation, NeverDecreasesWithTheYieldedRule) {
   for (const double modulus_over_yield : {6.25, 10.0, 20.0, 50.0, 200.0}) {
     for (const double poisson_ratio : {0.0, 0.3, 0.45}) {
-      for (const Scenario& scenario : programs(modulus_over_yield, poisson_ratio)) {
+      for (const CheckedScenario& scenario : programs(modulus_over_yield, poisson_ratio)) {
         const TestRun result = run(with(scenario, "radius_rule", "yielded"));
         // Each row's work is off by its rounding; 2e-15 measured over all scenes.
         EXPECT_GE(lost_dissipation(result), -1e-14) << describe(scenario);
@@ -88,7 +88,7 @@ class MdrGrowthBeforeYield : public ::testing::TestWithParam<CreatedRow> {};
 TEST_P(MdrGrowthBeforeYield, CreatesEnergyAndWarns) {
   const CreatedRow& row = GetParam();
   for (const char* rule : {"gated", "seed"}) {
-    const Scenario scenario = with(
+    const CheckedScenario scenario = with(
         mdr_scenario(row.configuration, row.modulus_over_yield, 0.3, path({row.displacement})), "radius_rule", rule);
     const TestRun result = run_finely(scenario);
     EXPECT_NEAR(least_dissipation(result), row.dissipation_over_work, row.printed) << describe(scenario);
@@ -119,7 +119,7 @@ struct AtYieldRow {
 TEST(MdrGrowthBeforeYieldOfAPair, CreatesAShareOfTheWorkAtYield) {
   for (const AtYieldRow& row : {AtYieldRow{25.0, -0.008, 5e-4}, AtYieldRow{20.0, -0.017, 5e-4},
                                 AtYieldRow{12.5, -0.051, 5e-4}, AtYieldRow{6.25, -0.166, 5e-4}}) {
-    const Scenario scenario = mdr_scenario(Configuration::simple, row.modulus_over_yield, 0.3, path({0.4}));
+    const CheckedScenario scenario = mdr_scenario(Configuration::simple, row.modulus_over_yield, 0.3, path({0.4}));
     const TestRun result = run_finely(scenario);
     // Least just before yield, where part of the stored energy is set free.
     const auto dissipation = result.column("dissipation");
@@ -136,7 +136,7 @@ TEST(MdrElasticCycle, ReturnsMoreThanItTookWhereTheRadiusGrows) {
 }
 
 TEST(MdrElasticCycle, CreatesEnergyEveryTimeWithTheRuleOfTheSeed) {
-  const Scenario scenario = mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.012, 0.0, 0.012, 0.0}));
+  const CheckedScenario scenario = mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.012, 0.0, 0.012, 0.0}));
   const auto seed = run(with(scenario, "radius_rule", "seed")).outputs("work");
   EXPECT_NEAR(seed[100] / seed[50], -0.004, 5e-4);
   EXPECT_NEAR((seed[200] - seed[100]) / seed[50], -0.004, 5e-4);
@@ -146,7 +146,7 @@ TEST(MdrElasticCycle, CreatesEnergyEveryTimeWithTheRuleOfTheSeed) {
 }
 
 TEST(MdrPlasticCycle, DissipatesSpuriouslyWithTheRuleOfTheSeedOnly) {
-  const Scenario scenario = mdr_scenario(Configuration::simple, 20.0, 0.3, path({0.30, 0.25, 0.30}));
+  const CheckedScenario scenario = mdr_scenario(Configuration::simple, 20.0, 0.3, path({0.30, 0.25, 0.30}));
   const auto gained = [&](const char* rule) {
     const TestRun result = run(with(scenario, "radius_rule", rule));
     const auto dissipation = result.outputs("dissipation");

@@ -25,13 +25,13 @@ std::vector<Step> force_path(const std::vector<double>& forces) {
   return steps;
 }
 
-Scenario simple(std::vector<Step> steps, double modulus_over_yield = 30.0) {
+CheckedScenario simple(std::vector<Step> steps, double modulus_over_yield = 30.0) {
   return mdr_scenario(Configuration::simple, modulus_over_yield, 0.3, std::move(steps));
 }
 
 /// Opposite pairs of walls along the axes; no steps: no such pair.
-Scenario pairs(const std::vector<Step>& x, const std::vector<Step>& y, const std::vector<Step>& z,
-               double modulus_over_yield = 30.0) {
+CheckedScenario pairs(const std::vector<Step>& x, const std::vector<Step>& y, const std::vector<Step>& z,
+                      double modulus_over_yield = 30.0) {
   std::vector<WallSpec> walls;
   const std::vector<Step>* programs[] = {&x, &y, &z};
   for (int axis = 0; axis < 3; ++axis) {
@@ -113,7 +113,7 @@ TEST_P(MdrForceControl, GoesAlongTheCurveOfDisplacementControl) {
   for (int i = 1; i <= 5; ++i) places.push_back(0.08 - 0.001 * i);
   for (int i = 1; i <= 7; ++i) places.push_back(0.075 + 0.005 * i);
   for (const double dg : {0.0, 1e-5}) {
-    Scenario scenario = with(simple(path(places), 50.0), "elastic_profile", "parabola");
+    CheckedScenario scenario = with(simple(path(places), 50.0), "elastic_profile", "parabola");
     scenario.material["surface_energy"] = dg;
     const TestRun by_displacement = run(scenario);
     ASSERT_EQ(by_displacement.record.status, RunStatus::complete) << by_displacement.record.message;
@@ -175,7 +175,7 @@ TEST_P(MdrForceControl, ClosesAGapAtOnce) {
     return std::vector<WallSpec>{wall("z+", Eigen::Vector3d::UnitZ(), force_path({0.02, 0.01}), gap),
                                  wall("z-", -Eigen::Vector3d::UnitZ(), force_path({0.02, 0.01}), gap)};
   };
-  const Scenario scenario = mdr_scenario(Configuration::walls, 30.0, 0.3, {});
+  const CheckedScenario scenario = mdr_scenario(Configuration::walls, 30.0, 0.3, {});
   const TestRun touching = run(between(scenario, walls(0.0)), GetParam());
   const TestRun apart = run(between(scenario, walls(0.05)), GetParam());
   ASSERT_EQ(apart.record.status, RunStatus::complete) << apart.record.message;
@@ -302,7 +302,7 @@ TEST(ForceControl, SaysThatNoContactBearsATension) {
 }
 
 TEST(ForceControl, SaysNothingOfATensionThatIsBorneUntilTheStepEnds) {
-  Scenario scenario = mdr_scenario(Configuration::simple, 50.0, 0.3, {});
+  CheckedScenario scenario = mdr_scenario(Configuration::simple, 50.0, 0.3, {});
   scenario.material["surface_energy"] = 1e-5;
   const Step pull = force_ramp(-0.01);
   scenario.loading.steps = {force_ramp(0.01), until_event(pull, "pull-off")};
@@ -314,7 +314,7 @@ TEST(ForceControl, SaysNothingOfATensionThatIsBorneUntilTheStepEnds) {
 TEST(MdrMixedControl, MeetsThePrescribedForcesInEveryRow) {
   const std::vector<double> x{0.01, 0.01, 0.015, 0.002};
   const std::vector<double> y{0.004, 0.012, 0.012, 0.012};
-  const Scenario scenario = pairs(force_path(x), force_path(y), path({0.05, 0.1, 0.06, 0.12}));
+  const CheckedScenario scenario = pairs(force_path(x), force_path(y), path({0.05, 0.1, 0.06, 0.12}));
   const TestRun direct = run(scenario);
   ASSERT_EQ(direct.record.status, RunStatus::complete) << direct.record.message;
   EXPECT_LE(distance_from_program(direct, "x+", x), 1e-12);
@@ -365,11 +365,11 @@ TEST(MdrMixedControl, AnIdleWallIsPushedAlong) {
 }
 
 TEST(MdrMixedControl, MergingOfWallsDoesNotMatter) {
-  const Scenario scenarios[] = {
+  const CheckedScenario scenarios[] = {
       simple(force_path({0.02, 0.01, 0.03})),
       pairs(force_path({0.01, 0.01, 0.015}), force_path({0.004, 0.012, 0.012}), path({0.05, 0.1, 0.06})),
       mdr_scenario(Configuration::hydrostatic, 30.0, 0.3, force_path({0.02, 0.005, 0.025}))};
-  for (const Scenario& scenario : scenarios) {
+  for (const CheckedScenario& scenario : scenarios) {
     for (const char* integrator : k_integrators) {
       const TestRun merged = run(scenario, integrator);
       const TestRun single = run(scenario, integrator, {}, false);
@@ -392,13 +392,14 @@ TEST(MdrMixedControl, AgreesInAllForms) {
   std::vector<Step> mixed = force_path({0.01, 0.015});
   mixed.push_back(ramp(0.03));
   mixed.push_back(force_ramp(0.02));
-  const Scenario scenarios[] = {pairs(mixed, {}, {ramp(0.1), force_ramp(0.01), force_ramp(0.03), ramp(0.12)}),
-                                pairs(mixed, path({0.0, 0.05, 0.04, 0.08}), path({0.08, 0.02, 0.1, 0.05}), 100.0),
-                                mdr_scenario(Configuration::die, 30.0, 0.3, force_path({0.05, 0.0, 0.06})),
-                                mdr_scenario(Configuration::hydrostatic, 30.0, 0.3, force_path({0.02, 0.005, 0.025}))};
-  for (const Scenario& original : scenarios) {
+  const CheckedScenario scenarios[] = {
+      pairs(mixed, {}, {ramp(0.1), force_ramp(0.01), force_ramp(0.03), ramp(0.12)}),
+      pairs(mixed, path({0.0, 0.05, 0.04, 0.08}), path({0.08, 0.02, 0.1, 0.05}), 100.0),
+      mdr_scenario(Configuration::die, 30.0, 0.3, force_path({0.05, 0.0, 0.06})),
+      mdr_scenario(Configuration::hydrostatic, 30.0, 0.3, force_path({0.02, 0.005, 0.025}))};
+  for (const CheckedScenario& original : scenarios) {
     for (const char* rule : {"gated", "yielded"}) {
-      const Scenario scenario = with(original, "radius_rule", rule);
+      const CheckedScenario scenario = with(original, "radius_rule", rule);
       const TestRun direct = run(scenario);
       ASSERT_EQ(direct.record.status, RunStatus::complete) << direct.record.message << ", " << describe(scenario);
       for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
@@ -411,11 +412,11 @@ TEST(MdrMixedControl, AgreesInAllForms) {
 }
 
 TEST(MdrMixedControl, UnitsDoNotMatter) {
-  const Scenario original = pairs(force_path({0.01, 0.01, 0.015}), {}, path({0.05, 0.1, 0.06}));
+  const CheckedScenario original = pairs(force_path({0.01, 0.01, 0.015}), {}, path({0.05, 0.1, 0.06}));
   const TestRun unit = run(original);
   for (const double length : {1e-6, 1e3}) {
     for (const double stress : {1e-6, 1e9}) {
-      Scenario scenario = original;
+      CheckedScenario scenario = original;
       scenario.radius *= length;
       scenario.material["youngs_modulus"] *= stress;
       scenario.material["yield_stress"] *= stress;
@@ -441,8 +442,8 @@ TEST(MdrMixedControl, UnitsDoNotMatter) {
 // --- free centre
 
 /// One wall under force, a fixed one on the other side.
-Scenario against_a_fixed_wall(std::vector<Step> steps, double gap = 0.0) {
-  Scenario scenario =
+CheckedScenario against_a_fixed_wall(std::vector<Step> steps, double gap = 0.0) {
+  CheckedScenario scenario =
       between(mdr_scenario(Configuration::walls, 30.0, 0.3, {}),
               {wall("z+", Eigen::Vector3d::UnitZ(), std::move(steps), gap), wall("z-", -Eigen::Vector3d::UnitZ())});
   scenario.loading.centre_is_free = true;
@@ -496,7 +497,7 @@ TEST_P(MdrFreeCentreUnderForce, IsPressedOnWhereBothWallsHaveLostIt) {
 
 TEST_P(MdrFreeCentreUnderForce, IsRefusedWhereNothingHoldsItAgainstAForce) {
   // Both walls have gone away, and where it lies between them is not known.
-  Scenario scenario = against_a_fixed_wall({force_ramp(0.02), ramp(0.0), force_ramp(0.01)});
+  CheckedScenario scenario = against_a_fixed_wall({force_ramp(0.02), ramp(0.0), force_ramp(0.01)});
   scenario.loading.walls[1] = wall("z-", -Eigen::Vector3d::UnitZ(), {hold(), ramp(-0.05), hold()});
   const TestRun result = run(scenario, GetParam());
   EXPECT_TRUE(result.has_event("contact-lost"));

@@ -13,7 +13,7 @@ namespace {
 /// A system at the end of a run, which goes on.
 class Onward {
  public:
-  explicit Onward(const Scenario& scenario) : run_(run(scenario)), y_(system().unknowns().size()) {
+  explicit Onward(const CheckedScenario& scenario) : run_(run(scenario)), y_(system().unknowns().size()) {
     y_[0] = run_.last("apparent_radius") - 1.0;
   }
   [[nodiscard]] HybridSystem& system() { return *run_.scene.system; }
@@ -51,12 +51,12 @@ bool all_go_one_way(Onward& onward) {
   return !guards.empty() && std::ranges::all_of(guards, &Guard::is_monotone);
 }
 
-std::vector<Scenario> loaded() {
-  std::vector<Scenario> result;
+std::vector<CheckedScenario> loaded() {
+  std::vector<CheckedScenario> result;
   for (const double modulus_over_yield : {6.25, 50.0, 1e4}) {
     for (const auto configuration : {Configuration::simple, Configuration::die, Configuration::hydrostatic}) {
       for (const double surface_energy : {0.0, 1e-5}) {
-        Scenario scenario = mdr_scenario(configuration, modulus_over_yield, 0.3, path({0.16}));
+        CheckedScenario scenario = mdr_scenario(configuration, modulus_over_yield, 0.3, path({0.16}));
         scenario.material["surface_energy"] = surface_energy;
         result.push_back(scenario);
       }
@@ -66,7 +66,7 @@ std::vector<Scenario> loaded() {
 }
 
 TEST(MdrGuards, ThatGoOneWayDoSoToTheEndOfTheStep) {
-  for (const Scenario& scenario : loaded()) {
+  for (const CheckedScenario& scenario : loaded()) {
     for (const double target : {0.1599, 0.1, 0.0}) {
       Onward onward(scenario);
       onward.begin(target);
@@ -85,11 +85,11 @@ TEST(MdrGuards, ThatGoOneWayDoSoToTheEndOfTheStep) {
 }
 
 TEST(MdrGuards, DoNotSayThatTheyGoOneWayWhereTheRadiusGrowsOrForcesAreGiven) {
-  const Scenario scenario = mdr_scenario(Configuration::die, 50.0, 0.3, path({0.16}));
+  const CheckedScenario scenario = mdr_scenario(Configuration::die, 50.0, 0.3, path({0.16}));
   Onward grows(scenario);
   grows.begin(0.2);
   EXPECT_FALSE(all_go_one_way(grows));
-  const Scenario pressed = mdr_scenario(Configuration::simple, 50.0, 0.3, {force_ramp(0.01), force_ramp(0.005)});
+  const CheckedScenario pressed = mdr_scenario(Configuration::simple, 50.0, 0.3, {force_ramp(0.01), force_ramp(0.005)});
   EXPECT_FALSE(std::ranges::any_of(run(pressed).scene.system->guards(), &Guard::is_monotone));
 }
 

@@ -40,8 +40,9 @@ TEST(HertzScene, WorkIsStored) {
 
 TEST(HertzScene, WallWithAGapTouchesAndLeavesAtTheUndeformedSurface) {
   const auto steps = path({0.3, -0.2});
-  const Scenario scenario = between(hertz_scenario(Configuration::walls, {}),
-                                    {wall("top", {0, 0, 1}, steps, 0.1), wall("bottom", {0, 0, -1}, steps, 0.1)});
+  const CheckedScenario scenario =
+      between(hertz_scenario(Configuration::walls, {}),
+              {wall("top", {0, 0, 1}, steps, 0.1), wall("bottom", {0, 0, -1}, steps, 0.1)});
   for (const char* integrator : k_integrators) {
     const TestRun result = run(scenario, integrator);
     EXPECT_EQ(result.events(), (std::vector<std::string>{"top:contact-made", "top:load-reversal", "top:contact-lost"}))

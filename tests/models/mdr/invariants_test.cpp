@@ -16,10 +16,10 @@ namespace monograin::invariants_test {
 namespace {
 
 // A die that is loaded, unloaded until its axial walls separate, and loaded beyond: every regime and most events.
-Scenario die_cycle() { return mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.2, 0.35})); }
+CheckedScenario die_cycle() { return mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.2, 0.35})); }
 
 // Three pairs of walls one after another; the second and third load while the ones before go back a little.
-Scenario triaxial_sequence() {
+CheckedScenario triaxial_sequence() {
   const std::vector<std::vector<double>> programs{
       {0.20, 0.195, 0.19, 0.22}, {0.0, 0.20, 0.19, 0.22}, {0.0, 0.0, 0.20, 0.22}};
   std::vector<WallSpec> walls;
@@ -46,7 +46,7 @@ TEST(MdrInvariance, RateDoesNotMatter) {
   for (const char* integrator : k_integrators) {
     const TestRun normal = run(die_cycle(), integrator);
     for (const double duration : {1e-9, 1e9}) {
-      Scenario scenario = die_cycle();
+      CheckedScenario scenario = die_cycle();
       for (Step& step : scenario.loading.steps) step.duration = duration;
       // Bit for bit: within a step nothing but the output column knows of seconds.
       expect_same_table(run(scenario, integrator).record.history, normal.record.history, 1);
@@ -58,7 +58,7 @@ TEST(MdrInvariance, UnitsDoNotMatter) {
   const TestRun unit = run(die_cycle());
   for (const double length : {1e-6, 1e6}) {
     for (const double stress : {1e-6, 1e6}) {
-      Scenario scenario = die_cycle();
+      CheckedScenario scenario = die_cycle();
       scenario.radius *= length;
       scenario.material["youngs_modulus"] *= stress;
       scenario.material["yield_stress"] *= stress;
@@ -82,7 +82,7 @@ TEST(MdrInvariance, UnitsDoNotMatter) {
 
 TEST(MdrInvariance, RotationOfTheWallsDoesNotMatter) {
   const Eigen::Quaterniond rotation = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized();
-  for (const Scenario& original : {triaxial_sequence(), die_cycle()}) {
+  for (const CheckedScenario& original : {triaxial_sequence(), die_cycle()}) {
     std::vector<WallSpec> walls = written_out(original);
     for (WallSpec& w : walls) {
       w = wall(w.name, rotation * Eigen::Vector3d(w.normal[0], w.normal[1], w.normal[2]), w.steps);
@@ -97,9 +97,9 @@ TEST(MdrInvariance, RotationOfTheWallsDoesNotMatter) {
 }
 
 TEST(MdrInvariance, OrderOfTheWallsDoesNotMatter) {
-  const Scenario original = triaxial_sequence();
+  const CheckedScenario original = triaxial_sequence();
   const TestRun expected = run(original);
-  Scenario shuffled = original;
+  CheckedScenario shuffled = original;
   std::vector<WallSpec>& walls = shuffled.loading.walls;
   std::ranges::rotate(walls, walls.begin() + 3);
   std::swap(walls[0], walls[2]);
@@ -117,8 +117,8 @@ TEST(MdrInvariance, OrderOfTheWallsDoesNotMatter) {
 }
 
 TEST(MdrInvariance, ClassesGiveTheCurveOfTheFullWallSet) {
-  const Scenario hydrostatic = mdr_scenario(Configuration::hydrostatic, 50.0, 0.25, path({0.16, 0.14, 0.17}));
-  for (const Scenario& scenario : {die_cycle(), hydrostatic, triaxial_sequence()}) {
+  const CheckedScenario hydrostatic = mdr_scenario(Configuration::hydrostatic, 50.0, 0.25, path({0.16, 0.14, 0.17}));
+  for (const CheckedScenario& scenario : {die_cycle(), hydrostatic, triaxial_sequence()}) {
     const TestRun reduced = run(scenario);
     const TestRun full = run(scenario, "direct", {}, false);
     ASSERT_LT(reduced.scene.classes.size(), full.scene.classes.size());
@@ -140,7 +140,7 @@ TEST(MdrInvariance, ClassesGiveTheCurveOfTheFullWallSet) {
 
 TEST(MdrInvariance, UnloadingAndReloadingIsAClosedLoopWhileTheRadiusRests) {
   for (const char* rule : {"gated", "yielded"}) {
-    Scenario scenario =
+    CheckedScenario scenario =
         with(mdr_scenario(Configuration::die, 20.0, 0.3, path({0.35, 0.345, 0.35})), "radius_rule", rule);
     const TestRun result = run(scenario);
     const auto force = result.outputs("axial.force");
@@ -158,7 +158,7 @@ TEST(MdrInvariance, UnloadingAndReloadingIsAClosedLoopWhileTheRadiusRests) {
 // --- along one curve
 
 /// Largest drift of the volume balance at the ends of all internal steps of one ramp.
-double largest_drift(const Scenario& scenario, std::string_view integrator, double rtol) {
+double largest_drift(const CheckedScenario& scenario, std::string_view integrator, double rtol) {
   const Scene scene = make_scene(scenario);
   auto& system = dynamic_cast<mdr::System&>(*scene.system);
   std::vector<double> y(system.unknowns().size());
@@ -195,7 +195,8 @@ double largest_drift(const Scenario& scenario, std::string_view integrator, doub
 
 TEST(MdrVolumeBalance, DriftsByNoMoreThanTheTolerance) {
   for (const char* rule : {"gated", "yielded", "seed"}) {
-    const Scenario scenario = with(mdr_scenario(Configuration::die, 20.0, 0.3, path({0.4})), "radius_rule", rule);
+    const CheckedScenario scenario =
+        with(mdr_scenario(Configuration::die, 20.0, 0.3, path({0.4})), "radius_rule", rule);
     EXPECT_LE(largest_drift(scenario, "direct", 1e-8), 1e-15) << rule;  // rounding of the balance itself
     for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
       for (const double rtol : {1e-6, 1e-8, 1e-10}) {
@@ -215,8 +216,8 @@ TEST(MdrYield, ForceJumpsWithTheEllipseOnly) {
   for (const YieldRow& row :
        {YieldRow{6.25, 0.021, 5e-4}, YieldRow{20.0, 0.0047, 5e-5}, YieldRow{200.0, 6.5e-5, 5e-7}}) {
     for (const char* profile : {"ellipse", "parabola"}) {
-      const Scenario scenario = with(mdr_scenario(Configuration::simple, row.modulus_over_yield, 0.3, path({0.3})),
-                                     "elastic_profile", profile);
+      const CheckedScenario scenario = with(
+          mdr_scenario(Configuration::simple, row.modulus_over_yield, 0.3, path({0.3})), "elastic_profile", profile);
       const TestRun result = run(scenario);
       const double yield = result.time_of("yield");
       const auto time = result.column("time");

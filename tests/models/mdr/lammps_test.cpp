@@ -37,14 +37,14 @@ std::vector<Step> at_unit_speed(const std::vector<double>& displacements) {
   return steps;
 }
 
-TestRun run_along(const PeerCurve& curve, Scenario scenario, const char* radius_rule) {
+TestRun run_along(const PeerCurve& curve, CheckedScenario scenario, const char* radius_rule) {
   scenario.output.times.assign(curve.path_lengths.begin() + 1, curve.path_lengths.end());
   return run(with(scenario, "radius_rule", radius_rule));
 }
 
 TEST(MdrAgainstLammps, UniaxialForceIsTheSame) {
   const PeerCurve curve = load("mdr_uniaxial_EY100");
-  const Scenario scenario = mdr_scenario(Configuration::simple, 100.0, 0.3, at_unit_speed({0.30, 0.24, 0.32}));
+  const CheckedScenario scenario = mdr_scenario(Configuration::simple, 100.0, 0.3, at_unit_speed({0.30, 0.24, 0.32}));
   for (const char* rule : {"gated", "yielded"}) {
     const TestRun ours = run_along(curve, scenario, rule);
     // The peer's curves are extrapolated to zero step with an error of some 1e-6 (file header).
@@ -60,7 +60,7 @@ struct PeerRow {
 
 TEST(MdrAgainstLammps, DieForcesDifferAsTabulated) {
   const PeerCurve curve = load("mdr_die_EY40_nu02");
-  const Scenario scenario = mdr_scenario(Configuration::die, 40.0, 0.2, at_unit_speed({0.32, 0.24}));
+  const CheckedScenario scenario = mdr_scenario(Configuration::die, 40.0, 0.2, at_unit_speed({0.32, 0.24}));
   // With `yielded`, what is left is of second order in 1 - V/V0: the peer lets all contacts into the volume of its
   // growth law, and R grow on unloading.
   for (const PeerRow& row : {PeerRow{"gated", 2.2e-3, 1.2e-2, 5e-5, 5e-4}, PeerRow{"seed", 2.2e-3, 1.2e-2, 5e-5, 5e-4},
@@ -75,7 +75,7 @@ TEST(MdrAgainstLammps, DieForcesDifferAsTabulated) {
 
 TEST(MdrAgainstLammps, RatchetOfTheSeedsRuleIsNotTheirs) {
   const PeerCurve curve = load("mdr_uniaxial_EY100");
-  const Scenario scenario = mdr_scenario(Configuration::simple, 100.0, 0.3, at_unit_speed({0.30, 0.24, 0.32}));
+  const CheckedScenario scenario = mdr_scenario(Configuration::simple, 100.0, 0.3, at_unit_speed({0.30, 0.24, 0.32}));
   const TestRun ours = run_along(curve, scenario, "seed");
   EXPECT_NEAR(difference(ours.outputs("axial.force"), curve.table.column("F_z_h0_without_wall_factor")), 0.13, 5e-3);
 }

@@ -14,12 +14,14 @@
 namespace monograin::limits_test {
 namespace {
 
-Scenario die_to(double displacement) { return mdr_scenario(Configuration::die, 20.0, 0.3, path({displacement})); }
-Scenario hydrostatic_to(double displacement) {
+CheckedScenario die_to(double displacement) {
+  return mdr_scenario(Configuration::die, 20.0, 0.3, path({displacement}));
+}
+CheckedScenario hydrostatic_to(double displacement) {
   return mdr_scenario(Configuration::hydrostatic, 20.0, 0.3, path({displacement}));
 }
 
-Scenario strict(Scenario scenario) {
+CheckedScenario strict(CheckedScenario scenario) {
   scenario.options["strict"] = true;
   return scenario;
 }
@@ -39,7 +41,7 @@ TEST(MdrCaps, IntersectWhereTheTableSays) {
 
 /// Two rigid walls whose normals are `angle` apart, and one from the other side, against a particle of R0 = 1 that
 /// yields too late to grow before their caps meet.
-Scenario walls_apart_by(double angle, double displacement) {
+CheckedScenario walls_apart_by(double angle, double displacement) {
   return parse_scenario(fmt::format(R"(model = "mdr"
 particle = {{ radius = 1 }}
 material = {{ youngs_modulus = 1e9, poisson_ratio = 0.3, yield_stress = 1e9 }}
@@ -96,7 +98,7 @@ TEST(MdrCaps, AreReportedOncePerPair) {
 
 TEST(MdrSingularGrowth, StopsTheRunWithItsHistory) {
   for (const char* integrator : k_integrators) {
-    for (const Scenario& scenario :
+    for (const CheckedScenario& scenario :
          {hydrostatic_to(0.22), mdr_scenario(Configuration::die, 200.0, 0.3, path({0.48}))}) {
       const TestRun result = run(scenario, integrator);
       EXPECT_EQ(result.record.status, RunStatus::stopped) << integrator << ", " << describe(scenario);
@@ -140,7 +142,7 @@ TEST(MdrForce, NeverTakesWallsBackWhileItGrows) {
 }
 
 TEST(MdrGreatestForce, EndsARunAtOnePlaceInAllFormsAndUnits) {
-  Scenario scenario = mdr_scenario(Configuration::simple, 100.0, 0.3, {force_ramp(0.4)});
+  CheckedScenario scenario = mdr_scenario(Configuration::simple, 100.0, 0.3, {force_ramp(0.4)});
   const TestRun expected = run(scenario);
   ASSERT_EQ(expected.events().back(), "axial:limit");
   ASSERT_NE(expected.record.message.find("largest that a plastic contact bears"), std::string::npos);
@@ -180,7 +182,7 @@ TEST(MdrVolume, BelowHalfStopsTheRun) {
 }
 
 TEST(MdrVolume, FeedbackOnTheRadiusIsStable) {
-  const Scenario scenario = mdr_scenario(Configuration::hydrostatic, 8.0, 0.0, path({0.27}));
+  const CheckedScenario scenario = mdr_scenario(Configuration::hydrostatic, 8.0, 0.0, path({0.27}));
   EXPECT_NEAR(run(scenario).last("apparent_radius"), 1.029865077150424, 5e-16);  // printed digits
   for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
     for (const double rtol : {1e-6, 1e-8, 1e-10}) {

@@ -14,7 +14,7 @@ constexpr const char* k_radius_rules[] = {"gated", "yielded", "seed"};
 
 /// One pair is driven in and back a little; then a second pair makes R grow while the first one goes on retreating; at
 /// last both go on. All touch from the start.
-Scenario one_pair_retreats(double modulus_over_yield, double poisson_ratio) {
+CheckedScenario one_pair_retreats(double modulus_over_yield, double poisson_ratio) {
   const auto first = path({0.20, 0.198, 0.197, 0.25});
   const auto second = path({0.0, 0.0, 0.20, 0.25});
   return between(mdr_scenario(Configuration::walls, modulus_over_yield, poisson_ratio, {}),
@@ -33,11 +33,11 @@ TEST(MdrRadius, NeverShrinks) {
   // IDA solves even a radius at rest anew at every step, to its tolerance; 5e-11 measured at rtol 1e-8.
   const auto largest_drop = [](const char* integrator) { return std::string_view(integrator) == "ida" ? 2e-10 : 0.0; };
   for (const char* rule : k_radius_rules) {
-    const Scenario scenarios[] = {mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.0, 0.35, 0.34, 0.36})),
-                                  mdr_scenario(Configuration::simple, 6.25, 0.45, path({0.3, 0.2, 0.3, 0.0, 0.4})),
-                                  mdr_scenario(Configuration::hydrostatic, 50.0, 0.0, path({0.15, 0.1, 0.17})),
-                                  one_pair_retreats(20.0, 0.3)};
-    for (const Scenario& scenario : scenarios) {
+    const CheckedScenario scenarios[] = {
+        mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.0, 0.35, 0.34, 0.36})),
+        mdr_scenario(Configuration::simple, 6.25, 0.45, path({0.3, 0.2, 0.3, 0.0, 0.4})),
+        mdr_scenario(Configuration::hydrostatic, 50.0, 0.0, path({0.15, 0.1, 0.17})), one_pair_retreats(20.0, 0.3)};
+    for (const CheckedScenario& scenario : scenarios) {
       for (const char* integrator : k_integrators) {
         const auto radius = run(with(scenario, "radius_rule", rule), integrator).column("apparent_radius");
         for (std::size_t row = 1; row < radius.size(); ++row) {
@@ -61,7 +61,7 @@ TEST(MdrRadius, RestsInElasticCyclesUnlessTheRuleIsTheSeeds) {
 }
 
 TEST(MdrRadius, RatchetsInPlasticCyclesWithTheRuleOfTheSeed) {
-  const Scenario scenario =
+  const CheckedScenario scenario =
       with(mdr_scenario(Configuration::simple, 20.0, 0.3, path({0.30, 0.25, 0.30, 0.25, 0.30, 0.25, 0.30})),
            "radius_rule", "seed");
   for (const char* integrator : k_integrators) {
@@ -74,7 +74,7 @@ TEST(MdrRadius, RatchetsInPlasticCyclesWithTheRuleOfTheSeed) {
 }
 
 TEST(MdrRadius, RatchetsInElasticCyclesWithTheRuleOfTheSeed) {
-  const Scenario scenario = mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.012, 0.0, 0.012, 0.0}));
+  const CheckedScenario scenario = mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.012, 0.0, 0.012, 0.0}));
   const auto radii = radii_at_step_ends(run(with(scenario, "radius_rule", "seed")));
   EXPECT_EQ(radii[0], 1.0);
   EXPECT_NEAR(radii[1], 1.0000493, 5e-8);          // printed digits
@@ -84,7 +84,7 @@ TEST(MdrRadius, RatchetsInElasticCyclesWithTheRuleOfTheSeed) {
 TEST(MdrRadius, OfGatedIsThatOfTheSeedOnMonotonicPaths) {
   for (const auto configuration : {Configuration::simple, Configuration::die, Configuration::hydrostatic}) {
     for (const double modulus_over_yield : {12.5, 50.0, 200.0}) {
-      const Scenario scenario = mdr_scenario(configuration, modulus_over_yield, 0.3, path({0.15}));
+      const CheckedScenario scenario = mdr_scenario(configuration, modulus_over_yield, 0.3, path({0.15}));
       EXPECT_EQ(difference(run(with(scenario, "radius_rule", "seed")), run(scenario)), 0.0) << describe(scenario);
     }
   }
@@ -99,7 +99,7 @@ struct DeviationRow {
 TEST(MdrRadius, OfYieldedLowersTheForceOfSoftMaterials) {
   for (const DeviationRow& row : {DeviationRow{25.0, -0.0006, 5e-5}, DeviationRow{20.0, -0.002, 5e-4},
                                   DeviationRow{12.5, -0.013, 5e-4}, DeviationRow{6.25, -0.09, 5e-3}}) {
-    const Scenario scenario = mdr_scenario(Configuration::simple, row.modulus_over_yield, 0.3, path({0.4}));
+    const CheckedScenario scenario = mdr_scenario(Configuration::simple, row.modulus_over_yield, 0.3, path({0.4}));
     const double yielded = run(with(scenario, "radius_rule", "yielded")).last("axial.force");
     EXPECT_NEAR(yielded / run(scenario).last("axial.force") - 1.0, row.deviation, row.printed) << describe(scenario);
   }
@@ -117,7 +117,7 @@ TEST(MdrRadius, StartsToGrowInTheSameInstantInAllFormsWhereItStartsEarly) {
   // Almost incompressible: growth begins 1e-4 and less into the step, where its guard has just left zero.
   for (const double poisson_ratio : {0.45, 0.48, 0.49}) {
     for (const char* rule : {"gated", "seed"}) {
-      const Scenario scenario =
+      const CheckedScenario scenario =
           with(mdr_scenario(Configuration::hydrostatic, 50.0, poisson_ratio, path({0.16})), "radius_rule", rule);
       const TestRun direct = run(scenario);
       EXPECT_LT(direct.time_of("growth-on"), 1.0 / 32.0) << describe(scenario);
@@ -145,14 +145,14 @@ TEST(MdrRadius, RestsWhileTheAxialWallsOfADieRetreat) {
 
 TEST(MdrDeltaMaxRule, DoesNotMatterWhereAllContactsLoadTogether) {
   for (const auto configuration : {Configuration::simple, Configuration::hydrostatic}) {
-    const Scenario scenario = mdr_scenario(configuration, 20.0, 0.3, path({0.17, 0.16, 0.18, 0.17, 0.18}));
+    const CheckedScenario scenario = mdr_scenario(configuration, 20.0, 0.3, path({0.17, 0.16, 0.18, 0.17, 0.18}));
     const TestRun shifted = run(with(scenario, "delta_max_rule", "shifted"));
     EXPECT_LE(difference(shifted, run(scenario)), 1e-13) << describe(scenario);  // the same formulas up to rounding
   }
 }
 
 TEST(MdrDeltaMaxRule, MattersWhereTheRadiusGrowsOverAnUnloadedContact) {
-  const Scenario scenario = one_pair_retreats(20.0, 0.3);
+  const CheckedScenario scenario = one_pair_retreats(20.0, 0.3);
   const TestRun running = run(scenario);
   const TestRun shifted = run(with(scenario, "delta_max_rule", "shifted"));
   // Growth carries the first pair beyond its running maximum; shifted with R, the maximum keeps ahead of it.
@@ -167,8 +167,8 @@ class MdrForms : public ::testing::TestWithParam<std::tuple<const char*, const c
 
 TEST_P(MdrForms, Agree) {
   const auto [radius_rule, profile, delta_max_rule] = GetParam();
-  for (Scenario scenario : {mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.25, 0.35})),
-                            one_pair_retreats(20.0, 0.3), one_pair_retreats(100.0, 0.1)}) {
+  for (CheckedScenario scenario : {mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.25, 0.35})),
+                                   one_pair_retreats(20.0, 0.3), one_pair_retreats(100.0, 0.1)}) {
     scenario = with(with(with(scenario, "radius_rule", radius_rule), "elastic_profile", profile), "delta_max_rule",
                     delta_max_rule);
     const TestRun direct = run(scenario);
@@ -196,7 +196,7 @@ INSTANTIATE_TEST_SUITE_P(AllRules, MdrForms,
 TEST(MdrForms, AgreeWhereGrowthStartsAlmostAtFirstTouch) {
   // Near nu = 0.5 the demand for growth leaves zero downwards and is back after 3e-8 of the step.
   for (const Configuration configuration : {Configuration::simple, Configuration::die, Configuration::hydrostatic}) {
-    const Scenario scenario = mdr_scenario(configuration, 10.7, 0.4999, path({0.15, 0.12, 0.16}));
+    const CheckedScenario scenario = mdr_scenario(configuration, 10.7, 0.4999, path({0.15, 0.12, 0.16}));
     const TestRun direct = run(scenario);
     ASSERT_EQ(direct.record.status, RunStatus::complete) << direct.record.message;
     EXPECT_EQ(direct.events().front(), "growth-on") << describe(scenario);
@@ -212,7 +212,7 @@ TEST(MdrForms, AgreeWhereGrowthStartsAlmostAtFirstTouch) {
 TEST(MdrForms, AgreeWhereAStiffContactUnloadsWhileTheRadiusGrows) {
   // A piece of the direct solution is a hundred times as long as the unloading branch; Newton's method leaves it at
   // first.
-  const Scenario scenario =
+  const CheckedScenario scenario =
       with(mdr_scenario(Configuration::hydrostatic, 15694.0, -0.5, path({0.172, 0.098, 0.102})), "radius_rule", "seed");
   const TestRun direct = run(scenario);
   ASSERT_EQ(direct.record.status, RunStatus::complete) << direct.record.message;

@@ -277,18 +277,18 @@ TEST(MdrContactWithTable, EndsWithIt) {
 
 // --- in runs
 
-Scenario with_curve(Scenario scenario, const Samples& samples) {
+CheckedScenario with_curve(CheckedScenario scenario, const Samples& samples) {
   scenario.curves["pressure_table"] = {"", samples.x, samples.p};
   return scenario;
 }
 
-Scenario pressed_and_let_go(Configuration configuration, double displacement) {
+CheckedScenario pressed_and_let_go(Configuration configuration, double displacement) {
   return mdr_scenario(configuration, 50.0, 0.3, path({displacement, 0.9 * displacement, displacement, 0.0}));
 }
 
 TEST(MdrRunWithTable, ApproachesThatWithTheExponential) {
   for (const auto configuration : {Configuration::simple, Configuration::die}) {
-    const Scenario scenario = pressed_and_let_go(configuration, 0.3);
+    const CheckedScenario scenario = pressed_and_let_go(configuration, 0.3);
     const TestRun exponential = run(scenario);
     // Cubics through samples with slopes that are good to second order: the third order overall.
     const double coarse = difference(run(with_curve(scenario, dense_exponential(100))), exponential);
@@ -302,7 +302,7 @@ TEST(MdrRunWithTable, ApproachesThatWithTheExponential) {
 
 TEST(MdrRunWithTable, IsTheSameByAllIntegrators) {
   for (const auto configuration : {Configuration::simple, Configuration::die}) {
-    const Scenario scenario = with_curve(pressed_and_let_go(configuration, 0.3), k_bumpy);
+    const CheckedScenario scenario = with_curve(pressed_and_let_go(configuration, 0.3), k_bumpy);
     const TestRun direct = run(scenario);
     ASSERT_EQ(direct.record.status, RunStatus::complete) << direct.record.message;
     for (const char* integrator : k_integrators) {

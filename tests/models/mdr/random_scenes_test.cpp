@@ -77,7 +77,7 @@ std::vector<Eigen::Vector3d> random_normals(Dice& dice) {
   return normals;
 }
 
-Scenario random_scenario(std::uint64_t seed) {
+CheckedScenario random_scenario(std::uint64_t seed) {
   Dice dice(seed);
   const double modulus_over_yield = dice.log_uniform(6.0, 1e4);
   const double poisson_ratio = dice.one_of<double>({0.0, 0.1, 0.2, 0.3, 0.4, 0.45, 0.49, 0.5});
@@ -85,7 +85,7 @@ Scenario random_scenario(std::uint64_t seed) {
   const auto configuration =
       dice.one_of<Configuration>({Configuration::simple, Configuration::die, Configuration::hydrostatic,
                                   Configuration::oblique_die, Configuration::walls});
-  Scenario scenario = mdr_scenario(configuration, modulus_over_yield, poisson_ratio, {});
+  CheckedScenario scenario = mdr_scenario(configuration, modulus_over_yield, poisson_ratio, {});
   scenario.name = fmt::format("seed {}", seed);
   scenario.material["surface_energy"] = surface_energy;
   scenario = with(scenario, "radius_rule", dice.one_of<const char*>({"gated", "yielded", "seed"}));
@@ -107,7 +107,7 @@ Scenario random_scenario(std::uint64_t seed) {
   return with_points(between(std::move(scenario), std::move(walls)), 20);
 }
 
-std::string option(const Scenario& scenario, const std::string& name) {
+std::string option(const CheckedScenario& scenario, const std::string& name) {
   return std::get<std::string>(scenario.options.at(name));
 }
 
@@ -278,7 +278,7 @@ void check(std::uint64_t seed, const char* what, double value, double most, Brea
   if (!(value <= most)) breaches.add(seed, fmt::format("{} {:.3g}, above {:.3g}", what, value, most));
 }
 
-void check_rules(std::uint64_t seed, const Scenario& scenario, const TestRun& result, Breaches& breaches) {
+void check_rules(std::uint64_t seed, const CheckedScenario& scenario, const TestRun& result, Breaches& breaches) {
   const auto expect_at_most = [&](const char* what, double value, double most) {
     check(seed, what, value, most, breaches);
   };
@@ -314,7 +314,7 @@ TEST(MdrRandomScenes, KeepTheRulesOfTheModel) {
   Breaches failures;
   Breaches breaches;
   for (std::uint64_t seed = 1; seed <= k_scenes; ++seed) {
-    const Scenario scenario = random_scenario(seed);
+    const CheckedScenario scenario = random_scenario(seed);
     try {
       const TestRun result = run(scenario);
       const std::string end = end_of(result);
@@ -380,7 +380,7 @@ TEST(MdrRandomScenes, AllFormsAgree) {
   Breaches other_events;
   Breaches distances;
   for (std::uint64_t seed = 1; seed <= k_scenes; ++seed) {
-    const Scenario scenario = random_scenario(seed);
+    const CheckedScenario scenario = random_scenario(seed);
     try {
       const TestRun direct = run(scenario);
       bool has_other_events = false;

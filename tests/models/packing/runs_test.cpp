@@ -18,7 +18,8 @@ namespace {
 std::string option(const char* key, double value) { return fmt::format("{} = {:.17g}\n", key, value); }
 
 /// A scenario with these parameters.
-Scenario scenario_of(const Parameters& p, std::vector<Step> steps, std::optional<double> initial = std::nullopt) {
+CheckedScenario scenario_of(const Parameters& p, std::vector<Step> steps,
+                            std::optional<double> initial = std::nullopt) {
   std::string text = "model = \"packing\"\n[material]\n";
   text += option("youngs_modulus", p.youngs_modulus) + option("poisson_ratio", p.poisson_ratio);
   if (p.plasticity) {
@@ -36,7 +37,7 @@ Scenario scenario_of(const Parameters& p, std::vector<Step> steps, std::optional
   if (p.has_continuous_jamming) text += "continuous_jamming = true\n";
   if (initial) text += option("initial_packing_fraction", *initial);
   text += "[loading]\n[[loading.steps]]\nhold = true\nduration = 1\n";
-  Scenario scenario = parse_scenario(text, "packing.toml");
+  CheckedScenario scenario = parse_scenario(text, "packing.toml");
   scenario.loading.steps = std::move(steps);
   scenario.output.points = 50;
   return scenario;
@@ -91,7 +92,7 @@ class PackingRun : public ::testing::TestWithParam<Curve> {
     while (rows_ < values.size() && (kind != Step::Kind::strain || phi[rows_] < 0.98)) ++rows_;
     values.resize(rows_);
     if (kind == Step::Kind::stress) std::ranges::transform(values, values.begin(), [](double v) { return v * k_mega; });
-    Scenario scenario = scenario_of(GetParam().parameters, {to(kind, values.back(), values.back())});
+    CheckedScenario scenario = scenario_of(GetParam().parameters, {to(kind, values.back(), values.back())});
     if (kind == Step::Kind::packing_fraction) {
       scenario.loading.steps[0].duration = values.back() - 0.8;
       for (const double v : values) scenario.output.times.push_back(v - 0.8);
@@ -241,7 +242,7 @@ TEST(PackingRuns, DoNotDependOnTheRate) {
   for (const char* integrator : k_integrators) {
     const TestRun slow = run(scenario_of(p, {to_fraction(0.95, 1e6)}), integrator);
     const TestRun fast = run(scenario_of(p, {to_fraction(0.95, 1e-6)}), integrator);
-    Scenario rated = scenario_of(p, {to_fraction(0.95)});
+    CheckedScenario rated = scenario_of(p, {to_fraction(0.95)});
     rated.loading.steps[0].duration.reset();
     rated.loading.steps[0].rate = 0.3;
     const TestRun with_rate = run(rated, integrator);
@@ -319,7 +320,7 @@ TEST(PackingRuns, OfElasticParticlesAreReversible) {
 }
 
 TEST(PackingRuns, HoldAndEndAtEvents) {
-  Scenario scenario = scenario_of(published(1.0), {to_fraction(0.95), to_fraction(0.96)});
+  CheckedScenario scenario = scenario_of(published(1.0), {to_fraction(0.95), to_fraction(0.96)});
   scenario.loading.steps[0] = until_event(scenario.loading.steps[0], "plastic-softening");
   scenario.loading.steps.insert(scenario.loading.steps.begin() + 1, hold(2.0));
   for (const char* integrator : k_integrators) {
@@ -441,7 +442,7 @@ TEST(PackingEnds, WhereTheParticlesGiveWayAsMuch) {
 }
 
 TEST(PackingUnloading, OfPlasticParticlesThatOnlyTheRunFindsStopsIt) {
-  Scenario scenario =
+  CheckedScenario scenario =
       scenario_of(published(1.0), {until_event(to_fraction(0.95), "plastic-softening"), to_fraction(0.86)});
   const TestRun run_ = run(scenario, "direct");
   EXPECT_EQ(run_.record.status, RunStatus::stopped);

@@ -107,7 +107,7 @@ class ReferenceCurve : public ::testing::TestWithParam<std::string> {
   }
 
   Table table_;
-  Scenario scenario_;
+  CheckedScenario scenario_;
   double strength_ = 1.0;
   double begin_ = 0.0;  ///< rows from here on are compared
   double end_ = std::numeric_limits<double>::infinity();

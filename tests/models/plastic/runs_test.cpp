@@ -24,7 +24,7 @@
 namespace monograin::plastic::runs_test {
 namespace {
 
-Law law_of(const Scenario& scenario) {
+Law law_of(const CheckedScenario& scenario) {
   const ModelInput input = model_input(scenario);
   if (scenario.model == "semimech") return semimech_law(input);
   return scenario.model == "hardening" ? hardening_law(input) : similarity_law(input);
@@ -35,14 +35,14 @@ using Walls = monograin::Configuration;
 constexpr std::array k_walls{Walls::simple, Walls::die, Walls::hydrostatic};
 
 /// A steel of E/Y = 1000, in units of Y.
-Scenario steel(Walls walls, std::vector<Step> steps) {
+CheckedScenario steel(Walls walls, std::vector<Step> steps) {
   return semimech_scenario(walls, 1000.0, 0.3, 1.0, std::move(steps));
 }
-Scenario unloading_steel(Walls walls, std::vector<Step> steps) {
+CheckedScenario unloading_steel(Walls walls, std::vector<Step> steps) {
   return with(steel(walls, std::move(steps)), "unloading", "mdr");
 }
 /// MCC of the source, in units of its strength.
-Scenario cellulose(Walls walls, std::vector<Step> steps) {
+CheckedScenario cellulose(Walls walls, std::vector<Step> steps) {
   return hardening_scenario(walls, 1.0, 0.6585, std::move(steps));
 }
 
@@ -71,7 +71,7 @@ TEST(PlasticEvents, FallOnTheBoundariesOfTheLaw) {
   for (const Walls walls : k_walls) {
     for (const bool hardens : {false, true}) {
       const double end = walls == Walls::simple ? 0.6 : walls == Walls::die ? 0.475 : 0.193;
-      const Scenario scenario = hardens ? cellulose(walls, {ramp(end, end)}) : steel(walls, {ramp(end, end)});
+      const CheckedScenario scenario = hardens ? cellulose(walls, {ramp(end, end)}) : steel(walls, {ramp(end, end)});
       const Law law = law_of(scenario);
       for (const char* integrator : k_integrators) {
         const TestRun now = run(scenario, integrator);
@@ -120,7 +120,7 @@ TEST(PlasticEvents, DoNotDependOnTheRate) {
 
 TEST(PlasticEvents, AreTheSameForWallsThatAreNotMerged) {
   for (const Walls walls : k_walls) {
-    const Scenario scenario = unloading_steel(walls, {ramp(0.15), ramp(0.145), ramp(0.17)});
+    const CheckedScenario scenario = unloading_steel(walls, {ramp(0.15), ramp(0.145), ramp(0.17)});
     const TestRun merged = run(scenario);
     const TestRun apart = run(scenario, "direct", {}, false);
     EXPECT_EQ(merged.column("work").size(), apart.column("work").size());
@@ -138,8 +138,8 @@ TEST_P(LateralCurve, IsMetByARun) {
   const Table table = reference(GetParam());
   const double strength = header_number(table, "sigma_y");
   const std::vector<double> x = table.column("gamma_over_2R");
-  Scenario scenario = semimech_scenario(Walls::die, header_number(table, "E"), header_number(table, "nu"), strength,
-                                        {ramp(x.back(), x.back())});
+  CheckedScenario scenario = semimech_scenario(Walls::die, header_number(table, "E"), header_number(table, "nu"),
+                                               strength, {ramp(x.back(), x.back())});
   scenario.output.times = x;
   const TestRun now = run(scenario);
   const auto force = now.outputs("lateral.force");
@@ -191,7 +191,7 @@ TEST(PlasticLateralContacts, AreEmptyWhereTheSourceHasNoLaw) {
 TEST(PlasticUnloading, BeginsWithTheForceOfTheLawAndTheStiffnessOfTheIndenter) {
   for (const Walls walls : k_walls) {
     const double largest = 0.18;
-    const Scenario scenario = unloading_steel(walls, {ramp(largest), ramp(0.0)});
+    const CheckedScenario scenario = unloading_steel(walls, {ramp(largest), ramp(0.0)});
     const Law law = law_of(scenario);
     const double modulus = 1000.0 / (1.0 - 0.09);
     const TestRun now = run(scenario);
@@ -207,9 +207,9 @@ TEST(PlasticUnloading, BeginsWithTheForceOfTheLawAndTheStiffnessOfTheIndenter) {
 
 TEST(PlasticUnloading, GoesBackTheSameWayAndThenTheLawGoesOn) {
   for (const auto& material : {unloading_steel(Walls::die, {}), unloading(cellulose(Walls::die, {}), 500.0, 0.3)}) {
-    Scenario cycles = material;
+    CheckedScenario cycles = material;
     cycles.loading.steps = {ramp(0.2), ramp(0.1999), ramp(0.2), ramp(0.0), ramp(0.4)};
-    Scenario straight = material;
+    CheckedScenario straight = material;
     straight.loading.steps = {ramp(0.2), ramp(0.4)};
     const TestRun once = run(straight);
     for (const char* integrator : k_integrators) {
@@ -308,9 +308,9 @@ TEST(PlasticEnds, StopWhereAProgramGoesBackAfterACondition) {
 // --- contacts for themselves
 
 TEST(PlasticSimilarity, WallsMeetTheParticleAcrossTheirGaps) {
-  Scenario scenario = between(similarity_scenario(Walls::walls, 1.0, 0.24, {}),
-                              {wall("a", {0, 0, 1}, {ramp(0.02)}), wall("b", {0, 0, -1}, {ramp(0.03)}, 0.01),
-                               wall("c", {1, 0, 0}, {force_ramp(0.001)}, 0.02), wall("d", {0, 1, 0})});
+  CheckedScenario scenario = between(similarity_scenario(Walls::walls, 1.0, 0.24, {}),
+                                     {wall("a", {0, 0, 1}, {ramp(0.02)}), wall("b", {0, 0, -1}, {ramp(0.03)}, 0.01),
+                                      wall("c", {1, 0, 0}, {force_ramp(0.001)}, 0.02), wall("d", {0, 1, 0})});
   const TestRun direct = run(scenario);
   EXPECT_EQ(direct.events(), (std::vector<std::string>{"c:contact-made", "b:contact-made"}));
   EXPECT_NEAR(direct.record.events.column("time")[1], 0.25, 1e-14);
@@ -330,10 +330,10 @@ TEST(PlasticSimilarity, WallsMeetTheParticleAcrossTheirGaps) {
 // --- random scenes
 
 /// Admissible materials and programs of either control; with unloading every other time.
-Scenario random_scenario(std::mt19937_64& generator) {
+CheckedScenario random_scenario(std::mt19937_64& generator) {
   const Walls walls = k_walls[static_cast<std::size_t>(uniform(generator, 0.0, 3.0))];
   const double kind = uniform(generator, 0.0, 3.0);
-  Scenario scenario;
+  CheckedScenario scenario;
   if (kind < 1.0) {
     const double nu = uniform(generator, 0.0, 0.4999);
     const double lambda = log_uniform(generator, 22.0931, 1e6);
@@ -371,7 +371,7 @@ Scenario random_scenario(std::mt19937_64& generator) {
 TEST(PlasticRandomScenes, AreCompleteWithoutBlanksAndGiveBackNoMoreThanTheyTook) {
   std::mt19937_64 generator(4711);
   for (int k = 0; k < 10000; ++k) {
-    const Scenario scenario = random_scenario(generator);
+    const CheckedScenario scenario = random_scenario(generator);
     const TestRun now = run(scenario);
     ASSERT_EQ(now.record.status, RunStatus::complete) << k << ": " << now.record.message << "\n" << describe(scenario);
     for (const char* column : {"work", "axial.displacement", "axial.force", "axial.contact_radius", "axial.pressure"}) {
@@ -383,7 +383,7 @@ TEST(PlasticRandomScenes, AreCompleteWithoutBlanksAndGiveBackNoMoreThanTheyTook)
 TEST(PlasticRandomScenes, AgreeInAllForms) {
   std::mt19937_64 generator(815);
   for (int k = 0; k < 150; ++k) {
-    const Scenario scenario = random_scenario(generator);
+    const CheckedScenario scenario = random_scenario(generator);
     const TestRun direct = run(scenario);
     for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
       EXPECT_LE(distance(run(scenario, integrator), direct), 3e-7) << k << " " << integrator << "\n"
@@ -393,7 +393,7 @@ TEST(PlasticRandomScenes, AgreeInAllForms) {
 }
 
 TEST(PlasticRuns, MakeASceneOfAForceThatIsTheGreatestButForRoundOff) {
-  Scenario scenario = steel(Walls::simple, {force_ramp(1.0)});
+  CheckedScenario scenario = steel(Walls::simple, {force_ramp(1.0)});
   const Law law = law_of(scenario);
   const double greatest =
       std::visit([](const auto& any) { return state_at(any, std::nextafter(1.0, 0.0)).force; }, law);
@@ -404,14 +404,14 @@ TEST(PlasticRuns, MakeASceneOfAForceThatIsTheGreatestButForRoundOff) {
 }
 
 TEST(PlasticRuns, HoldWhatAConditionHasLedTo) {
-  const Scenario by_force =
+  const CheckedScenario by_force =
       steel(Walls::simple,
             {until(ramp(0.3), Quantity::force, 1.7), force_ramp(1.7), until(force_ramp(3.0), Quantity::force, 1.9),
              force_ramp(1.9), until(force_ramp(3.0), Quantity::displacement, 0.2345), ramp(0.2345)});
   for (const std::string_view integrator : integrator_names()) {
     if (integrator == "explicit") continue;  // its steps lead beyond
     for (const double scale : {0.5, 0.9, 1.0, 1.1}) {
-      Scenario scenario = by_force;
+      CheckedScenario scenario = by_force;
       for (Step& step : scenario.loading.steps) {
         if (step.kind == Step::Kind::force) step.target *= scale;
         for (Until& condition : step.until) condition.value *= condition.is_of(Quantity::force) ? scale : 1.0;

@@ -8,41 +8,42 @@
 
 namespace monograin {
 
-[[nodiscard]] inline Scenario plastic_scenario(const std::string& model, Configuration configuration,
-                                               std::vector<Step> steps) {
-  Scenario scenario = hertz_scenario(configuration, std::move(steps));
+[[nodiscard]] inline CheckedScenario plastic_scenario(const std::string& model, Configuration configuration,
+                                                      std::vector<Step> steps) {
+  CheckedScenario scenario = hertz_scenario(configuration, std::move(steps));
   scenario.model = model;
   scenario.material.clear();
   scenario.options["unloading"] = std::string("none");
   return scenario;
 }
 
-[[nodiscard]] inline Scenario semimech_scenario(Configuration configuration, double youngs_modulus,
-                                                double poisson_ratio, double yield_stress, std::vector<Step> steps) {
-  Scenario scenario = plastic_scenario("semimech", configuration, std::move(steps));
+[[nodiscard]] inline CheckedScenario semimech_scenario(Configuration configuration, double youngs_modulus,
+                                                       double poisson_ratio, double yield_stress,
+                                                       std::vector<Step> steps) {
+  CheckedScenario scenario = plastic_scenario("semimech", configuration, std::move(steps));
   scenario.material = {
       {"youngs_modulus", youngs_modulus}, {"poisson_ratio", poisson_ratio}, {"yield_stress", yield_stress}};
   return scenario;
 }
 
-[[nodiscard]] inline Scenario hardening_scenario(Configuration configuration, double strength, double exponent,
-                                                 std::vector<Step> steps) {
-  Scenario scenario = plastic_scenario("hardening", configuration, std::move(steps));
+[[nodiscard]] inline CheckedScenario hardening_scenario(Configuration configuration, double strength, double exponent,
+                                                        std::vector<Step> steps) {
+  CheckedScenario scenario = plastic_scenario("hardening", configuration, std::move(steps));
   scenario.material = {{"strength", strength}, {"hardening_exponent", exponent}};
   scenario.options["minimum_condition"] = std::string("current");
   return scenario;
 }
 
-[[nodiscard]] inline Scenario similarity_scenario(Configuration configuration, double strength, double exponent,
-                                                  std::vector<Step> steps) {
-  Scenario scenario = plastic_scenario("similarity", configuration, std::move(steps));
+[[nodiscard]] inline CheckedScenario similarity_scenario(Configuration configuration, double strength, double exponent,
+                                                         std::vector<Step> steps) {
+  CheckedScenario scenario = plastic_scenario("similarity", configuration, std::move(steps));
   scenario.material = {{"strength", strength}, {"hardening_exponent", exponent}};
   scenario.options["curvature_correction"] = false;
   return scenario;
 }
 
 /// The same with elastic constants and unloading by the indenter of model mdr.
-[[nodiscard]] inline Scenario unloading(Scenario scenario, double youngs_modulus, double poisson_ratio) {
+[[nodiscard]] inline CheckedScenario unloading(CheckedScenario scenario, double youngs_modulus, double poisson_ratio) {
   scenario.material["youngs_modulus"] = youngs_modulus;
   scenario.material["poisson_ratio"] = poisson_ratio;
   return with(std::move(scenario), "unloading", "mdr");

@@ -712,7 +712,7 @@ TEST(ReadyAtlas, HoldsModelMdrAgainstFiniteElements) {
   EXPECT_NEAR(line.residual, 0.3767, 5e-4);
 }
 
-/// Tables 3.1 and C.1 of 000_34f0f4b3689a4570.txt: what is printed is what the laws give, rounded, but for the values
+/// Tables 3.1 and C.1 of Shahin (2021): what is printed is what the laws give, rounded, but for the values
 /// below.
 TEST(ReadyAtlas, HoldsTheRigidLimitAgainstPrintedValues) {
   const AtlasFigure made = make_atlas(MONOGRAIN_SOURCE_DIR "/plots", {"semimech-tables"}).front();

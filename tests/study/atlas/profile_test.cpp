@@ -21,14 +21,14 @@ constexpr std::size_t k_pressure = 2;
 constexpr std::size_t k_displacement = 3;
 constexpr std::size_t k_height = 4;
 
-Scenario pressed(double surface_energy = 0.0) {
-  Scenario scenario = mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.2, 0.19}));
+CheckedScenario pressed(double surface_energy = 0.0) {
+  CheckedScenario scenario = mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.2, 0.19}));
   scenario.material["surface_energy"] = surface_energy;
   return scenario;
 }
 
-double at_instant(const Scenario& scenario, double time, const std::string& column) {
-  Scenario asked = scenario;
+double at_instant(const CheckedScenario& scenario, double time, const std::string& column) {
+  CheckedScenario asked = scenario;
   asked.output.times = {time};
   const TestRun result = run(asked);
   return result.outputs(column).back();
@@ -86,7 +86,7 @@ TEST(ContactProfiles, AreThereForTheModelsThatClaimThem) {
     const std::filesystem::path file =
         fmt::format(MONOGRAIN_SOURCE_DIR "/scenarios/{}.toml", model.name == "mdr" ? "die" : model.name);
     ASSERT_TRUE(std::filesystem::exists(file)) << file;
-    const Scenario ready = read_scenario(file);
+    const CheckedScenario ready = read_scenario(file);
     ASSERT_EQ(ready.model, model.name);
     if (model.has_profile) {
       ++with_profile;
@@ -100,11 +100,11 @@ TEST(ContactProfiles, AreThereForTheModelsThatClaimThem) {
 
 TEST(ContactProfiles, AreDrawnFromARunThatBringsItsScenarioAlong) {
   const TemporaryFolder folder;
-  Scenario scenario = parse_scenario(default_scenario_text(), "die.toml", {"output.points=3"});
+  CheckedScenario scenario = parse_scenario(default_scenario_text(), "die.toml", {"output.points=3"});
   monograin::Run recorded = run_scenario(scenario);
   StagedFolder staged(folder.path() / "die");
   write_run(recorded, staged);
-  const Scenario again = scenario_of_run(folder.path() / "die");
+  const CheckedScenario again = scenario_of_run(folder.path() / "die");
   EXPECT_EQ(again.text, scenario.text);
   EXPECT_EQ(scenario_digest(again), scenario_digest(scenario));
   const auto csv = draw_profiles(contact_profiles(again, 0.8), folder.path() / "profile.svg");

@@ -458,7 +458,7 @@ TEST_F(CalibrationTest, TheScenarioMayStandInTheFileItself) {
   const Calibration calibration = read();
   const CalibrationResult result = calibrate(calibration);
   EXPECT_EQ(result.solution.parameters[0], modulus);
-  const Scenario fitted = parse_scenario(fitted_scenario_text(calibration, result), "fitted.toml");
+  const CheckedScenario fitted = parse_scenario(fitted_scenario_text(calibration, result), "fitted.toml");
   EXPECT_EQ(fitted.material.at("youngs_modulus"), modulus);
 }
 
@@ -480,7 +480,7 @@ TEST_F(CalibrationTest, TheFittedScenarioIsTheOldOneWithTheNumbersPutIn) {
   const Calibration calibration = read();
   const CalibrationResult result = calibrate(calibration);
   const std::string text = fitted_scenario_text(calibration, result);
-  const Scenario fitted = parse_scenario(text, "fitted.toml");
+  const CheckedScenario fitted = parse_scenario(text, "fitted.toml");
   EXPECT_EQ(fitted.material.at("youngs_modulus"), result.solution.parameters[0]);
   EXPECT_EQ(fitted.loading.steps.size(), 1U);
   EXPECT_EQ(fitted.loading.steps[0].target, 0.01 * k_radius);
@@ -500,7 +500,7 @@ TEST_F(CalibrationTest, TablesThatTheScenarioNamesGoWithIt) {
   const CalibrationResult result = calibrate(calibration);
   EXPECT_EQ(written(calibration, result, folder() / "out"), "");
   fs::remove(folder() / "p.csv");
-  const Scenario fitted = read_scenario(folder() / "out/fitted.toml");
+  const CheckedScenario fitted = read_scenario(folder() / "out/fitted.toml");
   EXPECT_EQ(fitted.material.at("yield_stress"), result.solution.parameters[0]);
   EXPECT_EQ(fitted.curves.at("pressure_table").x.size(), 4U);
 }

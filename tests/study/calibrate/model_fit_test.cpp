@@ -169,7 +169,7 @@ TEST_F(CompressibleCalibration, IsReportedAndRunsAgain) {
   const auto json = nlohmann::json::parse(file);
   EXPECT_EQ(json.at("fit").at("procedures").size(), 3u);
   EXPECT_NEAR(json["fit"]["procedures"][0]["area_error"].get<double>(), 0.07752917, 1e-6);
-  const Scenario fitted = read_scenario(folder_.path() / "out" / "fitted.toml");
+  const CheckedScenario fitted = read_scenario(folder_.path() / "out" / "fitted.toml");
   EXPECT_EQ(std::get<double>(fitted.options.at("k")), result.solution.parameters[0]);
 }
 

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 const fs::path k_scenes = fs::path(MONOGRAIN_SOURCE_DIR) / "scenarios/bench/scenes.toml";
 
-Scenario die(const std::vector<std::string>& overrides = {}) {
+CheckedScenario die(const std::vector<std::string>& overrides = {}) {
   return parse_scenario(default_scenario_text(), "die.toml", overrides);
 }
 
@@ -104,7 +104,7 @@ TEST(BenchScene, TimeToAnErrorIsThatOfTheFastestRunThatReachesIt) {
 
 TEST(BenchScenes, EachRunsToItsEnd) {
   std::set<std::string> names;
-  for (const Scenario& scenario : read_bench_list(k_scenes).scenes) {
+  for (const CheckedScenario& scenario : read_bench_list(k_scenes).scenes) {
     EXPECT_TRUE(names.insert(scenario.name).second) << scenario.name;
     const monograin::Run run = run_scenario(scenario);
     EXPECT_EQ(run.record.status, RunStatus::complete) << scenario.name << ": " << run.record.message;
@@ -143,7 +143,7 @@ void expect_same(const Table& a, const Table& b) {
   }
 }
 
-void expect_looks_on_only(const Scenario& scenario, std::initializer_list<const char*> integrators) {
+void expect_looks_on_only(const CheckedScenario& scenario, std::initializer_list<const char*> integrators) {
   for (const char* integrator : integrators) {
     Scene plain = make_scene(scenario);
     if (std::string_view(integrator) == "direct" && !plain.system->is_solvable()) continue;
@@ -162,7 +162,7 @@ void expect_looks_on_only(const Scenario& scenario, std::initializer_list<const 
 }
 
 TEST(BenchProfile, LooksOnOnly) {
-  for (const Scenario& scenario : read_bench_list(k_scenes).scenes) {
+  for (const CheckedScenario& scenario : read_bench_list(k_scenes).scenes) {
     expect_looks_on_only(scenario, {"direct", "cvode-bdf", "ida"});
   }
   // A singular start, which none of the bench's own scenes has.
@@ -184,7 +184,7 @@ TEST(BenchProfile, KnowsTheLinearAlgebraOfSundialsOnly) {
 
 TEST(BenchSavings, LookBeyondTheEndOfAStep) {
   // Too shallow to yield before it ends.
-  const Scenario scenario = die({"loading.steps=[{displacement=\"1e-4 R0\",duration=1}]"});
+  const CheckedScenario scenario = die({"loading.steps=[{displacement=\"1e-4 R0\",duration=1}]"});
   std::vector<std::string> guards;
   for (const double factor : {1.0, 1000.0}) {
     Scene scene = make_scene(scenario);
@@ -203,7 +203,7 @@ TEST(BenchSavings, LookBeyondTheEndOfAStep) {
 }
 
 TEST(BenchSavings, LookBeyondStepsInEveryFormOfEveryModel) {
-  for (const Scenario& scenario : read_bench_list(k_scenes).scenes) {
+  for (const CheckedScenario& scenario : read_bench_list(k_scenes).scenes) {
     for (const char* integrator : {"direct", "cvode-bdf", "ida"}) {
       Scene plain = make_scene(scenario);
       if (std::string_view(integrator) == "direct" && !plain.system->is_solvable()) continue;

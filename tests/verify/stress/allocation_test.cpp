@@ -50,7 +50,7 @@ struct Count {
   RunStatus status = RunStatus::complete;
 };
 
-Count count(Scenario scenario, std::string_view integrator, double rtol, int points) {
+Count count(CheckedScenario scenario, std::string_view integrator, double rtol, int points) {
   scenario.output.points = points;
   Scene scene = make_scene(scenario);
   const long before = allocation_count;
@@ -63,7 +63,7 @@ struct Pair {
 };
 
 /// With few and with many output points, after tables that are made once.
-Pair count_both(const Scenario& scenario, std::string_view integrator, double rtol) {
+Pair count_both(const CheckedScenario& scenario, std::string_view integrator, double rtol) {
   count(scenario, integrator, rtol, 10);
   return {count(scenario, integrator, rtol, 10), count(scenario, integrator, rtol, 300)};
 }
@@ -72,7 +72,7 @@ class Allocations : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Allocations, DependOnEventsOnly) {
   const auto folder = std::filesystem::path(MONOGRAIN_SOURCE_DIR) / "scenarios";
-  const Scenario scenario = read_scenario(folder / (std::string(GetParam()) + ".toml"));
+  const CheckedScenario scenario = read_scenario(folder / (std::string(GetParam()) + ".toml"));
   for (const std::string_view integrator : integrator_names()) {
     if (integrator == "explicit") continue;  // its tolerance is its step
     // Boost allocates in every step of these.
@@ -114,7 +114,7 @@ constexpr const char* k_slight_force = R"(
 )";
 
 TEST(AllocationsOfSlightForces, DependOnEventsOnly) {
-  const Scenario scenario = parse_scenario(k_slight_force, "slight-force");
+  const CheckedScenario scenario = parse_scenario(k_slight_force, "slight-force");
   for (const char* integrator : {"direct", "cvode-bdf"}) {
     const auto [coarse, fine] = count_both(scenario, integrator, 1e-5);
     EXPECT_EQ(coarse.status, RunStatus::complete);
@@ -128,7 +128,8 @@ TEST(AllocationsOfDrawnScenes, DependOnEventsOnly) {
   write_stress_tables(tables.path());
   int seen = 0;
   for (std::uint64_t i = 0; i < 150; ++i) {
-    const Scenario scenario = parse_stress_text(scenario_text(draw_stress_scene(3, i, tables.path())), tables.path());
+    const CheckedScenario scenario =
+        parse_stress_text(scenario_text(draw_stress_scene(3, i, tables.path())), tables.path());
     const char* integrator = make_scene(scenario).system->is_solvable() ? "direct" : "cvode-bdf";
     const auto [coarse, fine] = count_both(scenario, integrator, 1e-6);
     // What fails ends in exceptions.

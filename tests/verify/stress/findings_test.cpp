@@ -82,7 +82,7 @@ std::set<std::string> open_rules(const std::string& text) {
 }
 
 TEST_P(StressFinding, IsCured) {
-  const Scenario scenario = read_scenario(k_folder / (GetParam() + ".toml"));
+  const CheckedScenario scenario = read_scenario(k_folder / (GetParam() + ".toml"));
   StressVerdict verdict;
   if (k_is_sanitized) {
     // How the runs of a scene compare is no question of memory, and takes ten times as long here.
@@ -147,7 +147,7 @@ TEST(StressLimits, AToleranceOfTheSizeOfRoundOffIsNamed) {
        {"semimech/missed-event/force-that-ends-where-it-turned", "semimech/not-invariant/position-after-a-force",
         "nonlocal/false-end/support-by-a-contact-that-has-just-begun",
         "nonlocal/false-end/forces-that-end-in-balance"}) {
-    Scenario scenario = read_scenario(k_folder / (std::string(name) + ".toml"));
+    CheckedScenario scenario = read_scenario(k_folder / (std::string(name) + ".toml"));
     scenario.numerics.integrator = "ida";
     scenario.numerics.rtol = 1e-13;
     scenario.numerics.atol = 1e-17;

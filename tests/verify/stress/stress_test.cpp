@@ -198,7 +198,7 @@ fixed = true
 
 class CopiesOfAScene : public ::testing::Test {
  protected:
-  Scenario scenario_ = parse_scenario(k_cell, "cell.toml");
+  CheckedScenario scenario_ = parse_scenario(k_cell, "cell.toml");
   monograin::Run run_ = run_scenario(scenario_);
 };
 
@@ -215,7 +215,7 @@ TEST_F(CopiesOfAScene, AgreeWallByWallOnceTurnedBack) {
 }
 
 TEST_F(CopiesOfAScene, TellEventsByTheWallsOfTheirClasses) {
-  const Scenario die = parse_scenario(default_scenario_text(), "default");
+  const CheckedScenario die = parse_scenario(default_scenario_text(), "default");
   const monograin::Run run = by_wall(run_scenario(die));
   const monograin::Run copy = by_wall(run_scenario(*turned(die, stress_rotation(2))));
   EXPECT_EQ(sorted_events(run), sorted_events(copy));
@@ -223,7 +223,7 @@ TEST_F(CopiesOfAScene, TellEventsByTheWallsOfTheirClasses) {
 }
 
 TEST_F(CopiesOfAScene, BreakARuleWhereAStopIsNotShared) {
-  const auto is_first = [](const Scenario& of, std::string_view name) {
+  const auto is_first = [](const CheckedScenario& of, std::string_view name) {
     return of.loading.configuration == Loading::Configuration::walls && of.loading.walls.front().name == name;
   };
   const auto stopped = [](monograin::Run run) {
@@ -240,23 +240,23 @@ TEST_F(CopiesOfAScene, BreakARuleWhereAStopIsNotShared) {
   };
   EXPECT_TRUE(checks_with(run_scenario).empty());
   // A limit that depends on where the walls stand.
-  EXPECT_EQ(checks_with([&](const Scenario& of, const SystemWrapper& wrap) {
+  EXPECT_EQ(checks_with([&](const CheckedScenario& of, const SystemWrapper& wrap) {
               const bool stands_there = of.loading.walls.front().normal[1] == 0.0;
               return stands_there && is_first(of, "w0") ? stopped(run_scenario(of, wrap)) : run_scenario(of, wrap);
             }),
             (std::set<std::string>{"order", "turned"}));
   // One that depends on the order of the walls.
-  EXPECT_EQ(checks_with([&](const Scenario& of, const SystemWrapper& wrap) {
+  EXPECT_EQ(checks_with([&](const CheckedScenario& of, const SystemWrapper& wrap) {
               return is_first(of, "w4") ? stopped(run_scenario(of, wrap)) : run_scenario(of, wrap);
             }),
             (std::set<std::string>{"order"}));
   // One that depends on the size of the particle.
-  EXPECT_EQ(checks_with([&](const Scenario& of, const SystemWrapper& wrap) {
+  EXPECT_EQ(checks_with([&](const CheckedScenario& of, const SystemWrapper& wrap) {
               return of.radius > 1.0 ? stopped(run_scenario(of, wrap)) : run_scenario(of, wrap);
             }),
             (std::set<std::string>{"scale"}));
   // One of an integrated form.
-  EXPECT_EQ(checks_with([&](const Scenario& of, const SystemWrapper& wrap) {
+  EXPECT_EQ(checks_with([&](const CheckedScenario& of, const SystemWrapper& wrap) {
               return of.numerics.integrator == "ida" ? stopped(run_scenario(of, wrap)) : run_scenario(of, wrap);
             }),
             (std::set<std::string>{"form"}));
@@ -267,7 +267,7 @@ TEST_F(CopiesOfAScene, BreakARuleWhereAStopComesAtAnotherTime) {
       parse_scenario(k_cell, "cell.toml", {"loading.wall[3].steps[0].displacement=0.02", "loading.centre=fixed"});
   ASSERT_EQ(run_scenario(scenario_).record.status, RunStatus::stopped);
   EXPECT_TRUE(check_scene(scenario_).violations.empty()) << check_scene(scenario_).violations.front().detail;
-  const auto earlier = [](const Scenario& of, const SystemWrapper& wrap) {
+  const auto earlier = [](const CheckedScenario& of, const SystemWrapper& wrap) {
     monograin::Run run = run_scenario(of, wrap);
     if (of.loading.walls.front().name != "w4") return run;
     Table shorter(run.record.history.columns());
@@ -347,7 +347,7 @@ TEST_F(StressScenes, ShrinkToWhatIsFaulty) {
 }
 
 TEST_F(StressScenes, ThatTakeTooLongBreakARule) {
-  const Scenario scenario = parse_stress_text(scenario_text(draw_stress_scene(33, 0, tables())), tables());
+  const CheckedScenario scenario = parse_stress_text(scenario_text(draw_stress_scene(33, 0, tables())), tables());
   EXPECT_TRUE(check_scene(scenario).violations.empty());
   const StressVerdict verdict = check_scene(scenario, {.seconds = 0.0});
   ASSERT_EQ(verdict.violations.size(), 1U);

@@ -159,7 +159,7 @@ bool is_below_resolution(const Run& run) {
 
 class SceneCheck {
  public:
-  SceneCheck(const Scenario& scenario, const StressEffort& effort)
+  SceneCheck(const CheckedScenario& scenario, const StressEffort& effort)
       : scenario_(scenario), effort_(effort), end_(thread_seconds() + effort.seconds) {}
 
   StressVerdict verdict() {
@@ -258,7 +258,7 @@ class SceneCheck {
   }
 
   void check_order(const Run& run) {
-    const std::optional<Scenario> copy = reordered(scenario_);
+    const std::optional<CheckedScenario> copy = reordered(scenario_);
     const std::optional<Run> other = copy ? try_run(*copy, "reordered") : std::nullopt;
     if (other) compare("order", by_wall(run), by_wall(*other), {.is_same_form = true, .copies = turned_copies(0)});
   }
@@ -266,7 +266,7 @@ class SceneCheck {
   /// The run of a turned copy, turned back; nothing where there is none.
   std::optional<Run> turned_back(std::uint64_t sample) {
     const Eigen::Matrix3d rotation = stress_rotation(sample);
-    const std::optional<Scenario> copy = turned(scenario_, rotation);
+    const std::optional<CheckedScenario> copy = turned(scenario_, rotation);
     const std::optional<Run> run = copy ? try_run(*copy, "turned") : std::nullopt;
     return run ? std::optional(by_wall(*run, rotation)) : std::nullopt;
   }
@@ -290,7 +290,7 @@ class SceneCheck {
 
   /// The direct form against an integrated one, an explicit form against the implicit one.
   void check_form(const Run& run, const char* integrator) {
-    Scenario other = with_integrator(scenario_, integrator);
+    CheckedScenario other = with_integrator(scenario_, integrator);
     if (run.integrator.is_direct()) {
       other.numerics.rtol = k_form_rtol;
       other.numerics.atol = 1e-4 * k_form_rtol;
@@ -313,14 +313,14 @@ class SceneCheck {
 
   [[nodiscard]] double seconds_of_run() const { return thread_seconds() - run_begin_; }
 
-  [[nodiscard]] Run run_limited(const Scenario& scenario, const SystemWrapper& wrap = {}) {
+  [[nodiscard]] Run run_limited(const CheckedScenario& scenario, const SystemWrapper& wrap = {}) {
     run_begin_ = thread_seconds();
     return effort_.make_run(scenario, [&](std::unique_ptr<HybridSystem> system) {
       return limited(wrap ? wrap(std::move(system)) : std::move(system), end_);
     });
   }
 
-  std::optional<Run> try_run(const Scenario& scenario, std::string_view what) {
+  std::optional<Run> try_run(const CheckedScenario& scenario, std::string_view what) {
     ++verdict_.runs;
     try {
       return run_limited(scenario);
@@ -333,7 +333,7 @@ class SceneCheck {
   }
 
   /// Reference runs of a scene with data changed by up to that share.
-  std::vector<Run> runs_beside(const Scenario& scenario, double share) {
+  std::vector<Run> runs_beside(const CheckedScenario& scenario, double share) {
     std::vector<Run> runs;
     for (std::uint64_t sample = 0; sample < k_samples; ++sample) {
       ++verdict_.runs;
@@ -499,7 +499,7 @@ class SceneCheck {
   /// A program that stops in the middle of a step and goes on ends where it would have ended.
   void check_restart(const Run& run) {
     std::size_t cut = 0;
-    const std::optional<Scenario> halves = halved(scenario_, cut);
+    const std::optional<CheckedScenario> halves = halved(scenario_, cut);
     if (!halves || run.record.status != RunStatus::complete) return;
     const std::optional<Run> other = try_run(*halves, "cut in two");
     if (!other || has_given_up(*other)) return;
@@ -521,7 +521,7 @@ class SceneCheck {
 
   /// An elastic law goes back the way it came.
   void check_retrace(const Run& of_scene) {
-    const std::optional<Scenario> there = forth_and_back(scenario_);
+    const std::optional<CheckedScenario> there = forth_and_back(scenario_);
     if (!there || !(is_elastic(scenario_) || stays_elastic(of_scene))) return;
     const std::optional<Run> run = try_run(*there, "forth and back");
     if (!run || run->record.status != RunStatus::complete || is_below_resolution(*run)) return;
@@ -556,7 +556,7 @@ class SceneCheck {
                                   apart.column, apart.value, tolerance_, widest, apart.time));
   }
 
-  const Scenario& scenario_;
+  const CheckedScenario& scenario_;
   StressEffort effort_;
   double end_;
   double run_begin_ = thread_seconds();  ///< of the last run
@@ -573,17 +573,17 @@ class SceneCheck {
 
 }  // namespace
 
-double most_seconds_of(const Scenario& scenario) {
+double most_seconds_of(const CheckedScenario& scenario) {
   constexpr double k_of_scene = 30.0;
   constexpr double k_of_step = 1.0;
   return std::max(k_of_scene, k_of_step * static_cast<double>(step_count(scenario)));
 }
 
-StressVerdict check_scene(const Scenario& scenario, const StressEffort& effort) {
+StressVerdict check_scene(const CheckedScenario& scenario, const StressEffort& effort) {
   return SceneCheck(scenario, effort).verdict();
 }
 
-StressVerdict check_scene(const Scenario& scenario) {
+StressVerdict check_scene(const CheckedScenario& scenario) {
   return check_scene(scenario, {.seconds = most_seconds_of(scenario)});
 }
 

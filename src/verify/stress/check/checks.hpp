@@ -14,12 +14,12 @@ namespace monograin {
 
 /// What all runs of a scene may take a processor together [s]; usual are a few hundredths. A method of low order at a
 /// fine tolerance takes its time for every step of a long program.
-[[nodiscard]] double most_seconds_of(const Scenario& scenario);
+[[nodiscard]] double most_seconds_of(const CheckedScenario& scenario);
 /// The rule of that.
 inline constexpr const char* k_time_rule = "time";
 
 /// From a scenario to its run, with something around its system: run_scenario.
-using RunMaker = std::function<Run(const Scenario&, const SystemWrapper&)>;
+using RunMaker = std::function<Run(const CheckedScenario&, const SystemWrapper&)>;
 
 /// How much is done to check a scene, and by what.
 struct StressEffort {
@@ -54,8 +54,8 @@ struct StressVerdict {
 /// decides; what such a scene does with data changed by rtol (by rounding, where two runs of the same form are
 /// compared) is measured, and allowed.
 ///
-[[nodiscard]] StressVerdict check_scene(const Scenario& scenario, const StressEffort& effort);
+[[nodiscard]] StressVerdict check_scene(const CheckedScenario& scenario, const StressEffort& effort);
 /// With all copies, and as long as `most_seconds_of` says.
-[[nodiscard]] StressVerdict check_scene(const Scenario& scenario);
+[[nodiscard]] StressVerdict check_scene(const CheckedScenario& scenario);
 
 }  // namespace monograin

@@ -52,7 +52,7 @@ constexpr double k_touch = 1e-9;
 // What laws leave of forces that balance, over these: walls that align but for more than that balance no others.
 constexpr double k_left_over = 1e-9;
 
-double material(const Scenario& scenario, const char* key) {
+double material(const CheckedScenario& scenario, const char* key) {
   const auto found = scenario.material.find(key);
   return found == scenario.material.end() ? 0.0 : found->second;
 }
@@ -163,7 +163,7 @@ std::optional<double> prescribed_force(const Channel& channel, std::size_t step)
 
 /// The column that shows what a channel of the program prescribes; none where it need not come to that: contacts of a
 /// free centre move with it, and no wall pulls one that does not adhere, or may have snapped off.
-std::optional<std::string> column_of(const Scenario& scenario, const Scene& scene, const Channel& channel,
+std::optional<std::string> column_of(const CheckedScenario& scenario, const Scene& scene, const Channel& channel,
                                      const Step& step) {
   const auto control = control_of(step.kind);
   if (!control) return std::nullopt;
@@ -215,7 +215,7 @@ void check_program(const Run& run, Violations& found) {
 }
 
 /// How deep a program presses at most, as far as contacts are not as wide as the particle.
-double deepest_asked_for(const Scenario& scenario, const Scene& scene) {
+double deepest_asked_for(const CheckedScenario& scenario, const Scene& scene) {
   const Model& model = *find_model(scenario.model);
   const ModelInput input = model_input(scenario);
   double deepest = 0.0;
@@ -392,7 +392,7 @@ void check_work(const Run& run, Violations& found) {
 
 }  // namespace
 
-double softest(const Scenario& scenario) {
+double softest(const CheckedScenario& scenario) {
   double least = std::numeric_limits<double>::infinity();
   for (const QuantityKey& key : find_model(scenario.model)->material) {
     const auto found = scenario.material.find(std::string(key.name));
@@ -403,7 +403,7 @@ double softest(const Scenario& scenario) {
   return least;
 }
 
-bool is_elastic(const Scenario& scenario) {
+bool is_elastic(const CheckedScenario& scenario) {
   const auto is_elastic = find_model(scenario.model)->is_elastic;
   return is_elastic != nullptr && is_elastic(model_input(scenario));
 }
@@ -418,7 +418,7 @@ bool stays_elastic(const Run& run) {
   return true;
 }
 
-std::size_t step_count(const Scenario& scenario) {
+std::size_t step_count(const CheckedScenario& scenario) {
   std::size_t count = scenario.loading.steps.size();
   for (const WallSpec& wall : scenario.loading.walls) count = std::max(count, wall.steps.size());
   return count;

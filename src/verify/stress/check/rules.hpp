@@ -30,7 +30,7 @@ inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::
 [[nodiscard]] std::string stated_end(const Run& run);
 
 /// Steps of the longest program, cycles written out.
-[[nodiscard]] std::size_t step_count(const Scenario& scenario);
+[[nodiscard]] std::size_t step_count(const CheckedScenario& scenario);
 
 /// What the work of a run of the direct form may be wrong by, over the largest energy; 0 for other runs.
 [[nodiscard]] double direct_work_tolerance(const Run& run);
@@ -43,10 +43,10 @@ inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::
 [[nodiscard]] double own_absolute_tolerance(const Run& run);
 
 /// The softest of a material's moduli and strengths.
-[[nodiscard]] double softest(const Scenario& scenario);
+[[nodiscard]] double softest(const CheckedScenario& scenario);
 
 /// Whether the law of a scenario goes back the way it came.
-[[nodiscard]] bool is_elastic(const Scenario& scenario);
+[[nodiscard]] bool is_elastic(const CheckedScenario& scenario);
 
 /// Whether a run of a model without walls has not yielded.
 [[nodiscard]] bool stays_elastic(const Run& run);

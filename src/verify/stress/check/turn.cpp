@@ -20,11 +20,11 @@
 namespace monograin {
 namespace {
 
-bool takes_free_walls(const Scenario& scenario) {
+bool takes_free_walls(const CheckedScenario& scenario) {
   return std::ranges::count(find_model(scenario.model)->configurations, std::string_view("walls")) > 0;
 }
 
-std::vector<WallSpec> specs_of(const Scenario& scenario) {
+std::vector<WallSpec> specs_of(const CheckedScenario& scenario) {
   std::vector<WallSpec> specs;
   for (const Wall& wall : make_walls(scenario)) {
     specs.push_back({.name = wall.name,
@@ -125,7 +125,7 @@ Eigen::Matrix3d stress_rotation(std::uint64_t sample) {
   return Eigen::AngleAxisd(dice.uniform(0.4, 1.1), axis.normalized()).toRotationMatrix();
 }
 
-std::optional<Scenario> turned(Scenario scenario, const Eigen::Matrix3d& rotation) {
+std::optional<CheckedScenario> turned(CheckedScenario scenario, const Eigen::Matrix3d& rotation) {
   if (!find_model(scenario.model)->has_walls() || !takes_free_walls(scenario)) return {};
   scenario.loading.walls = specs_of(scenario);
   scenario.loading.configuration = Loading::Configuration::walls;
@@ -136,7 +136,7 @@ std::optional<Scenario> turned(Scenario scenario, const Eigen::Matrix3d& rotatio
   return scenario;
 }
 
-std::optional<Scenario> reordered(Scenario scenario) {
+std::optional<CheckedScenario> reordered(CheckedScenario scenario) {
   if (scenario.loading.walls.size() < 2) return {};
   std::ranges::reverse(scenario.loading.walls);
   return scenario;

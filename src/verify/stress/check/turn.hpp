@@ -16,10 +16,10 @@ namespace monograin {
 
 /// The scene with all its walls turned; a preset becomes the free wall set that it is short for. Nothing where the
 /// model takes no free walls.
-[[nodiscard]] std::optional<Scenario> turned(Scenario scenario, const Eigen::Matrix3d& rotation);
+[[nodiscard]] std::optional<CheckedScenario> turned(CheckedScenario scenario, const Eigen::Matrix3d& rotation);
 
 /// The scene with its free walls in the opposite order; nothing where there is no order.
-[[nodiscard]] std::optional<Scenario> reordered(Scenario scenario);
+[[nodiscard]] std::optional<CheckedScenario> reordered(CheckedScenario scenario);
 
 /// The run with the columns and events of every wall by itself, in an order that does not depend on how walls were
 /// grouped into classes or turned. Events of two classes name both groups of walls.

@@ -23,7 +23,7 @@ namespace {
 constexpr std::uint64_t k_of_steps = 1000;  // from where seeds of steps begin
 constexpr double k_reference_rtol = 1e-11;
 
-void for_each_program(Scenario& scenario, const std::function<void(std::vector<Step>&, double gap)>& change) {
+void for_each_program(CheckedScenario& scenario, const std::function<void(std::vector<Step>&, double gap)>& change) {
   change(scenario.loading.steps, 0.0);
   for (WallSpec& wall : scenario.loading.walls) change(wall.steps, wall.gap);
 }
@@ -70,7 +70,7 @@ double factor_of(Dimension dimension, const Magnification& by) {
 }
 
 /// Whether walls that start at different places share one program: what starts it is then no property of the program.
-bool starts_anywhere(const Scenario& scenario) {
+bool starts_anywhere(const CheckedScenario& scenario) {
   return std::ranges::any_of(scenario.loading.walls, [](const WallSpec& wall) {
     return wall.steps.empty() && !wall.is_fixed && wall.gap > 0.0;
   });
@@ -90,7 +90,7 @@ struct Start {
 };
 
 /// Whether a condition or a withdrawal may end a step of the program: for all walls, whichever has it.
-bool may_end_early(const Scenario& scenario, std::size_t index) {
+bool may_end_early(const CheckedScenario& scenario, std::size_t index) {
   const auto ends = [index](const std::vector<Step>& steps) {
     return index < steps.size() && (!steps[index].until.empty() || steps[index].kind == Step::Kind::detach);
   };
@@ -98,7 +98,8 @@ bool may_end_early(const Scenario& scenario, std::size_t index) {
          std::ranges::any_of(scenario.loading.walls, [&](const WallSpec& wall) { return ends(wall.steps); });
 }
 
-Start start_of(const Scenario& scenario, const std::vector<Step>& steps, std::size_t index, const Start& at_rest) {
+Start start_of(const CheckedScenario& scenario, const std::vector<Step>& steps, std::size_t index,
+               const Start& at_rest) {
   Start start = at_rest;
   for (std::size_t i = 0; i < index; ++i) {
     const Step& step = steps[i];
@@ -114,7 +115,7 @@ Start start_of(const Scenario& scenario, const std::vector<Step>& steps, std::si
 }
 
 /// At the start a wall stands at its gap, and a model without walls where it says.
-Start rest_of(const Scenario& scenario, const Step& first, double gap) {
+Start rest_of(const CheckedScenario& scenario, const Step& first, double gap) {
   const Model& model = *find_model(scenario.model);
   if (model.has_walls()) return {.first = Target{Step::Kind::displacement, -gap}, .lateral = {}};
   const auto known = [](const RestingChannel& rest, Step::Kind kind) -> std::optional<Target> {
@@ -137,7 +138,7 @@ bool halve(const std::optional<Target>& start, Step::Kind kind, double& target) 
 }
 
 /// The first half of a step; nothing where it cannot be cut.
-std::optional<Step> first_half(const Scenario& scenario, const std::vector<Step>& steps, std::size_t index,
+std::optional<Step> first_half(const CheckedScenario& scenario, const std::vector<Step>& steps, std::size_t index,
                                double gap) {
   Step half = steps[index];
   if (!half.until.empty() || half.kind == Step::Kind::detach) return {};
@@ -174,12 +175,12 @@ void change(Until& until, double share, double radius) {
 
 }  // namespace
 
-Scenario with_integrator(Scenario scenario, std::string integrator) {
+CheckedScenario with_integrator(CheckedScenario scenario, std::string integrator) {
   scenario.numerics.integrator = std::move(integrator);
   return scenario;
 }
 
-Scenario as_reference(Scenario scenario) {
+CheckedScenario as_reference(CheckedScenario scenario) {
   const bool is_solvable = make_scene(scenario).system->is_solvable();
   scenario.numerics = {.integrator = is_solvable ? integrators::k_direct : integrators::k_cvode_bdf,
                        .rtol = k_reference_rtol,
@@ -187,7 +188,7 @@ Scenario as_reference(Scenario scenario) {
   return scenario;
 }
 
-Scenario slower(Scenario scenario, double factor) {
+CheckedScenario slower(CheckedScenario scenario, double factor) {
   for_each_program(scenario, [&](std::vector<Step>& steps, double) {
     for (Step& step : steps) {
       if (step.duration) *step.duration *= factor;
@@ -197,7 +198,7 @@ Scenario slower(Scenario scenario, double factor) {
   return scenario;
 }
 
-Scenario magnified(Scenario scenario, const Magnification& by) {
+CheckedScenario magnified(CheckedScenario scenario, const Magnification& by) {
   scenario.radius *= by.length;
   for (const QuantityKey& key : find_model(scenario.model)->material) {
     const auto found = scenario.material.find(std::string(key.name));
@@ -215,11 +216,11 @@ Scenario magnified(Scenario scenario, const Magnification& by) {
   return scenario;
 }
 
-std::optional<Scenario> halved(Scenario scenario, std::size_t& cut) {
+std::optional<CheckedScenario> halved(CheckedScenario scenario, std::size_t& cut) {
   if (starts_anywhere(scenario)) return {};
   for (cut = step_count(scenario); cut-- > 0;) {
     bool is_possible = true;
-    Scenario halves = scenario;
+    CheckedScenario halves = scenario;
     for_each_program(halves, [&](std::vector<Step>& steps, double gap) {
       if (cut >= steps.size()) return;
       const std::optional<Step> half = first_half(scenario, steps, cut, gap);
@@ -233,9 +234,9 @@ std::optional<Scenario> halved(Scenario scenario, std::size_t& cut) {
   return {};
 }
 
-std::optional<Scenario> forth_and_back(Scenario scenario) {
+std::optional<CheckedScenario> forth_and_back(CheckedScenario scenario) {
   bool is_possible = !starts_anywhere(scenario) && scenario.output.points > 0;
-  const Scenario given = scenario;
+  const CheckedScenario given = scenario;
   for_each_program(scenario, [&](std::vector<Step>& steps, double gap) {
     if (steps.empty()) return;
     const Step& first = steps.front();
@@ -254,7 +255,7 @@ std::optional<Scenario> forth_and_back(Scenario scenario) {
   return is_possible ? std::optional(scenario) : std::nullopt;
 }
 
-Scenario changed(Scenario scenario, double share, std::uint64_t sample) {
+CheckedScenario changed(CheckedScenario scenario, double share, std::uint64_t sample) {
   // In pairs to both sides: one side alone may be the harmless one.
   const std::uint64_t pair = sample / 2;
   const double side = sample % 2 == 0 ? share : -share;

@@ -144,7 +144,7 @@ void write_stress_tables(const fs::path& folder) {
   }
 }
 
-Scenario parse_stress_text(std::string_view text, const fs::path& tables) {
+CheckedScenario parse_stress_text(std::string_view text, const fs::path& tables) {
   return parse_scenario(text, (tables / "scene.toml").string());
 }
 

@@ -70,6 +70,6 @@ void write_stress_tables(const std::filesystem::path& folder);
 
 /// The checked scenario of a text, whose tables lie in a folder.
 /// @throws ScenarioError where the text is none
-[[nodiscard]] Scenario parse_stress_text(std::string_view text, const std::filesystem::path& tables);
+[[nodiscard]] CheckedScenario parse_stress_text(std::string_view text, const std::filesystem::path& tables);
 
 }  // namespace monograin

@@ -1,0 +1,97 @@
+#include "monograin/history.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include "history/compare.hpp"
+#include "history/table.hpp"
+#include "monograin/comparison.hpp"
+#include "scenario/words.hpp"
+
+namespace monograin {
+namespace {
+
+/// @throws std::invalid_argument where the columns differ in length
+Table table_of(const std::vector<History::Column>& columns) {
+  std::vector<Column> headings;
+  for (const History::Column& column : columns) {
+    if (column.values.size() != columns.front().values.size()) {
+      throw std::invalid_argument(fmt::format("column '{}' has {} rows and column '{}' {}; expected as many in each",
+                                              columns.front().name, columns.front().values.size(), column.name,
+                                              column.values.size()));
+    }
+    headings.push_back({column.name, column.unit, column.labels});
+  }
+  Table table(std::move(headings));
+  std::vector<double> row(columns.size());
+  for (std::size_t i = 0; !columns.empty() && i < columns.front().values.size(); ++i) {
+    for (std::size_t k = 0; k < row.size(); ++k) row[k] = columns[k].values[i];
+    table.append(row);
+  }
+  return table;
+}
+
+}  // namespace
+
+/// The rows, and those columns that somebody has asked for.
+struct History::Content {
+  explicit Content(std::shared_ptr<const Table> rows) : table(std::move(rows)), columns(table->columns().size()) {}
+
+  [[nodiscard]] const Column& column(std::size_t k) {
+    const std::lock_guard lock(mutex);
+    if (!columns[k]) {
+      const auto& [name, unit, labels] = table->columns()[k];
+      columns[k] = std::make_unique<const Column>(Column{name, unit, labels, table->column(name)});
+    }
+    return *columns[k];
+  }
+
+  std::shared_ptr<const Table> table;
+  std::vector<std::unique_ptr<const Column>> columns;
+  std::mutex mutex;
+};
+
+History::History() : History(std::vector<Column>{}) {}
+History::History(std::vector<Column> columns) : History(std::make_shared<const Table>(table_of(columns))) {}
+History::History(std::shared_ptr<const Table> table) : content_(std::make_shared<Content>(std::move(table))) {}
+
+std::size_t History::row_count() const noexcept { return table().row_count(); }
+
+std::vector<std::string_view> History::names() const {
+  std::vector<std::string_view> names;
+  for (const auto& column : table().columns()) names.push_back(column.name);
+  return names;
+}
+
+bool History::contains(std::string_view name) const noexcept { return table().find(name).has_value(); }
+
+const History::Column& History::column(std::string_view name) const {
+  if (const auto found = table().find(name)) return content_->column(*found);
+  const std::vector<std::string_view> candidates = names();
+  const std::string meant = did_you_mean(name, candidates);
+  throw std::out_of_range(fmt::format("there is no column '{}'{}", shown(name),
+                                      meant.empty() ? "; expected one of: " + listed(candidates) : meant));
+}
+
+std::vector<std::string_view> History::words(std::string_view name) const {
+  const Column& found = column(name);
+  if (found.labels.empty()) {
+    throw std::out_of_range(
+        fmt::format("column '{}' holds numbers; expected one of words, such as a regime", found.name));
+  }
+  std::vector<std::string_view> words;
+  for (const double value : found.values) words.push_back(found.labels.at(static_cast<std::size_t>(value)));
+  return words;
+}
+
+const Table& History::table() const noexcept { return *content_->table; }
+
+Comparison compare(const History& reference, const History& other, const std::string& x, const std::string& y) {
+  return compare_tables(reference.table(), other.table(), x, y);
+}
+
+}  // namespace monograin

@@ -1,0 +1,38 @@
+#include "monograin/run.hpp"
+
+#include "api/checked.hpp"
+#include "history/run.hpp"
+#include "history/run_files.hpp"
+
+namespace monograin {
+namespace {
+
+History part_of(const std::shared_ptr<const Run>& run, const Table& table) {
+  return History(std::shared_ptr<const Table>(run, &table));
+}
+
+}  // namespace
+
+RunResult::RunResult(std::shared_ptr<const Run> run)
+    : status(run->record.status),
+      message(run->record.message),
+      limit(run->record.limit ? code(*run->record.limit) : ""),
+      warnings(run->record.warnings),
+      integrator(run->integrator.used),
+      history(part_of(run, run->record.history)),
+      events(part_of(run, run->record.events)),
+      run_(std::move(run)) {}
+
+std::string RunResult::json() const { return run_json(*run_); }
+
+void RunResult::save(const std::filesystem::path& folder) const {
+  StagedFolder staged(folder);
+  Run run = *run_;  // it notes how long the writing takes
+  write_run(run, staged);
+}
+
+RunResult run(const Scenario& scenario) {
+  return RunResult(std::make_shared<const Run>(run_scenario(checked(scenario))));
+}
+
+}  // namespace monograin

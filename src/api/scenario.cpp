@@ -1,0 +1,73 @@
+#include "monograin/scenario.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "api/checked.hpp"
+#include "scenario/document.hpp"
+#include "scenario/faults.hpp"
+#include "scenario/overrides.hpp"
+#include "scenario/text_file.hpp"
+#include "scene/scene.hpp"
+
+namespace monograin {
+
+CheckedScenario checked(const Scenario& scenario) {
+  return parse_scenario(scenario.text(), scenario.origin(), scenario.overrides());
+}
+
+Scenario Scenario::parse(std::string text, std::string origin) {
+  Scenario scenario;
+  scenario.text_ = std::move(text);
+  scenario.origin_ = std::move(origin);
+  return scenario;
+}
+
+Scenario& Scenario::set_value(std::string_view key, std::string_view value) {
+  overrides_.push_back(fmt::format("{}={}", key, value));
+  return *this;
+}
+
+// The shortest text that reads back as the same number; one without a fraction is an integer, which all numbers take.
+Scenario& Scenario::set(std::string_view key, double value) { return set_value(key, fmt::format("{}", value)); }
+Scenario& Scenario::set(std::string_view key, int value) { return set_value(key, fmt::format("{}", value)); }
+Scenario& Scenario::set(std::string_view key, bool value) { return set_value(key, value ? "true" : "false"); }
+Scenario& Scenario::set(std::string_view key, std::string_view text) { return set_value(key, in_quotes(text)); }
+
+Scenario& Scenario::set(std::string_view key, std::span<const double> values) {
+  std::vector<std::string> texts;
+  for (const double value : values) texts.push_back(fmt::format("{}", value));
+  return set_value(key, fmt::format("[{}]", fmt::join(texts, ", ")));
+}
+
+Scenario& Scenario::set(std::string_view key, std::span<const std::string> texts) {
+  std::vector<std::string> quoted;
+  for (const std::string& text : texts) quoted.push_back(in_quotes(text));
+  return set_value(key, fmt::format("[{}]", fmt::join(quoted, ", ")));
+}
+
+std::vector<Fault> Scenario::validate() const {
+  try {
+    // Walls and their programs are checked where the scene is made.
+    static_cast<void>(make_scene(checked(*this)));
+    return {};
+  } catch (const ScenarioError& error) {
+    return error.faults();
+  }
+}
+
+std::vector<Parameter> Scenario::parameters() const {
+  std::vector<Parameter> parameters;
+  for (const DerivedParameter& parameter : derived_parameters(checked(*this))) {
+    parameters.push_back({std::string(parameter.name), parameter.value, std::string(parameter.unit)});
+  }
+  return parameters;
+}
+
+Scenario read_scenario(const std::filesystem::path& file) {
+  auto [text, problem] = read_text_file(file, k_largest_text, FileKind::any);
+  if (!problem.empty()) throw_fault({file.string()}, problem + "; expected a scenario file");
+  return Scenario::parse(std::move(text), name_of_file(file).string());
+}
+
+}  // namespace monograin

@@ -1,0 +1,121 @@
+// Runs, their curves and files, and models, as others use them.
+
+#include "monograin/monograin.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <span>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "api/ready.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+TEST(RunResult, HasTheCurvesOfTheStoredDie) {
+  const RunResult result = run(ready_scenario("die.toml"));
+  EXPECT_EQ(result.status, RunStatus::complete);
+  EXPECT_EQ(result.message, "");
+  EXPECT_EQ(result.limit, "");
+  EXPECT_EQ(result.integrator, "direct");
+  EXPECT_EQ(result.history["axial.force"].size(), result.history.row_count());
+  EXPECT_EQ(result.history.column("axial.force[N]").unit, "N");
+  EXPECT_EQ(result.history.words("axial.regime").front(), "elastic");
+  EXPECT_EQ(result.events.words("event").back(), "step-end");
+}
+
+TEST(RunResult, NamesTheLimitThatStoppedIt) {
+  Scenario scenario = ready_scenario("hertz.toml");
+  scenario.set("loading.steps[0].displacement", "1.5 R0");
+  const RunResult result = run(scenario);
+  EXPECT_EQ(result.status, RunStatus::stopped);
+  EXPECT_NE(result.limit, "");
+  EXPECT_NE(result.message, "");
+  EXPECT_GT(result.history.row_count(), 0U) << "curves up to there are kept";
+}
+
+TEST(RunResult, OutlivesItsScenarioAndSharesItsColumns) {
+  std::span<const double> force;
+  History history;
+  {
+    const RunResult result = run(ready_scenario("hertz.toml"));
+    history = result.history;
+    force = result.history["axial.force"];
+  }
+  EXPECT_EQ(force.data(), history["axial.force"].data());
+  EXPECT_GT(*std::ranges::max_element(force), 0.0);
+}
+
+TEST(RunResult, SavesWhatTheProgramLeaves) {
+  const fs::path folder = fs::temp_directory_path() / "monograin_api_run";
+  fs::remove_all(folder);
+  const RunResult result = run(ready_scenario("hertz.toml"));
+  result.save(folder);
+  for (const char* name : {"history.csv", "events.csv", "run.json"}) EXPECT_TRUE(fs::exists(folder / name)) << name;
+  EXPECT_NE(result.json().find("\"status\": \"complete\""), std::string::npos);
+  EXPECT_NE(text_of(folder / "history.csv").find("axial.force[N]"), std::string::npos);
+  fs::remove_all(folder);
+}
+
+TEST(History, SuggestsTheColumnThatWasMeant) {
+  const RunResult result = run(ready_scenario("hertz.toml"));
+  try {
+    static_cast<void>(result.history["axial.forse"]);
+    FAIL() << "nothing was thrown";
+  } catch (const std::out_of_range& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean 'axial.force'?"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(static_cast<void>(result.history.words("axial.force")), std::out_of_range);
+}
+
+TEST(History, OfMeasuredCurvesComparesWithARun) {
+  const RunResult result = run(ready_scenario("hertz.toml"));
+  const auto displacement = result.history["axial.displacement"];
+  std::vector<double> force(result.history["axial.force"].begin(), result.history["axial.force"].end());
+  for (double& value : force) value *= 1.01;
+  const History measured(
+      {{"axial.displacement", "m", {}, {displacement.begin(), displacement.end()}}, {"axial.force", "N", {}, force}});
+  const Comparison comparison = compare(measured, result.history, "axial.displacement", "axial.force");
+  ASSERT_EQ(comparison.curves.size(), 1U);
+  EXPECT_NEAR(comparison.curves.front().linf, 0.01 / 1.01, 1e-12);
+}
+
+TEST(History, RefusesColumnsOfDifferentLengths) {
+  EXPECT_THROW(History({{"a", "m", {}, {1.0, 2.0}}, {"b", "m", {}, {1.0}}}), std::invalid_argument);
+}
+
+TEST(Models, HaveKeysWithUnitsAndMeaning) {
+  std::set<std::string> names;
+  for (const ModelInfo& model : models()) {
+    names.insert(model.name);
+    EXPECT_FALSE(model.source.empty()) << model.name;
+    EXPECT_FALSE(model.material.empty()) << model.name;
+    for (const KeyInfo& key : model.material) {
+      EXPECT_FALSE(key.meaning.empty()) << model.name << ' ' << key.name;
+      EXPECT_TRUE(!key.unit.empty() || !key.choices.empty()) << model.name << ' ' << key.name;
+    }
+  }
+  EXPECT_TRUE(names.contains("mdr"));
+  EXPECT_TRUE(names.contains("packing"));
+}
+
+TEST(Version, IsThatOfTheProject) { EXPECT_EQ(version(), MONOGRAIN_PROJECT_VERSION); }
+
+}  // namespace
+}  // namespace monograin

@@ -1,0 +1,138 @@
+// Scenarios that are set key by key.
+
+#include "monograin/scenario.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "monograin/run.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+Scenario pressed_sphere() {
+  Scenario scenario;
+  scenario.set("model", "hertz")
+      .set("particle.radius", 0.01)
+      .set("material.youngs_modulus", "1 GPa")
+      .set("material.poisson_ratio", 0.25)
+      .set("loading.configuration", "simple")
+      .set("loading.steps[0].displacement", "0.05 R0")
+      .set("loading.steps[0].duration", 1);
+  return scenario;
+}
+
+std::string faults_of(const Scenario& scenario) {
+  std::string text;
+  for (const Fault& fault : scenario.validate()) text += fault.message + '\n';
+  return text;
+}
+
+TEST(Scenario, ThatIsSetKeyByKeyRuns) {
+  const Scenario scenario = pressed_sphere();
+  EXPECT_EQ(faults_of(scenario), "");
+  const RunResult result = run(scenario);
+  EXPECT_EQ(result.status, RunStatus::complete);
+  // Hertz: F = 4/3 E/(1 - nu^2) sqrt(R) d^(3/2)
+  const double expected = 4.0 / 3.0 * 1e9 / (1.0 - 0.0625) * std::sqrt(0.01) * std::pow(0.0005, 1.5);
+  EXPECT_NEAR(result.history["axial.force"].back(), expected, 1e-12 * expected);
+}
+
+TEST(Scenario, WithoutKeysHasFaultsAndThrowsNothingElse) {
+  const Scenario scenario;
+  EXPECT_NE(faults_of(scenario).find("key 'model' is missing"), std::string::npos) << faults_of(scenario);
+  EXPECT_THROW(static_cast<void>(run(scenario)), ScenarioError);
+  EXPECT_THROW(static_cast<void>(scenario.parameters()), ScenarioError);
+}
+
+TEST(Scenario, GivesEveryFaultAtOnce) {
+  Scenario scenario = pressed_sphere();
+  scenario.set("material.poisson_ratio", 0.7).set("particle.radius", "10 MPa").set("material.colour", "red");
+  const std::string faults = faults_of(scenario);
+  for (const char* word : {"poisson_ratio", "radius", "colour"}) {
+    EXPECT_NE(faults.find(word), std::string::npos) << word << " is not in\n" << faults;
+  }
+}
+
+TEST(Scenario, TakesDefaultsForWhatIsNotSet) {
+  Scenario scenario = pressed_sphere();
+  const auto parameters = scenario.parameters();
+  const auto composite = std::ranges::find(parameters, "composite_modulus", &Parameter::name);
+  ASSERT_NE(composite, parameters.end());
+  EXPECT_DOUBLE_EQ(composite->value, 1e9 / (1.0 - 0.0625));
+  EXPECT_EQ(composite->unit, "Pa");
+  EXPECT_GT(run(scenario).history.row_count(), 200U) << "two hundred points a step";
+}
+
+TEST(Scenario, KeepsTheLastValueOfAKey) {
+  Scenario scenario = pressed_sphere();
+  const double stiff = run(scenario).history["axial.force"].back();
+  scenario.set("material.youngs_modulus", 3e9).set("material.youngs_modulus", 5e8);
+  EXPECT_NEAR(run(scenario).history["axial.force"].back(), 0.5 * stiff, 1e-9 * stiff);
+}
+
+TEST(Scenario, TakesListsSwitchesAndWords) {
+  Scenario scenario = pressed_sphere();
+  scenario.set("loading.configuration", "walls")
+      .set("loading.wall[0].name", "left")
+      .set("loading.wall[0].normal", {-1.0, 0.0, 0.0})
+      .set("loading.wall[1].name", "right")
+      .set("loading.wall[1].normal", std::array{1.0, 0.0, 0.0})
+      .set("loading.wall[1].fixed", true)
+      .set("output.times", std::vector{0.25, 0.5});
+  EXPECT_EQ(faults_of(scenario), "");
+  const RunResult result = run(scenario);
+  EXPECT_TRUE(result.history.contains("left.force"));
+}
+
+TEST(Scenario, CannotSkipAnEntryOfAnArray) {
+  Scenario scenario = pressed_sphere();
+  scenario.set("loading.steps[2].displacement", 0.0);
+  EXPECT_NE(faults_of(scenario).find("index [2] is out of range"), std::string::npos) << faults_of(scenario);
+}
+
+TEST(Scenario, EscapesTexts) {
+  Scenario scenario = pressed_sphere();
+  scenario.set("title", "a \"quoted\" title\nof two lines \\ and more");
+  EXPECT_EQ(faults_of(scenario), "");
+}
+
+TEST(Scenario, RefusesNumbersThatAreNone) {
+  for (const double number : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    Scenario scenario = pressed_sphere();
+    scenario.set("material.youngs_modulus", number);
+    EXPECT_NE(faults_of(scenario), "");
+  }
+}
+
+TEST(Scenario, OfAFileKnowsItsPlaces) {
+  const fs::path file = fs::temp_directory_path() / "monograin_api_scenario.toml";
+  std::ofstream(file) << "model = \"hertz\"\n[particle]\nradius = -1\n";
+  const auto faults = read_scenario(file).validate();
+  const auto radius = std::ranges::find_if(faults, [](const Fault& f) { return f.where.line == 3; });
+  ASSERT_NE(radius, faults.end());
+  EXPECT_EQ(radius->where.file, file.string());
+  fs::remove(file);
+}
+
+TEST(Scenario, OfAFileThatIsNotThereIsRefusedWithItsName) {
+  try {
+    static_cast<void>(read_scenario("no/such/file.toml"));
+    FAIL() << "nothing was thrown";
+  } catch (const ScenarioError& error) {
+    EXPECT_NE(std::string(error.what()).find("no/such/file.toml"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace monograin
