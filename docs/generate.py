@@ -441,8 +441,9 @@ def write_models(program, schema, ready):
         definition = schema["definitions"][name]
         properties = definition["properties"]
         page = f"# Model `{name}`\n\n{summary[0].upper()}{summary[1:]}.\n\n"
-        sources = [f"- {line}" for line in sections.get("reference", []) + sections.get("source", [])]
-        page += "Sources:\n\n" + "\n".join(sources) + "\n\n"
+        references = [f"- {line}" for line in sections.get("reference", [])]
+        page += "References:\n\n" + "\n".join(references) + "\n\n" if references else ""
+        page += f"Source: {sections['source'][0]}.\n\n" if "source" in sections else ""
         page += f"Equations, figures and limits of the law: {{doc}}`/theory/{name}`.\n\n"
         if "material" in properties:
             material = properties["material"]
