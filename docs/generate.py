@@ -448,8 +448,9 @@ def write_models(program, schema, ready):
         if "material" in properties:
             material = properties["material"]
             page += "## `[material]`\n\n"
-            page += key_table(material["properties"], material.get("required", []), ("preset",),
-                              words_of(sections["[material]"]))
+            # The schema leaves to the reader what is required without a preset.
+            required = [line.split()[0] for line in sections["[material]"] if line.endswith("; required")]
+            page += key_table(material["properties"], required, ("preset",), words_of(sections["[material]"]))
             listed = [line.strip() for line in sections["[material]"] if line.startswith(" " * 29)]
             if listed:
                 page += "\nA `preset` stands for all of these keys; keys beside it win.\n\n"
@@ -656,6 +657,13 @@ def draw_own_figure(program, scratch):
     shutil.copy(scratch / "paper" / "yield.svg", GENERATED / "figures" / "yield.svg")
 
 
+def draw_wedge(program, scratch):
+    """The figure of the scenario in "Set up your own walls"."""
+    write("wedge.toml", block_of("howto/own-walls.md", "wedge.toml"), scratch)
+    run(program, "run", scratch / "wedge.toml", "--plot", "--quiet", "-o", scratch / "wedge")
+    shutil.copy(scratch / "wedge" / "figure.svg", GENERATED / "figures" / "wedge.svg")
+
+
 def draw_calibration(program, scratch):
     run(program, "calibrate", ROOT / "scenarios" / "calibrate" / "uniaxial.toml", "-o", scratch / "calibration")
     shutil.copy(scratch / "calibration" / "figure.svg", GENERATED / "figures" / "calibration.svg")
@@ -803,6 +811,7 @@ def main():
         draw_calibration(program, pathlib.Path(scratch))
         draw_comparison(program, pathlib.Path(scratch))
         draw_own_figure(program, pathlib.Path(scratch))
+        draw_wedge(program, pathlib.Path(scratch))
     models = write_models(program, schema, ready)
     write_language(schema)
     write_measurements()
