@@ -65,7 +65,7 @@ ORDER = ("title", "model", "particle", "material", "loading", "output", "numeric
          "oblique_walls", "name", "normal", "gap", "fixed", "wall", "duration", "rate", "until", "steps", "integrator",
          "rtol", "atol")
 
-# What a column holds; of the columns of a contact class the name after the class.
+# Meaning of each column; a column of a contact class stands under the name after the class.
 COLUMNS = {
     "time": "time since the start of the program",
     "step": "number of the step of the program, from 1",
@@ -204,7 +204,7 @@ def range_of(schema):
 
 
 def accepts(schema):
-    """What a key takes, for the table."""
+    """Describes the values that a key takes."""
     if "allOf" in schema and len(schema["allOf"]) == 1:
         schema = schema["allOf"][0]
     if "$ref" in schema or schema.get("type") == "object":
@@ -544,7 +544,7 @@ def entries_of(text):
 
 
 def write_references(program, commands):
-    """What `monograin cite` prints, where this program has it, and after it what docs/references.bib has beside."""
+    """Writes the entries of `monograin cite`, where the program has it, and those that docs/references.bib adds."""
     by_hand = entries_of((DOCS / "references.bib").read_text(encoding="utf-8"))
     printed = entries_of(run(program, "cite")) if "cite" in commands else {}
     entries = {**printed, **{key: entry for key, entry in by_hand.items() if key not in printed}}

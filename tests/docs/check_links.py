@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 MOST_WORDS = 900
 TOP = ("bench", "cmake", "docs", "examples", "include", "models", "plots", "python", "scenarios", "src", "tests",
        "tools")
-# What docs/generate.py makes.
+# Folders that docs/generate.py makes.
 MADE = tuple(ROOT / "docs" / name for name in ("generated", "reference/models", "tables"))
 # Names that stand for others, and what a build or a run makes.
 NO_FILES = re.compile(r"NAME|FILE|SCENE|\*|<|\.\.\.|^docs/(generated|reference/models|tables)")
