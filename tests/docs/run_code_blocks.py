@@ -209,7 +209,12 @@ def main():
                 where = f"{block.page}:{block.line}"
                 is_known = block.language in RUN_LANGUAGES + MARKED_LANGUAGES
                 if is_known and block.mark.startswith("not run: "):
-                    not_run.append(f"{where}: {block.language}: {block.mark.removeprefix('not run: ')}")
+                    reason = block.mark.removeprefix("not run: ")
+                    not_run.append(f"{where}: {block.language}: {reason}")
+                    for path in re.findall(r"\b(?:tests|tools)/[\w./-]*\w", reason):
+                        if not (ROOT / path).exists():
+                            failed += 1
+                            print(f"{where}: there is no {path}, which is said to test it", file=sys.stderr)
                 elif block.language == "python" and not python_runs:
                     skipped += 1
                 elif block.language in RUN_LANGUAGES:
