@@ -27,7 +27,7 @@ NO_FILES = re.compile(r"NAME|FILE|SCENE|\*|<|\.\.\.|^docs/(generated|reference/m
 
 
 def pages():
-    found = [ROOT / name for name in ("README.md", "SECURITY.md", "CHANGELOG.md")]
+    found = sorted(ROOT.glob("*.md"))
     for folder in ("docs", "models", "src", "scenarios", "tests", "examples", "python"):
         found += sorted((ROOT / folder).rglob("*.md"))
     # Tables in plots/ are made by the program.
