@@ -29,8 +29,10 @@ class Scenario {
   Scenario() = default;
 
   /// The scenario of a text in TOML.
-  /// @param origin  stands for the file in messages and names the scenario; tables are sought from its folder
-  [[nodiscard]] static Scenario parse(std::string text, std::string origin = "scenario.toml");
+  /// @param origin     stands for the file in messages and names the scenario; tables are sought from its folder
+  /// @param overrides  what is set, as `key=value` with a value in TOML: see overrides()
+  [[nodiscard]] static Scenario parse(std::string text, std::string origin = "scenario.toml",
+                                      std::vector<std::string> overrides = {});
 
   /// Sets a key to a number in SI units, a text ("10 mm", "die"), a switch, or a list. The last value of a key counts.
   ///

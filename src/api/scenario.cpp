@@ -16,10 +16,11 @@ CheckedScenario checked(const Scenario& scenario) {
   return parse_scenario(scenario.text(), scenario.origin(), scenario.overrides());
 }
 
-Scenario Scenario::parse(std::string text, std::string origin) {
+Scenario Scenario::parse(std::string text, std::string origin, std::vector<std::string> overrides) {
   Scenario scenario;
   scenario.text_ = std::move(text);
   scenario.origin_ = std::move(origin);
+  scenario.overrides_ = std::move(overrides);
   return scenario;
 }
 

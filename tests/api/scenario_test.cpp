@@ -95,6 +95,14 @@ TEST(Scenario, TakesListsSwitchesAndWords) {
   EXPECT_TRUE(result.history.contains("left.force"));
 }
 
+TEST(Scenario, OfATextTakesWhatWasSetInAnother) {
+  const Scenario set = pressed_sphere();
+  const Scenario again = Scenario::parse(set.text(), set.origin(), set.overrides());
+  EXPECT_EQ(again.overrides(), set.overrides());
+  EXPECT_EQ(faults_of(again), "");
+  EXPECT_NE(faults_of(Scenario::parse(set.text(), set.origin(), {"model=hertz", "model"})), "");
+}
+
 TEST(Scenario, CannotSkipAnEntryOfAnArray) {
   Scenario scenario = pressed_sphere();
   scenario.set("loading.steps[2].displacement", 0.0);

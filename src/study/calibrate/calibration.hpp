@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "history/staged_folder.hpp"
+#include "history/table.hpp"
 #include "numerics/least_squares.hpp"
 #include "numerics/uncertainty.hpp"
 #include "scenario/numbers.hpp"
@@ -110,6 +111,12 @@ struct CalibrationResult {
 
 /// Parameters, intervals, correlations and residuals, for a reader.
 [[nodiscard]] std::string calibration_text(const Calibration& calibration, const CalibrationResult& result);
+
+/// Data, fit, residuals, confidence band and weights, row by row: what fit.csv holds.
+[[nodiscard]] Table fit_table(const Calibration& calibration, const CalibrationResult& result);
+
+/// Parameters, covariance, statistics and data: what calibration.json holds. Numbers that are undefined are null.
+[[nodiscard]] std::string calibration_json(const Calibration& calibration, const CalibrationResult& result);
 
 /// The file whose presence tells that a folder holds a calibration.
 inline constexpr const char* k_calibration_marker = "calibration.json";

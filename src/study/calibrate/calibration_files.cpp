@@ -137,42 +137,6 @@ void write_csv_file(const Table& table, const fs::path& file) {
   figure::write_whole(file, text.str());
 }
 
-Table fit_table(const Calibration& calibration, const CalibrationResult& result) {
-  const MeasuredQuantity& x = calibration.x;
-  const MeasuredQuantity& y = calibration.y;
-  const std::string inverse = "1/" + y.si;
-  std::vector<Column> columns{{x.observable, x.si, {}}, {y.observable, y.si, {}}, {"fit", y.si, {}},
-                              {"residual", y.si, {}},   {"band_lower", y.si, {}}, {"band_upper", y.si, {}},
-                              {"weight", inverse, {}}};
-  const bool has_several = calibration.curves.size() > 1;
-  if (has_several) columns.push_back({"curve", "", {}});
-  Table table(std::move(columns));
-  table.header = {{"program", fmt::format("monograin {}", version())},
-                  {"calibration", calibration.name},
-                  {"scenario", calibration.scenario.name},
-                  {"scenario_digest", scenario_digest(calibration.scenario)},
-                  {"model", calibration.scenario.model},
-                  {"data", calibration.curves.front().file},
-                  {"band", fmt::format("confidence band of the fit at level {:g}", result.uncertainty.level)}};
-  for (std::size_t c = 1; c < calibration.curves.size(); ++c) {
-    table.header.emplace_back(fmt::format("data_{}", c + 1), calibration.curves[c].file);
-  }
-  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
-    table.header.emplace_back(calibration.free[k].key.path, fmt::format("{:.17g}", result.solution.parameters[k]));
-  }
-  for (std::size_t row = 0; row < x.values.size(); ++row) {
-    const double fit = result.fit.y[row];
-    const double band = result.fit.band[row];
-    std::vector<double> cells{x.values[row], y.values[row],           fit, y.values[row] - fit, fit - band,
-                              fit + band,    calibration.weights[row]};
-    if (has_several) {
-      cells.push_back(static_cast<double>(&calibration.curve_of(row) - calibration.curves.data() + 1));
-    }
-    table.append(cells);
-  }
-  return table;
-}
-
 /// "contact_radius" as it begins a label.
 std::string label_of(const MeasuredQuantity& quantity) {
   std::string name = quantity.observable.substr(quantity.observable.rfind('.') + 1);
@@ -416,14 +380,53 @@ std::string calibration_text(const Calibration& calibration, const CalibrationRe
   return text + aligned(rows);
 }
 
+Table fit_table(const Calibration& calibration, const CalibrationResult& result) {
+  const MeasuredQuantity& x = calibration.x;
+  const MeasuredQuantity& y = calibration.y;
+  const std::string inverse = "1/" + y.si;
+  std::vector<Column> columns{{x.observable, x.si, {}}, {y.observable, y.si, {}}, {"fit", y.si, {}},
+                              {"residual", y.si, {}},   {"band_lower", y.si, {}}, {"band_upper", y.si, {}},
+                              {"weight", inverse, {}}};
+  const bool has_several = calibration.curves.size() > 1;
+  if (has_several) columns.push_back({"curve", "", {}});
+  Table table(std::move(columns));
+  table.header = {{"program", fmt::format("monograin {}", version())},
+                  {"calibration", calibration.name},
+                  {"scenario", calibration.scenario.name},
+                  {"scenario_digest", scenario_digest(calibration.scenario)},
+                  {"model", calibration.scenario.model},
+                  {"data", calibration.curves.front().file},
+                  {"band", fmt::format("confidence band of the fit at level {:g}", result.uncertainty.level)}};
+  for (std::size_t c = 1; c < calibration.curves.size(); ++c) {
+    table.header.emplace_back(fmt::format("data_{}", c + 1), calibration.curves[c].file);
+  }
+  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
+    table.header.emplace_back(calibration.free[k].key.path, fmt::format("{:.17g}", result.solution.parameters[k]));
+  }
+  for (std::size_t row = 0; row < x.values.size(); ++row) {
+    const double fit = result.fit.y[row];
+    const double band = result.fit.band[row];
+    std::vector<double> cells{x.values[row], y.values[row],           fit, y.values[row] - fit, fit - band,
+                              fit + band,    calibration.weights[row]};
+    if (has_several) {
+      cells.push_back(static_cast<double>(&calibration.curve_of(row) - calibration.curves.data() + 1));
+    }
+    table.append(cells);
+  }
+  return table;
+}
+
+std::string calibration_json(const Calibration& calibration, const CalibrationResult& result) {
+  return to_json(calibration, result).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
 std::string write_calibration(const Calibration& calibration, const CalibrationResult& result, StagedFolder& folder) {
   write_csv_file(fit_table(calibration, result), folder.path() / "fit.csv");
   figure::write_whole(folder.path() / "fitted.toml", fitted_scenario_text(calibration, result));
   for (const auto& [option, curve] : calibration.scenario.curves) {
     figure::write_whole(folder.path() / table_name(option), curve.text);
   }
-  figure::write_whole(folder.path() / k_calibration_marker,
-                      to_json(calibration, result).dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  figure::write_whole(folder.path() / k_calibration_marker, calibration_json(calibration, result));
   const std::string problem = draw(calibration, result, folder.path());
   folder.publish();
   return problem;

@@ -1,0 +1,67 @@
+/// Long work that Ctrl-C ends.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <optional>
+
+#include "bindings.hpp"
+
+namespace monograin::python {
+
+/// Looks for signals on behalf of work without the interpreter's lock. Python handles them in its main thread, and only
+/// when asked.
+class SignalWatch {
+ public:
+  /// True once a signal's handler has raised. Asks twenty times a second at most; call it from the thread that Python
+  /// has called, without the lock.
+  [[nodiscard]] bool has_raised() {
+    const auto now = std::chrono::steady_clock::now();
+    if (!raised_ && now >= next_) {
+      next_ = now + k_between_looks;
+      const py::gil_scoped_acquire acquired;
+      if (PyErr_CheckSignals() != 0) raised_.emplace();
+    }
+    return raised_.has_value();
+  }
+
+  /// The exception that the handler has raised; None: it has not. Needs the lock.
+  [[nodiscard]] py::object raised() const { return raised_ ? py::object(raised_->value()) : py::none(); }
+
+  /// Raises it, if there is one. Needs the lock.
+  void rethrow() const {
+    if (raised_) throw py::error_already_set(*raised_);
+  }
+
+  static constexpr std::chrono::milliseconds k_between_looks{50};
+
+ private:
+  std::optional<py::error_already_set> raised_;
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + k_between_looks;
+};
+
+/// Thrown by work that was asked to stop; nobody sees it but run_interruptibly().
+struct Stopped {};
+
+/// Runs work in a thread of its own, without the interpreter's lock, and hands on what it returns or throws. A signal
+/// whose handler raises sets `stop`; work looks at it between its pieces and throws Stopped, or comes to its end.
+/// @param work  (const std::atomic<bool>& stop) -> result
+/// @throws py::error_already_set with what the handler has raised, once the work has ended
+template <class Work>
+auto run_interruptibly(Work&& work) {
+  std::atomic<bool> stop{false};
+  SignalWatch watch;
+  auto result = std::async(std::launch::async, [&] { return work(static_cast<const std::atomic<bool>&>(stop)); });
+  {
+    const py::gil_scoped_release released;
+    while (!stop && result.wait_for(SignalWatch::k_between_looks) != std::future_status::ready) {
+      stop = watch.has_raised();
+    }
+    result.wait();
+  }
+  watch.rethrow();
+  return result.get();
+}
+
+}  // namespace monograin::python

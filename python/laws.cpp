@@ -1,0 +1,330 @@
+// Laws in closed form, element by element over arrays that broadcast. Names and units are those of the package's Python
+// files, which also say where a law comes from and where it ends.
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "bindings.hpp"
+#include "compressible/contact_law.hpp"
+#include "compressible/regressions.hpp"
+#include "elastic/hertz.hpp"
+#include "elastic/line_contact.hpp"
+#include "elastic/nonlocal_law.hpp"
+#include "mdr/adhesion.hpp"
+#include "mdr/transforms.hpp"
+#include "packing/law.hpp"
+#include "plastic/law.hpp"
+#include "plastic/ludwik.hpp"
+
+namespace monograin::python {
+namespace {
+
+using Numbers = py::array_t<double>;
+
+/// The value, or nan where the law has none. Arguments that no law takes (std::invalid_argument) are errors.
+template <class Value>
+double or_nan(Value&& value) {
+  try {
+    return value();
+  } catch (const std::domain_error&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+/// A function of numbers as one of arrays.
+template <class... Args>
+auto elementwise(double (*function)(Args...)) {
+  return py::vectorize([function](Args... args) { return or_nan([&] { return function(args...); }); });
+}
+
+/// Keeps what was made last: the parameters of a law seldom change from one element to the next.
+template <class Law, std::size_t N>
+class LastMade {
+ public:
+  template <class Make>
+  const Law& get(const std::array<double, N>& parameters, Make&& make) {
+    if (!law_ || parameters != parameters_) {
+      law_.reset();
+      law_.emplace(make());
+      parameters_ = parameters;
+    }
+    return *law_;
+  }
+
+ private:
+  std::array<double, N> parameters_{};
+  std::optional<Law> law_;
+};
+
+template <class Value>
+Value word(const std::string& given, std::initializer_list<std::pair<const char*, Value>> known) {
+  std::string names;
+  for (const auto& [name, value] : known) {
+    if (given == name) return value;
+    names += (names.empty() ? "'" : ", '") + std::string(name) + "'";
+  }
+  throw std::invalid_argument("'" + given + "' is not known; expected one of " + names);
+}
+
+// --- plastic spheres between walls
+
+/// What is asked of a contact: x is the displacement of a wall over the radius.
+double plastic_quantity(const plastic::Law& law, const std::string& quantity, double strength, double radius,
+                        double displacement) {
+  const double x = displacement / radius;
+  if (x <= 0.0) return 0.0;
+  if (quantity == "work")
+    return or_nan([&] { return plastic::work_per_wall(law, x); }) * strength * radius * radius * radius;
+  return or_nan([&] {
+    const plastic::ContactState state = std::visit([x](const auto& made) { return plastic::state_at(made, x); }, law);
+    if (quantity == "contact_radius") return state.contact_radius * radius;
+    if (quantity == "mean_pressure") return state.pressure * strength;
+    return state.force * strength * radius * radius;
+  });
+}
+
+py::object semimech(const std::string& quantity, const std::string& configuration, const Numbers& youngs_modulus,
+                    const Numbers& poisson_ratio, const Numbers& yield_stress, const Numbers& radius,
+                    const Numbers& displacement) {
+  const plastic::Configuration walls = plastic::configuration_named(configuration);
+  LastMade<plastic::Law, 3> last;
+  return py::vectorize([&](double e, double nu, double y, double r, double d) {
+    const plastic::Law& law =
+        last.get({e, nu, y}, [&] { return plastic::make_semimech(plastic::make_semimech_material(e, nu, y), walls); });
+    return plastic_quantity(law, quantity, y, r, d);
+  })(youngs_modulus, poisson_ratio, yield_stress, radius, displacement);
+}
+
+py::object hardening(const std::string& quantity, const std::string& configuration, const Numbers& strength,
+                     const Numbers& exponent, const Numbers& radius, const Numbers& displacement) {
+  const plastic::Configuration walls = plastic::configuration_named(configuration);
+  LastMade<plastic::Law, 1> last;
+  return py::vectorize([&](double kappa, double mu, double r, double d) {
+    return plastic_quantity(last.get({mu}, [&] { return plastic::make_hardening(mu, walls); }), quantity, kappa, r, d);
+  })(strength, exponent, radius, displacement);
+}
+
+plastic::SimilarityRadius radius_rule(const std::string& given) {
+  using Rule = plastic::SimilarityRadius;
+  return word<Rule>(given, {{"parabolic", Rule::parabolic}, {"corrected", Rule::corrected}});
+}
+
+py::object similarity(const std::string& quantity, const std::string& rule, const Numbers& strength,
+                      const Numbers& exponent, const Numbers& radius, const Numbers& displacement) {
+  const plastic::SimilarityRadius radius_law = radius_rule(rule);
+  return py::vectorize([&](double kappa, double mu, double r, double d) {
+    return plastic_quantity(plastic::make_similarity(mu, radius_law), quantity, kappa, r, d);
+  })(strength, exponent, radius, displacement);
+}
+
+/// @param quantity  contact_radius, force or work under an approach; approach under a force
+py::object similarity_pair(const std::string& quantity, const std::string& rule, const Numbers& strength,
+                           const Numbers& exponent, const Numbers& first_radius, const Numbers& second_radius,
+                           const Numbers& argument) {
+  const plastic::SimilarityRadius radius_law = radius_rule(rule);
+  return py::vectorize([&](double kappa, double mu, double first, double second, double given) {
+    const plastic::SimilarityLaw law = plastic::make_similarity(mu, radius_law);
+    const plastic::SimilarityPair pair = plastic::make_similarity_pair(first, second);
+    if (quantity == "approach") return plastic::similarity_approach(law, pair, kappa, given);
+    if (quantity == "work") return plastic::similarity_work(law, pair, kappa, given);
+    const plastic::SimilarityContact contact = plastic::similarity_contact(law, pair, kappa, given);
+    return quantity == "force" ? contact.force : contact.contact_radius;
+  })(strength, exponent, first_radius, second_radius, argument);
+}
+
+plastic::LudwikMaterial ludwik_material(double youngs_modulus, double yield_stress, double strength, double exponent) {
+  return {youngs_modulus, yield_stress, strength, 1.0 / exponent};
+}
+
+py::tuple ludwik_power_law(double youngs_modulus, double yield_stress, double strength, double exponent,
+                           double largest_strain, const std::string& fit) {
+  using Fit = plastic::HollomonFit;
+  const plastic::HollomonMaterial found =
+      plastic::fit_hollomon(ludwik_material(youngs_modulus, yield_stress, strength, exponent), largest_strain,
+                            word<Fit>(fit, {{"both", Fit::both}, {"exponent", Fit::exponent}}));
+  return py::make_tuple(found.strength, found.exponent, found.residual);
+}
+
+// --- elastic contacts
+
+nonlocal::Terms terms_named(const std::string& given) {
+  using nonlocal::Terms;
+  return word<Terms>(
+      given, {{"1", Terms::one}, {"2", Terms::two}, {"3", Terms::three}, {"4", Terms::four}, {"inf", Terms::all}});
+}
+
+py::object curved_sphere(const std::string& quantity, const std::string& terms, const Numbers& composite_modulus,
+                         const Numbers& radius, const Numbers& overlap) {
+  const nonlocal::LocalLaw law(terms_named(terms));
+  return py::vectorize([&](double modulus, double r, double delta) {
+    if (delta <= 0.0) return 0.0;
+    return or_nan([&] {
+      const double s = law.signed_square(delta / r);
+      if (quantity == "energy") return law.energy(s) * modulus * r * r * r;
+      const nonlocal::LocalContact contact = law.at(s);
+      return quantity == "force" ? contact.force * modulus * r * r : contact.contact_radius * r;
+    });
+  })(composite_modulus, radius, overlap);
+}
+
+mdr::ElasticProfile profile_named(const std::string& given) {
+  using Profile = mdr::ElasticProfile;
+  return word<Profile>(given, {{"ellipse", Profile::ellipse}, {"parabola", Profile::parabola}});
+}
+
+py::object mdr_elastic(const std::string& quantity, const std::string& profile, const Numbers& composite_modulus,
+                       const Numbers& radius, const Numbers& overlap) {
+  const mdr::ElasticProfile shape = profile_named(profile);
+  return py::vectorize([&](double modulus, double r, double delta) {
+    return or_nan([&] {
+      if (quantity == "energy") return mdr::elastic_energy(shape, modulus, r, delta);
+      const mdr::Contact contact = mdr::elastic_contact(shape, modulus, r, delta);
+      return quantity == "force" ? contact.force : contact.contact_radius;
+    });
+  })(composite_modulus, radius, overlap);
+}
+
+py::object mdr_plastic(const std::string& quantity, const Numbers& youngs_modulus, const Numbers& poisson_ratio,
+                       const Numbers& yield_stress, const Numbers& radius, const Numbers& overlap) {
+  LastMade<mdr::Material, 3> last;
+  return py::vectorize([&](double e, double nu, double y, double r, double delta) {
+    const mdr::Material& material = last.get({e, nu, y}, [&] { return mdr::make_material(e, nu, y); });
+    return or_nan([&] {
+      if (quantity == "mean_pressure") return mdr::plastic_pressure(material, delta / r).pressure;
+      const double c = mdr::yield_area_constant(material.yield_overlap_ratio, r);
+      const mdr::Contact contact = mdr::plastic_contact(material, r, delta, c);
+      return quantity == "force" ? contact.force : contact.contact_radius;
+    });
+  })(youngs_modulus, poisson_ratio, yield_stress, radius, overlap);
+}
+
+/// Force at which a contact is torn off, or the contact radius then.
+py::object mdr_pull_off(const std::string& quantity, const std::string& profile, const std::string& control,
+                        const Numbers& composite_modulus, const Numbers& radius, const Numbers& surface_energy) {
+  const mdr::ElasticProfile shape = profile_named(profile);
+  const Control prescribed =
+      word<Control>(control, {{"force", Control::force}, {"displacement", Control::displacement}});
+  return py::vectorize([&](double modulus, double r, double energy) {
+    return or_nan([&] {
+      const mdr::Indenter indenter = mdr::elastic_indenter(shape, r);
+      const double a = mdr::critical_radius(indenter, modulus, energy, prescribed);
+      return quantity == "force" ? mdr::peel_state(indenter, modulus, energy, a).force : a;
+    });
+  })(composite_modulus, radius, surface_energy);
+}
+
+// --- compressible particle and packing
+
+py::object compressible_unloading(const Numbers& stiffness, const Numbers& transition, const Numbers& exponent,
+                                  const Numbers& hertz_stiffness, const Numbers& unloading_exponent,
+                                  const Numbers& stiffness_ratio, const Numbers& largest, const Numbers& displacement) {
+  using namespace compressible;
+  return py::vectorize(
+      [](double k, double delta_t, double a, double k_hertz, double alpha, double beta, double dm, double d) {
+        const UnloadingRule rule(UnloadingShape{alpha, beta});
+        const UnloadingCurve curve = unloading_from(make_loading_law(k, delta_t, a), k_hertz, rule, dm);
+        return d <= curve.separation() ? 0.0 : unloading_force(curve, d);
+      })(stiffness, transition, exponent, hertz_stiffness, unloading_exponent, stiffness_ratio, largest, displacement);
+}
+
+py::object packing_quantity(const std::string& quantity, const Numbers& packing_fraction, const Numbers& youngs_modulus,
+                            const Numbers& poisson_ratio, const Numbers& yield_stress,
+                            const Numbers& hardening_modulus) {
+  LastMade<packing::Law, 4> last;
+  return py::vectorize([&](double phi, double e, double nu, double y, double h) {
+    const packing::Law& law = last.get({e, nu, y, h}, [&] {
+      packing::Parameters parameters;
+      parameters.youngs_modulus = e;
+      parameters.poisson_ratio = nu;
+      if (!std::isinf(y)) parameters.plasticity = packing::Plasticity{y, h};
+      return packing::make_law(parameters);
+    });
+    return or_nan([&] {
+      if (quantity == "coordination_number") return packing::coordination_number(law, phi);
+      if (quantity == "plastic_fraction") return packing::plastic_fraction(law, phi);
+      const packing::State state = packing::state(law, phi);
+      return quantity == "stress" ? state.stress : state.modulus;
+    });
+  })(packing_fraction, youngs_modulus, poisson_ratio, yield_stress, hardening_modulus);
+}
+
+void add_elastic(py::module_& laws) {
+  laws.def("composite_modulus", elementwise(+[](double e, double nu) { return composite_modulus(e, nu); }));
+  laws.def("hertz_force", elementwise(+[](double e, double r, double d) { return hertz_force(e, r, d); }));
+  laws.def("hertz_contact_radius", elementwise(+[](double r, double d) { return hertz_contact_radius(r, d); }));
+  laws.def("hertz_energy", elementwise(+[](double e, double r, double d) { return hertz_energy(e, r, d); }));
+  laws.def("line_contact_strain",
+           elementwise(+[](double e, double stress) { return line_contact_under_stress(e, stress).strain; }));
+  laws.def("line_contact_half_width",
+           elementwise(+[](double e, double stress) { return line_contact_under_stress(e, stress).half_width; }));
+  laws.def("line_contact_stress",
+           elementwise(+[](double e, double strain) { return line_contact_at_strain(e, strain).stress; }));
+  laws.def("curved_sphere", &curved_sphere);
+}
+
+void add_mdr(py::module_& laws) {
+  laws.def("mdr_elastic", &mdr_elastic);
+  laws.def("mdr_plastic", &mdr_plastic);
+  laws.def("mdr_pull_off", &mdr_pull_off);
+  laws.def("mdr_yield_overlap", elementwise(+[](double e, double nu, double y, double r) {
+             return mdr::make_material(e, nu, y).yield_overlap_ratio * r;
+           }));
+  laws.def("mdr_power_ratio", elementwise(+[](double n) { return mdr::power_ratio(n); }));
+  laws.def("mdr_power_profile_1d",
+           elementwise(+[](double c, double n, double x) { return mdr::power_profile_1d(c, n, x); }));
+  laws.def("mdr_power_profile_3d",
+           elementwise(+[](double c, double n, double r) { return mdr::power_profile_3d(c, n, r); }));
+}
+
+void add_plastic(py::module_& laws) {
+  laws.def("semimech", &semimech);
+  laws.def("hardening", &hardening);
+  laws.def("similarity", &similarity);
+  laws.def("similarity_pair", &similarity_pair);
+  laws.def("similarity_strength", elementwise(+[](double first, double second, double exponent) {
+             return plastic::similarity_strength(first, second, exponent);
+           }));
+  laws.def("ludwik_stress", elementwise(+[](double yield_stress, double strength, double exponent, double strain) {
+             return plastic::ludwik_stress(
+                 ludwik_material(std::numeric_limits<double>::infinity(), yield_stress, strength, exponent), strain);
+           }));
+  laws.def("ludwik_power_law", &ludwik_power_law);
+}
+
+void add_compressible(py::module_& laws) {
+  using namespace compressible;
+  laws.def("compressible_loading_force", elementwise(+[](double k, double delta_t, double a, double d) {
+             return d <= 0.0 ? 0.0 : loading_force(make_loading_law(k, delta_t, a), d);
+           }));
+  laws.def("compressible_loading_work", elementwise(+[](double k, double delta_t, double a, double d) {
+             return d <= 0.0 ? 0.0 : loading_work(make_loading_law(k, delta_t, a), d);
+           }));
+  laws.def("compressible_hertz_stiffness",
+           elementwise(+[](double ratio, double nu) { return compressible::hertz_stiffness(ratio, nu); }));
+  laws.def("compressible_stiffness",
+           elementwise(+[](double ratio, double shear) { return regressed_stiffness(ratio, shear); }));
+  laws.def("compressible_transition",
+           elementwise(+[](double ratio, double shear) { return regressed_transition(ratio, shear); }));
+  laws.def("compressible_exponent",
+           elementwise(+[](double ratio, double shear) { return regressed_exponent(ratio, shear); }));
+  laws.def("compressible_unloading_force", &compressible_unloading);
+}
+
+}  // namespace
+
+void add_laws(py::module_& module) {
+  py::module_ laws = module.def_submodule("laws");
+  add_elastic(laws);
+  add_mdr(laws);
+  add_plastic(laws);
+  add_compressible(laws);
+  laws.def("packing", &packing_quantity);
+}
+
+}  // namespace monograin::python

@@ -1,0 +1,57 @@
+"""Mechanics of a single particle under contact.
+
+>>> import monograin as mg
+>>> run = mg.scenario("die").replace({"material.yield_stress": "30 MPa"}).run()
+>>> run.status
+'complete'
+
+All numbers are in SI units: a str such as ``"30 MPa"`` has its own.
+"""
+
+from . import laws
+from ._core import __version__
+from .catalogue import Key, Model, Parameter, models, parameters, scenario, scenario_folder, scenarios, schema
+from .errors import Fault, Interrupted, ScenarioError, SolverError
+from .prepared import Prepared
+from .runs import Run, Scenario
+from .studies import (
+    Calibration,
+    Comparison,
+    CurveDifference,
+    FittedParameter,
+    Gap,
+    calibrate,
+    compare,
+    sweep,
+)
+from .tables import Table
+
+__all__ = [
+    "Calibration",
+    "Comparison",
+    "CurveDifference",
+    "Fault",
+    "FittedParameter",
+    "Gap",
+    "Interrupted",
+    "Key",
+    "Model",
+    "Parameter",
+    "Prepared",
+    "Run",
+    "Scenario",
+    "ScenarioError",
+    "SolverError",
+    "Table",
+    "__version__",
+    "calibrate",
+    "compare",
+    "laws",
+    "models",
+    "parameters",
+    "scenario",
+    "scenario_folder",
+    "scenarios",
+    "schema",
+    "sweep",
+]

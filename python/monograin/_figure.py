@@ -1,0 +1,190 @@
+"""Figures of runs, drawn with matplotlib."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .tables import Table
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import matplotlib.figure
+
+    from .runs import Run
+
+# Okabe and Ito's colours, which the colour-blind can tell apart.
+_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+_STYLES = {"loading": "-", "unloading": "--", "reloading": ":"}
+# Where the program turns, the curve does too.
+_PROGRAM_EVENTS = ("step-end", "until-met")
+
+
+class _Panel(NamedTuple):
+    label: str
+    columns: list[tuple[str, str]]  # of the curves: legend, column
+    scale: float
+    is_area: bool = False  # drawn is pi times the square of the column
+
+
+class _Sheet(NamedTuple):
+    label: str
+    column: str  # of the abscissa
+    scale: float
+    panels: list[_Panel]
+
+
+def of_run(run: Run) -> matplotlib.figure.Figure:
+    from matplotlib.figure import Figure
+
+    sheet = _of_walls(run.history) or _of_body(run.history)
+    panels = [panel for panel in sheet.panels if _is_defined(run.history, panel)] if sheet else []
+    if sheet is None or not panels or len(run) < 2:
+        raise ValueError("the run has no curve to draw")
+    rows = (len(panels) + 1) // 2
+    figure = Figure(figsize=(8.0, 3.2 * rows), layout="constrained")
+    phases = _phases(np.asarray(run[sheet.column]))
+    for place, panel in enumerate(panels):
+        axes = figure.add_subplot(rows, min(2, len(panels)), place + 1)
+        _draw(axes, run, sheet, panel, phases)
+    return figure
+
+
+def _draw(
+    axes: matplotlib.axes.Axes, run: Run, sheet: _Sheet, panel: _Panel, phases: list[tuple[str, slice]]
+) -> None:
+    x = run[sheet.column] / sheet.scale
+    for k, (legend, column) in enumerate(panel.columns):
+        y = _values(run.history, panel, column)
+        colour = _COLOURS[k % len(_COLOURS)]
+        for i, (phase, piece) in enumerate(phases):
+            axes.plot(x[piece], y[piece], _STYLES[phase], color=colour, label=legend if i == 0 else None)
+    for name, rows in _events(run.events).items():
+        points = [
+            (run.events[sheet.column][row] / sheet.scale, _values(run.events, panel, column)[row])
+            for legend, column in panel.columns
+            for row in rows
+            if _concerns(run.events, row, legend)
+        ]
+        if points:
+            axes.plot(*zip(*points), "o", markersize=4, markerfacecolor="none", label=name)
+    axes.set_xlabel(sheet.label)
+    axes.set_ylabel(panel.label)
+    if len(axes.get_legend_handles_labels()[1]) > 1:
+        axes.legend(fontsize="small")
+
+
+def _of_walls(history: Table) -> Optional[_Sheet]:
+    """Four quantities of every contact class over the displacement of the first one that moves."""
+    classes = [name[: -len(".displacement")] for name in history.columns if name.endswith(".displacement")]
+    if not classes:
+        return None
+    driven = next((name for name in classes if np.ptp(history[f"{name}.displacement"]) > 0.0), classes[0])
+    radius, modulus, stress = (_scale(history, key) for key in ("R0", "E", "Y"))
+    pressure_scale, pressure_unit = (stress, "Y") if stress else (modulus, "E")
+    panels = [
+        _Panel(
+            "Force $F/(E R_0^2)$" if radius and modulus else "Force $F$ [N]",
+            _contacts(history, classes, "force"),
+            modulus * radius**2 if radius and modulus else 1.0,
+        ),
+        _Panel(
+            f"Mean pressure $p/{pressure_unit}$" if pressure_scale else "Mean pressure $p$ [Pa]",
+            _contacts(history, classes, "pressure"),
+            pressure_scale or 1.0,
+        ),
+        _Panel(
+            r"Contact area $A_c/(\pi R_0^2)$" if radius else "Contact area $A_c$ [m$^2$]",
+            _contacts(history, classes, "contact_radius"),
+            np.pi * radius**2 if radius else 1.0,
+            is_area=True,
+        ),
+        _Panel(
+            "Apparent radius $R/R_0$" if radius else "Apparent radius $R$ [m]",
+            [("", "apparent_radius")] if "apparent_radius" in history else [],
+            radius or 1.0,
+        ),
+    ]
+    label = r"Displacement $\delta_o/R_0$" if radius else r"Displacement $\delta_o$ [m]"
+    return _Sheet(label, f"{driven}.displacement", radius or 1.0, panels)
+
+
+def _of_body(history: Table) -> Optional[_Sheet]:
+    """Quantities of a packing or a material point over the one that it is driven through."""
+    modulus = _scale(history, "E") or 1.0
+    pressure = _scale(history, "yield_pressure") or 1.0
+    sheets = (
+        _Sheet(
+            r"Packing fraction $\Phi$",
+            "packing_fraction",
+            1.0,
+            [
+                _Panel(r"Stress $\sigma/E$", [("", "stress")], modulus),
+                _Panel("Strain since jamming $e$", [("", "strain")], 1.0),
+                _Panel("Coordination number $Z$", [("", "coordination_number")], 1.0),
+                _Panel("Plastic fraction $f_p$", [("", "plastic_fraction")], 1.0),
+            ],
+        ),
+        _Sheet(
+            "Axial strain",
+            "strain_axial",
+            1.0,
+            [
+                _Panel(r"Axial stress $\sigma_a/\sigma_{y0}$", [("", "stress_axial")], pressure),
+                _Panel(r"Mean stress $p/\sigma_{y0}$", [("", "p")], pressure),
+                _Panel(r"Deviatoric stress $q/\sigma_{y0}$", [("", "q")], pressure),
+                _Panel(r"Relative density $\rho$", [("", "relative_density")], 1.0),
+            ],
+        ),
+    )
+    return next((sheet for sheet in sheets if sheet.column in history), None)
+
+
+def _contacts(history: Table, classes: list[str], quantity: str) -> list[tuple[str, str]]:
+    return [(name, f"{name}.{quantity}") for name in classes if f"{name}.{quantity}" in history]
+
+
+def _scale(history: Table, key: str) -> Optional[float]:
+    text = history.header.get(key)
+    return float(text) if text and float(text) > 0.0 else None
+
+
+def _values(table: Table, panel: _Panel, column: str) -> NDArray[np.float64]:
+    values: NDArray[np.float64] = table[column]
+    return (np.pi * values**2 if panel.is_area else values) / panel.scale
+
+
+def _is_defined(history: Table, panel: _Panel) -> bool:
+    return any(column in history and np.isfinite(history[column]).any() for _, column in panel.columns)
+
+
+def _events(events: Table) -> dict[str, list[int]]:
+    rows: dict[str, list[int]] = {}
+    if len(events) > 0:
+        for row, name in enumerate(events["event"]):
+            if name not in _PROGRAM_EVENTS:
+                rows.setdefault(str(name), []).append(row)
+    return rows
+
+
+def _concerns(events: Table, row: int, contact: str) -> bool:
+    """True for an event of that contact class; events of the particle stand on its own curve."""
+    return contact in str(events["class"][row]).split("/") or not contact
+
+
+def _phases(x: NDArray[np.float64]) -> list[tuple[str, slice]]:
+    """Pieces of the path: beyond the largest x so far, back, or forth again below it. Neighbours share a row."""
+    pieces: list[tuple[str, slice]] = []
+    largest, phase = x[0], "loading"
+    for row in range(1, len(x)):
+        if x[row] != x[row - 1]:
+            is_back = x[row] < x[row - 1]
+            phase = "unloading" if is_back else "loading" if x[row] > largest * (1.0 + 1e-12) else "reloading"
+        largest = max(largest, x[row])
+        if pieces and pieces[-1][0] == phase:
+            pieces[-1] = (phase, slice(pieces[-1][1].start, row + 1))
+        else:
+            pieces.append((phase, slice(row - 1, row + 1)))
+    return pieces

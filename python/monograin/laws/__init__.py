@@ -1,0 +1,43 @@
+"""Contact laws in closed form.
+
+Every function takes numbers or arrays, which broadcast as in numpy, and returns a float or an array. Where a law has no
+value, because it ends before, the result is nan. Parameters that no law has, such as a negative yield stress, raise
+``ValueError``.
+
+- :mod:`monograin.laws.hertz`: an elastic sphere at a rigid wall
+- :mod:`monograin.laws.curved_sphere`: that with the curvature of the sphere's profile
+- :mod:`monograin.laws.line_contact`: an elastic cylinder between two walls
+- :mod:`monograin.laws.mdr`: elastic, adhesive and fully plastic contacts of the method of dimensionality reduction
+- :mod:`monograin.laws.similarity`: a rigid-plastic sphere that hardens by a power law, small contacts
+- :mod:`monograin.laws.semimech`: an elastic-ideally plastic sphere between walls, up to a filled die
+- :mod:`monograin.laws.hardening`: a rigid-plastic sphere that hardens by a power law, up to a filled die
+- :mod:`monograin.laws.ludwik`: Ludwik's hardening, and the power law nearest to it
+- :mod:`monograin.laws.compressible`: a compressible plastic particle
+- :mod:`monograin.laws.packing`: a packing of soft discs
+"""
+
+from . import (
+    compressible,
+    curved_sphere,
+    hardening,
+    hertz,
+    line_contact,
+    ludwik,
+    mdr,
+    packing,
+    semimech,
+    similarity,
+)
+
+__all__ = [
+    "compressible",
+    "curved_sphere",
+    "hardening",
+    "hertz",
+    "line_contact",
+    "ludwik",
+    "mdr",
+    "packing",
+    "semimech",
+    "similarity",
+]

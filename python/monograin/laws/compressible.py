@@ -1,0 +1,110 @@
+"""Contact law of a compressible plastic particle: linear-exponential loading, power-law unloading.
+
+Quantities are reduced: displacements over the radius R0, forces over pi R0^2 sigma_y0, work over pi R0^3 sigma_y0, where
+sigma_y0 is the hydrostatic yield pressure at the reference density. The source's data end at a displacement of 0.5.
+
+Source: Edmans and Sinka, eqs. 6 and 9 to 14, appendix A.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from .. import _core
+
+__all__ = [
+    "exponent",
+    "hertz_stiffness",
+    "loading_force",
+    "loading_work",
+    "stiffness",
+    "transition",
+    "unloading_force",
+]
+
+
+def loading_force(stiffness: ArrayLike, transition: ArrayLike, exponent: ArrayLike, displacement: ArrayLike) -> Any:
+    """Returns the force of first loading: k d up to delta_t, then k delta_t exp(a (d - delta_t)) (eq. 6).
+
+    Args:
+        stiffness: k, above 0; see :func:`stiffness`.
+        transition: delta_t, above 0; see :func:`transition`.
+        exponent: a, above 0; see :func:`exponent`.
+        displacement: d of the wall; 0 or less gives 0.
+    """
+    return _core.laws.compressible_loading_force(stiffness, transition, exponent, displacement)
+
+
+def loading_work(stiffness: ArrayLike, transition: ArrayLike, exponent: ArrayLike, displacement: ArrayLike) -> Any:
+    """Returns the work of first loading since first touch.
+
+    Args:
+        stiffness, transition, exponent, displacement: as in :func:`loading_force`.
+    """
+    return _core.laws.compressible_loading_work(stiffness, transition, exponent, displacement)
+
+
+def unloading_force(
+    stiffness: ArrayLike,
+    transition: ArrayLike,
+    exponent: ArrayLike,
+    hertz_stiffness: ArrayLike,
+    largest: ArrayLike,
+    displacement: ArrayLike,
+    *,
+    unloading_exponent: ArrayLike = 1.5,
+    stiffness_ratio: ArrayLike = 1.0,
+) -> Any:
+    """Returns the force of unloading from a largest displacement, fm ((d - d0)/(dm - d0))^alpha (eq. 13).
+
+    Args:
+        stiffness, transition, exponent: of first loading, as in :func:`loading_force`.
+        hertz_stiffness: k_H, above 0; see :func:`hertz_stiffness`.
+        largest: dm, above 0.
+        displacement: d; from d0 down, where the contact is open, the force is 0.
+        unloading_exponent: alpha, 1 or above.
+        stiffness_ratio: beta, above 0: secant stiffness of the unloading over that of Hertz (eq. 11).
+    """
+    return _core.laws.compressible_unloading_force(
+        stiffness, transition, exponent, hertz_stiffness, unloading_exponent, stiffness_ratio, largest, displacement
+    )
+
+
+def hertz_stiffness(modulus_ratio: ArrayLike, poisson_ratio: ArrayLike) -> Any:
+    """Returns the stiffness k_H of Hertz's law f = k_H d^(3/2) for the same material (eq. 10).
+
+    Args:
+        modulus_ratio: E0/sigma_y0, above 0.
+        poisson_ratio: nu0, in (-1, 1).
+    """
+    return _core.laws.compressible_hertz_stiffness(modulus_ratio, poisson_ratio)
+
+
+def stiffness(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
+    """Returns the stiffness k of the loading law by the source's regression (eq. A.1, one coefficient corrected).
+
+    Args:
+        modulus_ratio: E0/sigma_y0; the source has 3 to 500. This is not checked.
+        shear_ratio: Gamma0/sigma_y0; the source has 0.25 to 1. This is not checked.
+    """
+    return _core.laws.compressible_stiffness(modulus_ratio, shear_ratio)
+
+
+def transition(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
+    """Returns the end delta_t of the linear part by the source's regression (eq. A.2, one coefficient corrected).
+
+    Args:
+        modulus_ratio, shear_ratio: as in :func:`stiffness`; the regression was fitted for moduli from 4.5 on.
+    """
+    return _core.laws.compressible_transition(modulus_ratio, shear_ratio)
+
+
+def exponent(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
+    """Returns the exponent a of the loading law by the source's regression (eq. A.3).
+
+    Args:
+        modulus_ratio, shear_ratio: as in :func:`transition`.
+    """
+    return _core.laws.compressible_exponent(modulus_ratio, shear_ratio)

@@ -1,0 +1,50 @@
+"""Elastic sphere at a rigid flat wall with the curvature of the sphere's profile: Hertz's law and its next terms.
+
+The profile is a series in the distance from the axis. Its first term, the parabola, gives Hertz's law; four terms are
+those of the source, and ``"inf"`` is the sphere itself. Every contact stands alone here: other walls do not move its
+surface.
+
+Source: Agarwal and Gonzalez, section 4 and appendix B.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from .. import _core
+
+__all__ = ["contact_radius", "energy", "force"]
+
+
+def force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf") -> Any:
+    """Returns the normal force [N], positive in compression; 0 without contact.
+
+    Args:
+        modulus: composite modulus E* = E/(1 - nu^2) [Pa], above 0.
+        radius: R [m], above 0.
+        overlap: delta [m].
+        terms: how many terms of the profile count: ``"1"`` (Hertz) to ``"4"``, or ``"inf"``.
+    """
+    return _core.laws.curved_sphere("force", terms, modulus, radius, overlap)
+
+
+def contact_radius(radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf") -> Any:
+    """Returns the contact radius [m]; 0 without contact.
+
+    Args:
+        radius: R [m], above 0.
+        overlap: delta [m].
+        terms: as in :func:`force`.
+    """
+    return _core.laws.curved_sphere("contact_radius", terms, 1.0, radius, overlap)
+
+
+def energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf") -> Any:
+    """Returns the stored elastic energy, the work of the wall since first touch [J].
+
+    Args:
+        modulus, radius, overlap, terms: as in :func:`force`.
+    """
+    return _core.laws.curved_sphere("energy", terms, modulus, radius, overlap)

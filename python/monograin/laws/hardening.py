@@ -1,0 +1,84 @@
+"""Law of a rigid-plastic sphere that hardens by a power law, sigma = kappa epsilon^mu, between rigid flat walls.
+
+Monotonic loading. The particle is incompressible: in a die or under hydrostatic compression the pressure grows without
+bound as it fills its cell, and results are nan from there on. ``exponent`` is mu in [0, 1].
+
+Source: Shahin (2021), chapter 3.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from .. import _core
+
+__all__ = ["contact_radius", "force", "mean_pressure", "work"]
+
+
+def force(
+    strength: ArrayLike,
+    exponent: ArrayLike,
+    radius: ArrayLike,
+    displacement: ArrayLike,
+    *,
+    configuration: str = "simple",
+) -> Any:
+    """Returns the force of one moving wall [N].
+
+    Args:
+        strength: kappa [Pa], above 0.
+        exponent: mu, in [0, 1].
+        radius: R [m], above 0.
+        displacement: of the wall [m]; 0 or less gives 0.
+        configuration: ``"simple"`` (two opposite walls), ``"die"`` (and four fixed ones beside the particle) or
+            ``"hydrostatic"`` (six walls that move alike).
+
+    Raises:
+        ValueError: for an exponent outside of [0, 1], or a configuration of another name.
+    """
+    return _core.laws.hardening("force", configuration, strength, exponent, radius, displacement)
+
+
+def contact_radius(
+    exponent: ArrayLike, radius: ArrayLike, displacement: ArrayLike, *, configuration: str = "simple"
+) -> Any:
+    """Returns the contact radius at a moving wall [m] (eq. 3.47).
+
+    Args:
+        exponent, radius, displacement, configuration: as in :func:`force`.
+    """
+    return _core.laws.hardening("contact_radius", configuration, 1.0, exponent, radius, displacement)
+
+
+def mean_pressure(
+    strength: ArrayLike,
+    exponent: ArrayLike,
+    radius: ArrayLike,
+    displacement: ArrayLike,
+    *,
+    configuration: str = "simple",
+) -> Any:
+    """Returns the mean pressure under a moving wall [Pa].
+
+    Args:
+        strength, exponent, radius, displacement, configuration: as in :func:`force`.
+    """
+    return _core.laws.hardening("mean_pressure", configuration, strength, exponent, radius, displacement)
+
+
+def work(
+    strength: ArrayLike,
+    exponent: ArrayLike,
+    radius: ArrayLike,
+    displacement: ArrayLike,
+    *,
+    configuration: str = "simple",
+) -> Any:
+    """Returns the work of one moving wall since first touch [J].
+
+    Args:
+        strength, exponent, radius, displacement, configuration: as in :func:`force`.
+    """
+    return _core.laws.hardening("work", configuration, strength, exponent, radius, displacement)

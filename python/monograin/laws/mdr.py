@@ -1,0 +1,189 @@
+"""Contacts of an elastic-perfectly plastic, adhesive particle by the method of dimensionality reduction.
+
+The functions are those of one contact at a given apparent radius; how the radius grows is what a run computes.
+
+Source: Zunker and Kamrin, Part I, doi:10.1016/j.jmps.2023.105492.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from .. import _core
+
+__all__ = [
+    "elastic_contact_radius",
+    "elastic_energy",
+    "elastic_force",
+    "plastic_contact_radius",
+    "plastic_force",
+    "plastic_mean_pressure",
+    "power_profile_1d",
+    "power_profile_3d",
+    "power_ratio",
+    "pull_off_force",
+    "pull_off_radius",
+    "yield_overlap",
+]
+
+
+def elastic_force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, profile: str = "ellipse") -> Any:
+    """Returns the force of an elastic contact without adhesion [N] (eqs. 23 to 25, 29 to 31).
+
+    Args:
+        modulus: composite modulus E* = E/(1 - nu^2) [Pa], above 0.
+        radius: apparent radius R [m], above 0.
+        overlap: delta [m]; 0 or less gives 0, more than 2 R nan.
+        profile: ``"ellipse"``, the source's, or ``"parabola"``, Hertz's.
+    """
+    return _core.laws.mdr_elastic("force", profile, modulus, radius, overlap)
+
+
+def elastic_contact_radius(radius: ArrayLike, overlap: ArrayLike, *, profile: str = "ellipse") -> Any:
+    """Returns the contact radius of an elastic contact without adhesion [m].
+
+    Args:
+        radius, overlap, profile: as in :func:`elastic_force`.
+    """
+    return _core.laws.mdr_elastic("contact_radius", profile, 1.0, radius, overlap)
+
+
+def elastic_energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, profile: str = "ellipse") -> Any:
+    """Returns the energy that an elastic contact without adhesion stores [J].
+
+    Args:
+        modulus, radius, overlap, profile: as in :func:`elastic_force`.
+    """
+    return _core.laws.mdr_elastic("energy", profile, modulus, radius, overlap)
+
+
+def yield_overlap(
+    youngs_modulus: ArrayLike, poisson_ratio: ArrayLike, yield_stress: ArrayLike, radius: ArrayLike
+) -> Any:
+    """Returns the overlap at which an elastic contact becomes fully plastic [m] (eq. 41); inf if it never does.
+
+    Args:
+        youngs_modulus: E [Pa], above 0.
+        poisson_ratio: nu, in (-1, 0.5].
+        yield_stress: Y [Pa], above 0.
+        radius: apparent radius R [m], above 0.
+    """
+    return _core.laws.mdr_yield_overlap(youngs_modulus, poisson_ratio, yield_stress, radius)
+
+
+def plastic_mean_pressure(yield_stress: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Any:
+    """Returns the mean pressure of a fully plastic contact, Y (1 + 1.75 exp(-4.4 delta/R)) [Pa] (eq. 28).
+
+    Args:
+        yield_stress: Y [Pa], above 0.
+        radius: apparent radius R [m], above 0.
+        overlap: delta [m].
+    """
+    # The pressure does not depend on the elastic constants.
+    return _core.laws.mdr_plastic("mean_pressure", yield_stress, 0.3, yield_stress, radius, overlap)
+
+
+def plastic_force(
+    youngs_modulus: ArrayLike,
+    poisson_ratio: ArrayLike,
+    yield_stress: ArrayLike,
+    radius: ArrayLike,
+    overlap: ArrayLike,
+) -> Any:
+    """Returns the force of a fully plastic contact at its largest overlap [N] (eqs. 16, 21, 28, 36).
+
+    The apparent radius is taken as constant since first yield. The formula holds from :func:`yield_overlap` on.
+
+    Args:
+        youngs_modulus: E [Pa], above 0.
+        poisson_ratio: nu, in (-1, 0.5].
+        yield_stress: Y [Pa], above 0.
+        radius: apparent radius R [m], above 0.
+        overlap: delta [m].
+    """
+    return _core.laws.mdr_plastic("force", youngs_modulus, poisson_ratio, yield_stress, radius, overlap)
+
+
+def plastic_contact_radius(
+    youngs_modulus: ArrayLike,
+    poisson_ratio: ArrayLike,
+    yield_stress: ArrayLike,
+    radius: ArrayLike,
+    overlap: ArrayLike,
+) -> Any:
+    """Returns the contact radius of a fully plastic contact at its largest overlap [m].
+
+    Args:
+        youngs_modulus, poisson_ratio, yield_stress, radius, overlap: as in :func:`plastic_force`.
+    """
+    return _core.laws.mdr_plastic("contact_radius", youngs_modulus, poisson_ratio, yield_stress, radius, overlap)
+
+
+def pull_off_force(
+    modulus: ArrayLike,
+    radius: ArrayLike,
+    surface_energy: ArrayLike,
+    *,
+    control: str = "force",
+    profile: str = "ellipse",
+) -> Any:
+    """Returns the force at which an elastic adhesive contact is torn off [N], negative (eqs. 11, 15).
+
+    Args:
+        modulus: composite modulus E* [Pa], above 0.
+        radius: apparent radius R [m], above 0.
+        surface_energy: effective surface energy of particle and wall [J/m^2], above 0.
+        control: what is prescribed, ``"force"`` or ``"displacement"``.
+        profile: ``"ellipse"`` or ``"parabola"``. The parabola gives -(3/2) pi R times the surface energy under force
+            control, as Johnson, Kendall and Roberts (1971) do.
+    """
+    return _core.laws.mdr_pull_off("force", profile, control, modulus, radius, surface_energy)
+
+
+def pull_off_radius(
+    modulus: ArrayLike,
+    radius: ArrayLike,
+    surface_energy: ArrayLike,
+    *,
+    control: str = "force",
+    profile: str = "ellipse",
+) -> Any:
+    """Returns the contact radius at which an elastic adhesive contact is torn off [m] (eq. 15).
+
+    Args:
+        modulus, radius, surface_energy, control, profile: as in :func:`pull_off_force`.
+    """
+    return _core.laws.mdr_pull_off("contact_radius", profile, control, modulus, radius, surface_energy)
+
+
+def power_ratio(exponent: ArrayLike) -> Any:
+    """Returns kappa_n = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2): the one-dimensional image of r^n is kappa_n x^n.
+
+    Args:
+        exponent: n, 0 or above; not necessarily an integer.
+    """
+    return _core.laws.mdr_power_ratio(exponent)
+
+
+def power_profile_1d(coefficient: ArrayLike, exponent: ArrayLike, x: ArrayLike) -> Any:
+    """Returns the one-dimensional image C kappa_n x^n of the profile C r^n (eq. 4), in the unit of the profile.
+
+    Args:
+        coefficient: C.
+        exponent: n, 0 or above.
+        x: distance from the axis, 0 or above.
+    """
+    return _core.laws.mdr_power_profile_1d(coefficient, exponent, x)
+
+
+def power_profile_3d(coefficient: ArrayLike, exponent: ArrayLike, r: ArrayLike) -> Any:
+    """Returns the profile (C/kappa_n) r^n whose one-dimensional image is C x^n (eq. 5).
+
+    Args:
+        coefficient: C.
+        exponent: n, 0 or above.
+        r: distance from the axis, 0 or above.
+    """
+    return _core.laws.mdr_power_profile_3d(coefficient, exponent, r)

@@ -1,0 +1,289 @@
+"""Scenarios and runs."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Optional, Union
+
+from numpy.typing import NDArray
+
+from . import _core, _toml
+from .errors import SolverError
+from .tables import Table
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import pandas
+
+    from .prepared import Prepared
+
+Path = Union[str, "os.PathLike[str]"]
+
+
+class Scenario:
+    """A checked scenario: a particle, its material, a contact law, walls and what they do.
+
+    Args:
+        source: TOML text as in a scenario file, or a dict of the same structure. In a dict, a str is a text as in a
+            file (``"30 MPa"``), a float is a number in SI units, tables are dicts and arrays of tables are lists of
+            dicts.
+        origin: stands for the file's name in messages. Its stem names the scenario, and files that the scenario names
+            are sought beside it.
+        overrides: ``key=value`` texts as the program's ``--set`` takes them.
+
+    Raises:
+        ScenarioError: with every fault of the scenario.
+
+    A scenario never changes. It can be pickled, and so be sent to other processes.
+    """
+
+    __slots__ = ("_core",)
+    _core: _core.Scenario
+
+    def __init__(
+        self, source: Union[str, Mapping[str, Any]], *, origin: Path = "scenario.toml", overrides: Iterable[str] = ()
+    ) -> None:
+        text = source if isinstance(source, str) else _toml.document(source)
+        self._core = _core.Scenario.parse(text, os.fspath(origin), list(overrides))
+
+    @classmethod
+    def load(cls, path: Path) -> Scenario:
+        """Reads and checks a scenario file.
+
+        Raises:
+            ScenarioError: with every fault, also where there is no such file.
+        """
+        scenario = cls.__new__(cls)
+        scenario._core = _core.Scenario.read(os.fspath(path))
+        return scenario
+
+    def replace(self, values: Mapping[str, Any]) -> Scenario:
+        """Returns this scenario with other values of some keys.
+
+        Args:
+            values: from the path of a key, ``"material.yield_stress"`` or ``"loading.steps[0].displacement"``, to its
+                value: a str with a unit, a float in SI units, a bool, a list or a dict.
+
+        Raises:
+            ScenarioError: with every fault of the new scenario.
+            ValueError, TypeError: for values that no scenario can have, such as nan.
+        """
+        added = [f"{key}={_toml.text_of(value, key)}" for key, value in values.items()]
+        return Scenario(self.text, origin=self.origin, overrides=[*self.overrides, *added])
+
+    @property
+    def name(self) -> str:
+        """Name of the file, without folder and extension."""
+        return self._core.name
+
+    @property
+    def title(self) -> str:
+        """Title that the scenario gives itself; empty if it gives none."""
+        return self._core.title
+
+    @property
+    def model(self) -> str:
+        """Name of the contact law, one of :func:`monograin.models`."""
+        return self._core.model
+
+    @property
+    def text(self) -> str:
+        """The scenario as TOML text, without the values that were replaced."""
+        return self._core.text
+
+    @property
+    def origin(self) -> str:
+        """Name of the file, as it was given."""
+        return self._core.origin
+
+    @property
+    def overrides(self) -> list[str]:
+        """``key=value`` texts of the values that were replaced, in their order."""
+        return self._core.overrides
+
+    def run(self, *, check: bool = True) -> Run:
+        """Runs the scenario. Other threads go on meanwhile.
+
+        Args:
+            check: whether a solver that gives up is an error. If not, the run's status is ``"failed"``.
+
+        Raises:
+            SolverError: with the run up to there, where the solver gave up and ``check`` is true.
+            ScenarioError: where the programs of the walls do not go together.
+        """
+        return checked(Run(self._core.run(), lambda: self), check)
+
+    def prepare(self, keys: Iterable[str]) -> Prepared:
+        """Prepares many runs that differ in some numbers: the scenario's text is read once.
+
+        Args:
+            keys: paths of keys of numbers, such as ``"material.yield_stress"``.
+
+        Raises:
+            ScenarioError: where the scenario has no such key, or the key takes no number.
+        """
+        from .prepared import Prepared
+
+        return Prepared(self, keys)
+
+    def _identity(self) -> tuple[str, str, tuple[str, ...]]:
+        return (self.text, os.path.abspath(self.origin), tuple(self.overrides))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scenario):
+            return NotImplemented
+        return self._identity() == other._identity()
+
+    def __hash__(self) -> int:
+        return hash(self._identity())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Files that the scenario names are found from any folder.
+        return (_restored, self._identity())
+
+    def __repr__(self) -> str:
+        replaced = "".join(f", {text}" for text in self.overrides)
+        return f"<Scenario {self.name!r}, model {self.model}{replaced}>"
+
+
+def _restored(text: str, origin: str, overrides: tuple[str, ...]) -> Scenario:
+    return Scenario(text, origin=origin, overrides=overrides)
+
+
+class Run:
+    """A recorded run: its curves, its events, and how it ended.
+
+    ``run["axial.force"]`` is a column of the history, see :class:`monograin.Table`. ``len(run)`` is its number of rows.
+    """
+
+    def __init__(self, core: _core.Run, scenario: Callable[[], Scenario]) -> None:
+        self._core = core
+        self._scenario = scenario
+        self._history = Table(core.history)
+        self._events = Table(core.events)
+
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario that was run."""
+        return self._scenario()
+
+    @property
+    def status(self) -> str:
+        """``"complete"``, ``"stopped"`` (the run left the domain of its model) or ``"failed"`` (the solver gave up)."""
+        return self._core.status
+
+    @property
+    def message(self) -> str:
+        """Why the run stopped or failed; empty if it is complete."""
+        return self._core.message
+
+    @property
+    def limit(self) -> Optional[str]:
+        """Code of the limit that stopped the run, such as ``"walls-meet"``; None if none did."""
+        return self._core.limit or None
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings, a sentence each."""
+        return self._core.warnings
+
+    @property
+    def history(self) -> Table:
+        """Curves: a row at every output point, and just before and after every event."""
+        return self._history
+
+    @property
+    def events(self) -> Table:
+        """Events: a row for each, with its name (column ``event``), contact class, and the state of the history."""
+        return self._events
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the history's columns."""
+        return self._history.columns
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every column of the history."""
+        return self._history.units
+
+    @property
+    def info(self) -> dict[str, Any]:
+        """What ``run.json`` holds: status, contact classes, integrator, statistics, timings, versions, scenario."""
+        content: dict[str, Any] = json.loads(self._core.json())
+        return content
+
+    def __len__(self) -> int:
+        return len(self._history)
+
+    def __contains__(self, column: object) -> bool:
+        return column in self._history
+
+    def __getitem__(self, column: str) -> NDArray[Any]:
+        """Returns a column of the history, see :meth:`monograin.Table.__getitem__`."""
+        return self._history[column]
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Returns a copy of the history as a ``pandas.DataFrame``.
+
+        Raises:
+            ImportError: without pandas.
+        """
+        return self._history.to_pandas()
+
+    def plot(self) -> matplotlib.figure.Figure:
+        """Draws force, mean pressure, contact area and apparent radius over the displacement of the driven wall.
+
+        Loading is solid, unloading dashed, reloading dotted; circles are events. Of a model without walls, its own
+        quantities are drawn over the one that it is driven through. Quantities are dimensionless where the run tells
+        the scales.
+
+        Returns:
+            A ``matplotlib.figure.Figure`` that pyplot does not know; save it with its method ``savefig``.
+
+        Raises:
+            ImportError: without matplotlib.
+            ValueError: where there is no curve to draw.
+        """
+        from . import _figure
+
+        return _figure.of_run(self)
+
+    def save(self, folder: Path) -> None:
+        """Writes ``history.csv``, ``events.csv`` and ``run.json`` as ``monograin run -o`` does, all of them or none.
+
+        Args:
+            folder: is made if it does not exist. Files of an earlier run in it are replaced, others stay.
+
+        Raises:
+            RuntimeError: naming what could not be written, or a folder that holds files but no run.
+        """
+        self._core.save(os.fspath(folder))
+
+    def profile(self, time: float) -> Table:
+        """Returns pressure and surface under the contacts at one instant. Runs the scenario again up to there.
+
+        Args:
+            time: instant [s] within the run.
+
+        Returns:
+            Columns ``class``, ``radius`` [m], ``pressure`` [Pa], ``displacement`` [m] of the surface and
+            ``relaxed_height`` [m] of the unloaded surface: a row for each contact class and point, none of open
+            contacts.
+
+        Raises:
+            RuntimeError: where the model has no profile, the run does not come to that instant, or no contact is closed
+                then.
+        """
+        return Table(self.scenario._core.profile(time))
+
+    def __repr__(self) -> str:
+        why = f" ({self.message})" if self.message else ""
+        return f"<Run {self.status}{why}: {len(self)} rows, {len(self.events)} events>"
+
+
+def checked(run: Run, check: bool) -> Run:
+    if check and run.status == "failed":
+        raise SolverError(run.message, run)
+    return run

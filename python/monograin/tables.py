@@ -1,0 +1,94 @@
+"""Tables: histories, events, profiles, results of sweeps."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, Iterator, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+
+if TYPE_CHECKING:
+    import pandas
+
+
+class Table:
+    """Rows of numbers and words under named columns.
+
+    ``table["axial.force"]`` is a column. ``len(table)`` is the number of rows. Iteration goes over the rows, each a dict
+    from the name of a column to its value.
+
+    A column of numbers is a read-only view of the table's own memory: it is not copied, and it stays valid when the
+    table is gone. Undefined values are nan. A column of words is an array of str.
+    """
+
+    def __init__(self, core: _core.Table) -> None:
+        self._core = core
+        self._words: dict[str, NDArray[np.str_]] = {}
+
+    @classmethod
+    def read_csv(cls, file: Union[str, os.PathLike[str]]) -> Table:
+        """Reads a CSV file, such as the ``history.csv`` of a run.
+
+        Raises:
+            RuntimeError: naming the place in the file, where it is no table.
+        """
+        return cls(_core.read_csv(os.fspath(file)))
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the columns, in their order."""
+        return self._core.columns
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every column: SI, ``"-"`` for a pure number, empty for words and counts."""
+        return self._core.units
+
+    @property
+    def header(self) -> dict[str, str]:
+        """Lines above the table: what made it, and for which material."""
+        return dict(self._core.header)
+
+    def __len__(self) -> int:
+        return self._core.row_count
+
+    def __contains__(self, column: object) -> bool:
+        return column in self._core.columns
+
+    def __getitem__(self, column: str) -> NDArray[Any]:
+        """Returns a column, by its name (``"axial.force"``) or heading (``"axial.force[N]"``).
+
+        Returns:
+            Array of shape (rows,) in SI units.
+
+        Raises:
+            KeyError: naming the nearest column, where there is none of that name.
+        """
+        if column not in self._words:
+            values = self._core.values(column)
+            labels = self._core.labels(column)
+            if not labels:
+                return values
+            self._words[column] = np.asarray(labels, dtype=str)[values.astype(np.intp)]
+        return self._words[column]
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        names = self.columns
+        values = [self[name].tolist() for name in names]
+        return (dict(zip(names, row)) for row in zip(*values))
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Returns a copy as a ``pandas.DataFrame``, with one column for each of the table's.
+
+        Raises:
+            ImportError: without pandas.
+        """
+        import pandas
+
+        return pandas.DataFrame({name: self[name].copy() for name in self.columns})
+
+    def __repr__(self) -> str:
+        return f"<Table of {len(self)} rows: {', '.join(self.columns)}>"

@@ -1,0 +1,88 @@
+// Scenarios and their runs.
+
+#include "scenario.hpp"
+
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "api/checked.hpp"
+#include "bindings.hpp"
+#include "history/run.hpp"
+#include "monograin/run.hpp"
+#include "scene/scene.hpp"
+#include "study/atlas/profile.hpp"
+
+namespace monograin::python {
+namespace {
+
+/// @throws ScenarioError with every fault
+SoundScenario checked_scenario(Scenario source) {
+  const auto start = std::chrono::steady_clock::now();
+  SoundScenario made{.source = std::move(source), .checked = {}};
+  made.checked = checked(made.source);
+  made.parse_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return made;
+}
+
+SoundScenario parse_sound(std::string text, std::string origin, std::vector<std::string> overrides) {
+  return checked_scenario(Scenario::parse(std::move(text), std::move(origin), std::move(overrides)));
+}
+
+SoundScenario read_sound(const std::string& file) {
+  // The room of the language has a function of that name, too.
+  Scenario (*const read)(const std::filesystem::path&) = read_scenario;
+  return checked_scenario(read(file));
+}
+
+RunResult run_sound(const SoundScenario& scenario) {
+  const py::gil_scoped_release released;
+  Run run = run_scenario(scenario.checked);
+  run.timings.parse = scenario.parse_time;
+  return RunResult(std::make_shared<const Run>(std::move(run)));
+}
+
+py::list parameters_of(const SoundScenario& scenario) {
+  py::list list;
+  for (const auto& [name, value, unit, symbol] : derived_parameters(scenario.checked)) {
+    list.append(py::make_tuple(name, value, unit, symbol));
+  }
+  return list;
+}
+
+History profile_of(const SoundScenario& scenario, double time) {
+  const py::gil_scoped_release released;
+  return history_of(contact_profiles(scenario.checked, time));
+}
+
+}  // namespace
+
+void add_scenario(py::module_& module) {
+  py::class_<SoundScenario>(module, "Scenario")
+      .def_static("parse", &parse_sound)
+      .def_static("read", &read_sound)
+      .def_property_readonly("text", [](const SoundScenario& scenario) { return scenario.source.text(); })
+      .def_property_readonly("origin", [](const SoundScenario& scenario) { return scenario.source.origin(); })
+      .def_property_readonly("overrides", [](const SoundScenario& scenario) { return scenario.source.overrides(); })
+      .def_property_readonly("name", [](const SoundScenario& scenario) { return scenario.checked.name; })
+      .def_property_readonly("title", [](const SoundScenario& scenario) { return scenario.checked.title; })
+      .def_property_readonly("model", [](const SoundScenario& scenario) { return scenario.checked.model; })
+      .def("run", &run_sound)
+      .def("parameters", &parameters_of)
+      .def("profile", &profile_of);
+  py::class_<RunResult>(module, "Run")
+      .def_property_readonly("status", [](const RunResult& run) { return to_string(run.status); })
+      .def_readonly("message", &RunResult::message)
+      .def_readonly("limit", &RunResult::limit)
+      .def_readonly("warnings", &RunResult::warnings)
+      .def_readonly("history", &RunResult::history)
+      .def_readonly("events", &RunResult::events)
+      .def("json", &RunResult::json)
+      .def("save", [](const RunResult& run, const std::string& folder) {
+        const py::gil_scoped_release released;
+        run.save(folder);
+      });
+}
+
+}  // namespace monograin::python

@@ -1,0 +1,110 @@
+// Sweeps, calibrations and comparisons.
+
+#include <pybind11/stl.h>
+
+#include <cmath>
+
+#include "bindings.hpp"
+#include "history/compare.hpp"
+#include "interruptible.hpp"
+#include "study/calibrate/calibration.hpp"
+#include "study/sweep/sweep.hpp"
+
+namespace monograin::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// @return the folder of the results, and how many runs it still lacks
+py::tuple sweep(const std::string& file, const std::string& output, int threads, std::size_t shard,
+                std::size_t shard_count) {
+  if (threads < 0) throw std::invalid_argument("threads: expected 0 for one for each core, or more");
+  if (shard < 1 || shard > shard_count) throw std::invalid_argument("shard: expected (i, n) with i from 1 to n");
+  const Sweep plan = [&] {
+    const py::gil_scoped_release released;
+    return read_sweep(file);
+  }();
+  const fs::path folder = output.empty() ? fs::path("runs") / plan.name : fs::path(output);
+  const SweepOutcome outcome = run_interruptibly([&](const std::atomic<bool>& stop) {
+    return run_sweep(plan, {.folder = folder,
+                            .threads = threads,
+                            .shard = {shard, shard_count},
+                            .progress = [&stop](std::size_t, std::size_t) {
+                              if (stop) throw Stopped();
+                            }});
+  });
+  return py::make_tuple(folder.string(), outcome.runs_missing);
+}
+
+/// What a calibration leaves in memory.
+struct Fitted {
+  std::string name;
+  std::string json;
+  std::string text;
+  std::string scenario_text;
+  std::vector<std::string> notes;
+  std::string no_figure;
+  History fit;
+};
+
+/// @param output      folder for the files of the program; empty: none are written
+/// @param confidence  nan: that of the file
+Fitted calibrate_file(const std::string& file, const std::string& output, double confidence) {
+  Calibration calibration = [&] {
+    const py::gil_scoped_release released;
+    return read_calibration(file);
+  }();
+  if (!std::isnan(confidence)) {
+    if (!(confidence > 0.0 && confidence < 1.0)) throw std::invalid_argument("confidence: expected a number in (0, 1)");
+    calibration.confidence = confidence;
+  }
+  return run_interruptibly([&](const std::atomic<bool>& stop) {
+    const CalibrationResult result = calibrate(calibration, [&stop](double) {
+      if (stop) throw Stopped();
+    });
+    Fitted fitted{.name = calibration.name,
+                  .json = calibration_json(calibration, result),
+                  .text = calibration_text(calibration, result),
+                  .scenario_text = fitted_scenario_text(calibration, result),
+                  .notes = result.notes,
+                  .no_figure = {},
+                  .fit = history_of(fit_table(calibration, result))};
+    if (!output.empty()) {
+      StagedFolder staged(output, k_calibration_marker);
+      fitted.no_figure = write_calibration(calibration, result, staged);
+    }
+    return fitted;
+  });
+}
+
+py::tuple as_python(const Comparison& comparison) {
+  py::list curves;
+  for (const CurveDifference& d : comparison.curves) {
+    curves.append(py::make_tuple(d.y, d.linf, d.linf_at, d.l2, d.area_error, d.peak_error, d.coverage));
+  }
+  py::list gaps;
+  for (const Gap& gap : comparison.gaps) gaps.append(py::make_tuple(gap.column, gap.problem));
+  return py::make_tuple(curves, gaps);
+}
+
+}  // namespace
+
+void add_studies(py::module_& module) {
+  module.def("sweep", &sweep);
+  py::class_<Fitted>(module, "Fitted")
+      .def_readonly("name", &Fitted::name)
+      .def_readonly("json", &Fitted::json)
+      .def_readonly("text", &Fitted::text)
+      .def_readonly("scenario_text", &Fitted::scenario_text)
+      .def_readonly("notes", &Fitted::notes)
+      .def_readonly("no_figure", &Fitted::no_figure)
+      .def_readonly("fit", &Fitted::fit);
+  module.def("calibrate", &calibrate_file);
+  module.def("compare_tables", [](const History& a, const History& b, const std::string& x, const std::string& y) {
+    return as_python(compare(a, b, x, y));
+  });
+  module.def("compare_events",
+             [](const History& a, const History& b) { return as_python(compare_events(a.table(), b.table())); });
+}
+
+}  // namespace monograin::python

@@ -1,0 +1,211 @@
+"""Laws, against formulas written here, against each other, and against runs."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import tomllib
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import monograin as mg
+
+laws = mg.laws
+ROUNDING = 1e-14
+
+
+def test_hertz_is_the_own_formula():
+    modulus = laws.hertz.composite_modulus(2e9, 0.25)
+    assert modulus == pytest.approx(2e9 / (1.0 - 0.0625), rel=ROUNDING)
+    overlap = np.linspace(0.0, 1e-4, 11)
+    force = laws.hertz.force(modulus, 0.01, overlap)
+    assert_allclose(force, 4.0 / 3.0 * modulus * np.sqrt(0.01) * overlap**1.5, rtol=ROUNDING)
+    assert_allclose(laws.hertz.contact_radius(0.01, overlap), np.sqrt(0.01 * overlap), rtol=ROUNDING)
+    assert_allclose(laws.hertz.energy(modulus, 0.01, overlap), 0.4 * force * overlap, rtol=ROUNDING)
+
+
+def test_arguments_broadcast_and_scalars_stay_scalars():
+    force = laws.hertz.force(np.array([[1e9], [2e9]]), 0.01, [1e-5, 2e-5, 3e-5])
+    assert force.shape == (2, 3)
+    assert force[1, 2] == laws.hertz.force(2e9, 0.01, 3e-5)
+    assert isinstance(laws.hertz.force(2e9, 0.01, 3e-5), float)
+    with pytest.raises((ValueError, RuntimeError)):
+        laws.hertz.force([1e9, 2e9], 0.01, [1e-5, 2e-5, 3e-5])
+
+
+def test_without_contact_nothing_acts():
+    for force in (
+        laws.hertz.force(1e9, 0.01, -1e-5),
+        laws.curved_sphere.force(1e9, 0.01, -1e-5),
+        laws.mdr.elastic_force(1e9, 0.01, -1e-5),
+        laws.similarity.force(1e7, 0.3, 0.01, -1e-5),
+        laws.semimech.force(1e9, 0.3, 1e7, 0.01, -1e-5),
+        laws.hardening.force(1e7, 0.3, 0.01, -1e-5),
+        laws.compressible.loading_force(2.0, 0.1, 3.0, -0.1),
+    ):
+        assert force == 0.0
+
+
+def test_one_term_of_the_curved_sphere_is_hertz_and_all_terms_are_its_closed_form():
+    overlap = np.linspace(1e-6, 2e-3, 7)
+    assert_allclose(
+        laws.curved_sphere.force(1e9, 0.01, overlap, terms="1"), laws.hertz.force(1e9, 0.01, overlap), rtol=1e-12
+    )
+    a = laws.curved_sphere.contact_radius(0.01, overlap) / 0.01
+    assert_allclose(a * np.arctanh(a) * 0.01, overlap, rtol=1e-12)
+    expected = 1e9 * 0.01**2 * ((1.0 + a**2) * np.arctanh(a) - a)
+    # The difference of two numbers of the order of a, for a result of the order of a^3.
+    assert_allclose(laws.curved_sphere.force(1e9, 0.01, overlap), expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "force, energy",
+    [
+        (laws.hertz.force, laws.hertz.energy),
+        (laws.curved_sphere.force, laws.curved_sphere.energy),
+        (laws.mdr.elastic_force, laws.mdr.elastic_energy),
+    ],
+)
+def test_the_energy_is_the_work_of_the_force(force, energy):
+    overlap, step = 5e-4, 1e-7
+    slope = (energy(1e9, 0.01, overlap + step) - energy(1e9, 0.01, overlap - step)) / (2.0 * step)
+    assert slope == pytest.approx(force(1e9, 0.01, overlap), rel=1e-7)
+
+
+def test_the_line_contact_inverts():
+    stress = np.geomspace(1e3, 5e7, 9)
+    strain = laws.line_contact.strain(1e9, stress)
+    assert_allclose(laws.line_contact.stress(1e9, strain), stress, rtol=1e-12)
+    width = laws.line_contact.half_width(1e9, stress)
+    assert_allclose(width, np.sqrt(8.0 * stress / (math.pi * 1e9)), rtol=ROUNDING)
+    expected = 2.0 * stress / (math.pi * 1e9) * (2.0 * np.log(4.0 / width) - 1.0)
+    assert_allclose(strain, expected, rtol=1e-13)
+
+
+def test_a_law_is_nan_beyond_its_end():
+    assert_array_equal(np.isnan(laws.line_contact.stress(1e9, [0.1, 0.45])), [False, True])
+    assert_array_equal(np.isnan(laws.similarity.force(1e7, 0.3, 0.01, [0.005, 0.01])), [False, True])
+    assert_array_equal(np.isnan(laws.mdr.elastic_force(1e9, 0.01, [0.01, 0.021])), [False, True])
+    assert_array_equal(np.isnan(laws.packing.stress([0.7, 0.9], 1e7, 0.45)), [True, False])
+    assert math.isnan(laws.hertz.force(1e9, 0.01, math.nan))
+
+
+def test_parameters_that_no_law_has_are_errors():
+    with pytest.raises(ValueError):
+        laws.semimech.force(1e9, 0.3, -1.0, 0.01, 1e-4)
+    with pytest.raises(ValueError, match="expected one of 'parabolic', 'corrected'"):
+        laws.similarity.force(1e7, 0.3, 0.01, 1e-4, rule="flat")
+    with pytest.raises(ValueError):
+        laws.hardening.force(1e7, 1.5, 0.01, 1e-4)
+    with pytest.raises(ValueError):
+        laws.hardening.force(1e7, 0.5, 0.01, 1e-4, configuration="box")
+
+
+def test_a_parabola_pulls_off_as_johnson_kendall_and_roberts_say():
+    energy = np.array([0.1, 1.0, 10.0])
+    force = laws.mdr.pull_off_force(1e9, 0.01, energy, profile="parabola")
+    assert_allclose(force, -1.5 * math.pi * energy * 0.01, rtol=1e-12)
+    assert (laws.mdr.pull_off_radius(1e9, 0.01, energy) > 0.0).all()
+
+
+def test_the_images_of_powers_are_known():
+    assert laws.mdr.power_ratio(0.0) == pytest.approx(1.0, rel=ROUNDING)
+    assert laws.mdr.power_ratio(1.0) == pytest.approx(math.pi / 2.0, rel=ROUNDING)
+    assert laws.mdr.power_ratio(2.0) == pytest.approx(2.0, rel=ROUNDING)
+    image = laws.mdr.power_profile_1d(3.0, 2.5, 0.2)
+    assert laws.mdr.power_profile_3d(image / 0.2**2.5, 2.5, 0.2) == pytest.approx(3.0 * 0.2**2.5, rel=1e-13)
+
+
+def test_the_plastic_contact_continues_the_elastic_one():
+    overlap = laws.mdr.yield_overlap(1e9, 0.3, 5e7, 0.01)
+    modulus = laws.hertz.composite_modulus(1e9, 0.3)
+    # The mean pressure is continuous by definition of first yield, and with it the force of Hertz's parabola.
+    elastic = laws.mdr.elastic_force(modulus, 0.01, overlap, profile="parabola")
+    assert laws.mdr.plastic_force(1e9, 0.3, 5e7, 0.01, overlap) == pytest.approx(elastic, rel=1e-12)
+    pressure = laws.mdr.plastic_mean_pressure(5e7, 0.01, overlap)
+    assert pressure == pytest.approx(5e7 * (1.0 + 1.75 * math.exp(-4.4 * overlap / 0.01)), rel=1e-14)
+
+
+def test_a_pair_inverts_and_a_rigid_body_leaves_the_strength():
+    force = laws.similarity.pair_force(1e7, 0.25, 0.01, 0.02, 1e-4)
+    assert laws.similarity.pair_approach(1e7, 0.25, 0.01, 0.02, force) == pytest.approx(1e-4, rel=1e-12)
+    assert laws.similarity.pair_strength(1e7, math.inf, 0.25) == 1e7
+    assert laws.similarity.pair_contact_radius(0.25, 0.01, math.inf, 1e-4) > 0.0
+    step = 1e-9
+    slope = (
+        laws.similarity.pair_work(1e7, 0.25, 0.01, 0.02, 1e-4 + step)
+        - laws.similarity.pair_work(1e7, 0.25, 0.01, 0.02, 1e-4 - step)
+    ) / (2.0 * step)
+    assert slope == pytest.approx(force, rel=1e-7)
+
+
+def test_the_power_law_nearest_to_ludwik_is_near():
+    found = laws.ludwik.power_law(1e10, 5e6, 15.5e6, 0.35)
+    strain = np.linspace(0.05, 1.0, 20)
+    difference = laws.ludwik.stress(5e6, 15.5e6, 0.35, strain) / (found.strength * strain**found.exponent) - 1.0
+    assert np.abs(difference).max() < 0.05
+    assert 0.0 < found.residual < 1e6
+    fixed = laws.ludwik.power_law(1e10, 5e6, 15.5e6, 0.35, fit="exponent")
+    assert fixed.strength == pytest.approx(20.5e6, rel=ROUNDING)
+
+
+def test_the_compressible_law_is_continuous_and_unloads_from_its_end():
+    at = 0.1
+    below, above = laws.compressible.loading_force(2.0, at, 3.0, [at * (1 - 1e-12), at * (1 + 1e-12)])
+    assert below == pytest.approx(above, rel=1e-10)
+    largest = laws.compressible.loading_force(2.0, at, 3.0, 0.3)
+    hertz = laws.compressible.hertz_stiffness(20.0, 0.3)
+    assert laws.compressible.unloading_force(2.0, at, 3.0, hertz, 0.3, 0.3) == pytest.approx(largest, rel=1e-14)
+    way = laws.compressible.unloading_force(2.0, at, 3.0, hertz, 0.3, np.linspace(0.0, 0.3, 50))
+    assert way[0] == 0.0
+    assert (np.diff(way) >= 0.0).all()
+
+
+@pytest.mark.parametrize(
+    "name, force",
+    [
+        ("hertz", lambda m, r, d: laws.hertz.force(laws.hertz.composite_modulus(m["E"], m["nu"]), r, d)),
+        ("semimech", lambda m, r, d: laws.semimech.force(m["E"], m["nu"], m["Y"], r, d, configuration=m["walls"])),
+        ("hardening", lambda m, r, d: laws.hardening.force(m["kappa"], m["mu"], r, d, configuration=m["walls"])),
+        ("similarity", lambda m, r, d: laws.similarity.force(m["kappa"], m["mu"], r, d)),
+    ],
+)
+def test_laws_are_what_runs_compute(name, force):
+    scenario = mg.scenario(name)
+    run = scenario.run()
+    d = run["axial.displacement"]
+    turns = np.flatnonzero(np.diff(d) < 0.0)
+    first = turns[0] + 1 if len(turns) else len(d)
+    radius = float(run.history.header["R0"])
+    expected = force(_numbers(scenario), radius, d[:first])
+    assert np.isfinite(expected).all()
+    assert_allclose(run["axial.force"][:first], expected, rtol=1e-8, atol=1e-9 * np.nanmax(expected))
+
+
+def _numbers(scenario: mg.Scenario) -> dict:
+    """Constants of a scenario's material in SI units, by their symbols, and its wall set."""
+    header = scenario.run().history.header
+    found = mg.parameters(scenario)
+    numbers = {"E": header.get("E"), "nu": header.get("nu"), "Y": header.get("Y")}
+    numbers = {key: float(value) for key, value in numbers.items() if value}
+    document = tomllib.loads(scenario.text)
+    for key, symbol in (("strength", "kappa"), ("hardening_exponent", "mu")):
+        if key in found:
+            numbers[symbol] = found[key].value
+    return {**numbers, "walls": document["loading"]["configuration"]}
+
+
+def test_every_law_says_what_it_returns_and_in_which_unit():
+    modules = [value for name, value in vars(laws).items() if inspect.ismodule(value)]
+    functions = [getattr(module, name) for module in modules for name in module.__all__]
+    functions = [function for function in functions if inspect.isfunction(function)]
+    assert len(functions) > 40
+    for function in functions:
+        text = inspect.getdoc(function)
+        assert text.startswith("Returns "), function
+        for argument in inspect.signature(function).parameters:
+            assert argument in text, f"{function.__module__}.{function.__name__}: {argument}"
+    for module in modules:
+        assert "Source: " in inspect.getdoc(module), module

@@ -1,0 +1,75 @@
+"""Types, documentation, and the installed distribution."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import inspect
+import os
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+import monograin as mg
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def test_every_public_name_is_documented():
+    for name in mg.__all__:
+        value = getattr(mg, name)
+        if inspect.ismodule(value) or isinstance(value, str):
+            continue
+        assert inspect.getdoc(value), name
+        if inspect.isclass(value):
+            for member, entry in vars(value).items():
+                if not member.startswith("_") and (inspect.isfunction(entry) or isinstance(entry, (property, classmethod))):
+                    assert inspect.getdoc(entry), f"{name}.{member}"
+
+
+def test_the_distribution_lists_its_files_with_their_digests():
+    try:
+        distribution = importlib.metadata.distribution("monograin")
+    except importlib.metadata.PackageNotFoundError:
+        pytest.skip("the package is not installed")
+    assert distribution.version == mg.__version__
+    assert distribution.requires is not None
+    assert distribution.requires[0] == "numpy"
+    files = {str(file): file for file in distribution.files or []}
+    assert "monograin/py.typed" in files
+    assert "monograin/scenarios/die.toml" in files
+    assert any(name.startswith("monograin/_core") and name.endswith(".so") for name in files)
+    for name, file in files.items():
+        if file.hash is not None:
+            assert file.size == pathlib.Path(str(file.locate())).stat().st_size, name
+
+
+def test_sources_and_stubs_pass_the_type_checker(tmp_path):
+    mypy = pytest.importorskip("mypy")
+    assert mypy
+    environment = {**os.environ, "MYPY_CACHE_DIR": str(tmp_path)}
+    checked = subprocess.run([sys.executable, "-m", "mypy"], cwd=ROOT, capture_output=True, text=True, env=environment)
+    assert checked.returncode == 0, checked.stdout
+
+
+def test_a_users_program_passes_the_type_checker(tmp_path):
+    pytest.importorskip("mypy")
+    (tmp_path / "good.py").write_text(
+        "import numpy as np\nimport monograin as mg\n"
+        "run: mg.Run = mg.scenario('die').run()\n"
+        "table: np.ndarray[object, np.dtype[np.float64]] = mg.scenario().prepare(['x']).map([[1.0]], ['a'])\n"
+        "force = mg.laws.hertz.force(1.0, 1.0, [1.0])\n"
+    )
+    (tmp_path / "bad.py").write_text("import monograin as mg\nmg.scenario('die').run().statsu\nmg.Scenario.load(3)\n")
+    environment = {**os.environ, "MYPYPATH": str(ROOT / "python"), "MYPY_CACHE_DIR": str(tmp_path / "cache")}
+
+    def check(name: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", name]
+        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, env=environment)
+
+    good, bad = check("good.py"), check("bad.py")
+    assert good.returncode == 0, good.stdout
+    assert bad.returncode == 1
+    assert '"statsu"' in bad.stdout
+    assert 'Argument 1 to "load"' in bad.stdout

@@ -1,0 +1,230 @@
+"""Prepared scenarios, threads and interrupts."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import monograin as mg
+
+KEYS = ["material.youngs_modulus", "material.yield_stress", "loading.steps[0].displacement"]
+COLUMNS = ["max(axial.force)", "end(apparent_radius)", "end(axial.force) / max(axial.force)"]
+
+
+@pytest.fixture(scope="module")
+def prepared() -> mg.Prepared:
+    return mg.scenario("die").prepare(KEYS)
+
+
+@pytest.fixture(scope="module")
+def samples() -> np.ndarray:
+    draw = np.random.default_rng(1)
+    return np.column_stack([draw.uniform(0.8e9, 2e9, 24), draw.uniform(3e7, 8e7, 24), draw.uniform(3.3e-3, 4.1e-3, 24)])
+
+
+def test_a_prepared_run_is_that_of_the_edited_text_bit_by_bit(prepared, samples):
+    for values in samples[:6]:
+        run = prepared.run(values)
+        text = mg.scenario("die").text
+        for old, new in zip(('"1 GPa"', '"50 MPa"', '"0.4 R0"'), values):
+            assert old in text
+            text = text.replace(old, repr(float(new)), 1)
+        expected = mg.Scenario(text).run()
+        assert run.columns == expected.columns
+        for column in run.columns:
+            assert_array_equal(run[column], expected[column], err_msg=column)
+
+
+def test_map_gives_the_numbers_of_single_runs(prepared, samples):
+    table, statuses = prepared.map(samples, COLUMNS, statuses=True)
+    assert table.shape == (len(samples), len(COLUMNS))
+    for values, row, status in zip(samples, table, statuses):
+        run = prepared.run(values)
+        assert status == run.status
+        force = run["axial.force"]
+        assert row[0] == np.nanmax(force)
+        assert row[1] == run["apparent_radius"][-1]
+        assert row[2] == force[~np.isnan(force)][-1] / np.nanmax(force)
+
+
+def test_map_does_not_depend_on_threads(prepared, samples):
+    one, four = (prepared.map(samples, COLUMNS, threads=threads) for threads in (1, 4))
+    assert_array_equal(one, four)
+
+
+def test_rows_that_are_refused_are_nan(prepared, samples):
+    some = samples[:3].copy()
+    some[1, 1] = -5.0
+    table, statuses = prepared.map(some, COLUMNS, statuses=True)
+    assert list(statuses) == ["complete", "refused", "complete"]
+    assert np.isnan(table[1]).all()
+    assert np.isfinite(table[[0, 2]]).all()
+    with pytest.raises(mg.ScenarioError):
+        prepared.run(some[1])
+
+
+def test_a_key_that_is_none_is_a_fault():
+    with pytest.raises(mg.ScenarioError, match="yield_stress"):
+        mg.scenario("die").prepare(["material.yield_stres"])
+    with pytest.raises(mg.ScenarioError, match="takes no number"):
+        mg.scenario("die").prepare(["loading.configuration"])
+
+
+def test_a_formula_that_is_none_is_an_error(prepared, samples):
+    with pytest.raises(ValueError, match="axial.forse"):
+        prepared.map(samples, ["max(axial.forse)"])
+    with pytest.raises(ValueError, match="expected an operator"):
+        prepared.map(samples, ["max(axial.force) max"])
+    with pytest.raises(ValueError, match="a value for each row"):
+        prepared.map(samples, ["axial.force"])
+    with pytest.raises(ValueError, match="list of formulas"):
+        prepared.map(samples, "max(axial.force)")
+
+
+def test_a_prepared_run_knows_its_scenario(prepared, samples):
+    run = prepared.run(samples[0])
+    assert_array_equal(run.scenario.run()["axial.force"], run["axial.force"])
+    assert len(run.profile(0.5)) > 100
+
+
+def test_samples_of_another_shape_are_an_error(prepared):
+    with pytest.raises(ValueError, match="3 keys"):
+        prepared.map(np.ones((4, 2)), COLUMNS)
+    with pytest.raises(ValueError, match="2 values for 3 keys"):
+        prepared.run([1.0, 2.0])
+    with pytest.raises(ValueError, match="threads"):
+        prepared.map(np.ones((4, 3)), COLUMNS, threads=-1)
+
+
+def test_one_key_takes_a_plain_array():
+    single = mg.scenario("die").prepare(["material.yield_stress"])
+    table = single.map([4e7, 5e7, 6e7], ["max(axial.force)"])
+    assert table.shape == (3, 1)
+    assert (np.diff(table[:, 0]) > 0.0).all()
+    assert single.map(np.empty((0, 1)), ["max(axial.force)"]).shape == (0, 1)
+
+
+def test_a_prepared_scenario_survives_pickling(prepared, samples):
+    again = pickle.loads(pickle.dumps(prepared))
+    assert again.keys == prepared.keys
+    assert_array_equal(again.run(samples[0])["axial.force"], prepared.run(samples[0])["axial.force"])
+
+
+def largest_force(scenario: mg.Scenario) -> float:
+    return float(np.nanmax(scenario.run()["axial.force"]))
+
+
+def test_scenarios_run_in_other_processes(samples):
+    scenarios = [mg.scenario("die").replace(dict(zip(KEYS, map(float, values)))) for values in samples[:4]]
+    with concurrent.futures.ProcessPoolExecutor(2) as pool:
+        assert list(pool.map(largest_force, scenarios)) == [largest_force(scenario) for scenario in scenarios]
+
+
+def test_runs_in_threads_give_the_same(prepared, samples):
+    expected = [prepared.run(values)["axial.force"] for values in samples]
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        for run, force in zip(pool.map(prepared.run, samples), expected):
+            assert_array_equal(run["axial.force"], force)
+
+
+def test_other_threads_go_on_during_map(prepared, samples):
+    many = np.tile(samples, (40, 1))
+    with concurrent.futures.ThreadPoolExecutor(1) as pool:
+        result = pool.submit(prepared.map, many, COLUMNS, threads=1)
+        counted = 0
+        while not result.done():
+            counted += 1
+            time.sleep(0.001)
+    assert counted > 20
+    assert_array_equal(result.result()[: len(samples)], prepared.map(samples, COLUMNS))
+
+
+def interrupted(code: str, cwd) -> tuple[str, float]:
+    """Output of a child process that gets Ctrl-C as soon as it has written a line, and the seconds it took to end."""
+    child = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(code)], cwd=cwd, stdout=subprocess.PIPE, text=True, env={**os.environ}
+    )
+    assert child.stdout is not None
+    assert child.stdout.readline().strip() == "ready"
+    time.sleep(0.4)
+    child.send_signal(signal.SIGINT)
+    start = time.monotonic()
+    output, _ = child.communicate(timeout=60)
+    return output.strip(), time.monotonic() - start
+
+
+def test_an_interrupt_stops_map_and_keeps_what_is_there(tmp_path):
+    output, seconds = interrupted(
+        """
+        import numpy as np, monograin as mg
+        prepared = mg.scenario("die").prepare(["material.yield_stress"])
+        samples = np.linspace(4e7, 6e7, 1_000_000)
+        print("ready", flush=True)
+        try:
+            prepared.map(samples, ["max(axial.force)"], threads=2)
+        except mg.Interrupted as stop:
+            done = stop.statuses == "complete"
+            rows = np.flatnonzero(done)[:3]
+            same = [prepared.map(samples[[row]], ["max(axial.force)"])[0, 0] == stop.table[row, 0] for row in rows]
+            print(0 < done.sum() < len(samples), all(same), np.isnan(stop.table[~done]).all())
+        """,
+        tmp_path,
+    )
+    assert output == "True True True"
+    assert seconds < 10.0
+
+
+def test_an_interrupted_sweep_goes_on_where_it_was(tmp_path):
+    (tmp_path / "die.toml").write_text(mg.scenario("die").text)
+    (tmp_path / "long.toml").write_text(
+        'scenario = "die.toml"\ndesign = "grid"\n[vary]\n'
+        '"material.poisson_ratio" = { from = 0.2, to = 0.48, points = 60 }\n'
+        '"material.yield_stress" = { from = "20 MPa", to = "100 MPa", points = 40, scale = "log" }\n'
+    )
+    output, seconds = interrupted(
+        """
+        import monograin as mg
+        print("ready", flush=True)
+        try:
+            mg.sweep("long.toml", "out", threads=1)
+        except KeyboardInterrupt:
+            print("stopped")
+        """,
+        tmp_path,
+    )
+    assert output == "stopped"
+    assert seconds < 10.0
+    (journal,) = (tmp_path / "out").glob("*.journal")
+    kept = journal.read_bytes().count(b"\n")
+    assert 3 < kept < 2400
+    table = mg.sweep(tmp_path / "long.toml", tmp_path / "out")
+    assert len(table) == 2400
+    assert not list((tmp_path / "out").glob("*.journal"))
+    assert (table["status"] == "complete").all()
+
+
+def test_an_interrupt_stops_a_calibration(tmp_path):
+    output, seconds = interrupted(
+        """
+        import monograin as mg
+        print("ready", flush=True)
+        try:
+            while True:
+                mg.calibrate(mg.scenario_folder() / "calibrate" / "uniaxial.toml", "out")
+        except KeyboardInterrupt:
+            print("stopped")
+        """,
+        tmp_path,
+    )
+    assert output == "stopped"
+    assert seconds < 10.0

@@ -1,0 +1,280 @@
+"""Scenarios and runs."""
+
+from __future__ import annotations
+
+import gc
+import json
+import pathlib
+import pickle
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import monograin as mg
+
+SCENARIOS = mg.scenarios()
+
+
+def test_the_package_brings_every_ready_scenario():
+    root = pathlib.Path(__file__).resolve().parents[2]
+    assert SCENARIOS == sorted(path.stem for path in (root / "scenarios").glob("*.toml"))
+    assert (mg.scenario_folder() / "calibrate" / "uniaxial.csv").is_file()
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_a_run_has_the_numbers_of_the_program_bit_by_bit(name, run_program, tmp_path):
+    called = run_program("run", mg.scenario_folder() / f"{name}.toml", "-o", "out", "--quiet", cwd=tmp_path)
+    expected = mg.Table.read_csv(tmp_path / "out" / "history.csv")
+    run = mg.scenario(name).run()
+    assert {0: "complete", 3: "stopped"}[called.returncode] == run.status
+    assert run.columns == expected.columns
+    assert run.units == expected.units
+    for column in expected.columns:
+        assert_array_equal(run[column], expected[column], err_msg=column)
+    events = mg.Table.read_csv(tmp_path / "out" / "events.csv")
+    assert [event["event"] for event in run.events] == [event["event"] for event in events]
+    if len(events) > 0:
+        assert_array_equal(run.events["time"], events["time"])
+
+
+def test_saving_writes_the_files_of_the_program(run_program, die, tmp_path):
+    run_program("run", mg.scenario_folder() / "die.toml", "-o", "theirs", "--quiet", cwd=tmp_path)
+    run = mg.Scenario.load(mg.scenario_folder() / "die.toml").run()
+    run.save(tmp_path / "ours")
+    for name in ("history.csv", "events.csv"):
+        assert (tmp_path / "ours" / name).read_bytes() == (tmp_path / "theirs" / name).read_bytes()
+    ours, theirs = (json.loads((tmp_path / side / "run.json").read_text()) for side in ("ours", "theirs"))
+    assert ours.pop("timings_s").keys() == theirs.pop("timings_s").keys()
+    assert ours == theirs
+
+
+def test_info_is_what_run_json_holds(die, tmp_path):
+    run = die.run()
+    run.save(tmp_path)
+    saved = json.loads((tmp_path / "run.json").read_text())
+    # Only the file can tell how long its own writing took.
+    assert saved["timings_s"].pop("output") > run.info["timings_s"]["output"] == 0.0
+    assert {**run.info, "timings_s": saved["timings_s"]} == saved
+    assert run.info["status"] == "complete"
+
+
+def test_saving_refuses_a_folder_of_somebody_else(die, tmp_path):
+    (tmp_path / "letter.txt").write_text("mine")
+    with pytest.raises(RuntimeError):
+        die.run().save(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
+
+
+def test_a_dict_is_the_scenario_of_its_text():
+    made = mg.Scenario(
+        {
+            "model": "hertz",
+            "particle": {"radius": 0.01},
+            "material": {"youngs_modulus": "1 GPa", "poisson_ratio": 0.3},
+            "loading": {
+                "configuration": "simple",
+                "steps": [{"displacement": "0.01 R0", "duration": 1.0}, {"displacement": 0.0, "duration": "1 s"}],
+            },
+        }
+    )
+    assert made.name == "scenario"
+    run = made.run()
+    modulus = mg.laws.hertz.composite_modulus(1e9, 0.3)
+    expected = mg.laws.hertz.force(modulus, 0.01, run["axial.displacement"])
+    np.testing.assert_allclose(run["axial.force"], expected, rtol=1e-14, atol=1e-12)
+
+
+def test_replacing_is_editing_the_text(die):
+    edited = die.text.replace('"50 MPa"', '"30 MPa"').replace('displacement = "0.4 R0"', "displacement = 0.0035")
+    assert edited != die.text
+    replaced = die.replace({"material.yield_stress": "30 MPa", "loading.steps[0].displacement": 0.0035})
+    expected, run = mg.Scenario(edited).run(), replaced.run()
+    for column in run.columns:
+        assert_array_equal(run[column], expected[column], err_msg=column)
+    assert die.overrides == []
+    assert replaced.replace({"output.points": 10}).overrides[:2] == replaced.overrides
+
+
+def test_every_kind_of_value_can_be_replaced():
+    scenario = mg.scenario("die").replace(
+        {
+            "output": {"times": [0.5, 1.0]},
+            "title": 'a "title" of two\nlines',
+            "material.yield_stress": np.float64(4e7),
+            "loading.centre": "fixed",
+            "numerics.rtol": 1e-9,
+        }
+    )
+    run = scenario.run()
+    assert scenario.title == 'a "title" of two\nlines'
+    assert {0.5, 1.0} <= set(run["time"])
+    assert run.info["tolerances"]["rtol"] == 1e-9
+
+
+def test_a_fault_tells_its_place_and_what_is_expected(die):
+    text = die.text.replace("poisson_ratio  = 0.3", "poison_ratio = 0.3").replace('"50 MPa"', '"50 MPA"')
+    with pytest.raises(mg.ScenarioError) as caught:
+        mg.Scenario(text, origin="soft.toml")
+    faults = caught.value.faults
+    lines = text.splitlines()
+    assert len(faults) >= 2
+    by_line = {fault.line: fault for fault in faults}
+    misspelt = next(i for i, line in enumerate(lines, 1) if line.startswith("poison_ratio"))
+    unit = next(i for i, line in enumerate(lines, 1) if "50 MPA" in line)
+    assert (by_line[misspelt].file, by_line[misspelt].column) == ("soft.toml", 1)
+    assert "poisson_ratio" in by_line[misspelt].text
+    assert by_line[unit].column == lines[unit - 1].index('"') + 1
+    assert str(caught.value).splitlines() == [str(fault) for fault in faults]
+
+
+def test_a_fault_of_a_replaced_value_names_the_replacement(die):
+    with pytest.raises(mg.ScenarioError) as caught:
+        die.replace({"material.yield_stress": "30 metres"})
+    (fault,) = caught.value.faults
+    assert fault.file == "replace 'material.yield_stress=\"30 metres\"'"
+
+
+def test_a_missing_file_is_a_fault(tmp_path):
+    with pytest.raises(mg.ScenarioError) as caught:
+        mg.Scenario.load(tmp_path / "none.toml")
+    assert "no such file" in str(caught.value)
+
+
+def test_an_error_survives_pickling(die):
+    with pytest.raises(mg.ScenarioError) as caught:
+        die.replace({"material.poisson_ratio": 0.9})
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert again.faults == caught.value.faults
+    assert str(again) == str(caught.value)
+
+
+def test_a_limit_of_the_model_stops_a_run_and_raises_nothing():
+    run = mg.scenario("die").replace({"loading.steps[0].displacement": "0.6 R0"}).run()
+    assert run.status == "stopped"
+    assert run.limit == run.info["limit"] == "free-surface-used-up"
+    assert "free surface" in run.message
+    assert run["axial.displacement"][-1] < 0.006
+    assert len(run) > 2
+
+
+class FailedCore:
+    """A recorded run whose solver gave up, which no ready scenario's does."""
+
+    status, message = "failed", "the solver gave up"
+
+    def __init__(self, core):
+        self.history, self.events = core.history, core.events
+
+    def run(self):
+        return self
+
+
+def test_a_solver_that_gives_up_raises_with_its_run(die):
+    run = die.run()
+    assert run.scenario is die
+    failing = mg.Scenario.__new__(mg.Scenario)
+    failing._core = FailedCore(run._core)
+    assert failing.run(check=False).status == "failed"
+    with pytest.raises(mg.SolverError, match="the solver gave up") as caught:
+        failing.run()
+    assert caught.value.run.status == "failed"
+    assert len(caught.value.run) == len(run)
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (str(again), again.run) == (str(caught.value), None)
+
+
+def test_a_misspelt_column_is_a_key_error_with_the_near_one(die):
+    run = die.run()
+    with pytest.raises(KeyError, match="did you mean 'axial.force'"):
+        run["axial.forse"]
+    assert "axial.force" in run
+    assert "axial.forse" not in run
+    assert_array_equal(run["axial.force[N]"], run["axial.force"])
+
+
+def test_columns_are_views_that_keep_their_memory(die):
+    run = die.run()
+    first, again = run["axial.force"], run["axial.force"]
+    assert not first.flags.writeable
+    assert not first.flags.owndata
+    assert np.shares_memory(first, again)
+    with pytest.raises(ValueError):
+        first[0] = 1.0
+    copy = first.copy()
+    del run, again
+    gc.collect()
+    others = [die.run()["axial.force"].sum() for _ in range(5)]
+    assert len(set(others)) == 1
+    assert_array_equal(first, copy)
+
+
+def test_words_are_arrays_of_str(die):
+    regimes = die.run()["axial.regime"]
+    assert regimes.dtype.kind == "U"
+    assert {"elastic", "plastic-loading"} & set(regimes)
+
+
+def test_events_are_rows(die):
+    events = die.run().events
+    names = [event["event"] for event in events]
+    assert len(names) == len(events) > 3
+    assert names == list(events["event"])
+    assert all(isinstance(event["time"], float) for event in events)
+
+
+def test_a_scenario_survives_pickling_and_finds_its_files(monkeypatch, tmp_path):
+    scenario = mg.scenario("hollomon").replace({"output.points": 20})
+    monkeypatch.chdir(tmp_path)
+    again = pickle.loads(pickle.dumps(scenario))
+    assert again == scenario
+    assert hash(again) == hash(scenario)
+    assert again != mg.scenario("hollomon")
+    assert_array_equal(again.run()["axial.force"], scenario.run()["axial.force"])
+
+
+def test_to_pandas_has_every_column(die):
+    pandas = pytest.importorskip("pandas")
+    run = die.run()
+    frame = run.to_pandas()
+    assert isinstance(frame, pandas.DataFrame)
+    assert list(frame.columns) == run.columns
+    assert_array_equal(frame["axial.force"], run["axial.force"])
+    frame.loc[0, "axial.force"] = 7.0
+    assert run["axial.force"][0] != 7.0
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_every_ready_scenario_can_be_plotted(name, tmp_path):
+    pytest.importorskip("matplotlib")
+    run = mg.scenario(name).run()
+    figure = run.plot()
+    axes = figure.axes
+    assert 1 <= len(axes) <= 4
+    for panel in axes:
+        assert any(np.isfinite(line.get_ydata()).any() for line in panel.lines)
+        assert panel.get_xlabel()
+        assert panel.get_ylabel()
+    if name == "die":
+        assert {line.get_linestyle() for line in axes[0].lines} >= {"-", "--", ":"}
+        figure.savefig(tmp_path / "die.png")
+        assert (tmp_path / "die.png").stat().st_size > 10_000
+
+
+def test_a_profile_carries_the_force_of_its_instant(die):
+    run = die.run()
+    profile = run.profile(0.5)
+    assert profile.units == {"class": "", "radius": "m", "pressure": "Pa", "displacement": "m", "relaxed_height": "m"}
+    axial = profile["class"] == "axial"
+    radius, pressure = profile["radius"][axial], profile["pressure"][axial]
+    force = 2.0 * np.pi * np.trapz(pressure * radius, radius)
+    row = np.flatnonzero(run["time"] == 0.5)[0]
+    # A trapezoidal sum over a pressure that is steep at the edge.
+    assert force == pytest.approx(run["axial.force"][row], rel=0.02)
+
+
+def test_a_profile_beyond_the_run_is_an_error(die):
+    with pytest.raises(RuntimeError, match="no profile"):
+        die.run().profile(99.0)
+    with pytest.raises(RuntimeError, match="has no profile"):
+        mg.scenario("packing").run().profile(0.5)

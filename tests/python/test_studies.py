@@ -1,0 +1,131 @@
+"""Sweeps, calibrations, comparisons, and what the package tells about models."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import monograin as mg
+
+
+def test_a_sweep_has_the_table_of_the_program(run_program, tmp_path):
+    file = mg.scenario_folder() / "sweeps" / "poisson.toml"
+    table = mg.sweep(file, tmp_path / "ours")
+    assert run_program("sweep", file, "-o", "theirs", cwd=tmp_path).returncode == 0
+    assert (tmp_path / "ours" / "results.csv").read_bytes() == (tmp_path / "theirs" / "results.csv").read_bytes()
+    assert len(table) == 40
+    assert set(table["status"]) == {"complete"}
+    assert table["max.axial.force"].shape == (40,)
+    assert table.header["sweep"] == "poisson"
+
+
+def test_shards_merge_into_the_same_table(tmp_path):
+    file = mg.scenario_folder() / "sweeps" / "poisson.toml"
+    whole = mg.sweep(file, tmp_path / "whole")
+    assert mg.sweep(file, tmp_path / "parts", shard=(1, 2)) is None
+    merged = mg.sweep(file, tmp_path / "parts", shard=(2, 2), threads=1)
+    for column in whole.columns:
+        assert_array_equal(merged[column], whole[column])
+    with pytest.raises(ValueError, match="shard"):
+        mg.sweep(file, tmp_path / "parts", shard=(3, 2))
+
+
+def test_a_sweep_with_faults_runs_nothing(tmp_path):
+    (tmp_path / "bad.toml").write_text('scenario = "none.toml"\ndesign = "grid"\n')
+    with pytest.raises(mg.ScenarioError) as caught:
+        mg.sweep(tmp_path / "bad.toml", tmp_path / "out")
+    assert caught.value.faults
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_calibration_finds_what_the_program_finds(run_program, tmp_path):
+    file = mg.scenario_folder() / "calibrate" / "uniaxial.toml"
+    result = mg.calibrate(file, tmp_path / "ours")
+    called = run_program("calibrate", file, "-o", "theirs", "--quiet", cwd=tmp_path)
+    assert called.returncode == 0
+    assert str(result) == called.stdout
+    assert result.info == json.loads((tmp_path / "theirs" / "calibration.json").read_text())
+    assert (tmp_path / "ours" / "fit.csv").read_bytes() == (tmp_path / "theirs" / "fit.csv").read_bytes()
+    modulus = result.parameters["material.youngs_modulus"]
+    assert modulus.interval[0] < 1.2e9 < modulus.interval[1]
+    assert modulus.at_bound is None
+    assert modulus.is_determined
+    assert modulus.standard_error == pytest.approx(np.sqrt(result.covariance[0, 0]), rel=1e-12)
+    assert_array_equal(np.diag(result.correlation), [1.0, 1.0])
+    fitted = mg.Scenario(result.scenario_text)
+    again = mg.scenario("uniaxial").replace(result.values)
+    assert tomllib.loads(fitted.text)["material"].keys() == tomllib.loads(again.text)["material"].keys()
+    assert_array_equal(fitted.run()["axial.force"], again.run()["axial.force"])
+    assert "residual" in result.fit
+
+
+def test_the_level_of_a_calibration_can_be_chosen():
+    file = mg.scenario_folder() / "calibrate" / "uniaxial.toml"
+    wide, narrow = (mg.calibrate(file, confidence=level).parameters for level in (0.99, 0.5))
+    for key, parameter in wide.items():
+        assert parameter.value == narrow[key].value
+        assert parameter.interval[0] < narrow[key].interval[0] < narrow[key].interval[1] < parameter.interval[1]
+    with pytest.raises(ValueError, match="confidence"):
+        mg.calibrate(file, confidence=1.0)
+
+
+def test_a_run_does_not_differ_from_itself_and_does_from_another(die, tmp_path):
+    run, softer = die.run(), die.replace({"material.yield_stress": "49 MPa"}).run()
+    same = mg.compare(run, run)
+    assert same.gaps == []
+    assert {curve.y for curve in same.curves} >= {"axial.force[N]", "event time[s]"}
+    assert all(curve.linf == 0.0 and curve.coverage == 1.0 for curve in same.curves)
+    (force,) = mg.compare(run, softer, x="axial.displacement", y="axial.force").curves
+    assert 0.001 < force.linf < 0.1
+    run.save(tmp_path / "a")
+    softer.save(tmp_path / "b")
+    assert mg.compare(tmp_path / "a", tmp_path / "b") == mg.compare(run, softer)
+    (again,) = mg.compare(tmp_path / "a" / "history.csv", softer.history, x="axial.displacement", y="axial.force").curves
+    assert again == force
+    with pytest.raises(RuntimeError):
+        mg.compare(run, softer, y="axial.forse")
+
+
+def test_models_are_those_of_the_program(run_program, tmp_path):
+    listed = [line.split()[0] for line in run_program("models", cwd=tmp_path).stdout.splitlines()]
+    models = mg.models()
+    assert list(models) == listed
+    mdr = models["mdr"]
+    assert mdr.material["youngs_modulus"].unit == "Pa"
+    assert mdr.material["youngs_modulus"].is_required
+    assert mdr.material["poisson_ratio"].upper == 0.5
+    assert "die" in mdr.configurations
+    assert mdr.has_walls
+    assert mdr.validity
+    assert not models["packing"].has_walls
+    assert "packing_fraction" in models["packing"].steps
+    text = run_program("models", "mdr", cwd=tmp_path).stdout
+    for key in (*mdr.material.values(), *mdr.options.values()):
+        assert f"{key.name} " in text
+        assert key.meaning in text
+
+
+def test_parameters_are_those_of_the_program(run_program, tmp_path):
+    for name in ("die", "semimech", "packing"):
+        file = mg.scenario_folder() / f"{name}.toml"
+        lines = run_program("models", "--parameters", file, cwd=tmp_path).stdout.splitlines()
+        found = mg.parameters(mg.scenario(name))
+        assert [line.split()[0] for line in lines] == list(found)
+        assert [float(line.split()[1]) for line in lines] == [parameter.value for parameter in found.values()]
+
+
+def test_the_schema_is_that_of_the_program(run_program, tmp_path):
+    assert mg.schema() == json.loads(run_program("schema", cwd=tmp_path).stdout)
+
+
+def test_an_unknown_ready_scenario_names_those_there_are():
+    with pytest.raises(KeyError, match="die"):
+        mg.scenario("dye")
+
+
+def test_the_version_is_that_of_the_program(run_program, tmp_path):
+    assert run_program("--version", cwd=tmp_path).stdout.strip() == f"monograin {mg.__version__}"
