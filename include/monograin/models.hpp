@@ -25,9 +25,10 @@ struct TermInfo {
 struct ModelInfo {
   std::string name;
   std::string summary;
-  std::string source;
-  std::vector<KeyInfo> material;  ///< of `[material]`
-  std::vector<KeyInfo> options;   ///< of the table that bears the model's name
+  std::vector<std::string> references;  ///< publications, the main one first: authors (year), title, venue, DOI
+  std::string source;                   ///< where in the references the law stands, and what of them is corrected
+  std::vector<KeyInfo> material;        ///< of `[material]`
+  std::vector<KeyInfo> options;         ///< of the table that bears the model's name
   std::vector<std::string> configurations;
   std::vector<TermInfo> regimes;
   std::vector<TermInfo> events;

@@ -97,6 +97,8 @@ constexpr std::array k_events{
     Term{"limit", "the law ends, at a displacement of 0.5 R0"},
 };
 
+constexpr std::array k_references{&references::k_edmans};
+
 constexpr std::array<string_view, 8> k_domain{
     "displacement up to 0.5 R0, where the source's data end",
     "k, delta_t, a from the material: stiffness_ratio from 3 to 500, shear_ratio from 0.25 to 1; a warning below 4.5, "
@@ -281,7 +283,8 @@ constexpr CurveProcedure k_procedure{.keys = k_fitted_keys,
 Model contact_model() noexcept {
   return {.name = "compressible",
           .summary = "compressible plastic particle: force linear, then exponential; power-law unloading",
-          .source = "001_3cd85d3b0dc520cf.txt (Edmans & Sinka), section 6 and appendix A",
+          .references = k_references,
+          .source = "section 6 and appendix A; a1 of eq. A.1 and a6 of eq. A.2 corrected",
           .material = k_material,
           .options = k_options,
           .configurations = k_wall_configurations,

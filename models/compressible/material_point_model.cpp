@@ -16,6 +16,8 @@ namespace {
 
 using std::string_view;
 
+constexpr std::array k_point_references{&references::k_edmans};
+
 constexpr Range k_density{.lower = 0.0, .upper = 1.0, .lower_is_open = true, .upper_is_open = true};
 
 constexpr std::array<string_view, 5> k_configurations{"simple", "die", "hydrostatic", "triaxial", "strain-path"};
@@ -314,7 +316,8 @@ Parameters parameters_of(const ModelInput& input) {
 Model material_point_model() noexcept {
   return {.name = "material-point",
           .summary = "compressible plastic material under prescribed strains and stresses",
-          .source = "001_3cd85d3b0dc520cf.txt, sections 2 and 3 (Edmans and Sinka); Table 3 as corrected",
+          .references = k_point_references,
+          .source = "sections 2 and 3; Table 3 corrected",
           .material = k_point_material,
           .configurations = k_configurations,
           .regimes = k_point_regimes,

@@ -63,6 +63,8 @@ constexpr std::array k_events{
     Term{"radius-limit", "a contact is as wide as the particle"},
 };
 
+constexpr std::array k_references{&references::k_agarwal2018};
+
 constexpr std::array<string_view, 8> k_domain{
     "up to the limit of applicability, where the margin is 0 (column margin; stop), well before it the source's "
     "formulation stiffens too much",
@@ -187,7 +189,8 @@ bool may_be_undefined(const CheckedRun& run, std::size_t row, string_view column
 Model model() noexcept {
   return {.name = "nonlocal",
           .summary = "linear elastic sphere, of which every contact moves the surface under all others",
-          .source = "003_97bacd62ecebe201.txt (Agarwal and Gonzalez)",
+          .references = k_references,
+          .source = "sections 2 to 4, appendix B",
           .material = k_material,
           .options = k_options,
           .configurations = k_wall_configurations,

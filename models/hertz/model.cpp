@@ -14,6 +14,8 @@ namespace {
 
 using std::string_view;
 
+constexpr std::array k_references{&references::k_hertz1882, &references::k_zunker2024};
+
 constexpr std::array k_material{
     QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive, {}},
     QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, k_poisson_to_half, {}},
@@ -103,7 +105,8 @@ void check(const CheckedRun& run, std::vector<Violation>& found) {
 Model model() noexcept {
   return {.name = "hertz",
           .summary = "elastic sphere between rigid walls, Hertz contacts at fixed radius",
-          .source = "Hertz (1882); 002_000df8fc37500451.txt, eq. 25",
+          .references = k_references,
+          .source = "Zunker and Kamrin (2024), eq. 25",
           .material = k_material,
           .options = {},
           .configurations = k_wall_configurations,

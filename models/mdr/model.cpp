@@ -89,6 +89,8 @@ constexpr std::array k_events{
     Term{"limit", "another end of the equations' domain; the message says which"},
 };
 
+constexpr std::array k_references{&references::k_zunker2024, &references::k_zunker2024b};
+
 constexpr std::array<string_view, 9> k_domain{
     "E/Y above about 10 (small elastic strains); a warning below",
     "a contact yields only where E/(1 - nu^2)/Y exceeds 2.407; a warning below",
@@ -240,7 +242,8 @@ Reach reach(const ModelInput& input, const Until& until) {
 Model model() noexcept {
   return {.name = "mdr",
           .summary = "elastic-perfectly plastic particle by dimensionality reduction, with growing apparent radius",
-          .source = "002_000df8fc37500451.txt (Zunker and Kamrin, Part I)",
+          .references = k_references,
+          .source = "Part I; the bulk response of Part II is left out",
           .material = k_material,
           .options = k_options,
           .configurations = k_wall_configurations,

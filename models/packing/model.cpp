@@ -111,6 +111,8 @@ constexpr std::array k_events{
     Term{"until-met", "a step ends early because its condition is met"},
 };
 
+constexpr std::array k_references{&references::k_nezamabadi2022};
+
 constexpr std::array<string_view, 7> k_domain{
     "discs in plane strain; packing fractions up to 1",
     "f_E >= f_G > 0 and a Poisson's ratio below 0.5; at 0.45 the modulus grows fourfold between Phi = 0.97 and 1",
@@ -292,7 +294,8 @@ double initial_packing_fraction(const ModelInput& input, const Law& law) {
 Model model() noexcept {
   return {.name = "packing",
           .summary = "compaction of a packing of elastic or plastic discs, from jamming to no pores left",
-          .source = "004_9c343b0bc13eca8e.txt, eqs. 5-22; signs corrected",
+          .references = k_references,
+          .source = "eqs. 5-22; signs corrected",
           .material = k_material,
           .options = k_options,
           .regimes = k_regimes,

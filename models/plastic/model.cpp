@@ -20,6 +20,10 @@ namespace {
 
 using std::string_view;
 
+constexpr std::array k_thesis{&references::k_shahin2021};
+constexpr std::array k_similarity_references{&references::k_shahin2021, &references::k_storakers1997,
+                                             &references::k_biwa1995};
+
 constexpr Range k_share{.lower = 0.0, .upper = 1.0};
 
 constexpr std::array<string_view, 3> k_source_configurations{"simple", "die", "hydrostatic"};
@@ -409,7 +413,8 @@ Model similarity_model() noexcept {
   return Functions<similarity_law, strength>::of(
       {.name = "similarity",
        .summary = "rigid-plastic power-law contact by the similarity solution, every contact for itself",
-       .source = "000_34f0f4b3689a4570.txt (Biwa-Storakers law), section 2.2 and appendix B",
+       .references = k_similarity_references,
+       .source = "Shahin (2021), section 2.2 and appendix B",
        .material = k_power_law_material,
        .options = k_similarity_options,
        .configurations = k_wall_configurations,
@@ -426,7 +431,8 @@ Model semimech_model() noexcept {
   return Functions<semimech_law, yield_stress>::of(
       {.name = "semimech",
        .summary = "elastic-ideally plastic particle by the semi-mechanistic law, from first touch to no pores left",
-       .source = "000_34f0f4b3689a4570.txt, chapter 2",
+       .references = k_thesis,
+       .source = "chapter 2; misprints corrected",
        .material = k_elastic_plastic_material,
        .options = k_semimech_options,
        .configurations = k_source_configurations,
@@ -442,7 +448,8 @@ Model hardening_model() noexcept {
   return Functions<hardening_law, strength>::of(
       {.name = "hardening",
        .summary = "rigid-plastic particle that hardens by a power law, by the semi-mechanistic law",
-       .source = "000_34f0f4b3689a4570.txt, chapter 3",
+       .references = k_thesis,
+       .source = "chapter 3; misprints corrected",
        .material = k_power_law_material,
        .options = k_hardening_options,
        .configurations = k_source_configurations,

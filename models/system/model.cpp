@@ -11,4 +11,10 @@ std::vector<DerivedParameter> material_parameters(
   return list;
 }
 
+std::vector<std::string> reference_texts(const Model& model) {
+  std::vector<std::string> texts;
+  for (const Citation* reference : model.references) texts.push_back(citation_text(*reference));
+  return texts;
+}
+
 }  // namespace monograin

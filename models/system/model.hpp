@@ -20,6 +20,7 @@
 #include <variant>
 #include <vector>
 
+#include "system/citation.hpp"
 #include "system/hybrid_system.hpp"
 #include "system/walls.hpp"
 
@@ -245,7 +246,10 @@ struct Violation;
 struct Model {
   std::string_view name;
   std::string_view summary;
-  std::string_view source;
+  /// What the model is taken from, the main source first.
+  std::span<const Citation* const> references{};
+  /// Where in the references the law stands, and which of their misprints are corrected.
+  std::string_view source{};
   std::span<const QuantityKey> material;
   std::span<const OptionKey> options{};
   std::span<const std::string_view> configurations{};  ///< empty: there is nothing to choose from
@@ -310,5 +314,8 @@ struct Model {
 
   [[nodiscard]] bool has_walls() const noexcept { return drives.empty(); }
 };
+
+/// The references of a model as lines of text (citation_text), the main one first.
+[[nodiscard]] std::vector<std::string> reference_texts(const Model& model);
 
 }  // namespace monograin

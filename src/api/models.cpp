@@ -33,6 +33,7 @@ std::vector<TermInfo> terms_of(std::span<const Term> terms) {
 ModelInfo info_of(const Model& model) {
   ModelInfo info{.name = std::string(model.name),
                  .summary = std::string(model.summary),
+                 .references = reference_texts(model),
                  .source = std::string(model.source),
                  .material = {},
                  .options = {},

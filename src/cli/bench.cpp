@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "cli/commands.hpp"
+#include "cli/data_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "history/staged_folder.hpp"
@@ -22,9 +23,9 @@ namespace fs = std::filesystem;
 
 struct BenchOptions {
   std::vector<std::string> scenes;
-  std::string list = "scenarios/bench/scenes.toml";
-  std::string definitions = "plots";
-  std::string output = "plots";
+  std::string list;
+  std::string definitions;
+  std::string output;
   std::string measured;
   std::vector<std::string> integrators;
   std::vector<double> tolerances;
@@ -71,7 +72,19 @@ void check_integrators(const std::vector<std::string>& names) {
   }
 }
 
-int bench(const BenchOptions& options) {
+constexpr const char* k_list = "scenarios/bench/scenes.toml";
+
+/// The options with what was not named filled in: the data that come with the program, and plots, where that is there,
+/// or bench for the result.
+BenchOptions with_defaults(BenchOptions options) {
+  if (options.list.empty()) options.list = find_data({k_list}).path(k_list).string();
+  if (options.definitions.empty()) options.definitions = find_data({"plots"}).path("plots").string();
+  if (options.output.empty()) options.output = fs::is_directory("plots") ? "plots" : "bench";
+  return options;
+}
+
+int bench(const BenchOptions& named) {
+  const BenchOptions options = with_defaults(named);
   if (options.is_against_fe) return bench_against_fe(options);
   if (!options.measured.empty()) {
     for (const fs::path& file : redraw_bench(options.measured, options.output)) {
@@ -115,18 +128,21 @@ void add_bench_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand("bench", "Measure run time against error over integrators and tolerances");
   command->add_option("SCENE", options->scenes, "Scenes of the list, or scenario files [all of the list]");
-  command->add_option("--scenes", options->list, "List of scenes [scenarios/bench/scenes.toml]");
+  command->add_option("--scenes", options->list,
+                      "List of scenes [scenarios/bench/scenes.toml, or that of the program]");
   command->add_option("--integrator", options->integrators, "Integrators to measure [auto and all there are]");
   command->add_option("--rtol", options->tolerances, "Relative tolerances, 1e-15 to 0.1 [1e-2 to 1e-13]")
       ->check(CLI::Range(1e-15, 0.1));
   command->add_flag("--profile", options->profiles, "Also tell where the time goes");
   command->add_flag("--against-fe", options->is_against_fe,
                     "Instead hold every law against finite-element curves: errors, slopes and a figure");
-  command->add_option("--plots", options->definitions, "Folder of the definition for --against-fe [plots]");
+  command->add_option("--plots", options->definitions,
+                      "Folder of the definition for --against-fe [plots, or that of the program]");
   command->add_option("--redraw", options->measured, "Instead draw the figures anew from an earlier bench.csv")
       ->check(CLI::ExistingFile)
       ->excludes("--against-fe");
-  command->add_option("-o,--output", options->output, "Folder of table, CSV and figures [plots]");
+  command->add_option("-o,--output", options->output,
+                      "Folder of table, CSV and figures [plots, where that is there, or bench]");
   command->footer("Example: monograin bench mdr-die-50 --integrator auto cvode-bdf -o bench");
   command->callback([options, &action] { action = [options] { return bench(*options); }; });
 }

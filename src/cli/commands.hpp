@@ -34,6 +34,7 @@ using Action = std::function<int()>;
 void add_run_command(CLI::App& app, Action& action);
 void add_check_command(CLI::App& app, Action& action);
 void add_models_command(CLI::App& app, Action& action);
+void add_cite_command(CLI::App& app, Action& action);
 void add_plot_command(CLI::App& app, Action& action);
 void add_atlas_command(CLI::App& app, Action& action);
 void add_compare_command(CLI::App& app, Action& action);

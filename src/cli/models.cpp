@@ -1,17 +1,21 @@
-// `monograin models` and `monograin schema`.
+// `monograin models`, `monograin cite` and `monograin schema`.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "catalogue.hpp"
 #include "cli/commands.hpp"
 #include "cli/terminal.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/schema.hpp"
+#include "scenario/words.hpp"
 #include "scene/scene.hpp"
 
 namespace monograin {
@@ -101,7 +105,10 @@ void print_options(std::span<const OptionKey> options) {
 }
 
 void print_model(const Model& model) {
-  print_data("{}: {}\nsource: {}\n\n[material]\n", model.name, model.summary, model.source);
+  print_data("{}: {}\n", model.name, model.summary);
+  for (const std::string& reference : reference_texts(model)) print_data("reference: {}\n", reference);
+  if (!model.source.empty()) print_data("source: {}\n", model.source);
+  print_data("\n[material]\n");
   print_options(model.material_options);
   if (!model.presets.empty()) {
     print_data("  {:<25}a material of the source's tables; keys beside it win. One of\n", "preset");
@@ -136,13 +143,33 @@ void print_parameters(const CheckedScenario& scenario) {
   }
 }
 
-int run_models(const ModelsOptions& options) {
-  const Model* model = options.name.empty() ? nullptr : find_model(options.name);
-  if (!options.name.empty() && model == nullptr) {
-    std::vector<std::string_view> names;
-    for (const Model& known : model_catalogue()) names.push_back(known.name);
-    throw UsageError(fmt::format("there is no model '{}'; available: {}", options.name, fmt::join(names, ", ")));
+/// @throws UsageError where there is none of that name
+const Model& model_named(const std::string& name) {
+  if (const Model* model = find_model(name); model != nullptr) return *model;
+  std::vector<std::string_view> names;
+  for (const Model& known : model_catalogue()) names.push_back(known.name);
+  throw UsageError(fmt::format("there is no model '{}'{}; available: {}", shown(name), did_you_mean(name, names),
+                               fmt::join(names, ", ")));
+}
+
+/// Prints the references of models, of all where none is named, each once and in the order of the keys.
+int run_cite(const std::vector<std::string>& names) {
+  std::map<std::string_view, const Citation*> entries;
+  const auto add = [&entries](const Model& model) {
+    for (const Citation* reference : model.references) entries.emplace(reference->key, reference);
+  };
+  for (const std::string& name : names) add(model_named(name));
+  if (names.empty()) {
+    for (const Model& model : model_catalogue()) add(model);
   }
+  std::string text;
+  for (const auto& [key, entry] : entries) text.append(text.empty() ? "" : "\n").append(bibtex(*entry));
+  print_data("{}", text);
+  return k_success;
+}
+
+int run_models(const ModelsOptions& options) {
+  const Model* model = options.name.empty() ? nullptr : &model_named(options.name);
   if (options.file.empty()) {
     if (model == nullptr)
       print_list();
@@ -168,6 +195,14 @@ void add_models_command(CLI::App& app, Action& action) {
       ->type_name("FILE");
   command->footer("Example: monograin models mdr");
   command->callback([options, &action] { action = [options] { return run_models(*options); }; });
+}
+
+void add_cite_command(CLI::App& app, Action& action) {
+  auto names = std::make_shared<std::vector<std::string>>();
+  CLI::App* command = app.add_subcommand("cite", "Print the references of models as BibTeX");
+  command->add_option("NAME", *names, "Models; all of them if none is named");
+  command->footer("Example: monograin cite mdr > mdr.bib");
+  command->callback([names, &action] { action = [names] { return run_cite(*names); }; });
 }
 
 void add_schema_command(CLI::App& app, Action& action) {

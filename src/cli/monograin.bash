@@ -3,11 +3,15 @@
 _monograin() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} options
   if ((COMP_CWORD == 1)); then
-    mapfile -t COMPREPLY < <(compgen -W "run check models plot atlas compare regress calibrate sweep bench stress schema --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "run check models cite plot atlas compare regress calibrate sweep bench stress schema --help --version" -- "$current")
     return
   fi
   if [[ $previous == models ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(monograin models 2>/dev/null | awk 'NF == 0 { exit } { print $1 }') --parameters" -- "$current")
+    return
+  fi
+  if [[ ${COMP_WORDS[1]} == cite && $current != -* ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$(monograin models 2>/dev/null | awk 'NF == 0 { exit } { print $1 }')" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "cli/commands.hpp"
+#include "cli/data_folder.hpp"
 #include "cli/terminal.hpp"
 #include "figure/figure.hpp"
 #include "history/compare.hpp"
@@ -65,13 +66,28 @@ int plot(const PlotOptions& options) {
 
 struct AtlasOptions {
   std::vector<std::string> names;
-  std::string definitions = "plots";
+  std::string definitions;
   std::string output;
   bool only_lists = false;
 };
 
+/// Where definitions come from and, without -o, where figures go: beside them in a checkout that the user works in.
+struct AtlasFolders {
+  fs::path definitions;
+  fs::path output;
+};
+
+AtlasFolders atlas_folders(const AtlasOptions& options) {
+  AtlasFolders folders{options.definitions, options.output};
+  const bool is_named = !options.definitions.empty();
+  const DataFolder data = is_named ? DataFolder{} : find_data({"plots"});
+  if (!is_named) folders.definitions = data.path("plots");
+  if (options.output.empty()) folders.output = data.is_current() ? folders.definitions : fs::path("figures");
+  return folders;
+}
+
 int list(const AtlasOptions& options) {
-  const std::vector<AtlasEntry> entries = list_atlas(options.definitions);
+  const std::vector<AtlasEntry> entries = list_atlas(atlas_folders(options).definitions);
   std::size_t width = 0;
   for (const AtlasEntry& entry : entries) width = std::max(width, entry.name.size());
   for (const AtlasEntry& entry : entries) print_data("{:<{}}  {}\n", entry.name, width, entry.title);
@@ -80,9 +96,9 @@ int list(const AtlasOptions& options) {
 
 int draw_atlas(const AtlasOptions& options) {
   if (options.only_lists) return list(options);
-  const std::vector<AtlasFigure> figures = make_atlas(options.definitions, options.names);
-  const fs::path folder = options.output.empty() ? options.definitions : options.output;
-  for (const fs::path& file : write_atlas(figures, folder)) say("-> {}\n", file.string());
+  const AtlasFolders folders = atlas_folders(options);
+  const std::vector<AtlasFigure> figures = make_atlas(folders.definitions, options.names);
+  for (const fs::path& file : write_atlas(figures, folders.output)) say("-> {}\n", file.string());
   auto status = RunStatus::complete;
   for (const AtlasFigure& figure : figures) {
     if (const std::string tables = tables_text(figure); !tables.empty()) print_data("{}\n", tables);
@@ -150,14 +166,23 @@ int compare(const CompareOptions& options) {
 // --- regress
 
 struct RegressOptions {
-  std::string scenarios = "scenarios";
-  std::string curves = "tests/curves";
+  std::string scenarios;
+  std::string curves;
   bool accepts = false;
 };
 
+/// Those of a checkout where one of the folders is named, or where curves are stored anew.
+DataFolder regress_data(const RegressOptions& options) {
+  const bool is_checkout = options.accepts || !options.scenarios.empty() || !options.curves.empty();
+  return is_checkout ? DataFolder{} : find_data({"scenarios", "curves"});
+}
+
 int run_regress(const RegressOptions& options) {
+  const DataFolder data = regress_data(options);
+  const fs::path scenarios = options.scenarios.empty() ? data.path("scenarios") : fs::path(options.scenarios);
+  const fs::path curves = options.curves.empty() ? data.path("curves") : fs::path(options.curves);
   const std::vector<RegressionResult> results =
-      options.accepts ? accept_curves(options.scenarios, options.curves) : regress(options.scenarios, options.curves);
+      options.accepts ? accept_curves(scenarios, curves) : regress(scenarios, curves);
   print_data("{:<24}{:<14}{:>12}{:>12}{:>12}  {}\n", "scenario", "integrator", "curve", "event time", "tolerance", "");
   const auto measure = [](double value) { return std::isnan(value) ? "-" : fmt::format("{:.2e}", value); };
   bool all_pass = true;
@@ -173,7 +198,7 @@ int run_regress(const RegressOptions& options) {
     if (!r.integrator.empty()) ++stored;
   }
   if (options.accepts) {
-    say("{} curves stored in {}; the differences above are to what was there before\n", stored, options.curves);
+    say("{} curves stored in {}; the differences above are to what was there before\n", stored, curves.string());
     return k_success;
   }
   return all_pass ? k_success : k_differs;
@@ -201,8 +226,10 @@ void add_atlas_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<AtlasOptions>();
   CLI::App* command = app.add_subcommand("atlas", "Make figures and tables anew from their definitions");
   command->add_option("NAME", options->names, "Figures to make [all]");
-  command->add_option("--plots", options->definitions, "Folder of the definitions [plots]");
-  command->add_option("-o,--output", options->output, "Folder to write to [that of the definitions]");
+  command->add_option("--plots", options->definitions,
+                      "Folder of the definitions [plots, or those that come with the program]");
+  command->add_option("-o,--output", options->output,
+                      "Folder to write to [that of the definitions; figures for those of the program]");
   command->add_flag("-l,--list", options->only_lists, "List the figures there are");
   command->footer("Example: monograin atlas mdr-12-die -o figures");
   command->callback([options, &action] { action = [options] { return draw_atlas(*options); }; });
@@ -227,8 +254,10 @@ void add_regress_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<RegressOptions>();
   CLI::App* command = app.add_subcommand("regress", "Run every ready scenario and compare with its stored curve");
   command->add_flag("--accept", options->accepts, "Store the curves of this version instead");
-  command->add_option("--scenarios", options->scenarios, "Folder of the scenarios [scenarios]");
-  command->add_option("--curves", options->curves, "Folder of the stored curves [tests/curves]");
+  command->add_option("--scenarios", options->scenarios,
+                      "Folder of the scenarios [scenarios, or those that come with the program]");
+  command->add_option("--curves", options->curves,
+                      "Folder of the stored curves [tests/curves, or those that come with the program]");
   command->footer("Example: monograin regress");
   command->callback([options, &action] { action = [options] { return run_regress(*options); }; });
 }

@@ -120,6 +120,7 @@ std::optional<Chart> body_chart(const std::vector<fs::path>& runs) {
       throw FigureError(
           fmt::format("{}: has no column '{}'; expected runs of one kind", file.string(), figure->x.column));
     }
+    std::ranges::move(references_of(history), std::back_inserter(chart.references));
     const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
     std::error_code ignored;
     const Table marks = fs::exists(folder / "events.csv", ignored) ? read_table(folder / "events.csv") : Table{};

@@ -362,7 +362,8 @@ class Looks {
 }  // namespace
 
 std::string chart_data(const Chart& chart, const std::string& source) {
-  std::string text = fmt::format("# {}\n# columns: x, y as on the axes\n", plain_text(source));
+  std::string text =
+      fmt::format("# {}\n{}# columns: x, y as on the axes\n", plain_text(source), reference_lines(chart.references));
   for (std::size_t k = 0; k < chart.panels.size(); ++k) {
     const ChartPanel& panel = chart.panels[k];
     for (std::size_t a = 0; a < panel.areas.size(); ++a) {

@@ -75,7 +75,8 @@ struct ChartPanel {
 };
 
 struct Chart {
-  std::vector<ChartPanel> panels;  ///< at least one; arranged two by two
+  std::vector<ChartPanel> panels;         ///< at least one; arranged two by two
+  std::vector<std::string> references{};  ///< of the models behind it, for the data file; a line may come twice
 };
 
 /// What the figure's data file holds. @param source  where the figure comes from, for the file's first line

@@ -82,10 +82,21 @@ bool has_phase(const std::vector<Phase>& phases, Phase phase) {
   return !phases.empty() && std::find(std::next(phases.begin()), phases.end(), phase) != phases.end();
 }
 
+std::string reference_lines(std::span<const std::string> references) {
+  std::string text;
+  for (auto it = references.begin(); it != references.end(); ++it) {
+    if (std::find(references.begin(), it, *it) == it) text += fmt::format("# reference: {}\n", plain_text(*it));
+  }
+  return text;
+}
+
 std::string data_text(const std::vector<RunCurves>& runs, const Scales& scales) {
   std::string text = fmt::format("# columns: {}", scales.displacement_label());
   for (const Quantity quantity : k_quantities) text += "; " + scales.label(quantity);
   text += '\n';
+  std::vector<std::string> references;
+  for (const RunCurves& run : runs) references.insert(references.end(), run.references.begin(), run.references.end());
+  text += reference_lines(references);
   for (std::size_t k = 0; k < runs.size(); ++k) {
     text += fmt::format("# run {}: {}\n", k + 1, plain_text(runs[k].name));
     for (const ContactCurve& contact : runs[k].contacts) {

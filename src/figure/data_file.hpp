@@ -1,6 +1,7 @@
 /// The numbers behind a figure, as gnuplot reads them.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,9 @@ void append_phase(std::string& text, const std::vector<Phase>& phases, Phase pha
     append_row(row);
   }
 }
+
+/// Comment lines with references, each once.
+[[nodiscard]] std::string reference_lines(std::span<const std::string> references);
 
 /// All blocks: each is headed by its name, ends with two blank lines, and is cut by single ones where the line breaks.
 [[nodiscard]] std::string data_text(const std::vector<RunCurves>& runs, const Scales& scales);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "catalogue.hpp"
 #include "figure/figure.hpp"
 #include "history/table.hpp"
 #include "system/undefined.hpp"
@@ -137,6 +138,11 @@ Table read_table(const fs::path& file) {
   }
 }
 
+std::vector<std::string> references_of(const Table& history) {
+  const Model* model = find_model(history.header_value("model"));
+  return model == nullptr ? std::vector<std::string>{} : reference_texts(*model);
+}
+
 std::vector<Phase> phases_along(std::span<const double> displacements) {
   std::vector<Phase> phases(displacements.size(), Phase::loading);
   if (displacements.empty()) return phases;
@@ -180,6 +186,7 @@ RunCurves read_run(const fs::path& run) {
 
   const std::string driven = driven_class(history, classes);
   RunCurves curves{.name = folder.filename().string(),
+                   .references = references_of(history),
                    .radius = header_scale(history, "R0"),
                    .youngs_modulus = header_scale(history, "E"),
                    .yield_stress = header_scale(history, "Y"),

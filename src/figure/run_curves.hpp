@@ -16,6 +16,9 @@ namespace monograin::figure {
 /// A table of a run. @throws FigureError where it cannot be read
 [[nodiscard]] Table read_table(const std::filesystem::path& file);
 
+/// References of the model that a history's header names, a line each; none where it names no model of this version.
+[[nodiscard]] std::vector<std::string> references_of(const Table& history);
+
 enum class Quantity { force, pressure, area, apparent_radius };
 inline constexpr std::array k_quantities{Quantity::force, Quantity::pressure, Quantity::area,
                                          Quantity::apparent_radius};
@@ -53,6 +56,7 @@ struct EventMark {
 
 struct RunCurves {
   std::string name;
+  std::vector<std::string> references;   ///< of its model, a line each
   std::optional<double> radius;          ///< R0 [m]
   std::optional<double> youngs_modulus;  ///< E [Pa]
   std::optional<double> yield_stress;    ///< Y [Pa]

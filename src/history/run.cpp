@@ -49,12 +49,14 @@ std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
                                                           {"integrator", run.integrator.used},
                                                           {"rtol", fmt::format("{}", scenario.numerics.rtol)},
                                                           {"atol", fmt::format("{}", scenario.numerics.atol)}};
+  const Model& model = *find_model(scenario.model);
   if (scenario.radius > 0.0) header.emplace_back("R0", fmt::format("{}", scenario.radius));
-  if (!find_model(scenario.model)->sign.empty()) header.emplace_back("sign", find_model(scenario.model)->sign);
+  if (!model.sign.empty()) header.emplace_back("sign", model.sign);
   for (const auto& [key, symbol] : k_symbols) {
     const auto found = scenario.material.find(std::string(key));
     if (found != scenario.material.end()) header.emplace_back(symbol, fmt::format("{}", found->second));
   }
+  for (std::string& reference : reference_texts(model)) header.emplace_back("reference", std::move(reference));
   if (!run.record.message.empty()) header.insert(header.begin() + 4, {"message", run.record.message});
   if (!scenario.title.empty()) header.insert(header.begin() + 1, {"title", scenario.title});
   return header;

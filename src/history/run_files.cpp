@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "catalogue.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 
@@ -51,6 +52,7 @@ Json to_json(const Run& run) {
           {"message", record.message},
           {"limit", record.limit ? Json(code(*record.limit)) : Json()},
           {"model", scenario.model},
+          {"references", reference_texts(*find_model(scenario.model))},
           {"classes", classes},
           {"skipped", run.skipped},
           {"integrator", {{"asked", run.integrator.asked}, {"used", run.integrator.used}, {"why", run.integrator.why}}},

@@ -104,7 +104,7 @@ TEST(Models, HaveKeysWithUnitsAndMeaning) {
   std::set<std::string> names;
   for (const ModelInfo& model : models()) {
     names.insert(model.name);
-    EXPECT_FALSE(model.source.empty()) << model.name;
+    EXPECT_FALSE(model.references.empty()) << model.name;
     EXPECT_FALSE(model.material.empty()) << model.name;
     for (const KeyInfo& key : model.material) {
       EXPECT_FALSE(key.meaning.empty()) << model.name << ' ' << key.name;

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -193,6 +195,8 @@ TEST_F(Commands, ModelsListsAndDescribes) {
   for (const char* word : {"yield_stress", "radius_rule", "gated", "fully-plastic", "growth-on", "caps"}) {
     EXPECT_NE(mdr.out.find(word), std::string::npos) << word;
   }
+  EXPECT_NE(mdr.out.find("reference: W. Zunker and K. Kamrin (2024), "), std::string::npos) << mdr.out;
+  EXPECT_NE(mdr.out.find("doi:10.1016/j.jmps.2023.105492\n"), std::string::npos) << mdr.out;
   EXPECT_EQ(monograin("models nonsense").code, 2);
   write_text(path("small.toml"), k_small);
   const Outcome parameters = monograin("models mdr --parameters small.toml");
@@ -397,9 +401,56 @@ TEST_F(Commands, AnUnknownCommandIsAnsweredWithThoseThereAre) {
   EXPECT_NE(outcome.err.find("regress"), std::string::npos) << outcome.err;
 }
 
+/// Keys of BibTeX entries, in their order.
+std::vector<std::string> keys_of(const std::string& bibtex) {
+  std::vector<std::string> keys;
+  for (std::size_t at = bibtex.find('@'); at != std::string::npos; at = bibtex.find('@', at + 1)) {
+    const std::size_t brace = bibtex.find('{', at);
+    keys.push_back(bibtex.substr(brace + 1, bibtex.find(',', at) - brace - 1));
+  }
+  return keys;
+}
+
+TEST_F(Commands, CitePrintsTheReferencesOfModels) {
+  const Outcome mdr = monograin("cite mdr");
+  EXPECT_EQ(mdr.code, 0) << mdr.err;
+  EXPECT_EQ(keys_of(mdr.out), (std::vector<std::string>{"zunker2024", "zunker2024b"}));
+  EXPECT_NE(mdr.out.find("  doi = {10.1016/j.jmps.2023.105492}\n"), std::string::npos) << mdr.out;
+  EXPECT_EQ(keys_of(monograin("cite packing hertz mdr").out),
+            (std::vector<std::string>{"hertz1882", "nezamabadi2022", "zunker2024", "zunker2024b"}));
+}
+
+TEST_F(Commands, CitePrintsTheReferencesOfAllModelsEachOnce) {
+  const Outcome all = monograin("cite");
+  EXPECT_EQ(all.code, 0) << all.err;
+  const std::vector<std::string> keys = keys_of(all.out);
+  EXPECT_GE(keys.size(), 7U);
+  EXPECT_EQ(std::ranges::adjacent_find(keys, std::ranges::greater_equal{}), keys.end()) << all.out;
+}
+
+TEST_F(Commands, CiteNamesTheModelThatWasMeant) {
+  const Outcome outcome = monograin("cite hertz semimec");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_NE(outcome.err.find("there is no model 'semimec'; did you mean 'semimech'?"), std::string::npos)
+      << outcome.err;
+}
+
+TEST_F(Commands, RunLeavesTheReferencesOfTheModel) {
+  write_text(path("small.toml"), k_small);
+  ASSERT_EQ(monograin("run small.toml --plot").code, 0);
+  const nlohmann::json references = nlohmann::json::parse(text("runs/small/run.json")).at("references");
+  ASSERT_EQ(references.size(), 2U);
+  const std::string line = "# reference: " + references[0].get<std::string>() + "\n";
+  EXPECT_NE(line.find("doi:"), std::string::npos) << line;
+  for (const char* file : {"history.csv", "events.csv", "figure.dat"}) {
+    EXPECT_NE(text(std::string("runs/small/") + file).find(line), std::string::npos) << file;
+  }
+}
+
 TEST_F(Commands, HelpEndsWithAnExample) {
   for (const char* command :
-       {"", "run", "check", "models", "plot", "atlas", "compare", "regress", "calibrate", "sweep", "schema"}) {
+       {"", "run", "check", "models", "cite", "plot", "atlas", "compare", "regress", "calibrate", "sweep", "schema"}) {
     const Outcome help = monograin(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Example: monograin "), std::string::npos) << command;
@@ -432,6 +483,7 @@ TEST_F(Commands, AtlasMakesFiguresAndTablesAnew) {
   const Outcome outcome = monograin("atlas small -o figures");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("## Against a straight line"), std::string::npos) << outcome.out;
+  EXPECT_NE(text("figures/small.dat").find("\n# reference: W. Zunker and K. Kamrin (2024), "), std::string::npos);
   EXPECT_NE(outcome.err.find("-> figures/small.svg"), std::string::npos) << outcome.err;
   for (const char* file : {"small.svg", "small.gp", "small.dat", "small.csv", "small.md"})
     EXPECT_TRUE(fs::exists(path("figures") / file)) << file;

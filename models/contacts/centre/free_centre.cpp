@@ -122,7 +122,8 @@ FreeCentre::Vector FreeCentre::flight(const CentreWalls& walls, std::span<const 
   return (distance + overlap / approach) * path;
 }
 
-/// How much of a step leads to where the energy along it no longer falls. The slope of a convex energy only grows.
+/// How much of a step leads to where the energy along it no longer falls: its slope only grows, as it is convex. Leaves
+/// the sums of that position.
 double FreeCentre::share_of_step(const CentreWalls& walls, std::span<const Role> roles, const Vector& c,
                                  const Vector& step) {
   const double first = net_force().dot(step);
@@ -130,16 +131,17 @@ double FreeCentre::share_of_step(const CentreWalls& walls, std::span<const Role>
     sum_up(walls, roles, c + share * step);
     return net_force().dot(step);
   };
+  double now = slope(1.0);
+  if (now <= -k_descent * first) return 1.0;
   double low = 0.0;
   double high = 1.0;
-  double now = slope(high);
-  if (now <= -k_descent * first) return high;
+  double middle = 1.0;
   for (int k = 0; k < k_most_sections && std::abs(now) > -k_descent * first; ++k) {
-    const double middle = std::midpoint(low, high);
+    middle = std::midpoint(low, high);
     now = slope(middle);
     (now > 0.0 ? high : low) = middle;
   }
-  return low > 0.0 ? low : high;
+  return middle;
 }
 
 /// Makes contacts that bear less than a force as stiff as under that: at first touch they have no stiffness.
@@ -155,8 +157,8 @@ void FreeCentre::lend_stiffness(const CentreWalls& walls, std::span<const Role> 
 
 FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const Role> roles, Vector c) {
   double last = std::numeric_limits<double>::infinity();
+  sum_up(walls, roles, c);
   for (int k = 0; k < k_most_steps; ++k) {
-    sum_up(walls, roles, c);
     const Vector net = net_force();
     lend_stiffness(walls, roles, net.norm());
     Vector borne = net;
@@ -170,6 +172,7 @@ FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const
       borne = basis * (basis.transpose() * net);
       if (const Vector left = net - borne; left.norm() > std::max(round_off_, k_cancelled * prescribed_)) {
         c += flight(walls, roles, left, c);
+        sum_up(walls, roles, c);
         continue;
       }
       wanted = step(basis);

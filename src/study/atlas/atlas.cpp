@@ -15,6 +15,7 @@
 #include <string_view>
 #include <utility>
 
+#include "catalogue.hpp"
 #include "history/run.hpp"
 #include "scenario/words.hpp"
 #include "study/atlas/adhesion_panels.hpp"
@@ -213,7 +214,12 @@ class FigureMaker {
              .tables = {},
              .value_tables = {},
              .stops = {}};
-    if (definition_.adhesion_map) made_.chart.panels = adhesion_panels(adhesion_maps(*definition_.adhesion_map));
+    if (definition_.adhesion_map) {
+      made_.chart.panels = adhesion_panels(adhesion_maps(*definition_.adhesion_map));
+      for (const Model& model : model_catalogue()) {
+        if (model.adhesion_map != nullptr) cite(model);
+      }
+    }
     for (const PanelSpec& panel : definition_.panels) made_.chart.panels.push_back(chart_panel(panel));
     for (const TableSpec& table : definition_.tables) made_.tables.push_back(comparison_table(table));
     for (const ValueTableSpec& table : definition_.value_tables) made_.value_tables.push_back(value_table(table));
@@ -221,6 +227,10 @@ class FigureMaker {
   }
 
  private:
+  void cite(const Model& model) {
+    for (std::string& text : reference_texts(model)) made_.chart.references.push_back(std::move(text));
+  }
+
   [[nodiscard]] figure::ChartPanel chart_panel(const PanelSpec& spec) {
     figure::ChartPanel panel{
         .x = spec.x, .y = spec.y, .note = spec.note, .range = spec.fitted, .areas = {}, .series = {}};
@@ -230,6 +240,7 @@ class FigureMaker {
   }
 
   void append_curves(const CurveSpec& spec, figure::ChartPanel& panel) {
+    for (const Scenario& scenario : spec.scenarios) cite(*find_model(scenario.model));
     std::vector<XyCurve> curves = curves_of(spec);
     // Runs of which only one number is asked make one curve of these numbers.
     const bool is_one = curves.size() > 1 && std::ranges::all_of(curves, [](const auto& c) { return c.x.size() == 1; });

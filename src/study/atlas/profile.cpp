@@ -10,6 +10,7 @@
 
 #include "catalogue.hpp"
 #include "figure/chart.hpp"
+#include "figure/run_curves.hpp"
 #include "history/run.hpp"
 #include "scenario/words.hpp"
 
@@ -147,7 +148,8 @@ fs::path draw_profiles(const Table& profiles, const fs::path& output) {
   }
   // The tension at the edge of an adhesive contact is unbounded.
   if (lowest < -2.0 * highest) pressure.y.lowest = -2.0 * highest;
-  const figure::Chart chart{.panels = {std::move(pressure), std::move(surface)}};
+  const figure::Chart chart{.panels = {std::move(pressure), std::move(surface)},
+                            .references = figure::references_of(profiles)};
   const figure::FigureFiles files(output);
   files.write(figure::chart_data(chart, fmt::format("contact profiles of {}", profiles.header_value("scenario"))),
               figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));

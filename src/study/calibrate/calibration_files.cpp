@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "catalogue.hpp"
 #include "figure/chart.hpp"
 #include "figure/figure.hpp"
 #include "figure/page.hpp"
@@ -212,7 +213,8 @@ figure::Chart chart_of(const Calibration& calibration, const CalibrationResult& 
 std::string draw(const Calibration& calibration, const CalibrationResult& result, const fs::path& folder) {
   try {
     const figure::FigureFiles files(folder / k_figure);
-    const figure::Chart chart = chart_of(calibration, result);
+    figure::Chart chart = chart_of(calibration, result);
+    chart.references = reference_texts(*find_model(calibration.scenario.model));
     files.write(figure::chart_data(chart, fmt::format("{}: {}", calibration.name, data_names(calibration))),
                 figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
   } catch (const FigureError& error) {

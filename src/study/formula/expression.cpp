@@ -58,10 +58,11 @@ constexpr std::size_t k_longest = 400;  ///< which also bounds how deep brackets
 
 /// Rows without a value do not count: before a contact is made its pressure is undefined.
 [[nodiscard]] double reduced(std::string_view function, const Values& values) {
+  if (function == "end") return values.empty() ? std::numeric_limits<double>::quiet_NaN() : values.back();
   double result = std::numeric_limits<double>::quiet_NaN();
   for (const double value : values) {
     if (std::isnan(value)) continue;
-    const bool is_next = std::isnan(result) || function == "end" || function == "last" ||
+    const bool is_next = std::isnan(result) || function == "last" ||
                          (function == "min" ? value < result : value > result);
     if (is_next) result = value;
   }

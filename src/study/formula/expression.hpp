@@ -28,9 +28,9 @@ class ExpressionError : public std::runtime_error {
 };
 
 /// A formula of numbers, names, `+ - * / ^`, brackets and the functions sqrt, exp, log, abs, sin, cos, tan, atan, sinh,
-/// cosh, tanh (value by value), min, max, end (one value of all; `last` is another word for `end`), and laws that are
-/// no formula: radius_influence_closed, _integral, _projected of Poisson's ratio, angle, contact radius over R. A name
-/// is letters, digits, `_` and `.` (axial.force), or any text between backquotes.
+/// cosh, tanh (value by value), min, max, last (one value of all that are defined), end (that of the last row, defined or
+/// not), and laws that are no formula: radius_influence_closed, _integral, _projected of Poisson's ratio, angle, contact
+/// radius over R. A name is letters, digits, `_` and `.` (axial.force), or any text between backquotes.
 ///
 /// `a / b * c` is (a / b) * c; `^` binds first and from the right.
 class Expression {
@@ -41,7 +41,8 @@ class Expression {
   /// @throws ExpressionError saying what is wrong, and where
   explicit Expression(std::string_view text);
 
-  /// All values: as many as the columns in it have rows; one if there is no column in it, or only below min, max, end.
+  /// All values: as many as the columns in it have rows; one if there is no column in it, or only below min, max,
+  /// last, end.
   /// @throws ExpressionError naming an unknown name, or where the lengths of columns differ
   [[nodiscard]] std::vector<double> evaluate(const Lookup& lookup) const;
 

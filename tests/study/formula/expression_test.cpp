@@ -61,6 +61,8 @@ TEST(Expression, MakesOneNumberOfAColumn) {
   EXPECT_EQ(value_of("max(axial.x) - min(axial.x)"), (Values{3.0}));
   EXPECT_EQ(value_of("last(axial.x / c)"), (Values{1.0}));
   EXPECT_EQ(value_of("max(gap) + min(gap) + last(gap)"), (Values{15.0})) << "undefined rows do not count";
+  EXPECT_EQ(value_of("end(axial.x)"), (Values{2.0}));
+  EXPECT_TRUE(std::isnan(value_of("end(gap)").front())) << "the last row counts, defined or not";
 }
 
 TEST(Expression, KnowsLawsThatAreNoFormula) {

@@ -35,7 +35,7 @@ constexpr double k_sample_multiple = 10.0;
 constexpr std::uint64_t k_samples = 8;  // in pairs
 // A run is stuck that takes so many times as long as the scene's own, or its reference.
 constexpr double k_patience = 4.0;
-// Overlaps over R0 below which there is nothing but round-off (docs/limits.md).
+// Overlaps over R0 below which there is nothing but round-off (docs/reference/limits.md).
 constexpr double k_resolution = 1e-12;
 // Sum of the squares of normals along a direction that they do not span: rounding.
 constexpr double k_same_directions = 1e-9;

@@ -49,10 +49,10 @@ struct StressVerdict {
 /// the same limit, within what is tolerated of the time. An integrated form may give up where another form goes on.
 ///
 /// Agreement. The direct form is exact but for rounding, its work to a hundredth of rtol; a controlled integrator is to
-/// be within k rtol of it, k = 100 (docs/accuracy.md: "the error of a curve stays below 100 rtol"). A scene can magnify
-/// errors by itself, next to a fold or pull-off, on steep unloading branches, where the order of two events decides;
-/// what such a scene does with data changed by rtol (by rounding, where two runs of the same form are compared) is
-/// measured, and allowed.
+/// be within k rtol of it, k = 100 (docs/howto/integrators.md: "the error of a curve stays below 100 rtol"). A scene
+/// can magnify errors by itself, next to a fold or pull-off, on steep unloading branches, where the order of two events
+/// decides; what such a scene does with data changed by rtol (by rounding, where two runs of the same form are
+/// compared) is measured, and allowed.
 ///
 [[nodiscard]] StressVerdict check_scene(const CheckedScenario& scenario, const StressEffort& effort);
 /// With all copies, and as long as `most_seconds_of` says.

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 
-// Error of a controlled integrator over its rtol (docs/accuracy.md).
+// Error of a controlled integrator over its rtol (docs/performance.md).
 constexpr double k_rtol_multiple = 100.0;
 // The multiple for each step of a long program: errors of work have one sign, and add up (measured: 16).
 constexpr double k_rtol_multiple_of_step = 25.0;
@@ -323,7 +323,7 @@ void check_energy(const Run& run, Violations& found) {
 }
 
 /// Whether modes may answer each other without end: those of contacts that adhere to a free centre, or to a particle
-/// that grows until one is touched and no longer while it is (docs/limits.md).
+/// that grows until one is touched and no longer while it is (docs/reference/limits.md).
 bool may_go_on(const Run& run) {
   if (!(material(run.scenario, "surface_energy") > 0.0)) return false;
   if (run.scenario.loading.centre_is_free) return true;
@@ -334,7 +334,7 @@ bool may_go_on(const Run& run) {
   return ends * k_most_events_between_ends >= k_most_events_per_step;
 }
 
-/// The reason of a failed run, if docs/limits.md names it; else empty.
+/// The reason of a failed run, if docs/reference/limits.md names it; else empty.
 std::string stated_failure(const Run& run) {
   const RunRecord& record = run.record;
   if (!record.failure) return "";

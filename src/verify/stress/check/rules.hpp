@@ -12,7 +12,8 @@
 
 namespace monograin {
 
-/// Finer tolerances of an integrator are not kept: round-off of a scene's own equations may be larger (docs/limits.md).
+/// Finer tolerances of an integrator are not kept: round-off of a scene's own equations may be larger
+/// (docs/reference/limits.md).
 inline constexpr double k_finest_rtol = 1e-11;
 
 /// Changes of a scene's data that stand for rounding on the way from a text to a state.

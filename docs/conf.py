@@ -1,0 +1,108 @@
+"""Configuration of the documentation site. `tools/docs` builds it."""
+
+import pathlib
+import re
+
+from sphinx.ext import napoleon
+
+DOCS = pathlib.Path(__file__).resolve().parent
+ROOT = DOCS.parent
+GENERATED = DOCS / "generated"
+
+cmake_project = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+project = "monograin"
+release = re.search(r"project\(monograin VERSION ([0-9.]+)", cmake_project).group(1)
+version = release
+author = "the authors of monograin"
+html_show_copyright = False
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.mathjax",
+    "sphinxcontrib.bibtex",
+    "sphinx_copybutton",
+    "breathe",
+]
+exclude_patterns = ["generated/*.md"]  # parts that pages include
+language = "en"
+nitpicky = True
+# Names of the standard library and of numpy, whose own sites are not asked.
+nitpick_ignore_regex = [
+    (r"cpp:.*", r"(std|fmt|Eigen)(::.*)?"),
+    (r"cpp:.*", r"(size_t|uint\d+_t|int\d+_t)"),
+    (r"py:.*", r"(np|numpy|pandas|matplotlib|os|pathlib|collections|typing|npt)\..*"),
+    # Types that are no part of the interface, and sentences that begin as a type does.
+    (r"py:.*", r"(_core\..*|Path|[a-z_]+|\w+ .*)"),
+    (r"py:.*", r"(optional|array_like|callable|scalar|shape|default|ndarray|ArrayLike|NDArray|DataFrame).*"),
+]
+
+# Types of the headers that are only declared: their definitions are not part of the interface.
+nitpick_ignore = [("cpp:identifier", "monograin")] + [
+    ("cpp:identifier", name)
+    for header in (ROOT / "include").rglob("*.hpp")
+    for name in re.findall(r"^(?:class|struct) (\w+);", header.read_text(encoding="utf-8"), re.MULTILINE)
+]
+
+# --- Markdown
+myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+myst_update_mathjax = False
+
+# --- formulas: a copy of Debian's MathJax, so that the pages need no network
+mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML"
+mathjax2_config = {"messageStyle": "none", "tex2jax": {"processClass": "math", "ignoreClass": "document"}}
+
+# --- references
+bibtex_bibfiles = ["generated/references.bib"]
+bibtex_default_style = "plain"
+bibtex_reference_style = "author_year"
+
+# --- code
+copybutton_prompt_text = "$ "
+copybutton_only_copy_prompt_lines = True
+breathe_projects = {"monograin": str(GENERATED / "doxygen" / "xml")}
+breathe_default_project = "monograin"
+breathe_show_include = False
+breathe_domain_by_extension = {"hpp": "cpp"}
+autodoc_member_order = "bysource"
+napoleon_use_ivar = True
+autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
+
+# --- looks
+html_theme = "furo"
+html_title = f"monograin {release}"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_show_sphinx = False
+html_copy_source = False
+pygments_style = "friendly"
+pygments_dark_style = "monokai"
+
+
+process_docstring = napoleon._process_docstring
+
+
+def process_docstring_of_property(app, what, *rest):
+    """Reads a property's docstring as that of a method: "Curves: a table" does not begin with a type there."""
+    process_docstring(app, "method" if what in ("attribute", "property") else what, *rest)
+
+
+napoleon._process_docstring = process_docstring_of_property
+
+
+def skip_fields(_app, _what, _name, member, skip, _options):
+    """Leaves out fields of named tuples, which the text of their class describes."""
+    return skip or type(member).__name__ == "_tuplegetter"
+
+
+def link_tables(_app, _name, source):
+    """Links to tables of plots/ lead to their pages (docs/generate.py writes these)."""
+    source[0] = re.sub(r"\]\((?:\.\./)+plots/([\w-]+)\.md\)", r"](/tables/\1.md)", source[0])
+
+
+def setup(app):
+    app.connect("source-read", link_tables)
+    app.connect("autodoc-skip-member", skip_fields)

@@ -1,0 +1,829 @@
+#!/usr/bin/env python3
+"""Writes the parts of the documentation that the program itself knows.
+
+Usage: docs/generate.py [--program FILE]
+
+Asks the program for its commands, models and JSON Schema, runs the ready scenarios, and writes
+
+    docs/generated/            parts that pages include, figures, references.bib, doxygen's XML
+    docs/reference/models/     a page for each model
+    docs/tables/               a page for each table of plots/
+
+These folders are ignored by git. What the program says and what this script knows of it (the meaning of a column, the
+dimension of a unit) has to match exactly; a name on one side alone ends the script with a message.
+"""
+
+import argparse
+import ast
+import concurrent.futures
+import csv
+import importlib.util
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import textwrap
+import tomllib
+import types
+from xml.etree import ElementTree
+
+DOCS = pathlib.Path(__file__).resolve().parent
+ROOT = DOCS.parent
+GENERATED = DOCS / "generated"
+MODEL_PAGES = DOCS / "reference" / "models"
+TABLES = DOCS / "tables"
+
+# Scenarios whose figures pages show.
+FIGURES = ("die", "uniaxial", "adhesion", "snap-off", "force", "free-centre", "late-wall", "cycles")
+
+# Programs of examples/cpp that pages show.
+CPP_EXAMPLES = ("run_scenario", "own_law", "sweep")
+
+# The dimension of a list of units, by the SI unit in it.
+DIMENSIONS = {
+    "m": "length",
+    "Pa": "stress",
+    "J/m^2": "surface energy",
+    "N": "force",
+    "s": "time",
+    "m/s": "velocity",
+    "N/s": "force rate",
+    "rad": "angle",
+    "1/s": "strain rate",
+    "Pa/s": "stress rate",
+}
+
+# Words of plots/laws-fe.csv that are models.
+MODEL_WORDS = ("hertz", "mdr", "semimech", "hardening", "nonlocal", "compressible")
+
+# Keys in the order in which a scenario file is written.
+ORDER = ("title", "model", "particle", "material", "loading", "output", "numerics", "configuration", "centre", "angle",
+         "oblique_walls", "name", "normal", "gap", "fixed", "wall", "duration", "rate", "until", "steps", "integrator",
+         "rtol", "atol")
+
+# Meaning of each column; a column of a contact class stands under the name after the class.
+COLUMNS = {
+    "time": "time since the start of the program",
+    "step": "number of the step of the program, from 1",
+    "row": "0 at an output point, -1 just before and 1 just after an event or a corner of the program",
+    "apparent_radius": "radius of the sphere whose caps the contacts cut off",
+    "volume": "volume of the particle",
+    "work": "work of all walls on the particle since the start",
+    "stored_energy": "part of the work that unloading gives back",
+    "dissipation": "part of the work that is lost",
+    "centre_x": "position of the centre, x",
+    "centre_y": "position of the centre, y",
+    "centre_z": "position of the centre, z",
+    "margin": "distance to the limit of applicability; zero where the run ends",
+    "packing_fraction": "volume of the particles over that of the packing",
+    "strain": "strain of the packing",
+    "stress": "stress on the packing",
+    "stress_elastic": "stress that the elastic law alone gives",
+    "coordination_number": "mean number of contacts of a particle",
+    "plastic_fraction": "share of contacts that have yielded",
+    "strain_axial": "logarithmic axial strain, tension positive",
+    "strain_lateral": "logarithmic lateral strain, tension positive",
+    "p": "hydrostatic pressure",
+    "s": "axial less lateral stress, with its sign",
+    "q": "magnitude of s (von Mises stress)",
+    "stress_axial": "axial stress, tension positive",
+    "stress_lateral": "lateral stress, tension positive",
+    "relative_density": "density over that of the solid",
+    "plastic_strain_volumetric": "volumetric plastic strain",
+    "plastic_strain_deviatoric": "deviatoric plastic strain",
+    "phi": "strength variable of the yield surface",
+    "youngs_modulus": "Young's modulus at this density",
+    "yield_function": "yield function: negative inside the yield surface, zero on it",
+    "regime": "regime, a word of the table above",
+}
+CONTACT_COLUMNS = {
+    "displacement": "travel of the wall from first touch towards the place where the centre started; negative: a gap",
+    "overlap": "depth of the wall in the particle of the present (apparent) radius",
+    "force": "force of one wall, compression positive",
+    "contact_radius": "radius of the contact area",
+    "contact_radius_deformed": "radius of the contact area with the corrections of the law",
+    "pressure": "force over contact area; 0 where the contact is open",
+    "regime": "regime, a word of the table above",
+}
+
+
+def fail(text):
+    sys.exit(f"docs/generate.py: {text}")
+
+
+def run(*command, cwd=None, codes=(0,)):
+    result = subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
+    if result.returncode not in codes:
+        fail(f"'{' '.join(map(str, command))}' ended with {result.returncode}:\n{result.stdout}{result.stderr}")
+    return result.stdout
+
+
+def find_program(asked):
+    """The program that was asked for, or that of the demo or of the release build."""
+    if asked:
+        return pathlib.Path(asked).resolve()
+    for build in ("demo", "release"):
+        program = ROOT / "build" / build / "monograin"
+        if program.is_file():
+            return program
+    return fail("there is no program; build it with tools/demo, or name one with --program")
+
+
+# --- Markdown
+
+
+def cell(text):
+    return str(text).replace("|", "\\|").replace("\n", " ")
+
+
+def table(heading, rows):
+    lines = ["| " + " | ".join(heading) + " |", "|" + " --- |" * len(heading)]
+    lines += ["| " + " | ".join(cell(c) for c in row) + " |" for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+def write(name, text, folder=GENERATED):
+    file = folder / name
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, encoding="utf-8")
+
+
+# --- keys, from the JSON Schema
+
+
+def number(value):
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def units_of(schema):
+    """Units that a value may have, in the order of the program."""
+    for part in (schema, *schema.get("anyOf", [])):
+        found = re.search(r"\(([^()]*)\)(?:\|R0(?:/s)?\))?\[ \\t\]\*\$$", part.get("pattern", ""))
+        if found and "anyOf" in schema:
+            return found.group(1).replace("\\", "").split("|")
+    return []
+
+
+def si_unit(units):
+    found = [unit for unit in units if unit in DIMENSIONS]
+    # "N/m" is a surface energy, too, and R0 a length.
+    if not found:
+        fail(f"no SI unit is known among {units}")
+    return found[0]
+
+
+def range_of(schema):
+    """Finite bounds of a number, as text."""
+    part = schema["anyOf"][0] if "anyOf" in schema else schema
+    if part.get("type") not in ("number", "integer"):
+        return ""
+    lower = part.get("minimum", part.get("exclusiveMinimum"))
+    upper = part.get("maximum", part.get("exclusiveMaximum"))
+    if lower is None or upper is None:
+        return ""
+    huge, tiny = 1e17, 1e-5  # bounds of the plausible, not of the law
+    open_left, open_right = "exclusiveMinimum" in part, "exclusiveMaximum" in part
+    is_low, is_high = abs(lower) >= huge, abs(upper) >= huge
+    if 0 < lower <= tiny and not is_low:
+        lower, open_left = 0, True
+    if upper >= 1e5 and part.get("type") == "number" and "anyOf" in schema:
+        is_high = True
+    if lower <= -1e5 and "anyOf" in schema:
+        is_low = True
+    if is_low and is_high:
+        return ""
+    if is_high:
+        return ("> " if open_left else ">= ") + number(lower)
+    if is_low:
+        return ("< " if open_right else "<= ") + number(upper)
+    return f"{'(' if open_left else '['}{number(lower)}, {number(upper)}{')' if open_right else ']'}"
+
+
+def accepts(schema):
+    """Describes the values that a key takes."""
+    if "allOf" in schema and len(schema["allOf"]) == 1:
+        schema = schema["allOf"][0]
+    if "$ref" in schema or schema.get("type") == "object":
+        return "a table"
+    if "enum" in schema:
+        words = list(dict.fromkeys(str(word) for word in schema["enum"]))
+        return ", ".join(f"`{word}`" for word in words)
+    if schema.get("const") is True:
+        return "`true`"
+    if schema.get("type") == "boolean":
+        return "`true`, `false`"
+    if schema.get("type") == "array":
+        items = schema["items"]
+        if "$ref" in items or items.get("type") == "object":
+            return "an array of tables"
+        if schema.get("maxItems") == 3:
+            return "three numbers"
+        return f"a list: {accepts(items)}"
+    units = units_of(schema)
+    if units:
+        return f"{DIMENSIONS[si_unit(units)]} [{si_unit(units)}]"
+    if "anyOf" in schema:
+        parts = [accepts(part) for part in schema["anyOf"]]
+        return " or ".join(dict.fromkeys(parts))
+    if schema.get("type") == "string" and schema.get("minLength"):
+        return "name of a file"
+    kinds = {"string": "text", "integer": "whole number", "number": "number"}
+    kind = schema.get("type")
+    return kinds.get(kind) or fail(f"a kind of value that this script does not know: {schema}")
+
+
+def key_table(properties, required, skip=(), order=()):
+    """A row for each key; those that `order` names first, in this order (JSON has them by the alphabet)."""
+    rows = []
+    named = [name for name in order if name in properties]
+    for name in named + [name for name in properties if name not in named]:
+        schema = properties[name]
+        if name in skip:
+            continue
+        default = schema.get("default")
+        if default is None:
+            default = "required" if name in required else ""
+        elif isinstance(default, bool):
+            default = f"`{str(default).lower()}`"
+        else:
+            default = f"`{number(default)}`"
+        rows.append([f"`{name}`", schema.get("description", ""), accepts(schema), range_of(schema), default])
+    return table(["key", "meaning", "takes", "range", "default"], rows)
+
+
+def steps_of(definition):
+    """(key that marks the step, schema) of every form of a step."""
+    forms = []
+    for form in definition["oneOf"]:
+        forms.append((form["required"][0], form))
+    return forms
+
+
+def until_of(definition):
+    for _, form in steps_of(definition):
+        if "until" in form["properties"]:
+            return form["properties"]["until"]["properties"]
+    return {}
+
+
+def all_units(schema, found):
+    """Collects every list of units in a schema, by its SI unit."""
+    if isinstance(schema, dict):
+        if "anyOf" in schema:
+            units = units_of(schema)
+            if units:
+                si = si_unit(units)
+                known = found.setdefault(si, [])
+                known += [unit for unit in units if unit not in known]
+        for part in schema.values():
+            all_units(part, found)
+    elif isinstance(schema, list):
+        for part in schema:
+            all_units(part, found)
+
+
+def write_language(schema):
+    """Keys that all models of particles between walls share, and units."""
+    definitions = schema["definitions"]
+    walls = definitions["mdr"]["properties"]
+    loading = definitions["mdr-loading"]["oneOf"]
+    keys = {}
+    configurations = []
+    for alternative in loading:
+        for name, value in alternative["properties"].items():
+            keys.setdefault(name, value)
+        configurations += alternative["properties"]["configuration"]["enum"]
+    keys["configuration"] = {**keys["configuration"], "enum": configurations}
+    own_walls = next(a for a in loading if "walls" in a["properties"]["configuration"]["enum"])
+    wall = own_walls["properties"]["wall"]["items"]
+    text = "### At the top of the file\n\n"
+    root = {name: value for name, value in walls.items() if name != "mdr"}
+    root["model"] = {**root["model"], "enum": [ref["$ref"].rsplit("/", 1)[1] for ref in schema["oneOf"]]}
+    text += key_table(root, definitions["mdr"]["required"], (), ORDER)
+    text += "\n### `[particle]`\n\n" + key_table(walls["particle"]["properties"], walls["particle"]["required"])
+    text += "\n### `[loading]`\n\n" + key_table(keys, ["configuration", "steps"], (), ORDER)
+    text += "\n### `[[loading.wall]]`\n\n" + key_table(wall["properties"], wall["required"], (), ORDER)
+    text += "\n### `[[loading.steps]]`\n\nA step has one of these forms, told by its first key.\n"
+    for key, form in steps_of(definitions["mdr-step"]):
+        text += f"\n`{key}`\n\n" + key_table(form["properties"], form["required"], (), (key, *ORDER))
+    text += "\n### `until`\n\nOne or several conditions; the first that is met ends the step.\n\n"
+    text += key_table(until_of(definitions["mdr-step"]), [])
+    text += "\n### `[output]`\n\n" + key_table(walls["output"]["properties"], [])
+    text += "\n### `[numerics]`\n\n" + key_table(walls["numerics"]["properties"], [], (), ORDER)
+    write("scenario-keys.md", text)
+
+    units = {}
+    all_units(schema, units)
+    rows = []
+    for si, names in units.items():
+        # Two signs look alike and mean micro.
+        shown = [name for name in names if "μ" not in name]
+        rows.append([DIMENSIONS[si], f"`{si}`", ", ".join(f"`{name}`" for name in shown if not name.startswith("R0"))])
+    write("units.md", table(["dimension", "a bare number is in", "units"], rows))
+
+
+# --- models
+
+
+def sections_of(text):
+    """The parts of `monograin models NAME`: heading -> lines."""
+    sections = {"": []}
+    current = ""
+    for line in text.splitlines():
+        if line and not line.startswith(" "):
+            name, _, rest = line.partition(": ")
+            current = name.strip()
+            sections.setdefault(current, []).extend([rest] if rest else [])
+        elif line.strip():
+            sections[current].append(line)
+    return sections
+
+
+def terms(lines):
+    rows = []
+    for line in lines:
+        found = re.match(r"  (\S+?)\s+(\S.*)$", line)
+        if not found:
+            fail(f"cannot read the line '{line}' of 'monograin models'")
+        rows.append((found.group(1), found.group(2)))
+    return rows
+
+
+def words_of(lines):
+    return [line.split()[0] for line in lines]
+
+
+def columns_of(folder):
+    """Headings of a history, those of contact classes without the class; and the classes."""
+    record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+    classes = [c["name"] for c in record["classes"]]
+    with open(folder / "history.csv", encoding="utf-8") as file:
+        heading = next(csv.reader(line for line in file if not line.startswith("#")))
+    particle, contact = [], []
+    for column in heading:
+        owner, dot, name = column.partition(".")
+        if dot and owner in classes:
+            contact.append(name)
+        else:
+            particle.append(column)
+    return list(dict.fromkeys(particle)), list(dict.fromkeys(contact)), record
+
+
+def check_record(record):
+    """Every key of run.json has to stand on the page that tells of it."""
+    page = (DOCS / "reference" / "results.md").read_text(encoding="utf-8")
+    told = set(re.findall(r"`(\w+)`", page.split("## `run.json`")[1].split("\n## ")[0]))
+    missing = [key for key in record if key not in told]
+    if missing:
+        fail(f"docs/reference/results.md does not tell of {', '.join(missing)} in run.json")
+
+
+def run_ready_scenarios(program, scratch):
+    """Runs every ready scenario; model -> [(name, title, particle columns, contact columns)]."""
+    files = sorted((ROOT / "scenarios").glob("*.toml"))
+
+    def one(file):
+        with open(file, "rb") as stream:
+            title = tomllib.load(stream).get("title", "")
+        folder = scratch / file.stem
+        plot = ["--plot"] if file.stem in FIGURES else []
+        run(program, "run", file, "-o", folder, "--quiet", *plot, codes=(0, 3))
+        if plot:
+            target = GENERATED / "figures" / f"{file.stem}.svg"
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(folder / "figure.svg", target)
+        particle, contact, record = columns_of(folder)
+        check_record(record)
+        return record["model"], (file.stem, title, particle, contact)
+
+    by_model = {}
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for model, found in pool.map(one, files):
+            by_model.setdefault(model, []).append(found)
+    return by_model
+
+
+def split_heading(column):
+    found = re.fullmatch(r"([^\[]+)(?:\[(.*)\])?", column)
+    return found.group(1), found.group(2)
+
+
+def column_table(columns, meanings, used):
+    rows = []
+    for column in columns:
+        name, unit = split_heading(column)
+        if name not in meanings:
+            fail(f"column '{column}' has no meaning in this script")
+        used.add(name)
+        rows.append([f"`{column}`", meanings[name], "word" if unit is None and name == "regime" else unit or "-"])
+    return table(["heading", "holds", "unit"], rows)
+
+
+def write_models(program, schema, ready):
+    names = []
+    rows = []
+    shutil.rmtree(MODEL_PAGES, ignore_errors=True)
+    used, used_of_contacts = set(), set()
+    events_of = {}
+    presets = []
+    for line in run(program, "models").splitlines():
+        name, summary = line.split(None, 1)
+        names.append(name)
+        rows.append([f"[`{name}`](/reference/models/{name}.md)", summary])
+    for name in names:
+        text = run(program, "models", name)
+        sections = sections_of(text)
+        summary = sections[name][0]
+        definition = schema["definitions"][name]
+        properties = definition["properties"]
+        page = f"# Model `{name}`\n\n{summary[0].upper()}{summary[1:]}.\n\n"
+        references = [f"- {line}" for line in sections.get("reference", [])]
+        page += "References:\n\n" + "\n".join(references) + "\n\n" if references else ""
+        page += f"Source: {sections['source'][0]}.\n\n" if "source" in sections else ""
+        page += f"Equations, figures and limits of the law: {{doc}}`/theory/{name}`.\n\n"
+        if "material" in properties:
+            material = properties["material"]
+            page += "## `[material]`\n\n"
+            # The schema leaves to the reader what is required without a preset.
+            required = [line.split()[0] for line in sections["[material]"] if line.endswith("; required")]
+            page += key_table(material["properties"], required, ("preset",), words_of(sections["[material]"]))
+            listed = [line.strip() for line in sections["[material]"] if line.startswith(" " * 29)]
+            if listed:
+                page += "\nA `preset` stands for all of these keys; keys beside it win.\n\n"
+                split = [re.fullmatch(r"(.*) \((.*)\)", item).groups() for item in listed]
+                page += table(["preset", "from"], [[f"`{a}`", b] for a, b in split])
+                presets += [[f"`{a}`", f"[`{name}`](/reference/models/{name}.md)", b] for a, b in split]
+            if "ludwik" in material["properties"]:
+                ludwik = material["properties"]["ludwik"]
+                page += "\nKeys of the table `ludwik`:\n\n" + key_table(ludwik["properties"], ludwik["required"])
+            page += "\n"
+        if name in properties and properties[name].get("properties"):
+            page += f"## `[{name}]`\n\n"
+            page += key_table(properties[name]["properties"], properties[name].get("required", []), (),
+                              words_of(sections[f"[{name}]"])) + "\n"
+        if "particle" not in properties:
+            page += "## Steps\n\n"
+            for key, form in steps_of(schema["definitions"][f"{name}-step"]):
+                page += f"`{key}`\n\n" + key_table(form["properties"], form["required"], (), (key, *ORDER)) + "\n"
+            page += "Conditions of `until`:\n\n"
+            page += key_table(until_of(schema["definitions"][f"{name}-step"]), []) + "\n"
+        if "configurations" in sections:
+            words = sections["configurations"][0].split(", ")
+            page += "Configurations: " + ", ".join(f"`{word}`" for word in words) + ". "
+            if "centre" in sections:
+                page += "Centre: " + ", ".join(f"`{word}`" for word in sections["centre"][0].split(", ")) + "."
+            page += "\n\n"
+        regimes, events = terms(sections["regimes"]), terms(sections["events"])
+        page += "## Regimes\n\n" + table(["regime", "meaning"], [[f"`{a}`", b] for a, b in regimes])
+        page += "\n## Events\n\n" + table(["event", "meaning"], [[f"`{a}`", b] for a, b in events])
+        for event, meaning in events:
+            events_of.setdefault(event, []).append((name, meaning))
+        page += "\n## Validity\n\n" + "\n".join(f"- {line.strip()}" for line in sections["validity"]) + "\n"
+        if name not in ready:
+            fail(f"no ready scenario shows model '{name}'")
+        particle = list(dict.fromkeys(c for entry in ready[name] for c in entry[2]))
+        contact = list(dict.fromkeys(c for entry in ready[name] for c in entry[3]))
+        page += "\n## Columns of `history.csv`\n\n" + column_table(particle, COLUMNS, used)
+        if contact:
+            page += "\nFor each contact class, as in `axial.force[N]`:\n\n"
+            page += column_table(contact, CONTACT_COLUMNS, used_of_contacts)
+        page += "\n## Derived parameters\n\n"
+        example = ready[name][0][0]
+        page += f"`monograin models {name} --parameters scenarios/{example}.toml` prints\n\n```text\n"
+        page += run(program, "models", name, "--parameters", ROOT / "scenarios" / f"{example}.toml")
+        page += "```\n\n## Ready scenarios\n\n"
+        page += "\n".join(f"- `scenarios/{entry[0]}.toml`: {entry[1]}" for entry in ready[name]) + "\n"
+        write(f"{name}.md", page, MODEL_PAGES)
+    for unused in [*(set(COLUMNS) - used), *(set(CONTACT_COLUMNS) - used_of_contacts)]:
+        fail(f"no ready scenario has the column '{unused}', whose meaning this script knows")
+    write("models.md", table(["model", "what it is"], rows))
+    write("presets.md", table(["preset", "model", "from"], presets))
+    lines = []
+    for event in sorted(events_of):
+        models = events_of[event]
+        meanings = list(dict.fromkeys(meaning for _, meaning in models))
+        lines.append([f"`{event}`", "; ".join(meanings), ", ".join(f"`{name}`" for name, _ in models)])
+    write("events.md", table(["event", "meaning", "models"], lines))
+    listed = []
+    for name in names:
+        listed += [[f"`{entry[0]}.toml`", f"`{name}`", entry[1]] for entry in ready[name]]
+    write("scenarios.md", table(["file", "model", "title"], listed))
+    return names
+
+
+def wrapped(text):
+    """A help text with lines that fit on a page; what a line says goes on where it began."""
+    lines = []
+    for line in text.splitlines():
+        column = re.match(r"(  \S.*?\s{2,})?", line).end()
+        lines += textwrap.wrap(line, 92, subsequent_indent=" " * column, break_on_hyphens=False) or [""]
+    return "\n".join(lines) + "\n"
+
+
+def write_commands(program):
+    top = run(program, "--help")
+    text = f"```text\n{wrapped(top)}```\n"
+    block = top.split("Subcommands:", 1)
+    if len(block) != 2:
+        fail("'monograin --help' lists no subcommands")
+    commands = re.findall(r"^  (\S+)", block[1].split("\n\n")[0], re.MULTILINE)
+    for command in commands:
+        text += f"\n## `monograin {command}`\n\n```text\n{wrapped(run(program, command, '--help'))}```\n"
+    write("commands.md", text)
+    return commands
+
+
+def entries_of(text):
+    """BibTeX entries by their keys."""
+    parts = re.split(r"^(?=@)", text, flags=re.MULTILINE)
+    return {re.match(r"@\w+\{([^,]+),", part).group(1): part.strip() for part in parts if part.startswith("@")}
+
+
+def write_references(program, commands):
+    """Writes the entries of `monograin cite`, where the program has it, and those that docs/references.bib adds."""
+    by_hand = entries_of((DOCS / "references.bib").read_text(encoding="utf-8"))
+    printed = entries_of(run(program, "cite")) if "cite" in commands else {}
+    entries = {**printed, **{key: entry for key, entry in by_hand.items() if key not in printed}}
+    write("references.bib", "\n\n".join(entries.values()) + "\n")
+    return f"{len(printed)} of 'monograin cite', {len(entries) - len(printed)} of docs/references.bib"
+
+
+# --- measurements
+
+
+def rows_of(file):
+    with open(file, encoding="utf-8") as stream:
+        return list(csv.DictReader(line for line in stream if not line.startswith("#")))
+
+
+SPACE = "\u00a0"  # keeps a number and its unit in one line
+
+
+def percent(value):
+    return f"{100 * float(value):.3g}{SPACE}%"
+
+
+def microseconds(seconds):
+    micro = 1e6 * float(seconds)
+    return f"{micro:.3g}{SPACE}µs" if micro < 999.5 else f"{micro / 1000:.3g}{SPACE}ms"
+
+
+def write_measurements():
+    """Tables from the committed measurements: distance from finite elements, time and error of each scene."""
+    last = {}
+    for row in rows_of(ROOT / "plots" / "laws-fe.csv"):
+        last[row["table"], row["case"]] = row  # rows of a case go on to larger displacements
+    by_scene = {}
+    for (scene, case), row in last.items():
+        material, _, law = case.rpartition(": ")
+        by_scene.setdefault(scene, []).append(
+            [material, re.sub(rf"\b({'|'.join(MODEL_WORDS)})\b", r"`\1`", law, count=1), f"{float(row['reversal']):.3g}",
+             percent(row["peak_error"]), f"{float(row['area_error']):.3g}", percent(row["coverage"])])
+    text = ""
+    for scene, lines in by_scene.items():
+        text += f"\n**{scene}**\n\n"
+        heading = ["case", "law", "up to δ/R0", "peak error", "area error", "covered"]
+        if all(line[0] == "" for line in lines):
+            heading, lines = heading[1:], [line[1:] for line in lines]
+        text += table(heading, lines)
+    write("distance.md", text)
+
+    measured = {}
+    for row in rows_of(ROOT / "plots" / "bench.csv"):
+        measured.setdefault(row["scene"], []).append(row)
+    with open(ROOT / "scenarios" / "bench" / "scenes.toml", "rb") as stream:
+        titles = {scene["name"]: scene.get("title", "") for scene in tomllib.load(stream)["scene"]}
+    lines = []
+    for scene, rows in measured.items():
+        def at(integrator, scene_rows=rows):
+            return next(row for row in scene_rows if row["integrator"] == integrator and float(row["rtol"]) == 1e-8)
+
+        auto, bdf = at("auto"), at("cvode-bdf")
+        ratio = float(bdf["fastest[s]"]) / float(auto["fastest[s]"])
+        lines.append([titles[scene], microseconds(auto["fastest[s]"]), f"{float(auto['curve_error']):.1g}",
+                      microseconds(bdf["fastest[s]"]), f"{float(bdf['curve_error']):.1g}", f"{ratio:.3g}"])
+    write("cost.md", table(["scene", "`auto`", "its error", "`cvode-bdf`", "its error", "time ratio"], lines))
+    write_equal_errors()
+
+
+def write_equal_errors():
+    """Columns of the table "auto" of plots/bench.md, and the largest advantage of another method in it."""
+    text = (ROOT / "plots" / "bench.md").read_text(encoding="utf-8").split("## `auto`")[1].split("\n## ")[0]
+    rows = [[part.strip() for part in line.strip("|\n").split("|")] for line in text.splitlines() if line.startswith("|")]
+    heading, rows = rows[0], rows[2:]
+    most = max(float(row[heading.index(f"at {error}")]) for row in rows for error in ("1e-04", "1e-06", "1e-08", "1e-10"))
+    shown = ["scene", "is", "bdf at 1e-04", "bdf at 1e-08", "bdf at its own"]
+    lines = [[row[heading.index(name)] for name in shown] for row in rows]
+    write("equal-errors.md",
+          f"At errors of 1e-4, 1e-6, 1e-8 and 1e-10 the time of `auto` is at most {most:.3g} times that of the fastest other "
+          "method, in any scene. The time of `cvode-bdf`, the standard code for stiff equations, over that of `auto`:\n\n"
+          + table(["scene", "`auto` is", "at 1e-4", "at 1e-8", "at the error of `auto`"], lines))
+
+
+def write_tables():
+    """A page for each table that the atlas and the bench have left in plots/."""
+    shutil.rmtree(TABLES, ignore_errors=True)
+    for file in sorted((ROOT / "plots").glob("*.md")):
+        if file.name != "README.md":
+            write(file.name, file.read_text(encoding="utf-8"), TABLES)
+
+
+def draw_comparison(program, scratch):
+    """The figure of two materials in "Getting started"."""
+    softer = scratch / "softer"
+    run(program, "run", ROOT / "scenarios" / "die.toml", "--set", "material.yield_stress=30 MPa", "-o", softer, "--quiet")
+    run(program, "plot", scratch / "die", softer, "-o", scratch / "both.svg")
+    shutil.copy(scratch / "both.svg", GENERATED / "figures" / "both.svg")
+
+
+def block_of(page, name):
+    """A block of a page that its mark calls a file."""
+    text = (DOCS / page).read_text(encoding="utf-8")
+    found = re.search(rf"<!-- test: file {re.escape(name)} -->\n```\w+\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    return found.group(1) if found else fail(f"docs/{page} has no block for the file {name}")
+
+
+def draw_own_figure(program, scratch):
+    """The figure that the definition in "Getting started" draws."""
+    (scratch / "paper").mkdir()
+    write("mine.toml", block_of("getting-started.md", "mine.toml"), scratch)
+    definition = block_of("getting-started.md", "paper/yield.toml").replace('format = "pdf"', 'format = "svg"')
+    write("yield.toml", definition, scratch / "paper")
+    run(program, "atlas", "yield", "--plots", scratch / "paper")
+    shutil.copy(scratch / "paper" / "yield.svg", GENERATED / "figures" / "yield.svg")
+
+
+def draw_wedge(program, scratch):
+    """The figure of the scenario in "Set up your own walls"."""
+    write("wedge.toml", block_of("howto/own-walls.md", "wedge.toml"), scratch)
+    run(program, "run", scratch / "wedge.toml", "--plot", "--quiet", "-o", scratch / "wedge")
+    shutil.copy(scratch / "wedge" / "figure.svg", GENERATED / "figures" / "wedge.svg")
+
+
+def draw_calibration(program, scratch):
+    run(program, "calibrate", ROOT / "scenarios" / "calibrate" / "uniaxial.toml", "-o", scratch / "calibration")
+    shutil.copy(scratch / "calibration" / "figure.svg", GENERATED / "figures" / "calibration.svg")
+
+
+# --- examples, and the interfaces for programs
+
+
+def write_examples():
+    """Parts that show the programs of examples/; a part without its program says so, where the tree has no examples."""
+    folder = ROOT / "examples" / "cpp"
+    for name in CPP_EXAMPLES:
+        file = folder / f"{name}.cpp"
+        if file.is_file():
+            text = f"`examples/cpp/{name}.cpp`:\n\n```{{literalinclude}} /../examples/cpp/{name}.cpp\n:language: cpp\n```\n"
+        elif folder.is_dir():
+            fail(f"pages show examples/cpp/{name}.cpp, which is not there")
+        else:
+            text = "```{note}\nThis version of monograin comes without its C++ examples.\n```\n"
+        write(f"example-{name}.md", text)
+    text = ""
+    # The first run comes first.
+    files = sorted((ROOT / "examples" / "python").glob("*.py"), key=lambda file: (not file.stem.startswith("first"), file.name))
+    for file in files:
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        documentation = ast.get_docstring(tree)
+        if not documentation:
+            fail(f"{file.relative_to(ROOT)} does not begin with a text that says what it shows")
+        title, _, rest = documentation.partition("\n")
+        # A line on its own says how to call the program.
+        usage = re.findall(r"^ *(python3 .*)$", rest, re.MULTILINE)
+        rest = re.sub(r"^ *python3 .*$", "", rest, flags=re.MULTILINE).strip()
+        heading, _, more = title.rstrip(".").partition(": ")
+        text += f"## {heading}\n\n" + (f"{more[0].upper()}{more[1:]}. " if more else "") + f"{rest}\n\n"
+        text += f"`examples/python/{file.name}`" + (f", called as `{usage[0]}`" if usage else "") + ":\n\n"
+        text += f"```{{literalinclude}} /../examples/python/{file.name}\n:language: python\n"
+        text += f":lines: {tree.body[0].end_lineno + 2}-\n```\n\n"
+    if not files and (ROOT / "python").is_dir():
+        fail("pages show examples/python/*.py, of which there are none")
+    write("python-examples.md", text or "```{note}\nThis version of monograin comes without its Python examples.\n```\n")
+    return len(files)
+
+
+def public_modules(module):
+    """The names of a module and of the modules that it, and they in turn, name in __all__."""
+    names = [module.__name__]
+    for name in getattr(module, "__all__", []):
+        if isinstance(getattr(module, name), types.ModuleType):
+            names += public_modules(getattr(module, name))
+    return names
+
+
+def write_python_api():
+    if importlib.util.find_spec("monograin") is not None:
+        package = importlib.import_module("monograin")
+        modules = public_modules(package)
+        text = ""
+        for module in modules:
+            text += f"## `{module}`\n\n```{{eval-rst}}\n.. automodule:: {module}\n   :members:\n```\n\n"
+        write("python-api.md", text)
+        return f"{len(modules)} modules of {pathlib.Path(package.__file__).parent}"
+    if (ROOT / "python").is_dir():
+        fail("the tree has a package in python/, but this interpreter cannot import monograin; run tools/docs, which "
+             "builds it, or install it")
+    write("python-api.md", "```{note}\nThis version of monograin comes without its Python package.\n```\n")
+    return "left out: the tree has no folder python/"
+
+
+def declarations_of(xml, header):
+    """A directive of breathe for everything that a header declares; first its own description."""
+    index = ElementTree.parse(xml / "index.xml")
+    kinds = {compound.get("refid"): compound.get("kind") for compound in index.iter("compound")}
+    for refid, kind in kinds.items():
+        if kind != "file":
+            continue
+        file = ElementTree.parse(xml / f"{refid}.xml").find("compounddef")
+        if file.find("location").get("file") == header:
+            break
+    else:
+        fail(f"doxygen has not read {header}")
+    brief = " ".join("".join(file.find("briefdescription").itertext()).split())
+    parts = [f"{brief}\n\n"] if brief else []
+    for inner in file.findall("innerclass"):
+        # What is declared here only stands in another file, or nowhere.
+        if inner.get("refid") in kinds and inner.text.count("::") == 1:
+            own = ElementTree.parse(xml / f"{inner.get('refid')}.xml").find("compounddef")
+            if own.find("location").get("bodyfile") == header or own.find("location").get("file") == header:
+                kind = kinds[inner.get("refid")]
+                parts.append(f"```{{doxygen{kind}}} {inner.text}\n:members:\n:undoc-members:\n```\n\n")
+    namespace = ElementTree.parse(xml / "namespacemonograin.xml").find("compounddef")
+    members = [member for member in namespace.iter("memberdef") if member.find("location").get("file") == header]
+    functions = [member.findtext("name") for member in namespace.iter("memberdef") if member.get("kind") == "function"]
+    for member in members:
+        kind, name = member.get("kind"), member.findtext("name")
+        arguments = member.findtext("argsstring") if kind == "function" and functions.count(name) > 1 else ""
+        arguments = re.sub(r"\)[^)]*$", ")", arguments)
+        parts.append(f"```{{doxygen{kind}}} monograin::{name}{arguments}\n```\n\n")
+    return parts
+
+
+def write_cpp_api():
+    headers = sorted((ROOT / "include" / "monograin").glob("*.hpp"))
+    if not headers:
+        write("cpp-api.md", "```{note}\nThis version of monograin comes without installed headers.\n```\n")
+        return "left out: the tree has no include/monograin/*.hpp"
+    output = GENERATED / "doxygen"
+    shutil.rmtree(output, ignore_errors=True)
+    output.mkdir(parents=True)
+    settings = {
+        "PROJECT_NAME": "monograin",
+        "INPUT": ROOT / "include" / "monograin",
+        "RECURSIVE": "NO",
+        "FILE_PATTERNS": "*.hpp",
+        "OUTPUT_DIRECTORY": output,
+        "GENERATE_HTML": "NO",
+        "GENERATE_LATEX": "NO",
+        "GENERATE_XML": "YES",
+        "XML_PROGRAMLISTING": "NO",
+        "STRIP_FROM_PATH": ROOT / "include",
+        "QUIET": "YES",
+        "WARN_IF_UNDOCUMENTED": "NO",
+        "EXTRACT_ALL": "YES",
+        "MACRO_EXPANSION": "YES",
+    }
+    (output / "Doxyfile").write_text("\n".join(f"{key} = {value}" for key, value in settings.items()) + "\n",
+                                     encoding="utf-8")
+    run("doxygen", output / "Doxyfile")
+    text = ""
+    for header in headers:
+        name = header.relative_to(ROOT / "include").as_posix()
+        declared = declarations_of(output / "xml", name)
+        text += f"## `<{name}>`\n\n" + "".join(declared)
+    write("cpp-api.md", text)
+    return f"{len(headers)} headers"
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Writes the parts of the documentation that the program knows.")
+    parser.add_argument("--program", help="monograin; default: that of build/demo or build/release")
+    program = find_program(parser.parse_args().program)
+    GENERATED.mkdir(parents=True, exist_ok=True)
+    schema = json.loads(run(program, "schema"))
+    with tempfile.TemporaryDirectory() as scratch:
+        ready = run_ready_scenarios(program, pathlib.Path(scratch))
+        draw_calibration(program, pathlib.Path(scratch))
+        draw_comparison(program, pathlib.Path(scratch))
+        draw_own_figure(program, pathlib.Path(scratch))
+        draw_wedge(program, pathlib.Path(scratch))
+    models = write_models(program, schema, ready)
+    write_language(schema)
+    write_measurements()
+    write_tables()
+    commands = write_commands(program)
+    runs = sum(len(entries) for entries in ready.values())
+    print(f"docs/generate.py: {len(models)} models, {runs} ready scenarios run, {len(commands)} commands")
+    print(f"docs/generate.py: {write_examples()} examples in Python")
+    print(f"docs/generate.py: references: {write_references(program, commands)}")
+    print(f"docs/generate.py: Python interface: {write_python_api()}")
+    print(f"docs/generate.py: C++ interface: {write_cpp_api()}")
+
+
+if __name__ == "__main__":
+    main()
