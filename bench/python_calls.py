@@ -15,7 +15,7 @@ COLUMNS = ["max(axial.force)", "end(apparent_radius)"]
 
 
 def cpu_seconds():
-    """Of this process and of those that it has started and waited for."""
+    """CPU time of this process and of those that it has started and waited for."""
     return sum(os.times()[:4])
 
 

@@ -74,7 +74,7 @@ Value word(const std::string& given, std::initializer_list<std::pair<const char*
 
 // --- plastic spheres between walls
 
-/// What is asked of a contact: x is the displacement of a wall over the radius.
+/// One quantity of a contact. The law's x is the displacement of a wall over the radius.
 double plastic_quantity(const plastic::Law& law, const std::string& quantity, double strength, double radius,
                         double displacement) {
   const double x = displacement / radius;

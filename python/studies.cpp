@@ -36,7 +36,7 @@ py::tuple sweep(const std::string& file, const std::string& output, int threads,
   return py::make_tuple(folder.string(), outcome.runs_missing);
 }
 
-/// What a calibration leaves in memory.
+/// Result of a calibration, in memory.
 struct Fitted {
   std::string name;
   std::string json;

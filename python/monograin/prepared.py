@@ -67,7 +67,8 @@ class Prepared:
             samples: array of shape (n, keys) in SI units; of one key also (n,).
             columns: formulas of the history's columns that give one number each, such as ``"max(axial.force)"`` or
                 ``"end(apparent_radius) / 0.01"``: numbers, names of columns, ``+ - * / ^``, brackets, ``sqrt`` and other
-                functions, and ``min``, ``max`` and ``end`` (the last value) of those that are defined.
+                functions, and ``min``, ``max``, ``last`` (the last value that is defined) and ``end`` (that of the last
+                row, defined or not).
             threads: 0 for one for each core.
             statuses: whether to return how the runs ended as well.
 

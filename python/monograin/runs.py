@@ -210,7 +210,7 @@ class Run:
 
     @property
     def info(self) -> dict[str, Any]:
-        """What ``run.json`` holds: status, contact classes, integrator, statistics, timings, versions, scenario."""
+        """Record of the run, as ``run.json`` holds it: status, contact classes, integrator, statistics, timings, versions, scenario."""
         content: dict[str, Any] = json.loads(self._core.json())
         return content
 

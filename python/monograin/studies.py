@@ -61,7 +61,7 @@ class FittedParameter(NamedTuple):
 
 
 class Calibration:
-    """What a calibration has found."""
+    """Result of a calibration: fitted numbers, their uncertainty, and the fit itself."""
 
     def __init__(self, core: _core.Fitted) -> None:
         self._core = core
@@ -104,7 +104,7 @@ class Calibration:
 
     @property
     def notes(self) -> list[str]:
-        """What a reader should know of the fit, a sentence each."""
+        """Remarks on the fit, a sentence each."""
         return self._core.notes
 
     @property
@@ -114,7 +114,7 @@ class Calibration:
 
     @property
     def info(self) -> dict[str, Any]:
-        """What ``calibration.json`` holds: parameters, statistics, minima, data."""
+        """Record of the calibration, as ``calibration.json`` holds it: parameters, statistics, minima, data."""
         return self._info
 
     def __str__(self) -> str:
