@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.metadata
+import importlib.util
 import inspect
 import os
 import pathlib
 import subprocess
 import sys
+import tarfile
 
 import pytest
 
@@ -43,6 +46,37 @@ def test_the_distribution_lists_its_files_with_their_digests():
     for name, file in files.items():
         if file.hash is not None:
             assert file.size == pathlib.Path(str(file.locate())).stat().st_size, name
+
+
+def test_a_source_distribution_has_all_that_a_wheel_is_built_from(tmp_path):
+    specification = importlib.util.spec_from_file_location("monograin_build", ROOT / "python/backend/monograin_build.py")
+    backend = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(backend)
+    name = backend.build_sdist(str(tmp_path))
+    assert name == f"monograin-{mg.__version__}.tar.gz"
+    with tarfile.open(tmp_path / name) as archive:
+        files = {member.name.removeprefix(f"monograin-{mg.__version__}/") for member in archive if member.isfile()}
+    # Any file stands for the module, which is not built here.
+    needed = {source.relative_to(ROOT).as_posix() for source, _ in backend.package_files(ROOT / "README.md")}
+    assert len(needed) > 40
+    assert needed <= files
+    assert {"PKG-INFO", "pyproject.toml", "CMakeLists.txt", "CMakePresets.json", "python/CMakeLists.txt"} <= files
+    assert not any(file.startswith(("build/", "runs/")) or file.endswith((".so", ".pyc")) for file in files)
+
+
+def test_the_stubs_name_what_the_module_has():
+    tree = ast.parse((ROOT / "python/monograin/_core.pyi").read_text())
+
+    def stated(body: list[ast.stmt]) -> set[str]:
+        return {node.name for node in body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+
+    def found(owner: object) -> set[str]:
+        return {name for name in dir(owner) if not name.startswith("_")}
+
+    assert stated(tree.body) == found(mg._core)
+    for node in tree.body:
+        if isinstance(node, ast.ClassDef):
+            assert stated(node.body) - {"__init__"} == found(getattr(mg._core, node.name)), node.name
 
 
 def test_sources_and_stubs_pass_the_type_checker(tmp_path):
