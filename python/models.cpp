@@ -85,9 +85,9 @@ py::dict as_python(const Model& model) {
   for (const py::handle key : keys_of(model.material)) material.append(key);
   py::list steps = keys_of(model.drives);
   for (const py::handle key : keys_of(model.lateral_drives)) steps.append(key);
-  return py::dict("name"_a = model.name, "summary"_a = model.summary, "source"_a = model.source,
-                  "material"_a = material, "options"_a = keys_of(model.options), "presets"_a = presets,
-                  "steps"_a = steps, "configurations"_a = texts_of(model.configurations),
+  return py::dict("name"_a = model.name, "summary"_a = model.summary, "references"_a = reference_texts(model),
+                  "source"_a = model.source, "material"_a = material, "options"_a = keys_of(model.options),
+                  "presets"_a = presets, "steps"_a = steps, "configurations"_a = texts_of(model.configurations),
                   "has_free_centre"_a = model.has_free_centre, "has_walls"_a = model.has_walls(),
                   "has_profile"_a = model.has_profile, "regimes"_a = terms_of(model.regimes),
                   "events"_a = terms_of(model.events), "validity"_a = texts_of(model.domain));

@@ -21,7 +21,7 @@ from typing import Any, Iterator, Mapping, Optional
 Settings = Optional[Mapping[str, Any]]
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BUILD = ROOT / "build" / "python"
+BUILD = "build/python"
 NAME = "monograin"
 # Ready scenarios, with what they name and what sweeps and calibrates them.
 DATA = ("*.toml", "*.csv", "sweeps/*", "calibrate/*")
@@ -38,8 +38,12 @@ def get_requires_for_build_sdist(config_settings: Settings = None) -> list[str]:
 
 
 def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata_directory: Optional[str] = None) -> str:
-    """Builds the module and writes the wheel. Returns the wheel's file name."""
-    module = build_module()
+    """Builds the module and writes the wheel. Returns the wheel's file name.
+
+    Args:
+        config_settings: `build-folder` names the folder of a build, whose objects are used and whose options are kept.
+    """
+    module = build_module((config_settings or {}).get("build-folder"))
     name = f"{NAME}-{version()}-{tag()}.whl"
     with WheelFile(pathlib.Path(wheel_directory) / name) as wheel:
         for source, target in package_files(module):
@@ -148,31 +152,21 @@ def metadata_files() -> dict[str, str]:
 # --- building
 
 
-def build_module() -> pathlib.Path:
-    """Compiles the module in build/python; what is there already is not compiled again. Returns its file."""
+def build_module(folder: Optional[str] = None) -> pathlib.Path:
+    """Compiles the module in a folder [build/python]; what is there already is not compiled again. Returns its file."""
     cmake = shutil.which("cmake")
     if cmake is None or shutil.which("ninja") is None:
         raise RuntimeError("cmake or ninja was not found. On Debian: tools/install-deps --python")
     # A virtual environment may be gone at the next call; the interpreter that it stands on is not.
     interpreter = os.path.realpath(sys.executable)
-    subprocess.run(
-        [
-            cmake,
-            "--preset=release",
-            "-B",
-            str(BUILD),
-            "-DMONOGRAIN_BUILD_PYTHON=ON",
-            "-DMONOGRAIN_BUILD_PROGRAM=OFF",
-            "-DMONOGRAIN_BUILD_TESTS=OFF",
-            "-DMONOGRAIN_INSTALL=OFF",
-            f"-DPython_EXECUTABLE={interpreter}",
-        ],
-        cwd=ROOT,
-        check=True,
-    )
-    subprocess.run([cmake, "--build", str(BUILD), "--target", "monograin_python"], cwd=ROOT, check=True)
+    build = ROOT / (folder or BUILD)
+    options = ["-DMONOGRAIN_BUILD_PYTHON=ON", f"-DPython_EXECUTABLE={interpreter}"]
+    if folder is None:
+        options += ["--preset=release", "-DMONOGRAIN_BUILD_TESTS=OFF"]
+    subprocess.run([cmake, "-B", str(build), *options], cwd=ROOT, check=True)
+    subprocess.run([cmake, "--build", str(build), "--target", "monograin_python"], cwd=ROOT, check=True)
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
-    module = BUILD / "python" / NAME / f"_core{suffix}"
+    module = build / "python" / NAME / f"_core{suffix}"
     if not module.is_file():
         raise RuntimeError(f"{module}: was not built; is another Python found than {interpreter}?")
     return module

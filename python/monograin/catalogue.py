@@ -45,7 +45,9 @@ class Model:
     """A contact law, or a law of a body without walls.
 
     Attributes:
-        name, summary, source: what it is and who has published it.
+        name, summary: what it is.
+        references: publications that it is taken from, the main one first; a line each, with DOI.
+        source: where in them the law stands, and which misprints are corrected; may be empty.
         material: keys of ``[material]``, by name.
         options: keys of the table that bears the model's name.
         steps: quantities that steps prescribe of a model without walls.
@@ -58,6 +60,7 @@ class Model:
 
     name: str
     summary: str
+    references: list[str]
     source: str
     material: dict[str, Key]
     options: dict[str, Key]

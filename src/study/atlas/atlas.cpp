@@ -240,7 +240,7 @@ class FigureMaker {
   }
 
   void append_curves(const CurveSpec& spec, figure::ChartPanel& panel) {
-    for (const Scenario& scenario : spec.scenarios) cite(*find_model(scenario.model));
+    for (const CheckedScenario& scenario : spec.scenarios) cite(*find_model(scenario.model));
     std::vector<XyCurve> curves = curves_of(spec);
     // Runs of which only one number is asked make one curve of these numbers.
     const bool is_one = curves.size() > 1 && std::ranges::all_of(curves, [](const auto& c) { return c.x.size() == 1; });

@@ -62,8 +62,8 @@ constexpr std::size_t k_longest = 400;  ///< which also bounds how deep brackets
   double result = std::numeric_limits<double>::quiet_NaN();
   for (const double value : values) {
     if (std::isnan(value)) continue;
-    const bool is_next = std::isnan(result) || function == "last" ||
-                         (function == "min" ? value < result : value > result);
+    const bool is_next =
+        std::isnan(result) || function == "last" || (function == "min" ? value < result : value > result);
     if (is_next) result = value;
   }
   return result;

@@ -28,9 +28,9 @@ class ExpressionError : public std::runtime_error {
 };
 
 /// A formula of numbers, names, `+ - * / ^`, brackets and the functions sqrt, exp, log, abs, sin, cos, tan, atan, sinh,
-/// cosh, tanh (value by value), min, max, last (one value of all that are defined), end (that of the last row, defined or
-/// not), and laws that are no formula: radius_influence_closed, _integral, _projected of Poisson's ratio, angle, contact
-/// radius over R. A name is letters, digits, `_` and `.` (axial.force), or any text between backquotes.
+/// cosh, tanh (value by value), min, max, last (one value of all that are defined), end (that of the last row, defined
+/// or not), and laws that are no formula: radius_influence_closed, _integral, _projected of Poisson's ratio, angle,
+/// contact radius over R. A name is letters, digits, `_` and `.` (axial.force), or any text between backquotes.
 ///
 /// `a / b * c` is (a / b) * c; `^` binds first and from the right.
 class Expression {
