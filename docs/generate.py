@@ -747,7 +747,7 @@ def declarations_of(xml, header):
     brief = " ".join("".join(file.find("briefdescription").itertext()).split())
     parts = [f"{brief}\n\n"] if brief else []
     for inner in file.findall("innerclass"):
-        # What is declared here only stands in another file, or nowhere.
+        # A mere declaration: the definition stands in another file, or nowhere.
         if inner.get("refid") in kinds and inner.text.count("::") == 1:
             own = ElementTree.parse(xml / f"{inner.get('refid')}.xml").find("compounddef")
             if own.find("location").get("bodyfile") == header or own.find("location").get("file") == header:

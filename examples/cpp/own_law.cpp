@@ -34,7 +34,7 @@ constexpr std::array<std::string_view, 1> k_domain{"small displacements; not che
 
 Spring law_of(const mg::ModelInput& input) { return {input.material("stiffness")}; }
 
-/// What the stress test draws of the law.
+/// Material that the stress test draws for the law.
 mg::ProgramBounds draw(mg::Dice&, mg::DrawnMaterial& drawn) {
   drawn.values = {{"stiffness", 1.0}};
   return {};

@@ -1,4 +1,4 @@
-/// What is wrong with a scenario, and where it is written.
+/// Faults of a scenario, and where they are written.
 #pragma once
 
 #include <cstddef>

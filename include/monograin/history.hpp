@@ -44,7 +44,7 @@ class History {
   /// Words of a column, one for each row. @throws std::out_of_range where it holds numbers, too
   [[nodiscard]] std::vector<std::string_view> words(std::string_view name) const;
 
-  /// The same as rows, for files and comparisons.
+  /// The rows that the columns are made of.
   [[nodiscard]] const Table& table() const noexcept;
 
  private:

@@ -58,7 +58,7 @@ class Scenario {
 
   [[nodiscard]] const std::string& text() const noexcept { return text_; }
   [[nodiscard]] const std::string& origin() const noexcept { return origin_; }
-  /// What was set, as `key=value`, in this order.
+  /// Keys that were set, as `key=value`, in this order.
   [[nodiscard]] const std::vector<std::string>& overrides() const noexcept { return overrides_; }
 
  private:

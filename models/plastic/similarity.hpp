@@ -24,7 +24,7 @@ struct SimilarityPair {
 /// @throws std::invalid_argument unless both radii are positive, and one of them finite
 [[nodiscard]] SimilarityPair make_similarity_pair(double first_radius, double second_radius);
 
-/// Strength of two materials kappa_1, kappa_2 > 0 in contact (eq. 2.6): (kappa_1^(-m) + kappa_2^(-m))^(-1/m); the
+/// Strength of two materials kappa_1, kappa_2 > 0 in contact (in eq. 2.8): (kappa_1^(-m) + kappa_2^(-m))^(-1/m); the
 /// weaker one's for mu = 0, and against a rigid body (kappa infinity).
 /// @throws std::invalid_argument for strengths that are not positive or both infinite, mu outside [0, 1]
 [[nodiscard]] double similarity_strength(double first, double second, double exponent);

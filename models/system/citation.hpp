@@ -27,7 +27,7 @@ struct Citation {
 /// line break.
 [[nodiscard]] std::string bibtex(const Citation& citation);
 
-/// What the models are taken from.
+/// Sources of the models.
 namespace references {
 
 extern const Citation k_agarwal2018;

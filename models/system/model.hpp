@@ -246,7 +246,7 @@ struct Violation;
 struct Model {
   std::string_view name;
   std::string_view summary;
-  /// What the model is taken from, the main source first.
+  /// Sources of the model, the main one first.
   std::span<const Citation* const> references{};
   /// Where in the references the law stands, and which of their misprints are corrected.
   std::string_view source{};

@@ -25,7 +25,7 @@ BUILD = "build/python"
 NAME = "monograin"
 # Ready scenarios, with what they name and what sweeps and calibrates them.
 DATA = ("*.toml", "*.csv", "sweeps/*", "calibrate/*")
-# What a source distribution does without.
+# Folders that a source distribution does without.
 NO_SOURCE = ("build", "runs", "dist")
 
 

@@ -14,7 +14,7 @@ class Version : public CommandTest {};
 
 std::string file_of_project(const std::string& name) { return read_text(MONOGRAIN_SOURCE_DIR "/" + name); }
 
-/// What stands between two words of a text; empty where they are not there.
+/// The part of a text between two words; empty where they are not there.
 std::string between(std::string_view text, std::string_view before, std::string_view after) {
   const std::size_t at = text.find(before);
   if (at == std::string_view::npos) return {};

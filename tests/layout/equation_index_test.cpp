@@ -44,7 +44,7 @@ std::vector<std::string> cells_of(std::string_view line) {
   return cells;
 }
 
-/// What stands between backticks.
+/// The texts between backticks.
 std::vector<std::string> codes_of(const std::string& cell) {
   std::vector<std::string> codes;
   for (std::size_t begin = cell.find('`'); begin != std::string::npos;) {

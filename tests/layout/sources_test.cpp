@@ -45,7 +45,7 @@ TEST(Sources, AreNowhereNamedByACopy) {
   std::size_t files = 0;
   for (auto entry = fs::recursive_directory_iterator(MONOGRAIN_SOURCE_DIR); entry != fs::end(entry); ++entry) {
     const std::string name = entry->path().filename().string();
-    // What is built, and what runs have left there.
+    // Folders of builds and of runs.
     if (entry->is_directory() && (name == ".git" || name.starts_with("build") || name == "runs")) {
       entry.disable_recursion_pending();
     }
