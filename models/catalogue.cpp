@@ -46,6 +46,7 @@ constexpr std::array k_functions{
 #define MONOGRAIN_MODELS(MODEL)             \
   MODEL(hertz, model)                       \
   MODEL(mdr, model)                         \
+  MODEL(cel, model)                         \
   MODEL(plastic, similarity_model)          \
   MODEL(plastic, semimech_model)            \
   MODEL(plastic, hardening_model)           \

@@ -183,6 +183,17 @@ double sphere_self_influence(double poisson_ratio) {
   return -sum / (4.0 * pi);
 }
 
+double sphere_self_influence(double poisson_ratio, double half_sine, int last) {
+  const SphereModes m(poisson_ratio);
+  // The modes beyond the last one, by their expansion in 1/n, summed from the middle between two terms on.
+  const double square = 1.0 + m.nu + m.q - 2.0 * m.b * m.p;
+  const double cube = 1.0 + m.nu + m.p * (3.0 * m.b * m.b - m.omega * m.omega) - 2.0 * m.b * m.q;
+  const double first = last + 0.5;
+  const double beyond = (square + 0.5 * cube / first) / first;
+  const double logarithm = m.logarithm() * std::log(half_sine * (1.0 + half_sine));
+  return sphere_self_influence(poisson_ratio) + (beyond + logarithm) / (4.0 * pi);
+}
+
 double radius_quotient(double poisson_ratio, double theta) noexcept {
   const double half_cosine = std::cos(0.5 * theta);
   const double square = half_cosine * half_cosine;

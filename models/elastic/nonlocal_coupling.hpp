@@ -30,6 +30,10 @@ enum class Influence { half_space, sphere };
 /// which is the local law's, and the logarithm of sin(theta/2).
 [[nodiscard]] double sphere_self_influence(double poisson_ratio);
 
+/// The self influence of a contact of finite size: with the logarithm at half_sine = sin(theta/2) of its own radius,
+/// and modes up to the last one only. Error below 1e-12 for `last` above 1000.
+[[nodiscard]] double sphere_self_influence(double poisson_ratio, double half_sine, int last);
+
 /// How the contact radius follows the deformation of the surface: by the source's closed form (eq. 14), by its integral
 /// (eq. 8), by the same integral with the displacement projected on the true radial direction (eq. A.10 takes the
 /// length of that direction's projection for its component), or not at all.

@@ -19,7 +19,7 @@ namespace {
 constexpr double k_balanced = 1e-10;
 // Share of the path on which a push takes a free centre that counts as away from a wall.
 constexpr double k_moved_away = 1e-6;
-constexpr int k_most_steps = 200;
+constexpr int k_most_steps_of_search = 200;
 // Stiffness, over that of the stiffest direction, of one that no contact constrains.
 constexpr double k_no_stiffness_ratio = 1e-12;
 
@@ -57,7 +57,7 @@ std::vector<double> overlaps_under_push(const Eigen::Vector3d& push, std::span<c
       sum += 0.4 * weights[k] * std::pow(std::max(0.0, measured[k].dot(at)), 2.5);
     return sum;
   };
-  for (int iteration = 0; iteration < k_most_steps; ++iteration) {
+  for (int iteration = 0; iteration < k_most_steps_of_search; ++iteration) {
     Eigen::Vector3d slope = load;
     Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
     for (std::size_t k = 0; k < measured.size(); ++k) {

@@ -122,6 +122,16 @@ const Citation k_hertz1882{.key = "hertz1882",
                            .year = "1882",
                            .doi = "10.1515/crll.1882.92.156"};
 
+const Citation k_monograin{.key = "monograin",
+                           .authors = "The monograin developers",
+                           .title = "monograin, a workbench for the mechanics of a single particle under contact",
+                           .venue = {},
+                           .volume = {},
+                           .pages = {},
+                           .year = "2026",
+                           .doi = {},
+                           .kind = Citation::Kind::manuscript};
+
 const Citation k_nezamabadi2022{.key = "nezamabadi2022",
                                 .authors = "S. Nezamabadi and M. Ghadiri and J.-Y. Delenne and F. Radjai",
                                 .title = "Modelling the compaction of plastic particle packings",

@@ -34,6 +34,7 @@ extern const Citation k_agarwal2018;
 extern const Citation k_biwa1995;
 extern const Citation k_edmans;
 extern const Citation k_hertz1882;
+extern const Citation k_monograin;
 extern const Citation k_nezamabadi2022;
 extern const Citation k_shahin2021;
 extern const Citation k_storakers1997;

@@ -21,6 +21,8 @@ constexpr std::array k_words{
     Words{Limit::walls_meet, "walls-meet", "the walls meet"},
     Words{Limit::cell_filled, "cell-filled", "the particle fills its cell, where its pressure would be infinite"},
     Words{Limit::contact_as_wide_as_particle, "contact-as-wide-as-particle", "a contact is as wide as the particle"},
+    Words{Limit::surface_covered, "surface-covered",
+          "the contacts cover 85 % of the surface, where the law's coverage factor ends"},
     Words{Limit::overlap_of_diameter, "overlap-of-diameter", "an overlap is twice the apparent radius"},
     Words{Limit::caps_intersect, "caps-intersect",
           "contact caps intersect, the source's limit of validity (strict = true)"},

@@ -17,6 +17,7 @@ enum class Limit {
   walls_meet,
   cell_filled,
   contact_as_wide_as_particle,
+  surface_covered,
   overlap_of_diameter,
   caps_intersect,
   greatest_force,

@@ -1,4 +1,7 @@
-// An explicit method as long as it does, then an implicit one.
+// Segments in which nothing has a history are solved for; the others are integrated by an explicit method as long as
+// it does, then by an implicit one.
+
+#include <array>
 
 #include "engine/integrator.hpp"
 
@@ -11,12 +14,15 @@ constexpr long k_most_explicit_steps = 400;
 class Switching final : public Integrator {
  public:
   Switching(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances)
-      : explicit_(make_stepped(OdeintMethod::dopri5, system, guard_set, tolerances)),
+      : system_(system),
+        direct_(make_direct(system, tolerances.rtol, guard_set)),
+        explicit_(make_stepped(OdeintMethod::dopri5, system, guard_set, tolerances)),
         implicit_(make_sundials_ode(OdeMethod::cvode_bdf, system, guard_set, tolerances)),
         state_(system.unknowns().size()) {}
 
   void begin(double xi, std::span<const double> y) override {
     segment_steps_ = explicit_->statistics().steps;
+    active_ = system_.is_solvable_here() ? direct_.get() : integrating_;
     active_->begin(xi, y);
   }
 
@@ -24,7 +30,7 @@ class Switching final : public Integrator {
     if (active_ == explicit_.get() && explicit_->statistics().steps - segment_steps_ > k_most_explicit_steps) {
       // Stiff here is stiff later: there is no way back.
       explicit_->dense_output(end_, state_);
-      active_ = implicit_.get();
+      active_ = integrating_ = implicit_.get();
       active_->begin(end_, state_);
     }
     const Advance step = active_->advance();
@@ -38,16 +44,27 @@ class Switching final : public Integrator {
 
   [[nodiscard]] Statistics statistics() const override {
     Statistics sum = active_->statistics();
-    if (active_ == implicit_.get()) sum += explicit_->statistics();
+    for (const Integrator* other : parts()) {
+      if (other != active_) sum += other->statistics();
+    }
     return sum;
   }
   [[nodiscard]] long rhs_evaluations() const override {
-    return active_->rhs_evaluations() + (active_ == implicit_.get() ? explicit_->rhs_evaluations() : 0);
+    long sum = 0;
+    for (const Integrator* part : parts()) sum += part->rhs_evaluations();
+    return sum;
   }
 
  private:
+  [[nodiscard]] std::array<const Integrator*, 3> parts() const noexcept {
+    return {direct_.get(), explicit_.get(), implicit_.get()};
+  }
+
+  HybridSystem& system_;
+  std::unique_ptr<Integrator> direct_;
   std::unique_ptr<Integrator> explicit_;
   std::unique_ptr<Integrator> implicit_;
+  Integrator* integrating_ = explicit_.get();  ///< segments that are not solved for
   Integrator* active_ = explicit_.get();
   std::vector<double> state_;
   double end_ = 0.0;

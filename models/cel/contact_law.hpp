@@ -1,0 +1,66 @@
+/// One contact of an elastic-plastic particle by itself: what its dent says of it, and the elastic law on that dent.
+///
+/// Lengths are over R0, stresses over E, forces over E R0^2, areas over pi R0^2; Y stands for Y/E. The dent of a
+/// contact is its largest radius zeta, referred to a sphere of unit radius: zeta = a_Y on a fresh surface, and it only
+/// grows. Its surroundings are the support distance l of the core under the wall and the coverage factor m of the
+/// particle. Own law of this project (docs/theory/cel.md, sections 2 to 4).
+#pragma once
+
+namespace monograin::cel {
+
+/// Elastic constants and the onset of yield.
+struct Material {
+  /// @param yield_stress   Y, > 0
+  /// @param poisson_ratio  in [0, 0.5]
+  Material(double yield_stress, double poisson_ratio) noexcept;
+
+  double Y;
+  double Es;          ///< 1/(1 - nu^2)
+  double xi_Y;        ///< Johnson's parameter E* a/(Y R) at yield
+  double a_Y;         ///< contact radius at yield
+  double xi_by_zeta;  ///< Es/Y
+};
+
+/// What follows from zeta alone, each with its derivative by zeta.
+struct Dent {
+  double zeta = 0.0;
+  double h = 0.0, h_zeta = 0.0;      ///< plastic indentation, 0 on a fresh surface
+  double p = 0.0, p_zeta = 0.0;      ///< mean pressure at the limit over Y
+  double q = 0.0, q_zeta = 0.0;      ///< exponent of the elastic law, 1/3 on a fresh surface
+  double Gam = 1.0, Gam_zeta = 0.0;  ///< compliance by the elastic sphere over that of the fresh one
+};
+[[nodiscard]] Dent dent_of(const Material& material, double zeta) noexcept;
+
+/// Derivatives of a quantity of a contact by its own coordinate (u, or F where a force is prescribed), its dent, its
+/// support distance and the coverage factor.
+struct Slopes {
+  double coordinate = 0.0;
+  double zeta = 0.0;
+  double l = 0.0;
+  double m = 0.0;
+};
+
+/// A contact at an instant. An open one has u <= 0, minus its gap, and no force.
+struct Contact {
+  double u = 0.0;      ///< elastic displacement
+  double F = 0.0;      ///< force
+  double area = 0.0;   ///< contact area over pi
+  double alpha = 0.0;  ///< that at the limit force
+  double H = 0.0;      ///< force at which the contact would flow by itself
+  double F_over_H = 0.0;
+  double stored = 0.0;  ///< elastic energy of the contact itself
+  Slopes u_by, F_by, H_by, alpha_by;
+};
+
+/// F = H (u/u_H)^(1/(1-q)) at an elastic displacement u.
+[[nodiscard]] Contact contact_at(const Material& material, const Dent& dent, double l, double m, double u) noexcept;
+/// The inverse: u under a force F >= 0.
+[[nodiscard]] Contact contact_under(const Material& material, const Dent& dent, double l, double m, double F) noexcept;
+
+/// Advance of a wall that the core makes room for, by the support distance of the core, and its first two derivatives.
+struct Advance {
+  double c, c_l, c_ll;
+};
+[[nodiscard]] Advance advance_of(double l) noexcept;
+
+}  // namespace monograin::cel

@@ -1,0 +1,455 @@
+#include "cel/system.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "contacts/columns.hpp"
+
+namespace monograin::cel {
+namespace {
+
+using std::string_view;
+using std::numbers::pi;
+
+enum RegimeWord { k_open, k_elastic, k_plastic, k_unloaded };
+constexpr std::array<string_view, 4> k_regime_words{"open", "elastic", "plastic", "unloaded"};
+
+/// Elastic displacement over the program's depth that is rounding.
+constexpr double k_touch = 1e-13;
+/// Yield function of a contact that may flow, and the least rate at which it then would be passed.
+constexpr double k_at_yield = 1e-9;
+constexpr double k_least_rate = 1e-13;
+/// Rates of dents that are alike but for rounding.
+constexpr double k_alike = 1e-6;
+/// Least pivot at which a run ends: next to it the stiffness is infinite.
+constexpr double k_least_margin = 1e-5;
+constexpr double k_hard_margin = 1e-3;
+/// Half the surface over pi R0^2 is 2; the law is fitted up to here.
+constexpr double k_most_coverage = 1.7;
+/// Fitted range of the law.
+constexpr double k_least_modulus_over_yield = 6.25;
+constexpr double k_deepest = 0.5;
+
+}  // namespace
+
+System::System(const Settings& settings, std::vector<ContactClass> classes)
+    : settings_(settings),
+      classes_(std::move(classes)),
+      particle_(Material(settings.yield_stress / settings.youngs_modulus, settings.poisson_ratio),
+                settings.poisson_ratio, classes_, settings.centre_is_free),
+      touches_(classes_.size(), false) {
+  depth_ = settings_.reach.displacement / settings_.initial_radius;
+  if (settings_.reach.force > 0.0) {
+    const double force = settings_.reach.force / force_unit();
+    depth_ = std::max(depth_, std::pow(0.75 * force / particle_.material().Es, 2.0 / 3.0));
+  }
+  if (!(depth_ > 0.0)) depth_ = 1.0;
+  depth_ = std::min(depth_, 1.0);
+
+  const auto differential = Unknown::Kind::differential;
+  for (const ContactClass& c : classes_)
+    unknowns_.push_back({.name = c.name, .kind = differential, .scale = depth_, .is_implicitly_algebraic = true});
+  for (std::size_t i = 0; i < classes_.size(); ++i)
+    unknowns_.push_back({.name = "dent", .kind = differential, .scale = std::sqrt(depth_)});
+  for (std::size_t d = 0; d < particle_.layout().directions(); ++d)
+    unknowns_.push_back({.name = contacts::k_centre_unknowns[d],
+                         .kind = differential,
+                         .scale = depth_,
+                         .is_implicitly_algebraic = true,
+                         .may_rest = true});
+  while (unknowns_.size() < particle_.layout().size()) unknowns_.push_back({.name = "core", .kind = differential});
+  work_place_ = unknowns_.size();
+  unknowns_.push_back(
+      {.name = "work", .kind = Unknown::Kind::quadrature, .scale = depth_ * depth_ * std::sqrt(depth_)});
+  at_.resize(unknowns_.size());
+  rates_.resize(unknowns_.size());
+
+  observables_ = {{"work", "J", {}},
+                  {"stored_energy", "J", {}},
+                  {"dissipation", "J", {}},
+                  {"core_strain", "-", {}},
+                  {"coverage", "-", {}}};
+  for (const ContactClass& c : classes_) contacts::add_contact_columns(c.name, k_regime_words, observables_);
+  if (settings_.centre_is_free) contacts::add_centre_columns(observables_);
+}
+
+double System::force_unit() const noexcept {
+  return settings_.youngs_modulus * settings_.initial_radius * settings_.initial_radius;
+}
+
+bool System::any_flows() const noexcept {
+  for (std::size_t i = 0; i < particle_.size(); ++i) {
+    if (particle_.at(i).flows) return true;
+  }
+  return false;
+}
+
+bool System::is_solvable_here() const noexcept { return is_solvable() || !any_flows(); }
+
+bool System::is_at_rest() const noexcept {
+  for (std::size_t i = 0; i < particle_.size(); ++i) {
+    if (particle_.at(i).drive.rate() != 0.0) return false;
+  }
+  return true;
+}
+
+void System::start(std::span<double> y) {
+  const Layout& layout = particle_.layout();
+  std::ranges::fill(y, 0.0);
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const double gap = classes_[i].gap / settings_.initial_radius;
+    y[layout.coordinate(i)] = -gap;
+    y[layout.dent(i)] = particle_.material().a_Y;
+    particle_.at(i).flows = particle_.at(i).takes_force = false;
+    hold(i, -gap);
+  }
+  if (layout.has_core()) std::ranges::fill(y.subspan(layout.core(), 3), 1.0);
+  std::ranges::fill(touches_, false);
+  has_begun_ = false;
+  deepest_ = 0.0;
+}
+
+// --- the state at an instant
+
+void System::evaluate(double xi, std::span<const double> y) {
+  if (is_known_ && xi == at_xi_ && std::ranges::equal(y, at_)) return;
+  is_known_ = knows_rates_ = false;
+  particle_.evaluate(y);
+  std::ranges::copy(y, at_.begin());
+  at_xi_ = xi;
+  is_known_ = true;
+}
+
+/// Rates of all unknowns, in rates_. @return the margin to where the equations turn back
+double System::evaluate_rates(double xi, std::span<const double> y) {
+  evaluate(xi, y);
+  if (!knows_rates_) margin_ = particle_.rates(rates_);
+  knows_rates_ = true;
+  return margin_;
+}
+
+void System::complete(double xi, std::span<double> y) {
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const ClassState& c = particle_.at(i);
+    if (c.takes_force) y[particle_.layout().coordinate(i)] = c.drive.value(xi);
+  }
+  if (is_solvable_here()) solve(xi, y);
+}
+
+void System::solve(double xi, std::span<double> y) {
+  is_known_ = false;
+  particle_.solve(xi, y);
+}
+
+void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
+  evaluate_rates(xi, y);
+  std::ranges::copy(rates_, dy.begin());
+  dy[work_place_] = particle_.power();
+}
+
+void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
+  evaluate_rates(xi, y);
+  const Layout& layout = particle_.layout();
+  particle_.residual(xi, res);
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (!particle_.at(i).flows) res[layout.dent(i)] = dy[layout.dent(i)];
+  }
+  if (layout.has_core()) {
+    const double Lam = particle_.flow_rate(dy);
+    const Eigen::Matrix3d& C = particle_.core_flow().C;
+    const std::array<double, Layout::k_core_size> flow{
+        C(0, 0), C(1, 1), C(2, 2), C(0, 1), C(0, 2), C(1, 2), particle_.core_flow().e};
+    for (std::size_t j = 0; j < flow.size(); ++j) res[layout.core() + j] = dy[layout.core() + j] - Lam * flow[j];
+  }
+  res[work_place_] = dy[work_place_] - particle_.power();
+}
+
+/// Elastically all work is stored, but for what has been dissipated before.
+std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
+  if (any_flows()) return std::nullopt;
+  evaluate(xi, y);
+  return particle_.stored_energy();
+}
+
+// --- the program
+
+/// A wall that stands, at a displacement over R0.
+void System::hold(std::size_t i, double displacement) {
+  particle_.at(i).takes_force = false;
+  particle_.at(i).drive = contacts::WallDrive({displacement, displacement, Control::displacement}, 1.0);
+}
+
+/// Takes up the ramp of a step; the state is evaluated.
+void System::take_up(std::size_t i, const Ramp& ramp, std::span<double> y) {
+  ClassState& c = particle_.at(i);
+  const bool takes_force = ramp.control == Control::force && (ramp.start > 0.0 || ramp.end > 0.0);
+  double& coordinate = y[particle_.layout().coordinate(i)];
+  if (ramp.control == Control::force && !takes_force) {
+    // No force, which no contact can bear: the wall stands where it has come to.
+    const double stood = displacement(i, 0.0, y);
+    if (c.takes_force) coordinate = c.contact.u;
+    hold(i, stood);
+    return;
+  }
+  if (takes_force != c.takes_force) coordinate = takes_force ? c.contact.F : c.contact.u;
+  c.takes_force = takes_force;
+  c.drive = contacts::WallDrive(ramp, takes_force ? force_unit() : settings_.initial_radius);
+}
+
+void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
+  is_known_ = false;
+  evaluate(0.0, y);
+  for (std::size_t i = 0; i < ramps.size(); ++i) take_up(i, ramps[i], y);
+  particle_.rest_centre(y);
+  complete(0.0, y);
+  solve(0.0, y);
+  decide_mode(0.0, y, log, {});
+  has_begun_ = true;
+  arm_guards();
+  if (guards_.empty()) return;
+  const double margin = evaluate_rates(0.0, y);
+  for (const Guard& guard : guards_) {
+    if (guard.kind >= k_fold && limit_value(guard, margin, 0.0, y) <= 0.0) throw CannotBegin(end_at(guard, 0.0, y));
+  }
+}
+
+// --- modes
+
+/// Whether a contact bears from here on, by its elastic displacement or, next to none, by where that goes.
+void System::decide_touch(std::size_t i, std::vector<Event>& log) {
+  const ClassState& c = particle_.at(i);
+  bool touches = touches_[i] != 0;
+  if (c.takes_force) {
+    touches = c.contact.F > 0.0 || c.drive.rate() > 0.0;
+  } else if (std::abs(c.contact.u) > k_touch * depth_) {
+    touches = c.contact.u > 0.0;
+  } else if (const double rate = rates_[particle_.layout().coordinate(i)]; rate != 0.0) {
+    touches = rate > 0.0;
+  }
+  if (touches == (touches_[i] != 0)) return;
+  touches_[i] = touches;
+  // Walls that touch the fresh particle are in contact from the start, without an event.
+  if (has_begun_ || classes_[i].gap > 0.0)
+    log.push_back({touches ? "contact-made" : "contact-lost", static_cast<int>(i)});
+}
+
+/// The largest set of contacts that can flow together: all at yield that elastic motion would take beyond, without
+/// those whose dents would shrink. Those that are most against it leave first, and together, so that neither the order
+/// of the walls nor their symmetry decides.
+void System::decide_flow(double xi, std::span<const double> y, std::span<const bool> may_flow) {
+  const Layout& layout = particle_.layout();
+  for (std::size_t i = 0; i < particle_.size(); ++i) particle_.at(i).flows = false;
+  is_known_ = false;
+  evaluate_rates(xi, y);
+  for (std::size_t i = 0; i < particle_.size(); ++i) {
+    const bool is_next = may_flow[i] && touches_[i] && particle_.at(i).f > -k_at_yield;
+    particle_.at(i).flows = is_next && particle_.yield_rate(i) > k_least_rate;
+  }
+  while (any_flows()) {
+    knows_rates_ = false;
+    evaluate_rates(xi, y);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < particle_.size(); ++i) {
+      if (particle_.at(i).flows) worst = std::min(worst, rates_[layout.dent(i)]);
+    }
+    if (worst >= 0.0) return;
+    for (std::size_t i = 0; i < particle_.size(); ++i) {
+      ClassState& c = particle_.at(i);
+      c.flows = c.flows && rates_[layout.dent(i)] > worst * (1.0 - k_alike);
+    }
+  }
+  knows_rates_ = false;
+}
+
+/// @param fired  guards that have just fired
+void System::decide_mode(double xi, std::span<const double> y, std::vector<Event>& log,
+                         std::span<const std::size_t> fired) {
+  evaluate_rates(xi, y);
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const bool is_decided = std::ranges::any_of(
+        fired, [&](std::size_t g) { return guards_[g].kind <= k_lost && guards_[g].index == static_cast<int>(i); });
+    if (!is_decided) decide_touch(i, log);
+  }
+  if (is_at_rest()) return;
+  std::vector<char> flowed(classes_.size());
+  const auto may_flow = std::make_unique<bool[]>(classes_.size());
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    flowed[i] = particle_.at(i).flows;
+    // A dent that has just come to rest does not grow at this instant.
+    may_flow[i] = std::ranges::none_of(
+        fired, [&](std::size_t g) { return guards_[g].kind == k_reversal && guards_[g].index == static_cast<int>(i); });
+  }
+  decide_flow(xi, y, {may_flow.get(), classes_.size()});
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const bool flows = particle_.at(i).flows;
+    if (flows != (flowed[i] != 0)) log.push_back({flows ? "yield" : "load-reversal", static_cast<int>(i)});
+  }
+}
+
+void System::arm_guards() {
+  guards_.clear();
+  if (is_at_rest()) return;
+  const auto add = [this](int kind, int index, int direction, string_view name) {
+    guards_.push_back({.kind = kind, .index = index, .direction = direction, .name = name});
+  };
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const int index = static_cast<int>(i);
+    const ClassState& c = particle_.at(i);
+    if (!c.takes_force) {
+      add(touches_[i] ? k_lost : k_made, index, touches_[i] ? -1 : 1, touches_[i] ? "contact-lost" : "contact-made");
+    } else if (c.drive.end() < 0.0) {
+      add(k_lost, index, -1, "contact-lost");
+      guards_.back().is_exact = guards_.back().is_monotone = true;
+    }
+    if (!touches_[i]) continue;
+    add(c.flows ? k_reversal : k_yield, index, c.flows ? -1 : 1, c.flows ? "load-reversal" : "yield");
+    add(k_centre, index, -1, "limit");
+  }
+  add(k_fold, -1, -1, "limit");
+  add(k_coverage, -1, -1, "limit");
+}
+
+void System::guard_values(double xi, std::span<const double> y, std::span<double> values) {
+  const double margin = evaluate_rates(xi, y);
+  for (std::size_t g = 0; g < guards_.size(); ++g) {
+    const auto i = static_cast<std::size_t>(std::max(0, guards_[g].index));
+    const ClassState& c = particle_.at(i);
+    switch (guards_[g].kind) {
+      case k_made:
+      case k_lost:
+        values[g] = c.takes_force ? c.drive.value(xi) / c.drive.size() : c.contact.u / depth_;
+        break;
+      case k_yield:
+        values[g] = c.f;
+        break;
+      case k_reversal: {
+        const double rate = rates_[particle_.layout().dent(i)];
+        values[g] = rate / (std::abs(rate) + std::abs(c.drive.rate()) + depth_);
+        break;
+      }
+      default:
+        values[g] = limit_value(guards_[g], margin, xi, y);
+        break;
+    }
+  }
+}
+
+/// How far the state is from a limit; not above zero at it.
+double System::limit_value(const Guard& guard, double margin, double xi, std::span<const double> y) const {
+  if (guard.kind == k_fold) return margin - k_least_margin;
+  if (guard.kind == k_coverage) return k_most_coverage - particle_.coverage();
+  const auto i = static_cast<std::size_t>(guard.index);
+  return 1.0 - displacement(i, xi, y) - particle_.carried(i, y);
+}
+
+DomainEnd System::end_at(const Guard& guard, double xi, std::span<const double> y) const {
+  const Event event{guard.name, guard.index};
+  if (guard.kind == k_centre) return {event, {Limit::wall_at_centre, guard.index, "displacement/R0", 1.0}};
+  if (guard.kind == k_coverage) return {event, {Limit::surface_covered, -1, "coverage", particle_.coverage()}};
+  double largest = 0.0;
+  for (std::size_t i = 0; i < classes_.size(); ++i) largest = std::max(largest, displacement(i, xi, y));
+  return {event, {Limit::applicability, -1, "largest displacement/R0", largest}};
+}
+
+std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
+                                      std::vector<Event>& log) {
+  evaluate(xi, y);
+  for (const std::size_t g : fired) {
+    const Guard& guard = guards_[g];
+    if (guard.kind >= k_fold) {
+      log.push_back({guard.name, guard.index});
+      return end_at(guard, xi, y);
+    }
+    const auto i = static_cast<std::size_t>(guard.index);
+    if (guard.kind > k_lost) continue;
+    touches_[i] = guard.kind == k_made;
+    log.push_back({guard.name, guard.index});
+    if (!particle_.at(i).takes_force) continue;
+    // A wall that would have to pull stands where it leaves the particle.
+    const double stood = displacement(i, xi, y);
+    y[particle_.layout().coordinate(i)] = 0.0;
+    hold(i, stood);
+  }
+  solve(xi, y);
+  decide_mode(xi, y, log, fired);
+  arm_guards();
+  return std::nullopt;
+}
+
+// --- what others ask
+
+/// Displacement of a wall over R0, at the state that was evaluated.
+double System::displacement(std::size_t i, double xi, std::span<const double> y) const {
+  const ClassState& c = particle_.at(i);
+  return c.takes_force ? c.kinematic - particle_.carried(i, y) : c.drive.value(xi);
+}
+
+AtWall System::wall(std::size_t i, double xi, std::span<const double> y) {
+  evaluate(xi, y);
+  const Contact& contact = particle_.at(i).contact;
+  const double length = settings_.initial_radius;
+  const double force = contact.F * force_unit();
+  const double area = pi * contact.area * length * length;
+  return {.force = force,
+          .displacement = displacement(i, xi, y) * length,
+          .pressure = area > 0.0 ? force / area : 0.0,
+          .contact_radius = std::sqrt(contact.area) * length,
+          .apparent_radius = length};
+}
+
+void System::observe(double xi, std::span<const double> y, std::span<double> values) {
+  evaluate(xi, y);
+  const double length = settings_.initial_radius;
+  const double energy_unit = force_unit() * length;
+  const double work = y[work_place_] * energy_unit;
+  const double stored = particle_.stored_energy() * energy_unit;
+  const std::array<double, 5> of_particle{work, stored, work - stored, particle_.core_of(y).e, particle_.coverage()};
+  auto out = std::ranges::copy(of_particle, values.begin()).out;
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const AtWall at = wall(i, xi, y);
+    const ClassState& c = particle_.at(i);
+    const double overlap = at.displacement + particle_.carried(i, y) * length;
+    deepest_ = std::max(deepest_, overlap / length);
+    const int closed = c.flows ? k_plastic : c.dent.zeta > particle_.material().a_Y ? k_unloaded : k_elastic;
+    const contacts::VisibleContact shown{.displacement = at.displacement,
+                                         .overlap = overlap,
+                                         .force = at.force,
+                                         .contact_radius = at.contact_radius,
+                                         .pressure = at.pressure,
+                                         .regime = static_cast<double>(touches_[i] ? closed : k_open)};
+    for (const contacts::ContactColumn& column : contacts::k_contact_columns) *out++ = shown.*column.value;
+  }
+  if (!settings_.centre_is_free) return;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (std::size_t d = 0; d < particle_.layout().directions(); ++d)
+    centre[static_cast<Eigen::Index>(d)] = y[particle_.layout().centre(d)];
+  contacts::write_centre_columns(particle_.lines().in_space(centre) * length, values);
+}
+
+double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
+  return quantity_of(wall(static_cast<std::size_t>(contact_class), xi, y), quantity);
+}
+
+double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
+  return quantity(control == Control::force ? Quantity::force : Quantity::displacement, contact_class, xi, y);
+}
+
+std::vector<Diagnostic> System::warnings() const {
+  std::vector<Diagnostic> found;
+  const double softness = settings_.youngs_modulus / settings_.yield_stress;
+  if (softness < k_least_modulus_over_yield)
+    found.push_back({"E/Y is below 6.25, the softest material that the law is fitted to", "E/Y", softness});
+  if (deepest_ > k_deepest)
+    found.push_back({"a wall goes beyond half the radius, where the law is not fitted", "overlap/R0", deepest_});
+  return found;
+}
+
+std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
+  if (evaluate_rates(xi, y) < k_hard_margin) return Difficulty::near_applicability_limit;
+  return std::nullopt;
+}
+
+}  // namespace monograin::cel

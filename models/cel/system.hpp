@@ -1,0 +1,103 @@
+/// The coupled elastic-plastic particle between rigid walls as a hybrid system.
+///
+/// Unknowns: the own coordinate of every class (elastic displacement, or force where that is prescribed), its dent, a
+/// free centre, the core, and the work of the walls. While a contact flows and the core can yield, the state depends on
+/// the way to it: explicit, rates from the derivatives of all equations; implicit, the equations themselves and the
+/// flow rule of the core. Otherwise the equations determine the state at any instant, and nothing is integrated.
+///
+/// Own law of this project (docs/theory/cel.md).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cel/particle.hpp"
+#include "system/hybrid_system.hpp"
+
+namespace monograin::cel {
+
+struct Settings {
+  double initial_radius = 0.0;  ///< R0 [m], > 0
+  double youngs_modulus = 0.0;  ///< E [Pa], > 0
+  double poisson_ratio = 0.0;   ///< in [0, 0.5]
+  double yield_stress = 0.0;    ///< Y [Pa], > 0
+  bool centre_is_free = false;
+  Reach reach{};  ///< of the program: how large the unknowns become, which absolute tolerances are relative to
+};
+
+class System final : public HybridSystem {
+ public:
+  System(const Settings& settings, std::vector<ContactClass> classes);
+
+  [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return unknowns_; }
+  [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return classes_; }
+  void start(std::span<double> y) override;
+  void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override;
+  [[nodiscard]] std::function<void()> checkpoint() override {
+    return [this, then = *this] { *this = then; };
+  }
+  void complete(double xi, std::span<double> y) override;
+  [[nodiscard]] bool has_corrections() const noexcept override { return true; }
+  void rates(double xi, std::span<const double> y, std::span<double> dy) override;
+  void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
+  void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
+  [[nodiscard]] bool is_semi_explicit() const noexcept override { return false; }
+  [[nodiscard]] bool is_solvable() const noexcept override { return !particle_.layout().has_core(); }
+  [[nodiscard]] bool is_solvable_here() const noexcept override;
+  void solve(double xi, std::span<double> y) override;
+  [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override;
+  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
+  void guard_values(double xi, std::span<const double> y, std::span<double> values) override;
+  std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
+                                std::vector<Event>& log) override;
+  [[nodiscard]] std::span<const Observable> observables() const noexcept override { return observables_; }
+  void observe(double xi, std::span<const double> y, std::span<double> values) override;
+  [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
+  [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
+  [[nodiscard]] bool is_open(int contact_class) const noexcept override {
+    return !touches_[static_cast<std::size_t>(contact_class)];
+  }
+  [[nodiscard]] std::vector<Diagnostic> warnings() const override;
+  [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
+
+ private:
+  enum GuardKind : int { k_made, k_lost, k_yield, k_reversal, k_fold, k_centre, k_coverage };
+
+  [[nodiscard]] double force_unit() const noexcept;
+  [[nodiscard]] bool any_flows() const noexcept;
+  [[nodiscard]] bool is_at_rest() const noexcept;
+  void evaluate(double xi, std::span<const double> y);
+  double evaluate_rates(double xi, std::span<const double> y);
+  [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const;
+  [[nodiscard]] AtWall wall(std::size_t i, double xi, std::span<const double> y);
+  void take_up(std::size_t i, const Ramp& ramp, std::span<double> y);
+  void hold(std::size_t i, double displacement);
+  void decide_touch(std::size_t i, std::vector<Event>& log);
+  void decide_mode(double xi, std::span<const double> y, std::vector<Event>& log, std::span<const std::size_t> fired);
+  void decide_flow(double xi, std::span<const double> y, std::span<const bool> may_flow);
+  void arm_guards();
+  [[nodiscard]] double limit_value(const Guard& guard, double margin, double xi, std::span<const double> y) const;
+  [[nodiscard]] DomainEnd end_at(const Guard& guard, double xi, std::span<const double> y) const;
+
+  Settings settings_;
+  std::vector<ContactClass> classes_;
+  Particle particle_;
+  std::vector<Unknown> unknowns_;
+  std::vector<Observable> observables_;
+  std::size_t work_place_ = 0;
+  double depth_ = 1.0;  ///< how far walls go, over R0
+
+  std::vector<char> touches_;
+  bool has_begun_ = false;
+  double deepest_ = 0.0;  ///< overlap over R0, as far as observed
+  std::vector<Guard> guards_;
+
+  // What was evaluated last.
+  std::vector<double> at_;
+  double at_xi_ = 0.0;
+  bool is_known_ = false, knows_rates_ = false;
+  double margin_ = 1.0;
+  std::vector<double> rates_;
+};
+
+}  // namespace monograin::cel
