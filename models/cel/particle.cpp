@@ -1,9 +1,9 @@
 #include "cel/particle.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "cel/constants.hpp"
 #include "elastic/nonlocal_coupling.hpp"
@@ -13,18 +13,18 @@ namespace monograin::cel {
 namespace {
 
 namespace k = constants;
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
+using Tensor = CoreShape::Tensor;
 
 /// Sine of half the angle, and last term of the series, of the self influence: part of the law's definition.
 constexpr double k_self_half_sine = 0.2;
 constexpr int k_last_term = 4000;
-/// Of the spring at a free centre, over E R0: settles directions in which no contact is stiff.
-constexpr double k_weak_spring = 1e-9;
+/// Stiffness over E R0 of the spring at a free centre, which settles directions in which no contact is stiff.
+constexpr double k_weak_spring = 1e-12;
 /// Load of the core over Y R0^2 below which it has no direction.
 constexpr double k_no_load = 1e-14;
-/// Walls whose spreads differ from those of all directions alike by less than that load the core by no deviator.
-constexpr double k_isotropic = 1e-9;
+
+/// Way of a free centre over R0 in one step of the program that is none: only the weak spring stops it.
+constexpr double k_farthest = 10.0;
 
 constexpr int k_most_corrections = 60;
 constexpr int k_most_halvings = 40;
@@ -32,6 +32,7 @@ constexpr double k_most_growth = 0.03;  ///< of a dent in one correction
 /// Dents over a_Y, below which no trial goes: one that begins to flow is a_Y but for rounding.
 constexpr double k_least_dent = 0.9;
 constexpr double k_solved = 1e-10;  ///< residual over the largest displacement that is a solution at all
+constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 template <int n>
 constexpr double raised(double x) noexcept {
@@ -40,21 +41,28 @@ constexpr double raised(double x) noexcept {
   return result;
 }
 
-Matrix3d symmetric(const Matrix3d& a) { return 0.5 * (a + a.transpose()); }
-Matrix3d deviator(const Matrix3d& a) { return a - a.trace() / 3.0 * Matrix3d::Identity(); }
-double contraction(const Matrix3d& a, const Matrix3d& b) { return a.cwiseProduct(b).sum(); }
+/// Influences at the angles between walls, each found once.
+class Influences {
+ public:
+  explicit Influences(double poisson_ratio) noexcept : poisson_ratio_(poisson_ratio) {}
+  double at(double angle) {
+    constexpr double k_same_angle = 1e-12;
+    const auto known = std::ranges::find_if(
+        found_, [angle](const auto& pair) { return std::abs(pair.first - angle) <= k_same_angle; });
+    if (known != found_.end()) return known->second;
+    return found_.emplace_back(angle, nonlocal::sphere_influence(poisson_ratio_, angle)).second;
+  }
 
-bool loads_alike(std::span<const Matrix3d> spreads) {
-  return std::ranges::all_of(spreads, [](const Matrix3d& spread) {
-    return deviator(spread).cwiseAbs().maxCoeff() <= k_isotropic * spread.trace();
-  });
-}
+ private:
+  double poisson_ratio_;
+  std::vector<std::pair<double, double>> found_;
+};
 
-std::vector<Matrix3d> spreads_of(std::span<const ContactClass> classes) {
-  std::vector<Matrix3d> spreads;
+std::vector<Eigen::Matrix3d> spreads_of(std::span<const ContactClass> classes) {
+  std::vector<Eigen::Matrix3d> spreads;
   for (const ContactClass& c : classes) {
-    Matrix3d sum = Matrix3d::Zero();
-    for (const Vector3d& normal : c.normals) sum += normal * normal.transpose();
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (const Eigen::Vector3d& normal : c.normals) sum += normal * normal.transpose();
     spreads.push_back(sum);
   }
   return spreads;
@@ -66,77 +74,91 @@ Particle::Particle(const Material& material, double poisson_ratio, std::span<con
                    bool centre_is_free)
     : material_(material),
       spreads_(spreads_of(classes)),
+      shape_(spreads_),
       lines_(classes, centre_is_free),
-      layout_(classes.size(), static_cast<std::size_t>(lines_.dimension()), !loads_alike(spreads_)),
-      classes_(classes.size()) {
-  for (const ContactClass& c : classes) {
-    counts_.push_back(c.multiplicity());
-    normals_.push_back(c.normals.front());
-  }
+      layout_(classes.size(), static_cast<std::size_t>(lines_.dimension()), shape_.dimension()),
+      classes_(classes.size()),
+      unknowns_(layout_.core() + 1) {
+  Influences influences(poisson_ratio);
   const double self = nonlocal::sphere_self_influence(poisson_ratio, k_self_half_sine, k_last_term);
-  for (const Vector3d& normal : normals_) {
-    for (const ContactClass& other : classes) {
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Eigen::Vector3d& normal = classes[i].normals.front();
+    counts_.push_back(classes[i].multiplicity());
+    directions_.push_back(shape_.of(normal * normal.transpose()));
+    of_spreads_.push_back(shape_.of(spreads_[i]));
+    for (std::size_t j = 0; j < size(); ++j) {
       Coupling& sum = coupling_.emplace_back();
-      for (const Vector3d& neighbour : other.normals) {
-        const bool is_self = &neighbour == &other.normals.front() && neighbour == normal;
-        const double g =
-            is_self ? self : nonlocal::sphere_influence(poisson_ratio, nonlocal::angle_between(normal, neighbour));
-        const double along = std::min(1.0, std::pow(normal.dot(neighbour), 2));
+      for (std::size_t wall = 0; wall < classes[j].normals.size(); ++wall) {
+        const Eigen::Vector3d& other = classes[j].normals[wall];
+        const bool is_self = i == j && wall == 0;
+        const double g = is_self ? self : influences.at(nonlocal::angle_between(normal, other));
+        const double along = std::min(1.0, raised<2>(normal.dot(other)));
         sum.same += g * along * along;
         sum.mixed += g * along * (1.0 - along);
         sum.across += g * (1.0 - along) * (1.0 - along);
       }
     }
   }
-  const auto n = ix(size());
-  const Eigen::Index columns = 2 * n + 1;
-  const Eigen::Index unknowns = columns + lines_.dimension();
-  l_by_flow_.resize(size());
+  for (auto* values : {&l_by_flow_, &Om_by_zeta_, &s_by_F_}) values->resize(size());
   load_.resize(size());
-  push_.resize(size());
-  Om_by_ = s_by_ = Eigen::RowVectorXd::Zero(columns);
-  F_by_ = tau_by_ = f_by_ = kinematic_by_ = Matrix::Zero(n, columns);
-  tau_ = Eigen::VectorXd::Zero(n);
-  matrix_ = Matrix::Zero(unknowns, unknowns + 1);
-  solution_ = Eigen::VectorXd::Zero(unknowns);
+  F_by_.resize(size());
+  rows_.resize((2 * size() + 1) * (2 * size() + 2));
+  matrix_.resize(unknowns_ * (unknowns_ + 1));
+  dense_.resize(matrix_.size());
+  order_.resize(unknowns_);
+  solution_.resize(unknowns_);
+  rest_of_equations_.resize(unknowns_);
+  before_.resize(unknowns_);
+}
+
+void Particle::start_core(std::span<double> y) const noexcept {
+  if (!layout_.has_core()) return;
+  std::ranges::fill(y.subspan(layout_.core(), layout_.core_size()), 0.0);
+  y[layout_.core()] = std::sqrt(3.0);
 }
 
 Core Particle::core_of(std::span<const double> y) const noexcept {
   Core core;
+  core.C[0] = std::sqrt(3.0);
   if (!layout_.has_core()) return core;
-  const auto at = y.subspan(layout_.core(), Layout::k_core_size);
-  core.C << at[0], at[3], at[4], at[3], at[1], at[5], at[4], at[5], at[2];
-  core.e = at[6];
+  std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(layout_.core()), shape_.dimension(), core.C.begin());
+  core.e = y[layout_.size() - 1];
   return core;
 }
 
 double Particle::carried(std::size_t i, std::span<const double> y) const noexcept {
   double sum = 0.0;
-  for (std::size_t d = 0; d < layout_.directions(); ++d) sum += lines_.arm(i)[ix(d)] * y[layout_.centre(d)];
+  for (std::size_t d = 0; d < layout_.directions(); ++d)
+    sum += lines_.arm(i)[static_cast<Eigen::Index>(d)] * y[layout_.centre(d)];
   return sum;
 }
 
 void Particle::rest_centre(std::span<const double> y) noexcept {
-  for (std::size_t d = 0; d < layout_.directions(); ++d) rest_[ix(d)] = y[layout_.centre(d)];
+  for (std::size_t d = 0; d < layout_.directions(); ++d) rest_[static_cast<Eigen::Index>(d)] = y[layout_.centre(d)];
 }
 
 // --- the equations at a state
 
+bool Particle::any_flows() const noexcept { return std::ranges::any_of(classes_, &ClassState::flows); }
+
 void Particle::evaluate(std::span<const double> y) {
-  const Core core = core_of(y);
-  for (std::size_t d = 0; d < layout_.directions(); ++d) centre_[ix(d)] = y[layout_.centre(d)];
-  evaluate_contacts(y, core);
-  evaluate_core(core);
-  evaluate_yield();
+  evaluate_elastically(y);
+  evaluate_yield(y);
+}
+
+/// What elastic motion depends on.
+void Particle::evaluate_elastically(std::span<const double> y) {
+  for (std::size_t d = 0; d < layout_.directions(); ++d) centre_[static_cast<Eigen::Index>(d)] = y[layout_.centre(d)];
+  evaluate_contacts(y, core_of(y));
   evaluate_coupling();
 }
 
-/// Dents, coverage and forces; derivatives by the flow of the core are added with its direction.
+/// Dents, coverage and forces.
 void Particle::evaluate_contacts(std::span<const double> y, const Core& core) {
   Om_ = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
-    const double square = normals_[i].dot(core.C * normals_[i]);
+    const double square = shape_.dot(directions_[i], core.C);
     const double zeta = y[layout_.dent(i)];
     if (!(square > 0.0) || !(zeta > 0.0)) throw std::domain_error("the core or a dent of the particle has no size");
     c.l = std::sqrt(square);
@@ -154,152 +176,67 @@ void Particle::evaluate_contacts(std::span<const double> y, const Core& core) {
   }
 }
 
-/// Adds a quantity's derivatives to a row, in all of which its surroundings have a part.
-void Particle::add(std::size_t i, const Slopes& by, Eigen::Ref<Eigen::RowVectorXd> row, double factor) const {
-  const auto n = ix(size());
-  row[ix(i)] += factor * by.coordinate;
-  row[n + ix(i)] += factor * by.zeta;
-  row[2 * n] += factor * by.l * l_by_flow_[i];
-  row += factor * by.m * m_by_Om_ * Om_by_;
-}
-
-/// Load of the core, its direction, and with it derivatives of the forces.
+/// Load of the core, and how it flows under it.
 void Particle::evaluate_core(const Core& core) {
-  const auto n = ix(size());
-  Matrix3d T = Matrix3d::Zero();
-  for (std::size_t i = 0; i < size(); ++i) {
-    load_[i] = deviator(symmetric(core.C * spreads_[i])) * (-classes_[i].advance.c_l / classes_[i].l);
-    T += classes_[i].contact.F * load_[i];
-  }
-  const double size_of_T = 0.5 * std::sqrt(1.5 * contraction(T, T));
-  const bool is_loaded = layout_.has_core() && size_of_T > k_no_load * material_.Y;
+  T_ = {};
+  flow_ = {};
   S_ = material_.Y * (k::s0 + k::s1 * core.e);
-  s_ = is_loaded ? size_of_T : 0.0;
-  const double use = s_ / S_;
-  Q_ = raised<k::n2>(use);
-  flow_ = {Matrix3d::Zero(), 0.0};
-  if (is_loaded) {
-    const double pace = static_cast<double>(k::n2) / k::n1 * Q_ / s_;
-    const Matrix3d M = pace * 0.375 / s_ * T;
-    flow_.C = -(M * core.C + core.C * M);
-    flow_.e = 0.5 * pace;
-  }
-
-  Om_by_.setZero();
+  s_ = Q_ = 0.0;
+  if (!layout_.has_core()) return;
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
-    l_by_flow_[i] = normals_[i].dot(flow_.C * normals_[i]) / (2.0 * c.l);
-    const double square = c.l * c.l;
-    const double grown = c.dent.zeta * c.dent.zeta - material_.a_Y * material_.a_Y;
-    Om_by_[n + ix(i)] = counts_[i] * c.dent.zeta / square;
-    Om_by_[2 * n] -= counts_[i] * grown / (square * c.l) * l_by_flow_[i];
+    load_[i] = shape_.deviator(shape_.product(core.C, of_spreads_[i]), -c.advance.c_l / c.l);
+    shape_.add(load_[i], c.contact.F, T_);
   }
-  F_by_.setZero();
-  for (std::size_t i = 0; i < size(); ++i) add(i, classes_[i].contact.F_by, F_by_.row(ix(i)), 1.0);
-
-  s_by_.setZero();
-  tau_by_.setZero();
-  tau_.setZero();
-  if (!is_loaded) return;
-  Matrix3d T_by_flow = Matrix3d::Zero();
-  for (std::size_t i = 0; i < size(); ++i) {
-    const ClassState& c = classes_[i];
-    const double w = -c.advance.c_l / c.l;
-    const double w_l = (c.advance.c_l / c.l - c.advance.c_ll) / c.l;
-    push_[i] = 0.375 / s_ * contraction(T, load_[i]);
-    s_by_ += push_[i] * F_by_.row(ix(i));
-    T_by_flow += c.contact.F * (w_l / w * l_by_flow_[i] * load_[i] + w * deviator(symmetric(flow_.C * spreads_[i])));
-  }
-  s_by_[2 * n] += 0.375 / s_ * contraction(T, T_by_flow);
-  const double unit = 1.0 / (4.0 / 3.0 * s_);
-  for (std::size_t i = 0; i < size(); ++i) {
-    const Vector3d& normal = normals_[i];
-    tau_[ix(i)] = unit * normal.dot(T * normal);
-    auto row = tau_by_.row(ix(i));
-    for (std::size_t j = 0; j < size(); ++j) row += unit * normal.dot(load_[j] * normal) * F_by_.row(ix(j));
-    row[2 * n] += unit * normal.dot(T_by_flow * normal);
-    row -= tau_[ix(i)] / s_ * s_by_;
-  }
+  const double load = 0.5 * std::sqrt(1.5 * shape_.dot(T_, T_));
+  if (!(load > k_no_load * material_.Y)) return;
+  s_ = load;
+  Q_ = raised<k::n2>(s_ / S_);
+  const double pace = static_cast<double>(k::n2) / k::n1 * Q_ / s_;
+  const Tensor direction = shape_.product(T_, core.C);
+  shape_.add(direction, -2.0 * pace * 0.375 / s_, flow_.C);
+  flow_.e = 0.5 * pace;
 }
 
 /// Which contacts drive the core and which it carries, how weak those are, and the yield functions.
-void Particle::evaluate_yield() {
-  const auto n = ix(size());
+void Particle::evaluate_yield(std::span<const double> y) {
+  evaluate_core(core_of(y));
   const double use = s_ / S_;
-  const double S_by_flow = material_.Y * k::s1 * flow_.e;
-  // d(s/S)
-  Eigen::RowVectorXd use_by = s_by_ / S_;
-  use_by[2 * n] -= use * S_by_flow / S_;
-  f_by_.setZero();
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
-    const double z = std::clamp(-2.0 * tau_[ix(i)], 0.0, 1.0);
-    const double b = z * z * (3.0 - 2.0 * z);
-    c.driving = 1.0 - b;
-    c.X = 0.0;
+    c.X = c.b = 0.0;
+    c.wk = 1.0;
     c.f = -1.0;
     if (!(c.contact.F > 0.0)) continue;
-    const double small = std::exp(-c.contact.alpha / k::ab);
-    const double weakness = k::beta * raised<k::n3>(use) * b * small;
-    const double wk = 1.0 - weakness;
-    const double ratio = c.contact.F_over_H / wk;
-    c.X = raised<k::n1>(ratio);
-    const double sum = c.X + Q_;
-    if (!(sum > 0.0)) continue;
-    c.f = std::pow(sum, 1.0 / k::n1) - 1.0;
-    // Derivatives: dX = n1 X (dF/F - dH/H - dwk/wk), dQ = n2 (s/S)^(n2-1) d(s/S).
-    const double outer = (1.0 + c.f) / (k::n1 * sum);
-    const double of_X = outer * k::n1 * c.X;
-    auto row = f_by_.row(ix(i));
-    row += of_X / c.contact.F * F_by_.row(ix(i));
-    add(i, c.contact.H_by, row, -of_X / c.contact.H);
-    row += outer * k::n2 * raised<k::n2 - 1>(use) * use_by;
-    if (weakness == 0.0) continue;
-    const double of_weakness = of_X / wk;
-    row += of_weakness * k::beta * b * small * k::n3 * raised<k::n3 - 1>(use) * use_by;
-    if (z < 1.0)
-      row += of_weakness * k::beta * raised<k::n3>(use) * small * (-12.0 * z * (1.0 - z)) * tau_by_.row(ix(i));
-    add(i, c.contact.alpha_by, row, -of_weakness * weakness / k::ab);
+    if (s_ > 0.0) {
+      const double tau = shape_.dot(directions_[i], T_) / (4.0 / 3.0 * s_);
+      const double z = std::clamp(-2.0 * tau, 0.0, 1.0);
+      c.b = z * z * (3.0 - 2.0 * z);
+      if (c.b > 0.0) c.wk = 1.0 - k::beta * raised<k::n3>(use) * c.b * std::exp(-c.contact.alpha / k::ab);
+    }
+    c.X = raised<k::n1>(c.contact.F_over_H / c.wk);
+    if (c.X + Q_ > 0.0) c.f = std::pow(c.X + Q_, 1.0 / k::n1) - 1.0;
   }
 }
 
 /// Right sides of (K), and the stored energy.
 void Particle::evaluate_coupling() {
-  const auto n = ix(size());
-  const double Om3 = raised<3>(Om_);
-  const double shade = 1.0 / (1.0 + k::kap * Om3 * Om_);
-  const double shade_by_Om = -4.0 * k::kap * Om3 * shade * shade;
-  kinematic_by_.setZero();
+  const double shade = 1.0 / (1.0 + k::kap * raised<4>(Om_));
   stored_ = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
-    auto row = kinematic_by_.row(ix(i));
-    double lift = 0.0;
-    double lift_by_Om = 0.0;
+    c.lift = 0.0;
     for (std::size_t j = 0; j < size(); ++j) {
       const ClassState& other = classes_[j];
+      if (other.contact.F == 0.0) continue;
       const Coupling& g = coupling_[i * size() + j];
       const double root = std::sqrt(c.dent.Gam * other.dent.Gam);
-      const double of_root = g.same + g.mixed * shade;
-      const double G = g.mixed + g.across * shade + root * of_root;
-      const double F = other.contact.F;
-      lift += G * F;
-      lift_by_Om += (g.across + root * g.mixed) * shade_by_Om * F;
-      row -= G * F_by_.row(ix(j));
-      const double by_root = 0.5 * root * of_root * F;
-      row[n + ix(i)] -= by_root * c.dent.Gam_zeta / c.dent.Gam;
-      row[n + ix(j)] -= by_root * other.dent.Gam_zeta / other.dent.Gam;
+      c.lift += (g.mixed + g.across * shade + root * (g.same + g.mixed * shade)) * other.contact.F;
     }
-    row -= lift_by_Om * Om_by_;
-    add(i, c.contact.u_by, row, 1.0);
-    row[n + ix(i)] += c.dent.h_zeta;
-    row[2 * n] += c.advance.c_l * l_by_flow_[i];
-    c.kinematic = c.dent.h + c.advance.c + c.contact.u - lift;
-    stored_ += counts_[i] * (c.contact.stored - 0.5 * c.contact.F * lift);
+    c.kinematic = c.dent.h + c.advance.c + c.contact.u - c.lift;
+    stored_ += counts_[i] * (c.contact.stored - 0.5 * c.contact.F * c.lift);
   }
 }
-
-// --- solving them
 
 void Particle::residual(double xi, std::span<double> residual) const {
   for (std::size_t i = 0; i < size(); ++i) {
@@ -309,158 +246,343 @@ void Particle::residual(double xi, std::span<double> residual) const {
     residual[layout_.dent(i)] = c.flows ? -c.f : 0.0;
   }
   for (std::size_t d = 0; d < layout_.directions(); ++d) {
-    double sum = k_weak_spring * (centre_ - rest_)[ix(d)];
-    for (std::size_t i = 0; i < size(); ++i) sum += counts_[i] * lines_.arm(i)[ix(d)] * classes_[i].contact.F;
+    const auto along = static_cast<Eigen::Index>(d);
+    double sum = k_weak_spring * (centre_ - rest_)[along];
+    for (std::size_t i = 0; i < size(); ++i) sum += counts_[i] * lines_.arm(i)[along] * classes_[i].contact.F;
     residual[layout_.centre(d)] = sum;
   }
 }
 
-/// The linear equations of all unknowns up to the core, and of Lam in the last place, without right side.
-void Particle::assemble() {
-  const auto n = ix(size());
-  const Eigen::Index lambda = matrix_.rows() - 1;
-  matrix_.setZero();
+// --- their derivatives
+
+std::span<double> Particle::row_at(std::size_t row) noexcept {
+  const std::size_t width = 2 * size() + 2;
+  return std::span(rows_).subspan(row * width, width);
+}
+
+Particle::Row Particle::row_of(std::size_t i, const Slopes& by) const noexcept {
+  return {by.coordinate, by.zeta, by.m * m_by_Om_, by.l * l_by_flow_[i]};
+}
+
+inline void Particle::add(std::size_t i, const Row& by, double factor, std::span<double> row) const noexcept {
+  const std::size_t n = size();
+  row[i] += factor * by.coordinate;
+  row[n + i] += factor * by.zeta;
+  row[2 * n] += factor * by.Om;
+  row[2 * n + 1] += factor * by.flow;
+}
+
+void Particle::add_force(std::size_t j, double factor, std::span<double> row) const noexcept {
+  add(j, F_by_[j], factor, row);
+}
+
+/// Writes the coverage as what it depends on.
+void Particle::fold_coverage(std::span<double> row) const noexcept {
+  const std::size_t n = size();
+  const double by_Om = row[2 * n];
+  for (std::size_t j = 0; j < n; ++j) row[n + j] += by_Om * Om_by_zeta_[j];
+  row[2 * n + 1] += by_Om * Om_by_flow_;
+}
+
+void Particle::differentiate() {
+  Om_by_flow_ = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
-    auto first = matrix_.row(ix(i));
-    if (c.takes_force) {
-      first[ix(i)] = 1.0;
-    } else {
-      first.head(2 * n) = kinematic_by_.row(ix(i)).head(2 * n);
-      first[lambda] = kinematic_by_(ix(i), 2 * n);
-      for (Eigen::Index d = 0; d < lambda - 2 * n; ++d) first[2 * n + d] = -lines_.arm(i)[d];
-    }
-    auto second = matrix_.row(n + ix(i));
-    if (c.flows) {
-      second.head(2 * n) = -f_by_.row(ix(i)).head(2 * n);
-      second[lambda] = -f_by_(ix(i), 2 * n);
-    } else {
-      second[n + ix(i)] = 1.0;
-    }
-    for (Eigen::Index d = 0; d < lambda - 2 * n; ++d) {
-      auto balance = matrix_.row(2 * n + d);
-      const double weight = counts_[i] * lines_.arm(i)[d];
-      balance.head(2 * n) += weight * F_by_.row(ix(i)).head(2 * n);
-      balance[lambda] += weight * F_by_(ix(i), 2 * n);
-    }
-    if (c.flows) matrix_(lambda, n + ix(i)) = -pace_of_core(i);
+    const double square = c.l * c.l;
+    const double grown = c.dent.zeta * c.dent.zeta - material_.a_Y * material_.a_Y;
+    l_by_flow_[i] = shape_.dot(directions_[i], flow_.C) / (2.0 * c.l);
+    Om_by_zeta_[i] = counts_[i] * c.dent.zeta / square;
+    Om_by_flow_ -= counts_[i] * grown / (square * c.l) * l_by_flow_[i];
+    F_by_[i] = row_of(i, c.contact.F_by);
   }
-  for (Eigen::Index d = 2 * n; d < lambda; ++d) matrix_(d, d) += k_weak_spring;
-  matrix_(lambda, lambda) = 1.0;
+  for (std::size_t i = 0; i < size(); ++i) differentiate_kinematics(i, row_at(i));
+  if (!flows_) return;
+  differentiate_core();
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (classes_[i].flows) differentiate_yield(i, row_at(size() + i));
+  }
 }
+
+void Particle::differentiate_core() {
+  T_by_flow_ = {};
+  s_by_flow_ = 0.0;
+  std::ranges::fill(s_by_F_, 0.0);
+  if (!(s_ > 0.0)) return;
+  for (std::size_t i = 0; i < size(); ++i) {
+    const ClassState& c = classes_[i];
+    const double w = -c.advance.c_l / c.l;
+    const double w_l = (c.advance.c_l / c.l - c.advance.c_ll) / c.l;
+    s_by_F_[i] = 0.375 / s_ * shape_.dot(T_, load_[i]);
+    shape_.add(load_[i], c.contact.F * w_l / w * l_by_flow_[i], T_by_flow_);
+    shape_.add(shape_.deviator(shape_.product(flow_.C, of_spreads_[i]), w), c.contact.F, T_by_flow_);
+  }
+  s_by_flow_ = 0.375 / s_ * shape_.dot(T_, T_by_flow_);
+}
+
+/// Of (K).
+void Particle::differentiate_kinematics(std::size_t i, std::span<double> row) {
+  const std::size_t n = size();
+  const ClassState& c = classes_[i];
+  const double Om3 = raised<3>(Om_);
+  const double shade = 1.0 / (1.0 + k::kap * Om3 * Om_);
+  const double shade_by_Om = -4.0 * k::kap * Om3 * shade * shade;
+  std::ranges::fill(row, 0.0);
+  for (std::size_t j = 0; j < n; ++j) {
+    const ClassState& other = classes_[j];
+    const double F = other.contact.F;
+    if (F == 0.0) continue;
+    const Coupling& g = coupling_[i * n + j];
+    const double root = std::sqrt(c.dent.Gam * other.dent.Gam);
+    const double of_root = g.same + g.mixed * shade;
+    add_force(j, -(g.mixed + g.across * shade + root * of_root), row);
+    row[n + i] -= 0.5 * root * of_root * F * c.dent.Gam_zeta / c.dent.Gam;
+    row[n + j] -= 0.5 * root * of_root * F * other.dent.Gam_zeta / other.dent.Gam;
+    row[2 * n] -= (g.across + root * g.mixed) * shade_by_Om * F;
+  }
+  add(i, row_of(i, c.contact.u_by), 1.0, row);
+  row[n + i] += c.dent.h_zeta;
+  row[2 * n + 1] += c.advance.c_l * l_by_flow_[i];
+  fold_coverage(row);
+}
+
+/// Of the yield function: dX = n1 X (dF/F - dH/H - dwk/wk), dQ = n2 (s/S)^(n2-1) d(s/S).
+void Particle::differentiate_yield(std::size_t i, std::span<double> row) {
+  const std::size_t n = size();
+  const ClassState& c = classes_[i];
+  std::ranges::fill(row, 0.0);
+  if (!(c.X + Q_ > 0.0) || !(c.contact.F > 0.0)) return;
+  const double use = s_ / S_;
+  const double outer = (1.0 + c.f) / (k::n1 * (c.X + Q_));
+  const double of_X = outer * k::n1 * c.X;
+  add_force(i, of_X / c.contact.F, row);
+  add(i, row_of(i, c.contact.H_by), -of_X / c.contact.H, row);
+  if (s_ > 0.0) {
+    double of_use = outer * k::n2 * raised<k::n2 - 1>(use);
+    double of_tau = 0.0;
+    const double tau = shape_.dot(directions_[i], T_) / (4.0 / 3.0 * s_);
+    if (c.b > 0.0) {
+      const double of_wk = of_X / c.wk;
+      const double small = k::beta * std::exp(-c.contact.alpha / k::ab);
+      of_use += of_wk * small * c.b * k::n3 * raised<k::n3 - 1>(use);
+      const double z = std::min(-2.0 * tau, 1.0);
+      of_tau = of_wk * small * raised<k::n3>(use) * -12.0 * z * (1.0 - z);
+      add(i, row_of(i, c.contact.alpha_by), of_wk * (c.wk - 1.0) / k::ab, row);
+    }
+    // By the load s, by its share tau under this wall, and by the strength S.
+    const double of_s = of_use / S_ - of_tau * tau / s_;
+    const double per_tau = of_tau / (4.0 / 3.0 * s_);
+    for (std::size_t j = 0; j < n; ++j)
+      add_force(j, of_s * s_by_F_[j] + per_tau * shape_.dot(directions_[i], load_[j]), row);
+    row[2 * n + 1] += of_s * s_by_flow_ + per_tau * shape_.dot(directions_[i], T_by_flow_) -
+                      of_use * use / S_ * material_.Y * k::s1 * flow_.e;
+  }
+  fold_coverage(row);
+}
+
+// --- solving them
 
 /// Lam per rate of a dent that flows.
 double Particle::pace_of_core(std::size_t i) const noexcept {
   const ClassState& c = classes_[i];
-  return c.X > 0.0 ? counts_[i] * c.contact.F * c.driving / c.X * c.dent.h_zeta : 0.0;
+  return c.X > 0.0 ? counts_[i] * c.contact.F * (1.0 - c.b) / c.X * c.dent.h_zeta : 0.0;
 }
 
-/// Gauss's elimination of the first unknowns, with the right side in the last column. The matrix is near one with a
-/// positive diagonal, so that rows keep their order.
-/// @return the least pivot of the walls and the core; not positive if any other pivot is not
-double Particle::eliminate(Eigen::Index count) {
-  const Eigen::Index right = matrix_.cols() - 1;
-  const auto n = ix(size());
-  double least = std::numeric_limits<double>::infinity();
-  for (Eigen::Index c = 0; c < count; ++c) {
-    const double pivot = matrix_(c, c);
-    const bool is_order_one = c < n || c == right - 1;
-    if (is_order_one || !(pivot > 0.0)) least = std::min(least, pivot);
-    if (pivot == 0.0) throw DomainError(Limit::applicability);
-    for (Eigen::Index r = c + 1; r < count; ++r) {
-      const double factor = matrix_(r, c) / pivot;
-      if (factor == 0.0) continue;
-      for (Eigen::Index j = c + 1; j < count; ++j) matrix_(r, j) -= factor * matrix_(c, j);
-      matrix_(r, right) -= factor * matrix_(c, right);
+/// The linear equations of all unknowns up to the core, and of Lam in the last place, without right side.
+void Particle::assemble() {
+  flows_ = any_flows();
+  differentiate();
+  const std::size_t n = size();
+  const std::size_t lambda = unknowns_ - 1;
+  std::ranges::fill(matrix_, 0.0);
+  const auto put = [&](std::size_t at, std::span<const double> row, double sign) {
+    for (std::size_t j = 0; j < 2 * n; ++j) entry(at, j) = sign * row[j];
+    entry(at, lambda) = sign * row[2 * n + 1];
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const ClassState& c = classes_[i];
+    if (c.takes_force) {
+      entry(i, i) = 1.0;
+    } else {
+      put(i, row_at(i), 1.0);
+      for (std::size_t d = 0; d < layout_.directions(); ++d)
+        entry(i, layout_.centre(d)) = -lines_.arm(i)[static_cast<Eigen::Index>(d)];
+    }
+    if (c.flows) {
+      put(n + i, row_at(n + i), -1.0);
+      entry(lambda, n + i) = -pace_of_core(i);
+    } else {
+      entry(n + i, n + i) = 1.0;
     }
   }
-  for (Eigen::Index r = count - 1; r >= 0; --r) {
-    double sum = matrix_(r, right);
-    for (Eigen::Index c = r + 1; c < count; ++c) sum -= matrix_(r, c) * solution_[c];
-    solution_[r] = sum / matrix_(r, r);
+  for (std::size_t d = 0; d < layout_.directions(); ++d) {
+    const auto row = row_at(2 * n);
+    std::ranges::fill(row, 0.0);
+    for (std::size_t i = 0; i < n; ++i) add_force(i, counts_[i] * lines_.arm(i)[static_cast<Eigen::Index>(d)], row);
+    fold_coverage(row);
+    put(layout_.centre(d), row, 1.0);
+    entry(layout_.centre(d), layout_.centre(d)) += k_weak_spring;
   }
-  return least;
+  entry(lambda, lambda) = 1.0;
+}
+
+/// An unknown that does not move: the dent of a contact that does not flow, or Lam where none does.
+bool Particle::is_idle(std::size_t unknown) const noexcept {
+  if (unknown == unknowns_ - 1) return !flows_;
+  return unknown >= size() && unknown < 2 * size() && !classes_[unknown - size()].flows;
+}
+
+/// Gauss's elimination of the first unknowns but idle ones, rows by their largest entries, with the right side in the
+/// last column.
+/// @return the sign of the determinant, which is positive at the unloaded particle
+double Particle::eliminate(std::size_t count) {
+  active_.clear();
+  for (std::size_t r = 0; r < count; ++r) {
+    if (!is_idle(r)) active_.push_back(r);
+  }
+  // What moves, row by row over its largest entry, with the right side behind.
+  const std::size_t n = active_.size();
+  const std::size_t width = n + 1;
+  for (std::size_t at = 0; at < n; ++at) {
+    double* const row = order_[at] = dense_.data() + at * width;
+    double largest = 0.0;
+    for (std::size_t c = 0; c < n; ++c) {
+      row[c] = entry(active_[at], active_[c]);
+      largest = std::max(largest, std::abs(row[c]));
+    }
+    row[n] = entry(active_[at], unknowns_);
+    if (!(largest > 0.0)) throw DomainError(Limit::applicability);
+    const double scale = 1.0 / largest;
+    for (std::size_t c = 0; c < width; ++c) row[c] *= scale;
+  }
+  double sign = 1.0;
+  for (std::size_t at = 0; at < n; ++at) {
+    std::size_t best = at;
+    for (std::size_t other = at + 1; other < n; ++other) {
+      if (std::abs(order_[other][at]) > std::abs(order_[best][at])) best = other;
+    }
+    if (best != at) {
+      std::swap(order_[best], order_[at]);
+      sign = -sign;
+    }
+    const double* const row = order_[at];
+    const double pivot = row[at];
+    if (pivot == 0.0) throw DomainError(Limit::applicability);
+    if (pivot < 0.0) sign = -sign;
+    for (std::size_t other = at + 1; other < n; ++other) {
+      double* const rest = order_[other];
+      if (rest[at] == 0.0) continue;
+      const double factor = rest[at] / pivot;
+      for (std::size_t c = at + 1; c < width; ++c) rest[c] -= factor * row[c];
+    }
+  }
+  std::ranges::fill(solution_, 0.0);
+  for (std::size_t at = n; at-- > 0;) {
+    const double* const row = order_[at];
+    double sum = row[n];
+    for (std::size_t c = at + 1; c < n; ++c) sum -= row[c] * solution_[active_[c]];
+    solution_[active_[at]] = sum / row[at];
+  }
+  return sign;
 }
 
 void Particle::solve(double xi, std::span<double> y) {
-  const auto count = static_cast<std::size_t>(matrix_.rows() - 1);
-  const Eigen::Index right = matrix_.cols() - 1;
-  std::vector<double> rest(count), before(y.begin(), y.end());
-  double largest = 0.0;
-  for (const ClassState& c : classes_) {
-    if (!c.takes_force) largest = std::max(largest, std::abs(c.drive.value(xi)));
-  }
+  const std::size_t count = unknowns_ - 1;
+  const auto rest = std::span(rest_of_equations_).first(count);
+  const bool is_elastic = !any_flows();
+  double largest = is_elastic ? 0.0 : material_.Y;
+  for (const ClassState& c : classes_) largest = std::max(largest, std::abs(c.drive.value(xi)));
   const auto error_at = [&] {
-    evaluate(y);
+    if (is_elastic)
+      evaluate_elastically(y);
+    else
+      evaluate(y);
     residual(xi, rest);
     double error = 0.0;
     for (const double value : rest) error = std::max(error, std::abs(value));
     return error;
   };
   double error = error_at();
-  for (int i = 0; i < k_most_corrections && error > 0.0; ++i) {
+  for (int i = 0; i < k_most_corrections && error > k_rounding * largest; ++i) {
     assemble();
-    for (std::size_t r = 0; r < count; ++r) matrix_(ix(r), right) = -rest[r];
-    eliminate(ix(count));
+    for (std::size_t r = 0; r < count; ++r) entry(r, unknowns_) = -rest[r];
+    eliminate(count);
     double share = 1.0;
     for (std::size_t j = 0; j < size(); ++j) {
-      const double growth = std::abs(solution_[ix(layout_.dent(j))]);
+      const double growth = std::abs(solution_[layout_.dent(j)]);
       if (growth * share > k_most_growth) share = k_most_growth / growth;
     }
-    std::ranges::copy(y, before.begin());
+    std::copy_n(y.begin(), count, before_.begin());
     double next = 0.0;
     int halvings = 0;
     for (; halvings < k_most_halvings; ++halvings, share *= 0.5) {
-      for (std::size_t r = 0; r < count; ++r) y[r] = before[r] + share * solution_[ix(r)];
-      for (std::size_t j = 0; j < size(); ++j)
-        y[layout_.dent(j)] = std::max(y[layout_.dent(j)], k_least_dent * material_.a_Y);
+      for (std::size_t r = 0; r < count; ++r) y[r] = before_[r] + share * solution_[r];
+      for (std::size_t j = 0; j < size(); ++j) {
+        double& dent = y[layout_.dent(j)];
+        dent = std::max(dent, k_least_dent * material_.a_Y);
+      }
       next = error_at();
-      if (next < error) break;
+      if (next < error || error <= k_solved * largest) break;
     }
-    if (halvings == k_most_halvings) {
-      std::ranges::copy(before, y.begin());
+    if (!(next < error)) {
+      std::copy_n(before_.begin(), count, y.begin());
       error = error_at();
       break;
     }
     error = next;
   }
-  if (!(error <= k_solved * std::max(largest, material_.Y))) throw DomainError(Limit::no_solution);
+  const bool takes_force = std::ranges::any_of(classes_, &ClassState::takes_force);
+  if (takes_force && (centre_ - rest_).cwiseAbs().maxCoeff() > k_farthest) throw DomainError(Limit::centre_driven_away);
+  if (!(error <= k_solved * std::max(largest, material_.Y))) throw DomainError(Limit::applicability);
+  if (is_elastic) evaluate_yield(y);
 }
 
 double Particle::rates(std::span<double> dy) {
   assemble();
-  const Eigen::Index right = matrix_.cols() - 1;
-  for (std::size_t i = 0; i < size(); ++i) matrix_(ix(i), right) = classes_[i].drive.rate();
-  for (Eigen::Index r = ix(size()); r < right; ++r) matrix_(r, right) = 0.0;
-  const double least = eliminate(right);
-  for (std::size_t r = 0; r < layout_.core(); ++r) dy[r] = solution_[ix(r)];
-  if (layout_.has_core()) {
-    const double Lam = solution_[right - 1];
-    const Matrix3d C = Lam * flow_.C;
-    const std::array<double, Layout::k_core_size> core{C(0, 0), C(1, 1), C(2, 2),      C(0, 1),
-                                                       C(0, 2), C(1, 2), Lam * flow_.e};
-    std::ranges::copy(core, dy.begin() + static_cast<std::ptrdiff_t>(layout_.core()));
+  for (std::size_t r = 0; r < unknowns_; ++r) entry(r, unknowns_) = r < size() ? classes_[r].drive.rate() : 0.0;
+  const double sign = eliminate(unknowns_);
+  std::copy_n(solution_.begin(), layout_.core(), dy.begin());
+  const double margin = sign * slowness();
+  if (!layout_.has_core()) return margin;
+  const double Lam = solution_[unknowns_ - 1];
+  for (std::size_t j = 0; j < shape_.dimension(); ++j) dy[layout_.core() + j] = Lam * flow_.C[j];
+  dy[layout_.size() - 1] = Lam * flow_.e;
+  return margin;
+}
+
+/// How fast walls go, as displacements, over how fast they and their contacts do: 0 where the equations turn back.
+double Particle::slowness() const noexcept {
+  double speed = 0.0;
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    const ClassState& c = classes_[i];
+    const double rate = solution_[layout_.coordinate(i)];
+    const double u_rate = c.contact.u_by.coordinate * rate;
+    speed = std::max(speed, std::abs(c.takes_force ? u_rate : c.drive.rate()));
+    fastest = std::max({fastest, std::abs(u_rate), std::abs(c.dent.h_zeta * solution_[layout_.dent(i)])});
   }
-  return least;
+  return speed > 0.0 ? speed / (speed + fastest) : 1.0;
 }
 
-double Particle::rate_of(Eigen::Ref<const Eigen::RowVectorXd> row) const {
-  const Eigen::Index n = 2 * ix(size());
-  return row.head(n).dot(solution_.head(n).transpose()) + row[n] * solution_[solution_.size() - 1];
+/// Rate of what a row of derivatives is of.
+double Particle::rate_of(std::size_t at) const noexcept {
+  const std::size_t width = 2 * size() + 2;
+  const auto row = std::span(rows_).subspan(at * width, width);
+  double sum = row.back() * solution_[unknowns_ - 1];
+  for (std::size_t j = 0; j < 2 * size(); ++j) sum += row[j] * solution_[j];
+  return sum;
 }
 
-double Particle::yield_rate(std::size_t i) const { return rate_of(f_by_.row(ix(i))); }
+double Particle::yield_rate(std::size_t i) {
+  differentiate_core();
+  differentiate_yield(i, row_at(size() + i));
+  return rate_of(size() + i);
+}
 
 double Particle::power() const {
-  const Eigen::Index first = 2 * ix(size());
   double sum = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
-    double speed = c.drive.rate();
-    if (c.takes_force) {
-      speed = rate_of(kinematic_by_.row(ix(i)));
-      for (Eigen::Index d = 0; d < lines_.dimension(); ++d) speed -= lines_.arm(i)[d] * solution_[first + d];
-    }
+    const double speed = c.takes_force ? rate_of(i) - carried(i, solution_) : c.drive.rate();
     sum += counts_[i] * c.contact.F * speed;
   }
   return sum;

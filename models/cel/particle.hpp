@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "cel/contact_law.hpp"
+#include "cel/core_shape.hpp"
 #include "contacts/centre/centre_lines.hpp"
 #include "contacts/wall_drive.hpp"
 #include "system/walls.hpp"
@@ -29,29 +30,27 @@ namespace monograin::cel {
 /// Places of the unknowns in a state: own coordinate and dent of every class, centre, core.
 class Layout {
  public:
-  Layout(std::size_t classes, std::size_t directions, bool has_core)
-      : classes_(classes), directions_(directions), has_core_(has_core) {}
+  /// @param shapes  dimension of the core's shape; 1: it keeps its shape, and is no unknown
+  Layout(std::size_t classes, std::size_t directions, std::size_t shapes) noexcept
+      : classes_(classes), directions_(directions), core_size_(shapes > 1 ? shapes + 1 : 0) {}
   [[nodiscard]] std::size_t coordinate(std::size_t i) const noexcept { return i; }
   [[nodiscard]] std::size_t dent(std::size_t i) const noexcept { return classes_ + i; }
   [[nodiscard]] std::size_t centre(std::size_t k) const noexcept { return 2 * classes_ + k; }
-  /// C by its entries 11, 22, 33, 12, 13, 23, then e.
+  /// C by its components, then e.
   [[nodiscard]] std::size_t core() const noexcept { return 2 * classes_ + directions_; }
-  [[nodiscard]] std::size_t size() const noexcept { return core() + (has_core_ ? k_core_size : 0); }
+  [[nodiscard]] std::size_t size() const noexcept { return core() + core_size_; }
 
-  [[nodiscard]] std::size_t classes() const noexcept { return classes_; }
   [[nodiscard]] std::size_t directions() const noexcept { return directions_; }
-  [[nodiscard]] bool has_core() const noexcept { return has_core_; }
-
-  static constexpr std::size_t k_core_size = 7;
+  [[nodiscard]] std::size_t core_size() const noexcept { return core_size_; }
+  [[nodiscard]] bool has_core() const noexcept { return core_size_ > 0; }
 
  private:
-  std::size_t classes_, directions_;
-  bool has_core_;
+  std::size_t classes_, directions_, core_size_;
 };
 
-/// Shape of the core and its accumulated equivalent strain.
+/// Shape of the core and its accumulated equivalent strain; or their changes.
 struct Core {
-  Eigen::Matrix3d C = Eigen::Matrix3d::Identity();  ///< metric; the support distance along n is sqrt(n.C n)
+  CoreShape::Tensor C{};  ///< metric, of determinant 1; the support distance along n is sqrt(n.C n)
   double e = 0.0;
 };
 
@@ -61,15 +60,17 @@ struct ClassState {
   bool takes_force = false;  ///< its own coordinate is the force, not u
   bool flows = false;        ///< dent grows
 
+  double coordinate = 0.0;
   Dent dent{};
   Contact contact{};
   Advance advance{};
-  double coordinate = 0.0;
   double l = 1.0;
   double kinematic = 0.0;  ///< right side of (K)
+  double lift = 0.0;       ///< sum of G F in it
   double f = -1.0;         ///< yield function
   double X = 0.0;
-  double driving = 1.0;  ///< 1 - b, share of the contact in what drives the core
+  double b = 0.0;   ///< 1: carried by the flow of the core; 0: drives it
+  double wk = 1.0;  ///< strength of a carried contact over its own
 };
 
 class Particle {
@@ -81,35 +82,37 @@ class Particle {
   [[nodiscard]] std::size_t size() const noexcept { return classes_.size(); }
   [[nodiscard]] ClassState& at(std::size_t i) noexcept { return classes_[i]; }
   [[nodiscard]] const ClassState& at(std::size_t i) const noexcept { return classes_[i]; }
-  [[nodiscard]] double count(std::size_t i) const noexcept { return counts_[i]; }
+  [[nodiscard]] bool any_flows() const noexcept;
   [[nodiscard]] const contacts::CentreLines& lines() const noexcept { return lines_; }
+  /// Writes the core of the fresh particle.
+  void start_core(std::span<double> y) const noexcept;
   [[nodiscard]] Core core_of(std::span<const double> y) const noexcept;
   /// n.x, what the centre adds to the overlap of a class.
   [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const noexcept;
   /// Takes the centre to rest where it is: the weak spring that settles directions without stiffness is at ease there.
   void rest_centre(std::span<const double> y) noexcept;
 
-  /// Evaluates all equations and their derivatives at a state.
+  /// Evaluates all equations at a state.
   /// @throws std::domain_error where the core or a dent has no size
   void evaluate(std::span<const double> y);
   [[nodiscard]] double coverage() const noexcept { return Om_; }
   [[nodiscard]] double stored_energy() const noexcept { return stored_; }
-
   /// Residuals of (K), or of the prescribed force; of the yield functions of contacts that flow; of (E): in the order
   /// of the unknowns up to the core.
   void residual(double xi, std::span<double> residual) const;
   /// Corrects a state by Newton's method for given core and dents of contacts that do not flow.
   /// @throws std::domain_error where there is no solution near the state
   void solve(double xi, std::span<double> y);
-  /// Rates of all unknowns with the step coordinate at the state that was evaluated, by the chain of all equations.
-  /// @return the least pivot of their matrix, which is 1 at the unloaded particle and 0 where the equations turn back
+  /// Rates of all unknowns with the step coordinate at the state that was evaluated.
+  /// @return the margin to where the path turns back: how fast walls go over how fast their contacts follow; negative
+  /// beyond, where the determinant of the equations has changed its sign
   double rates(std::span<double> dy);
   /// Rate of the yield function of a class, by the last rates().
-  [[nodiscard]] double yield_rate(std::size_t i) const;
+  [[nodiscard]] double yield_rate(std::size_t i);
   /// Rate of the work of all walls, by the last rates().
   [[nodiscard]] double power() const;
   /// C' and e' over Lam.
-  [[nodiscard]] Core core_flow() const noexcept { return flow_; }
+  [[nodiscard]] const Core& core_flow() const noexcept { return flow_; }
   /// Lam from rates of the dents.
   [[nodiscard]] double flow_rate(std::span<const double> dy) const noexcept;
 
@@ -117,45 +120,71 @@ class Particle {
   struct Coupling {
     double same = 0.0, mixed = 0.0, across = 0.0;  ///< sums of g c^4, g c^2 (1 - c^2), g (1 - c^2)^2; c = cos(theta)
   };
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  /// Derivatives by the own coordinate and dent, by the coverage, and by the flow of the core at a given coverage.
+  struct Row {
+    double coordinate = 0.0, zeta = 0.0, Om = 0.0, flow = 0.0;
+  };
 
-  [[nodiscard]] static Eigen::Index ix(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
+  void evaluate_elastically(std::span<const double> y);
   void evaluate_contacts(std::span<const double> y, const Core& core);
   void evaluate_core(const Core& core);
-  void evaluate_yield();
+  void evaluate_yield(std::span<const double> y);
   void evaluate_coupling();
-  void add(std::size_t i, const Slopes& by, Eigen::Ref<Eigen::RowVectorXd> row, double factor) const;
+  void differentiate();
+  void differentiate_core();
+  void differentiate_yield(std::size_t i, std::span<double> row);
+  void differentiate_kinematics(std::size_t i, std::span<double> row);
+  [[nodiscard]] Row row_of(std::size_t i, const Slopes& by) const noexcept;
+  void add_force(std::size_t j, double factor, std::span<double> row) const noexcept;
+  void add(std::size_t i, const Row& by, double factor, std::span<double> row) const noexcept;
+  void fold_coverage(std::span<double> row) const noexcept;
   void assemble();
   [[nodiscard]] double pace_of_core(std::size_t i) const noexcept;
-  double eliminate(Eigen::Index count);
-  [[nodiscard]] double rate_of(Eigen::Ref<const Eigen::RowVectorXd> row) const;
+  [[nodiscard]] bool is_idle(std::size_t unknown) const noexcept;
+  double eliminate(std::size_t count);
+  [[nodiscard]] double slowness() const noexcept;
+  [[nodiscard]] double rate_of(std::size_t at) const noexcept;
+  [[nodiscard]] std::span<double> row_at(std::size_t row) noexcept;
+  [[nodiscard]] double& entry(std::size_t row, std::size_t column) noexcept {
+    return matrix_[row * (unknowns_ + 1) + column];
+  }
 
   Material material_;
-  std::vector<double> counts_;
-  std::vector<Eigen::Vector3d> normals_;  ///< of the first wall of each class
   std::vector<Eigen::Matrix3d> spreads_;  ///< sum of n n over the walls of a class
+  CoreShape shape_;
   contacts::CentreLines lines_;
   Layout layout_;
-  std::vector<Coupling> coupling_;  ///< row by row
+  std::vector<double> counts_;                 ///< of walls
+  std::vector<CoreShape::Tensor> directions_;  ///< n n of the first wall of each class
+  std::vector<CoreShape::Tensor> of_spreads_;  ///< spreads_
+  std::vector<Coupling> coupling_;             ///< row by row
   std::vector<ClassState> classes_;
   Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();  ///< where the centre is at ease
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
 
-  // At the state that was evaluated. Rows of derivatives are by the coordinates of all classes, by their dents, and by
-  // the flow of the core.
-  double Om_ = 0.0;
+  // At the state that was evaluated.
+  double Om_ = 0.0, m_by_Om_ = 0.0;
   double s_ = 0.0, S_ = 1.0, Q_ = 0.0;
   double stored_ = 0.0;
-  double m_by_Om_ = 0.0;
+  CoreShape::Tensor T_{};                ///< deviator of the load
+  std::vector<CoreShape::Tensor> load_;  ///< that of a class by its force
   Core flow_;
-  std::vector<double> l_by_flow_;
-  std::vector<Eigen::Matrix3d> load_;  ///< deviator of w sym(C N), per unit force of a class
-  std::vector<double> push_;           ///< ds/dF
-  Eigen::RowVectorXd Om_by_, s_by_;
-  Matrix F_by_, tau_by_, f_by_, kinematic_by_;
-  Eigen::VectorXd tau_;
-  Matrix matrix_;  ///< of the linear equations for rates or corrections, with their right side
-  Eigen::VectorXd solution_;
+
+  // Its derivatives. A row is by the coordinates of all classes, by their dents, by the coverage and by the flow.
+  std::vector<double> l_by_flow_, Om_by_zeta_;
+  double Om_by_flow_ = 0.0;
+  std::vector<Row> F_by_;
+  std::vector<double> s_by_F_;
+  double s_by_flow_ = 0.0;  ///< at given forces
+  CoreShape::Tensor T_by_flow_{};
+  std::vector<double> rows_;         ///< of (K), of the yield functions, and of one equation (E)
+  std::size_t unknowns_;             ///< coordinates, dents, centre, and Lam
+  std::vector<double> matrix_;       ///< of the linear equations for rates or corrections, with their right side
+  std::vector<std::size_t> active_;  ///< unknowns that move
+  std::vector<double> dense_;        ///< their equations
+  std::vector<double*> order_;       ///< rows of these, in the order of elimination
+  bool flows_ = false;               ///< any contact does, in these
+  std::vector<double> solution_, rest_of_equations_, before_;
 };
 
 }  // namespace monograin::cel

@@ -24,9 +24,11 @@ constexpr double k_at_yield = 1e-9;
 constexpr double k_least_rate = 1e-13;
 /// Rates of dents that are alike but for rounding.
 constexpr double k_alike = 1e-6;
-/// Least pivot at which a run ends: next to it the stiffness is infinite.
+/// Margin at which a run ends: next to it the stiffness is infinite.
 constexpr double k_least_margin = 1e-5;
 constexpr double k_hard_margin = 1e-3;
+/// Force over E R0^2 below which a contact of a free centre is idle.
+constexpr double k_least_force = 1e-11;
 /// Half the surface over pi R0^2 is 2; the law is fitted up to here.
 constexpr double k_most_coverage = 1.7;
 /// Fitted range of the law.
@@ -80,14 +82,7 @@ double System::force_unit() const noexcept {
   return settings_.youngs_modulus * settings_.initial_radius * settings_.initial_radius;
 }
 
-bool System::any_flows() const noexcept {
-  for (std::size_t i = 0; i < particle_.size(); ++i) {
-    if (particle_.at(i).flows) return true;
-  }
-  return false;
-}
-
-bool System::is_solvable_here() const noexcept { return is_solvable() || !any_flows(); }
+bool System::is_solvable_here() const noexcept { return is_solvable() || !particle_.any_flows(); }
 
 bool System::is_at_rest() const noexcept {
   for (std::size_t i = 0; i < particle_.size(); ++i) {
@@ -106,7 +101,7 @@ void System::start(std::span<double> y) {
     particle_.at(i).flows = particle_.at(i).takes_force = false;
     hold(i, -gap);
   }
-  if (layout.has_core()) std::ranges::fill(y.subspan(layout.core(), 3), 1.0);
+  particle_.start_core(y);
   std::ranges::fill(touches_, false);
   has_begun_ = false;
   deepest_ = 0.0;
@@ -140,8 +135,11 @@ void System::complete(double xi, std::span<double> y) {
 }
 
 void System::solve(double xi, std::span<double> y) {
-  is_known_ = false;
+  is_known_ = knows_rates_ = false;
   particle_.solve(xi, y);
+  std::ranges::copy(y, at_.begin());
+  at_xi_ = xi;
+  is_known_ = true;
 }
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
@@ -159,17 +157,17 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
   }
   if (layout.has_core()) {
     const double Lam = particle_.flow_rate(dy);
-    const Eigen::Matrix3d& C = particle_.core_flow().C;
-    const std::array<double, Layout::k_core_size> flow{
-        C(0, 0), C(1, 1), C(2, 2), C(0, 1), C(0, 2), C(1, 2), particle_.core_flow().e};
-    for (std::size_t j = 0; j < flow.size(); ++j) res[layout.core() + j] = dy[layout.core() + j] - Lam * flow[j];
+    const Core& flow = particle_.core_flow();
+    const std::size_t last = layout.size() - 1;
+    for (std::size_t j = layout.core(); j < last; ++j) res[j] = dy[j] - Lam * flow.C[j - layout.core()];
+    res[last] = dy[last] - Lam * flow.e;
   }
   res[work_place_] = dy[work_place_] - particle_.power();
 }
 
 /// Elastically all work is stored, but for what has been dissipated before.
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
-  if (any_flows()) return std::nullopt;
+  if (particle_.any_flows()) return std::nullopt;
   evaluate(xi, y);
   return particle_.stored_energy();
 }
@@ -189,7 +187,7 @@ void System::take_up(std::size_t i, const Ramp& ramp, std::span<double> y) {
   double& coordinate = y[particle_.layout().coordinate(i)];
   if (ramp.control == Control::force && !takes_force) {
     // No force, which no contact can bear: the wall stands where it has come to.
-    const double stood = displacement(i, 0.0, y);
+    const double stood = c.kinematic - particle_.carried(i, y);
     if (c.takes_force) coordinate = c.contact.u;
     hold(i, stood);
     return;
@@ -212,22 +210,42 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   if (guards_.empty()) return;
   const double margin = evaluate_rates(0.0, y);
   for (const Guard& guard : guards_) {
-    if (guard.kind >= k_fold && limit_value(guard, margin, 0.0, y) <= 0.0) throw CannotBegin(end_at(guard, 0.0, y));
+    if (guard.kind >= k_fold && limit_value(guard, margin) <= 0.0) throw CannotBegin(end_at(guard, 0.0, y));
   }
 }
 
 // --- modes
 
+/// Elastic displacement of a contact a little later, as soon as it is on a side; none if it never is.
+double System::displacement_ahead(std::size_t i, double xi, std::span<const double> y) {
+  constexpr double k_first = 1e-9;
+  const std::size_t place = particle_.layout().coordinate(i);
+  Particle ahead = particle_;
+  for (double distance = k_first; xi < 1.0; distance *= 10.0) {
+    const double later = std::min(1.0, xi + distance);
+    std::vector<double> state(y.begin(), y.end());
+    for (std::size_t j = 0; j < work_place_; ++j) state[j] += (later - xi) * rates_[j];
+    try {
+      ahead.solve(later, state);
+    } catch (const std::domain_error&) {
+      return 0.0;  // the run will stop on its way there
+    }
+    if (std::abs(state[place]) > k_touch * depth_) return state[place];
+    if (later == 1.0) break;
+  }
+  return 0.0;
+}
+
 /// Whether a contact bears from here on, by its elastic displacement or, next to none, by where that goes.
-void System::decide_touch(std::size_t i, std::vector<Event>& log) {
+void System::decide_touch(std::size_t i, double xi, std::span<const double> y, std::vector<Event>& log) {
   const ClassState& c = particle_.at(i);
   bool touches = touches_[i] != 0;
   if (c.takes_force) {
     touches = c.contact.F > 0.0 || c.drive.rate() > 0.0;
   } else if (std::abs(c.contact.u) > k_touch * depth_) {
     touches = c.contact.u > 0.0;
-  } else if (const double rate = rates_[particle_.layout().coordinate(i)]; rate != 0.0) {
-    touches = rate > 0.0;
+  } else {
+    touches = displacement_ahead(i, xi, y) > 0.0;
   }
   if (touches == (touches_[i] != 0)) return;
   touches_[i] = touches;
@@ -248,7 +266,7 @@ void System::decide_flow(double xi, std::span<const double> y, std::span<const b
     const bool is_next = may_flow[i] && touches_[i] && particle_.at(i).f > -k_at_yield;
     particle_.at(i).flows = is_next && particle_.yield_rate(i) > k_least_rate;
   }
-  while (any_flows()) {
+  while (particle_.any_flows()) {
     knows_rates_ = false;
     evaluate_rates(xi, y);
     double worst = 0.0;
@@ -271,7 +289,7 @@ void System::decide_mode(double xi, std::span<const double> y, std::vector<Event
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const bool is_decided = std::ranges::any_of(
         fired, [&](std::size_t g) { return guards_[g].kind <= k_lost && guards_[g].index == static_cast<int>(i); });
-    if (!is_decided) decide_touch(i, log);
+    if (!is_decided) decide_touch(i, xi, y, log);
   }
   if (is_at_rest()) return;
   std::vector<char> flowed(classes_.size());
@@ -306,7 +324,6 @@ void System::arm_guards() {
     }
     if (!touches_[i]) continue;
     add(c.flows ? k_reversal : k_yield, index, c.flows ? -1 : 1, c.flows ? "load-reversal" : "yield");
-    add(k_centre, index, -1, "limit");
   }
   add(k_fold, -1, -1, "limit");
   add(k_coverage, -1, -1, "limit");
@@ -331,23 +348,20 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         break;
       }
       default:
-        values[g] = limit_value(guards_[g], margin, xi, y);
+        values[g] = limit_value(guards_[g], margin);
         break;
     }
   }
 }
 
 /// How far the state is from a limit; not above zero at it.
-double System::limit_value(const Guard& guard, double margin, double xi, std::span<const double> y) const {
+double System::limit_value(const Guard& guard, double margin) const noexcept {
   if (guard.kind == k_fold) return margin - k_least_margin;
-  if (guard.kind == k_coverage) return k_most_coverage - particle_.coverage();
-  const auto i = static_cast<std::size_t>(guard.index);
-  return 1.0 - displacement(i, xi, y) - particle_.carried(i, y);
+  return k_most_coverage - particle_.coverage();
 }
 
 DomainEnd System::end_at(const Guard& guard, double xi, std::span<const double> y) const {
   const Event event{guard.name, guard.index};
-  if (guard.kind == k_centre) return {event, {Limit::wall_at_centre, guard.index, "displacement/R0", 1.0}};
   if (guard.kind == k_coverage) return {event, {Limit::surface_covered, -1, "coverage", particle_.coverage()}};
   double largest = 0.0;
   for (std::size_t i = 0; i < classes_.size(); ++i) largest = std::max(largest, displacement(i, xi, y));
@@ -373,6 +387,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     y[particle_.layout().coordinate(i)] = 0.0;
     hold(i, stood);
   }
+  particle_.rest_centre(y);
   solve(xi, y);
   decide_mode(xi, y, log, fired);
   arm_guards();
@@ -391,12 +406,14 @@ AtWall System::wall(std::size_t i, double xi, std::span<const double> y) {
   evaluate(xi, y);
   const Contact& contact = particle_.at(i).contact;
   const double length = settings_.initial_radius;
-  const double force = contact.F * force_unit();
-  const double area = pi * contact.area * length * length;
+  // A contact that only carries a free centre along bears nothing but the weak spring there.
+  const bool bears = !settings_.centre_is_free || contact.F > k_least_force;
+  const double force = bears ? contact.F * force_unit() : 0.0;
+  const double radius = bears ? std::sqrt(contact.area) * length : 0.0;
   return {.force = force,
           .displacement = displacement(i, xi, y) * length,
-          .pressure = area > 0.0 ? force / area : 0.0,
-          .contact_radius = std::sqrt(contact.area) * length,
+          .pressure = radius > 0.0 ? force / (pi * radius * radius) : 0.0,
+          .contact_radius = radius,
           .apparent_radius = length};
 }
 

@@ -61,10 +61,9 @@ class System final : public HybridSystem {
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
 
  private:
-  enum GuardKind : int { k_made, k_lost, k_yield, k_reversal, k_fold, k_centre, k_coverage };
+  enum GuardKind : int { k_made, k_lost, k_yield, k_reversal, k_fold, k_coverage };
 
   [[nodiscard]] double force_unit() const noexcept;
-  [[nodiscard]] bool any_flows() const noexcept;
   [[nodiscard]] bool is_at_rest() const noexcept;
   void evaluate(double xi, std::span<const double> y);
   double evaluate_rates(double xi, std::span<const double> y);
@@ -72,11 +71,12 @@ class System final : public HybridSystem {
   [[nodiscard]] AtWall wall(std::size_t i, double xi, std::span<const double> y);
   void take_up(std::size_t i, const Ramp& ramp, std::span<double> y);
   void hold(std::size_t i, double displacement);
-  void decide_touch(std::size_t i, std::vector<Event>& log);
+  [[nodiscard]] double displacement_ahead(std::size_t i, double xi, std::span<const double> y);
+  void decide_touch(std::size_t i, double xi, std::span<const double> y, std::vector<Event>& log);
   void decide_mode(double xi, std::span<const double> y, std::vector<Event>& log, std::span<const std::size_t> fired);
   void decide_flow(double xi, std::span<const double> y, std::span<const bool> may_flow);
   void arm_guards();
-  [[nodiscard]] double limit_value(const Guard& guard, double margin, double xi, std::span<const double> y) const;
+  [[nodiscard]] double limit_value(const Guard& guard, double margin) const noexcept;
   [[nodiscard]] DomainEnd end_at(const Guard& guard, double xi, std::span<const double> y) const;
 
   Settings settings_;

@@ -62,7 +62,17 @@ struct SphereModes {
   [[nodiscard]] double logarithm() const noexcept { return 2.0 * (1.0 + nu) * (1.0 - 2.0 * nu) * (1.0 - 2.0 * nu); }
 };
 
-constexpr double k_last_decay = 40.0;  // exp(-2 y) is far below rounding there
+/// int from begin to infinity of what falls like exp(-2 y): one rule on each of a few pieces is exact to rounding.
+double decaying_integral(const auto& f, double begin) {
+  constexpr std::array k_ends{0.1, 1.0, 4.0, 12.0, 40.0};
+  double sum = 0.0;
+  for (const double end : k_ends) {
+    if (end <= begin) continue;
+    sum += boost::math::quadrature::gauss_kronrod<double, 31>::integrate(f, begin, end, 0);
+    begin = end;
+  }
+  return sum;
+}
 
 void require_inside(double x) {
   if (x <= k_widest) return;
@@ -170,7 +180,7 @@ double sphere_influence(double poisson_ratio, double theta) {
   const double translation = (1.0 + modes.nu) * (1.0 - 2.0 * s - cosine - cosine * std::log(s * (1.0 + s)));
   // The integrand bends within y ~ theta.
   const double bend = std::min(theta, 1.0);
-  const double sum = constant + translation + integral(rest, 0.0, bend) + integral(rest, bend, k_last_decay);
+  const double sum = constant + translation + integral(rest, 0.0, bend) + decaying_integral(rest, bend);
   return -sum / (4.0 * pi);
 }
 
@@ -179,7 +189,7 @@ double sphere_self_influence(double poisson_ratio) {
   // The modes without alpha and without the 1/n of the logarithm, n >= 2; sum_n (1/(n-1) - 1/n) = 1.
   const auto rest = [&](double y) { return (modes.kernel(y) - modes.p) * std::exp(-2.0 * y) / -std::expm1(-y); };
   const double sum = modes.mode_zero() - 2.0 * modes.alpha - modes.logarithm() + 1.0 + modes.nu +
-                     integral(rest, 0.0, 1.0) + integral(rest, 1.0, k_last_decay);
+                     integral(rest, 0.0, 1.0) + decaying_integral(rest, 1.0);
   return -sum / (4.0 * pi);
 }
 
