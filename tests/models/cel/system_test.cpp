@@ -319,6 +319,21 @@ TEST(CelForceControl, LetsAWallStandWhereItsForceEnds) {
   EXPECT_NEAR(now.last("stored_energy"), 0.0, 1e-10 * now.last("work"));
 }
 
+TEST(CelForceControl, StandsStillUnderNoForceAfterAnyStep) {
+  // The second step ends in the air; no force then leaves the wall there.
+  const TestRun now = run_by(
+      with_points(cel_scenario(Configuration::simple, 50.0, 0.3, {ramp(0.2), ramp(0.1), force_ramp(0.0)}), 4), "auto");
+  ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
+  const std::vector<double> displacement = now.outputs("axial.displacement");
+  const std::vector<double> force = now.outputs("axial.force");
+  ASSERT_EQ(displacement.size(), 13u);
+  for (std::size_t k = 8; k < displacement.size(); ++k) {
+    EXPECT_NEAR(displacement[k], 0.1, 1e-12) << k;
+    EXPECT_EQ(force[k], 0.0) << k;
+  }
+  EXPECT_EQ(now.record.warnings, std::vector<std::string>{});
+}
+
 // --- limits and warnings
 
 TEST(CelLimit, IsWhereTheStiffnessBecomesInfinite) {
