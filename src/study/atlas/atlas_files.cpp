@@ -63,7 +63,8 @@ void append_headings(const ComparisonRow& quantity, Row& headings) {
     std::string heading(k_measures[measure]);
     std::ranges::replace(heading, '_', ' ');
     if (k_cells[measure].is_percent) heading += " %";
-    headings.push_back(quantity.quantity.empty() ? heading : fmt::format("{}: {}", quantity.quantity, heading));
+    const bool is_of_quantity = !quantity.quantity.empty() && k_measures[measure] != "up_to";
+    headings.push_back(is_of_quantity ? fmt::format("{}: {}", quantity.quantity, heading) : heading);
   }
 }
 
