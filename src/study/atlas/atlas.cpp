@@ -389,8 +389,10 @@ class FigureMaker {
   /// Below this magnitude of the reference the loading is not measured.
   [[nodiscard]] double least_of(const ComparisonSpec& row, std::size_t curve) {
     if (!row.least) return 0.0;
-    const Table* run = row.curve.scenarios.empty() ? nullptr : &run_of(row.curve.scenarios.at(curve)).history;
-    const Values values = evaluated(*row.least, Scope(run), faults_);
+    if (row.curve.scenarios.size() <= curve) return 0.0;
+    const CheckedScenario& scenario = row.curve.scenarios[curve];
+    const Scope scope(&run_of(scenario).history, derived_parameters(scenario));
+    const Values values = evaluated(*row.least, scope, faults_);
     return values.empty() ? 0.0 : values.front();
   }
 
