@@ -600,12 +600,7 @@ def write_distance_of_cel(rows):
 
 def write_laws(program, rows):
     """One row for each law of walls: cost, distance from finite elements by strain, domain."""
-    times = {}
-    for row in rows_of(ROOT / "plots" / "bench.csv"):
-        if row["integrator"] == "auto" and float(row["rtol"]) == 1e-8:
-            for law in MODEL_WORDS:
-                if re.match(rf"{law}(-|$)", row["scene"]):
-                    times.setdefault(law, []).append(float(row["fastest[s]"]))
+    times = {row["scene"]: microseconds(row["fastest[s]"]) for row in rows_of(ROOT / "plots" / "laws-cost.csv")}
     strains = {}
     for row in rows:
         group, _, scene = row["table"].partition(": ")
@@ -616,8 +611,6 @@ def write_laws(program, rows):
     columns = list(dict.fromkeys(column for found in strains.values() for column in found))
     lines = []
     for law in MODEL_WORDS:
-        times_of_law = [microseconds(time) for time in sorted(times.get(law, []))]
-        cost = " to ".join(dict.fromkeys([times_of_law[0], times_of_law[-1]])) if times_of_law else "-"
         domain = sections_of(run(program, "models", law))["validity"][0].strip()
         for (name, material), found in strains.items():
             if name != law:
@@ -629,11 +622,11 @@ def write_laws(program, rows):
                 back = [float(row["unloading"]) for row in measured if row["unloading"] != "nan"]
                 if back:
                     cells[-1] += f"; back {100 * max(back):.1f}"
-            lines.append([f"`{law}`", material, *cells, cost, domain])
-    missing = set(MODEL_WORDS) - {law for law, _ in strains}
+            lines.append([f"`{law}`", material, *cells, times.get(law), domain])
+    missing = set(MODEL_WORDS) - {law for law, _ in strains} | set(MODEL_WORDS) ^ set(times)
     if missing:
-        fail(f"plots/laws-fe.csv has no tables 'By strain' of {', '.join(sorted(missing))}")
-    write("laws.md", table(["law", "material", *columns, "time of a run", "domain"], lines))
+        fail(f"plots/laws-fe.csv or plots/laws-cost.csv does not have {', '.join(sorted(missing))}")
+    write("laws.md", table(["law", "material", *columns, "time", "domain"], lines))
 
 
 def write_measurements(program):
