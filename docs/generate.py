@@ -58,7 +58,7 @@ DIMENSIONS = {
 }
 
 # Words of plots/laws-fe.csv that are models.
-MODEL_WORDS = ("hertz", "mdr", "semimech", "hardening", "nonlocal", "compressible")
+MODEL_WORDS = ("hertz", "mdr", "cel", "similarity", "semimech", "hardening", "nonlocal", "compressible")
 
 # Keys in the order in which a scenario file is written.
 ORDER = ("title", "model", "particle", "material", "loading", "output", "numerics", "configuration", "centre", "angle",
@@ -78,6 +78,8 @@ COLUMNS = {
     "centre_x": "position of the centre, x",
     "centre_y": "position of the centre, y",
     "centre_z": "position of the centre, z",
+    "core_strain": "accumulated equivalent strain of the core",
+    "coverage": "how much of the surface the dents take up; contacts meet at about 1.7",
     "margin": "distance to the limit of applicability; zero where the run ends",
     "packing_fraction": "volume of the particles over that of the packing",
     "strain": "strain of the packing",
@@ -572,11 +574,70 @@ def microseconds(seconds):
     return f"{micro:.3g}{SPACE}µs" if micro < 999.5 else f"{micro / 1000:.3g}{SPACE}ms"
 
 
-def write_measurements():
+def tenths(value):
+    """A share in per cent; a hyphen for what was not measured."""
+    return "-" if value == "nan" else f"{100 * float(value):.1f}"
+
+
+def write_distance_of_cel(rows):
+    """Largest and root mean square error of every case that model cel was held against."""
+    quantities = ("axial force", "lateral force", "axial area", "lateral area")
+    cases = {}
+    for row in rows:
+        group, _, scene = row["table"].partition(": ")
+        case, _, law = row["case"].rpartition(": ")
+        if group in ("Fitted", "Validation", "Held out") and law == "cel":
+            # Six walls that move alike have one force.
+            quantity = row["quantity"] if " " in row["quantity"] else f"axial {row['quantity']}"
+            cases.setdefault((group, scene, case), {})[quantity] = row
+    lines = []
+    for (group, scene, case), found in cases.items():
+        both = [f"{tenths(found[q]['largest'])} / {tenths(found[q]['rms'])}" if q in found else "" for q in quantities]
+        back = [tenths(found[q]["unloading"]) if q in found else "" for q in quantities[:2]]
+        lines.append([group.lower(), f"{scene}, {case}", *both, *back])
+    write("cel-distance.md", table(["set", "case", *quantities, "unloading, axial", "unloading, lateral"], lines))
+
+
+def write_laws(program, rows):
+    """One row for each law of walls: cost, distance from finite elements by strain, domain."""
+    times = {row["scene"]: microseconds(row["fastest[s]"]) for row in rows_of(ROOT / "plots" / "laws-cost.csv")}
+    strains = {}
+    for row in rows:
+        group, _, scene = row["table"].partition(": ")
+        if group == "By strain":
+            material, _, law = row["case"].rpartition(": ")
+            column = f"{scene}, {row['quantity']}" if row["quantity"] else scene
+            strains.setdefault((law, material), {}).setdefault(column, []).append(row)
+    columns = list(dict.fromkeys(column for found in strains.values() for column in found))
+    lines = []
+    for law in MODEL_WORDS:
+        domain = sections_of(run(program, "models", law))["validity"][0].strip()
+        for (name, material), found in strains.items():
+            if name != law:
+                continue
+            cells = []
+            for column in columns:
+                measured = found.get(column, [])
+                cells.append(" / ".join(tenths(row["largest"]) for row in measured) or "-")
+                back = [float(row["unloading"]) for row in measured if row["unloading"] != "nan"]
+                if back:
+                    cells[-1] += f"; back {100 * max(back):.1f}"
+            lines.append([f"`{law}`", material, *cells, times.get(law), domain])
+    missing = set(MODEL_WORDS) - {law for law, _ in strains} | set(MODEL_WORDS) ^ set(times)
+    if missing:
+        fail(f"plots/laws-fe.csv or plots/laws-cost.csv does not have {', '.join(sorted(missing))}")
+    write("laws.md", table(["law", "material", *columns, "time", "domain"], lines))
+
+
+def write_measurements(program):
     """Tables from the committed measurements: distance from finite elements, time and error of each scene."""
+    rows = rows_of(ROOT / "plots" / "laws-fe.csv")
+    write_distance_of_cel(rows)
+    write_laws(program, rows)
     last = {}
-    for row in rows_of(ROOT / "plots" / "laws-fe.csv"):
-        last[row["table"], row["case"]] = row  # rows of a case go on to larger displacements
+    for row in rows:
+        if row["peak_error"] != "nan":
+            last[row["table"], row["case"]] = row  # rows of a case go on to larger displacements
     by_scene = {}
     for (scene, case), row in last.items():
         material, _, law = case.rpartition(": ")
@@ -814,7 +875,7 @@ def main():
         draw_wedge(program, pathlib.Path(scratch))
     models = write_models(program, schema, ready)
     write_language(schema)
-    write_measurements()
+    write_measurements(program)
     write_tables()
     commands = write_commands(program)
     runs = sum(len(entries) for entries in ready.values())

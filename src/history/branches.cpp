@@ -14,6 +14,7 @@ constexpr double k_slope_share = 0.05;         ///< of the force at the reversal
 constexpr double k_same_reversal = 0.01;       ///< share of x within which two reversals are one
 constexpr double k_worth_a_line = 1.0 + 1e-3;  ///< loading beyond the last reversal, relative to its x
 constexpr double k_round_off = 1e-12;          ///< share of the force at the reversal that is none
+constexpr double k_same_end = 1e-6;            ///< share of x within which two ends are one
 
 [[nodiscard]] XyCurve up_to(const XyCurve& loading, double x) {
   const auto end = std::ranges::upper_bound(loading.x, x);
@@ -21,11 +22,43 @@ constexpr double k_round_off = 1e-12;          ///< share of the force at the re
   return {{loading.x.begin(), end}, {loading.y.begin(), loading.y.begin() + count}};
 }
 
-[[nodiscard]] const XyCurve* unloading_from(const std::vector<XyCurve>& unloadings, double reversal) {
-  const auto found = std::ranges::find_if(unloadings, [&](const XyCurve& unloading) {
-    return std::abs(unloading.x.front() - reversal) <= k_same_reversal * std::abs(reversal);
+[[nodiscard]] const Excursion* excursion_from(const std::vector<Excursion>& excursions, double reversal) {
+  const auto found = std::ranges::find_if(excursions, [&](const Excursion& excursion) {
+    return std::abs(excursion.back.x.front() - reversal) <= k_same_reversal * std::abs(reversal);
   });
-  return found == unloadings.end() ? nullptr : &*found;
+  return found == excursions.end() ? nullptr : &*found;
+}
+
+/// y of a piece in which x only falls or only rises, by linear interpolation; nan beyond its ends.
+[[nodiscard]] double value_at(const XyCurve& piece, double x) {
+  if (piece.x.empty()) return k_nan;
+  const double direction = piece.x.back() < piece.x.front() ? -1.0 : 1.0;
+  const double reach = k_same_end * std::max(std::abs(piece.x.front()), std::abs(piece.x.back()));
+  const auto along = [direction](double value) { return direction * value; };
+  const auto next = std::ranges::lower_bound(piece.x, along(x), {}, along);
+  const auto row = static_cast<std::size_t>(next - piece.x.begin());
+  if (next == piece.x.end()) return std::abs(x - piece.x.back()) <= reach ? piece.y.back() : k_nan;
+  if (row == 0) return std::abs(x - piece.x.front()) <= reach ? piece.y.front() : k_nan;
+  return std::lerp(piece.y[row - 1], piece.y[row], (x - piece.x[row - 1]) / (piece.x[row] - piece.x[row - 1]));
+}
+
+/// Largest distance of a piece from that of the curve at the rows of the reference after its first; nan where they
+/// have none in common.
+[[nodiscard]] double largest_distance(const XyCurve& reference, const XyCurve& curve) {
+  double largest = k_nan;
+  for (std::size_t k = 1; k < reference.x.size(); ++k) {
+    largest = std::fmax(largest, std::abs(value_at(curve, reference.x[k]) - reference.y[k]));
+  }
+  return largest;
+}
+
+/// Largest |y| of the rows up to a place of first loading.
+[[nodiscard]] double largest_before(const XyCurve& curve, double x) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < curve.x.size() && !(curve.x[k] > x); ++k) {
+    largest = std::fmax(largest, std::abs(curve.y[k]));
+  }
+  return largest;
 }
 
 void compare_loading(const XyCurve& reference, const XyCurve& curve, BranchComparison& line) {
@@ -50,28 +83,44 @@ XyCurve first_loading(const XyCurve& curve) {
   return loading;
 }
 
-std::vector<XyCurve> unloadings(const XyCurve& curve) {
-  std::vector<XyCurve> result;
+std::vector<Excursion> excursions(const XyCurve& curve) {
+  enum class Way { load, back, forth, none };  // none: after a reload that was broken off
+  std::vector<Excursion> result;
   double largest = -std::numeric_limits<double>::infinity();
   std::size_t turn = 0;  // the last row at the largest x
-  bool is_back = false;  // on the way back from there
+  Way way = Way::load;
   for (std::size_t k = 0; k < curve.x.size(); ++k) {
     const double x = curve.x[k];
     if (std::isnan(x)) continue;
+    const auto append = [&](XyCurve& piece) {
+      piece.x.push_back(x);
+      piece.y.push_back(curve.y[k]);
+    };
+    if (way == Way::back && x > result.back().back.x.back()) {
+      XyCurve& back = result.back().back;
+      result.back().forth = {{back.x.back()}, {back.y.back()}};
+      way = Way::forth;
+    } else if (way == Way::forth && x < result.back().forth.x.back()) {
+      way = Way::none;
+    }
+    if (way == Way::forth) append(result.back().forth);
     if (x >= largest) {
       largest = x;
       turn = k;
-      is_back = false;
+      way = Way::load;
     } else if (turn + 1 == k) {
-      is_back = true;
-      result.push_back({{curve.x[turn], x}, {curve.y[turn], curve.y[k]}});
-    } else if (is_back) {
-      is_back = x <= result.back().x.back();
-      if (!is_back) continue;
-      result.back().x.push_back(x);
-      result.back().y.push_back(curve.y[k]);
+      way = Way::back;
+      result.push_back({.back = {{curve.x[turn], x}, {curve.y[turn], curve.y[k]}}, .forth = {}});
+    } else if (way == Way::back) {
+      append(result.back().back);
     }
   }
+  return result;
+}
+
+std::vector<XyCurve> unloadings(const XyCurve& curve) {
+  std::vector<XyCurve> result;
+  for (Excursion& excursion : excursions(curve)) result.push_back(std::move(excursion.back));
   return result;
 }
 
@@ -103,7 +152,7 @@ double residual_displacement(const XyCurve& unloading) {
 std::vector<BranchComparison> compare_branches(const XyCurve& reference, const XyCurve& curve) {
   const XyCurve loading = first_loading(reference);
   const XyCurve own_loading = first_loading(curve);
-  const auto own_unloadings = unloadings(curve);
+  const auto own_excursions = excursions(curve);
   std::vector<BranchComparison> lines;
   for (const XyCurve& unloading : unloadings(reference)) {
     const double reversal = unloading.x.front();
@@ -113,9 +162,9 @@ std::vector<BranchComparison> compare_branches(const XyCurve& reference, const X
                           .residual = k_nan,
                           .reference_residual = residual_displacement(unloading)};
     compare_loading(loading, own_loading, line);
-    if (const XyCurve* own = unloading_from(own_unloadings, reversal)) {
-      line.slope = unloading_slope(*own);
-      line.residual = residual_displacement(*own);
+    if (const Excursion* own = excursion_from(own_excursions, reversal)) {
+      line.slope = unloading_slope(own->back);
+      line.residual = residual_displacement(own->back);
     }
     lines.push_back(line);
   }
@@ -128,6 +177,50 @@ std::vector<BranchComparison> compare_branches(const XyCurve& reference, const X
                      .residual = k_nan,
                      .reference_residual = k_nan});
     compare_loading(loading, own_loading, lines.back());
+  }
+  return lines;
+}
+
+std::vector<BranchComparison> compare_bands(const XyCurve& reference, const XyCurve& curve,
+                                            std::span<const double> bands, double least) {
+  const XyCurve loading = first_loading(reference);
+  const XyCurve own_loading = first_loading(curve);
+  const auto ways = excursions(reference);
+  const auto own_ways = excursions(curve);
+  std::vector<BranchComparison> lines;
+  for (std::size_t band = 1; band < bands.size(); ++band) {
+    const double from = bands[band - 1];
+    const double to = bands[band];
+    BranchComparison line{.reversal = to,
+                          .area_error = k_nan,
+                          .peak_error = k_nan,
+                          .slope = k_nan,
+                          .reference_slope = k_nan,
+                          .residual = k_nan,
+                          .reference_residual = k_nan};
+    double rows = 0.0;
+    double compared = 0.0;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < loading.x.size(); ++k) {
+      if (!(loading.x[k] >= from && loading.x[k] <= to && std::abs(loading.y[k]) > least)) continue;
+      ++rows;
+      const double distance = value_at(own_loading, loading.x[k]) / loading.y[k] - 1.0;
+      if (!std::isfinite(distance)) continue;
+      ++compared;
+      sum += distance * distance;
+      line.largest = std::fmax(line.largest, std::abs(distance));
+    }
+    line.coverage = rows > 0.0 ? compared / rows : k_nan;
+    if (compared > 0.0) line.rms = std::sqrt(sum / compared);
+    for (const Excursion& way : ways) {
+      const double reversal = way.back.x.front();
+      if (!(reversal > from && reversal <= to)) continue;
+      const Excursion* own = excursion_from(own_ways, reversal);
+      if (own == nullptr) continue;
+      const double distance = std::fmax(largest_distance(way.back, own->back), largest_distance(way.forth, own->forth));
+      line.unloading = std::fmax(line.unloading, distance / largest_before(reference, reversal));
+    }
+    lines.push_back(line);
   }
   return lines;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "history/compare.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin {
 
@@ -23,6 +24,13 @@ struct XyCurve {
 /// reload that is broken off) is none.
 [[nodiscard]] std::vector<XyCurve> unloadings(const XyCurve& curve);
 
+/// A way back from a largest x so far, and the way forth from its end.
+struct Excursion {
+  XyCurve back;   ///< from the row that turns; x falls
+  XyCurve forth;  ///< from the last row of `back` to the row that reaches the largest x again, or to where x falls anew
+};
+[[nodiscard]] std::vector<Excursion> excursions(const XyCurve& curve);
+
 /// Mean slope of the first part of an unloading, in which y falls by a twentieth; of all of it where y does not fall so
 /// far.
 [[nodiscard]] double unloading_slope(const XyCurve& unloading);
@@ -31,9 +39,10 @@ struct XyCurve {
 /// is taken to vanish as that of an elastic contact does, with the power 3/2 of the distance.
 [[nodiscard]] double residual_displacement(const XyCurve& unloading);
 
-/// One line of a comparison: first loading up to a reversal, and the unloading from there.
+/// One line of a comparison: first loading up to a reversal and the unloading from there; or what happens in a band of
+/// x. A measure that does not belong to the line is nan.
 struct BranchComparison {
-  double reversal = 0.0;    ///< x at which the reference turns back, or at which its loading ends
+  double reversal = 0.0;    ///< x at which the reference turns back, or at which its loading ends; end of a band
   double area_error = 0.0;  ///< of the loading up to there, see CurveDifference
   double peak_error = 0.0;
   double coverage = 1.0;
@@ -41,6 +50,10 @@ struct BranchComparison {
   double reference_slope = 0.0;
   double residual = 0.0;  ///< x where the force vanishes, or nan
   double reference_residual = 0.0;
+  double largest = k_nan;  ///< of |curve - reference|/|reference| on the first loading in the band
+  double rms = k_nan;      ///< root mean square of the same over the rows of the reference
+  double unloading =
+      k_nan;  ///< largest |curve - reference| of ways back and forth, over the largest |reference| before
 };
 
 /// Compares a curve with a reference: at each reversal of the reference, and at the end of its loading if it goes on
@@ -48,5 +61,13 @@ struct BranchComparison {
 /// place; without one slope and residual are nan.
 /// @throws std::runtime_error when the curves have no common range
 [[nodiscard]] std::vector<BranchComparison> compare_branches(const XyCurve& reference, const XyCurve& curve);
+
+/// Compares a curve with a reference in bands of x, at the rows of the reference. The loading is the first one of both
+/// curves. A way back belongs to the band in which it starts; it is compared with that of the curve that turns back
+/// within 1 % of the same place. The coverage is the share of the loading rows that the curve reaches.
+/// @param bands  ends of the bands, ascending: two at least
+/// @param least  loading rows with |reference| up to this are left out
+[[nodiscard]] std::vector<BranchComparison> compare_bands(const XyCurve& reference, const XyCurve& curve,
+                                                          std::span<const double> bands, double least);
 
 }  // namespace monograin

@@ -90,6 +90,59 @@ TEST(Branches, ACurveThatDoesNotTurnBackThereHasNoUnloading) {
   EXPECT_NEAR(lines[0].peak_error, 0.0, 1e-12);
 }
 
+TEST(Branches, ExcursionsComeBackUpToTheLargestX) {
+  const auto found = excursions({{0, 2, 1, 1.5, 2, 3, 2.5, 2, 2.2, 2.1, 4}, {0, 8, 4, 5, 8, 9, 6, 3, 4, 4, 9}});
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].back.x, (Values{2, 1}));
+  EXPECT_EQ(found[0].forth.x, (Values{1, 1.5, 2}));
+  EXPECT_EQ(found[0].forth.y, (Values{4, 5, 8}));
+  EXPECT_EQ(found[1].back.x, (Values{3, 2.5, 2}));
+  EXPECT_EQ(found[1].forth.x, (Values{2, 2.2})) << "a reload that is broken off ends there";
+}
+
+TEST(Branches, BandsMeasureAUniformErrorAsItIs) {
+  const Values bands{0.05, 0.3, 0.5};
+  const auto lines = compare_bands(cycled(1.0, 0.6, {0.2, 0.4}, 0.5), cycled(1.1, 0.6, {0.2, 0.4}, 0.5), bands, 0.0);
+  ASSERT_EQ(lines.size(), 2U);
+  for (const BranchComparison& line : lines) {
+    EXPECT_NEAR(line.largest, 0.1, 1e-12) << line.reversal;
+    EXPECT_NEAR(line.rms, 0.1, 1e-12) << line.reversal;
+    EXPECT_NEAR(line.unloading, 0.1, 1e-9) << "just below the reversal, where the force is largest";
+    EXPECT_DOUBLE_EQ(line.coverage, 1.0);
+    EXPECT_TRUE(std::isnan(line.slope)) << "no measure of a band";
+  }
+  EXPECT_DOUBLE_EQ(lines[0].reversal, 0.3);
+  EXPECT_DOUBLE_EQ(lines[1].reversal, 0.5);
+}
+
+TEST(Branches, BandsMeasureTheRowsOfTheReferenceThatAreLargeEnough) {
+  const XyCurve reference{{1, 2, 3, 4, 5}, {1, 2, 4, 8, 16}};
+  const XyCurve curve{{1, 2, 3, 4}, {5, 3, 5, 6}};  // off by 400, 50, 25 and -25 %; ends before the last row
+  const auto line_from = [&](double from, double least) {
+    return compare_bands(reference, curve, Values{from, 5.0}, least).front();
+  };
+  EXPECT_DOUBLE_EQ(line_from(1.0, 0.0).largest, 4.0);
+  EXPECT_DOUBLE_EQ(line_from(2.0, 0.0).largest, 0.5) << "a band has its first row";
+  const BranchComparison line = line_from(1.0, 2.0);
+  EXPECT_DOUBLE_EQ(line.largest, 0.25) << "rows with y up to the least are left out";
+  EXPECT_DOUBLE_EQ(line.rms, 0.25);
+  EXPECT_DOUBLE_EQ(line.coverage, 2.0 / 3.0);
+  EXPECT_TRUE(std::isnan(line.unloading));
+  EXPECT_TRUE(std::isnan(line_from(5.0, 0.0).largest)) << "the curve does not come there";
+  EXPECT_DOUBLE_EQ(line_from(5.0, 0.0).coverage, 0.0);
+}
+
+TEST(Branches, BandsHoldWaysBackAndForthAgainstThoseFromTheSamePlace) {
+  const XyCurve reference{{0, 1, 0.5, 1, 2}, {0, 10, 5, 10, 20}};
+  const auto unloading = [&](const XyCurve& curve) {
+    return compare_bands(reference, curve, Values{0.5, 3.0}, 0.0).front().unloading;
+  };
+  EXPECT_DOUBLE_EQ(unloading({{0, 1, 0.4, 1, 2}, {0, 10, 4, 10, 20}}), 0.0) << "interpolated on both ways";
+  EXPECT_DOUBLE_EQ(unloading({{0, 1, 0.5, 1, 2}, {0, 10, 7, 10, 20}}), 0.2) << "over the 10 before";
+  EXPECT_DOUBLE_EQ(unloading({{0, 1, 0.5, 1, 2}, {0, 10, 5, 4, 20}}), 0.6) << "the way forth counts as well";
+  EXPECT_TRUE(std::isnan(unloading({{0, 1.5, 0.5, 1.5, 2}, {0, 15, 5, 15, 20}}))) << "turns back elsewhere";
+}
+
 TEST(Branches, CurvesWithoutACommonRangeAreAFault) {
   EXPECT_THROW(static_cast<void>(compare_branches({{0, 1}, {0, 1}}, {{2, 3}, {0, 1}})), std::runtime_error);
 }

@@ -363,18 +363,37 @@ class FigureMaker {
   }
 
   [[nodiscard]] ComparisonTable comparison_table(const TableSpec& spec) {
-    ComparisonTable table{.title = spec.title, .rows = {}};
+    ComparisonTable table{.title = spec.title, .has_bands = !spec.bands.empty(), .rows = {}};
     for (const ComparisonSpec& row : spec.rows) {
       const XyCurve reference = points_of(row.points);
       const std::vector<XyCurve> curves = curves_of(row.curve);
-      if (reference.x.empty() || curves.front().x.empty()) continue;
-      try {
-        table.rows.push_back({row.label, compare_branches(reference, curves.front())});
-      } catch (const std::runtime_error& error) {
-        faults_.add(row.curve.y.where, fmt::format("{}: {}", row.label, error.what()));
+      for (std::size_t k = 0; k < curves.size(); ++k) {
+        if (reference.x.empty() || curves[k].x.empty()) continue;
+        const std::string label = row.curve.variants.empty() ? row.label : row.label + ": " + row.curve.variants[k];
+        try {
+          auto lines = table.has_bands ? compare_bands(reference, curves[k], spec.bands, least_of(row, k))
+                                       : compare_branches(reference, curves[k]);
+          table.rows.push_back({label, std::move(lines), row.quantity, row.measures});
+        } catch (const std::runtime_error& error) {
+          faults_.add(row.curve.y.where, fmt::format("{}: {}", label, error.what()));
+        }
       }
     }
+    // One line of the table has all quantities of a label.
+    std::map<std::string, std::size_t> order;
+    for (const ComparisonRow& row : table.rows) order.try_emplace(row.label, order.size());
+    std::ranges::stable_sort(table.rows, {}, [&](const ComparisonRow& row) { return order.at(row.label); });
     return table;
+  }
+
+  /// Below this magnitude of the reference the loading is not measured.
+  [[nodiscard]] double least_of(const ComparisonSpec& row, std::size_t curve) {
+    if (!row.least) return 0.0;
+    if (row.curve.scenarios.size() <= curve) return 0.0;
+    const CheckedScenario& scenario = row.curve.scenarios[curve];
+    const Scope scope(&run_of(scenario).history, derived_parameters(scenario));
+    const Values values = evaluated(*row.least, scope, faults_);
+    return values.empty() ? 0.0 : values.front();
   }
 
   [[nodiscard]] ValueTable value_table(const ValueTableSpec& spec) {

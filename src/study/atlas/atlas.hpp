@@ -17,10 +17,13 @@ namespace monograin {
 struct ComparisonRow {
   std::string label;
   std::vector<BranchComparison> lines;
+  std::string quantity{};               ///< what was compared; empty where the table names none
+  std::vector<std::size_t> measures{};  ///< that the table shows, places among definition::k_measures
 };
 
 struct ComparisonTable {
   std::string title;
+  bool has_bands = false;  ///< lines are bands of x, not loadings up to reversals
   std::vector<ComparisonRow> rows;
 };
 

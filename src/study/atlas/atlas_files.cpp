@@ -3,55 +3,96 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "figure/markdown.hpp"
 #include "figure/page.hpp"
 #include "study/atlas/atlas.hpp"
+#include "study/atlas/definition_language.hpp"
 #include "system/undefined.hpp"
 
 namespace monograin {
 namespace {
 
 namespace fs = std::filesystem;
+using definition::k_measures;
 
-struct Cell {
-  const char* heading;
+struct Measure {
   double (*value)(const BranchComparison& line);
-  int digits;  ///< in Markdown; CSV has all
+  int digits = 3;           ///< in Markdown; CSV has all
+  bool is_percent = false;  ///< in Markdown, with one decimal
 };
 
-/// What a line of a table says after its label.
-constexpr Cell k_cells[] = {
-    {"reversal", [](const BranchComparison& line) { return line.reversal; }, 3},
-    {"area_error", [](const BranchComparison& line) { return line.area_error; }, 3},
-    {"peak_error", [](const BranchComparison& line) { return line.peak_error; }, 3},
-    {"slope", [](const BranchComparison& line) { return line.slope; }, 3},
-    {"reference_slope", [](const BranchComparison& line) { return line.reference_slope; }, 3},
-    {"slope_ratio", [](const BranchComparison& line) { return line.slope / line.reference_slope; }, 3},
-    {"residual", [](const BranchComparison& line) { return line.residual; }, 4},
-    {"reference_residual", [](const BranchComparison& line) { return line.reference_residual; }, 4},
-    {"residual_ratio", [](const BranchComparison& line) { return line.residual / line.reference_residual; }, 3},
-    {"coverage", [](const BranchComparison& line) { return line.coverage; }, 3},
-};
+/// The measures in the order of their names.
+constexpr std::array<Measure, k_measures.size()> k_cells{{
+    {[](const BranchComparison& line) { return line.reversal; }},
+    {[](const BranchComparison& line) { return line.area_error; }},
+    {[](const BranchComparison& line) { return line.peak_error; }},
+    {[](const BranchComparison& line) { return line.slope; }},
+    {[](const BranchComparison& line) { return line.reference_slope; }},
+    {[](const BranchComparison& line) { return line.slope / line.reference_slope; }},
+    {[](const BranchComparison& line) { return line.residual; }, 4},
+    {[](const BranchComparison& line) { return line.reference_residual; }, 4},
+    {[](const BranchComparison& line) { return line.residual / line.reference_residual; }},
+    {[](const BranchComparison& line) { return line.coverage; }},
+    {[](const BranchComparison& line) { return line.reversal; }},
+    {[](const BranchComparison& line) { return line.largest; }, 3, true},
+    {[](const BranchComparison& line) { return line.rms; }, 3, true},
+    {[](const BranchComparison& line) { return line.unloading; }, 3, true},
+}};
 
 [[nodiscard]] std::string shown_number(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : std::string("-");
 }
 
+[[nodiscard]] std::string measured(const Measure& measure, const BranchComparison& line) {
+  const double value = measure.value(line);
+  if (!measure.is_percent || !std::isfinite(value)) return shown_number(value, measure.digits);
+  return fmt::format("{:.1f}", 100.0 * value);
+}
+
 using Row = MarkdownRow;
 
+/// Headings of a quantity's measures.
+void append_headings(const ComparisonRow& quantity, Row& headings) {
+  for (const std::size_t measure : quantity.measures) {
+    std::string heading(k_measures[measure]);
+    std::ranges::replace(heading, '_', ' ');
+    if (k_cells[measure].is_percent) heading += " %";
+    const bool is_of_quantity = !quantity.quantity.empty() && k_measures[measure] != "up_to";
+    headings.push_back(is_of_quantity ? fmt::format("{}: {}", quantity.quantity, heading) : heading);
+  }
+}
+
+/// Rows of one label, which are its quantities, lie side by side.
 [[nodiscard]] std::vector<Row> rows_of(const ComparisonTable& table) {
   std::vector<Row> rows{{"case"}};
-  for (const Cell& cell : k_cells) rows.front().emplace_back(cell.heading);
-  std::ranges::for_each(rows.front(), [](std::string& heading) { std::ranges::replace(heading, '_', ' '); });
+  std::vector<const ComparisonRow*> quantities;  // all that the table has, in their order
   for (const ComparisonRow& row : table.rows) {
-    for (const BranchComparison& line : row.lines) {
-      rows.push_back({row.label});
-      for (const Cell& cell : k_cells) rows.back().push_back(shown_number(cell.value(line), cell.digits));
+    const auto has_name = [&](const ComparisonRow* known) { return known->quantity == row.quantity; };
+    if (std::ranges::none_of(quantities, has_name)) quantities.push_back(&row);
+  }
+  for (const ComparisonRow* quantity : quantities) append_headings(*quantity, rows.front());
+  for (auto first = table.rows.begin(); first != table.rows.end();) {
+    const auto last = quantities.size() == 1 ? first + 1 : std::find_if(first, table.rows.end(), [&](const auto& row) {
+      return row.label != first->label;
+    });
+    for (std::size_t line = 0; line < first->lines.size(); ++line) {
+      rows.push_back({first->label});
+      for (const ComparisonRow* quantity : quantities) {
+        const auto found =
+            std::find_if(first, last, [&](const auto& row) { return row.quantity == quantity->quantity; });
+        for (const std::size_t measure : quantity->measures) {
+          rows.back().push_back(
+              found == last || line >= found->lines.size() ? "-" : measured(k_cells[measure], found->lines[line]));
+        }
+      }
     }
+    first = last;
   }
   return rows;
 }
@@ -123,6 +164,11 @@ constexpr const char* k_about_comparisons =
     "max |model - reference|/reference at the reversal, and the share of the loading that the model covers.\n"
     "Unloading from there: mean slope while the first 5 % of y go, residual x where y vanishes, and both over those\n"
     "of the reference. A hyphen: y does not vanish, or the curve does not turn back there.\n";
+constexpr const char* k_about_bands =
+    "Where a table has columns in percent: largest and root mean square of |model - reference|/reference over the\n"
+    "rows of the reference's first loading within the band of x; unloading: largest |model - reference| on ways back\n"
+    "and forth that start in the band, over the largest reference before; coverage: share of the loading rows "
+    "reached.\n";
 constexpr const char* k_about_values =
     "Values as the laws give them; where the source prints one, whether it is the same rounded to as many digits.\n"
     "A hyphen: there is none.\n";
@@ -132,11 +178,25 @@ constexpr const char* k_about_references = "Values as the laws give them, beside
 struct Words {
   Column titles{.name = "table", .unit = {}, .labels = {}};
   Column labels{.name = "case", .unit = {}, .labels = {}};
+  Column quantities{.name = "quantity", .unit = {}, .labels = {}};
 
-  [[nodiscard]] std::vector<double> last() const {
-    return {static_cast<double>(titles.labels.size() - 1), static_cast<double>(labels.labels.size() - 1)};
+  /// @param has_quantities  the third column is there
+  [[nodiscard]] std::vector<double> last(bool has_quantities = false) const {
+    const auto place = [](const Column& column) { return static_cast<double>(column.labels.size()) - 1.0; };
+    std::vector<double> places{place(titles), place(labels)};
+    if (has_quantities) places.push_back(place(quantities));
+    return places;
   }
 };
+
+/// Measures that some table of comparisons of a figure shows, in the order of k_measures.
+[[nodiscard]] std::vector<std::size_t> measures_of(const AtlasFigure& figure) {
+  std::set<std::size_t> measures;
+  for (const ComparisonTable& table : figure.tables) {
+    for (const ComparisonRow& row : table.rows) measures.insert(row.measures.begin(), row.measures.end());
+  }
+  return {measures.begin(), measures.end()};
+}
 
 }  // namespace
 
@@ -146,7 +206,8 @@ std::string tables_text(const AtlasFigure& figure) {
   const char* about = !figure.tables.empty() ? k_about_comparisons
                       : is_referenced        ? k_about_references
                                              : k_about_values;
-  std::string text = fmt::format("# {}\n\n{}", figure.title, about);
+  const bool has_bands = std::ranges::any_of(figure.tables, &ComparisonTable::has_bands);
+  std::string text = fmt::format("# {}\n\n{}{}", figure.title, about, has_bands ? k_about_bands : "");
   const auto append = [&text](const auto& table) {
     text += fmt::format("\n## {}\n\n", table.title);
     append_markdown(text, rows_of(table));
@@ -160,13 +221,18 @@ Table tables_csv(const AtlasFigure& figure) {
   Words words;
   const bool is_referenced = std::ranges::any_of(figure.value_tables, has_references);
   std::vector<std::vector<double>> rows;
+  const std::vector<std::size_t> measures = measures_of(figure);
+  const bool has_quantities = std::ranges::any_of(figure.tables, [](const ComparisonTable& table) {
+    return std::ranges::any_of(table.rows, [](const ComparisonRow& row) { return !row.quantity.empty(); });
+  });
   for (const ComparisonTable& table : figure.tables) {
     words.titles.labels.push_back(table.title);
     for (const ComparisonRow& row : table.rows) {
       words.labels.labels.push_back(row.label);
+      words.quantities.labels.push_back(row.quantity);
       for (const BranchComparison& line : row.lines) {
-        rows.push_back(words.last());
-        for (const Cell& cell : k_cells) rows.back().push_back(cell.value(line));
+        rows.push_back(words.last(has_quantities));
+        for (const std::size_t measure : measures) rows.back().push_back(k_cells[measure].value(line));
       }
     }
   }
@@ -180,12 +246,13 @@ Table tables_csv(const AtlasFigure& figure) {
     }
   }
   std::vector<Column> columns{std::move(words.titles), std::move(words.labels)};
+  if (has_quantities) columns.push_back(std::move(words.quantities));
   const auto add = [&columns](const char* heading) { columns.push_back({.name = heading, .unit = {}, .labels = {}}); };
   if (figure.tables.empty()) {
     for (const char* heading : {"computed", "printed"}) add(heading);
     if (is_referenced) add("reference");
   } else {
-    for (const Cell& cell : k_cells) add(cell.heading);
+    for (const std::size_t measure : measures) add(k_measures[measure].data());
   }
   Table csv(std::move(columns));
   csv.header = {{"title", figure.title}, {"source", figure.source}};

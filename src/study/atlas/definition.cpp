@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -320,6 +321,7 @@ class DefinitionReader {
       add_curve(sections, {{fmt::format("{}={}", key, values[k]), section.value_place("values", k)}}, swept, spec);
     }
     if (!legends.empty()) spec.legends = std::move(legends);
+    spec.variants = section.has("legends") ? section.texts("legends") : values;
   }
 
   /// The scenarios of one curve: one, or one for each value that is swept.
@@ -395,12 +397,17 @@ class DefinitionReader {
     return read_scenario(file, overrides);
   }
 
-  [[nodiscard]] PointsSpec points(const Section::Origin& table) {
+  /// @param y  of points that have none of their own
+  [[nodiscard]] PointsSpec points(const Section::Origin& table, const std::optional<PlacedExpression>& y = {}) {
     static const Keys keys = points_keys();
     const Section section(reading_, table, keys);
+    if (!y && !section.has_or_misspells("y")) {
+      faults_.add(section.place(), "there is no 'y' for these points; expected y = \"force\"");
+    }
+    auto own_y = formula(section, "y");
     PointsSpec spec{.table = {},
                     .x = formula(section, "x").value_or(PlacedExpression{}),
-                    .y = formula(section, "y").value_or(PlacedExpression{}),
+                    .y = own_y ? *own_y : y.value_or(PlacedExpression{}),
                     .rows = static_cast<RowChoice>(place_of_word(k_rows, section.text("rows"))),
                     .where = formula(section, "where"),
                     .every = static_cast<std::size_t>(section.number("every").value_or(1.0)),
@@ -441,20 +448,76 @@ class DefinitionReader {
     const Section section(reading_, table, keys);
     const auto own_x = formula(section, "x");
     const auto own_y = formula(section, "y");
-    const Inherited formulas{.x = own_x ? own_x : inherited.x, .y = own_y ? own_y : inherited.y};
-    TableSpec spec{.title = plain(section, "title"), .rows = {}};
+    Inherited inherited_by_rows{.x = own_x ? own_x : inherited.x,
+                                .y = own_y ? own_y : inherited.y,
+                                .vary = section.has("vary") ? &section : nullptr};
+    TableSpec spec{.title = plain(section, "title"), .bands = section.numbers("bands"), .rows = {}};
+    if (section.has("bands") && spec.bands.size() < 2) {
+      faults_.add(section.value_place("bands"), "a band has two ends; expected two numbers at least");
+    }
+    std::vector<QuantitySpec> quantities;
+    for (const auto& quantity : section.tables("quantity", "[[table.quantity]]")) {
+      quantities.push_back(quantity_of(quantity, measures(section, default_measures())));
+    }
+    if (quantities.empty()) quantities.push_back({.measures = measures(section, default_measures())});
     for (const auto& row : section.tables("row", "[[table.row]]")) {
       static const Keys row_keys = comparison_keys();
       const Section entry(reading_, row, row_keys);
-      spec.rows.push_back({plain(entry, "label"),
-                           entry.has("curve") ? curve(entry.table("curve", "curve"), formulas) : CurveSpec{},
-                           entry.has("points") ? points(entry.table("points", "points")) : PointsSpec{}});
-      const CurveSpec& made = spec.rows.back().curve;
-      if (made.scenarios.size() > std::max<std::size_t>(made.sweep, 1)) {
-        faults_.add(entry.value_place("curve"), "'vary' gives several curves; expected one curve in each row");
+      for (const QuantitySpec& quantity : quantities) {
+        if (quantity.y) inherited_by_rows.y = quantity.y;
+        spec.rows.push_back(
+            {.label = plain(entry, "label"),
+             .quantity = quantity.name,
+             .measures = quantity.measures,
+             .least = quantity.least,
+             .curve = entry.has("curve") ? curve(entry.table("curve", "curve"), inherited_by_rows) : CurveSpec{},
+             .points =
+                 entry.has("points") ? points(entry.table("points", "points"), quantity.reference) : PointsSpec{}});
       }
     }
     return spec;
+  }
+
+  /// A quantity that all rows of a table are asked for.
+  struct QuantitySpec {
+    std::string name{};
+    std::optional<PlacedExpression> y{};
+    std::optional<PlacedExpression> reference{};
+    std::optional<PlacedExpression> least{};
+    std::vector<std::size_t> measures{};
+  };
+
+  [[nodiscard]] QuantitySpec quantity_of(const Section::Origin& table, std::vector<std::size_t> measures_of_table) {
+    static const Keys keys = quantity_keys();
+    const Section section(reading_, table, keys);
+    return {.name = plain(section, "name"),
+            .y = formula(section, "y"),
+            .reference = formula(section, "reference"),
+            .least = formula(section, "least"),
+            .measures = measures(section, std::move(measures_of_table))};
+  }
+
+  [[nodiscard]] static std::vector<std::size_t> default_measures() {
+    std::vector<std::size_t> places(k_default_measures);
+    std::iota(places.begin(), places.end(), 0);
+    return places;
+  }
+
+  /// The measures that a section asks for, else others.
+  [[nodiscard]] std::vector<std::size_t> measures(const Section& section, std::vector<std::size_t> others) {
+    if (!section.has("measures")) return others;
+    std::vector<std::size_t> places;
+    for (const std::string& name : section.texts("measures")) {
+      const auto found = std::ranges::find(k_measures, name);
+      if (found == k_measures.end()) {
+        const std::string suggestion = did_you_mean(name, k_measures);
+        faults_.add(section.value_place("measures", places.size()),
+                    fmt::format("unknown measure '{}'{}", shown(name),
+                                suggestion.empty() ? "; expected " + listed(k_measures) : suggestion));
+      }
+      places.push_back(found == k_measures.end() ? 0 : static_cast<std::size_t>(found - k_measures.begin()));
+    }
+    return places;
   }
 
   [[nodiscard]] ValueTableSpec value_table(const Section::Origin& table) {

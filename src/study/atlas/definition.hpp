@@ -36,6 +36,7 @@ struct CurveSpec {
   std::vector<CheckedScenario> scenarios;  ///< at least one, but for a formula that needs none
   std::size_t sweep = 0;                   ///< so many scenarios in a row are one curve of derived parameters; 0: runs
   std::vector<std::string> legends;        ///< one for each curve, or one
+  std::vector<std::string> variants{};     ///< names of the curves of a key that is varied; empty: none is
   PlacedExpression x;
   PlacedExpression y;
   RowChoice rows = RowChoice::all;
@@ -69,16 +70,20 @@ struct PanelSpec {
   std::vector<PointsSpec> points;
 };
 
-/// A curve that is held against points, which are the reference.
+/// Curves that are held against points, which are the reference.
 struct ComparisonSpec {
   std::string label;
+  std::string quantity;                   ///< what y is; empty where the table names none
+  std::vector<std::size_t> measures;      ///< that are shown, places among k_measures
+  std::optional<PlacedExpression> least;  ///< loading with smaller y is not measured; a formula of the run's numbers
   CurveSpec curve;
   PointsSpec points;
 };
 
 struct TableSpec {
   std::string title;
-  std::vector<ComparisonSpec> rows;
+  std::vector<double> bands;         ///< ends of the bands of x that are measured; empty: loading up to each reversal
+  std::vector<ComparisonSpec> rows;  ///< those of one label follow each other
 };
 
 /// A value made of what a model derives from a scenario, and what it is held against: what the source prints for it, or

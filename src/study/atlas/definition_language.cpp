@@ -51,6 +51,13 @@ KeySpec table_key(std::string_view name, std::string_view meaning, std::string e
       .name = name, .meaning = meaning, .kind = Kind::table, .is_required = is_required, .example = std::move(example)};
 }
 
+KeySpec measures_key() {
+  return {.name = "measures",
+          .meaning = "what is shown of each comparison",
+          .kind = Kind::texts,
+          .example = "[\"largest\", \"rms\"]"};
+}
+
 KeySpec overrides_key(std::string_view meaning) {
   return {.name = "set", .meaning = meaning, .kind = Kind::texts, .example = "[\"material.yield_stress=20 MPa\"]"};
 }
@@ -159,7 +166,7 @@ Keys fitted_keys() {
 Keys points_keys() {
   return {text_key("file", "CSV file, sought from the definition's folder", "\"fe/points.csv\"", true),
           text_key("x", "formula of its columns", "\"displacement\"", true),
-          text_key("y", "formula of its columns", "\"force\"", true),
+          text_key("y", "formula of its columns; a table may give it for all rows", "\"force\""),
           text_key("legend", "text in the legend", "\"finite elements\""),
           choice_key("rows", "which way of x is shown", k_rows),
           text_key("where", "only rows in which this formula of the columns is zero", "\"shear_ratio - 1\""),
@@ -191,8 +198,25 @@ Keys adhesion_map_keys() {
 
 Keys comparison_table_keys() {
   return {text_key("title", "what is compared", "\"Force\"", true),
-          text_key("x", "formula of the abscissa", k_example_x), text_key("y", "formula of the ordinate", k_example_y),
+          text_key("x", "formula of the abscissa", k_example_x),
+          text_key("y", "formula of the ordinate", k_example_y),
+          table_key("vary", "one line for each value of a key, in every row", "{ key = \"model\", values = [...] }"),
+          {.name = "bands",
+           .meaning = "ends of bands of x to measure instead of the loading up to each reversal",
+           .kind = Kind::instants,
+           .example = "[0.05, 0.5]"},
+          measures_key(),
+          tables_key("quantity", "quantities that every row is asked for", "[[table.quantity]]"),
           tables_key("row", "comparisons", "[[table.row]]", true)};
+}
+
+Keys quantity_keys() {
+  return {text_key("name", "name of the quantity", "\"axial force\"", true),
+          text_key("y", "formula of the ordinate", k_example_y, true),
+          text_key("reference", "formula of the columns of the points", "\"force\"", true),
+          text_key("least", "loading with y up to this is not measured in bands; a formula of the run's numbers",
+                   "\"1e-3 * Y / E\""),
+          measures_key()};
 }
 
 Keys comparison_keys() {

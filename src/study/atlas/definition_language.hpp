@@ -16,6 +16,13 @@ inline constexpr std::array<std::string_view, 6> k_styles{"phases", "solid",    
                                                           "dotted", "dash-dotted", "points"};
 inline constexpr std::array<std::string_view, 3> k_rows{"all", "load", "unload"};
 
+/// What a table of comparisons may say of a curve. Those up to the last of k_default_measures it says unless it is told
+/// otherwise.
+inline constexpr std::array<std::string_view, 14> k_measures{
+    "reversal",           "area_error",     "peak_error", "slope", "reference_slope", "slope_ratio", "residual",
+    "reference_residual", "residual_ratio", "coverage",   "up_to", "largest",         "rms",         "unloading"};
+inline constexpr std::size_t k_default_measures = 10;
+
 inline constexpr const char* k_example_x = "\"axial.displacement / R0\"";
 inline constexpr const char* k_example_y = "\"axial.force / (E * R0^2)\"";
 
@@ -41,6 +48,8 @@ inline constexpr const char* k_example_y = "\"axial.force / (E * R0^2)\"";
 [[nodiscard]] Keys comparison_table_keys();
 /// One row of such a table.
 [[nodiscard]] Keys comparison_keys();
+/// A quantity that every row of such a table is asked for.
+[[nodiscard]] Keys quantity_keys();
 /// A table of values.
 [[nodiscard]] Keys value_table_keys();
 /// One row of such a table.
