@@ -80,7 +80,7 @@ COLUMNS = {
     "centre_z": "position of the centre, z",
     "margin": "distance to the limit of applicability; zero where the run ends",
     "packing_fraction": "volume of the particles over that of the packing",
-    "strain": "strain of the packing",
+    "strain": "logarithmic strain of the packing, compression positive; zero where the elastic law has no stress",
     "stress": "stress on the packing",
     "stress_elastic": "stress that the elastic law alone gives",
     "coordination_number": "mean number of contacts of a particle",
