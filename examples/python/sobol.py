@@ -82,9 +82,9 @@ print(f"{runs} runs in {time.perf_counter() - begin:.2f} s")
 mean = np.mean(estimates, axis=0)
 half = stats.t.ppf(0.975, options.designs - 1) * np.std(estimates, axis=0, ddof=1) / np.sqrt(options.designs)
 for c, column in enumerate(COLUMNS):
-    print(f"{column:<26}{'first':>18}{'total':>20}")
+    print(f"{column:<26}{'first':>19}{'total':>21}")
     for k, key in enumerate(RANGES):
-        print(f"  {key:<24}" + "".join(f"{mean[o, k, c]:10.4f} +- {half[o, k, c]:.4f}" for o in (0, 1)))
+        print(f"  {key:<24}" + "".join(f"{mean[o, k, c]:10.5f} +- {half[o, k, c]:.5f}" for o in (0, 1)))
 
 # %%
 # What the total index has beyond the first-order one is due to interactions. The largest force depends on the yield
