@@ -28,7 +28,7 @@ extensions = [
     "breathe",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["generated/*.md"]  # parts that pages include
+exclude_patterns = ["generated/*.md", "generated/python-examples"]  # parts of pages, and what they are made from
 language = "en"
 nitpicky = True
 # Names of the standard library and of numpy, whose own sites are not asked.
@@ -90,7 +90,7 @@ def figures_of_block(_block, variables, gallery):
 
 
 sphinx_gallery_conf = {
-    "examples_dirs": "../examples/python",
+    "examples_dirs": "generated/python-examples",
     "gallery_dirs": "howto/python-examples",
     "filename_pattern": r"\.py$",
     "abort_on_example_error": True,

@@ -684,6 +684,10 @@ def write_examples():
         else:
             text = "```{note}\nThis version of monograin comes without its C++ examples.\n```\n"
         write(f"example-{name}.md", text)
+    # Sphinx runs the scripts of examples/python where they lie: what they leave stays beside a copy.
+    copies = GENERATED / "python-examples"
+    shutil.rmtree(copies, ignore_errors=True)
+    shutil.copytree(ROOT / "examples" / "python", copies)
 
 
 def public_modules(module):
