@@ -3,7 +3,9 @@
 import pathlib
 import re
 
+from matplotlib.figure import Figure
 from sphinx.ext import napoleon
+from sphinx_gallery.scrapers import figure_rst
 
 DOCS = pathlib.Path(__file__).resolve().parent
 ROOT = DOCS.parent
@@ -24,8 +26,9 @@ extensions = [
     "sphinxcontrib.bibtex",
     "sphinx_copybutton",
     "breathe",
+    "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["generated/*.md"]  # parts that pages include
+exclude_patterns = ["generated/*.md", "generated/python-examples"]  # parts of pages, and what they are made from
 language = "en"
 nitpicky = True
 # Names of the standard library and of numpy, whose own sites are not asked.
@@ -70,6 +73,35 @@ autodoc_member_order = "bysource"
 napoleon_use_ivar = True
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
+
+# --- Python examples: a page and a notebook of each script, which runs when the site is built
+
+
+def figures_of_block(_block, variables, gallery):
+    """Saves the figures that a block of a script has made; pyplot knows none of them."""
+    shown = variables.setdefault("shown_figures", [])
+    paths = []
+    for value in list(variables["example_globals"].values()):
+        if isinstance(value, Figure) and value not in shown:
+            shown.append(value)
+            paths.append(next(variables["image_path_iterator"]))
+            value.savefig(paths[-1], dpi=150)
+    return figure_rst(paths, gallery["src_dir"])
+
+
+sphinx_gallery_conf = {
+    "examples_dirs": "generated/python-examples",
+    "gallery_dirs": "howto/python-examples",
+    "filename_pattern": r"\.py$",
+    "abort_on_example_error": True,
+    "run_stale_examples": True,
+    "image_scrapers": (figures_of_block,),
+    "capture_repr": (),
+    # Jupyter's own arguments are none of the script's.
+    "first_notebook_cell": "%matplotlib inline\nimport sys\n\nsys.argv = sys.argv[:1]",
+    "download_all_examples": False,
+    "show_signature": False,
+}
 
 # --- looks
 html_theme = "furo"

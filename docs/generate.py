@@ -82,7 +82,7 @@ COLUMNS = {
     "coverage": "how much of the surface the dents take up; contacts meet at about 1.7",
     "margin": "distance to the limit of applicability; zero where the run ends",
     "packing_fraction": "volume of the particles over that of the packing",
-    "strain": "strain of the packing",
+    "strain": "logarithmic strain of the packing, compression positive; zero where the elastic law has no stress",
     "stress": "stress on the packing",
     "stress_elastic": "stress that the elastic law alone gives",
     "coordination_number": "mean number of contacts of a particle",
@@ -734,7 +734,7 @@ def draw_calibration(program, scratch):
 
 
 def write_examples():
-    """Parts that show the programs of examples/; a part without its program says so, where the tree has no examples."""
+    """Parts that show the programs of examples/cpp; a part without its program says so, where the tree has no examples."""
     folder = ROOT / "examples" / "cpp"
     for name in CPP_EXAMPLES:
         file = folder / f"{name}.cpp"
@@ -745,27 +745,10 @@ def write_examples():
         else:
             text = "```{note}\nThis version of monograin comes without its C++ examples.\n```\n"
         write(f"example-{name}.md", text)
-    text = ""
-    # The first run comes first.
-    files = sorted((ROOT / "examples" / "python").glob("*.py"), key=lambda file: (not file.stem.startswith("first"), file.name))
-    for file in files:
-        tree = ast.parse(file.read_text(encoding="utf-8"))
-        documentation = ast.get_docstring(tree)
-        if not documentation:
-            fail(f"{file.relative_to(ROOT)} does not begin with a text that says what it shows")
-        title, _, rest = documentation.partition("\n")
-        # A line on its own says how to call the program.
-        usage = re.findall(r"^ *(python3 .*)$", rest, re.MULTILINE)
-        rest = re.sub(r"^ *python3 .*$", "", rest, flags=re.MULTILINE).strip()
-        heading, _, more = title.rstrip(".").partition(": ")
-        text += f"## {heading}\n\n" + (f"{more[0].upper()}{more[1:]}. " if more else "") + f"{rest}\n\n"
-        text += f"`examples/python/{file.name}`" + (f", called as `{usage[0]}`" if usage else "") + ":\n\n"
-        text += f"```{{literalinclude}} /../examples/python/{file.name}\n:language: python\n"
-        text += f":lines: {tree.body[0].end_lineno + 2}-\n```\n\n"
-    if not files and (ROOT / "python").is_dir():
-        fail("pages show examples/python/*.py, of which there are none")
-    write("python-examples.md", text or "```{note}\nThis version of monograin comes without its Python examples.\n```\n")
-    return len(files)
+    # Sphinx runs the scripts of examples/python where they lie: what they leave stays beside a copy.
+    copies = GENERATED / "python-examples"
+    shutil.rmtree(copies, ignore_errors=True)
+    shutil.copytree(ROOT / "examples" / "python", copies)
 
 
 def public_modules(module):
@@ -880,7 +863,7 @@ def main():
     commands = write_commands(program)
     runs = sum(len(entries) for entries in ready.values())
     print(f"docs/generate.py: {len(models)} models, {runs} ready scenarios run, {len(commands)} commands")
-    print(f"docs/generate.py: {write_examples()} examples in Python")
+    write_examples()
     print(f"docs/generate.py: references: {write_references(program, commands)}")
     print(f"docs/generate.py: Python interface: {write_python_api()}")
     print(f"docs/generate.py: C++ interface: {write_cpp_api()}")

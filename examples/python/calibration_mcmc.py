@@ -1,36 +1,66 @@
-"""Calibration by a Markov chain: the posterior of two material constants, against the errors of the linearised fit.
+"""
+Calibration by a Markov chain
+=============================
 
-    python3 calibration_mcmc.py [--steps N] [--walkers N] [--seed N] [--tolerance SHARE]
-
-The data are those of the ready calibration `uniaxial`: a particle is pressed between two walls and withdrawn. Noise is
-Gaussian with the standard deviation that the fit leaves, and priors are flat between the bounds of the calibration. With
---tolerance the program fails if a standard deviation of the posterior is farther than that share from the standard error
-of the fit. A standard deviation of N independent samples is known to 1/sqrt(2 N) only: 1 % takes many thousand.
+The posterior of two material constants, against the standard errors that ``calibrate`` gives. The data are those of the
+ready calibration ``uniaxial``: a particle is pressed between two walls and withdrawn.
 """
 
 import argparse
 import sys
 
 import numpy as np
+from matplotlib.figure import Figure
 
 import monograin as mg
 
+try:
+    import emcee
+except ImportError:
+    sys.exit("emcee is missing (Debian package python3-emcee)")
 
-def scenario_through(displacement):
-    """The scenario of the data with a program through their displacements, one second for each way.
+parser = argparse.ArgumentParser(description="The posterior of two material constants by a Markov chain.")
+parser.add_argument("--steps", type=int, default=1000, help="of every walker [%(default)s]")
+parser.add_argument("--walkers", type=int, default=32, help="[%(default)s]")
+parser.add_argument("--seed", type=int, default=1, help="[%(default)s]")
+parser.add_argument("--tolerance", type=float, help="fail if a standard error differs by more than this share, e.g. 0.01")
+options = parser.parse_args()
 
-    Returns:
-        The scenario, whose output times are those of the data, and for each of these the row of its datum.
-    """
-    turn = int(np.argmax(displacement))
-    largest, last = displacement[turn], displacement[-1]
-    times = np.where(
-        np.arange(len(displacement)) <= turn,
-        displacement / largest,
-        1.0 + (largest - displacement) / (largest - last),
-    )
-    moved = np.flatnonzero(times > 0.0)
-    scenario = mg.scenario("uniaxial").replace(
+# %%
+# The fit
+# -------
+#
+# ``calibrate`` finds the values with the least sum of squares. It takes the law as linear in the parameters nearby,
+# which gives the standard errors.
+
+calibration = mg.calibrate(mg.scenario_folder() / "calibrate" / "uniaxial.toml")
+parameters = calibration.parameters
+values = np.array([parameter.value for parameter in parameters.values()])
+errors = np.array([parameter.standard_error for parameter in parameters.values()])
+for key, parameter in parameters.items():
+    print(f"{key}: {parameter.value:.6g} +- {parameter.standard_error:.4g}")
+
+# %%
+# A program through the data
+# --------------------------
+#
+# The walls go to the largest displacement and back, one second for each way. The output times of the scenario are those
+# at which the walls pass the data.
+
+fit = calibration.fit
+displacement = fit["axial.displacement"]
+turn = int(np.argmax(displacement))
+largest, last = displacement[turn], displacement[-1]
+times = np.where(
+    np.arange(len(displacement)) <= turn,
+    displacement / largest,
+    1.0 + (largest - displacement) / (largest - last),
+)
+moved = times > 0.0
+measured = fit["axial.force"][moved]
+prepared = (
+    mg.scenario("uniaxial")
+    .replace(
         {
             "loading.steps": [
                 {"displacement": float(largest), "duration": 1.0},
@@ -39,75 +69,75 @@ def scenario_through(displacement):
             "output": {"times": times[moved]},
         }
     )
-    return scenario, moved
+    .prepare(parameters)
+)
+
+# %%
+# The posterior
+# -------------
+#
+# Noise is Gaussian, with the standard deviation that the fit leaves. Priors are flat between the bounds of the
+# calibration.
+
+bounds = np.array([parameter.bounds for parameter in parameters.values()])
 
 
-class Posterior:
-    """Logarithm of the posterior density of the free parameters, up to a constant."""
-
-    def __init__(self, calibration):
-        fit = calibration.fit
-        self.parameters = calibration.parameters
-        self.scenario, self.rows = scenario_through(fit["axial.displacement"])
-        self.force = fit["axial.force"][self.rows]
-        self.prepared = self.scenario.prepare(self.parameters)
-        self.bounds = np.array([parameter.bounds for parameter in self.parameters.values()])
-        best = self.residuals(list(calibration.values.values()))
-        self.noise = np.sqrt((best**2).sum() / calibration.info["statistics"]["degrees_of_freedom"])
-
-    def residuals(self, values):
-        run = self.prepared.run(values)
-        force = run["axial.force"]
-        # Events and corners have rows of their own beside the output points.
-        return force[run["row"] == 0][-len(self.force) :] - self.force
-
-    def __call__(self, values):
-        if (values <= self.bounds[:, 0]).any() or (values >= self.bounds[:, 1]).any():
-            return -np.inf
-        return -0.5 * ((self.residuals(values) / self.noise) ** 2).sum()
+def residuals(values):
+    run = prepared.run(values)
+    # Events and corners of the program have rows of their own beside the output points.
+    return run["axial.force"][run["row"] == 0][-len(measured) :] - measured
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--steps", type=int, default=1000, help="of every walker [%(default)s]")
-    parser.add_argument("--walkers", type=int, default=32, help="[%(default)s]")
-    parser.add_argument("--seed", type=int, default=1, help="[%(default)s]")
-    parser.add_argument("--tolerance", type=float, help="largest share of a standard error, e.g. 0.01")
-    options = parser.parse_args()
-    try:
-        import emcee
-    except ImportError:
-        print("skipped: emcee is missing (Debian package python3-emcee)")
-        return 0
-
-    calibration = mg.calibrate(mg.scenario_folder() / "calibrate" / "uniaxial.toml")
-    posterior = Posterior(calibration)
-    values = np.array(list(calibration.values.values()))
-    errors = np.array([parameter.standard_error for parameter in calibration.parameters.values()])
-    np.random.seed(options.seed)
-    start = values + errors * np.random.standard_normal((options.walkers, len(values)))
-    # Proposals from a density of the other walkers: successive samples are nearly independent.
-    sampler = emcee.EnsembleSampler(options.walkers, len(values), posterior, moves=emcee.moves.KDEMove())
-    sampler.run_mcmc(start, options.steps)
-
-    chain = sampler.get_chain(discard=options.steps // 10, flat=True)
-    independent = len(chain) / sampler.get_autocorr_time(tol=0).max()
-    print(f"{options.walkers * options.steps} runs, {independent:.0f} independent samples, ", end="")
-    print(f"each standard deviation known to {100.0 / np.sqrt(2.0 * independent):.1f} %")
-    worst = 0.0
-    for k, (key, parameter) in enumerate(calibration.parameters.items()):
-        deviation = chain[:, k].std(ddof=1)
-        difference = deviation / parameter.standard_error - 1.0
-        worst = max(worst, abs(difference))
-        print(f"{key}: {parameter.value:.6g} +- {parameter.standard_error:.4g} by the fit,", end=" ")
-        print(f"{chain[:, k].mean():.6g} +- {deviation:.4g} by the chain ({100.0 * difference:+.2f} %)")
-    correlation = np.corrcoef(chain.T)[0, 1]
-    print(f"correlation: {calibration.correlation[0, 1]:.4f} by the fit, {correlation:.4f} by the chain")
-    if options.tolerance is not None and worst > options.tolerance:
-        print(f"a standard deviation differs by more than {100.0 * options.tolerance:g} %")
-        return 1
-    return 0
+noise = np.sqrt((residuals(values) ** 2).sum() / calibration.info["statistics"]["degrees_of_freedom"])
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+def log_posterior(values):
+    if (values <= bounds[:, 0]).any() or (values >= bounds[:, 1]).any():
+        return -np.inf
+    return -0.5 * ((residuals(values) / noise) ** 2).sum()
+
+
+# %%
+# The chain
+# ---------
+#
+# A walker takes its proposals from a density of the others, so that successive samples are nearly independent. The
+# standard deviation of N independent samples is known to a share of 1/sqrt(2 N): 1 % takes many thousand.
+
+np.random.seed(options.seed)
+start = values + errors * np.random.standard_normal((options.walkers, len(values)))
+sampler = emcee.EnsembleSampler(options.walkers, len(values), log_posterior, moves=emcee.moves.KDEMove())
+sampler.run_mcmc(start, options.steps)
+
+chain = sampler.get_chain(discard=options.steps // 10, flat=True)
+independent = len(chain) / sampler.get_autocorr_time(tol=0).max()
+print(f"{options.walkers * options.steps} runs, {independent:.0f} independent samples, ", end="")
+print(f"each standard deviation known to {100.0 / np.sqrt(2.0 * independent):.1f} %")
+
+# %%
+# The chain against the fit
+# -------------------------
+
+mean, deviation = chain.mean(axis=0), chain.std(axis=0, ddof=1)
+differences = deviation / errors - 1.0
+for k, (key, parameter) in enumerate(parameters.items()):
+    print(f"{key}: {parameter.value:.6g} +- {parameter.standard_error:.4g} by the fit,", end=" ")
+    print(f"{mean[k]:.6g} +- {deviation[k]:.4g} by the chain ({100.0 * differences[k]:+.2f} %)")
+correlation = np.corrcoef(chain.T)[0, 1]
+print(f"correlation: {calibration.correlation[0, 1]:.4f} by the fit, {correlation:.4f} by the chain")
+if options.tolerance is not None and abs(differences).max() > options.tolerance:
+    sys.exit(f"a standard deviation differs by more than {100.0 * options.tolerance:g} %")
+
+# %%
+# Every sample of the chain, and the ellipse on which the fit expects a density of exp(-2) of the largest one:
+
+figure = Figure(figsize=(6.0, 4.0), layout="constrained")
+axes = figure.add_subplot()
+axes.plot(chain[:, 0] / 1e9, chain[:, 1] / 1e6, ",", label="chain")
+factor = np.linalg.cholesky(np.outer(errors, errors) * calibration.correlation)
+angle = np.linspace(0.0, 2.0 * np.pi, 200)
+ellipse = values + 2.0 * (factor @ [np.cos(angle), np.sin(angle)]).T
+axes.plot(ellipse[:, 0] / 1e9, ellipse[:, 1] / 1e6, label="fit, twice the standard errors")
+axes.set(xlabel="Young's modulus [GPa]", ylabel="Yield stress [MPa]")
+axes.legend(fontsize="small", loc="upper left")
+figure

@@ -1,38 +1,50 @@
-"""A first run: load a scenario, change it, run it, look at its curves and events, keep it.
+"""
+A first run
+===========
 
-    python3 first_run.py [-o FOLDER]
+Load a scenario, change it, run it, look at its curves and events, keep it.
 """
 
 import argparse
 
 import monograin as mg
 
+parser = argparse.ArgumentParser(description="A first run.")
+parser.add_argument("-o", "--output", default="runs/first", help="folder of the run [%(default)s]")
+options = parser.parse_args()
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("-o", "--output", default="runs/first", help="folder of the run [%(default)s]")
-    folder = parser.parse_args().output
+# %%
+# ``mg.scenario`` gives a ready scenario, ``mg.Scenario.load`` one of your own. ``replace`` changes keys of a copy. The
+# die compaction gets a softer material:
 
-    scenario = mg.scenario("die")  # or mg.Scenario.load("my.toml")
-    softer = scenario.replace({"material.yield_stress": "30 MPa"})
-    run = softer.run()
-    print(run)
+scenario = mg.scenario("die")  # or mg.Scenario.load("my.toml")
+softer = scenario.replace({"material.yield_stress": "30 MPa"})
+run = softer.run()
+print(run)
 
-    force, displacement = run["axial.force"], run["axial.displacement"]
-    print(f"largest force {force.max():.1f} {run.units['axial.force']} at {1e3 * displacement[force.argmax()]:.2f} mm")
-    for event in run.events:
-        print(f"{event['time']:.6f} s  {event['class']:<10} {event['event']}")
+# %%
+# Every column of the history is an array of numpy, in SI units:
 
-    difference = mg.compare(scenario.run(), run, x="axial.displacement", y="axial.force").curves[0]
-    print(f"against 50 MPa the force differs by up to {100.0 * difference.linf:.0f} % of the largest one")
+force, displacement = run["axial.force"], run["axial.displacement"]
+print(f"largest force {force.max():.1f} {run.units['axial.force']} at {1e3 * displacement[force.argmax()]:.2f} mm")
 
-    run.save(folder)
-    try:
-        run.plot().savefig(f"{folder}/curves.png")
-    except ImportError:
-        print("no figure: matplotlib is missing (Debian package python3-matplotlib)")
-    print(f"-> {folder}")
+# %%
+# Events tell the story of the run:
 
+for event in run.events:
+    print(f"{event['time']:.6f} s  {event['class']:<10} {event['event']}")
 
-if __name__ == "__main__":
-    main()
+# %%
+# How far apart are two runs? ``compare`` measures one curve against another:
+
+difference = mg.compare(scenario.run(), run, x="axial.displacement", y="axial.force").curves[0]
+print(f"against 50 MPa the force differs by up to {100.0 * difference.linf:.0f} % of the largest one")
+
+# %%
+# ``save`` leaves the files that ``monograin run`` leaves, ``plot`` draws them with matplotlib:
+
+run.save(options.output)
+figure = run.plot()
+figure.savefig(f"{options.output}/curves.png")
+print(f"-> {options.output}")
+figure

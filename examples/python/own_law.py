@@ -1,26 +1,34 @@
-"""A law of one's own beside those of the package: Tatara's elastic sphere at large compression.
+"""
+A law of your own
+=================
 
-    python3 own_law.py [--points N]
-
-A Python function of arrays is all it takes to hold a law against the package's laws and against runs.
-Source of the law: Tatara (1991), J. Eng. Mater. Technol. 113, 285-291, doi:10.1115/1.2903407: the surface of the sphere
-also moves under the load of the opposite wall, so that the approach of a wall is less than Hertz's by f(a) F/(pi E).
+Tatara's elastic sphere at large compression, held against the package's laws and against a run. A function of arrays is
+all it takes.
 """
 
 import argparse
 
 import numpy as np
+from matplotlib.figure import Figure
 
 import monograin as mg
 
+parser = argparse.ArgumentParser(description="Tatara's elastic sphere beside the laws of the package.")
+parser.add_argument("--points", type=int, default=8, help="of the table [%(default)s]")
+options = parser.parse_args()
+
+# %%
+# In Tatara's law (1991, J. Eng. Mater. Technol. 113, 285-291, doi:10.1115/1.2903407) the surface of the sphere also
+# moves under the load of the opposite wall. The wall's displacement is then less than Hertz's by
+# :math:`f(a)\,F/(\pi E)`. The displacement :math:`f` is Boussinesq's for a point load at a depth of :math:`2R`, taken
+# at the edge of the contact.
+
 YOUNGS_MODULUS, POISSON_RATIO, RADIUS = 1e9, 0.3, 0.01
+modulus = mg.laws.hertz.composite_modulus(YOUNGS_MODULUS, POISSON_RATIO)
 
 
 def opposite_wall(contact_radius):
-    """Displacement of the surface under the opposite load, over F/(pi E) [1/m].
-
-    It is Boussinesq's for a point load at a depth of 2 R, at the edge of the contact.
-    """
+    """Displacement of the surface under the opposite load, over F/(pi E) [1/m]."""
     square = contact_radius**2 + 4.0 * RADIUS**2
     nu = POISSON_RATIO
     return 2.0 * (1.0 + nu) * RADIUS**2 / square**1.5 + (1.0 - nu**2) / np.sqrt(square)
@@ -28,40 +36,49 @@ def opposite_wall(contact_radius):
 
 def own_law(contact_radius):
     """Displacement of a wall [m] and force [N] at a contact radius [m]."""
-    modulus = mg.laws.hertz.composite_modulus(YOUNGS_MODULUS, POISSON_RATIO)
     overlap = contact_radius**2 / RADIUS
     force = mg.laws.hertz.force(modulus, RADIUS, overlap)
     return overlap - opposite_wall(contact_radius) * force / (np.pi * YOUNGS_MODULUS), force
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--points", type=int, default=8, help="of the table [%(default)s]")
-    points = parser.parse_args().points
+# %%
+# The laws of the package at the same displacements:
 
-    displacement, force = own_law(np.linspace(0.05, 0.4, points) * RADIUS)
-    modulus = mg.laws.hertz.composite_modulus(YOUNGS_MODULUS, POISSON_RATIO)
-    hertz = mg.laws.hertz.force(modulus, RADIUS, displacement)
-    curved = mg.laws.curved_sphere.force(modulus, RADIUS, displacement)
+displacement, force = own_law(np.linspace(0.05, 0.4, options.points) * RADIUS)
+hertz = mg.laws.hertz.force(modulus, RADIUS, displacement)
+curved = mg.laws.curved_sphere.force(modulus, RADIUS, displacement)
 
-    # A run in which both walls act on each other through the sphere, at the same displacements.
-    nonlocal_run = mg.Scenario(
-        {
-            "model": "nonlocal",
-            "particle": {"radius": RADIUS},
-            "material": {"youngs_modulus": YOUNGS_MODULUS, "poisson_ratio": POISSON_RATIO},
-            "loading": {
-                "configuration": "simple",
-                "steps": [{"displacement": float(displacement[-1]), "duration": 1.0}],
-            },
-        }
-    ).run()
-    computed = np.interp(displacement, nonlocal_run["axial.displacement"], nonlocal_run["axial.force"])
+# %%
+# And a run of model ``nonlocal``, in which both walls act on each other through the sphere. A scenario may be a
+# dictionary:
 
-    print(f"{'delta/R':>8}{'Hertz':>10}{'curved':>10}{'nonlocal':>10}{'own law':>10}   force [N]")
-    for row in zip(displacement / RADIUS, hertz, curved, computed, force):
-        print(f"{row[0]:8.4f}" + "".join(f"{value:10.1f}" for value in row[1:]))
+nonlocal_run = mg.Scenario(
+    {
+        "model": "nonlocal",
+        "particle": {"radius": RADIUS},
+        "material": {"youngs_modulus": YOUNGS_MODULUS, "poisson_ratio": POISSON_RATIO},
+        "loading": {
+            "configuration": "simple",
+            "steps": [{"displacement": float(displacement[-1]), "duration": 1.0}],
+        },
+    }
+).run()
+computed = np.interp(displacement, nonlocal_run["axial.displacement"], nonlocal_run["axial.force"])
 
+# %%
+# Both ways of letting the walls act on each other agree:
 
-if __name__ == "__main__":
-    main()
+print(f"{'delta/R':>8}{'Hertz':>10}{'curved':>10}{'nonlocal':>10}{'own law':>10}   force [N]")
+for row in zip(displacement / RADIUS, hertz, curved, computed, force):
+    print(f"{row[0]:8.4f}" + "".join(f"{value:10.1f}" for value in row[1:]))
+
+# %%
+# Over Hertz's force, the four differ from the start:
+
+figure = Figure(figsize=(6.0, 4.0), layout="constrained")
+axes = figure.add_subplot()
+for name, values in (("Hertz", hertz), ("curved sphere", curved), ("nonlocal", computed), ("own law", force)):
+    axes.plot(displacement / RADIUS, values / hertz, "o-", label=name)
+axes.set(xlabel=r"Displacement $\delta_o/R_0$", ylabel="Force over Hertz's")
+axes.legend(fontsize="small")
+figure

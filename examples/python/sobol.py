@@ -1,17 +1,32 @@
-"""Sobol indices: which inputs of a die compaction the largest force and the final radius depend on.
+"""
+Sobol indices
+=============
 
-    python3 sobol.py [--samples N] [--threads N] [--seed N]
-
-First-order and total indices by Saltelli's design over a scrambled Sobol sequence, with the estimators that Saltelli et
-al. (2010), Computer Physics Communications 181, 259-270, recommend. N samples of k inputs are N (k + 2) runs.
+Which inputs of a die compaction do the largest force and the final radius depend on? The first-order index of an input
+is the share of the variance that goes when this input is known. The total index is the share that stays when all others
+are known.
 """
 
 import argparse
+import sys
 import time
 
 import numpy as np
+from matplotlib.figure import Figure
 
 import monograin as mg
+
+try:
+    from scipy import stats
+except ImportError:
+    sys.exit("scipy is missing (Debian package python3-scipy)")
+
+parser = argparse.ArgumentParser(description="Sobol indices of a die compaction.")
+parser.add_argument("--samples", type=int, default=256, help="of each design, a power of two [%(default)s]")
+parser.add_argument("--designs", type=int, default=8, help="independent designs, at least 2 [%(default)s]")
+parser.add_argument("--threads", type=int, default=0, help="0: one for each core [%(default)s]")
+parser.add_argument("--seed", type=int, default=1, help="[%(default)s]")
+options = parser.parse_args()
 
 RANGES = {
     "material.youngs_modulus": (0.5e9, 2.0e9),
@@ -20,51 +35,68 @@ RANGES = {
 }
 COLUMNS = ["max(axial.force)", "end(apparent_radius)"]
 
+# %%
+# The design is Saltelli's: two independent samples A and B, and for each input the sample A with that column of B. N
+# samples of k inputs are N (k + 2) runs. Both samples come from one scrambled Sobol sequence.
 
-def saltelli(samples, inputs, seed):
-    """Two independent samples A and B of the unit cube, and for each input A with that column of B."""
-    try:
-        from scipy.stats import qmc
 
-        both = qmc.Sobol(2 * inputs, seed=seed).random(samples)
-    except ImportError:  # the estimates need more samples then
-        both = np.random.default_rng(seed).random((samples, 2 * inputs))
+def saltelli(samples, inputs, generator):
+    """Samples of the unit cube, of shape (inputs + 2, samples, inputs): A, B, and A with each column of B."""
+    both = stats.qmc.Sobol(2 * inputs, seed=generator).random(samples)
     a, b = both[:, :inputs], both[:, inputs:]
-    mixed = [np.where(np.arange(inputs) == k, b, a) for k in range(inputs)]
-    return np.concatenate([a, b, *mixed])
+    return np.array([a, b] + [np.where(np.arange(inputs) == k, b, a) for k in range(inputs)])
 
 
-def indices(results, samples, inputs):
-    """First-order and total indices, each of shape (inputs, columns)."""
-    a, b, *mixed = results.reshape(inputs + 2, samples, -1)
+# %%
+# The estimators are those that Saltelli et al. (2010), Computer Physics Communications 181, 259-270, recommend. Without
+# its mean, the estimate of the first order has less noise.
+
+
+def indices(results):
+    """First-order and total indices, of shape (2, inputs, columns), of results in the order of the design."""
+    a, b, *mixed = results - results.mean(axis=(0, 1))
     variance = np.concatenate([a, b]).var(axis=0)
-    first = np.array([(b * (m - a)).mean(axis=0) for m in mixed]) / variance
-    total = np.array([0.5 * ((a - m) ** 2).mean(axis=0) for m in mixed]) / variance
-    return first, total
+    first = [(b * (m - a)).mean(axis=0) for m in mixed]
+    total = [0.5 * ((a - m) ** 2).mean(axis=0) for m in mixed]
+    return np.array([first, total]) / variance
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--samples", type=int, default=256, help="a power of two [%(default)s]")
-    parser.add_argument("--threads", type=int, default=0, help="0: one for each core [%(default)s]")
-    parser.add_argument("--seed", type=int, default=1, help="[%(default)s]")
-    options = parser.parse_args()
+# %%
+# Several designs, each scrambled anew, tell how far the indices may be trusted.
 
-    lower, upper = np.array(list(RANGES.values())).T
-    design = lower + (upper - lower) * saltelli(options.samples, len(RANGES), options.seed)
-    prepared = mg.scenario("die").prepare(RANGES)
-    start = time.perf_counter()
-    results = prepared.map(design, COLUMNS, threads=options.threads)
-    seconds = time.perf_counter() - start
-    print(f"{len(design)} runs in {seconds:.2f} s")
+lower, upper = np.array(list(RANGES.values())).T
+generator = np.random.default_rng(options.seed)
+prepared = mg.scenario("die").prepare(RANGES)
+begin = time.perf_counter()
+estimates = []
+for _ in range(options.designs):
+    design = lower + (upper - lower) * saltelli(options.samples, len(RANGES), generator)
+    results = prepared.map(design.reshape(-1, len(RANGES)), COLUMNS, threads=options.threads)
+    estimates.append(indices(results.reshape(*design.shape[:2], len(COLUMNS))))
+runs = options.designs * options.samples * (len(RANGES) + 2)
+print(f"{runs} runs in {time.perf_counter() - begin:.2f} s")
 
-    # Without its mean the estimate of the first order has less noise.
-    first, total = indices(results - results.mean(axis=0), options.samples, len(RANGES))
-    for c, column in enumerate(COLUMNS):
-        print(f"{column:<26}{'first':>8}{'total':>8}")
-        for k, key in enumerate(RANGES):
-            print(f"  {key:<24}{first[k, c]:8.3f}{total[k, c]:8.3f}")
+# %%
+# Mean and 95 % confidence interval (Student's t) of each index:
 
+mean = np.mean(estimates, axis=0)
+half = stats.t.ppf(0.975, options.designs - 1) * np.std(estimates, axis=0, ddof=1) / np.sqrt(options.designs)
+for c, column in enumerate(COLUMNS):
+    print(f"{column:<26}{'first':>19}{'total':>21}")
+    for k, key in enumerate(RANGES):
+        print(f"  {key:<24}" + "".join(f"{mean[o, k, c]:10.5f} +- {half[o, k, c]:.5f}" for o in (0, 1)))
 
-if __name__ == "__main__":
-    main()
+# %%
+# What the total index has beyond the first-order one is due to interactions. The largest force depends on the yield
+# stress most, the final radius on Young's modulus.
+
+figure = Figure(figsize=(8.0, 3.0), layout="constrained")
+for c, (axes, column) in enumerate(zip(figure.subplots(1, len(COLUMNS), sharey=True), COLUMNS)):
+    places = np.arange(len(RANGES))
+    for o, label in enumerate(("first order", "total")):
+        axes.bar(places + 0.4 * o - 0.2, mean[o, :, c], width=0.4, yerr=half[o, :, c], label=label)
+    axes.set_xticks(places, [key.removeprefix("material.").replace("_", "\n") for key in RANGES])
+    axes.set_title(column, fontsize="medium")
+figure.axes[0].set_ylabel("Sobol index")
+figure.axes[0].legend(fontsize="small")
+figure

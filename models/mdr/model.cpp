@@ -107,7 +107,8 @@ constexpr std::array<string_view, 9> k_domain{
     "radius "
     "grows): the run stops there",
     "warned: dissipation that falls by more than 1e-6 of the energy. radius_rule yielded, where plastic contacts alone "
-    "make the radius grow, is the default because it creates none without adhesion; gated and seed, which the source's "
+    "make the radius grow, is the default because it creates none without adhesion for E/Y above 10; gated and seed, "
+    "which the source's "
     "curves are drawn with, create up to half the work where elastic contacts grow (E/Y below 41 at nu = 0.3)",
 };
 

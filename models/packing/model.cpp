@@ -85,7 +85,7 @@ constexpr std::array k_drives{
     DriveKey{"packing_fraction", "ramp to this packing fraction", Control::packing_fraction, Dimension::none,
              k_fraction_range, "0.95"},
     DriveKey{"strain",
-             "ramp to this strain since jamming, compression positive",
+             "ramp to this strain, compression positive; zero where the elastic law has no stress, not at jamming",
              Control::strain,
              Dimension::none,
              {.lower = -10.0, .upper = 10.0},

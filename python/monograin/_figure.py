@@ -122,7 +122,7 @@ def _of_body(history: Table) -> Optional[_Sheet]:
             1.0,
             [
                 _Panel(r"Stress $\sigma/E$", [("", "stress")], modulus),
-                _Panel("Strain since jamming $e$", [("", "strain")], 1.0),
+                _Panel("Strain $e$", [("", "strain")], 1.0),
                 _Panel("Coordination number $Z$", [("", "coordination_number")], 1.0),
                 _Panel("Plastic fraction $f_p$", [("", "plastic_fraction")], 1.0),
             ],

@@ -62,7 +62,8 @@ int run_calibration(const CalibrateOptions& options) {
   if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
   if (options.is_quiet) return k_success;
   for (const std::string& note : result.notes) say("note: {}\n", note);
-  say("{}: the data drive the particle, in {} step{}; the scenario's own steps only stand in fitted.toml\n"
+  say("{}: the data drive the particle, in {} step{}; the scenario's own steps were not run, and are kept in "
+      "fitted.toml\n"
       "{}: {} trial runs -> {}\n",
       calibration.name, result.program_steps, result.program_steps == 1 ? "" : "s", calibration.name,
       result.solution.evaluations, folder.string());

@@ -34,7 +34,7 @@ struct BodyFigure {
 
 constexpr std::array<Shown, 4> k_packing{
     Shown{"stress", "Stress {/:Italic σ} / {/:Italic E}", "E"},
-    Shown{"strain", "Strain since jamming {/:Italic e}", ""},
+    Shown{"strain", "Strain {/:Italic e}", ""},
     Shown{"coordination_number", "Coordination number {/:Italic Z}", ""},
     Shown{"plastic_fraction", "Plastic fraction {/:Italic f}_p", ""},
 };

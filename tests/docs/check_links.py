@@ -8,8 +8,7 @@ Usage: tests/docs/check_links.py
 - Every figure of plots/ is shown on some page.
 - README.md has at most 900 words.
 
-Exits with 1 where one of these does not hold. Where docs/generate.py has not run, links to what it makes are counted and
-not followed.
+Exits with 1 where one of these does not hold. Links to what the build of the site makes are counted and not followed where it has not run.
 """
 
 import pathlib
@@ -20,8 +19,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 MOST_WORDS = 900
 TOP = ("bench", "cmake", "docs", "examples", "include", "models", "plots", "python", "scenarios", "src", "tests",
        "tools")
-# Folders that docs/generate.py makes.
-MADE = tuple(ROOT / "docs" / name for name in ("generated", "reference/models", "tables"))
+# Folders that docs/generate.py and Sphinx make.
+MADE = tuple(ROOT / "docs" / name for name in ("generated", "reference/models", "tables", "howto/python-examples"))
 # Names that stand for others, and what a build or a run makes.
 NO_FILES = re.compile(r"NAME|FILE|SCENE|\*|<|\.\.\.|^docs/(generated|reference/models|tables)")
 
@@ -107,7 +106,7 @@ def main():
     checked = pages()
     waiting = sum(check_page(page, faults, shown) for page in checked)
     if waiting:
-        print(f"{waiting} links wait for docs/generate.py")
+        print(f"{waiting} links wait for the build of the site")
     for figure in sorted((ROOT / "plots").glob("*.svg")):
         if figure.resolve() not in shown:
             faults.append(f"no page shows plots/{figure.name}")

@@ -35,7 +35,7 @@ import tomllib
 from dataclasses import dataclass
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-MADE = ("docs/generated/", "docs/reference/models/", "docs/tables/")  # by docs/generate.py
+MADE = ("docs/generated/", "docs/reference/models/", "docs/tables/", "docs/howto/python-examples/")  # by tools/docs
 RUN_LANGUAGES = ("sh", "console", "toml", "python", "cpp")
 MARKED_LANGUAGES = ("cmake", "dockerfile")
 LONGEST = 600  # seconds that a block may take

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import concurrent.futures
-import os
 import pickle
 import signal
 import subprocess
@@ -151,16 +150,27 @@ def test_other_threads_go_on_during_map(prepared, samples):
 
 
 def interrupted(code: str, cwd) -> tuple[str, float]:
-    """Output of a child process that gets Ctrl-C as soon as it has written a line, and the seconds it took to end."""
-    child = subprocess.Popen(
-        [sys.executable, "-c", textwrap.dedent(code)], cwd=cwd, stdout=subprocess.PIPE, text=True, env={**os.environ}
-    )
-    assert child.stdout is not None
-    assert child.stdout.readline().strip() == "ready"
-    time.sleep(0.4)
-    child.send_signal(signal.SIGINT)
-    start = time.monotonic()
-    output, _ = child.communicate(timeout=60)
+    """Output of a child process that gets Ctrl-C as soon as it has written a line, and the seconds it took to end.
+
+    A process in the background of a script ignores SIGINT, and so do its children, unless they are told otherwise. The
+    child handles it as a program in the foreground of a terminal does.
+    """
+    with subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(code)],
+        cwd=cwd,
+        stdout=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    ) as child:
+        try:
+            assert child.stdout is not None
+            assert child.stdout.readline().strip() == "ready"
+            time.sleep(0.4)
+            child.send_signal(signal.SIGINT)
+            start = time.monotonic()
+            output, _ = child.communicate(timeout=60)
+        finally:
+            child.kill()  # nothing, where it has ended
     return output.strip(), time.monotonic() - start
 
 

@@ -343,8 +343,9 @@ std::string table_name(const std::string& option) { return option + ".csv"; }
 
 std::string fitted_scenario_text(const Calibration& calibration, const CalibrationResult& result) {
   std::vector<TextEdit> edits;
-  std::string head = fmt::format("# Numbers fitted by monograin calibrate ({}, {} points of {}):\n", calibration.name,
-                                 result.points, data_names(calibration));
+  std::string head =
+      fmt::format("# Numbers fitted by monograin calibrate ({}, {} points of {}), with half of each {:g} % interval:\n",
+                  calibration.name, result.points, data_names(calibration), 100.0 * result.uncertainty.level);
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
     const FreeParameter& parameter = calibration.free[k];
     const double value = result.solution.parameters[k];
