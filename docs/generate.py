@@ -14,7 +14,6 @@ dimension of a unit) has to match exactly; a name on one side alone ends the scr
 """
 
 import argparse
-import ast
 import concurrent.futures
 import csv
 import importlib.util
@@ -734,7 +733,8 @@ def draw_calibration(program, scratch):
 
 
 def write_examples():
-    """Parts that show the programs of examples/cpp; a part without its program says so, where the tree has no examples."""
+    """Parts that show the programs of examples/cpp, each saying so where its program is missing, and a copy of the Python
+    examples."""
     folder = ROOT / "examples" / "cpp"
     for name in CPP_EXAMPLES:
         file = folder / f"{name}.cpp"

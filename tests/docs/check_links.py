@@ -8,7 +8,8 @@ Usage: tests/docs/check_links.py
 - Every figure of plots/ is shown on some page.
 - README.md has at most 900 words.
 
-Exits with 1 where one of these does not hold. Links to what the build of the site makes are counted and not followed where it has not run.
+Exits with 1 where one of these does not hold. Links to what the build of the site makes are counted and not followed
+where it has not run.
 """
 
 import pathlib
