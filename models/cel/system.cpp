@@ -27,8 +27,6 @@ constexpr double k_alike = 1e-6;
 /// Margin at which a run ends: next to it the stiffness is infinite.
 constexpr double k_least_margin = 1e-5;
 constexpr double k_hard_margin = 1e-3;
-/// Force over E R0^2 below which a contact of a free centre is idle.
-constexpr double k_least_force = 1e-11;
 /// Half the surface over pi R0^2 is 2; the law is fitted up to here.
 constexpr double k_most_coverage = 1.7;
 /// Fitted range of the law.
@@ -387,7 +385,6 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     y[particle_.layout().coordinate(i)] = 0.0;
     hold(i, stood);
   }
-  particle_.rest_centre(y);
   solve(xi, y);
   decide_mode(xi, y, log, fired);
   arm_guards();
@@ -406,10 +403,8 @@ AtWall System::wall(std::size_t i, double xi, std::span<const double> y) {
   evaluate(xi, y);
   const Contact& contact = particle_.at(i).contact;
   const double length = settings_.initial_radius;
-  // A contact that only carries a free centre along bears nothing but the weak spring there.
-  const bool bears = !settings_.centre_is_free || contact.F > k_least_force;
-  const double force = bears ? contact.F * force_unit() : 0.0;
-  const double radius = bears ? std::sqrt(contact.area) * length : 0.0;
+  const double force = contact.F * force_unit();
+  const double radius = std::sqrt(contact.area) * length;
   return {.force = force,
           .displacement = displacement(i, xi, y) * length,
           .pressure = radius > 0.0 ? force / (pi * radius * radius) : 0.0,

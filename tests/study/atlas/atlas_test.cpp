@@ -801,7 +801,9 @@ TEST(ReadyAtlas, HoldsModelCelAgainstFiniteElements) {
       const bool is_lateral = row.quantity == "lateral force";
       EXPECT_LT(line.largest, is_lateral ? 0.27 : 0.16) << name;
       EXPECT_LT(line.rms, is_lateral ? 0.17 : 0.08) << name;
-      if (std::isfinite(line.unloading)) EXPECT_LT(line.unloading, 0.26) << name;
+      if (std::isfinite(line.unloading)) {
+        EXPECT_LT(line.unloading, 0.26) << name;
+      }
     }
   }
   EXPECT_GE(cases, 24U);
