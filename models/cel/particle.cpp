@@ -28,10 +28,13 @@ constexpr double k_farthest = 10.0;
 
 constexpr int k_most_corrections = 60;
 constexpr int k_most_halvings = 40;
+constexpr int k_most_polishings = 4;
 constexpr double k_most_growth = 0.03;  ///< of a dent in one correction
 /// Dents over a_Y, below which no trial goes: one that begins to flow is a_Y but for rounding.
 constexpr double k_least_dent = 0.9;
 constexpr double k_solved = 1e-10;  ///< residual over the largest displacement that is a solution at all
+/// Residual over that from which on a correction that makes it larger is rounding.
+constexpr double k_stalled = 1e-14;
 constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 template <int n>
@@ -502,10 +505,18 @@ void Particle::solve(double xi, std::span<double> y) {
     return error;
   };
   double error = error_at();
-  for (int i = 0; i < k_most_corrections && error > k_rounding * largest; ++i) {
+  // Where the weak spring decides, the balance of forces says more of the centre than the largest residual does.
+  const bool is_free = layout_.directions() > 0;
+  int polished = 0;
+  for (int i = 0; i < k_most_corrections && (is_free || error > k_rounding * largest); ++i) {
+    const bool is_polishing = error <= k_stalled * largest;
     assemble();
     for (std::size_t r = 0; r < count; ++r) entry(r, unknowns_) = -rest[r];
     eliminate(count);
+    double correction = 0.0;
+    for (std::size_t r = 0; r < count; ++r) {
+      if (r < size() || r >= 2 * size()) correction = std::max(correction, std::abs(solution_[r]));
+    }
     double share = 1.0;
     for (std::size_t j = 0; j < size(); ++j) {
       const double growth = std::abs(solution_[layout_.dent(j)]);
@@ -521,14 +532,15 @@ void Particle::solve(double xi, std::span<double> y) {
         dent = std::max(dent, k_least_dent * material_.a_Y);
       }
       next = error_at();
-      if (next < error || error <= k_solved * largest) break;
+      if (next < error || is_polishing) break;
     }
-    if (!(next < error)) {
+    if (!(next < error) && (!is_polishing || !is_free)) {
       std::copy_n(before_.begin(), count, y.begin());
       error = error_at();
       break;
     }
     error = next;
+    if (is_polishing && (correction <= k_rounding * largest || ++polished == k_most_polishings)) break;
   }
   const bool takes_force = std::ranges::any_of(classes_, &ClassState::takes_force);
   if (takes_force && (centre_ - rest_).cwiseAbs().maxCoeff() > k_farthest) throw DomainError(Limit::centre_driven_away);

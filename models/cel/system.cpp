@@ -19,6 +19,8 @@ constexpr std::array<string_view, 4> k_regime_words{"open", "elastic", "plastic"
 
 /// Elastic displacement over the program's depth that is rounding.
 constexpr double k_touch = 1e-13;
+/// That of a contact which may only carry a free centre along: no integrator is exact enough to say that it bears.
+constexpr double k_idle_touch = 1e-8;
 /// Yield function of a contact that may flow, and the least rate at which it then would be passed.
 constexpr double k_at_yield = 1e-9;
 constexpr double k_least_rate = 1e-13;
@@ -66,6 +68,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
       {.name = "work", .kind = Unknown::Kind::quadrature, .scale = depth_ * depth_ * std::sqrt(depth_)});
   at_.resize(unknowns_.size());
   rates_.resize(unknowns_.size());
+  trial_.resize(unknowns_.size());
 
   observables_ = {{"work", "J", {}},
                   {"stored_energy", "J", {}},
@@ -147,9 +150,25 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
 }
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
-  evaluate_rates(xi, y);
   const Layout& layout = particle_.layout();
-  particle_.residual(xi, res);
+  if (layout.directions() > 0 && !particle_.any_flows()) {
+    // A centre that contacts hardly hold is too soft for a corrector: it is where the balance of forces puts it.
+    std::ranges::copy(y, trial_.begin());
+    try {
+      solve(xi, trial_);
+    } catch (const std::domain_error&) {
+      // Trials of a corrector may lie far from the last state.
+      std::ranges::copy(y, trial_.begin());
+      std::copy_n(at_.begin(), classes_.size(), trial_.begin());
+      for (std::size_t d = 0; d < layout.directions(); ++d) trial_[layout.centre(d)] = at_[layout.centre(d)];
+      solve(xi, trial_);
+    }
+    evaluate_rates(xi, trial_);
+    for (std::size_t j = 0; j < layout.core(); ++j) res[j] = y[j] - trial_[j];
+  } else {
+    evaluate_rates(xi, y);
+    particle_.residual(xi, res);
+  }
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (!particle_.at(i).flows) res[layout.dent(i)] = dy[layout.dent(i)];
   }
@@ -234,13 +253,19 @@ double System::displacement_ahead(std::size_t i, double xi, std::span<const doub
   return 0.0;
 }
 
+/// Elastic displacement that does not put a contact on a side.
+double System::slack(std::size_t i) const noexcept {
+  const bool may_carry = particle_.layout().directions() > 0 && touches_[i] != 0;
+  return (may_carry ? k_idle_touch : k_touch) * depth_;
+}
+
 /// Whether a contact bears from here on, by its elastic displacement or, next to none, by where that goes.
 void System::decide_touch(std::size_t i, double xi, std::span<const double> y, std::vector<Event>& log) {
   const ClassState& c = particle_.at(i);
   bool touches = touches_[i] != 0;
   if (c.takes_force) {
     touches = c.contact.F > 0.0 || c.drive.rate() > 0.0;
-  } else if (std::abs(c.contact.u) > k_touch * depth_) {
+  } else if (std::abs(c.contact.u) > slack(i)) {
     touches = c.contact.u > 0.0;
   } else {
     touches = displacement_ahead(i, xi, y) > 0.0;
@@ -334,8 +359,11 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
     const ClassState& c = particle_.at(i);
     switch (guards_[g].kind) {
       case k_made:
+        values[g] = c.contact.u / depth_;
+        break;
       case k_lost:
         values[g] = c.takes_force ? c.drive.value(xi) / c.drive.size() : c.contact.u / depth_;
+        if (!c.takes_force && particle_.layout().directions() > 0) values[g] += k_idle_touch;
         break;
       case k_yield:
         values[g] = c.f;

@@ -71,6 +71,7 @@ class System final : public HybridSystem {
   [[nodiscard]] AtWall wall(std::size_t i, double xi, std::span<const double> y);
   void take_up(std::size_t i, const Ramp& ramp, std::span<double> y);
   void hold(std::size_t i, double displacement);
+  [[nodiscard]] double slack(std::size_t i) const noexcept;
   [[nodiscard]] double displacement_ahead(std::size_t i, double xi, std::span<const double> y);
   void decide_touch(std::size_t i, double xi, std::span<const double> y, std::vector<Event>& log);
   void decide_mode(double xi, std::span<const double> y, std::vector<Event>& log, std::span<const std::size_t> fired);
@@ -98,6 +99,7 @@ class System final : public HybridSystem {
   bool is_known_ = false, knows_rates_ = false;
   double margin_ = 1.0;
   std::vector<double> rates_;
+  std::vector<double> trial_;  ///< work space
 };
 
 }  // namespace monograin::cel

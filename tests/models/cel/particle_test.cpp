@@ -59,8 +59,8 @@ Matrix3d tensor_of(const CoreShape& shape, const CoreShape::Tensor& components) 
   Matrix3d tensor;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      const Matrix3d unit = 0.5 * (Vector3d::Unit(i) * Vector3d::Unit(j).transpose() +
-                                   Vector3d::Unit(j) * Vector3d::Unit(i).transpose());
+      const Matrix3d unit =
+          0.5 * (Vector3d::Unit(i) * Vector3d::Unit(j).transpose() + Vector3d::Unit(j) * Vector3d::Unit(i).transpose());
       tensor(i, j) = shape.dot(shape.of(unit), components);
     }
   }
