@@ -184,9 +184,8 @@ class HybridSystem {
 
   /// Whether solve() finds the state at any instant of the program. If not, the direct form is not offered.
   [[nodiscard]] virtual bool is_solvable() const noexcept { return true; }
-  /// Whether it finds the state at any instant until the mode changes, and closed_quadrature() the work, though it
-  /// may not do so later.
-  [[nodiscard]] virtual bool is_solvable_here() const noexcept { return is_solvable(); }
+  /// Of a system that is not solvable: whether it is until the mode changes. closed_quadrature() then gives the work.
+  [[nodiscard]] virtual bool is_solvable_here() const noexcept { return false; }
   /// A function that brings the system back to its present mode and memory, after a step has been rehearsed. Not to be
   /// called when the system is gone.
   [[nodiscard]] virtual std::function<void()> checkpoint() = 0;
