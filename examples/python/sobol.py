@@ -87,7 +87,7 @@ for c, column in enumerate(COLUMNS):
         print(f"  {key:<24}" + "".join(f"{mean[o, k, c]:10.5f} +- {half[o, k, c]:.5f}" for o in (0, 1)))
 
 # %%
-# What the total index has beyond the first-order one is due to interactions. The largest force depends on the yield
+# The total index exceeds the first-order one by the share of interactions. The largest force depends on the yield
 # stress most, the final radius on Young's modulus.
 
 figure = Figure(figsize=(8.0, 3.0), layout="constrained")

@@ -21,7 +21,7 @@ struct Material {
   double xi_by_zeta;  ///< Es/Y
 };
 
-/// What follows from zeta alone, each with its derivative by zeta.
+/// Properties of a contact that follow from its dent alone, each with its derivative by zeta.
 struct Dent {
   double zeta = 0.0;
   double h = 0.0, h_zeta = 0.0;      ///< plastic indentation, 0 on a fresh surface

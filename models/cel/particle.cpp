@@ -149,7 +149,7 @@ void Particle::evaluate(std::span<const double> y) {
   evaluate_yield(y);
 }
 
-/// What elastic motion depends on.
+/// Evaluates only the equations of elastic motion.
 void Particle::evaluate_elastically(std::span<const double> y) {
   for (std::size_t d = 0; d < layout_.directions(); ++d) centre_[static_cast<Eigen::Index>(d)] = y[layout_.centre(d)];
   evaluate_contacts(y, core_of(y));
@@ -322,7 +322,7 @@ void Particle::differentiate_core() {
   s_by_flow_ = 0.375 / s_ * shape_.dot(T_, T_by_flow_);
 }
 
-/// Of (K).
+/// Writes the derivatives of (K).
 void Particle::differentiate_kinematics(std::size_t i, std::span<double> row) {
   const std::size_t n = size();
   const ClassState& c = classes_[i];
@@ -348,7 +348,7 @@ void Particle::differentiate_kinematics(std::size_t i, std::span<double> row) {
   fold_coverage(row);
 }
 
-/// Of the yield function: dX = n1 X (dF/F - dH/H - dwk/wk), dQ = n2 (s/S)^(n2-1) d(s/S).
+/// Writes the derivatives of the yield function: dX = n1 X (dF/F - dH/H - dwk/wk), dQ = n2 (s/S)^(n2-1) d(s/S).
 void Particle::differentiate_yield(std::size_t i, std::span<double> row) {
   const std::size_t n = size();
   const ClassState& c = classes_[i];
@@ -442,7 +442,7 @@ double Particle::eliminate(std::size_t count) {
   for (std::size_t r = 0; r < count; ++r) {
     if (!is_idle(r)) active_.push_back(r);
   }
-  // What moves, row by row over its largest entry, with the right side behind.
+  // Equations of the unknowns that move, each over its largest entry, with the right side behind.
   const std::size_t n = active_.size();
   const std::size_t width = n + 1;
   for (std::size_t at = 0; at < n; ++at) {

@@ -93,7 +93,7 @@ class System final : public HybridSystem {
   double deepest_ = 0.0;  ///< overlap over R0, as far as observed
   std::vector<Guard> guards_;
 
-  // What was evaluated last.
+  // State, and its rates, of the last evaluation.
   std::vector<double> at_;
   double at_xi_ = 0.0;
   bool is_known_ = false, knows_rates_ = false;

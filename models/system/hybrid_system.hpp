@@ -184,7 +184,8 @@ class HybridSystem {
 
   /// Whether solve() finds the state at any instant of the program. If not, the direct form is not offered.
   [[nodiscard]] virtual bool is_solvable() const noexcept { return true; }
-  /// Of a system that is not solvable: whether it is until the mode changes. closed_quadrature() then gives the work.
+  /// Whether a system that is not solvable always is so until its mode changes. closed_quadrature() then gives the
+  /// work.
   [[nodiscard]] virtual bool is_solvable_here() const noexcept { return false; }
   /// A function that brings the system back to its present mode and memory, after a step has been rehearsed. Not to be
   /// called when the system is gone.

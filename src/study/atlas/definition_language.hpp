@@ -16,8 +16,8 @@ inline constexpr std::array<std::string_view, 6> k_styles{"phases", "solid",    
                                                           "dotted", "dash-dotted", "points"};
 inline constexpr std::array<std::string_view, 3> k_rows{"all", "load", "unload"};
 
-/// What a table of comparisons may say of a curve. Those up to the last of k_default_measures it says unless it is told
-/// otherwise.
+/// Measures by which a table compares a curve with its reference. A table without `measures` has the first
+/// k_default_measures of them.
 inline constexpr std::array<std::string_view, 14> k_measures{
     "reversal",           "area_error",     "peak_error", "slope", "reference_slope", "slope_ratio", "residual",
     "reference_residual", "residual_ratio", "coverage",   "up_to", "largest",         "rms",         "unloading"};

@@ -310,7 +310,7 @@ TEST(CelParticleRates, UnderPrescribedForcesAreThoseOfTheirDisplacements) {
 
 // --- symmetries
 
-/// What the equations say at a state, class by class.
+/// Values of the equations at a state, class by class.
 struct Said {
   std::vector<double> kinematic, f, force, driving;
   double coverage, stored;

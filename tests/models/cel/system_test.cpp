@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(CelSystem, IsHertzsUnderSmallLoadsButForTheElasticSphere) {
   const double nu = 0.3;
-  // What the sphere as a whole adds to the displacement of a wall, per force on both.
+  // Displacement of a wall by the sphere as a whole, per force on both.
   const double g = nonlocal::sphere_self_influence(nu, 0.2, 4000) + nonlocal::sphere_influence(nu, std::numbers::pi);
   const double Es = composite_modulus(1.0, nu);
   for (const double d : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4}) {
