@@ -76,19 +76,19 @@ std::vector<Eigen::Matrix3d> spreads_of(std::span<const ContactClass> classes) {
 Particle::Particle(const Material& material, double poisson_ratio, std::span<const ContactClass> classes,
                    bool centre_is_free)
     : material_(material),
-      spreads_(spreads_of(classes)),
-      shape_(spreads_),
+      shape_(spreads_of(classes)),
       lines_(classes, centre_is_free),
       layout_(classes.size(), static_cast<std::size_t>(lines_.dimension()), shape_.dimension()),
       classes_(classes.size()),
       unknowns_(layout_.core() + 1) {
+  const std::vector<Eigen::Matrix3d> spreads = spreads_of(classes);
   Influences influences(poisson_ratio);
   const double self = nonlocal::sphere_self_influence(poisson_ratio, k_self_half_sine, k_last_term);
   for (std::size_t i = 0; i < size(); ++i) {
     const Eigen::Vector3d& normal = classes[i].normals.front();
     counts_.push_back(classes[i].multiplicity());
     directions_.push_back(shape_.of(normal * normal.transpose()));
-    of_spreads_.push_back(shape_.of(spreads_[i]));
+    spreads_.push_back(shape_.of(spreads[i]));
     for (std::size_t j = 0; j < size(); ++j) {
       Coupling& sum = coupling_.emplace_back();
       for (std::size_t wall = 0; wall < classes[j].normals.size(); ++wall) {
@@ -165,7 +165,10 @@ void Particle::evaluate_contacts(std::span<const double> y, const Core& core) {
     const double zeta = y[layout_.dent(i)];
     if (!(square > 0.0) || !(zeta > 0.0)) throw std::domain_error("the core or a dent of the particle has no size");
     c.l = std::sqrt(square);
-    if (zeta != c.dent.zeta) c.dent = dent_of(material_, zeta);
+    if (zeta != c.dent.zeta) {
+      c.dent = dent_of(material_, zeta);
+      c.root_Gam = std::sqrt(c.dent.Gam);
+    }
     c.advance = advance_of(c.l);
     Om_ += 0.5 * counts_[i] * (zeta * zeta - material_.a_Y * material_.a_Y) / square;
   }
@@ -188,7 +191,7 @@ void Particle::evaluate_core(const Core& core) {
   if (!layout_.has_core()) return;
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
-    load_[i] = shape_.deviator(shape_.product(core.C, of_spreads_[i]), -c.advance.c_l / c.l);
+    load_[i] = shape_.deviator(shape_.product(core.C, spreads_[i]), -c.advance.c_l / c.l);
     shape_.add(load_[i], c.contact.F, T_);
   }
   const double load = 0.5 * std::sqrt(1.5 * shape_.dot(T_, T_));
@@ -207,13 +210,13 @@ void Particle::evaluate_yield(std::span<const double> y) {
   const double use = s_ / S_;
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
-    c.X = c.b = 0.0;
+    c.X = c.b = c.tau = 0.0;
     c.wk = 1.0;
     c.f = -1.0;
     if (!(c.contact.F > 0.0)) continue;
     if (s_ > 0.0) {
-      const double tau = shape_.dot(directions_[i], T_) / (4.0 / 3.0 * s_);
-      const double z = std::clamp(-2.0 * tau, 0.0, 1.0);
+      c.tau = shape_.dot(directions_[i], T_) / (4.0 / 3.0 * s_);
+      const double z = std::clamp(-2.0 * c.tau, 0.0, 1.0);
       c.b = z * z * (3.0 - 2.0 * z);
       if (c.b > 0.0) c.wk = 1.0 - k::beta * raised<k::n3>(use) * c.b * std::exp(-c.contact.alpha / k::ab);
     }
@@ -233,7 +236,7 @@ void Particle::evaluate_coupling() {
       const ClassState& other = classes_[j];
       if (other.contact.F == 0.0) continue;
       const Coupling& g = coupling_[i * size() + j];
-      const double root = std::sqrt(c.dent.Gam * other.dent.Gam);
+      const double root = c.root_Gam * other.root_Gam;
       c.lift += (g.mixed + g.across * shade + root * (g.same + g.mixed * shade)) * other.contact.F;
     }
     c.kinematic = c.dent.h + c.advance.c + c.contact.u - c.lift;
@@ -317,7 +320,7 @@ void Particle::differentiate_core() {
     const double w_l = (c.advance.c_l / c.l - c.advance.c_ll) / c.l;
     s_by_F_[i] = 0.375 / s_ * shape_.dot(T_, load_[i]);
     shape_.add(load_[i], c.contact.F * w_l / w * l_by_flow_[i], T_by_flow_);
-    shape_.add(shape_.deviator(shape_.product(flow_.C, of_spreads_[i]), w), c.contact.F, T_by_flow_);
+    shape_.add(shape_.deviator(shape_.product(flow_.C, spreads_[i]), w), c.contact.F, T_by_flow_);
   }
   s_by_flow_ = 0.375 / s_ * shape_.dot(T_, T_by_flow_);
 }
@@ -335,7 +338,7 @@ void Particle::differentiate_kinematics(std::size_t i, std::span<double> row) {
     const double F = other.contact.F;
     if (F == 0.0) continue;
     const Coupling& g = coupling_[i * n + j];
-    const double root = std::sqrt(c.dent.Gam * other.dent.Gam);
+    const double root = c.root_Gam * other.root_Gam;
     const double of_root = g.same + g.mixed * shade;
     add_force(j, -(g.mixed + g.across * shade + root * of_root), row);
     row[n + i] -= 0.5 * root * of_root * F * c.dent.Gam_zeta / c.dent.Gam;
@@ -362,17 +365,15 @@ void Particle::differentiate_yield(std::size_t i, std::span<double> row) {
   if (s_ > 0.0) {
     double of_use = outer * k::n2 * raised<k::n2 - 1>(use);
     double of_tau = 0.0;
-    const double tau = shape_.dot(directions_[i], T_) / (4.0 / 3.0 * s_);
     if (c.b > 0.0) {
-      const double of_wk = of_X / c.wk;
-      const double small = k::beta * std::exp(-c.contact.alpha / k::ab);
-      of_use += of_wk * small * c.b * k::n3 * raised<k::n3 - 1>(use);
-      const double z = std::min(-2.0 * tau, 1.0);
-      of_tau = of_wk * small * raised<k::n3>(use) * -12.0 * z * (1.0 - z);
-      add(i, row_of(i, c.contact.alpha_by), of_wk * (c.wk - 1.0) / k::ab, row);
+      const double of_weakness = of_X / c.wk * (1.0 - c.wk);
+      of_use += of_weakness * k::n3 / use;
+      const double z = std::min(-2.0 * c.tau, 1.0);
+      of_tau = of_weakness / c.b * -12.0 * z * (1.0 - z);
+      add(i, row_of(i, c.contact.alpha_by), -of_weakness / k::ab, row);
     }
     // By the load s, by its share tau under this wall, and by the strength S.
-    const double of_s = of_use / S_ - of_tau * tau / s_;
+    const double of_s = of_use / S_ - of_tau * c.tau / s_;
     const double per_tau = of_tau / (4.0 / 3.0 * s_);
     for (std::size_t j = 0; j < n; ++j)
       add_force(j, of_s * s_by_F_[j] + per_tau * shape_.dot(directions_[i], load_[j]), row);

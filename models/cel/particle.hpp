@@ -62,6 +62,7 @@ struct ClassState {
 
   double coordinate = 0.0;
   Dent dent{};
+  double root_Gam = 1.0;  ///< square root of its Gam
   Contact contact{};
   Advance advance{};
   double l = 1.0;
@@ -69,8 +70,9 @@ struct ClassState {
   double lift = 0.0;       ///< sum of G F in it
   double f = -1.0;         ///< yield function
   double X = 0.0;
-  double b = 0.0;   ///< 1: carried by the flow of the core; 0: drives it
-  double wk = 1.0;  ///< strength of a carried contact over its own
+  double tau = 0.0;  ///< share of the wall in the load of the core
+  double b = 0.0;    ///< 1: carried by the flow of the core; 0: drives it
+  double wk = 1.0;   ///< strength of a carried contact over its own
 };
 
 class Particle {
@@ -150,13 +152,12 @@ class Particle {
   }
 
   Material material_;
-  std::vector<Eigen::Matrix3d> spreads_;  ///< sum of n n over the walls of a class
   CoreShape shape_;
   contacts::CentreLines lines_;
   Layout layout_;
   std::vector<double> counts_;                 ///< of walls
   std::vector<CoreShape::Tensor> directions_;  ///< n n of the first wall of each class
-  std::vector<CoreShape::Tensor> of_spreads_;  ///< spreads_
+  std::vector<CoreShape::Tensor> spreads_;     ///< sum of n n over the walls of a class
   std::vector<Coupling> coupling_;             ///< row by row
   std::vector<ClassState> classes_;
   Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();  ///< where the centre is at ease

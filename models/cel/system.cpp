@@ -280,13 +280,13 @@ void System::decide_touch(std::size_t i, double xi, std::span<const double> y, s
 /// The largest set of contacts that can flow together: all at yield that elastic motion would take beyond, without
 /// those whose dents would shrink. Those that are most against it leave first, and together, so that neither the order
 /// of the walls nor their symmetry decides.
-void System::decide_flow(double xi, std::span<const double> y, std::span<const bool> may_flow) {
+void System::decide_flow(double xi, std::span<const double> y, std::span<const char> may_flow) {
   const Layout& layout = particle_.layout();
   for (std::size_t i = 0; i < particle_.size(); ++i) particle_.at(i).flows = false;
   is_known_ = false;
   evaluate_rates(xi, y);
   for (std::size_t i = 0; i < particle_.size(); ++i) {
-    const bool is_next = may_flow[i] && touches_[i] && particle_.at(i).f > -k_at_yield;
+    const bool is_next = may_flow[i] != 0 && touches_[i] != 0 && particle_.at(i).f > -k_at_yield;
     particle_.at(i).flows = is_next && particle_.yield_rate(i) > k_least_rate;
   }
   while (particle_.any_flows()) {
@@ -316,14 +316,14 @@ void System::decide_mode(double xi, std::span<const double> y, std::vector<Event
   }
   if (is_at_rest()) return;
   std::vector<char> flowed(classes_.size());
-  const auto may_flow = std::make_unique<bool[]>(classes_.size());
+  std::vector<char> may_flow(classes_.size());
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     flowed[i] = particle_.at(i).flows;
     // A dent that has just come to rest does not grow at this instant.
     may_flow[i] = std::ranges::none_of(
         fired, [&](std::size_t g) { return guards_[g].kind == k_reversal && guards_[g].index == static_cast<int>(i); });
   }
-  decide_flow(xi, y, {may_flow.get(), classes_.size()});
+  decide_flow(xi, y, may_flow);
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const bool flows = particle_.at(i).flows;
     if (flows != (flowed[i] != 0)) log.push_back({flows ? "yield" : "load-reversal", static_cast<int>(i)});
