@@ -148,14 +148,15 @@ std::vector<Phase> phases_along(std::span<const double> displacements) {
   if (displacements.empty()) return phases;
   double largest = displacements.front();
   for (std::size_t row = 1; row < displacements.size(); ++row) {
-    const double from = displacements[row - 1];
-    const double to = displacements[row];
-    if (to > from) {
-      phases[row] = to > largest + k_round_off * std::abs(largest) ? Phase::loading : Phase::reloading;
-    } else {
-      phases[row] = to < from ? Phase::unloading : phases[row - 1];
-    }
-    largest = std::max(largest, to);
+    const double step = displacements[row] - displacements[row - 1];
+    const double round_off = k_round_off * std::abs(largest);
+    if (std::abs(step) <= round_off)
+      phases[row] = phases[row - 1];
+    else if (step < 0.0)
+      phases[row] = Phase::unloading;
+    else
+      phases[row] = displacements[row] > largest + round_off ? Phase::loading : Phase::reloading;
+    largest = std::max(largest, displacements[row]);
   }
   return phases;
 }

@@ -41,6 +41,16 @@ TEST(Chart, CutsALineIntoThePhasesOfItsWay) {
   EXPECT_EQ(data.find("reloading"), std::string::npos);
 }
 
+TEST(Chart, TakesAStepOfRoundOffForNoPhaseOfItsOwn) {
+  ChartSeries held = series("a", ChartSeries::Style::phases);
+  held.x = {0.0, 1.0, 1.0 + 1e-15, 1.0, 0.5};
+  held.y = {0.0, 2.0, 2.0, 2.0, 1.0};
+  const std::string data = chart_data(chart_of({held}), "here");
+  EXPECT_NE(data.find("# panel 1 series 1 loading. a\n0 0\n1 2\n1 2\n1 2\n\n"), std::string::npos) << data;
+  EXPECT_NE(data.find("# panel 1 series 1 unloading. a\n1 2\n0.5 1\n"), std::string::npos) << data;
+  EXPECT_EQ(data.find("reloading"), std::string::npos) << data;
+}
+
 TEST(Chart, ExplainsDashesOnlyWhereALineTurnsBack) {
   EXPECT_NE(script_of(chart_of({series("a", ChartSeries::Style::phases)})).find("'unloading'"), std::string::npos);
   EXPECT_EQ(script_of(chart_of({series("a")})).find("'unloading'"), std::string::npos);
