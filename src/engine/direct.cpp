@@ -17,11 +17,13 @@ namespace {
 constexpr double k_longest_per_node = 1.0 / 24.0;
 // A remainder of the step up to this share of a piece is merged into the piece.
 constexpr double k_rest = 0.25;
-// The first piece where there are slaved unknowns, and how fast pieces grow from there; the same of looks before a
-// step's first node, where a guard is not zero by rounding, but so near that it may cross and come back before that.
-constexpr double k_first = 1e-9;
+// Looks between the beginning of a segment and its first node: the first one, and the ratio of two that follow each
+// other. They are made where a guard is so near zero, but not zero by rounding, that it may cross and come back in
+// between. Dependent unknowns may start with an infinite slope, so guards count as near from farther away.
+constexpr double k_first_look = 1e-9;
 constexpr double k_grading = 30.0;
 constexpr double k_near_zero = 1e-3;
+constexpr double k_near_zero_if_steep = 0.1;
 // Tiny pieces of a segment in which the equations may end: more of them are rounding that gets nowhere.
 constexpr double k_tiny = 1e-10;
 constexpr int k_most_refusals = 200;
@@ -131,8 +133,6 @@ class Direct final : public EventLocator {
     begin_piece();
     system_.branch_reach(begin_state_, branch_reach_);
     has_branches_ = std::ranges::any_of(branch_reach_, [](double reach) { return std::isfinite(reach); });
-    // Slaved unknowns may start with a singularity, over which guards cross and come back within no time.
-    if (has_slaves_) length_ = std::min(length_, std::max(k_first, k_grading * (begin_ - segment_begin_)));
     double rest = k_rest;
     for (bool is_covered = false; !is_covered; rest = 0.0) {
       piece_end_ = 1.0 - begin_ <= (1.0 + rest) * length_ ? 1.0 : begin_ + length_;
@@ -152,8 +152,8 @@ class Direct final : public EventLocator {
   }
 
   void dense_output(double xi, std::span<double> y) override {
-    if (xi == end_) {
-      std::ranges::copy(end_state_, y.begin());
+    if (xi == end_ || xi == begin_) {
+      std::ranges::copy(xi == end_ ? end_state_ : begin_state_, y.begin());
       return;
     }
     state_at(xi, y);
@@ -307,11 +307,13 @@ class Direct final : public EventLocator {
   /// A step may begin with a singularity, as from first touch on: smooth in one guard, and not in another. A segment
   /// that begins soon after is as near to it.
   void look_early() {
-    const auto is_near = [](double value) { return std::abs(value) > k_zero_guard && std::abs(value) < k_near_zero; };
-    if (has_slaves_ || std::ranges::none_of(begin_values_, is_near)) return;
+    const double near = has_slaves_ ? k_near_zero_if_steep : k_near_zero;
+    const auto is_near = [near](double value) { return std::abs(value) > k_zero_guard && std::abs(value) < near; };
+    if (std::ranges::none_of(begin_values_, is_near)) return;
     const double first_node = 0.5 * piece_length() * (1.0 + nodes_->places[0]);
     try {
-      for (double distance = std::max(k_first, begin_); k_grading * distance <= first_node; distance *= k_grading) {
+      for (double distance = std::max(k_first_look, begin_); k_grading * distance <= first_node;
+           distance *= k_grading) {
         std::ranges::copy(begin_state_, trial_.begin());
         ++statistics_.rhs_evaluations;
         system_.solve(begin_ + distance, trial_);

@@ -137,7 +137,10 @@ TEST(MdrForce, NeverTakesWallsBackWhileItGrows) {
   // Beyond the end of the free surface they would go back, and the particle would do two thirds of its work again.
   const TestRun result = run(with(mdr_scenario(Configuration::die, 100.0, 0.3, {force_ramp(0.07)}), "elastic_profile",
                                   "parabola"));  // the ellipse gives way at yield
-  EXPECT_TRUE(std::ranges::is_sorted(result.column("axial.displacement")));
+  const std::vector<double> displacement = result.column("axial.displacement");
+  for (std::size_t row = 1; row < displacement.size(); ++row) {
+    EXPECT_GE(displacement[row], displacement[row - 1] - 1e-14) << "row " << row;
+  }
   EXPECT_GE(lost_dissipation(result), -2e-4);  // all of it next to that end
 }
 
