@@ -34,6 +34,7 @@ constexpr double k_safety = 0.85;
 // What the series of a piece's work may leave out, over the work: the square of the tolerance, but no less than
 // rounding. Where the work has a singularity, as at a first touch, its error is up to a hundred times that.
 constexpr double k_rounding_of_work = 1e-16;
+constexpr double k_share_of_work = 1e-3;
 // How many times as large last terms may be that are rounding, where the rates are next to nothing beside the work.
 constexpr double k_noise_of_nothing = 1e4;
 // From which of that on few nodes are enough for it.
@@ -97,7 +98,8 @@ class RateRounding {
 class Direct final : public EventLocator {
  public:
   Direct(HybridSystem& system, double rtol, GuardSet& guard_set)
-      : EventLocator(system, guard_set, k_most_nodes), work_accuracy_(std::max(k_rounding_of_work, rtol * rtol)) {
+      : EventLocator(system, guard_set, k_most_nodes),
+        work_accuracy_(std::max(k_rounding_of_work, rtol * std::max(rtol, k_share_of_work))) {
     const auto unknowns = system.unknowns();
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
     if (found != unknowns.end()) quadrature_ = static_cast<std::size_t>(found - unknowns.begin());

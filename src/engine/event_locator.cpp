@@ -44,7 +44,8 @@ void EventLocator::begin_segment(double xi, std::span<const double> y) {
   ++statistics_.segments;
   begin_ = end_ = xi;
   std::ranges::copy(y, end_state_.begin());
-  for (auto* values : {&values_, &extremum_values_, &begin_values_, &end_values_}) values->resize(guard_set_.size());
+  for (auto* values : {&values_, &extremum_values_, &root_values_, &begin_values_, &end_values_})
+    values->resize(guard_set_.size());
   looks_.reserve(most_looks_);
   look_values_.reserve(most_looks_ * guard_set_.size());
   fired_.reserve(guard_set_.size());
@@ -243,23 +244,35 @@ void EventLocator::look_up_to(double last) {
   }
 }
 
-/// The first of the roots between two looks, and the guard whose it is.
+/// The first of the roots between two looks, and the guard whose it is. The guard that a secant lets cross first is
+/// taken first; a guard that has not crossed at that root has its own beyond it and is left alone.
 double EventLocator::first_root(const View& before, const View& after, std::size_t& guard) {
   const auto directions = guard_set_.directions();
-  double first = std::numeric_limits<double>::infinity();
+  candidates_.clear();
   for (std::size_t g = 0; g < directions.size(); ++g) {
     if (!crosses(directions[g], before.values[g], after.values[g])) continue;
-    double root = after.xi;
+    candidates_.push_back({g, before.values[g] / (before.values[g] - after.values[g])});
+  }
+  std::ranges::sort(candidates_, {}, &Candidate::share);
+  double first = std::numeric_limits<double>::infinity();
+  View up_to = after;
+  for (const auto& [g, share] : candidates_) {
+    if (first < up_to.xi) {
+      state_at(first, guess_);
+      look(first, guess_, root_values_);
+      up_to = {first, root_values_};
+    }
+    if (!crosses(directions[g], before.values[g], up_to.values[g])) continue;
+    double root = up_to.xi;
     try {
-      root = polish(g, before, after);
+      root = polish(g, before, up_to);
     } catch (const std::domain_error&) {
       // Looks that are as near as that are both the root, whether or not there is a state between them.
-      if (after.xi - before.xi >= 2.0 * least_progress(begin_)) throw;
+      if (up_to.xi - before.xi >= 2.0 * least_progress(begin_)) throw;
     }
-    if (root < first) {
-      first = root;
-      guard = g;
-    }
+    if (root >= first) continue;
+    first = root;
+    guard = g;
   }
   return first;
 }

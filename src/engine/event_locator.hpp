@@ -54,6 +54,12 @@ class EventLocator : public Integrator {
     std::span<const double> values;
   };
 
+  /// A guard that crosses between two looks.
+  struct Candidate {
+    std::size_t guard = 0;
+    double share = 0.0;  ///< of the distance between the looks at which its secant crosses
+  };
+
   /// The complete state in the present piece.
   virtual void state_at(double xi, std::span<double> y) = 0;
   /// The same just ahead of a segment's beginning, where y holds the state.
@@ -76,7 +82,8 @@ class EventLocator : public Integrator {
   std::vector<double> looks_;        ///< places of the looks inside of the piece
   std::vector<double> look_values_;  ///< a row for each
   std::vector<double> guess_;
-  std::vector<double> values_, extremum_values_;
+  std::vector<double> values_, extremum_values_, root_values_;
+  std::vector<Candidate> candidates_;
 };
 
 }  // namespace monograin
