@@ -37,7 +37,7 @@ void Particle::start() {
     branches_[i] = {};
     branches_[i].resting = -setup_->classes[i].gap / setup_->length_unit();
   }
-  ++revision_;
+  note_change();
 }
 
 void Particle::set_drives(std::span<const Ramp> ramps) {
@@ -51,7 +51,7 @@ void Particle::set_drives(std::span<const Ramp> ramps) {
     const double force = is_loaded(i) ? count(i) * walls_[i].drive.size() : 0.0;
     walls_[i].may_be_slight = centre().acts(i) && force > 0.0 && force <= k_no_force * largest;
   }
-  ++revision_;
+  note_change();
 }
 
 double Particle::speed_scale() const noexcept {
@@ -64,12 +64,12 @@ double Particle::speed_scale() const noexcept {
 
 void Particle::set_branch(std::size_t i, const ContactBranch& branch) {
   branches_[i] = branch;
-  ++revision_;
+  note_change();
 }
 
 void Particle::set_branches(const std::vector<ContactBranch>& branches) {
   branches_ = branches;
-  ++revision_;
+  note_change();
 }
 
 bool Particle::peels_anywhere() const noexcept {
@@ -79,7 +79,7 @@ bool Particle::peels_anywhere() const noexcept {
 void Particle::set_bears(std::size_t i, bool bears) {
   if (walls_[i].bears == bears) return;
   walls_[i].bears = bears;
-  ++revision_;
+  note_change();
 }
 
 const Evaluation& Particle::evaluate(double xi, std::span<const double> y) {
@@ -90,6 +90,7 @@ const Evaluation& Particle::evaluate(double xi, std::span<const double> y) {
 
 const Evaluation& Particle::evaluate_forces(double xi, std::span<const double> y) {
   at_xi_ = k_nan;
+  force_rounding_.reset();
   at_.r = y[k_radius];
   at_.longest = 1.0;
   for (int k = 0; k < centre().count(); ++k) at_.longest = std::max(at_.longest, std::abs(y[centre_index(k)]));
@@ -118,6 +119,7 @@ const Evaluation& Particle::evaluated(double xi, std::span<const double> y) {
 
 void Particle::evaluate_contact(std::size_t i, double displacement, double r) {
   at_xi_ = k_nan;
+  force_rounding_.reset();
   Instant& now = at_.contacts[i];
   now.displacement = displacement;
   now.overlap = displacement + r;
@@ -316,13 +318,14 @@ double Particle::magnitude_of_forces() const noexcept {
 /// without going to and fro. Walls under force bear theirs as exactly as they stand. Overlaps are rounded as what they
 /// are differences of: lengths of the order of R0, the path of the centre, or that of a wall towards it.
 double Particle::force_rounding() const {
+  if (force_rounding_) return *force_rounding_;
   constexpr double round_off = std::numeric_limits<double>::epsilon();
   double sum = magnitude_of_forces();
   for (std::size_t i = 0; i < size(); ++i) {
     const double length = std::max(at_.longest, std::abs(contact(i).position));
     sum += count(i) * branches_[i].unpeeled_stiffness(law(), at_.r, contact(i).contact) * length;
   }
-  return 4.0 * round_off * sum;
+  return *(force_rounding_ = 4.0 * round_off * sum);
 }
 
 double Particle::resolution() const {

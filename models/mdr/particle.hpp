@@ -163,6 +163,10 @@ class Particle {
   void load_centre(std::size_t i);
   void set_rates_under_force(std::size_t i);
   [[nodiscard]] bool is_slight(std::size_t i);
+  void note_change() noexcept {
+    ++revision_;
+    force_rounding_.reset();
+  }
   [[nodiscard]] bool is_idle_touch(std::size_t i) const;
   [[nodiscard]] bool is_below_resolution(double overlap) const;
 
@@ -175,6 +179,7 @@ class Particle {
   double at_xi_ = k_nan;
   std::vector<double> at_y_;
   std::uint64_t at_revision_ = 0;
+  mutable std::optional<double> force_rounding_{};  ///< of contacts and branches as they are, once asked for
 };
 
 // --- rates of one contact
