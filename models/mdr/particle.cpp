@@ -90,7 +90,6 @@ const Evaluation& Particle::evaluate(double xi, std::span<const double> y) {
 
 const Evaluation& Particle::evaluate_forces(double xi, std::span<const double> y) {
   at_xi_ = k_nan;
-  force_rounding_.reset();
   at_.r = y[k_radius];
   at_.longest = 1.0;
   for (int k = 0; k < centre().count(); ++k) at_.longest = std::max(at_.longest, std::abs(y[centre_index(k)]));

@@ -163,6 +163,7 @@ class Particle {
   void load_centre(std::size_t i);
   void set_rates_under_force(std::size_t i);
   [[nodiscard]] bool is_slight(std::size_t i);
+  /// Outdates all that was found before drives, branches or walls changed.
   void note_change() noexcept {
     ++revision_;
     force_rounding_.reset();

@@ -31,8 +31,9 @@ constexpr int k_most_refusals = 200;
 constexpr double k_most_growth = 2.0;
 constexpr double k_most_shrinkage = 0.2;
 constexpr double k_safety = 0.85;
-// What the series of a piece's work may leave out, over the work: the square of the tolerance, but no less than
-// rounding. Where the work has a singularity, as at a first touch, its error is up to a hundred times that.
+// The series of a piece's work may leave out a share of the tolerance, over the work: the tolerance itself, or
+// k_share_of_work where that is larger, but no less than rounding. Where the work has a singularity, as at a first
+// touch, its error is up to a hundred times that.
 constexpr double k_rounding_of_work = 1e-16;
 constexpr double k_share_of_work = 1e-3;
 // How many times as large last terms may be that are rounding, where the rates are next to nothing beside the work.

@@ -69,9 +69,9 @@ struct StepForm {
 };
 
 inline constexpr int k_most_points = 1'000'000;
-inline constexpr double k_most_rows = 2e7;    ///< of a history, events not counted
-inline constexpr int k_most_steps = 100'000;  ///< of all programs, cycles written out
-inline constexpr int k_most_walls = 200;       ///< which take mdr with a free centre a quarter of a minute
+inline constexpr double k_most_rows = 2e7;      ///< of a history, events not counted
+inline constexpr int k_most_steps = 100'000;    ///< of all programs, cycles written out
+inline constexpr int k_most_walls = 200;        ///< which take mdr with a free centre a quarter of a minute
 inline constexpr double k_least_normal = 1e-6;  ///< magnitude that one component of a normal has to reach
 inline constexpr double k_greatest_normal = 1e6;
 
