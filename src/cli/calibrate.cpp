@@ -24,6 +24,7 @@ struct CalibrateOptions {
   std::string output;
   std::optional<double> confidence;
   bool is_quiet = false;
+  bool is_strict = false;
 };
 
 /// A line that tells how far a search has come, on a terminal.
@@ -60,14 +61,16 @@ int run_calibration(const CalibrateOptions& options) {
   const std::string no_figure = write_calibration(calibration, result, staged);
   print_data("{}", calibration_text(calibration, result));
   if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
-  if (options.is_quiet) return k_success;
+  for (const std::string& warning : result.warnings) say("warning: {}\n", warning);
+  const int code = options.is_strict && !result.warnings.empty() ? k_differs : k_success;
+  if (options.is_quiet) return code;
   for (const std::string& note : result.notes) say("note: {}\n", note);
   say("{}: the data drive the particle, in {} step{}; the scenario's own steps were not run, and are kept in "
       "fitted.toml\n"
       "{}: {} trial runs -> {}\n",
       calibration.name, result.program_steps, result.program_steps == 1 ? "" : "s", calibration.name,
       result.solution.evaluations, folder.string());
-  return k_success;
+  return code;
 }
 
 }  // namespace
@@ -83,7 +86,8 @@ void add_calibrate_command(CLI::App& app, Action& action) {
       ->add_option("--confidence", options->confidence,
                    "Level of the two-sided intervals, between 0 and 1, e.g. 0.99 [the file's, or 0.95]")
       ->check(CLI::Range(1e-6, 1.0 - 1e-6));
-  command->add_flag("--quiet", options->is_quiet, "Say nothing but the result and errors");
+  command->add_flag("--quiet", options->is_quiet, "Say nothing but the result, warnings and errors");
+  command->add_flag("--strict", options->is_strict, "Exit with 5 where the fit is bad and a warning says so");
   command->footer("Example: monograin calibrate scenarios/calibrate/uniaxial.toml");
   command->callback([options, &action] { action = [options] { return run_calibration(*options); }; });
 }

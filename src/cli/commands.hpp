@@ -16,7 +16,7 @@ enum ExitCode : int {
   k_usage = 2,           ///< command line, scenario or file fault; nothing was run or written
   k_left_domain = 3,     ///< a run left its model's domain; the history up to there is kept
   k_solver_failure = 4,  ///< a solver gave up; the history up to there is kept
-  k_differs = 5          ///< a comparison was above its tolerance
+  k_differs = 5          ///< a comparison was above its tolerance, or a fit is bad
 };
 
 /// What the end of a run makes of the process's.

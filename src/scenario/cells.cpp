@@ -1,6 +1,7 @@
 #include "scenario/cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <system_error>
@@ -8,38 +9,91 @@
 namespace monograin {
 namespace {
 
+constexpr std::string_view k_minus_sign = "\xE2\x88\x92";  // U+2212
+constexpr std::size_t k_longest_number = 64;
+
 std::string_view without_end_blanks(std::string_view text) {
   const std::size_t last = text.find_last_not_of(" \t\r");
   return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
+}
+
+std::size_t characters_in(std::string_view text) {
+  const auto begins = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins));
+}
+
+/// Blanks that may stand around a cell.
+std::string_view blanks_beside(char separator) { return separator == '\t' ? " " : " \t"; }
+
+/// Where the cell ends that begins here: at the next separator, or at the end of the line.
+std::size_t end_of_cell(std::string_view line, std::size_t begin, char separator) {
+  const std::string_view separators = separator == ' ' ? std::string_view(" \t") : std::string_view(&separator, 1);
+  return std::min(line.find_first_of(separators, begin), line.size());
+}
+
+/// The closing quote of a cell that begins with one; npos where it has none, or where text follows it.
+std::size_t closing_quote(std::string_view line, std::size_t begin, char separator) {
+  std::size_t at = line.find('"', begin + 1);
+  while (at != std::string_view::npos && line.substr(at + 1).starts_with('"')) at = line.find('"', at + 2);
+  if (at == std::string_view::npos) return at;
+  const std::size_t next = std::min(line.find_first_not_of(blanks_beside(separator), at + 1), line.size());
+  const bool is_closed = next == line.size() || line[next] == separator || (separator == ' ' && next > at + 1);
+  return is_closed ? at : std::string_view::npos;
 }
 
 }  // namespace
 
 std::string_view take_line(std::string_view& text) {
   const std::size_t end = std::min(text.find('\n'), text.size());
-  const std::string_view line = without_end_blanks(text.substr(0, end));
+  std::string_view line = text.substr(0, end);
+  if (line.ends_with('\r')) line.remove_suffix(1);
   text.remove_prefix(std::min(end + 1, text.size()));
   return line;
 }
 
 bool is_comment(std::string_view line) noexcept {
-  const std::size_t begin = line.find_first_not_of(" \t");
+  const std::size_t begin = line.find_first_not_of(" \t\r");
   return begin == std::string_view::npos || line[begin] == '#';
 }
 
-std::vector<Cell> cells_of(std::string_view line) {
+std::vector<Cell> cells_of(std::string_view line, char separator) {
   std::vector<Cell> cells;
+  std::size_t counted = 0;  // bytes of the line before which the characters have been counted
+  std::size_t column = 1;
+  const auto add = [&](std::size_t begin, std::size_t end) {
+    column += characters_in(line.substr(counted, begin - counted));
+    counted = begin;
+    cells.push_back({without_end_blanks(line.substr(begin, end - begin)), column});
+  };
   for (std::size_t at = 0; at <= line.size();) {
-    const std::size_t end = std::min(line.find(',', at), line.size());
-    const std::size_t begin = std::min(line.find_first_not_of(" \t", at), end);
-    cells.push_back({without_end_blanks(line.substr(begin, end - begin)), begin + 1});
+    const std::size_t begin = std::min(line.find_first_not_of(blanks_beside(separator), at), line.size());
+    if (separator == ' ' && begin == line.size()) break;
+    const bool is_quoted = begin < line.size() && line[begin] == '"';
+    const std::size_t quote = is_quoted ? closing_quote(line, begin, separator) : std::string_view::npos;
+    const std::size_t end = end_of_cell(line, quote == std::string_view::npos ? begin : quote, separator);
+    if (quote == std::string_view::npos) {
+      add(begin, end);
+    } else {
+      add(begin + 1, quote);
+    }
     at = end + 1;
   }
   return cells;
 }
 
-std::optional<double> number_in(std::string_view text) noexcept {
+std::optional<double> number_in(std::string_view text, char decimal) noexcept {
   if (text.starts_with('+')) text.remove_prefix(1);
+  std::array<char, k_longest_number> digits{};
+  if (decimal != '.' || text.starts_with(k_minus_sign)) {
+    const std::size_t sign = text.starts_with(k_minus_sign) ? 1 : 0;
+    if (sign > 0) text.remove_prefix(k_minus_sign.size());
+    const bool has_two_signs = sign > 0 && text.starts_with('-');
+    const bool has_other_point = decimal != '.' && text.find('.') != std::string_view::npos;
+    if (has_two_signs || has_other_point || text.size() >= digits.size()) return {};
+    digits.front() = '-';
+    std::ranges::replace_copy(text, digits.begin() + static_cast<std::ptrdiff_t>(sign), decimal, '.');
+    text = {digits.data(), text.size() + sign};
+  }
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;

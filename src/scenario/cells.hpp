@@ -8,21 +8,24 @@
 namespace monograin {
 
 struct Cell {
-  std::string_view text;   ///< without the blanks around it
-  std::size_t column = 1;  ///< of its first character in the line
+  std::string_view text;   ///< without the blanks and quotes around it
+  std::size_t column = 1;  ///< of its first character in the line, counted in characters of UTF-8
 };
 
-/// Takes the next line off the text, without blanks at its end.
+/// Takes the next line off the text, without its line end.
 [[nodiscard]] std::string_view take_line(std::string_view& text);
 
 /// Whether a line says nothing: it is blank, or begins with '#'.
 [[nodiscard]] bool is_comment(std::string_view line) noexcept;
 
-/// The cells of a line, which commas separate.
-[[nodiscard]] std::vector<Cell> cells_of(std::string_view line);
+/// The cells of a line. A cell may stand in double quotes, which are not part of its text; the separator counts as text
+/// between them.
+/// @param separator  a character, or ' ' for any number of blanks and tabs
+[[nodiscard]] std::vector<Cell> cells_of(std::string_view line, char separator = ',');
 
 /// The finite number that all of the text is, whatever the locale.
-[[nodiscard]] std::optional<double> number_in(std::string_view text) noexcept;
+/// @param decimal  '.' or ','; the other one is no part of a number
+[[nodiscard]] std::optional<double> number_in(std::string_view text, char decimal = '.') noexcept;
 
 /// The text without a byte order mark at its beginning.
 [[nodiscard]] std::string_view without_byte_order_mark(std::string_view text) noexcept;

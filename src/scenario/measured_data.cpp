@@ -3,105 +3,203 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+#include <utility>
 
 #include "scenario/cells.hpp"
+#include "scenario/text_encoding.hpp"
 #include "scenario/words.hpp"
 
 namespace monograin {
 namespace {
 
-/// Where the unit's bracket opens; npos where there is none.
-std::size_t bracket_in(std::string_view heading) noexcept {
-  const std::size_t bracket = heading.rfind('[');
-  const bool is_unit = bracket != std::string_view::npos && bracket > 0 && heading.ends_with(']');
-  return is_unit ? bracket : std::string_view::npos;
+constexpr std::array<std::string_view, 8> k_missing{"", "nan", "na", "n/a", "-", "--", "---", "-----"};
+
+/// Whether a cell says that there is no number.
+bool is_missing(std::string_view text) {
+  std::string word(text);
+  std::ranges::transform(word, word.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::ranges::find(k_missing, word) != k_missing.end();
+}
+
+/// What a cell that is no number may be, and what to do; empty where nothing is known.
+std::string advice_for(std::string_view text, char decimal) {
+  const char other = decimal == '.' ? ',' : '.';
+  if (text.find(other) == std::string_view::npos) return {};
+  if (text.find(decimal) != std::string_view::npos) return "; expected numbers without separators of thousands";
+  if (number_in(text, other)) return fmt::format("; the decimal sign of the rows above is '{}'", decimal);
+  return {};
 }
 
 class DataParser {
  public:
-  DataParser(const std::string& origin, const std::vector<ColumnRequest>& wanted, FaultList& faults)
-      : origin_(origin), wanted_(wanted), faults_(faults) {
+  DataParser(const std::string& origin, const std::vector<ColumnRequest>& wanted, const TableFormat& format,
+             FaultList& faults)
+      : origin_(origin), wanted_(wanted), format_(format), faults_(faults) {
     data_.columns.resize(wanted.size());
   }
 
-  MeasuredData parse(std::string_view text) {
-    data_.text = text;
-    std::string_view rest = without_byte_order_mark(text);
+  MeasuredData parse(std::string_view bytes) {
+    DecodedText decoded = decode_text(bytes);
+    if (!decoded.problem.empty()) {
+      line_ = 1;
+      fault(1, decoded.problem);
+      return std::move(data_);
+    }
+    find_columns(decoded);
+    take_rows(decoded.text);
+    check_missing();
+    check_length();
+    const bool is_utf_8 = decoded.encoding.starts_with("UTF-8");
+    data_.text = is_utf_8 ? std::string(bytes) : std::move(decoded.text);
+    return std::move(data_);
+  }
+
+ private:
+  void find_columns(const DecodedText& decoded) {
+    std::vector<std::string_view> names;
+    for (const ColumnRequest& request : wanted_) {
+      if (!request.name.empty()) names.push_back(request.name);
+    }
+    data_.layout = find_layout(decoded.text, format_, names);
+    data_.layout.encoding = decoded.encoding;
+    const std::vector<std::string>& headings = data_.layout.headings;
+    if (headings.empty()) return;
+    if (data_.layout.heading_line == 0 && !names.empty()) {
+      line_ = data_.layout.first_line;
+      return fault(1,
+                   "a number where a row of headings is expected, for example displacement[m],force[N]; or give the "
+                   "columns by their numbers, from 1");
+    }
+    if (!format_.unit_of.empty() && format_.unit_of.size() != headings.size()) {
+      line_ = std::max(data_.layout.heading_line, data_.layout.first_line);
+      fault(1, fmt::format("{} columns, but {} units are given; expected a unit for each, in the order of the columns",
+                           headings.size(), format_.unit_of.size()));
+    }
+    for (std::size_t k = 0; k < wanted_.size(); ++k) {
+      const std::optional<std::size_t> place = place_of(wanted_[k]);
+      if (!place) continue;
+      data_.columns[k].number = *place + 1;
+      data_.columns[k].heading = headings[*place];
+      data_.columns[k].unit = data_.layout.units[*place];
+    }
+  }
+
+  /// Which column of the file a request means.
+  std::optional<std::size_t> place_of(const ColumnRequest& request) {
+    const std::vector<std::string>& headings = data_.layout.headings;
+    if (request.number > headings.size()) {
+      return no_column(request, fmt::format("{} has {} columns", on_one_line(origin_), headings.size()));
+    }
+    if (request.number > 0) return request.number - 1;
+    if (request.name.empty()) return std::nullopt;  // its own fault has been reported
+    auto found = std::ranges::find(headings, request.name);
+    const bool is_whole = found != headings.end();
+    const auto is_meant = [&](const std::string& heading) {
+      return is_whole ? heading == request.name : name_in(heading) == request.name;
+    };
+    if (!is_whole) found = std::ranges::find_if(headings, is_meant);
+    if (found == headings.end()) {
+      const std::vector<std::string_view> known(headings.begin(), headings.end());
+      return no_column(request, fmt::format("{} has no such column; expected one of {}{}", on_one_line(origin_),
+                                            on_one_line(listed(known)), did_you_mean(request.name, known)));
+    }
+    if (const auto again = std::find_if(found + 1, headings.end(), is_meant); again != headings.end()) {
+      return no_column(request,
+                       fmt::format("columns {} and {} of {} are both called so; expected the number of one",
+                                   found - headings.begin() + 1, again - headings.begin() + 1, on_one_line(origin_)));
+    }
+    return static_cast<std::size_t>(found - headings.begin());
+  }
+
+  std::nullopt_t no_column(const ColumnRequest& request, const std::string& problem) {
+    ++found_;
+    faults_.add(request.where, fmt::format("{}: {}", request.naming, problem));
+    return std::nullopt;
+  }
+
+  void take_rows(std::string_view rest) {
+    line_ = 0;
     while (!rest.empty() && found_ < k_most_table_faults) {
       ++line_;
       const std::string_view line = take_line(rest);
-      if (is_comment(line)) continue;
-      if (headings_.empty()) {
-        take_headings(cells_of(line));
-      } else {
-        take_row(cells_of(line));
-      }
+      if (is_comment(line) || line_ < data_.layout.first_line) continue;
+      const std::vector<Cell> cells = cells_of(line, data_.layout.separator);
+      const auto is_empty = [](const Cell& cell) { return cell.text.empty(); };
+      if (!std::ranges::all_of(cells, is_empty)) take_row(cells);
     }
     if (found_ >= k_most_table_faults && !rest.empty()) {
       ++line_;
       fault(1, "too many faults above; the rest of the table is not checked");
     }
+  }
+
+  void take_row(const std::vector<Cell>& cells) {
+    const std::size_t width = data_.layout.headings.size();
+    const auto is_empty = [](const Cell& cell) { return cell.text.empty(); };
+    const bool has_surplus = cells.size() > width;
+    if (cells.size() < width ||
+        (has_surplus && !std::all_of(cells.begin() + static_cast<std::ptrdiff_t>(width), cells.end(), is_empty))) {
+      return fault(cells.front().column,
+                   fmt::format("{} cell{} where there are {} {}; expected a cell for each, and nothing below the table",
+                               cells.size(), cells.size() == 1 ? "" : "s", width,
+                               data_.layout.heading_line > 0 ? "headings" : "columns"));
+    }
+    std::vector<double> values;
+    bool is_left_out = false;
+    for (const MeasuredColumn& column : data_.columns) {
+      values.push_back(0.0);
+      if (column.number == 0) continue;
+      const Cell& cell = cells[column.number - 1];
+      if (const auto value = number_in(cell.text, data_.layout.decimal)) {
+        values.back() = *value;
+      } else if (is_missing(cell.text)) {
+        is_left_out = true;
+        if (missing_.size() < k_most_table_faults) missing_.push_back({line_, cell.column, no_number(column, cell)});
+      } else {
+        fault(cell.column, no_number(column, cell) + advice_for(cell.text, data_.layout.decimal));
+      }
+    }
+    if (is_left_out) return data_.left_out.push_back(line_);
+    for (std::size_t k = 0; k < data_.columns.size(); ++k) {
+      MeasuredColumn& column = data_.columns[k];
+      if (column.number == 0) continue;
+      column.values.push_back(values[k]);
+      column.at.push_back(cells[column.number - 1].column);
+    }
+    data_.lines.push_back(line_);
+  }
+
+  static std::string no_number(const MeasuredColumn& column, const Cell& cell) {
+    const std::string name = column.heading.empty() ? fmt::format("column {}", column.number) : shown(column.heading);
+    return fmt::format("{} = {}: expected a finite number", name, cell.text.empty() ? "(nothing)" : shown(cell.text));
+  }
+
+  void check_missing() {
+    const std::size_t rows = data_.lines.size() + data_.left_out.size();
+    if (static_cast<double>(data_.left_out.size()) <= format_.most_missing * static_cast<double>(rows)) return;
+    const std::string why = format_.most_missing > 0.0
+                                ? fmt::format("; {} of {} rows have none, and no more than {:g} % may be left out",
+                                              data_.left_out.size(), rows, 100.0 * format_.most_missing)
+                                : "";
+    const std::size_t last = line_;
+    for (const MissingCell& cell : missing_) {
+      line_ = cell.line;
+      if (found_ < k_most_table_faults) fault(cell.column, cell.message + why);
+    }
+    line_ = last;
+  }
+
+  void check_length() {
     line_ = std::max<std::size_t>(line_, 1);
-    if (headings_.empty()) {
+    if (data_.layout.headings.empty()) {
       fault(1,
             "the file is empty; expected a row of headings, for example displacement[m],force[N], and rows of numbers");
     } else if (data_.lines.empty() && found_ == 0) {
       fault(1, "the file has headings but no data; expected rows of numbers");
     }
-    return std::move(data_);
-  }
-
- private:
-  void take_headings(const std::vector<Cell>& cells) {
-    for (const Cell& cell : cells) headings_.push_back(cell.text);
-    for (const Cell& cell : cells) {
-      if (number_in(cell.text)) {
-        return fault(cell.column, "a number where a row of headings is expected, for example displacement[m],force[N]");
-      }
-    }
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      const auto before = headings_.begin() + static_cast<std::ptrdiff_t>(k);
-      if (std::find(headings_.begin(), before, cells[k].text) != before) {
-        fault(cells[k].column, fmt::format("two columns are called '{}'", shown(cells[k].text)));
-      }
-    }
-    for (const ColumnRequest& request : wanted_) places_.push_back(place_of(request));
-  }
-
-  /// Which column of the file a request means; the number of columns where it is none.
-  std::size_t place_of(const ColumnRequest& request) {
-    if (request.name.empty()) return headings_.size();  // its own fault has been reported
-    auto found = std::ranges::find(headings_, request.name);
-    if (found == headings_.end()) found = std::ranges::find(headings_, request.name, name_in);
-    const auto place = static_cast<std::size_t>(found - headings_.begin());
-    if (found == headings_.end()) {
-      ++found_;
-      const std::string hint = did_you_mean(request.name, headings_);
-      faults_.add(request.where, fmt::format("{}: {} has no such column; expected one of {}{}", request.naming,
-                                             on_one_line(origin_), on_one_line(listed(headings_)), hint));
-    } else {
-      data_.columns[places_.size()].heading = *found;
-    }
-    return place;
-  }
-
-  void take_row(const std::vector<Cell>& cells) {
-    if (cells.size() != headings_.size()) {
-      return fault(cells.front().column, fmt::format("{} cell{} where there are {} headings", cells.size(),
-                                                     cells.size() == 1 ? "" : "s", headings_.size()));
-    }
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      if (places_[k] >= cells.size()) continue;
-      const Cell& cell = cells[places_[k]];
-      const auto value = number_in(cell.text);
-      if (!value) {
-        fault(cell.column, fmt::format("{} = {}: expected a finite number", shown(headings_[places_[k]]),
-                                       cell.text.empty() ? "(nothing)" : shown(cell.text)));
-      }
-      data_.columns[k].values.push_back(value.value_or(0.0));
-      data_.columns[k].at.push_back(cell.column);
-    }
-    data_.lines.push_back(line_);
   }
 
   void fault(std::size_t column, std::string message) {
@@ -109,29 +207,27 @@ class DataParser {
     faults_.add({origin_, line_, column}, std::move(message));
   }
 
+  struct MissingCell {
+    std::size_t line;
+    std::size_t column;
+    std::string message;
+  };
+
   const std::string& origin_;
   const std::vector<ColumnRequest>& wanted_;
+  const TableFormat& format_;
   FaultList& faults_;
   MeasuredData data_;
-  std::vector<std::string_view> headings_;
-  std::vector<std::size_t> places_;  ///< of the columns that are wanted
+  std::vector<MissingCell> missing_;  ///< the first ones
   std::size_t line_ = 0;
   std::size_t found_ = 0;
 };
 
 }  // namespace
 
-MeasuredData parse_measured(std::string_view text, const std::string& origin, const std::vector<ColumnRequest>& wanted,
-                            FaultList& faults) {
-  return DataParser(origin, wanted, faults).parse(text);
+MeasuredData parse_measured(std::string_view bytes, const std::string& origin, const std::vector<ColumnRequest>& wanted,
+                            FaultList& faults, const TableFormat& format) {
+  return DataParser(origin, wanted, format, faults).parse(bytes);
 }
-
-std::string_view unit_in(std::string_view heading) noexcept {
-  const std::size_t bracket = bracket_in(heading);
-  if (bracket == std::string_view::npos) return {};
-  return heading.substr(bracket + 1, heading.size() - bracket - 2);
-}
-
-std::string_view name_in(std::string_view heading) noexcept { return heading.substr(0, bracket_in(heading)); }
 
 }  // namespace monograin

@@ -1,25 +1,28 @@
-/// Columns of numbers from a table that somebody measured.
+/// Columns of numbers from a table that somebody, or a machine, has measured.
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "scenario/faults.hpp"
+#include "scenario/table_layout.hpp"
 
 namespace monograin {
 
-/// A column that is asked for, and where and how: `x = "force[N]"`.
+/// A column that is asked for, and where and how: `x = "force[N]"`, `x = 2`.
 struct ColumnRequest {
-  std::string name;  ///< a heading, or a heading without its unit
+  std::string name;  ///< a heading, or a heading without its unit; empty: the number counts
   SourceLocation where;
   std::string naming;
+  std::size_t number = 0;  ///< from 1; 0: the name counts
 };
 
 struct MeasuredColumn {
-  std::string heading;  ///< as in the file; empty where there is no such column
+  std::size_t number = 0;  ///< place of the column, from 1; 0 where there is no such column
+  std::string heading;     ///< as in the file; empty where it has none
+  std::string unit;        ///< see TableLayout
   std::vector<double> values;
   std::vector<std::size_t> at;  ///< place of each value in its line, from 1
 };
@@ -27,20 +30,20 @@ struct MeasuredColumn {
 struct MeasuredData {
   std::vector<MeasuredColumn> columns;  ///< in the order in which they were asked for
   std::vector<std::size_t> lines;       ///< of each row in the file, from 1
-  std::string text;                     ///< the file as it was read
+  std::vector<std::size_t> left_out;    ///< lines of the rows without a number in one of the columns
+  TableLayout layout;
+  std::string text;  ///< the file as it was read, in UTF-8
 };
 
-/// Reads CSV with commas and one row of headings. Lines that begin with '#' and blank lines do not count, nor do
-/// columns that were not asked for. Every cell has to be a finite number.
+/// Reads a table of numbers. Lines that begin with '#', blank lines and lines of separators do not count, nor do
+/// columns that were not asked for. Every cell has to be a finite number. A cell that is empty or says that there is
+/// none (nan, n/a, a dash) leaves its row out, as long as no more rows are left out than `format` admits.
 ///
 /// What comes back is only meaningful if nothing was added to `faults`: the first twenty of the table, each with line
 /// and column.
-[[nodiscard]] MeasuredData parse_measured(std::string_view text, const std::string& origin,
-                                          const std::vector<ColumnRequest>& wanted, FaultList& faults);
-
-/// The heading's unit: "N" of "force[N]"; empty where it has none.
-[[nodiscard]] std::string_view unit_in(std::string_view heading) noexcept;
-/// The heading without its unit.
-[[nodiscard]] std::string_view name_in(std::string_view heading) noexcept;
+/// @param bytes  the file, in any encoding that decode_text knows
+[[nodiscard]] MeasuredData parse_measured(std::string_view bytes, const std::string& origin,
+                                          const std::vector<ColumnRequest>& wanted, FaultList& faults,
+                                          const TableFormat& format = {});
 
 }  // namespace monograin

@@ -10,6 +10,8 @@
 #include "engine/drive.hpp"
 #include "scenario/faults.hpp"
 #include "scenario/integrators.hpp"
+#include "study/calibrate/bad_fit.hpp"
+#include "study/calibrate/calibration_language.hpp"
 #include "system/undefined.hpp"
 
 namespace monograin {
@@ -28,9 +30,11 @@ double noise_of(const CheckedScenario& scenario) {
              : scenario.numerics.rtol;
 }
 
-/// x with further values in between, so that a curve through it is smooth.
-std::vector<double> refined(std::span<const double> x) {
-  const std::size_t parts = std::max<std::size_t>(1, k_curve_points / x.size());
+/// Into how many parts a curve's pieces are divided, so that it is smooth.
+std::size_t parts_of(std::span<const double> x) { return std::max<std::size_t>(1, k_curve_points / x.size()); }
+
+/// x with further values in between.
+std::vector<double> refined(std::span<const double> x, std::size_t parts) {
   std::vector<double> result{x.front()};
   for (std::size_t i = 1; i < x.size(); ++i) {
     for (std::size_t k = 1; k < parts; ++k) {
@@ -41,23 +45,54 @@ std::vector<double> refined(std::span<const double> x) {
   return result;
 }
 
+/// Displacements at the particle: those measured without what the machine adds under the forces.
+std::vector<double> without_machine(const Machine& machine, std::vector<double> displacements,
+                                    std::span<const double> forces) {
+  for (std::size_t i = 0; i < displacements.size(); ++i) displacements[i] -= machine.addition(forces[i]);
+  return displacements;
+}
+
 /// The response of one curve's scenario as the residuals of a problem, with the parameters of a fit.
 class Response {
  public:
-  Response(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<double>& x)
+  /// @param x, y  what was measured
+  Response(const Calibration& calibration, const MeasuredCurve& curve, std::vector<double> x, std::vector<double> y)
       : calibration_(calibration),
-        replay_(curve.scenario, {curve.driven, calibration.y.observable, curve.control, curve.start}, x) {}
+        curve_(curve),
+        replay_(curve.scenario, {curve.driven, calibration.y.observable, curve.control, curve.start}, x),
+        x_(std::move(x)),
+        y_(std::move(y)) {}
 
   bool operator()(std::span<const double> parameters, std::span<double> response) {
-    for (std::size_t k = 0; k < parameters.size(); ++k) replay_.set(calibration_.free[k].key.path, parameters[k]);
-    return replay_.run(response);
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      const std::string& path = calibration_.free[k].key.path;
+      if (!path.starts_with(calibration::k_data)) replay_.set(path, parameters[k]);
+    }
+    const Machine machine = calibration_.machine_of(curve_, parameters);
+    const bool moves_x = calibration_.machine_moves_x();
+    if (machine.is_rigid()) {
+      if (is_moved_) replay_.follow(x_);
+      is_moved_ = false;
+    } else if (moves_x) {
+      replay_.follow(without_machine(machine, x_, y_));
+      is_moved_ = true;
+    }
+    if (!replay_.run(response)) return false;
+    for (std::size_t i = 0; i < x_.size() && !moves_x && !machine.is_rigid(); ++i) {
+      response[i] += machine.addition(x_[i]);
+    }
+    return true;
   }
 
   [[nodiscard]] const Replay& replay() const noexcept { return replay_; }
 
  private:
   const Calibration& calibration_;
+  const MeasuredCurve& curve_;
   Replay replay_;
+  std::vector<double> x_;
+  std::vector<double> y_;
+  bool is_moved_ = false;  ///< the replay follows other values than x
 };
 
 /// A curve's share of values that are kept row by row.
@@ -71,12 +106,17 @@ std::vector<double> x_of(const Calibration& calibration, const MeasuredCurve& cu
   return {begin + static_cast<std::ptrdiff_t>(curve.begin), begin + static_cast<std::ptrdiff_t>(curve.end)};
 }
 
+std::vector<double> y_of(const Calibration& calibration, const MeasuredCurve& curve) {
+  const auto begin = calibration.y.values.begin();
+  return {begin + static_cast<std::ptrdiff_t>(curve.begin), begin + static_cast<std::ptrdiff_t>(curve.end)};
+}
+
 class Fit {
  public:
   Fit(const Calibration& calibration, const LeastSquaresProblem::Progress& progress)
       : calibration_(calibration), procedures_(model_fits(calibration)), response_(calibration.x.values.size()) {
     for (const MeasuredCurve& curve : calibration.curves) {
-      responses_.emplace_back(calibration, curve, x_of(calibration, curve));
+      responses_.emplace_back(calibration, curve, x_of(calibration, curve), y_of(calibration, curve));
     }
     for (std::size_t row = 0; row < calibration.weights.size(); ++row) {
       if (calibration.weights[row] > 0.0) rows_.push_back(row);
@@ -99,9 +139,17 @@ class Fit {
   Fit(const Fit&) = delete;
   Fit& operator=(const Fit&) = delete;
 
-  CalibrationResult run() {
+  /// How much the best fit explains.
+  TrialFit explain() {
+    const auto solution = minimise(problem_);
+    if (!solution) return {k_nan, {}};
+    return {explained_share(calibration_, solution->cost), solution->parameters};
+  }
+
+  /// @param trial  for the cause where there is no fit
+  CalibrationResult run(const FitTrial& trial) {
     auto solution = minimise(problem_);
-    if (!solution) no_response();
+    if (!solution) no_response(trial);
     CalibrationResult result;
     result.solution = std::move(*solution);
     const std::vector<double>& parameters = result.solution.parameters;
@@ -113,8 +161,10 @@ class Fit {
                                         rows_.size(), calibration_.confidence);
     for (const MeasuredCurve& curve : calibration_.curves) {
       const std::vector<double> x = x_of(calibration_, curve);
-      append(curve_through(curve, x, result), result.fit);
-      result.curves.push_back(curve_through(curve, refined(x), result));
+      const std::vector<double> y = y_of(calibration_, curve);
+      append(curve_through(curve, x, y, result), result.fit);
+      result.curves.push_back(curve_through(curve, refined(x, parts_of(x)), refined(y, parts_of(x)), result));
+      add_particle(curve, result);
     }
     result.points = rows_.size();
     for (const Response& response : responses_) {
@@ -151,7 +201,7 @@ class Fit {
   }
 
   /// No place of the scan has a response: says what happens in the middle of the bounds.
-  [[noreturn]] void no_response() {
+  [[noreturn]] void no_response(const FitTrial& trial) {
     std::vector<double> middle;
     for (const FreeParameter& parameter : calibration_.free)
       middle.push_back(std::midpoint(parameter.lower, parameter.upper));
@@ -159,16 +209,17 @@ class Fit {
     const std::size_t failed = failing(middle) % responses_.size();
     const Replay& replay = responses_[failed].replay();
     const MeasuredCurve& curve = calibration_.curves[failed];
+    const std::string cause = likely_cause(calibration_, trial);
     throw_fault(
         {curve.file, calibration_.lines[curve.begin + replay.failed_at()]},
         fmt::format("the scenario cannot follow the data beyond this row with any parameters that were tried: {}; "
-                    "expected other bounds, or data that model '{}' can follow",
-                    replay.problem(), calibration_.scenario.model));
+                    "expected other bounds, or data that model '{}' can follow{}",
+                    replay.problem(), calibration_.scenario.model, cause.empty() ? "" : "; likely cause: " + cause));
   }
 
   [[nodiscard]] FittedCurve curve_through(const MeasuredCurve& measured, const std::vector<double>& x,
-                                          const CalibrationResult& result) {
-    Response response_through(calibration_, measured, x);
+                                          const std::vector<double>& y, const CalibrationResult& result) {
+    Response response_through(calibration_, measured, x, y);
     LeastSquaresProblem problem = problem_;
     problem.residual_count = x.size();
     problem.residuals = [&response_through](std::span<const double> parameters, std::span<double> response) {
@@ -181,6 +232,20 @@ class Fit {
       curve.band[i] = result.uncertainty.half_width(gradients.row(static_cast<Eigen::Index>(i)).transpose());
     }
     return curve;
+  }
+
+  /// Displacements at the particle, where they are not those measured.
+  void add_particle(const MeasuredCurve& curve, CalibrationResult& result) const {
+    const Machine machine = calibration_.machine_of(curve, result.solution.parameters);
+    const bool is_in_use = std::ranges::any_of(calibration_.curves, [&](const MeasuredCurve& other) {
+      return !calibration_.machine_of(other, result.solution.parameters).is_rigid();
+    });
+    if (!is_in_use) return;
+    const std::vector<double> x = x_of(calibration_, curve);
+    const std::vector<double> y = y_of(calibration_, curve);
+    const std::vector<double> particle =
+        calibration_.machine_moves_x() ? without_machine(machine, x, y) : without_machine(machine, y, x);
+    result.particle.insert(result.particle.end(), particle.begin(), particle.end());
   }
 
   void add_statistics(CalibrationResult& result) const {
@@ -199,13 +264,15 @@ class Fit {
     }
     for (const double r : result.solution.residuals) result.sum_of_squares += r * r;
     result.rms = std::sqrt(about_fit / static_cast<double>(rows_.size()));
-    result.r_squared = about_mean > 0.0 ? 1.0 - about_fit / about_mean : k_nan;
+    result.r_squared = is_constant(calibration_) ? k_nan : 1.0 - about_fit / about_mean;
+    result.explained = explained_share(calibration_, result.solution.cost);
   }
 
   void add_notes(CalibrationResult& result) const {
     using Bound = LeastSquaresSolution::Bound;
     const LeastSquaresSolution& solution = result.solution;
     const auto note = [&result](std::string text) { result.notes.push_back(std::move(text)); };
+    result.notes = calibration_.notes;
     for (std::size_t k = 0; k < calibration_.free.size(); ++k) {
       const FreeParameter& parameter = calibration_.free[k];
       const std::string& path = parameter.key.path;
@@ -234,12 +301,23 @@ class Fit {
     }
     for (const MeasuredCurve& curve : calibration_.curves) {
       const std::vector<double> x = x_of(calibration_, curve);
+      note_table_ends(curve, x, result);
       const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
       if (changed != x.end() && *changed < x.front() && x.front() > curve.start) {
         note("the data begin with unloading; the particle is loaded to their first row from rest");
       }
     }
     note_correlations(result);
+  }
+
+  void note_table_ends(const MeasuredCurve& curve, const std::vector<double>& x, CalibrationResult& result) const {
+    if (curve.machine.forces.empty()) return;
+    const std::vector<double> forces = calibration_.machine_moves_x() ? y_of(calibration_, curve) : x;
+    const double largest = *std::ranges::max_element(forces);
+    if (largest <= curve.machine.forces.back()) return;
+    result.notes.push_back(fmt::format(
+        "the table of the machine's displacement ends at {:.6g} N and is continued by its last piece to {:.6g} N",
+        curve.machine.forces.back(), largest));
   }
 
   /// Pairs of parameters of which the data tell little more than a combination.
@@ -274,7 +352,16 @@ class Fit {
 }  // namespace
 
 CalibrationResult calibrate(const Calibration& calibration, const LeastSquaresProblem::Progress& progress) {
-  return Fit(calibration, progress).run();
+  const FitTrial trial = [&progress](const Calibration& changed) {
+    return Fit(changed,
+               [&progress](double /*done*/) {  // a caller stops a search in its progress
+                 if (progress) progress(1.0);
+               })
+        .explain();
+  };
+  CalibrationResult result = Fit(calibration, progress).run(trial);
+  result.warnings = warnings_of(calibration, result, trial);
+  return result;
 }
 
 }  // namespace monograin

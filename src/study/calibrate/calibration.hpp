@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@
 #include "numerics/uncertainty.hpp"
 #include "scenario/numbers.hpp"
 #include "scenario/scenario.hpp"
+#include "scenario/table_layout.hpp"
+#include "study/calibrate/machine.hpp"
 #include "study/calibrate/model_fit.hpp"
 #include "study/calibrate/replay.hpp"
 
@@ -41,9 +44,13 @@ struct MeasuredCurve {
   std::size_t end = 0;
   std::string file;
   std::string text;
-  std::vector<std::string> overrides;  ///< of the scenario, for this curve
-  CheckedScenario scenario;            ///< with them
-  std::string driven;                  ///< observable that x holds
+  TableLayout layout;
+  std::array<std::size_t, 2> columns{};  ///< of x and y in the file, from 1
+  std::vector<std::size_t> left_out;     ///< lines of the rows without a number in one of the columns
+  Machine machine;                       ///< as given, without what is free
+  std::vector<std::string> overrides;    ///< of the scenario, for this curve
+  CheckedScenario scenario;              ///< with them
+  std::string driven;                    ///< observable that x holds
   Step::Kind control = Step::Kind::displacement;
   double start = 0.0;  ///< of x, before the first step [SI]
 };
@@ -65,7 +72,12 @@ struct Calibration {
   std::vector<FreeParameter> free;
   LossFunction loss;
   double confidence = 0.95;
+  std::vector<std::string> notes;  ///< what was found in the data's files and may not be what was meant
 
+  /// The machine of a curve with these values of the free parameters.
+  [[nodiscard]] Machine machine_of(const MeasuredCurve& curve, std::span<const double> parameters) const;
+  /// Which of the quantities the machine adds to: the displacement.
+  [[nodiscard]] bool machine_moves_x() const noexcept { return x.observable.ends_with(".displacement"); }
   /// Rows that take part in the fit.
   [[nodiscard]] std::size_t counted() const noexcept;
   /// The curve that a row is of.
@@ -89,20 +101,31 @@ struct FittedCurve {
 struct CalibrationResult {
   LeastSquaresSolution solution;
   Uncertainty uncertainty;
-  ModelFits procedures;             ///< of the model's own, and this fit by their measures; empty: it has none
-  FittedCurve fit;                  ///< at the data
-  std::vector<FittedCurve> curves;  ///< in between, too: one for each measured curve
-  std::size_t points = 0;           ///< rows that take part
-  std::size_t program_steps = 0;    ///< of the loading made from the data
-  double sum_of_squares = 0.0;      ///< of weighted residuals
-  double rms = 0.0;                 ///< of residuals [SI of y], over all rows that take part
-  double largest = 0.0;             ///< of their magnitudes
-  std::size_t largest_at = 0;       ///< its row
-  double r_squared = 0.0;           ///< 1 - sum (y - fit)^2 / sum (y - mean)^2, unweighted
-  std::vector<std::string> notes;   ///< what the user should know
+  ModelFits procedures;               ///< of the model's own, and this fit by their measures; empty: it has none
+  FittedCurve fit;                    ///< at the data
+  std::vector<FittedCurve> curves;    ///< in between, too: one for each measured curve
+  std::size_t points = 0;             ///< rows that take part
+  std::size_t program_steps = 0;      ///< of the loading made from the data
+  double sum_of_squares = 0.0;        ///< of weighted residuals
+  double rms = 0.0;                   ///< of residuals [SI of y], over all rows that take part
+  double largest = 0.0;               ///< of their magnitudes
+  std::size_t largest_at = 0;         ///< its row
+  double r_squared = 0.0;             ///< 1 - sum (y - fit)^2 / sum (y - mean)^2, unweighted; nan where y is constant
+  double explained = 0.0;             ///< 1 - cost / (cost of the best constant); nan where y is constant
+  std::vector<double> particle;       ///< displacement at the particle in every row; empty: the machine adds nothing
+  std::vector<std::string> notes;     ///< what the user should know
+  std::vector<std::string> warnings;  ///< why the fit is not to be trusted, and the likely cause
 };
 
-/// Fits. @throws ScenarioError where the scenario cannot follow the data with any of the parameters tried
+/// A fit that explains less of the data than this is bad, and warned of. It is R^2 where the loss is linear and the
+/// weights are equal.
+inline constexpr double k_least_explained = 0.9;
+
+/// Share of the rows that may lack a number in x, y or the weights.
+inline constexpr double k_most_missing = 0.1;
+
+/// Fits, and looks for the cause of a bad fit in the units, signs and the first touch. @throws ScenarioError where the
+/// scenario cannot follow the data with any of the parameters tried
 [[nodiscard]] CalibrationResult calibrate(const Calibration& calibration,
                                           const LeastSquaresProblem::Progress& progress = {});
 

@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <tuple>
@@ -29,6 +31,15 @@ using namespace calibration;
 constexpr std::size_t k_largest_data = 16U * 1024U * 1024U;
 constexpr double k_ratio_for_log = 100.0;  // of bounds: from here on their parameter is sought in its logarithm
 constexpr std::size_t k_most_zeros = 20;   // that are reported one by one
+
+struct SeparatorWord {
+  std::string_view word;
+  char separator;
+};
+constexpr std::array k_separators{SeparatorWord{"comma", ','}, SeparatorWord{"semicolon", ';'},
+                                  SeparatorWord{"tab", '\t'},  SeparatorWord{"blanks", ' '},
+                                  SeparatorWord{",", ','},     SeparatorWord{";", ';'},
+                                  SeparatorWord{"\t", '\t'},   SeparatorWord{" ", ' '}};
 
 /// The dimension whose SI unit this is.
 std::optional<Dimension> dimension_of(std::string_view si) {
@@ -68,6 +79,7 @@ class CalibrationReader {
     if (root.has("data")) read_data(root);
     if (root.has("free") && has_scenario_) read_free(root);
     faults_.throw_if_any();
+    check_machine(root);
     check_count(root);
     faults_.throw_if_any();
     return std::move(made_);
@@ -162,12 +174,55 @@ class CalibrationReader {
     for (const Section::Origin& origin : curves) read_curve(origin);
   }
 
-  void read_curve(const Section::Origin& origin) {
-    const auto is_table = [&origin](std::string_view key) {
-      const toml::node* node = origin.table->get(key);
-      return node != nullptr && node->is_table();
+  /// How a key is written that may be a name, a number, a list or a table.
+  static KeySpec::Kind kind_of(const toml::table& table, std::string_view key, KeySpec::Kind otherwise) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return otherwise;
+    if (node->is_table()) return KeySpec::Kind::table;
+    if (node->is_array()) return KeySpec::Kind::texts;
+    if (node->is_integer() && otherwise == KeySpec::Kind::text) return KeySpec::Kind::integer;
+    return otherwise;
+  }
+
+  static DataKinds kinds_of(const toml::table& data) {
+    const auto column = [&data](std::string_view key) {
+      const KeySpec::Kind kind = kind_of(data, key, KeySpec::Kind::text);
+      return kind == KeySpec::Kind::texts ? KeySpec::Kind::text : kind;
     };
-    const Keys keys = data_keys(is_table("x"), is_table("y"));
+    DataKinds kinds{.x = column("x"), .y = column("y"), .weight_column = column("weight_column")};
+    if (kinds.weight_column == KeySpec::Kind::table) kinds.weight_column = KeySpec::Kind::text;
+    if (kind_of(data, "units", KeySpec::Kind::choice) == KeySpec::Kind::texts) kinds.units = KeySpec::Kind::texts;
+    const toml::node* compliance = data.get("compliance");
+    if (compliance != nullptr && compliance->is_number()) kinds.compliance = KeySpec::Kind::quantity;
+    if (compliance != nullptr && compliance->is_table()) kinds.compliance = KeySpec::Kind::table;
+    return kinds;
+  }
+
+  /// How the file is written, as far as the user says.
+  TableFormat format_of(const Section& data, const DataKinds& kinds) {
+    TableFormat format{.most_missing = k_most_missing};
+    if (const std::string word = data.text("separator"); !word.empty()) {
+      const auto found = std::ranges::find(k_separators, word, &SeparatorWord::word);
+      if (found != k_separators.end()) {
+        format.separator = found->separator;
+      } else {
+        faults_.add(data.value_place("separator"),
+                    fmt::format("separator = \"{}\": expected comma, semicolon, tab or blanks", shown(word)));
+      }
+    }
+    if (const std::string decimal = data.text("decimal"); !decimal.empty()) format.decimal = decimal.front();
+    if (const auto skip = data.number("skip")) format.skip = static_cast<std::size_t>(*skip);
+    if (kinds.units == KeySpec::Kind::texts) {
+      format.unit_of = data.texts("units");
+    } else if (const std::string row = data.text("units"); !row.empty()) {
+      format.units = row == "row" ? TableFormat::Units::row : TableFormat::Units::none;
+    }
+    return format;
+  }
+
+  void read_curve(const Section::Origin& origin) {
+    const DataKinds kinds = kinds_of(*origin.table);
+    const Keys keys = data_keys(kinds);
     const std::size_t before = faults_.size();
     const Section data(reading_, origin, keys);
     const bool is_clean = faults_.size() == before;
@@ -178,13 +233,13 @@ class CalibrationReader {
                   fmt::format("weights = \"{}\": those of the first curve are \"{}\"; expected the same for all",
                               weighting, made_.weighting));
     }
-    std::vector<ColumnSpec> specs{column_spec(data, "x", is_table("x")), column_spec(data, "y", is_table("y"))};
+    std::vector<ColumnSpec> specs{column_spec(data, "x", kinds.x), column_spec(data, "y", kinds.y)};
     if (weighting == "column") {
       if (!data.has_or_misspells("weight_column")) {
         faults_.add(data.value_place("weights"),
                     "weights = \"column\" needs the column; expected for example weight_column = \"weight[-]\"");
       }
-      specs.push_back(column_spec(data, "weight_column", false));
+      specs.push_back(column_spec(data, "weight_column", kinds.weight_column));
     } else if (is_clean && data.has("weight_column")) {
       faults_.add(data.key_place("weight_column"),
                   fmt::format("key 'weight_column' belongs to weights = \"column\"; this is \"{}\"", weighting));
@@ -207,8 +262,12 @@ class CalibrationReader {
     curve.file = path.string();
     std::vector<ColumnRequest> wanted;
     for (const ColumnSpec& spec : specs) wanted.push_back(spec.request);
-    MeasuredData measured = parse_measured(text, curve.file, wanted, faults_);
+    MeasuredData measured = parse_measured(text, curve.file, wanted, faults_, format_of(data, kinds));
     curve.text = std::move(measured.text);
+    curve.layout = std::move(measured.layout);
+    curve.columns = {measured.columns[0].number, measured.columns[1].number};
+    curve.left_out = std::move(measured.left_out);
+    curve.machine = machine_in(data, kinds.compliance);
     curve.overrides = data.texts("set");
     take_scenario(data, curve);
     const MeasuredQuantity x = quantity(specs[0], measured.columns[0]);
@@ -222,6 +281,7 @@ class CalibrationReader {
     append(weights, made_.weights);
     add_quantity(x, specs[0], made_.x);
     add_quantity(y, specs[1], made_.y);
+    note_reading(curve, specs, {&x, &y}, measured.columns);
     made_.curves.push_back(std::move(curve));
   }
 
@@ -259,37 +319,57 @@ class CalibrationReader {
     }
   }
 
-  [[nodiscard]] ColumnSpec column_spec(const Section& data, std::string_view key, bool is_table) {
-    if (!is_table) {
-      const std::string name = data.text(key);
-      return {.request = {name, data.value_place(key), fmt::format("{} = \"{}\"", key, shown(name))},
+  [[nodiscard]] ColumnRequest request_of(const Section& section, std::string_view key, KeySpec::Kind kind) const {
+    ColumnRequest request{.name = {}, .where = section.value_place(key), .naming = {}};
+    if (kind == KeySpec::Kind::integer) {
+      request.number = static_cast<std::size_t>(section.number(key).value_or(0.0));
+      request.naming = fmt::format("{} = {}", key, request.number);
+    } else {
+      request.name = section.text(key);
+      request.naming = fmt::format("{} = \"{}\"", key, shown(request.name));
+    }
+    return request;
+  }
+
+  [[nodiscard]] ColumnSpec column_spec(const Section& data, std::string_view key, KeySpec::Kind kind) {
+    if (kind != KeySpec::Kind::table) {
+      return {.request = request_of(data, key, kind),
               .quantity = {},
               .unit = {},
               .quantity_at = data.value_place(key),
               .unit_at = data.value_place(key)};
     }
-    const Keys keys = column_keys();
-    const Section column(reading_, data.table(key, std::string(key)), keys);
-    const std::string name = column.text("column");
-    return {.request = {name, column.value_place("column"), fmt::format("column = \"{}\"", shown(name))},
+    const Section::Origin origin = data.table(key, std::string(key));
+    const KeySpec::Kind column_kind = kind_of(*origin.table, "column", KeySpec::Kind::text);
+    const bool is_number = column_kind == KeySpec::Kind::integer;
+    const Keys keys = column_keys(is_number ? column_kind : KeySpec::Kind::text);
+    const Section column(reading_, origin, keys);
+    return {.request = request_of(column, "column", column_kind),
             .quantity = column.text("quantity"),
             .unit = column.text("unit"),
             .quantity_at = column.value_place("quantity"),
-            .unit_at = column.value_place("unit")};
+            .unit_at = column.value_place(column.has("unit") ? "unit" : "column")};
   }
 
   /// The column in SI; without an observable where something is wrong with it, or with the scenario.
   [[nodiscard]] MeasuredQuantity quantity(const ColumnSpec& spec, const MeasuredColumn& column) {
     MeasuredQuantity result;
-    if (column.heading.empty() || !has_scenario_ || measurable_.drives.empty()) return result;
+    if (column.number == 0 || !has_scenario_ || measurable_.drives.empty()) return result;
     const std::string name = spec.quantity.empty() ? std::string(name_in(column.heading)) : spec.quantity;
+    if (name.empty()) {
+      faults_.add(spec.quantity_at,
+                  fmt::format("{}: the column has no heading that says what it holds; expected for example {{ column = "
+                              "{}, quantity = \"displacement\", unit = \"mm\" }}",
+                              spec.request.naming, column.number));
+      return result;
+    }
     const Measurable::Column* found = measurable_.find(measurable_.prefix() + name);
     if (found == nullptr) found = measurable_.find(name);
     if (found == nullptr) {
       unknown_quantity(name, spec);
       return result;
     }
-    result.unit = spec.unit.empty() ? std::string(unit_in(column.heading)) : spec.unit;
+    result.unit = spec.unit.empty() ? column.unit : spec.unit;
     result.si = found->unit;
     const auto factor = unit_factor(result, spec);
     if (!factor) return result;
@@ -335,6 +415,123 @@ class CalibrationReader {
               : fmt::format("{}: {}", spec.request.naming, one.problem));
     }
     return one.value;
+  }
+
+  // --- the machine
+
+  /// What the curve's table says of the machine.
+  [[nodiscard]] Machine machine_in(const Section& data, KeySpec::Kind kind) {
+    Machine machine{.offset = data.number("offset").value_or(0.0)};
+    if (!data.has("compliance")) return machine;
+    if (kind == KeySpec::Kind::quantity) machine.compliance = data.number("compliance").value_or(0.0);
+    if (kind == KeySpec::Kind::text) machine.compliance = compliance_in(data, "compliance").value.value_or(0.0);
+    if (kind == KeySpec::Kind::table) read_deflections(data, machine);
+    return machine;
+  }
+
+  /// A compliance written with its unit; says what is wrong with it.
+  [[nodiscard]] ParsedCompliance compliance_in(const Section& section, std::string_view key) {
+    const std::string text = section.text(key);
+    ParsedCompliance parsed = parse_compliance(text);
+    if (parsed.value && !(*parsed.value >= 0.0)) parsed.value.reset();
+    if (!parsed.value && !text.empty()) {
+      faults_.add(section.value_place(key),
+                  fmt::format("{} = \"{}\": expected a length over a force, 0 or more, for example \"20 nm/N\"", key,
+                              shown(text)));
+    }
+    return parsed;
+  }
+
+  void read_deflections(const Section& data, Machine& machine) {
+    const Keys keys = deflection_keys();
+    const Section section(reading_, data.table("compliance", "compliance"), keys);
+    const std::string name = section.text("table");
+    if (name.empty()) return;
+    const fs::path path = file_.parent_path() / name;
+    const auto [text, problem] = read_text_file(path, k_largest_data);
+    if (!problem.empty()) {
+      return faults_.add(section.value_place("table"),
+                         fmt::format("table = \"{}\": {} ({}); expected a path relative to this file", shown(name),
+                                     problem, on_one_line(path.string())));
+    }
+    const std::vector<ColumnRequest> wanted{request_of(section, "force", KeySpec::Kind::text),
+                                            request_of(section, "displacement", KeySpec::Kind::text)};
+    const std::size_t before = faults_.size();
+    MeasuredData measured = parse_measured(text, path.string(), wanted, faults_);
+    if (faults_.size() > before) return;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      const std::string& unit = measured.columns[k].unit;
+      const ParsedQuantity one = parse_quantity("1 " + unit, k == 0 ? Dimension::force : Dimension::length, {});
+      if (!one.value) {
+        faults_.add(wanted[k].where, fmt::format("{}: {}", wanted[k].naming, one.problem));
+        continue;
+      }
+      for (double& value : measured.columns[k].values) value *= *one.value;
+    }
+    machine.forces = std::move(measured.columns[0].values);
+    machine.deflections = std::move(measured.columns[1].values);
+    const auto fall = std::ranges::adjacent_find(machine.forces, std::greater_equal<>());
+    if (machine.forces.size() < 2 || fall != machine.forces.end()) {
+      faults_.add(section.value_place("table"),
+                  fmt::format("table = \"{}\": expected at least two rows, the forces ascending", shown(name)));
+    }
+  }
+
+  /// What belongs together only when all is read: the machine adds to a displacement, under the force beside it.
+  void check_machine(const Section& root) {
+    const auto is_free = [this](std::string_view path) {
+      return std::ranges::find(made_.free, path, [](const auto& free) { return free.key.path; }) != made_.free.end();
+    };
+    const auto is_deflecting = [](const MeasuredCurve& curve) {
+      return curve.machine.compliance > 0.0 || !curve.machine.forces.empty();
+    };
+    const auto has_offset = [](const MeasuredCurve& curve) { return curve.machine.offset != 0.0; };
+    const bool has_compliance = std::ranges::any_of(made_.curves, is_deflecting);
+    for (const auto& [path, is_given] : {std::pair(k_offset, std::ranges::any_of(made_.curves, has_offset)),
+                                         std::pair(k_compliance, has_compliance)}) {
+      if (is_given && is_free(path)) {
+        faults_.add(root.value_place("free"),
+                    fmt::format("'{}' is free and given in [data]; expected one of them", path));
+      }
+    }
+    const std::string& x = made_.x.observable;
+    const std::string& y = made_.y.observable;
+    constexpr std::string_view k_displacement = ".displacement";
+    const bool has_displacement = x.ends_with(k_displacement) || y.ends_with(k_displacement);
+    const std::string& moved = x.ends_with(k_displacement) ? x : y;
+    const std::string& other = x.ends_with(k_displacement) ? y : x;
+    const bool has_both = has_displacement && other == moved.substr(0, moved.rfind('.')) + ".force";
+    if ((has_compliance || is_free(k_compliance)) && !has_both) {
+      faults_.add(
+          root.value_place("data"),
+          fmt::format("a compliance takes force and displacement of the same walls; x and y are '{}' and '{}'", x, y));
+    } else if ((std::ranges::any_of(made_.curves, has_offset) || is_free(k_offset)) && !has_displacement) {
+      faults_.add(root.value_place("data"),
+                  fmt::format("an offset takes a displacement; x and y are '{}' and '{}'", x, y));
+    }
+  }
+
+  // --- what was found
+
+  void note_reading(const MeasuredCurve& curve, const std::vector<ColumnSpec>& specs,
+                    const std::array<const MeasuredQuantity*, 2>& quantities,
+                    const std::vector<MeasuredColumn>& columns) {
+    const std::string name = on_one_line(fs::path(curve.file).filename().string());
+    if (!is_plain(curve.layout)) made_.notes.push_back(fmt::format("{}: {}", name, describe(curve.layout)));
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::string& own = columns[k].unit;
+      const auto dimension = dimension_of(quantities[k]->si);
+      if (specs[k].unit.empty() || !dimension) continue;
+      const ParsedQuantity one = parse_quantity("1 " + own, *dimension, std::nullopt);
+      if (!one.value || *one.value == quantities[k]->unit_factor) continue;
+      made_.notes.push_back(fmt::format("{}: {} says '{}', and the file '{}'; the first was taken", name,
+                                        specs[k].request.naming, specs[k].unit, shown(own)));
+    }
+    if (curve.left_out.empty()) return;
+    made_.notes.push_back(
+        fmt::format("{}: {} row{} without a number in x, y or weights left out of {}, the first in line {}", name,
+                    curve.left_out.size(), curve.left_out.size() == 1 ? "" : "s",
+                    curve.left_out.size() + curve.end - curve.begin, curve.left_out.front()));
   }
 
   void check_drive(const ColumnSpec& spec, const MeasuredQuantity& x, MeasuredCurve& curve) {
@@ -402,7 +599,8 @@ class CalibrationReader {
   // --- free parameters
 
   void read_free(const Section& root) {
-    const std::vector<NumberKey> numbers = number_keys(made_.scenario);
+    std::vector<NumberKey> numbers = number_keys(made_.scenario);
+    append(machine_keys(), numbers);
     const Keys keys = free_keys(numbers);
     const std::vector<ForeignKey> foreign = foreign_keys(root.table("free", "").table);
     const Section free(reading_, root.table("free", "[free]"), keys, foreign);
@@ -437,11 +635,19 @@ class CalibrationReader {
   }
 
   void read_bounds(const Section& free, const NumberKey& number) {
-    const Keys keys = bounds_keys(number);
     const Section::Origin origin = free.table(number.path, fmt::format("\"{}\"", number.path));
+    const bool is_compliance = number.path == k_compliance;
+    const auto kind_of_bound = [&](std::string_view key) {
+      const toml::node* node = origin.table->get(key);
+      return is_compliance && node != nullptr && node->is_string() ? KeySpec::Kind::text : KeySpec::Kind::quantity;
+    };
+    const Keys keys = bounds_keys(number, {kind_of_bound("from"), kind_of_bound("to"), kind_of_bound("start")});
     const Section bounds(reading_, origin, keys);
-    const auto from = bounds.number("from");
-    const auto to = bounds.number("to");
+    const auto bound = [&](std::string_view key) {
+      return kind_of_bound(key) == KeySpec::Kind::text ? compliance_in(bounds, key).value : bounds.number(key);
+    };
+    const auto from = bound("from");
+    const auto to = bound("to");
     FreeParameter parameter;
     parameter.key = number;
     if (!from || !to) return;
@@ -452,7 +658,7 @@ class CalibrationReader {
     }
     parameter.lower = *from;
     parameter.upper = *to;
-    parameter.start = bounds.number("start");
+    parameter.start = bound("start");
     if (parameter.start && (*parameter.start < *from || *parameter.start > *to)) {
       faults_.add(bounds.value_place("start"),
                   fmt::format("start = {} is not between the bounds", shown(*origin.table->get("start"))));
@@ -462,7 +668,9 @@ class CalibrationReader {
     if (parameter.is_logarithmic && *from <= 0.0) {
       faults_.add(bounds.value_place("scale"), "scale = \"log\" needs bounds above zero");
     }
-    set_unit(parameter, *origin.table->get("from"));
+    // A bound of zero may be written without a unit.
+    const bool is_bare_zero = number.path.starts_with(k_data) && !origin.table->get("from")->is_string();
+    set_unit(parameter, *origin.table->get(is_bare_zero ? "to" : "from"));
     check_place(free, parameter);
     made_.free.push_back(std::move(parameter));
   }
@@ -471,7 +679,12 @@ class CalibrationReader {
   static void set_unit(FreeParameter& parameter, const toml::node& bound) {
     const Dimension dimension = parameter.key.dimension;
     parameter.unit = dimension_info(dimension).si;
-    if (const auto* text = bound.as_string()) {
+    const auto* text = bound.as_string();
+    if (parameter.key.path == k_compliance) {
+      const ParsedCompliance parsed = text == nullptr ? ParsedCompliance{.unit = "m/N"} : parse_compliance(text->get());
+      parameter.unit = parsed.unit;
+      parameter.unit_factor = parsed.unit_factor;
+    } else if (text != nullptr) {
       parameter.unit = parse_quantity(text->get(), dimension, std::nullopt).unit;
       parameter.unit_factor = parse_quantity("1 " + parameter.unit, dimension, std::nullopt).value.value_or(1.0);
     }
@@ -480,6 +693,7 @@ class CalibrationReader {
   /// Whether a number can be put into the scenario's text, so that what has been fitted can be run.
   void check_place(const Section& free, const FreeParameter& parameter) {
     const std::string& path = parameter.key.path;
+    if (path.starts_with(k_data)) return;  // no number of the scenario
     try {
       const std::string text =
           with_values(made_.scenario_text, {{path, fmt::format("{:e}", parameter.start.value_or(parameter.lower))}});
@@ -517,6 +731,15 @@ class CalibrationReader {
 
 std::size_t Calibration::counted() const noexcept {
   return static_cast<std::size_t>(std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }));
+}
+
+Machine Calibration::machine_of(const MeasuredCurve& curve, std::span<const double> parameters) const {
+  Machine machine = curve.machine;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    if (free[k].key.path == k_offset) machine.offset = parameters[k];
+    if (free[k].key.path == k_compliance) machine.compliance = parameters[k];
+  }
+  return machine;
 }
 
 const MeasuredCurve& Calibration::curve_of(std::size_t row) const noexcept {

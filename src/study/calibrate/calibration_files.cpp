@@ -277,7 +277,21 @@ Json procedures_json(const ModelFits& procedures) {
 Json data_json(const Calibration& calibration) {
   Json list = Json::array();
   for (const MeasuredCurve& curve : calibration.curves) {
-    list.push_back({{"file", curve.file}, {"text", curve.text}});
+    const TableLayout& layout = curve.layout;
+    const auto column = [&layout](std::size_t number) {
+      return Json({{"number", number}, {"heading", layout.headings[number - 1]}, {"unit", layout.units[number - 1]}});
+    };
+    list.push_back({{"file", curve.file},
+                    {"encoding", layout.encoding},
+                    {"separator", separator_word(layout.separator)},
+                    {"decimal", std::string(1, layout.decimal)},
+                    {"heading_line", layout.heading_line},
+                    {"unit_line", layout.unit_line},
+                    {"x", column(curve.columns[0])},
+                    {"y", column(curve.columns[1])},
+                    {"rows", curve.end - curve.begin},
+                    {"rows_left_out", curve.left_out.size()},
+                    {"text", curve.text}});
     if (!curve.overrides.empty()) list.back()["set"] = curve.overrides;
   }
   return list.size() == 1 ? list.front() : list;
@@ -312,7 +326,8 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
             {"rms", result.rms},
             {"largest", result.largest},
             {"largest_in_line", calibration.lines[result.largest_at]},
-            {"r_squared", result.r_squared}}},
+            {"r_squared", result.r_squared},
+            {"explained", result.explained}}},
           {"fit",
            {{"x", {{"quantity", calibration.x.observable}, {"unit", calibration.x.si}}},
             {"y", {{"quantity", calibration.y.observable}, {"unit", calibration.y.si}}},
@@ -326,6 +341,7 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
             {"minima", minima_json(result)},
             {"procedures", procedures_json(result.procedures)}}},
           {"notes", result.notes},
+          {"warnings", result.warnings},
           {"versions", {{"monograin", version()}, {"compiler", __VERSION__}}},
           {"scenario",
            {{"name", calibration.scenario.name},
@@ -351,7 +367,7 @@ std::string fitted_scenario_text(const Calibration& calibration, const Calibrati
     const double value = result.solution.parameters[k];
     std::string digits = fmt::format("{:.17g}", value);
     if (digits.find_first_of(".e") == std::string::npos) digits += ".0";
-    edits.push_back({parameter.key.path, digits});
+    if (!parameter.key.path.starts_with(calibration::k_data)) edits.push_back({parameter.key.path, digits});
     const double half = result.uncertainty.half_width(k) / parameter.unit_factor;
     head += fmt::format("#   {} = {}{}\n", parameter.key.path, with_unit(value / parameter.unit_factor, parameter.unit),
                         std::isfinite(half) ? fmt::format(" +- {}", with_unit(half, parameter.unit)) : "");
@@ -388,6 +404,8 @@ Table fit_table(const Calibration& calibration, const CalibrationResult& result)
   std::vector<Column> columns{{x.observable, x.si, {}}, {y.observable, y.si, {}}, {"fit", y.si, {}},
                               {"residual", y.si, {}},   {"band_lower", y.si, {}}, {"band_upper", y.si, {}},
                               {"weight", inverse, {}}};
+  const bool has_machine = !result.particle.empty();
+  if (has_machine) columns.push_back({"particle_displacement", "m", {}});
   const bool has_several = calibration.curves.size() > 1;
   if (has_several) columns.push_back({"curve", "", {}});
   Table table(std::move(columns));
@@ -409,6 +427,7 @@ Table fit_table(const Calibration& calibration, const CalibrationResult& result)
     const double band = result.fit.band[row];
     std::vector<double> cells{x.values[row], y.values[row],           fit, y.values[row] - fit, fit - band,
                               fit + band,    calibration.weights[row]};
+    if (has_machine) cells.push_back(result.particle[row]);
     if (has_several) {
       cells.push_back(static_cast<double>(&calibration.curve_of(row) - calibration.curves.data() + 1));
     }

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "scenario/units.hpp"
+
 namespace monograin::calibration {
 namespace {
 
@@ -16,23 +18,25 @@ KeySpec text_key(std::string_view name, std::string_view meaning, std::string ex
   return {.name = name, .meaning = meaning, .kind = Kind::text, .is_required = true, .example = std::move(example)};
 }
 
-KeySpec column_key(std::string_view name, std::string_view meaning, bool is_table, const char* example) {
+KeySpec column_key(std::string_view name, std::string_view meaning, Kind kind, const char* example) {
   KeySpec key = text_key(name, meaning, example);
-  if (is_table) {
-    key.kind = Kind::table;
-    key.example = "{ column = \"h\", quantity = \"displacement\", unit = \"mm\" }";
-  }
+  key.kind = kind;
+  key.range = {.lower = 1.0, .upper = 1e6};
+  if (kind == Kind::table) key.example = "{ column = \"h\", quantity = \"displacement\", unit = \"mm\" }";
   return key;
 }
 
-KeySpec bound_key(std::string_view name, std::string_view meaning, const NumberKey& number, bool is_required) {
-  return {.name = name,
-          .meaning = meaning,
-          .kind = Kind::quantity,
-          .is_required = is_required,
-          .dimension = number.dimension,
-          .range = number.range,
-          .knows_initial_radius = false};
+KeySpec bound_key(std::string_view name, std::string_view meaning, const NumberKey& number, Kind kind,
+                  bool is_required) {
+  KeySpec key{.name = name,
+              .meaning = meaning,
+              .kind = kind,
+              .is_required = is_required,
+              .dimension = number.dimension,
+              .range = number.range,
+              .knows_initial_radius = false};
+  if (number.path == k_compliance) key.example = "\"20 nm/N\"";
+  return key;
 }
 
 }  // namespace
@@ -60,16 +64,26 @@ Keys root_keys(bool scenario_is_table, bool data_is_list) {
   };
 }
 
-Keys data_keys(bool x_is_table, bool y_is_table) {
+Keys data_keys(const DataKinds& kinds) {
   KeySpec weights = choice_key(
       "weights",
       "of the residuals: one over the largest |y|, one over each |y|, factors in a column, or such that the sum of "
       "their squares is an integral over the path of x",
       k_weights);
   weights.default_value = "absolute";
+  KeySpec weight_column = column_key(
+      "weight_column", "column with the factors of the residuals, for example one over the standard deviations",
+      kinds.weight_column, "\"weight[-]\"");
+  weight_column.is_required = false;
+  KeySpec separator = text_key("separator", "what stands between cells [found]", "\"semicolon\"");
+  separator.is_required = false;
+  KeySpec units =
+      choice_key("units", "whether a row of units stands below the headings [found], or a list of units", k_unit_rows);
+  units.kind = kinds.units;
+  if (units.kind == Kind::texts) units.example = "[\"s\", \"mm\", \"kN\"]";
   return {
       {.name = "file",
-       .meaning = "CSV with one row of headings",
+       .meaning = "table with a row of headings",
        .kind = Kind::file,
        .is_required = true,
        .example = "\"measured.csv\""},
@@ -77,23 +91,59 @@ Keys data_keys(bool x_is_table, bool y_is_table) {
        .meaning = "overrides of the scenario for this curve",
        .kind = Kind::texts,
        .example = "[\"material.yield_stress=20 MPa\"]"},
-      column_key("x", "column that drives the scenario: displacement or force, or what its steps prescribe", x_is_table,
+      column_key("x", "column that drives the scenario: displacement or force, or what its steps prescribe", kinds.x,
                  "\"displacement[m]\""),
-      column_key("y", "column that is fitted", y_is_table, "\"force[N]\""),
+      column_key("y", "column that is fitted", kinds.y, "\"force[N]\""),
       weights,
-      {.name = "weight_column",
-       .meaning = "column with the factors of the residuals, for example one over the standard deviations",
-       .kind = Kind::text,
-       .example = "\"weight[-]\""},
+      weight_column,
+      separator,
+      choice_key("decimal", "decimal sign [found]", k_decimals),
+      {.name = "skip",
+       .meaning = "lines above the headings [found]",
+       .kind = Kind::integer,
+       .range = {.lower = 0.0, .upper = 1e6},
+       .example = "12"},
+      units,
+      {.name = "offset",
+       .meaning = "displacement of the machine at first touch",
+       .kind = Kind::quantity,
+       .dimension = Dimension::length,
+       .range = machine_keys().front().range,
+       .example = "\"0.1 mm\""},
+      {.name = "compliance",
+       .meaning = "of the machine's frame: its own displacement over the force, or a table of it",
+       .kind = kinds.compliance,
+       .range = machine_keys().back().range,
+       .example = "\"20 nm/N\""},
   };
 }
 
-Keys column_keys() {
+Keys column_keys(Kind column) {
+  KeySpec unit = text_key("unit", "its unit [that of the file]", "\"R0\"");
+  unit.is_required = false;
   return {
-      text_key("column", "heading of the column", "\"gamma_over_2R[-]\""),
+      column_key("column", "heading of the column, or its number", column, "\"gamma_over_2R[-]\""),
       text_key("quantity", "what it holds", "\"displacement\""),
-      text_key("unit", "its unit", "\"R0\""),
+      unit,
   };
+}
+
+Keys deflection_keys() {
+  return {
+      {.name = "table",
+       .meaning = "file with the machine's displacement under forces, ascending",
+       .kind = Kind::file,
+       .is_required = true,
+       .example = "\"frame.csv\""},
+      text_key("force", "its column of forces", "\"force[N]\""),
+      text_key("displacement", "its column of displacements", "\"displacement[um]\""),
+  };
+}
+
+std::vector<NumberKey> machine_keys() {
+  return {{std::string(k_offset), "displacement of the machine at first touch", Dimension::length,
+           plausible_range(Dimension::length, {})},
+          {std::string(k_compliance), "of the machine's frame [m/N]", Dimension::none, {.lower = 0.0, .upper = 1e6}}};
 }
 
 Keys free_keys(const std::vector<NumberKey>& numbers) {
@@ -105,11 +155,11 @@ Keys free_keys(const std::vector<NumberKey>& numbers) {
   return keys;
 }
 
-Keys bounds_keys(const NumberKey& number) {
+Keys bounds_keys(const NumberKey& number, const std::array<Kind, 3>& kinds) {
   return {
-      bound_key("from", "lower bound", number, true),
-      bound_key("to", "upper bound", number, true),
-      bound_key("start", "a further place to begin at", number, false),
+      bound_key("from", "lower bound", number, kinds[0], true),
+      bound_key("to", "upper bound", number, kinds[1], true),
+      bound_key("start", "a further place to begin at", number, kinds[2], false),
       choice_key("scale", "in which the parameter is sought; log where the bounds lie a factor of 100 apart", k_scales),
   };
 }

@@ -16,17 +16,34 @@ using Keys = std::vector<KeySpec>;
 inline constexpr std::array<std::string_view, 4> k_weights{"absolute", "relative", "column", "area"};
 inline constexpr std::array<std::string_view, 4> k_losses{"linear", "huber", "soft-l1", "cauchy"};
 inline constexpr std::array<std::string_view, 2> k_scales{"linear", "log"};
+inline constexpr std::array<std::string_view, 2> k_decimals{".", ","};
+inline constexpr std::array<std::string_view, 2> k_unit_rows{"row", "none"};
+inline constexpr std::string_view k_data = "data.";  ///< begins the keys of the machine among the free parameters
+inline constexpr std::string_view k_offset = "data.offset";          ///< as a free parameter
+inline constexpr std::string_view k_compliance = "data.compliance";  ///< as a free parameter
 
 /// The calibration as a whole. @param scenario_is_table  whether the scenario stands in the file itself
 [[nodiscard]] Keys root_keys(bool scenario_is_table, bool data_is_list);
-/// The measured data. @param x_is_table, y_is_table  whether a column is described by a table
-[[nodiscard]] Keys data_keys(bool x_is_table, bool y_is_table);
-/// A column whose heading does not tell what it holds.
-[[nodiscard]] Keys column_keys();
+/// How keys of the measured data are written that may be written in several ways.
+struct DataKinds {
+  KeySpec::Kind x = KeySpec::Kind::text;  ///< text, integer, table
+  KeySpec::Kind y = KeySpec::Kind::text;
+  KeySpec::Kind weight_column = KeySpec::Kind::text;  ///< text, integer
+  KeySpec::Kind units = KeySpec::Kind::choice;        ///< choice, texts
+  KeySpec::Kind compliance = KeySpec::Kind::text;     ///< text, quantity, table
+};
+/// The measured data.
+[[nodiscard]] Keys data_keys(const DataKinds& kinds);
+/// A table of the machine's own deflection.
+[[nodiscard]] Keys deflection_keys();
+/// A column whose heading does not tell what it holds. @param column  text or integer
+[[nodiscard]] Keys column_keys(KeySpec::Kind column);
 /// The parameters that are sought among a scenario's numbers.
 [[nodiscard]] Keys free_keys(const std::vector<NumberKey>& numbers);
-/// One of them.
-[[nodiscard]] Keys bounds_keys(const NumberKey& number);
+/// What the machine adds to the displacement, which may be sought, too.
+[[nodiscard]] std::vector<NumberKey> machine_keys();
+/// One of the parameters. @param from, to, start  quantity; text for a compliance with its unit
+[[nodiscard]] Keys bounds_keys(const NumberKey& number, const std::array<KeySpec::Kind, 3>& kinds);
 /// How the fit is made.
 [[nodiscard]] Keys fit_keys();
 

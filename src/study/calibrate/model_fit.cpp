@@ -7,6 +7,7 @@
 #include "history/branches.hpp"
 #include "scenario/model_input.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/calibrate/calibration_language.hpp"
 
 namespace monograin {
 namespace {
@@ -28,10 +29,12 @@ const CurveProcedure* procedure_of(const Calibration& calibration) {
   return find_model(calibration.scenario.model)->curve_procedure;
 }
 
-/// Whether the data are one curve, of forces over displacements of one contact, in units that are not fitted.
+/// Whether the data are one curve, of forces over displacements of one contact, in units and with a machine that are
+/// not fitted.
 bool is_force_curve(const Calibration& calibration) {
   return calibration.curves.size() == 1 && calibration.curves.front().control == Step::Kind::displacement &&
          calibration.y.observable.ends_with(".force") && class_of(calibration.x) == class_of(calibration.y) &&
+         !is_free(calibration, calibration::k_offset) && !is_free(calibration, calibration::k_compliance) &&
          std::ranges::none_of(procedure_of(calibration)->fixed_keys,
                               [&](std::string_view key) { return is_free(calibration, key); });
 }
@@ -40,10 +43,12 @@ bool is_force_curve(const Calibration& calibration) {
 XyCurve normalised(const Calibration& calibration) {
   const double radius = calibration.scenario.radius;
   const double force_unit = procedure_of(calibration)->force_unit(model_input(calibration.scenario));
+  const Machine& machine = calibration.curves.front().machine;
   XyCurve curve;
   for (std::size_t row = 0; row < calibration.x.values.size(); ++row) {
-    if (!(calibration.weights[row] > 0.0) || calibration.x.values[row] < 0.0) continue;
-    curve.x.push_back(calibration.x.values[row] / radius);
+    const double displacement = calibration.x.values[row] - machine.addition(calibration.y.values[row]);
+    if (!(calibration.weights[row] > 0.0) || displacement < 0.0) continue;
+    curve.x.push_back(displacement / radius);
     curve.y.push_back(calibration.y.values[row] / force_unit);
   }
   return curve;

@@ -109,12 +109,17 @@ Measurable measurable_in(const CheckedScenario& scenario) {
 Replay::Replay(CheckedScenario scenario, ReplayColumns columns, std::vector<double> values)
     : scenario_(std::move(scenario)),
       integrator_(choose_integrator(scenario_.numerics.integrator, *make_scene(scenario_).system).used),
-      columns_(std::move(columns)),
-      values_(std::move(values)) {
+      columns_(std::move(columns)) {
+  follow(std::move(values));
+}
+
+void Replay::follow(std::vector<double> values) {
+  values_ = std::move(values);
   DataProgram program = program_through(values_, columns_.control, columns_.start);
   scenario_.loading.steps = std::move(program.steps);
   scenario_.output.times = std::move(program.times);
   rows_ = std::move(program.rows);
+  resolution_ = 0.0;
   // What else is prescribed is that of the program whatever happens; a force is not borne where a contact has been
   // lost.
   for (const double value : values_) resolution_ = std::max(resolution_, k_same_force * std::abs(value));

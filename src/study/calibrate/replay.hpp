@@ -67,6 +67,9 @@ class Replay {
   /// Sets one of the scenario's numbers, see number_keys. @param value  [SI]
   void set(std::string_view path, double value);
 
+  /// Goes through these values from now on. @param values  of the driven column, as many as before
+  void follow(std::vector<double> values);
+
   /// The watched column at each of the values.
   /// @return false where the run ends before the last of them, a force cannot be put on, or the column is undefined;
   /// problem() and failed_at() tell why and where

@@ -626,7 +626,7 @@ constexpr FaultCase k_faults[] = {
     {"NotANumber", "d.csv", "100", "1oo", "d.csv:3:6: force[N] = 1oo: expected a finite number"},
     {"Nan", "d.csv", "100", "nan", "d.csv:3:6: force[N] = nan: expected a finite number"},
     {"EmptyCell", "d.csv", "2e-5,", ",", "d.csv:3:1: displacement[m] = (nothing): expected a finite number"},
-    {"TwoHeadings", "d.csv", "force[N]", "displacement[m]", "c.toml:5:5: y = \"force[N]\": "},
+    {"TwoHeadings", "d.csv", "force[N]", "displacement[m]", "c.toml:4:5: x = \"displacement[m]\": columns 1 and 2 of "},
     {"NeverChanges", "d.csv", "", "displacement[m],force[N]\n0,1\n0,2\n",
      "c.toml:4:5: x = \"displacement[m]\": it never "},
     {"AllZero", "d.csv", "", "displacement[m],force[N]\n1e-5,0\n2e-5,0\n", "d.csv:2:6: y is zero in every row"},

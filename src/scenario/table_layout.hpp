@@ -1,0 +1,65 @@
+/// How a table of measured numbers is written in its file: separator, decimal sign, headings, units. Testing machines
+/// differ in all of them; what the user does not give is found.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace monograin {
+
+/// What the user gives; absent: to be found.
+struct TableFormat {
+  enum class Units { found, row, none };
+
+  std::optional<char> separator{};     ///< ',' ';' '\t', or ' ' for any number of blanks and tabs
+  std::optional<char> decimal{};       ///< '.' or ','
+  std::optional<std::size_t> skip{};   ///< lines above the headings, or above the data of a table without headings
+  Units units = Units::found;          ///< whether a row of units stands below the headings
+  std::vector<std::string> unit_of{};  ///< units of the columns in their order; empty: those of the file
+  double most_missing = 0.0;           ///< share of the rows that may lack a number in a column that is asked for
+};
+
+/// What was found. Lines are counted from 1 as an editor does; 0: there is none.
+struct TableLayout {
+  std::string encoding{};  ///< see DecodedText
+  char separator = ',';
+  char decimal = '.';
+  std::size_t heading_line = 0;
+  std::size_t unit_line = 0;
+  std::size_t first_line = 0;           ///< of the data
+  std::size_t preamble = 0;             ///< lines above the headings that are neither blank nor comments
+  std::vector<std::string> headings{};  ///< one for each column; empty texts where the table has none
+  std::vector<std::string> units{};     ///< of each column: as given, or of the row of units, or of its heading
+  std::vector<bool> is_numeric{};       ///< whether most cells of the column are numbers
+};
+
+/// Looks at the first thousand lines that are neither blank nor comments ('#').
+///
+/// Separator and decimal sign are those that make the largest share of the cells numbers. The data begin with the first
+/// row that has a number in every column of numbers. The headings are the row that has all of `names`; where there is
+/// none, the last row above the data without any number. A row of units is the next one if it is without numbers and
+/// names a unit.
+/// @param text   in UTF-8, without a byte order mark
+/// @param names  headings, or headings without their units
+[[nodiscard]] TableLayout find_layout(std::string_view text, const TableFormat& given,
+                                      const std::vector<std::string_view>& names);
+
+/// Whether this is CSV in UTF-8 with commas and points, the headings first and nothing between them and the data.
+[[nodiscard]] bool is_plain(const TableLayout& layout) noexcept;
+
+/// What was found: "UTF-16LE, semicolon between cells, decimal comma, headings in line 3, units in line 4".
+[[nodiscard]] std::string describe(const TableLayout& layout);
+
+/// The word for a separator: "comma", "semicolon", "tab", "blanks".
+[[nodiscard]] std::string_view separator_word(char separator) noexcept;
+
+/// The heading's unit: "N" of "force[N]" and "force [N]"; of "force (N)", "force / N" and "force in N" where it is a
+/// unit that is known. Empty where it has none.
+[[nodiscard]] std::string_view unit_in(std::string_view heading) noexcept;
+/// The heading without its unit.
+[[nodiscard]] std::string_view name_in(std::string_view heading) noexcept;
+
+}  // namespace monograin

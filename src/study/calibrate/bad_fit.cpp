@@ -1,0 +1,180 @@
+#include "study/calibrate/bad_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/tools/minima.hpp>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "scenario/units.hpp"
+#include "study/calibrate/calibration_language.hpp"
+#include "system/undefined.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr double k_same = 1e-9;  // spread over the largest magnitude of values that are the same
+constexpr double k_thousand = 1e3;
+
+std::vector<std::size_t> rows_that_count(const Calibration& calibration) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < calibration.weights.size(); ++row) {
+    if (calibration.weights[row] > 0.0) rows.push_back(row);
+  }
+  return rows;
+}
+
+/// Lowest and highest y of the rows that count.
+std::pair<double, double> range_of(const Calibration& calibration) {
+  std::pair<double, double> range(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
+  for (const std::size_t row : rows_that_count(calibration)) {
+    range.first = std::min(range.first, calibration.y.values[row]);
+    range.second = std::max(range.second, calibration.y.values[row]);
+  }
+  return range;
+}
+
+/// A change of the data, as a clause says it.
+struct Suspicion {
+  std::string clause;
+  Calibration changed;
+  std::optional<std::size_t> offset{};  ///< place of a parameter that is a sought offset
+};
+
+void scale(MeasuredQuantity& quantity, double factor) {
+  for (double& value : quantity.values) value *= factor;
+}
+
+/// The unit a thousand times larger or smaller; empty where there is none.
+std::string_view other_unit(const MeasuredQuantity& quantity, double factor) {
+  for (const Dimension dimension : {Dimension::length, Dimension::stress, Dimension::force}) {
+    const DimensionInfo& info = dimension_info(dimension);
+    if (info.si != quantity.si) continue;
+    const double wanted = quantity.unit_factor * factor;
+    const auto found =
+        std::ranges::find_if(info.units, [=](const Unit& u) { return std::abs(u.factor / wanted - 1.0) < k_same; });
+    if (found != info.units.end()) return found->symbol;
+  }
+  return {};
+}
+
+void add_units(const Calibration& calibration, std::vector<Suspicion>& suspicions) {
+  for (const auto quantity : {&Calibration::x, &Calibration::y}) {
+    for (const double factor : {k_thousand, 1.0 / k_thousand}) {
+      const std::string_view unit = other_unit(calibration.*quantity, factor);
+      if (unit.empty()) continue;
+      const char* name = quantity == &Calibration::x ? "x" : "y";
+      Suspicion suspicion{
+          fmt::format("the unit of {}: with {} instead of {}", name, unit, (calibration.*quantity).unit), calibration};
+      scale(suspicion.changed.*quantity, factor);
+      if (quantity == &Calibration::y) {
+        for (double& weight : suspicion.changed.weights) weight /= factor;
+      }
+      suspicions.push_back(std::move(suspicion));
+    }
+  }
+}
+
+void add_signs(const Calibration& calibration, std::vector<Suspicion>& suspicions) {
+  for (const auto& [of_x, of_y, clause] : {std::tuple(true, true, "the signs of x and y: with both reversed"),
+                                           std::tuple(true, false, "the sign of x: with it reversed"),
+                                           std::tuple(false, true, "the sign of y: with it reversed")}) {
+    Suspicion suspicion{clause, calibration};
+    if (of_x) scale(suspicion.changed.x, -1.0);
+    if (of_y) scale(suspicion.changed.y, -1.0);
+    suspicions.push_back(std::move(suspicion));
+  }
+}
+
+/// The first touch anywhere within the displacements measured, where neither it nor their column is in doubt.
+void add_offset(const Calibration& calibration, std::vector<Suspicion>& suspicions) {
+  const MeasuredQuantity& moved = calibration.machine_moves_x() ? calibration.x : calibration.y;
+  const bool is_free = std::ranges::any_of(
+      calibration.free, [](const FreeParameter& parameter) { return parameter.key.path == calibration::k_offset; });
+  const bool has_room = calibration.free.size() < std::min(k_most_parameters, calibration.counted());
+  if (!moved.observable.ends_with(".displacement") || is_free || !has_room) return;
+  const auto [lowest, highest] = std::ranges::minmax(moved.values);
+  FreeParameter offset;
+  offset.lower = lowest;
+  offset.upper = highest;
+  offset.key = calibration::machine_keys().front();
+  offset.unit = moved.unit;
+  offset.unit_factor = moved.unit_factor;
+  Suspicion suspicion{"the first touch: with data.offset =", calibration, calibration.free.size()};
+  suspicion.changed.free.push_back(std::move(offset));
+  suspicions.push_back(std::move(suspicion));
+}
+
+/// "R^2", or what it becomes where rows count differently.
+std::string measure_of(const Calibration& calibration) {
+  const bool is_plain = calibration.weighting == "absolute" && calibration.loss.kind == Loss::linear;
+  return is_plain ? "R^2" : "R^2 with the weights and the loss of the fit";
+}
+
+}  // namespace
+
+bool is_constant(const Calibration& calibration) {
+  const auto [lowest, highest] = range_of(calibration);
+  return highest - lowest <= k_same * std::max(std::abs(lowest), std::abs(highest));
+}
+
+double explained_share(const Calibration& calibration, double cost) {
+  if (is_constant(calibration)) return k_nan;
+  const std::vector<std::size_t> rows = rows_that_count(calibration);
+  const auto cost_of = [&](double constant) {
+    double sum = 0.0;
+    for (const std::size_t row : rows) {
+      sum += calibration.loss.rho(calibration.weights[row] * (calibration.y.values[row] - constant));
+    }
+    return sum;
+  };
+  const auto [lowest, highest] = range_of(calibration);
+  constexpr int k_digits = std::numeric_limits<double>::digits / 2;
+  const auto [constant, least] = boost::math::tools::brent_find_minima(cost_of, lowest, highest, k_digits);
+  return 1.0 - cost / least;
+}
+
+std::string likely_cause(const Calibration& calibration, const FitTrial& fit) {
+  std::vector<Suspicion> suspicions;
+  add_units(calibration, suspicions);
+  add_signs(calibration, suspicions);
+  add_offset(calibration, suspicions);
+  double best = k_least_explained;
+  std::string cause;
+  for (const Suspicion& suspicion : suspicions) {
+    const TrialFit trial = fit(suspicion.changed);
+    if (!(trial.explained > best)) continue;
+    best = trial.explained;
+    cause = suspicion.clause;
+    if (suspicion.offset) {
+      const FreeParameter& offset = suspicion.changed.free[*suspicion.offset];
+      cause += fmt::format(" \"{:.4g} {}\"", trial.parameters[*suspicion.offset] / offset.unit_factor, offset.unit);
+    }
+    cause += fmt::format(", {} is {:.4f}", measure_of(calibration), trial.explained);
+  }
+  return cause;
+}
+
+std::vector<std::string> warnings_of(const Calibration& calibration, const CalibrationResult& result,
+                                     const FitTrial& fit) {
+  if (result.uncertainty.degrees_of_freedom == 0 || result.explained >= k_least_explained) return {};
+  if (is_constant(calibration)) {
+    return {"y is the same in every row: the data say nothing of the parameters; expected the column that changes"};
+  }
+  const auto rows = rows_that_count(calibration);
+  const bool never_touches = std::ranges::all_of(rows, [&result](std::size_t row) { return result.fit.y[row] == 0.0; });
+  std::string warning = never_touches ? "no datum touches the particle: the fit is zero in every row"
+                                      : fmt::format("the fit is {}: {} = {:.4g}",
+                                                    result.explained < 0.0 ? "worse than a constant" : "bad",
+                                                    measure_of(calibration), result.explained);
+  const std::string cause = likely_cause(calibration, fit);
+  warning += cause.empty()
+                 ? "; neither another unit nor sign nor first touch makes it good: look at data, law and bounds"
+                 : "; likely cause: " + cause;
+  return {std::move(warning)};
+}
+
+}  // namespace monograin

@@ -1,0 +1,35 @@
+/// Fits that are not to be trusted, and what may be wrong with their data.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "study/calibrate/calibration.hpp"
+
+namespace monograin {
+
+/// Whether y is the same, to round-off, in all of several rows that take part.
+[[nodiscard]] bool is_constant(const Calibration& calibration);
+
+/// 1 - cost / (cost of the constant that fits best, with the same weights and loss); nan where y is constant.
+/// @param cost  sum of rho of the weighted residuals
+[[nodiscard]] double explained_share(const Calibration& calibration, double cost);
+
+/// How much a fit explains, and with which parameters.
+struct TrialFit {
+  double explained = 0.0;  ///< see explained_share; nan where there is no fit
+  std::vector<double> parameters;
+};
+using FitTrial = std::function<TrialFit(const Calibration&)>;
+
+/// What makes the fit good: units of x or y a thousand times larger or smaller, other signs, a first touch elsewhere.
+/// Each is tried alone.
+/// @return a clause without capital and full stop; empty where nothing makes it explain k_least_explained
+[[nodiscard]] std::string likely_cause(const Calibration& calibration, const FitTrial& fit);
+
+/// Why the fit is bad, with the likely cause; empty where it is good.
+[[nodiscard]] std::vector<std::string> warnings_of(const Calibration& calibration, const CalibrationResult& result,
+                                                   const FitTrial& fit);
+
+}  // namespace monograin
