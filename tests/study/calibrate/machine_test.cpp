@@ -1,0 +1,370 @@
+// Files of testing machines fitted as they are: their writing, the machine's own displacement, and what a bad fit is
+// blamed on.
+
+#include "study/calibrate/machine.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "elastic/hertz.hpp"
+#include "history/table.hpp"
+#include "study/calibrate/calibration.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/text_file.hpp"
+
+namespace monograin::machine_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The data of scenarios/calibrate/uniaxial.csv were made with these, and noise.
+constexpr double k_modulus = 1.2e9;
+constexpr double k_yield_stress = 45e6;
+constexpr double k_compliance = 2e-8;  // with which compl.csv was made [m/N]
+
+constexpr const char* k_plain_x = R"(x = "displacement[mm]")";
+constexpr const char* k_plain_y = R"(y = "force[kN]")";
+
+std::string machine_file(const std::string& name) {
+  return MONOGRAIN_SOURCE_DIR "/tests/study/calibrate/machines/" + name;
+}
+
+const std::string k_uniaxial = MONOGRAIN_SOURCE_DIR "/scenarios/calibrate/uniaxial.csv";
+
+class MachineCalibration : public ::testing::Test {
+ protected:
+  /// @param data  lines of [data]
+  /// @param free  lines of [free] beside modulus and yield stress
+  [[nodiscard]] Calibration read(const std::string& file, const std::string& data, const std::string& free = {}) const {
+    write_text(folder() / "c.toml", fmt::format(R"(scenario = "{}/scenarios/uniaxial.toml"
+[data]
+file = "{}"
+{}
+[free]
+"material.youngs_modulus" = {{ from = "0.1 GPa", to = "10 GPa" }}
+"material.yield_stress" = {{ from = "1 MPa", to = "200 MPa" }}
+{}
+)",
+                                                MONOGRAIN_SOURCE_DIR, file, data, free));
+    return read_calibration(folder() / "c.toml");
+  }
+
+  [[nodiscard]] Calibration read_plain(const std::string& file, const std::string& free = {},
+                                       const std::string& data = {}) const {
+    return read(file, fmt::format("{}\n{}\n{}", k_plain_x, k_plain_y, data), free);
+  }
+
+  /// The messages with which the calibration is refused.
+  template <class Call>
+  [[nodiscard]] static std::vector<std::string> faults(const Call& call) {
+    std::vector<std::string> messages;
+    try {
+      static_cast<void>(call());
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) messages.push_back(fault.message);
+    }
+    return messages;
+  }
+
+  [[nodiscard]] const fs::path& folder() const { return folder_.path(); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+bool has(const CalibrationResult& result, std::size_t k, double value) {
+  const double half = result.uncertainty.half_width(k);
+  return std::abs(result.solution.parameters[k] - value) <= half;
+}
+
+// --- files of testing machines
+
+TEST_F(MachineCalibration, FitsFilesOfTestingMachinesAsThePlainOne) {
+  const CalibrationResult plain = calibrate(read_plain(k_uniaxial));
+  EXPECT_TRUE(has(plain, 0, k_modulus));
+  EXPECT_TRUE(has(plain, 1, k_yield_stress));
+  EXPECT_TRUE(plain.notes.empty());
+  EXPECT_TRUE(plain.warnings.empty());
+  const std::string extension = R"(column = "Extension", quantity = "displacement")";
+  const std::string load = R"(column = "Load", quantity = "force")";
+  const std::vector<std::pair<std::string, std::string>> ways{
+      {"bluehill.csv", fmt::format("x = {{ {}, unit = \"mm\" }}\ny = {{ {}, unit = \"kN\" }}", extension, load)},
+      {"bluehill.csv", fmt::format("x = {{ {} }}\ny = {{ {} }}", extension, load)},
+      {"bluehill.csv", "x = { column = 2, quantity = \"displacement\" }\ny = { column = 3, quantity = \"force\" }"},
+      {"bluehill.csv", fmt::format("skip = 1\nunits = \"row\"\nseparator = \"comma\"\ndecimal = \".\"\nx = {{ {} }}\ny "
+                                   "= {{ {} }}",
+                                   extension, load)},
+      {"bluehill.csv", fmt::format("units = [\"s\", \"mm\", \"kN\"]\nx = {{ {} }}\ny = {{ {} }}", extension, load)},
+      {"zwick.csv",
+       R"(x = { column = "Standardweg", quantity = "displacement", unit = "mm" }
+y = { column = "Standardkraft", quantity = "force", unit = "N" })"},
+      {"zwick.csv", R"(separator = ";"
+x = { column = "Standardweg", quantity = "displacement" }
+y = { column = "Standardkraft", quantity = "force" })"}};
+  for (const auto& [file, data] : ways) {
+    const Calibration calibration = read(machine_file(file), data);
+    const CalibrationResult result = calibrate(calibration);
+    for (const std::size_t k : {0U, 1U}) {
+      EXPECT_NEAR(result.solution.parameters[k] / plain.solution.parameters[k], 1.0, 1e-7) << data;
+      EXPECT_NEAR(result.uncertainty.half_width(k) / plain.uncertainty.half_width(k), 1.0, 1e-5) << data;
+    }
+    ASSERT_EQ(result.notes.size(), 1U) << data;
+    EXPECT_NE(result.notes[0].find(file[0] == 'b' ? "headings in line 2, units in line 3" : "decimal comma"),
+              std::string::npos)
+        << result.notes[0];
+    const auto json = nlohmann::json::parse(calibration_json(calibration, result));
+    EXPECT_EQ(json["data"]["unit_line"], file[0] == 'b' ? 3 : 2);
+    EXPECT_EQ(json["data"]["x"]["unit"], "mm");
+    EXPECT_EQ(json["data"]["rows"], 81);
+  }
+}
+
+TEST_F(MachineCalibration, SaysWhichRowsWereLeftOutAndWhoseUnitWasTaken) {
+  const std::string file = read_text(machine_file("zwick.csv"));
+  write_text(folder() / "d.csv", file + "1,7000;\n1,7000;NaN\n");
+  const Calibration calibration =
+      read("d.csv", R"(x = { column = "Standardweg", quantity = "displacement", unit = "um" }
+y = { column = "Standardkraft", quantity = "force", unit = "N" })");
+  ASSERT_EQ(calibration.notes.size(), 3U);
+  EXPECT_EQ(calibration.notes[1], "d.csv: column = \"Standardweg\" says 'um', and the file 'mm'; the first was taken");
+  EXPECT_EQ(calibration.notes[2],
+            "d.csv: 2 rows without a number in x, y or weights left out of 83, the first in line 84");
+  EXPECT_EQ(calibration.x.values.size(), 81U);
+}
+
+TEST_F(MachineCalibration, RefusesAWritingThatThereIsNot) {
+  const auto complaint = [this](const std::string& line) {
+    const auto messages = faults([&] { return read_plain(k_uniaxial, "", line); });
+    return messages.empty() ? std::string() : messages.front();
+  };
+  EXPECT_EQ(complaint("separator = \"dash\""), "separator = \"dash\": expected comma, semicolon, tab or blanks");
+  EXPECT_EQ(complaint("decimal = \"point\""), "decimal = \"point\": expected one of ., ,");
+  EXPECT_EQ(complaint("skip = -1"), "skip = -1: expected a whole number from 0 to 1000000");
+  EXPECT_EQ(complaint("units = \"rows\""), "units = \"rows\": expected one of row, none; did you mean 'row'?");
+  EXPECT_NE(complaint("units = [\"mm\"]").find("2 columns, but 1 units are given"), std::string::npos);
+  EXPECT_EQ(complaint("compliance = \"20 nm\""),
+            "compliance = \"20 nm\": expected a length over a force, 0 or more, for example \"20 nm/N\"");
+}
+
+// --- the machine between sensor and particle
+
+TEST(Machine, AddsOffsetComplianceAndTable) {
+  Machine machine{.offset = 1e-4, .compliance = 2e-8};
+  EXPECT_DOUBLE_EQ(machine.addition(1e3), 1e-4 + 2e-5);
+  machine.forces = {0.0, 100.0, 300.0};
+  machine.deflections = {0.0, 1e-6, 2e-6};
+  EXPECT_DOUBLE_EQ(machine.addition(50.0), 1e-4 + 1e-6 + 5e-7);
+  EXPECT_DOUBLE_EQ(machine.addition(200.0), 1e-4 + 4e-6 + 1.5e-6);
+  // Continued by its end pieces.
+  EXPECT_DOUBLE_EQ(machine.addition(500.0), 1e-4 + 1e-5 + 3e-6);
+  EXPECT_DOUBLE_EQ(machine.addition(-100.0), 1e-4 - 2e-6 - 1e-6);
+}
+
+TEST(Machine, ComplianceIsALengthOverAForce) {
+  EXPECT_DOUBLE_EQ(parse_compliance("20 nm/N").value.value_or(0.0), 2e-8);
+  EXPECT_DOUBLE_EQ(parse_compliance("0.02 mm / kN").value.value_or(0.0), 2e-8);
+  EXPECT_EQ(parse_compliance("0.02 mm / kN").unit, "mm/kN");
+  EXPECT_DOUBLE_EQ(parse_compliance("0.02 mm / kN").unit_factor, 1e-6);
+  for (const char* wrong : {"20", "20 nm", "20 N/nm", "nm/N", "20 nm/", "20 nm/2 N"}) {
+    EXPECT_FALSE(parse_compliance(wrong).value) << wrong;
+  }
+}
+
+TEST_F(MachineCalibration, AKnownComplianceGivesTheParticleBack) {
+  const CalibrationResult plain = calibrate(read_plain(k_uniaxial));
+  write_text(folder() / "frame.csv", "load[kN],d[um]\n0,0\n2,40\n10,200\n");
+  for (const char* compliance :
+       {"\"20 nm/N\"", "2e-8", "{ table = \"frame.csv\", force = \"load\", displacement = \"d\" }"}) {
+    const Calibration calibration =
+        read_plain(machine_file("compl.csv"), "", fmt::format("compliance = {}", compliance));
+    const CalibrationResult result = calibrate(calibration);
+    // The columns of compl.csv are rounded to a nanometre.
+    EXPECT_NEAR(result.solution.parameters[0] / plain.solution.parameters[0], 1.0, 1e-5) << compliance;
+    EXPECT_NEAR(result.solution.parameters[1] / plain.solution.parameters[1], 1.0, 1e-5) << compliance;
+    ASSERT_EQ(result.particle.size(), 81U) << compliance;
+    EXPECT_NEAR(result.particle[40], 2e-3, 1e-9) << compliance;
+    const Table fit = fit_table(calibration, result);
+    EXPECT_EQ(fit.at(40, *fit.find("particle_displacement")), result.particle[40]) << compliance;
+  }
+}
+
+TEST_F(MachineCalibration, ASoughtComplianceLeavesTheModulusWithinItsInterval) {
+  // Without it the modulus is 30 % too low, and its interval does not know of that.
+  const CalibrationResult rigid = calibrate(read_plain(machine_file("compl.csv")));
+  EXPECT_LT(rigid.solution.parameters[0], 0.75 * k_modulus);
+  EXPECT_FALSE(has(rigid, 0, k_modulus));
+  const Calibration calibration =
+      read_plain(machine_file("compl.csv"), R"("data.compliance" = { from = 0, to = "0.1 um/N" })");
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_TRUE(has(result, 0, k_modulus));
+  EXPECT_TRUE(has(result, 1, k_yield_stress));
+  EXPECT_TRUE(has(result, 2, k_compliance));
+  EXPECT_LT(result.uncertainty.half_width(0), 0.05 * k_modulus);
+  EXPECT_EQ(calibration.free[2].unit, "um/N");
+  const CheckedScenario fitted = parse_scenario(fitted_scenario_text(calibration, result), "fitted.toml");
+  EXPECT_EQ(fitted.material.at("youngs_modulus"), result.solution.parameters[0]);
+}
+
+/// Hertz between two walls, on a machine: force over its own displacement, exact.
+struct MachineRow {
+  double x;
+  double force;
+};
+constexpr double k_hertz_modulus = 70e9;
+
+std::vector<MachineRow> hertz_on_a_machine(double offset, double compliance) {
+  std::vector<MachineRow> rows;
+  for (int i = -4; i <= 20; ++i) {
+    const double displacement = 4e-6 * i;
+    const double plane_strain = k_hertz_modulus / (1.0 - 0.22 * 0.22);
+    const double force = displacement > 0.0 ? hertz_force(plane_strain, 0.01, displacement) : 0.0;
+    rows.push_back({displacement + offset + compliance * force, force});
+  }
+  return rows;
+}
+
+constexpr const char* k_hertz = R"(scenario = "s.toml"
+[data]
+file = "d.csv"
+x = "displacement[um]"
+y = "force[N]"
+[free]
+"material.youngs_modulus" = { from = "10 GPa", to = "300 GPa" }
+"data.offset" = { from = "-0.1 mm", to = "0.1 mm" }
+"data.compliance" = { from = 0, to = "100 nm/N" }
+)";
+
+void write_hertz(const fs::path& folder) {
+  write_text(folder / "s.toml", R"(model = "hertz"
+[particle]
+radius = "10 mm"
+[material]
+youngs_modulus = "50 GPa"
+poisson_ratio = 0.22
+[loading]
+configuration = "simple"
+[[loading.steps]]
+displacement = "0.01 R0"
+duration = "1 s"
+)");
+  std::string text = "displacement[um],force[N]\n";
+  for (const MachineRow& row : hertz_on_a_machine(3e-5, 1e-8)) {
+    text += fmt::format("{:.17g},{:.17g}\n", 1e6 * row.x, row.force);
+  }
+  write_text(folder / "d.csv", text);
+}
+
+TEST_F(MachineCalibration, FindsOffsetAndComplianceWithTheModulus) {
+  write_hertz(folder());
+  write_text(folder() / "h.toml", k_hertz);
+  const CalibrationResult result = calibrate(read_calibration(folder() / "h.toml"));
+  EXPECT_NEAR(result.solution.parameters[0] / k_hertz_modulus, 1.0, 1e-6);
+  EXPECT_NEAR(result.solution.parameters[1], 3e-5, 1e-11);
+  EXPECT_NEAR(result.solution.parameters[2], 1e-8, 1e-14);
+}
+
+TEST_F(MachineCalibration, AMachineUnderForceControlAddsToTheDisplacement) {
+  write_hertz(folder());
+  std::string text = k_hertz;
+  text.replace(text.find("x = "), text.find("[free]") - text.find("x = "),
+               "x = \"force[N]\"\ny = \"displacement[um]\"\n");
+  write_text(folder() / "h.toml", text);
+  // Before the first touch a force of zero has no displacement of its own.
+  std::string data = "displacement[um],force[N]\n";
+  for (const MachineRow& row : hertz_on_a_machine(3e-5, 1e-8)) {
+    if (row.force > 0.0) data += fmt::format("{:.17g},{:.17g}\n", 1e6 * row.x, row.force);
+  }
+  write_text(folder() / "d.csv", data);
+  const Calibration calibration = read_calibration(folder() / "h.toml");
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_NEAR(result.solution.parameters[0] / k_hertz_modulus, 1.0, 1e-6);
+  EXPECT_NEAR(result.solution.parameters[1], 3e-5, 1e-11);
+  EXPECT_NEAR(result.solution.parameters[2], 1e-8, 1e-14);
+  EXPECT_NEAR(result.particle.back(), 8e-5, 1e-11);
+}
+
+TEST_F(MachineCalibration, AMachineNeedsADisplacementAndItsForce) {
+  const std::string compliance = R"("data.compliance" = { from = 0, to = "1 um/N" })";
+  const auto pressure = [&] {
+    return read(k_uniaxial,
+                "x = \"displacement[mm]\"\ny = { column = \"force[kN]\", quantity = \"pressure\", unit = "
+                "\"MPa\" }",
+                compliance);
+  };
+  EXPECT_EQ(faults(pressure),
+            std::vector<std::string>{"a compliance takes force and displacement of the same walls; x and y are "
+                                     "'axial.displacement' and 'axial.pressure'"});
+  const auto twice = [&] { return read_plain(k_uniaxial, compliance, "compliance = \"1 nm/N\""); };
+  EXPECT_EQ(faults(twice),
+            std::vector<std::string>{"'data.compliance' is free and given in [data]; expected one of them"});
+}
+
+// --- bad fits
+
+TEST_F(MachineCalibration, BlamesABadFitOnUnitSignOrContent) {
+  struct Case {
+    std::string file;
+    const char* x;
+    const char* begin;
+    const char* cause;
+  };
+  for (const Case& c :
+       std::vector<Case>{{"um.csv", "x = \"displacement[µm]\"", "the fit is worse than a constant: R^2 = -4.454",
+                          "the unit of x: with mm instead of µm, R^2 is 0.9992"},
+                         {"neg.csv", k_plain_x, "no datum touches the particle: the fit is zero in every row",
+                          "the signs of x and y: with both reversed, R^2 is 0.9992"},
+                         {"consty.csv", k_plain_x, "y is the same in every row", ""}}) {
+    const CalibrationResult result = calibrate(read(machine_file(c.file), fmt::format("{}\n{}", c.x, k_plain_y)));
+    ASSERT_EQ(result.warnings.size(), 1U) << c.file;
+    EXPECT_TRUE(result.warnings[0].starts_with(c.begin)) << result.warnings[0];
+    EXPECT_NE(result.warnings[0].find(c.cause), std::string::npos) << result.warnings[0];
+  }
+}
+
+TEST_F(MachineCalibration, BlamesABadFitOnTheFirstTouch) {
+  write_hertz(folder());
+  std::string text = k_hertz;
+  text.erase(text.find("\"data.offset\""));
+  write_text(folder() / "h.toml", text);
+  std::string data = "displacement[um],force[N]\n";
+  for (const MachineRow& row : hertz_on_a_machine(3e-4, 0.0)) {
+    data += fmt::format("{:.17g},{:.17g}\n", 1e6 * row.x, row.force);
+  }
+  write_text(folder() / "d.csv", data);
+  const CalibrationResult result = calibrate(read_calibration(folder() / "h.toml"));
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_NE(result.warnings[0].find("likely cause: the first touch: with data.offset = \"300 um\", R^2 is 1.0000"),
+            std::string::npos)
+      << result.warnings[0];
+}
+
+TEST_F(MachineCalibration, BlamesDataThatCannotBeFollowedOnTheirUnit) {
+  write_text(folder() / "d.csv", read_text(k_uniaxial));
+  const Calibration calibration =
+      read("d.csv", "x = { column = \"displacement\", quantity = \"displacement\", unit = \"m\" }\ny = \"force\"");
+  const auto messages = faults([&] { return calibrate(calibration); });
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_NE(messages[0].find("likely cause: the unit of x: with mm instead of m, R^2 is 0.9992"), std::string::npos)
+      << messages[0];
+}
+
+TEST_F(MachineCalibration, AnOutlierThatALossForgetsMakesNoBadFit) {
+  write_hertz(folder());
+  std::string data = read_text(folder() / "d.csv");
+  data += "70,200000\n";
+  write_text(folder() / "d.csv", data);
+  write_text(folder() / "h.toml", std::string(k_hertz) + "[fit]\nloss = \"cauchy\"\nloss_scale = 0.001\n");
+  const CalibrationResult result = calibrate(read_calibration(folder() / "h.toml"));
+  EXPECT_LT(result.r_squared, 0.1);
+  EXPECT_GT(result.explained, 0.9);
+  EXPECT_TRUE(result.warnings.empty());
+}
+
+}  // namespace
+}  // namespace monograin::machine_test
