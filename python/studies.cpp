@@ -43,6 +43,7 @@ struct Fitted {
   std::string text;
   std::string scenario_text;
   std::vector<std::string> notes;
+  std::vector<std::string> warnings;
   std::string no_figure;
   History fit;
 };
@@ -67,6 +68,7 @@ Fitted calibrate_file(const std::string& file, const std::string& output, double
                   .text = calibration_text(calibration, result),
                   .scenario_text = fitted_scenario_text(calibration, result),
                   .notes = result.notes,
+                  .warnings = result.warnings,
                   .no_figure = {},
                   .fit = history_of(fit_table(calibration, result))};
     if (!output.empty()) {
@@ -97,6 +99,7 @@ void add_studies(py::module_& module) {
       .def_readonly("text", &Fitted::text)
       .def_readonly("scenario_text", &Fitted::scenario_text)
       .def_readonly("notes", &Fitted::notes)
+      .def_readonly("warnings", &Fitted::warnings)
       .def_readonly("no_figure", &Fitted::no_figure)
       .def_readonly("fit", &Fitted::fit);
   module.def("calibrate", &calibrate_file);

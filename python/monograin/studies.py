@@ -108,6 +108,11 @@ class Calibration:
         return self._core.notes
 
     @property
+    def warnings(self) -> list[str]:
+        """Why the fit is not to be trusted, with the likely cause; empty where it is good."""
+        return self._core.warnings
+
+    @property
     def scenario_text(self) -> str:
         """The scenario with the fitted numbers, as TOML text."""
         return self._core.scenario_text
@@ -127,6 +132,8 @@ class Calibration:
 def calibrate(file: Path, folder: Optional[Path] = None, *, confidence: Optional[float] = None) -> Calibration:
     """Fits numbers of a scenario to measured data, as ``monograin calibrate`` does.
 
+    A bad fit is warned of (RuntimeWarning), as is a figure that could not be drawn.
+
     Args:
         file: a calibration file (TOML).
         folder: for the files of the program; None: none are written.
@@ -140,6 +147,8 @@ def calibrate(file: Path, folder: Optional[Path] = None, *, confidence: Optional
     core = _core.calibrate(os.fspath(file), "" if folder is None else os.fspath(folder), level)
     if core.no_figure:
         warnings.warn(f"no figure: {core.no_figure}", RuntimeWarning, stacklevel=2)
+    for warning in core.warnings:
+        warnings.warn(warning, RuntimeWarning, stacklevel=2)
     return Calibration(core)
 
 

@@ -1,4 +1,4 @@
-// `monograin calibrate`.
+// `monograin calibrate` and `monograin data`.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -12,7 +12,9 @@
 #include "cli/commands.hpp"
 #include "cli/terminal.hpp"
 #include "history/staged_folder.hpp"
+#include "scenario/text_file.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/calibrate/data_report.hpp"
 
 namespace monograin {
 namespace {
@@ -73,7 +75,61 @@ int run_calibration(const CalibrateOptions& options) {
   return code;
 }
 
+// --- data
+
+struct DataOptions {
+  std::string file;
+  DataChoice choice;
+  std::string output;
+  bool draws = false;
+};
+
+/// Where the figure goes. It and the files beside it take the place of no data.
+fs::path figure_of(const DataOptions& options, const std::vector<DataReport>& reports) {
+  const std::string stem = name_of_file(options.file).stem().string();
+  const fs::path output = options.output.empty() ? fs::path(stem + "-data.svg") : fs::path(options.output);
+  for (const DataReport& report : reports) {
+    for (const char* extension : {"", ".gp", ".dat"}) {
+      fs::path written = output;
+      if (*extension != '\0') written.replace_extension(extension);
+      std::error_code none;
+      if (fs::equivalent(written, report.file, none)) {
+        throw UsageError(
+            fmt::format("{}: the figure would take the place of the data; name another one with -o", written.string()));
+      }
+    }
+  }
+  return output;
+}
+
+int show_data(const DataOptions& options) {
+  const bool is_calibration = fs::path(options.file).extension() == ".toml";
+  if (is_calibration && !(options.choice.x.empty() && options.choice.y.empty())) {
+    throw UsageError("--x and --y are for a file of data; a calibration file says what x and y are");
+  }
+  const std::vector<DataReport> reports = is_calibration ? reports_of(read_calibration(options.file))
+                                                         : std::vector{report_of_file(options.file, options.choice)};
+  for (std::size_t k = 0; k < reports.size(); ++k) print_data("{}{}", k > 0 ? "\n" : "", data_text(reports[k]));
+  if (!options.draws && options.output.empty()) return k_success;
+  const fs::path output = figure_of(options, reports);
+  draw_data(reports, output);
+  say("figure -> {}\n", output.string());
+  return k_success;
+}
+
 }  // namespace
+
+void add_data_command(CLI::App& app, Action& action) {
+  auto options = std::make_shared<DataOptions>();
+  CLI::App* command = app.add_subcommand("data", "Show what is read from a file of measured data");
+  command->add_option("FILE", options->file, "File of a testing machine, or a calibration file (TOML)")->required();
+  command->add_option("--x", options->choice.x, "Column: heading or number [the first length, else the first numbers]");
+  command->add_option("--y", options->choice.y, "Column: heading or number [the first force, else the next numbers]");
+  command->add_flag("--plot", options->draws, "Draw y over x, loading and unloading apart");
+  command->add_option("-o,--output", options->output, "Figure to write: .svg, .pdf or .png [NAME-data.svg]");
+  command->footer("Example: monograin data scenarios/calibrate/uniaxial.csv --plot");
+  command->callback([options, &action] { action = [options] { return show_data(*options); }; });
+}
 
 void add_calibrate_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<CalibrateOptions>();

@@ -1,6 +1,7 @@
 #include "history/branches.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -15,6 +16,10 @@ constexpr double k_same_reversal = 0.01;       ///< share of x within which two 
 constexpr double k_worth_a_line = 1.0 + 1e-3;  ///< loading beyond the last reversal, relative to its x
 constexpr double k_round_off = 1e-12;          ///< share of the force at the reversal that is none
 constexpr double k_same_end = 1e-6;            ///< share of x within which two ends are one
+constexpr std::size_t k_short_way = 2;         ///< steps of a way that may be noise
+constexpr std::size_t k_least_short_ways = 3;  ///< that are noise
+constexpr double k_noise_factor = 6.0;         ///< of the median way of noise, which none of thousands exceeds
+constexpr double k_least_turn = 2e-3;          ///< share of the range of x
 
 [[nodiscard]] XyCurve up_to(const XyCurve& loading, double x) {
   const auto end = std::ranges::upper_bound(loading.x, x);
@@ -69,7 +74,46 @@ void compare_loading(const XyCurve& reference, const XyCurve& curve, BranchCompa
   line.coverage = difference.coverage;
 }
 
+/// How far x has to come back for a turn that is no noise.
+[[nodiscard]] double least_turn(std::span<const double> x) {
+  const auto [lowest, highest] = std::ranges::minmax(x);
+  std::vector<double> short_ways;
+  std::size_t begin = 0;
+  for (std::size_t k = 1; k < x.size(); ++k) {
+    const bool ends = k + 1 == x.size() || (x[k + 1] - x[k]) * (x[k] - x[begin]) < 0.0;
+    if (!ends) continue;
+    if (k - begin <= k_short_way && k + 1 < x.size() && begin > 0) short_ways.push_back(std::abs(x[k] - x[begin]));
+    begin = k;
+  }
+  const double least = k_least_turn * (highest - lowest);
+  if (short_ways.size() < k_least_short_ways) return least;
+  const auto middle = short_ways.begin() + static_cast<std::ptrdiff_t>(short_ways.size() / 2);
+  std::ranges::nth_element(short_ways, middle);
+  return std::max(least, k_noise_factor * *middle);
+}
+
 }  // namespace
+
+std::vector<std::size_t> turning_points(std::span<const double> x) {
+  std::vector<std::size_t> turns;
+  if (x.empty()) return turns;
+  const double least = least_turn(x);
+  std::array<std::size_t, 2> extremes{};  // rows of the lowest and the highest x since the last turn
+  int direction = 0;
+  turns.push_back(0);
+  for (std::size_t k = 1; k < x.size(); ++k) {
+    if (x[k] < x[extremes[0]]) extremes[0] = k;
+    if (x[k] > x[extremes[1]]) extremes[1] = k;
+    const bool has_risen = direction <= 0 && x[k] - x[extremes[0]] > least;
+    const bool has_fallen = direction >= 0 && x[extremes[1]] - x[k] > least;
+    if (!has_risen && !has_fallen) continue;
+    if (direction != 0) turns.push_back(extremes[has_risen ? 0 : 1]);
+    direction = has_risen ? 1 : -1;
+    extremes = {k, k};
+  }
+  if (x.size() > 1) turns.push_back(x.size() - 1);
+  return turns;
+}
 
 XyCurve first_loading(const XyCurve& curve) {
   XyCurve loading;

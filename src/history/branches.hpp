@@ -31,6 +31,12 @@ struct Excursion {
 };
 [[nodiscard]] std::vector<Excursion> excursions(const XyCurve& curve);
 
+/// Rows at which x turns, with the first and the last one: between them it goes one way, but for its noise.
+///
+/// Ways of at most two steps are noise where there are three or more of them. A turn counts where x comes back by more
+/// than six times the median of their lengths, and by more than 0.2 % of its range.
+[[nodiscard]] std::vector<std::size_t> turning_points(std::span<const double> x);
+
 /// Mean slope of the first part of an unloading, in which y falls by a twentieth; of all of it where y does not fall so
 /// far.
 [[nodiscard]] double unloading_slope(const XyCurve& unloading);

@@ -265,7 +265,8 @@ class LayoutFinder {
 
   /// True for a row of texts that has a cell for each column.
   [[nodiscard]] bool may_be_headings(std::size_t row) const {
-    return rows_[row].numbers == 0 && rows_[row].filled > 1 && (width_ == 0 || headings_of(row).size() == width_);
+    return rows_[row].numbers == 0 && (rows_[row].filled > 1 || width_ == 1) &&
+           (width_ == 0 || headings_of(row).size() == width_);
   }
 
   /// Where the headings stand. @param first  of the data

@@ -449,8 +449,8 @@ TEST_F(Commands, RunLeavesTheReferencesOfTheModel) {
 }
 
 TEST_F(Commands, HelpEndsWithAnExample) {
-  for (const char* command :
-       {"", "run", "check", "models", "cite", "plot", "atlas", "compare", "regress", "calibrate", "sweep", "schema"}) {
+  for (const char* command : {"", "run", "check", "models", "cite", "plot", "atlas", "compare", "regress", "calibrate",
+                              "data", "sweep", "schema"}) {
     const Outcome help = monograin(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Example: monograin "), std::string::npos) << command;
@@ -593,6 +593,53 @@ TEST_F(Commands, CalibrateFitsTheReadyExample) {
     EXPECT_LT(interval[0].get<double>(), truth) << k;
     EXPECT_GT(interval[1].get<double>(), truth) << k;
   }
+}
+
+TEST_F(Commands, CalibrateWarnsOfABadFitAndIsStrictWhereAsked) {
+  write_text(path("small.toml"), k_small);
+  write_text(path("fit.toml"), k_calibration);
+  write_text(path("measured.csv"), "axial.displacement[m],axial.force[N]\n5e-5,5\n1e-4,5\n1.5e-4,5\n");
+  const Outcome lenient = monograin("calibrate fit.toml --quiet");
+  EXPECT_EQ(lenient.code, 0);
+  EXPECT_EQ(lenient.err.find("warning: y is the same in every row"), 0U) << lenient.err;
+  const Outcome strict = monograin("calibrate fit.toml --strict");
+  EXPECT_EQ(strict.code, 5);
+  EXPECT_TRUE(fs::exists(path("runs/fit/calibration.json"))) << "the result is written all the same";
+  const auto json = nlohmann::json::parse(text("runs/fit/calibration.json"));
+  EXPECT_EQ(json["warnings"].size(), 1U);
+  const Outcome good =
+      monograin("calibrate '" MONOGRAIN_SOURCE_DIR "/scenarios/calibrate/uniaxial.toml' --strict --quiet -o good");
+  EXPECT_EQ(good.code, 0) << good.err;
+}
+
+TEST_F(Commands, DataShowsWhatIsReadFromAMachinesFile) {
+  fs::copy_file(MONOGRAIN_SOURCE_DIR "/tests/study/calibrate/machines/zwick.csv", path("zwick.csv"));
+  const Outcome shown = monograin("data zwick.csv");
+  ASSERT_EQ(shown.code, 0) << shown.err;
+  for (const char* part :
+       {"separator  semicolon", "decimal    comma", "units      line 2", "rows       81, lines 3 to 83",
+        "x: column 1 'Standardweg', y: column 2 'Standardkraft'", "loading 1     3-43", "unloading 1  43-83"}) {
+    EXPECT_NE(shown.out.find(part), std::string::npos) << part << '\n' << shown.out;
+  }
+  const Outcome drawn = monograin("data zwick.csv --plot");
+  ASSERT_EQ(drawn.code, 0) << drawn.err;
+  EXPECT_TRUE(fs::exists(path("zwick-data.svg")));
+  const Outcome turned = monograin("data zwick.csv --x 2 --y Standardweg");
+  EXPECT_NE(turned.out.find("x: column 2 'Standardkraft', y: column 1"), std::string::npos) << turned.out;
+  // A figure never takes the place of the data.
+  fs::copy_file(path("zwick.csv"), path("own.dat"));
+  EXPECT_EQ(monograin("data own.dat -o own.svg").code, 2);
+  EXPECT_EQ(text("own.dat"), text("zwick.csv"));
+  EXPECT_EQ(monograin("data nowhere.csv").code, 2);
+  EXPECT_EQ(monograin("data zwick.csv --x 7").code, 2);
+}
+
+TEST_F(Commands, DataShowsWhatACalibrationTakes) {
+  const Outcome shown = monograin("data '" MONOGRAIN_SOURCE_DIR "/scenarios/calibrate/uniaxial.toml'");
+  ASSERT_EQ(shown.code, 0) << shown.err;
+  EXPECT_NE(shown.out.find("x is axial.displacement, 1 mm = 0.001 m"), std::string::npos) << shown.out;
+  EXPECT_NE(shown.out.find("unloading 1"), std::string::npos) << shown.out;
+  EXPECT_EQ(monograin("data '" MONOGRAIN_SOURCE_DIR "/scenarios/calibrate/uniaxial.toml' --x 1").code, 2);
 }
 
 TEST_F(Commands, ManualAndCompletionKnowEveryCommand) {

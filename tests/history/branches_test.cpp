@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <vector>
 
 namespace monograin::branches_test {
 namespace {
@@ -145,6 +147,54 @@ TEST(Branches, BandsHoldWaysBackAndForthAgainstThoseFromTheSamePlace) {
 
 TEST(Branches, CurvesWithoutACommonRangeAreAFault) {
   EXPECT_THROW(static_cast<void>(compare_branches({{0, 1}, {0, 1}}, {{2, 3}, {0, 1}})), std::runtime_error);
+}
+
+// --- turning points
+
+/// x through the places in equal steps, with Gaussian noise.
+Values through(const Values& places, std::size_t rows, double noise) {
+  std::mt19937 generator(7);
+  std::normal_distribution<double> error(0.0, noise > 0.0 ? noise : 1.0);
+  Values x{places.front()};
+  for (std::size_t p = 1; p < places.size(); ++p) {
+    for (std::size_t k = 1; k <= rows; ++k) {
+      x.push_back(std::lerp(places[p - 1], places[p], static_cast<double>(k) / static_cast<double>(rows)));
+    }
+  }
+  if (noise > 0.0) {
+    for (double& value : x) value += error(generator);
+  }
+  return x;
+}
+
+TEST(TurningPoints, OfExactDataAreItsReversals) {
+  EXPECT_EQ(turning_points(through({0, 2, 1.9, 2.5, 2.4}, 10, 0.0)), (std::vector<std::size_t>{0, 10, 20, 30, 40}));
+  EXPECT_EQ(turning_points(Values{0, 10, 20, 40, 60, 80, 100, 120, 115, 110, 107}),
+            (std::vector<std::size_t>{0, 7, 10}));
+  EXPECT_EQ(turning_points(through({0, 1}, 5, 0.0)), (std::vector<std::size_t>{0, 5}));
+  EXPECT_EQ(turning_points(Values{1.0}), std::vector<std::size_t>{0});
+  EXPECT_TRUE(turning_points(Values{}).empty());
+  EXPECT_EQ(turning_points(Values{1, 1, 1}), (std::vector<std::size_t>{0, 2}));
+}
+
+TEST(TurningPoints, AreNotThoseOfNoise) {
+  // Ramps, a hold, and a small reload; the noise is larger than the steps of all of them.
+  const Values places{0, 1, 1, 0.8, 0.9, 0.2};
+  for (const double noise : {1e-4, 1e-3, 5e-3}) {
+    const Values x = through(places, 2000, noise);
+    const std::vector<std::size_t> turns = turning_points(x);
+    ASSERT_EQ(turns.size(), 5U) << noise;
+    const Values found{x[turns[1]], x[turns[2]], x[turns[3]]};
+    const Values expected{1, 0.8, 0.9};
+    for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(found[k], expected[k], 5 * noise) << noise;
+  }
+}
+
+TEST(TurningPoints, OfManyEqualCyclesAreAllOfThem) {
+  Values places;
+  for (int cycle = 0; cycle < 20; ++cycle) places.insert(places.end(), {0.0, 1.0});
+  EXPECT_EQ(turning_points(through(places, 5, 0.0)).size(), 40U);
+  EXPECT_EQ(turning_points(through(places, 50, 1e-2)).size(), 40U);
 }
 
 }  // namespace

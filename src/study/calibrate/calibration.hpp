@@ -121,6 +121,9 @@ struct CalibrationResult {
 /// weights are equal.
 inline constexpr double k_least_explained = 0.9;
 
+/// Size of a file of data [byte].
+inline constexpr std::size_t k_largest_data = 16U * 1024U * 1024U;
+
 /// Share of the rows that may lack a number in x, y or the weights.
 inline constexpr double k_most_missing = 0.1;
 

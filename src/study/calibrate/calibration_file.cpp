@@ -28,7 +28,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace calibration;
 
-constexpr std::size_t k_largest_data = 16U * 1024U * 1024U;
 constexpr double k_ratio_for_log = 100.0;  // of bounds: from here on their parameter is sought in its logarithm
 constexpr std::size_t k_most_zeros = 20;   // that are reported one by one
 

@@ -17,6 +17,7 @@
 #include "scenario/edit.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/text_table.hpp"
 #include "system/undefined.hpp"
 
 namespace monograin {
@@ -55,23 +56,7 @@ std::pair<double, double> interval_of(const CalibrationResult& result, std::size
 
 // --- text
 
-using Row = std::vector<std::string>;
-
-/// Rows with their cells below each other, the first column to the left and the others to the right.
-std::string aligned(const std::vector<Row>& rows) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const Row& row : rows) {
-    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
-  }
-  std::string text;
-  for (const Row& row : rows) {
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      text += k == 0 ? fmt::format("{:<{}}", row[k], widths[k]) : fmt::format("  {:>{}}", row[k], widths[k]);
-    }
-    text += '\n';
-  }
-  return text;
-}
+using Row = TextRow;
 
 std::string parameter_table(const Calibration& calibration, const CalibrationResult& result) {
   const std::string level = fmt::format("{:g} % interval", 100.0 * result.uncertainty.level);

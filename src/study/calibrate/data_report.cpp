@@ -1,0 +1,307 @@
+#include "study/calibrate/data_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "figure/figure.hpp"
+#include "figure/page.hpp"
+#include "history/branches.hpp"
+#include "scenario/faults.hpp"
+#include "scenario/measured_data.hpp"
+#include "scenario/text_file.hpp"
+#include "scenario/units.hpp"
+#include "scenario/words.hpp"
+#include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/text_table.hpp"
+#include "system/undefined.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Reads a table again in the same manner.
+TableFormat format_as(const TableLayout& layout) {
+  TableFormat format{.separator = layout.separator, .decimal = layout.decimal};
+  format.skip = std::max<std::size_t>(layout.heading_line > 0 ? layout.heading_line : layout.first_line, 1) - 1;
+  format.units = layout.unit_line > 0 ? TableFormat::Units::row : TableFormat::Units::none;
+  format.unit_of = layout.units;
+  format.most_missing = 1.0;
+  return format;
+}
+
+ColumnRequest request_by_number(std::size_t number, const std::string& file) {
+  return {.name = {}, .where = {file}, .naming = fmt::format("column {}", number), .number = number};
+}
+
+std::string name_of_column(const MeasuredColumn& column) {
+  return column.heading.empty() ? fmt::format("column {}", column.number) : std::string(name_in(column.heading));
+}
+
+std::vector<ColumnSummary> summaries_of(const std::string& text, const std::string& file, const TableLayout& layout,
+                                        FaultList& faults) {
+  std::vector<ColumnSummary> summaries;
+  for (std::size_t k = 0; k < layout.headings.size(); ++k) {
+    ColumnSummary summary{.heading = layout.headings[k], .unit = layout.units[k], .is_numeric = layout.is_numeric[k]};
+    if (summary.is_numeric) {
+      const MeasuredData data = parse_measured(text, file, {request_by_number(k + 1, file)}, faults, format_as(layout));
+      const std::vector<double>& values = data.columns.front().values;
+      summary.values = values.size();
+      summary.missing = data.left_out.size();
+      if (!values.empty()) {
+        summary.lowest = std::ranges::min(values);
+        summary.highest = std::ranges::max(values);
+      }
+    }
+    summaries.push_back(std::move(summary));
+  }
+  return summaries;
+}
+
+std::vector<DataBranch> branches_of(const std::vector<double>& x) {
+  std::vector<DataBranch> branches;
+  const std::vector<std::size_t> turns = turning_points(x);
+  for (std::size_t k = 1; k < turns.size(); ++k) {
+    branches.push_back({turns[k - 1], turns[k], std::abs(x[turns[k]]) > std::abs(x[turns[k - 1]])});
+  }
+  return branches;
+}
+
+/// Whether a unit is one of the dimension.
+bool is_of(std::string_view unit, Dimension dimension) {
+  const auto& units = dimension_info(dimension).units;
+  return std::ranges::find(units, unit, &Unit::symbol) != units.end();
+}
+
+/// The first column of numbers in units of the dimension.
+std::optional<std::size_t> column_of(const TableLayout& layout, Dimension dimension) {
+  for (std::size_t k = 0; k < layout.units.size(); ++k) {
+    if (layout.is_numeric[k] && is_of(layout.units[k], dimension)) return k + 1;
+  }
+  return std::nullopt;
+}
+
+ColumnRequest request_of_choice(const std::string& choice, const char* option, const std::string& file) {
+  ColumnRequest request{.name = choice, .where = {file}, .naming = fmt::format("{} {}", option, shown(choice))};
+  const bool is_number = choice.size() < 6 && choice.find_first_not_of("0123456789") == std::string::npos;
+  if (is_number && std::stoul(choice) > 0) {
+    request.number = std::stoul(choice);
+    request.name.clear();
+  }
+  return request;
+}
+
+DataAxis axis_of(MeasuredColumn column) {
+  std::string name = name_of_column(column);
+  return {column.number, std::move(name), std::move(column.unit), std::move(column.values)};
+}
+
+std::string with_unit(const DataAxis& axis, double value) {
+  const bool is_bare = axis.unit.empty() || axis.unit == "-";
+  return fmt::format("{:.6g}{}{}", value, is_bare ? "" : " ", is_bare ? "" : axis.unit);
+}
+
+std::string named(const DataAxis& axis) {
+  return fmt::format("column {}{}", axis.number,
+                     axis.name == fmt::format("column {}", axis.number) ? "" : " '" + shown(axis.name) + "'");
+}
+
+std::string label_of(const DataAxis& axis) {
+  const std::string name = figure::verbatim_text(axis.name);
+  const bool is_bare = axis.unit.empty() || axis.unit == "-";
+  return is_bare ? name : fmt::format("{} [{}]", name, figure::verbatim_text(axis.unit));
+}
+
+/// "axial.displacement, 1 mm = 0.001 m".
+std::string meaning_of(const MeasuredQuantity& quantity) {
+  if (quantity.unit_factor == 1.0) return quantity.observable;
+  return fmt::format("{}, 1 {} = {:g} {}", quantity.observable, quantity.unit, quantity.unit_factor, quantity.si);
+}
+
+}  // namespace
+
+DataReport report_of_file(const fs::path& file, const DataChoice& choice) {
+  DataReport report;
+  report.file = name_of_file(file).string();
+  const auto [bytes, problem] = read_text_file(file, k_largest_data, FileKind::any);
+  if (!problem.empty()) throw_fault({report.file}, problem + "; expected a table of measured data");
+  if (bytes.size() > k_largest_data) throw_fault({report.file}, "the file is too large");
+  FaultList faults;
+  std::vector<ColumnRequest> wanted;
+  if (!choice.x.empty()) wanted.push_back(request_of_choice(choice.x, "--x", report.file));
+  if (!choice.y.empty()) wanted.push_back(request_of_choice(choice.y, "--y", report.file));
+  const MeasuredData first = parse_measured(bytes, report.file, wanted, faults, {.most_missing = 1.0});
+  faults.throw_if_any();
+  report.layout = first.layout;
+  if (std::ranges::count(first.layout.is_numeric, true) < 2) {
+    throw_fault(
+        {report.file, std::max<std::size_t>(first.layout.first_line, 1)},
+        "this is no table with two columns of numbers; if it is, give separator, decimal or skip in [data] of a "
+        "calibration file");
+  }
+  report.columns = summaries_of(bytes, report.file, report.layout, faults);
+
+  const auto& is_numeric = report.layout.is_numeric;
+  const auto next_numeric = [&is_numeric](std::size_t begin) {
+    const auto found = std::find(is_numeric.begin() + static_cast<std::ptrdiff_t>(begin), is_numeric.end(), true);
+    return static_cast<std::size_t>(found - is_numeric.begin()) + 1;
+  };
+  std::size_t x = choice.x.empty() ? column_of(report.layout, Dimension::length).value_or(next_numeric(0))
+                                   : first.columns.front().number;
+  std::size_t y =
+      choice.y.empty()
+          ? column_of(report.layout, Dimension::force).value_or(next_numeric(std::min(x, is_numeric.size())))
+          : first.columns.back().number;
+  x = std::min(x, is_numeric.size());
+  y = std::min(y, is_numeric.size());
+  MeasuredData data =
+      parse_measured(bytes, report.file, {request_by_number(x, report.file), request_by_number(y, report.file)}, faults,
+                     format_as(report.layout));
+  faults.throw_if_any();
+  report.x = axis_of(std::move(data.columns[0]));
+  report.y = axis_of(std::move(data.columns[1]));
+  report.lines = std::move(data.lines);
+  report.left_out = data.left_out.size();
+  report.branches = branches_of(report.x.values);
+  return report;
+}
+
+std::vector<DataReport> reports_of(const Calibration& calibration) {
+  std::vector<DataReport> reports;
+  FaultList faults;
+  for (const MeasuredCurve& curve : calibration.curves) {
+    DataReport report;
+    report.file = curve.file;
+    report.layout = curve.layout;
+    report.columns = summaries_of(curve.text, curve.file, curve.layout, faults);
+    const auto axis = [&](const MeasuredQuantity& quantity, std::size_t number) {
+      DataAxis made{number, fmt::format("column {}", number), quantity.unit, {}};
+      const std::string& heading = curve.layout.headings[number - 1];
+      if (!heading.empty()) made.name = name_in(heading);
+      for (std::size_t row = curve.begin; row < curve.end; ++row) {
+        made.values.push_back(quantity.values[row] / quantity.unit_factor);
+      }
+      return made;
+    };
+    report.x = axis(calibration.x, curve.columns[0]);
+    report.y = axis(calibration.y, curve.columns[1]);
+    report.lines.assign(calibration.lines.begin() + static_cast<std::ptrdiff_t>(curve.begin),
+                        calibration.lines.begin() + static_cast<std::ptrdiff_t>(curve.end));
+    report.left_out = curve.left_out.size();
+    report.branches = branches_of(report.x.values);
+    report.remarks = {fmt::format("x is {}", meaning_of(calibration.x)),
+                      fmt::format("y is {}", meaning_of(calibration.y))};
+    const Machine& machine = curve.machine;
+    if (machine.offset != 0.0) report.remarks.push_back(fmt::format("data.offset is {:g} m", machine.offset));
+    if (machine.compliance != 0.0)
+      report.remarks.push_back(fmt::format("data.compliance is {:g} m/N", machine.compliance));
+    if (!machine.forces.empty()) report.remarks.push_back("data.compliance is a table");
+    for (const FreeParameter& free : calibration.free) {
+      if (free.key.path.starts_with(calibration::k_data)) report.remarks.push_back(free.key.path + " is sought");
+    }
+    reports.push_back(std::move(report));
+  }
+  return reports;
+}
+
+std::string data_text(const DataReport& report) {
+  const TableLayout& layout = report.layout;
+  const auto line = [](std::size_t number) {
+    return number > 0 ? fmt::format("line {}", number) : std::string("none");
+  };
+  std::string text = report.file + '\n';
+  for (const auto& [what, value] : std::vector<std::pair<const char*, std::string>>{
+           {"encoding", layout.encoding},
+           {"separator", std::string(separator_word(layout.separator))},
+           {"decimal", layout.decimal == '.' ? "point" : "comma"},
+           {"headings", line(layout.heading_line)},
+           {"units", line(layout.unit_line)},
+           {"rows", fmt::format("{}{}", report.lines.size(),
+                                report.lines.empty()
+                                    ? ""
+                                    : fmt::format(", lines {} to {}", report.lines.front(), report.lines.back()))},
+           {"left out", fmt::format("{} without x or y", report.left_out)}}) {
+    text += fmt::format("  {:<11}{}\n", what, value);
+  }
+  std::vector<TextRow> columns{{"column", "number", "unit", "values", "missing", "lowest", "highest"}};
+  for (std::size_t k = 0; k < report.columns.size(); ++k) {
+    const ColumnSummary& column = report.columns[k];
+    TextRow row{column.heading.empty() ? "-" : shown(column.heading), fmt::format("{}", k + 1),
+                column.unit.empty() ? "-" : shown(column.unit)};
+    if (column.is_numeric) {
+      row.insert(row.end(), {fmt::format("{}", column.values), fmt::format("{}", column.missing),
+                             fmt::format("{:.6g}", column.lowest), fmt::format("{:.6g}", column.highest)});
+    } else {
+      row.insert(row.end(), {"text", "-", "-", "-"});
+    }
+    columns.push_back(std::move(row));
+  }
+  text += '\n' + aligned(columns);
+  text += fmt::format("\nx: {}, y: {}\n", named(report.x), named(report.y));
+  for (const std::string& remark : report.remarks) text += remark + '\n';
+  std::vector<TextRow> ways{{"way", "lines", "rows", "x from", "to", "y from", "to"}};
+  std::array<std::size_t, 2> counts{};
+  for (const DataBranch& branch : report.branches) {
+    const std::size_t count = ++counts[branch.is_loading ? 0 : 1];
+    ways.push_back(
+        {fmt::format("{} {}", branch.is_loading ? "loading" : "unloading", count),
+         fmt::format("{}-{}", report.lines[branch.begin], report.lines[branch.end]),
+         fmt::format("{}", branch.end - branch.begin + 1), with_unit(report.x, report.x.values[branch.begin]),
+         with_unit(report.x, report.x.values[branch.end]), with_unit(report.y, report.y.values[branch.begin]),
+         with_unit(report.y, report.y.values[branch.end])});
+  }
+  if (ways.size() > 1) text += '\n' + aligned(ways);
+  return text;
+}
+
+figure::Chart data_chart(const std::vector<DataReport>& reports) {
+  using Style = figure::ChartSeries::Style;
+  figure::ChartPanel panel{.x = {.label = label_of(reports.front().x)}, .y = {.label = label_of(reports.front().y)}};
+  const bool has_several = reports.size() > 1;  // then each has a colour of its own
+  for (std::size_t c = 0; c < reports.size(); ++c) {
+    const DataReport& report = reports[c];
+    const std::string suffix =
+        has_several ? ": " + figure::verbatim_text(fs::path(report.file).stem().string()) : std::string();
+    figure::ChartSeries turns{
+        .legend = "turning points" + suffix, .style = Style::points, .colour = has_several ? c : 2, .x = {}, .y = {}};
+    for (const bool is_loading : {true, false}) {
+      figure::ChartSeries series{.legend = (is_loading ? "loading" : "unloading") + suffix,
+                                 .style = is_loading ? Style::solid : Style::dashed,
+                                 .colour = has_several  ? c
+                                           : is_loading ? 0U
+                                                        : 1U,
+                                 .x = {},
+                                 .y = {}};
+      for (const DataBranch& branch : report.branches) {
+        if (branch.is_loading != is_loading) continue;
+        for (std::size_t row = branch.begin; row <= branch.end; ++row) {
+          series.x.push_back(report.x.values[row]);
+          series.y.push_back(report.y.values[row]);
+        }
+        series.x.push_back(k_nan);  // the next way is not joined to this one
+        series.y.push_back(k_nan);
+      }
+      if (!series.x.empty()) panel.series.push_back(std::move(series));
+    }
+    for (std::size_t k = 1; k < report.branches.size(); ++k) {
+      turns.x.push_back(report.x.values[report.branches[k].begin]);
+      turns.y.push_back(report.y.values[report.branches[k].begin]);
+    }
+    if (!turns.x.empty()) panel.series.push_back(std::move(turns));
+  }
+  return {{std::move(panel)}, {}};
+}
+
+void draw_data(const std::vector<DataReport>& reports, const fs::path& output) {
+  const figure::FigureFiles files(output);
+  const figure::Chart chart = data_chart(reports);
+  files.write(figure::chart_data(chart, reports.front().file),
+              figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
+}
+
+}  // namespace monograin
