@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "engine/drive.hpp"
 #include "scenario/faults.hpp"
@@ -18,16 +19,19 @@ namespace monograin {
 namespace {
 
 constexpr double k_direct_noise = 1e-13;     // of a response without time integration
+constexpr double k_jump_share = 0.7;         // of a central difference: a smaller one to one side has no jump
+constexpr double k_series_noise = 1e-12;     // of a response in series with a machine
 constexpr std::size_t k_curve_points = 400;  // of the curve between the data
 constexpr double k_high_correlation = 0.95;  // of two parameters
 constexpr double k_poor = 0.1;               // relative standard error
 
 /// Relative error of the responses.
-double noise_of(const CheckedScenario& scenario) {
-  const Scene scene = make_scene(scenario);
-  return choose_integrator(scenario.numerics.integrator, *scene.system).used == integrators::k_direct
-             ? k_direct_noise
-             : scenario.numerics.rtol;
+double noise_of(const Calibration& calibration) {
+  const Scene scene = make_scene(calibration.scenario);
+  const Numerics& numerics = calibration.scenario.numerics;
+  const bool is_direct = choose_integrator(numerics.integrator, *scene.system).used == integrators::k_direct;
+  const double noise = is_direct ? k_direct_noise : numerics.rtol;
+  return calibration.has_machine() ? std::max(noise, k_series_noise) : noise;
 }
 
 /// Into how many parts a curve's pieces are divided, so that it is smooth.
@@ -45,13 +49,6 @@ std::vector<double> refined(std::span<const double> x, std::size_t parts) {
   return result;
 }
 
-/// Displacements at the particle: those measured without what the machine adds under the forces.
-std::vector<double> without_machine(const Machine& machine, std::vector<double> displacements,
-                                    std::span<const double> forces) {
-  for (std::size_t i = 0; i < displacements.size(); ++i) displacements[i] -= machine.addition(forces[i]);
-  return displacements;
-}
-
 /// The response of one curve's scenario as the residuals of a problem, with the parameters of a fit.
 class Response {
  public:
@@ -61,38 +58,62 @@ class Response {
         curve_(curve),
         replay_(curve.scenario, {curve.driven, calibration.y.observable, curve.control, curve.start}, x),
         x_(std::move(x)),
-        y_(std::move(y)) {}
+        y_(std::move(y)),
+        noise_(noise_of(calibration)) {}
 
   bool operator()(std::span<const double> parameters, std::span<double> response) {
+    problem_.clear();
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       const std::string& path = calibration_.free[k].key.path;
       if (!path.starts_with(calibration::k_data)) replay_.set(path, parameters[k]);
     }
     const Machine machine = calibration_.machine_of(curve_, parameters);
-    const bool moves_x = calibration_.machine_moves_x();
-    if (machine.is_rigid()) {
-      if (is_moved_) replay_.follow(x_);
-      is_moved_ = false;
-    } else if (moves_x) {
-      replay_.follow(without_machine(machine, x_, y_));
-      is_moved_ = true;
+    if (calibration_.machine_moves_x()) {
+      if (!machine.is_rigid()) return run_in_series(machine, response);
+      if (std::exchange(is_moved_, false)) replay_.follow(x_);
+      particle_ = x_;
+      return replay_.run(response);
     }
     if (!replay_.run(response)) return false;
-    for (std::size_t i = 0; i < x_.size() && !moves_x && !machine.is_rigid(); ++i) {
-      response[i] += machine.addition(x_[i]);
-    }
+    particle_.assign(response.begin(), response.end());
+    for (std::size_t i = 0; i < x_.size(); ++i) response[i] += machine.addition(x_[i]);
     return true;
   }
 
+  /// Displacements at the particle in the last run, where x or y is a displacement.
+  [[nodiscard]] const std::vector<double>& particle() const noexcept { return particle_; }
   [[nodiscard]] const Replay& replay() const noexcept { return replay_; }
+  /// Why there was no response.
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_.empty() ? replay_.problem() : problem_; }
 
  private:
+  /// The machine shows the sum of its displacement and the particle's.
+  bool run_in_series(const Machine& machine, std::span<double> response) {
+    is_moved_ = true;
+    particle_ = x_;
+    for (std::size_t i = 0; i < x_.size(); ++i) particle_[i] -= machine.addition(y_[i]);
+    double largest = 0.0;
+    for (const double x : x_) largest = std::max(largest, std::abs(x));
+    bool has_run = true;
+    const auto forces_of = [&](const std::vector<double>& particle, std::span<double> forces) {
+      replay_.follow(particle);
+      has_run = replay_.run(forces);
+      return has_run;
+    };
+    if (put_in_series(machine, x_, forces_of, noise_ * largest, particle_, response)) return true;
+    if (has_run) problem_ = "no displacements of the particle and of the machine add up to those measured";
+    return false;
+  }
+
   const Calibration& calibration_;
   const MeasuredCurve& curve_;
   Replay replay_;
   std::vector<double> x_;
   std::vector<double> y_;
+  double noise_;  ///< relative error of a response
+  std::vector<double> particle_;
   bool is_moved_ = false;  ///< the replay follows other values than x
+  std::string problem_;
 };
 
 /// A curve's share of values that are kept row by row.
@@ -111,6 +132,37 @@ std::vector<double> y_of(const Calibration& calibration, const MeasuredCurve& cu
   return {begin + static_cast<std::ptrdiff_t>(curve.begin), begin + static_cast<std::ptrdiff_t>(curve.end)};
 }
 
+/// residual_jacobian, but for residuals that jump within a step: there the difference to the side without the jump. In
+/// series with a machine a datum may stand in a jump of the law over a range of parameters, and a fit may end at its
+/// edge.
+Eigen::MatrixXd jacobian_beside_jumps(const LeastSquaresProblem& problem, std::span<const double> parameters) {
+  Eigen::MatrixXd jacobian = residual_jacobian(problem, parameters);
+  const auto rows = jacobian.rows();
+  std::vector<double> trial(parameters.begin(), parameters.end());
+  Eigen::VectorXd present(rows);
+  Eigen::VectorXd moved(rows);
+  const auto at = [&](Eigen::VectorXd& residuals) {
+    return problem.residuals(trial, {residuals.data(), problem.residual_count});
+  };
+  if (!at(present)) return jacobian;
+  for (std::size_t k = 0; k < trial.size(); ++k) {
+    auto column = jacobian.col(static_cast<Eigen::Index>(k));
+    const double step = difference_step(problem, parameters, k);
+    for (const double signed_step : {step, -step}) {
+      trial[k] = parameters[k] + signed_step;
+      const bool is_inside = trial[k] >= problem.parameters[k].lower && trial[k] <= problem.parameters[k].upper;
+      const bool has_moved = is_inside && at(moved);
+      trial[k] = parameters[k];
+      if (!has_moved) continue;
+      for (Eigen::Index i = 0; i < rows; ++i) {
+        const double one_sided = (moved[i] - present[i]) / signed_step;
+        if (std::abs(one_sided) < k_jump_share * std::abs(column[i])) column[i] = one_sided;
+      }
+    }
+  }
+  return jacobian;
+}
+
 class Fit {
  public:
   Fit(const Calibration& calibration, const LeastSquaresProblem::Progress& progress)
@@ -125,7 +177,7 @@ class Fit {
     begin_at(procedures_.starts);
     problem_.residual_count = rows_.size();
     problem_.loss = calibration.loss;
-    problem_.noise = noise_of(calibration.scenario);
+    problem_.noise = noise_of(calibration);
     problem_.progress = progress;
     problem_.residuals = [this](std::span<const double> parameters, std::span<double> residuals) {
       if (failing(parameters) < responses_.size()) return false;
@@ -157,14 +209,13 @@ class Fit {
     if (!procedures_.fits.empty()) {
       result.procedures.fits.push_back(measured_fit(calibration_, procedures_, parameters));
     }
-    result.uncertainty = uncertainty_of(problem_, result.solution, residual_jacobian(problem_, parameters),
-                                        rows_.size(), calibration_.confidence);
+    result.uncertainty = uncertainty_of(problem_, result.solution, jacobian_of(problem_, parameters), rows_.size(),
+                                        calibration_.confidence);
     for (const MeasuredCurve& curve : calibration_.curves) {
       const std::vector<double> x = x_of(calibration_, curve);
       const std::vector<double> y = y_of(calibration_, curve);
-      append(curve_through(curve, x, y, result), result.fit);
+      append(curve_through(curve, x, y, result, &result.particle), result.fit);
       result.curves.push_back(curve_through(curve, refined(x, parts_of(x)), refined(y, parts_of(x)), result));
-      add_particle(curve, result);
     }
     result.points = rows_.size();
     for (const Response& response : responses_) {
@@ -184,6 +235,12 @@ class Fit {
       if (found == starts.end() || parameter.start) continue;
       if (found->second >= parameter.lower && found->second <= parameter.upper) parameter.start = found->second;
     }
+  }
+
+  [[nodiscard]] Eigen::MatrixXd jacobian_of(const LeastSquaresProblem& problem,
+                                            std::span<const double> parameters) const {
+    return calibration_.has_machine() ? jacobian_beside_jumps(problem, parameters)
+                                      : residual_jacobian(problem, parameters);
   }
 
   /// Runs all curves. @return the first that cannot be followed; their number where all can
@@ -214,11 +271,13 @@ class Fit {
         {curve.file, calibration_.lines[curve.begin + replay.failed_at()]},
         fmt::format("the scenario cannot follow the data beyond this row with any parameters that were tried: {}; "
                     "expected other bounds, or data that model '{}' can follow{}",
-                    replay.problem(), calibration_.scenario.model, cause.empty() ? "" : "; likely cause: " + cause));
+                    responses_[failed].problem(), calibration_.scenario.model,
+                    cause.empty() ? "" : "; likely cause: " + cause));
   }
 
   [[nodiscard]] FittedCurve curve_through(const MeasuredCurve& measured, const std::vector<double>& x,
-                                          const std::vector<double>& y, const CalibrationResult& result) {
+                                          const std::vector<double>& y, const CalibrationResult& result,
+                                          std::vector<double>* particle = nullptr) {
     Response response_through(calibration_, measured, x, y);
     LeastSquaresProblem problem = problem_;
     problem.residual_count = x.size();
@@ -227,25 +286,15 @@ class Fit {
     };
     FittedCurve curve{x, std::vector<double>(x.size(), k_nan), std::vector<double>(x.size(), k_nan)};
     if (!response_through(result.solution.parameters, curve.y)) return curve;
-    const Eigen::MatrixXd gradients = residual_jacobian(problem, result.solution.parameters);
+    if (particle != nullptr && calibration_.has_machine()) {
+      const std::vector<double>& own = response_through.particle();
+      particle->insert(particle->end(), own.begin(), own.end());
+    }
+    const Eigen::MatrixXd gradients = jacobian_of(problem, result.solution.parameters);
     for (std::size_t i = 0; i < x.size(); ++i) {
       curve.band[i] = result.uncertainty.half_width(gradients.row(static_cast<Eigen::Index>(i)).transpose());
     }
     return curve;
-  }
-
-  /// Displacements at the particle, where they are not those measured.
-  void add_particle(const MeasuredCurve& curve, CalibrationResult& result) const {
-    const Machine machine = calibration_.machine_of(curve, result.solution.parameters);
-    const bool is_in_use = std::ranges::any_of(calibration_.curves, [&](const MeasuredCurve& other) {
-      return !calibration_.machine_of(other, result.solution.parameters).is_rigid();
-    });
-    if (!is_in_use) return;
-    const std::vector<double> x = x_of(calibration_, curve);
-    const std::vector<double> y = y_of(calibration_, curve);
-    const std::vector<double> particle =
-        calibration_.machine_moves_x() ? without_machine(machine, x, y) : without_machine(machine, y, x);
-    result.particle.insert(result.particle.end(), particle.begin(), particle.end());
   }
 
   void add_statistics(CalibrationResult& result) const {
@@ -328,6 +377,7 @@ class Fit {
         if (!(std::abs(correlation) > k_high_correlation)) continue;
         // The one of which the data know less.
         const auto relative = [&](std::size_t k) {
+          if (calibration_.free[k].key.path == calibration::k_offset) return 0.0;  // zero is a value as others
           return result.uncertainty.standard_error(k) / std::abs(result.solution.parameters[k]);
         };
         const std::size_t poor = relative(i) > relative(j) ? i : j;

@@ -76,6 +76,8 @@ struct Calibration {
 
   /// The machine of a curve with these values of the free parameters.
   [[nodiscard]] Machine machine_of(const MeasuredCurve& curve, std::span<const double> parameters) const;
+  /// Whether the machine adds to the displacement of any curve, or may.
+  [[nodiscard]] bool has_machine() const noexcept;
   /// Which of the quantities the machine adds to: the displacement.
   [[nodiscard]] bool machine_moves_x() const noexcept { return x.observable.ends_with(".displacement"); }
   /// Rows that take part in the fit.

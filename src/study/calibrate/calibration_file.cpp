@@ -741,6 +741,12 @@ Machine Calibration::machine_of(const MeasuredCurve& curve, std::span<const doub
   return machine;
 }
 
+bool Calibration::has_machine() const noexcept {
+  const auto is_of_machine = [](const FreeParameter& parameter) { return parameter.key.path.starts_with(k_data); };
+  const auto has_own = [](const MeasuredCurve& curve) { return !curve.machine.is_rigid(); };
+  return std::ranges::any_of(free, is_of_machine) || std::ranges::any_of(curves, has_own);
+}
+
 const MeasuredCurve& Calibration::curve_of(std::size_t row) const noexcept {
   return *std::ranges::find_if(curves, [row](const MeasuredCurve& curve) { return row < curve.end; });
 }

@@ -2,6 +2,7 @@
 /// gives way.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,10 +12,6 @@
 namespace monograin {
 
 /// measured displacement = displacement at the particle + offset + compliance * force + deflection(force).
-///
-/// The measured force is what deflects the frame. Then the particle's displacements are known before the run, and drive
-/// it. An error e of the measured force moves them by compliance * e; the residual of a fit to forces is then
-/// (1 + compliance * contact stiffness) e.
 struct Machine {
   double offset = 0.0;                ///< displacement at first touch [m]
   double compliance = 0.0;            ///< [m/N]
@@ -26,6 +23,23 @@ struct Machine {
   /// first and last pieces.
   [[nodiscard]] double addition(double force) const noexcept;
 };
+
+/// Forces of a particle that is driven through displacements; false where it cannot follow.
+using ForcesOf = std::function<bool(const std::vector<double>& particle, std::span<double> forces)>;
+
+/// Finds the displacements at the particle that the machine shows as x, machine and particle in series: the particle's
+/// own force deflects the frame, not the one that was measured. Its error then stays out of the displacements, where it
+/// would be an error of the regressors, and turn the particle back and forth.
+///
+/// Each displacement is found by secants, all of them with one run of the particle. As long as the particle does not
+/// soften more than the frame, its displacements rise and fall with x. Where its force jumps and the machine's
+/// line goes through the jump, the force is the middle of the jump.
+/// @param tolerance  of the displacements [m]
+/// @param particle   first guess, and result
+/// @param forces     those of the result
+/// @return false where the particle cannot follow, or nothing was found
+[[nodiscard]] bool put_in_series(const Machine& machine, std::span<const double> x, const ForcesOf& forces_of,
+                                 double tolerance, std::vector<double>& particle, std::span<double> forces);
 
 /// A compliance with its unit, a length over a force: "20 nm/N".
 struct ParsedCompliance {
