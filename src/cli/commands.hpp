@@ -4,10 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <string>
 
 #include "engine/drive.hpp"
 
 namespace monograin {
+
+struct Model;
 
 /// Exit codes that scripts rely on.
 enum ExitCode : int {
@@ -27,6 +30,10 @@ class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// The model that a command names.
+/// @throws UsageError where there is none of that name; it lists those there are
+[[nodiscard]] const Model& model_named(const std::string& name);
 
 /// Set by the command that was named; runs it.
 using Action = std::function<int()>;

@@ -143,15 +143,6 @@ void print_parameters(const CheckedScenario& scenario) {
   }
 }
 
-/// @throws UsageError where there is none of that name
-const Model& model_named(const std::string& name) {
-  if (const Model* model = find_model(name); model != nullptr) return *model;
-  std::vector<std::string_view> names;
-  for (const Model& known : model_catalogue()) names.push_back(known.name);
-  throw UsageError(fmt::format("there is no model '{}'{}; available: {}", shown(name), did_you_mean(name, names),
-                               fmt::join(names, ", ")));
-}
-
 /// Prints the references of models, of all where none is named, each once and in the order of the keys.
 int run_cite(const std::vector<std::string>& names) {
   std::map<std::string_view, const Citation*> entries;
@@ -186,6 +177,14 @@ int run_models(const ModelsOptions& options) {
 }
 
 }  // namespace
+
+const Model& model_named(const std::string& name) {
+  if (const Model* model = find_model(name); model != nullptr) return *model;
+  std::vector<std::string_view> names;
+  for (const Model& known : model_catalogue()) names.push_back(known.name);
+  throw UsageError(fmt::format("there is no model '{}'{}; available: {}", shown(name), did_you_mean(name, names),
+                               fmt::join(names, ", ")));
+}
 
 void add_models_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<ModelsOptions>();

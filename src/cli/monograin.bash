@@ -14,6 +14,10 @@ _monograin() {
     mapfile -t COMPREPLY < <(compgen -W "$(monograin models 2>/dev/null | awk 'NF == 0 { exit } { print $1 }')" -- "$current")
     return
   fi
+  if [[ ${COMP_WORDS[1]} == stress && $previous == --model ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$(monograin models 2>/dev/null | awk 'NF == 0 { exit } { print $1 }')" -- "$current")
+    return
+  fi
   case ${COMP_WORDS[1]} in
     run) options="--output --set --plot --quiet --help" ;;
     check) options="--set --help" ;;
@@ -25,7 +29,7 @@ _monograin() {
     data) options="--x --y --plot --output --help" ;;
     sweep) options="--jobs --shard --design-only --output --help" ;;
     bench) options="--scenes --integrator --rtol --profile --against-fe --redraw --plots --output --help" ;;
-    stress) options="--time --seed --first --scenes --jobs --output --help" ;;
+    stress) options="--time --seed --model --first --scenes --jobs --output --help" ;;
     regress) options="--accept --scenarios --curves --help" ;;
     *) options="--help" ;;
   esac

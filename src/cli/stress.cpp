@@ -20,6 +20,7 @@ namespace {
 
 struct CommandOptions {
   std::vector<std::string> files;
+  std::vector<std::string> models;
   double seconds = 60.0;
   std::uint64_t seed = 1;
   std::size_t scenes = 0;
@@ -46,12 +47,15 @@ int check_files(const std::vector<std::string>& files) {
 
 int stress(const CommandOptions& options) {
   if (!options.files.empty()) return check_files(options.files);
+  DrawnModels models;
+  for (const std::string& name : options.models) models.insert(&model_named(name));
   const StressReport report = [&] {
     ProgressBar bar("scenes");
     return run_stress({.seed = options.seed,
                        .seconds = options.seconds,
                        .scenes = options.scenes,
                        .first = options.first,
+                       .models = models,
                        .threads = options.threads,
                        .folder = options.output,
                        .progress = [&](auto done, auto of) { bar.show(done, of); }});
@@ -75,13 +79,15 @@ void add_stress_command(CLI::App& app, Action& action) {
       ->transform(CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::CASE_SENSITIVE))
       ->check(CLI::PositiveNumber)
       ->type_name("TIME");
+  command->add_option("--model", options->models, "Draw scenes of these models only, a sequence of their own [all]")
+      ->type_name("NAME");
   command->add_option("--seed", options->seed, "Which sequence of scenes [1]");
   command->add_option("-n,--scenes", options->scenes, "End after so many scenes [none: when the time is up]");
   command->add_option("--first", options->first, "Index of the scene to begin with [0]");
   command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core]")
       ->check(CLI::Range(1, 1024));
   command->add_option("-o,--output", options->output, "Folder of the report and the failing scenes [runs/stress]");
-  command->footer("Example: monograin stress --time 20s --seed 7");
+  command->footer("Example: monograin stress --time 20s --seed 7 --model hertz mdr");
   command->callback([options, &action] { action = [options] { return stress(*options); }; });
 }
 

@@ -54,6 +54,21 @@ steps = [{ displacement = 0.2, rate = 0.1 }]
   EXPECT_NE(text("stdout.txt").find("unstated-limit"), std::string::npos) << text("stdout.txt");
 }
 
+TEST_F(StressCommand, DrawsScenesOfNamedModelsOnly) {
+  ASSERT_EQ(monograin("stress --model nonlocal hertz --seed 5 --scenes 6 --time 2min -o out").code, 0);
+  const std::string report = text("out/report.txt");
+  EXPECT_NE(report.find("seed 5 of hertz nonlocal: 6 scenes"), std::string::npos) << report;
+  EXPECT_EQ(report.find("mdr"), std::string::npos) << report;
+}
+
+TEST_F(StressCommand, RefusesAModelThatThereIsNot) {
+  EXPECT_EQ(monograin("stress --model herz").code, 2);
+  EXPECT_NE(text("stderr.txt").find("there is no model 'herz'; did you mean 'hertz'?; available: hertz, mdr"),
+            std::string::npos)
+      << text("stderr.txt");
+  EXPECT_FALSE(fs::exists(path("runs")));
+}
+
 TEST_F(StressCommand, RefusesATimeThatIsNone) {
   EXPECT_EQ(monograin("stress --time 0s").code, 2);
   EXPECT_EQ(monograin("stress --time 3parsec").code, 2);

@@ -1,6 +1,7 @@
 #include "verify/stress/stress.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -14,6 +15,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <string_view>
 
 #include "history/staged_folder.hpp"
 #include "scenario/text_file.hpp"
@@ -53,11 +55,11 @@ struct CheckedScene {
   double seconds = 0.0;
 };
 
-CheckedScene check_drawn(std::uint64_t seed, std::uint64_t index, const fs::path& tables) {
+CheckedScene check_drawn(const StressOptions& options, std::uint64_t index, const fs::path& tables) {
   CheckedScene checked;
   const Clock::time_point start = Clock::now();
   try {
-    checked.scene = draw_stress_scene(seed, index, tables);
+    checked.scene = draw_stress_scene(options.seed, index, tables, options.models);
     const CheckedScenario scenario = parse_stress_text(scenario_text(checked.scene), tables);
     checked.verdict = check_scene(scenario, {.seconds = most_seconds_of(scenario), .copies = index});
   } catch (const std::exception& error) {  // of the generator: a scene that is not admissible
@@ -67,16 +69,34 @@ CheckedScene check_drawn(std::uint64_t seed, std::uint64_t index, const fs::path
   return checked;
 }
 
-std::string file_text(const StressFailure& failure, std::uint64_t seed, const std::string& text) {
+std::string names_of(const DrawnModels& models) {
+  std::vector<std::string_view> names;
+  for (const Model* model : models) names.push_back(model->name);
+  return fmt::format("{}", fmt::join(names, " "));
+}
+
+/// A sequence of scenes, for the reader.
+std::string sequence_name(std::uint64_t seed, const DrawnModels& models) {
+  return models.empty() ? fmt::format("seed {}", seed) : fmt::format("seed {} of {}", seed, names_of(models));
+}
+
+/// Options of the command that draws the sequence.
+std::string sequence_options(std::uint64_t seed, const DrawnModels& models) {
+  return models.empty() ? fmt::format("--seed {}", seed) : fmt::format("--model {} --seed {}", names_of(models), seed);
+}
+
+std::string file_text(const StressFailure& failure, const StressOptions& options, const std::string& text) {
   std::string detail = failure.detail;
   std::ranges::replace(detail, '\n', ' ');
-  return fmt::format("# Seed {}, scene {}: {}: {}\n{}", seed, failure.index, failure.check, detail, text);
+  return fmt::format("# Scene {} of {}: {}: {}\n{}", failure.index, sequence_name(options.seed, options.models),
+                     failure.check, detail, text);
 }
 
 class StressTest {
  public:
   StressTest(const StressOptions& options, const fs::path& tables) : options_(options), tables_(tables) {
     report_.seed = options.seed;
+    report_.drawn_from = options.models;
     next_ = options.first;
   }
 
@@ -107,7 +127,7 @@ class StressTest {
     while (!is_done()) {
       const std::uint64_t index = next_++;
       if (options_.scenes > 0 && index >= options_.first + options_.scenes) return;
-      const CheckedScene checked = check_drawn(options_.seed, index, tables_);
+      const CheckedScene checked = check_drawn(options_, index, tables_);
       const std::lock_guard lock(mutex_);
       add(index, checked);
     }
@@ -143,7 +163,7 @@ class StressTest {
   /// The first of each kind are worth the time.
   void make_smaller(StressFailure& failure) {
     if (failure.check == k_generator_rule) return;
-    StressScene scene = draw_stress_scene(options_.seed, failure.index, tables_);
+    StressScene scene = draw_stress_scene(options_.seed, failure.index, tables_, options_.models);
     // What takes too long would do so many times.
     if (failure.check != k_time_rule && time_left() > 0.0 && shrunk_.insert({failure.model, failure.check}).second) {
       scene = shrink(std::move(scene), [&](const StressScene& candidate) {
@@ -154,7 +174,7 @@ class StressTest {
                });
       });
     }
-    failure.text = file_text(failure, options_.seed, scenario_text(scene));
+    failure.text = file_text(failure, options_, scenario_text(scene));
   }
 
   const StressOptions& options_;
@@ -170,8 +190,8 @@ class StressTest {
 
 std::string StressReport::text() const {
   std::string text =
-      fmt::format("seed {}: {} scenes, {} runs, {} ill-conditioned, {} too slow to compare, {} failures\n\n", seed,
-                  scenes, runs, ill_conditioned, cut_short, failures.size());
+      fmt::format("{}: {} scenes, {} runs, {} ill-conditioned, {} too slow to compare, {} failures\n\n",
+                  sequence_name(seed, drawn_from), scenes, runs, ill_conditioned, cut_short, failures.size());
   std::set<std::string> integrators;
   for (const auto& [key, count] : by_model_and_integrator) integrators.insert(key.second);
   std::set<std::string> models;
@@ -200,7 +220,8 @@ std::string StressReport::text() const {
     std::ranges::replace(detail, '\n', ' ');
     text += fmt::format("{}: {}, {}: {}: {} -> {}\n", failure.index, failure.model, failure.integrator, failure.check,
                         detail, failure.file);
-    text += fmt::format("    monograin stress --seed {} --first {} --scenes 1\n", seed, failure.index);
+    text += fmt::format("    monograin stress {} --first {} --scenes 1\n", sequence_options(seed, drawn_from),
+                        failure.index);
   }
   return text;
 }

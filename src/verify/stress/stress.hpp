@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "verify/stress/draw/generator.hpp"
+
 namespace monograin {
 
 struct StressOptions {
@@ -17,6 +19,7 @@ struct StressOptions {
   double seconds = 60.0;    ///< wall time for drawing, checking and shrinking
   std::size_t scenes = 0;   ///< at most so many; 0: as many as there is time for
   std::uint64_t first = 0;  ///< index of the scene to begin with
+  DrawnModels models{};     ///< whose scenes are drawn
   int threads = 0;          ///< 0: one for each core
   std::filesystem::path folder;
   /// Called after every scene with how many are done, and about how many there will be; one call at a time.
@@ -34,9 +37,11 @@ struct StressFailure {
   std::string file;  ///< its name in the folder
 };
 
-/// What a stress test has come to. Scene by scene the same for the same seed, whatever the number of threads.
+/// What a stress test has come to. Scene by scene the same for the same seed and models, whatever the number of
+/// threads.
 struct StressReport {
   std::uint64_t seed = 1;
+  DrawnModels drawn_from{};
   std::size_t scenes = 0;
   long runs = 0;
   std::size_t ill_conditioned = 0;

@@ -56,6 +56,28 @@ TEST_F(StressScenes, AreScenariosOfEveryModelOfTheCatalogue) {
   for (const Model& model : model_catalogue()) EXPECT_TRUE(models.contains(std::string(model.name))) << model.name;
 }
 
+TEST_F(StressScenes, AreOfTheModelsThatAreAskedForAndTheSameInAnyOrder) {
+  const Model* const hertz = find_model("hertz");
+  const Model* const packing = find_model("packing");
+  std::set<const Model*> drawn;
+  for (std::uint64_t index = 0; index < 30; ++index) {
+    const StressScene scene = draw_stress_scene(5, index, tables(), {packing, hertz});
+    EXPECT_EQ(scene, draw_stress_scene(5, index, tables(), {hertz, packing}));
+    drawn.insert(scene.model);
+    EXPECT_EQ(draw_stress_scene(5, index, tables(), {packing}).model, packing);
+  }
+  EXPECT_EQ(drawn, (std::set{hertz, packing}));
+}
+
+TEST(StressReports, SayHowAFailingSceneIsDrawnAgain) {
+  StressReport report;
+  report.seed = 7;
+  report.failures.emplace_back().index = 12;
+  EXPECT_NE(report.text().find("monograin stress --seed 7 --first 12 --scenes 1"), std::string::npos);
+  report.drawn_from = {find_model("mdr"), find_model("hertz")};
+  EXPECT_NE(report.text().find("monograin stress --model hertz mdr --seed 7 --first 12 --scenes 1"), std::string::npos);
+}
+
 /// The history of a run with one number changed.
 Run with_number(Run run, const std::string& column, std::size_t row, double value) {
   const Table& whole = run.record.history;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -31,9 +32,8 @@ constexpr int k_most_cycles = 50;
 constexpr int k_most_tries = 200;
 
 /// Draws a model for a scene, its configuration, material and options.
-ProgramBounds draw_material(Dice& dice, StressScene& scene) {
-  const auto models = model_catalogue();
-  scene.model = &models[dice.below(models.size())];
+ProgramBounds draw_material(Dice& dice, StressScene& scene, const DrawnModels& models) {
+  scene.model = *std::next(models.begin(), static_cast<std::ptrdiff_t>(dice.below(models.size())));
   const auto configurations = scene.model->configurations;
   scene.configuration = configurations.empty() ? "" : configurations[dice.below(configurations.size())];
   DrawnMaterial drawn{scene.configuration, scene.model->events, {}, {}};
@@ -215,9 +215,9 @@ std::string draw_integrator(Dice& dice, bool is_solvable) {
   return drawn == integrators::k_direct && !is_solvable ? integrators::k_auto : drawn;
 }
 
-StressScene draw_scene(Dice& dice, const fs::path& tables) {
+StressScene draw_scene(Dice& dice, const fs::path& tables, const DrawnModels& models) {
   StressScene scene;
-  const ProgramBounds bounds = draw_material(dice, scene);
+  const ProgramBounds bounds = draw_material(dice, scene, models);
   scene.radius = !scene.model->has_walls() || dice.happens(0.5) ? 1.0 : dice.log_uniform(1e-9, 10.0);
   scene.stress = dice.happens(0.5) ? 1.0 : dice.log_uniform(1e3, 1e12);
   draw_loading(dice, scene, bounds);
@@ -242,11 +242,17 @@ StressScene draw_scene(Dice& dice, const fs::path& tables) {
 
 }  // namespace
 
-StressScene draw_stress_scene(std::uint64_t seed, std::uint64_t index, const fs::path& tables) {
+StressScene draw_stress_scene(std::uint64_t seed, std::uint64_t index, const fs::path& tables,
+                              const DrawnModels& models) {
+  if (models.empty()) {
+    DrawnModels all;
+    for (const Model& model : model_catalogue()) all.insert(&model);
+    return draw_stress_scene(seed, index, tables, all);
+  }
   Dice dice(seed, index);
   // Where the parts of a scene do not go together, the next one of its sequence does.
   for (int tries = 1;; ++tries) {
-    StressScene scene = draw_scene(dice, tables);
+    StressScene scene = draw_scene(dice, tables, models);
     if (tries == k_most_tries || is_admissible(scene, tables)) return scene;
   }
 }
