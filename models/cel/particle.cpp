@@ -549,9 +549,10 @@ void Particle::solve(double xi, std::span<double> y) {
   if (is_elastic) evaluate_yield(y);
 }
 
-double Particle::rates(std::span<double> dy) {
+double Particle::rates(std::span<double> dy, std::span<const double> drift) {
   assemble();
   for (std::size_t r = 0; r < unknowns_; ++r) entry(r, unknowns_) = r < size() ? classes_[r].drive.rate() : 0.0;
+  for (std::size_t r = 0; r < drift.size(); ++r) entry(r, unknowns_) += drift[r];
   const double sign = eliminate(unknowns_);
   std::copy_n(solution_.begin(), layout_.core(), dy.begin());
   const double margin = sign * slowness();

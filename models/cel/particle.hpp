@@ -106,9 +106,10 @@ class Particle {
   /// @throws std::domain_error where there is no solution near the state
   void solve(double xi, std::span<double> y);
   /// Rates of all unknowns with the step coordinate at the state that was evaluated.
+  /// @param drift  rates of the residuals besides, which draw a state back that is off; empty: none
   /// @return the margin to where the path turns back: how fast walls go over how fast their contacts follow; negative
   /// beyond, where the determinant of the equations has changed its sign
-  double rates(std::span<double> dy);
+  double rates(std::span<double> dy, std::span<const double> drift = {});
   /// Rate of the yield function of a class, by the last rates().
   [[nodiscard]] double yield_rate(std::size_t i);
   /// Rate of the work of all walls, by the last rates().

@@ -29,6 +29,9 @@ constexpr double k_alike = 1e-6;
 /// Margin at which a run ends: next to it the stiffness is infinite.
 constexpr double k_least_margin = 1e-5;
 constexpr double k_hard_margin = 1e-3;
+/// How fast an integrated state is drawn back to the equations, over a step of the program: its errors across them
+/// would stay, and add up.
+constexpr double k_pull = 20.0;
 /// Half the surface over pi R0^2 is 2; the law is fitted up to here.
 constexpr double k_most_coverage = 1.7;
 /// Fitted range of the law.
@@ -69,6 +72,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   at_.resize(unknowns_.size());
   rates_.resize(unknowns_.size());
   trial_.resize(unknowns_.size());
+  drift_.resize(particle_.layout().core());
 
   observables_ = {{"work", "J", {}},
                   {"stored_energy", "J", {}},
@@ -122,7 +126,10 @@ void System::evaluate(double xi, std::span<const double> y) {
 /// Rates of all unknowns, in rates_. @return the margin to where the equations turn back
 double System::evaluate_rates(double xi, std::span<const double> y) {
   evaluate(xi, y);
-  if (!knows_rates_) margin_ = particle_.rates(rates_);
+  if (knows_rates_) return margin_;
+  particle_.residual(xi, drift_);
+  for (double& residual : drift_) residual *= -k_pull;
+  margin_ = particle_.rates(rates_, drift_);
   knows_rates_ = true;
   return margin_;
 }

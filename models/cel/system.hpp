@@ -99,7 +99,7 @@ class System final : public HybridSystem {
   bool is_known_ = false, knows_rates_ = false;
   double margin_ = 1.0;
   std::vector<double> rates_;
-  std::vector<double> trial_;  ///< work space
+  std::vector<double> drift_, trial_;  ///< work space
 };
 
 }  // namespace monograin::cel
