@@ -58,6 +58,7 @@ struct Core {
 struct ClassState {
   contacts::WallDrive drive{};
   bool takes_force = false;  ///< its own coordinate is the force, not u
+  bool gives_way = false;    ///< bears no force: its wall stands until the surface comes to it, and then goes with it
   bool flows = false;        ///< dent grows
 
   double coordinate = 0.0;

@@ -103,7 +103,7 @@ void System::start(std::span<double> y) {
     const double gap = classes_[i].gap / settings_.initial_radius;
     y[layout.coordinate(i)] = -gap;
     y[layout.dent(i)] = particle_.material().a_Y;
-    particle_.at(i).flows = particle_.at(i).takes_force = false;
+    particle_.at(i).flows = particle_.at(i).gives_way = false;
     hold(i, -gap);
   }
   particle_.start_core(y);
@@ -158,8 +158,8 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
   const Layout& layout = particle_.layout();
-  if (layout.directions() > 0 && !particle_.any_flows()) {
-    // A centre that contacts hardly hold is too soft for a corrector: it is where the balance of forces puts it.
+  if (!particle_.any_flows()) {
+    // Contacts and a centre may be too soft, or too stiff, for a corrector: they are where the equations put them.
     std::ranges::copy(y, trial_.begin());
     try {
       solve(xi, trial_);
@@ -204,16 +204,25 @@ void System::hold(std::size_t i, double displacement) {
   particle_.at(i).drive = contacts::WallDrive({displacement, displacement, Control::displacement}, 1.0);
 }
 
+/// A wall that goes with the surface and bears no force.
+void System::give_way(std::size_t i, std::span<double> y) {
+  ClassState& c = particle_.at(i);
+  c.takes_force = c.gives_way = true;
+  c.drive = contacts::WallDrive({0.0, 0.0, Control::force}, 1.0);
+  y[particle_.layout().coordinate(i)] = 0.0;
+}
+
 /// Takes up the ramp of a step; the state is evaluated.
 void System::take_up(std::size_t i, const Ramp& ramp, std::span<double> y) {
   ClassState& c = particle_.at(i);
   const bool takes_force = ramp.control == Control::force && (ramp.start > 0.0 || ramp.end > 0.0);
   double& coordinate = y[particle_.layout().coordinate(i)];
-  if (ramp.control == Control::force && !takes_force) {
-    // No force, which no contact can bear: the wall stands where it has come to.
-    const double stood = c.kinematic - particle_.carried(i, y);
-    if (c.takes_force) coordinate = c.contact.u;
-    hold(i, stood);
+  c.gives_way = ramp.control == Control::force && !takes_force;
+  if (c.gives_way) {
+    if (c.takes_force || c.contact.u >= -slack(i))
+      give_way(i, y);
+    else
+      hold(i, c.kinematic - particle_.carried(i, y));
     return;
   }
   if (takes_force != c.takes_force) coordinate = takes_force ? c.contact.F : c.contact.u;
@@ -348,6 +357,7 @@ void System::arm_guards() {
     const ClassState& c = particle_.at(i);
     if (!c.takes_force) {
       add(touches_[i] ? k_lost : k_made, index, touches_[i] ? -1 : 1, touches_[i] ? "contact-lost" : "contact-made");
+      guards_.back().is_silent = c.gives_way;
     } else if (c.drive.end() < 0.0) {
       add(k_lost, index, -1, "contact-lost");
       guards_.back().is_exact = guards_.back().is_monotone = true;
@@ -412,13 +422,11 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     }
     const auto i = static_cast<std::size_t>(guard.index);
     if (guard.kind > k_lost) continue;
-    touches_[i] = guard.kind == k_made;
-    log.push_back({guard.name, guard.index});
-    if (!particle_.at(i).takes_force) continue;
-    // A wall that would have to pull stands where it leaves the particle.
-    const double stood = displacement(i, xi, y);
-    y[particle_.layout().coordinate(i)] = 0.0;
-    hold(i, stood);
+    const ClassState& c = particle_.at(i);
+    touches_[i] = guard.kind == k_made && !c.gives_way;
+    if (!guard.is_silent) log.push_back({guard.name, guard.index});
+    // Walls that would have to pull, too.
+    if (c.takes_force || c.gives_way) give_way(i, y);
   }
   solve(xi, y);
   decide_mode(xi, y, log, fired);

@@ -69,6 +69,7 @@ class System final : public HybridSystem {
   double evaluate_rates(double xi, std::span<const double> y);
   [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const;
   [[nodiscard]] AtWall wall(std::size_t i, double xi, std::span<const double> y);
+  void give_way(std::size_t i, std::span<double> y);
   void take_up(std::size_t i, const Ramp& ramp, std::span<double> y);
   void hold(std::size_t i, double displacement);
   [[nodiscard]] double slack(std::size_t i) const noexcept;

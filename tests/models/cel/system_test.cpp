@@ -319,6 +319,40 @@ TEST(CelForceControl, LetsAWallStandWhereItsForceEnds) {
   EXPECT_NEAR(now.last("stored_energy"), 0.0, 1e-10 * now.last("work"));
 }
 
+TEST(CelForceControl, LetsWallsWithoutForceGiveWay) {
+  // Two walls make the particle bulge against others that bear nothing, one of them first in the air.
+  const std::vector<Vector3d> axial{{0, 0, 1}, {0, 0, -1}};
+  const std::vector<Vector3d> all{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}};
+  const TestRun alone = run_by(with_points(cel_walls(25.0, 0.3, axial, {{0.3, 0.3}}), 6), "auto");
+  CheckedScenario scenario = cel_walls(25.0, 0.3, all, {{0.3, 0.3, 0.0, 0.0}});
+  scenario.loading.walls[2].steps = scenario.loading.walls[3].steps = {force_ramp(0.0)};
+  scenario.loading.walls[3].gap = 0.02;
+  for (const char* integrator : {"auto", "ida"}) {
+    const TestRun now = run_by(with_points(scenario, 6), integrator);
+    ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
+    EXPECT_LE(difference(now.outputs("w0.force"), alone.outputs("w0.force")), 1e-6);
+    for (const char* wall : {"w2", "w3"}) {
+      for (const double force : now.outputs(std::string(wall) + ".force")) EXPECT_EQ(force, 0.0) << wall;
+    }
+    EXPECT_LT(now.last("w2.displacement"), -0.03);
+    EXPECT_NEAR(now.outputs("w3.displacement")[1], -0.02, 1e-15);
+    EXPECT_NEAR(now.last("w3.displacement"), now.last("w2.displacement"), 1e-12);
+  }
+}
+
+TEST(CelForceControl, LetsTheCentreGoToWallsWithoutForce) {
+  const std::vector<Vector3d> normals{{0.6, 0.8, 0}, {-0.6, -0.8, 0}};
+  CheckedScenario scenario = with_free_centre(cel_walls(10.0, 0.49, normals, {{0.0, 0.15}}));
+  scenario.loading.walls[0].steps = {force_ramp(0.0)};
+  for (const char* integrator : {"auto", "ida", "gsl-rk8pd"}) {
+    const TestRun now = run_by(with_points(scenario, 3), integrator);
+    ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
+    EXPECT_EQ(now.last("w0.force"), 0.0);
+    EXPECT_NEAR(now.last("w0.displacement"), -0.15, 1e-6);
+    EXPECT_NEAR(now.last("centre_x"), 0.09, 1e-6);
+  }
+}
+
 TEST(CelForceControl, StandsStillUnderNoForceAfterAnyStep) {
   // The second step ends in the air; no force then leaves the wall there.
   const TestRun now = run_by(
