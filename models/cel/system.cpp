@@ -240,11 +240,17 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   decide_mode(0.0, y, log, {});
   has_begun_ = true;
   arm_guards();
-  if (guards_.empty()) return;
-  const double margin = evaluate_rates(0.0, y);
+  if (const auto end = limit_here(0.0, y)) throw CannotBegin(*end);
+}
+
+/// A limit that the state is at, or beyond: a contact that stops flowing may leave an elastic state that has no path.
+std::optional<DomainEnd> System::limit_here(double xi, std::span<const double> y) {
+  if (guards_.empty()) return std::nullopt;
+  const double margin = evaluate_rates(xi, y);
   for (const Guard& guard : guards_) {
-    if (guard.kind >= k_fold && limit_value(guard, margin) <= 0.0) throw CannotBegin(end_at(guard, 0.0, y));
+    if (guard.kind >= k_fold && limit_value(guard, margin) <= 0.0) return end_at(guard, xi, y);
   }
+  return std::nullopt;
 }
 
 // --- modes
@@ -431,7 +437,9 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   solve(xi, y);
   decide_mode(xi, y, log, fired);
   arm_guards();
-  return std::nullopt;
+  const auto end = limit_here(xi, y);
+  if (end) log.push_back(end->event);
+  return end;
 }
 
 // --- what others ask

@@ -79,6 +79,7 @@ class System final : public HybridSystem {
   void decide_flow(double xi, std::span<const double> y, std::span<const char> may_flow);
   void arm_guards();
   [[nodiscard]] double limit_value(const Guard& guard, double margin) const noexcept;
+  [[nodiscard]] std::optional<DomainEnd> limit_here(double xi, std::span<const double> y);
   [[nodiscard]] DomainEnd end_at(const Guard& guard, double xi, std::span<const double> y) const;
 
   Settings settings_;
