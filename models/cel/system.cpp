@@ -299,32 +299,33 @@ void System::decide_touch(std::size_t i, double xi, std::span<const double> y, s
     log.push_back({touches ? "contact-made" : "contact-lost", static_cast<int>(i)});
 }
 
-/// The largest set of contacts that can flow together: all at yield that elastic motion would take beyond, without
-/// those whose dents would shrink. Those that are most against it leave first, and together, so that neither the order
-/// of the walls nor their symmetry decides.
-void System::decide_flow(double xi, std::span<const double> y, std::span<const char> may_flow) {
+/// The largest set of contacts that can flow together: all at yield that motion without them would take beyond, but for
+/// those whose dents would shrink. Those that are most against it leave first, together and for good, so that neither
+/// the order of the walls nor their symmetry decides.
+void System::decide_flow(double xi, std::span<const double> y, std::span<char> may_flow) {
   const Layout& layout = particle_.layout();
   for (std::size_t i = 0; i < particle_.size(); ++i) particle_.at(i).flows = false;
   is_known_ = false;
-  evaluate_rates(xi, y);
-  for (std::size_t i = 0; i < particle_.size(); ++i) {
-    const bool is_next = may_flow[i] != 0 && touches_[i] != 0 && particle_.at(i).f > -k_at_yield;
-    particle_.at(i).flows = is_next && particle_.yield_rate(i) > k_least_rate;
-  }
-  while (particle_.any_flows()) {
-    knows_rates_ = false;
+  for (bool has_changed = true; has_changed;) {
     evaluate_rates(xi, y);
     double worst = 0.0;
     for (std::size_t i = 0; i < particle_.size(); ++i) {
       if (particle_.at(i).flows) worst = std::min(worst, rates_[layout.dent(i)]);
     }
-    if (worst >= 0.0) return;
+    has_changed = worst < 0.0;
     for (std::size_t i = 0; i < particle_.size(); ++i) {
       ClassState& c = particle_.at(i);
-      c.flows = c.flows && rates_[layout.dent(i)] > worst * (1.0 - k_alike);
+      if (worst < 0.0) {
+        const bool leaves = c.flows && rates_[layout.dent(i)] <= worst * (1.0 - k_alike);
+        c.flows = c.flows && !leaves;
+        may_flow[i] = may_flow[i] != 0 && !leaves;
+      } else if (!c.flows && may_flow[i] != 0 && touches_[i] != 0 && c.f > -k_at_yield &&
+                 particle_.yield_rate(i) > k_least_rate) {
+        c.flows = has_changed = true;
+      }
     }
+    knows_rates_ = knows_rates_ && !has_changed;
   }
-  knows_rates_ = false;
 }
 
 /// @param fired  guards that have just fired
