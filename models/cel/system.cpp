@@ -383,11 +383,10 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
     const ClassState& c = particle_.at(i);
     switch (guards_[g].kind) {
       case k_made:
-        values[g] = c.contact.u / depth_;
+        values[g] = (c.contact.u - slack(i)) / depth_;
         break;
       case k_lost:
-        values[g] = c.takes_force ? c.drive.value(xi) / c.drive.size() : c.contact.u / depth_;
-        if (!c.takes_force && particle_.layout().directions() > 0) values[g] += k_idle_touch;
+        values[g] = c.takes_force ? c.drive.value(xi) / c.drive.size() : (c.contact.u + slack(i)) / depth_;
         break;
       case k_yield:
         values[g] = c.f;
