@@ -1,5 +1,6 @@
 #include "cel/particle.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -36,6 +37,8 @@ constexpr double k_solved = 1e-10;  ///< residual over the largest displacement 
 /// Residual over that from which on a correction that makes it larger is rounding.
 constexpr double k_stalled = 1e-14;
 constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
+
+constexpr Eigen::Index axis(std::size_t direction) noexcept { return static_cast<Eigen::Index>(direction); }
 
 template <int n>
 constexpr double raised(double x) noexcept {
@@ -104,6 +107,8 @@ Particle::Particle(const Material& material, double poisson_ratio, std::span<con
   }
   for (auto* values : {&l_by_flow_, &Om_by_zeta_, &s_by_F_}) values->resize(size());
   load_.resize(size());
+  shares_.resize(lines_.size());
+  choose_balance();
   F_by_.resize(size());
   rows_.resize((2 * size() + 1) * (2 * size() + 2));
   matrix_.resize(unknowns_ * (unknowns_ + 1));
@@ -131,13 +136,12 @@ Core Particle::core_of(std::span<const double> y) const noexcept {
 
 double Particle::carried(std::size_t i, std::span<const double> y) const noexcept {
   double sum = 0.0;
-  for (std::size_t d = 0; d < layout_.directions(); ++d)
-    sum += lines_.arm(i)[static_cast<Eigen::Index>(d)] * y[layout_.centre(d)];
+  for (std::size_t d = 0; d < layout_.directions(); ++d) sum += lines_.arm(i)[axis(d)] * y[layout_.centre(d)];
   return sum;
 }
 
 void Particle::rest_centre(std::span<const double> y) noexcept {
-  for (std::size_t d = 0; d < layout_.directions(); ++d) rest_[static_cast<Eigen::Index>(d)] = y[layout_.centre(d)];
+  for (std::size_t d = 0; d < layout_.directions(); ++d) rest_[axis(d)] = y[layout_.centre(d)];
 }
 
 // --- the equations at a state
@@ -151,7 +155,7 @@ void Particle::evaluate(std::span<const double> y) {
 
 /// Evaluates only the equations of elastic motion.
 void Particle::evaluate_elastically(std::span<const double> y) {
-  for (std::size_t d = 0; d < layout_.directions(); ++d) centre_[static_cast<Eigen::Index>(d)] = y[layout_.centre(d)];
+  for (std::size_t d = 0; d < layout_.directions(); ++d) centre_[axis(d)] = y[layout_.centre(d)];
   evaluate_contacts(y, core_of(y));
   evaluate_coupling();
 }
@@ -251,12 +255,35 @@ void Particle::residual(double xi, std::span<double> residual) const {
         c.takes_force ? c.coordinate - c.drive.value(xi) : c.kinematic - lines_.arm(i).dot(centre_) - c.drive.value(xi);
     residual[layout_.dent(i)] = c.flows ? -c.f : 0.0;
   }
-  for (std::size_t d = 0; d < layout_.directions(); ++d) {
-    const auto along = static_cast<Eigen::Index>(d);
-    double sum = k_weak_spring * (centre_ - rest_)[along];
-    for (std::size_t i = 0; i < size(); ++i) sum += counts_[i] * lines_.arm(i)[along] * classes_[i].contact.F;
-    residual[layout_.centre(d)] = sum;
+  for (std::size_t d = 0; d < layout_.directions(); ++d) residual[layout_.centre(d)] = 0.0;
+  for (std::size_t line = 0; layout_.directions() > 0 && line < lines_.size(); ++line) {
+    double push = 0.0;
+    for (std::size_t i = 0; i < size(); ++i) push += push_on(line, i) * classes_[i].contact.F;
+    for (std::size_t d = 0; d < layout_.directions(); ++d) residual[layout_.centre(d)] += shares_[line][axis(d)] * push;
   }
+  for (std::size_t d = 0; d < layout_.directions(); ++d)
+    residual[layout_.centre(d)] += k_weak_spring * balance_.col(axis(d)).dot(centre_ - rest_);
+}
+
+/// Force along a line of pushes per force of a class.
+double Particle::push_on(std::size_t line, std::size_t i) const noexcept {
+  return lines_.line_of(i) == line ? counts_[i] * lines_.along(i) : 0.0;
+}
+
+/// Takes the balance of forces along the line of the largest ones, then across it: their round-off would be more there
+/// than the weak spring.
+void Particle::choose_balance() {
+  if (layout_.directions() == 0) return;
+  balance_ = lines_.stiffest_directions([this](std::size_t line) {
+    double largest = std::numeric_limits<double>::min();
+    for (std::size_t i = 0; i < size(); ++i)
+      largest = std::max(largest, std::abs(push_on(line, i)) * classes_[i].contact.F);
+    return largest;
+  });
+  // The sign of the determinant says whether a state is stable.
+  const Eigen::Index n = lines_.dimension();
+  if (balance_.topLeftCorner(n, n).determinant() < 0.0) balance_.col(n - 1) *= -1.0;
+  for (std::size_t line = 0; line < lines_.size(); ++line) shares_[line] = lines_.components(balance_, line);
 }
 
 // --- their derivatives
@@ -408,8 +435,7 @@ void Particle::assemble() {
       entry(i, i) = 1.0;
     } else {
       put(i, row_at(i), 1.0);
-      for (std::size_t d = 0; d < layout_.directions(); ++d)
-        entry(i, layout_.centre(d)) = -lines_.arm(i)[static_cast<Eigen::Index>(d)];
+      for (std::size_t d = 0; d < layout_.directions(); ++d) entry(i, layout_.centre(d)) = -lines_.arm(i)[axis(d)];
     }
     if (c.flows) {
       put(n + i, row_at(n + i), -1.0);
@@ -421,10 +447,12 @@ void Particle::assemble() {
   for (std::size_t d = 0; d < layout_.directions(); ++d) {
     const auto row = row_at(2 * n);
     std::ranges::fill(row, 0.0);
-    for (std::size_t i = 0; i < n; ++i) add_force(i, counts_[i] * lines_.arm(i)[static_cast<Eigen::Index>(d)], row);
+    for (std::size_t i = 0; i < n; ++i)
+      add_force(i, shares_[lines_.line_of(i)][axis(d)] * counts_[i] * lines_.along(i), row);
     fold_coverage(row);
     put(layout_.centre(d), row, 1.0);
-    entry(layout_.centre(d), layout_.centre(d)) += k_weak_spring;
+    for (std::size_t k = 0; k < layout_.directions(); ++k)
+      entry(layout_.centre(d), layout_.centre(k)) += k_weak_spring * balance_(axis(k), axis(d));
   }
   entry(lambda, lambda) = 1.0;
 }
@@ -506,6 +534,8 @@ void Particle::solve(double xi, std::span<double> y) {
     return error;
   };
   double error = error_at();
+  choose_balance();
+  error = error_at();
   // Where the weak spring decides, the balance of forces says more of the centre than the largest residual does.
   const bool is_free = layout_.directions() > 0;
   int polished = 0;

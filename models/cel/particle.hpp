@@ -142,6 +142,8 @@ class Particle {
   void add_force(std::size_t j, double factor, std::span<double> row) const noexcept;
   void add(std::size_t i, const Row& by, double factor, std::span<double> row) const noexcept;
   void fold_coverage(std::span<double> row) const noexcept;
+  [[nodiscard]] double push_on(std::size_t line, std::size_t i) const noexcept;
+  void choose_balance();
   void assemble();
   [[nodiscard]] double pace_of_core(std::size_t i) const noexcept;
   [[nodiscard]] bool is_idle(std::size_t unknown) const noexcept;
@@ -164,6 +166,8 @@ class Particle {
   std::vector<ClassState> classes_;
   Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();  ///< where the centre is at ease
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d balance_ = Eigen::Matrix3d::Identity();  ///< directions of the equations (E)
+  std::vector<Eigen::Vector3d> shares_;                    ///< of the pushes along a line, in these
 
   // At the state that was evaluated.
   double Om_ = 0.0, m_by_Om_ = 0.0;
