@@ -19,8 +19,6 @@ using Tensor = CoreShape::Tensor;
 /// Sine of half the angle, and last term of the series, of the self influence: part of the law's definition.
 constexpr double k_self_half_sine = 0.2;
 constexpr int k_last_term = 4000;
-/// Stiffness over E R0 of the spring at a free centre, which settles directions in which no contact is stiff.
-constexpr double k_weak_spring = 1e-9;
 /// Load of the core over Y R0^2 below which it has no direction.
 constexpr double k_no_load = 1e-14;
 

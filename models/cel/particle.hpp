@@ -78,6 +78,9 @@ struct ClassState {
 
 class Particle {
  public:
+  /// Stiffness over E R0 of the spring at a free centre, which settles directions in which no contact is stiff.
+  static constexpr double k_weak_spring = 1e-9;
+
   Particle(const Material& material, double poisson_ratio, std::span<const ContactClass> classes, bool centre_is_free);
 
   [[nodiscard]] const Material& material() const noexcept { return material_; }

@@ -23,6 +23,8 @@ constexpr double k_touch = 1e-13;
 constexpr double k_idle_touch = 1e-8;
 /// Yield function of a contact that may flow, and the least rate at which it then would be passed.
 constexpr double k_at_yield = 1e-9;
+/// Yield function that is no rounding of a contact which has just stopped flowing.
+constexpr double k_beyond_yield = 1e-12;
 constexpr double k_least_rate = 1e-13;
 /// Rates of dents that are alike but for rounding.
 constexpr double k_alike = 1e-6;
@@ -389,7 +391,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = c.takes_force ? c.drive.value(xi) / c.drive.size() : (c.contact.u + slack(i)) / depth_;
         break;
       case k_yield:
-        values[g] = c.f;
+        values[g] = c.f - k_beyond_yield;
         break;
       case k_reversal: {
         const double rate = rates_[particle_.layout().dent(i)];
@@ -512,6 +514,12 @@ std::vector<Diagnostic> System::warnings() const {
 
 std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
   if (evaluate_rates(xi, y) < k_hard_margin) return Difficulty::near_applicability_limit;
+  // A wall that only carries a loose particle bears no more than the weak spring does.
+  constexpr double k_ways = 10.0;
+  const double least = k_ways * Particle::k_weak_spring * depth_;
+  for (std::size_t i = 0; i < classes_.size() && particle_.layout().directions() > 0; ++i) {
+    if (touches_[i] && particle_.at(i).contact.F < least) return Difficulty::singular_balance;
+  }
   return std::nullopt;
 }
 

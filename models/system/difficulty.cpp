@@ -15,7 +15,7 @@ std::string_view advice(Difficulty difficulty) noexcept {
              "= \"cvode-bdf\"";
     case Difficulty::singular_balance:
       return "the balance of the free centre is singular, because nothing but contacts that only touch keeps it from "
-             "moving; expected integrator = \"direct\"";
+             "moving; expected integrator = \"direct\" or \"auto\"";
     case Difficulty::near_applicability_limit:
       return "the limit of applicability is so near that the stiffness magnifies the errors that are tolerated; "
              "expected a larger rtol, or integrator = \"direct\"";

@@ -378,6 +378,8 @@ void check_events(const Run& run, Violations& found) {
 /// not made for stiff equations take many where these are; the program itself says when they are too many.
 void check_work(const Run& run, Violations& found) {
   if (!suits_stiff_equations(run.integrator.used)) return;
+  // The program has said so itself, and check_end asks whether it may.
+  if (run.record.failure == Failure::too_much_work) return;
   // As a method of order 4 needs more at a finer tolerance.
   const double finer = std::pow(std::max(1.0, 1e-8 / run.scenario.numerics.rtol), 0.25);
   const long most = run.integrator.is_direct() ? k_most_work_direct : std::lround(k_most_work_integrated * finer);
