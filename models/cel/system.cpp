@@ -240,6 +240,8 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   complete(0.0, y);
   solve(0.0, y);
   decide_mode(0.0, y, log, {});
+  // Contacts that begin to flow are off their yield function by what counts as being at it.
+  solve(0.0, y);
   has_begun_ = true;
   arm_guards();
   if (const auto end = limit_here(0.0, y)) throw CannotBegin(*end);
