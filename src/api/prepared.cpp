@@ -61,9 +61,7 @@ struct PreparedScenario::Content {
   std::vector<std::string> keys;
   ScenarioTemplate scenario;
 
-  [[nodiscard]] Run run(std::span<const double> values) const {
-    return run_scenario(scenario.with_numbers(keys, values));
-  }
+  [[nodiscard]] Run run(std::span<const double> values) const { return run_scenario(scenario.with({}, keys, values)); }
 };
 
 PreparedScenario::PreparedScenario(const Scenario& scenario, std::vector<std::string> keys) {

@@ -352,7 +352,7 @@ void StagedFolder::publish() {
     if (exchange(staged_, target_)) {
       rescue(staged_, target_);
     } else {
-      write_text_file(staged_ / k_moving, {});
+      write_text_file(staged_ / k_moving, "");
       move_files(staged_, target_, marker_);
       sync_to_disk(target_);
     }

@@ -34,7 +34,9 @@ constexpr std::size_t k_most_cells = 100'000'000;
   return std::abs(value) < k_largest && value == std::trunc(value) && !(value == 0.0 && std::signbit(value));
 }
 
-void append_number(std::string& text, double value) {
+}  // namespace
+
+void append_csv_number(std::string& text, double value) {
   if (std::isnan(value)) {
     text += "nan";  // to_chars may print the sign of a NaN, which says nothing
     return;
@@ -46,6 +48,8 @@ void append_number(std::string& text, double value) {
                            : std::to_chars(digits.data(), end, value, std::chars_format::general, k_digits);
   text.append(digits.data(), printed.ptr);
 }
+
+namespace {
 
 /// Words and headings are written without quotes, so they must not contain what separates cells and rows.
 void require_plain(std::string_view cell) {
@@ -81,7 +85,7 @@ void append_row(std::string& text, const Table& table, std::size_t row) {
     if (columns[k].holds_words()) {
       text += table.word(row, k);
     } else {
-      append_number(text, table.at(row, k));
+      append_csv_number(text, table.at(row, k));
     }
   }
   text += '\n';
@@ -306,7 +310,7 @@ std::optional<double> Table::header_number(std::string_view key) const noexcept 
 
 std::string csv_number(double value) {
   std::string text;
-  append_number(text, value);
+  append_csv_number(text, value);
   return text;
 }
 

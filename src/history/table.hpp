@@ -24,6 +24,8 @@ struct Column {
   /// "axial.force[N]", or just the name where there is no unit.
   [[nodiscard]] std::string heading() const;
   [[nodiscard]] bool holds_words() const noexcept { return !labels.empty(); }
+
+  bool operator==(const Column&) const = default;
 };
 
 /// Rows of numbers under named columns, with `key: value` lines above. Rows are stored one after another in one array.
@@ -64,6 +66,8 @@ class Table {
 
 /// A number as write_csv writes it.
 [[nodiscard]] std::string csv_number(double value);
+/// Appends it to a text.
+void append_csv_number(std::string& text, double value);
 
 /// Writes `# key: value` lines, one row of headings, and the rows with 17 significant digits (`nan` for undefined
 /// values), whatever the locale. Reading the text back gives the same doubles, bit by bit.

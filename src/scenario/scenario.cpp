@@ -60,22 +60,6 @@ struct ScenarioTemplate::Document {
   std::string origin;
   std::vector<std::string> overrides;
   toml::table root;
-
-  /// A scenario of a copy of the tree, changed by apply(copy, faults).
-  template <class Apply>
-  [[nodiscard]] CheckedScenario changed(const std::vector<std::string>& more, Apply&& apply) const {
-    std::vector<std::string> all = overrides;
-    all.insert(all.end(), more.begin(), more.end());
-    try {
-      toml::table copy = root;
-      FaultList faults;
-      apply(copy, more, faults);
-      return parse_tree(copy, text, origin, all, faults);
-    } catch (const ScenarioError&) {
-      // A copy does not know its places, so that faults are located in the text itself.
-      return key.empty() ? parse_scenario(text, origin, all) : parse_scenario_table(text, key, origin, all);
-    }
-  }
 };
 
 ScenarioTemplate::ScenarioTemplate(std::string_view text, const std::string& origin,
@@ -94,22 +78,24 @@ ScenarioTemplate::~ScenarioTemplate() = default;
 ScenarioTemplate::ScenarioTemplate(ScenarioTemplate&&) noexcept = default;
 ScenarioTemplate& ScenarioTemplate::operator=(ScenarioTemplate&&) noexcept = default;
 
-CheckedScenario ScenarioTemplate::with(const std::vector<std::string>& overrides) const {
-  return document_->changed(overrides, [](toml::table& root, const std::vector<std::string>& texts, FaultList& faults) {
-    for (const std::string& text : texts) apply_override(root, text, faults);
-  });
-}
-
-CheckedScenario ScenarioTemplate::with_numbers(std::span<const std::string> keys,
-                                               std::span<const double> numbers) const {
-  std::vector<std::string> overrides;
-  for (std::size_t k = 0; k < keys.size(); ++k) overrides.push_back(fmt::format("{}={}", keys[k], numbers[k]));
-  return document_->changed(overrides,
-                            [&](toml::table& root, const std::vector<std::string>& texts, FaultList& faults) {
-                              for (std::size_t k = 0; k < texts.size(); ++k) {
-                                apply_number(root, texts[k], numbers[k], faults);
-                              }
-                            });
+CheckedScenario ScenarioTemplate::with(const std::vector<std::string>& overrides, std::span<const std::string> keys,
+                                       std::span<const double> numbers) const {
+  std::vector<std::string> all = document_->overrides;
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  for (std::size_t k = 0; k < keys.size(); ++k) all.push_back(fmt::format("{}={}", keys[k], numbers[k]));
+  try {
+    toml::table copy = document_->root;
+    FaultList faults;
+    for (const std::string& text : overrides) apply_override(copy, text, faults);
+    const std::size_t first = all.size() - keys.size();
+    for (std::size_t k = 0; k < keys.size(); ++k) apply_number(copy, all[first + k], numbers[k], faults);
+    return parse_tree(copy, document_->text, document_->origin, all, faults);
+  } catch (const ScenarioError&) {
+    // A copy does not know its places, so that faults are located in the text itself.
+    const Document& from = *document_;
+    return from.key.empty() ? parse_scenario(from.text, from.origin, all)
+                            : parse_scenario_table(from.text, from.key, from.origin, all);
+  }
 }
 
 std::string ScenarioTemplate::problem_of_number(const std::string& key) const {

@@ -102,12 +102,10 @@ class ScenarioTemplate {
 
   /// The checked scenario, with `key=value` overrides as read_scenario takes them. Its steps and walls do not know
   /// their places in the text. May be called from many threads.
+  /// @param numbers  in SI, at `keys`, after the overrides; as their texts would, which are not read
   /// @throws ScenarioError with every fault of the text and the overrides
-  [[nodiscard]] CheckedScenario with(const std::vector<std::string>& overrides) const;
-
-  /// The checked scenario with numbers in SI at some keys: as with() of their texts, which are not read.
-  /// @throws ScenarioError, as above
-  [[nodiscard]] CheckedScenario with_numbers(std::span<const std::string> keys, std::span<const double> numbers) const;
+  [[nodiscard]] CheckedScenario with(const std::vector<std::string>& overrides, std::span<const std::string> keys = {},
+                                     std::span<const double> numbers = {}) const;
 
   /// Why a key cannot be set to a number; empty: it can.
   [[nodiscard]] std::string problem_of_number(const std::string& key) const;

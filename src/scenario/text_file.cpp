@@ -52,10 +52,11 @@ class PartialFile {
       if (written < 0) return false;
       text.remove_prefix(static_cast<std::size_t>(written));
     }
-    return close(std::exchange(descriptor_, -1)) == 0;
+    return true;
   }
 
   [[nodiscard]] bool move_to(const fs::path& file) {
+    if (close(std::exchange(descriptor_, -1)) != 0) return false;
     if (rename(path_.c_str(), file.c_str()) != 0) return false;
     path_.clear();
     return true;
@@ -96,8 +97,15 @@ fs::path name_of_file(const fs::path& file, FileKind kind) {
 }
 
 void write_text_file(const fs::path& file, std::string_view text) {
+  write_text_file(file, [text](const TextSink& write) { write(text); });
+}
+
+void write_text_file(const fs::path& file, const std::function<void(const TextSink&)>& produce) {
   PartialFile partial(file);
-  if (!partial.write(text) || !partial.move_to(file)) fail(file, errno);
+  produce([&](std::string_view part) {
+    if (!partial.write(part)) fail(file, errno);
+  });
+  if (!partial.move_to(file)) fail(file, errno);
 }
 
 void sync_to_disk(const fs::path& file) {

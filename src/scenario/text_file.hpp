@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -31,6 +32,10 @@ enum class FileKind {
 /// followed.
 /// @throws std::runtime_error naming the file and why it cannot be written
 void write_text_file(const std::filesystem::path& file, std::string_view text);
+
+/// The same of a text that comes in parts: `produce` hands each to the sink that it is given.
+using TextSink = std::function<void(std::string_view part)>;
+void write_text_file(const std::filesystem::path& file, const std::function<void(const TextSink&)>& produce);
 
 /// Waits until a file, or the list of names in a folder, is on the disk.
 /// @throws std::runtime_error naming the file and why it cannot be written

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -36,7 +37,7 @@ namespace fs = std::filesystem;
 constexpr const char* k_results = "results.csv";
 constexpr const char* k_journal_extension = ".journal";
 constexpr std::string_view k_program_line = "# program: monograin ";
-constexpr std::size_t k_largest_results = std::size_t{4} << 30U;
+constexpr std::size_t k_part = std::size_t{1} << 20U;  // of the results, that is written at once
 constexpr const char* k_digest_line = "# sweep_digest: ";
 
 // --- one run
@@ -67,27 +68,47 @@ struct Outcome {
   return result;
 }
 
-/// Final and largest values of a history's columns.
-void summarise(const Table& history, Outcome& outcome) {
+/// Headings of the results of a history with these columns.
+struct Headings {
+  std::vector<Column> columns;
+  std::string text;
+};
+
+/// Final values come before largest ones.
+[[nodiscard]] std::string headings_of(const std::vector<Column>& columns) {
   std::vector<std::string> headings;
-  std::vector<std::string> cells;
-  const auto add = [&](std::string_view prefix, const Column& column, std::string cell) {
-    headings.push_back(fmt::format("{}.{}", prefix, column.heading()));
-    cells.push_back(std::move(cell));
-  };
+  for (const Column& column : columns) {
+    if (!is_counter(column)) headings.push_back("end." + column.heading());
+  }
+  for (const Column& column : columns) {
+    if (!is_counter(column) && !column.holds_words()) headings.push_back("max." + column.heading());
+  }
+  return fmt::format("{}", fmt::join(headings, ","));
+}
+
+/// Final and largest values of a history's columns.
+/// @param headings  those of the last history, which most often are those of this one
+void summarise(const Table& history, Headings& headings, Outcome& outcome) {
+  if (history.row_count() == 0) return;
   const std::vector<Column>& columns = history.columns();
+  if (headings.columns != columns) headings = {columns, headings_of(columns)};
+  outcome.columns = headings.text;
   const std::size_t last = history.row_count() - 1;
-  for (std::size_t k = 0; history.row_count() > 0 && k < columns.size(); ++k) {
+  std::string& cells = outcome.row.cells;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
     if (is_counter(columns[k])) continue;
-    add("end", columns[k],
-        columns[k].holds_words() ? std::string(history.word(last, k)) : csv_number(history.at(last, k)));
+    if (!cells.empty()) cells += ',';
+    if (columns[k].holds_words()) {
+      cells += history.word(last, k);
+    } else {
+      append_csv_number(cells, history.at(last, k));
+    }
   }
-  for (std::size_t k = 0; history.row_count() > 0 && k < columns.size(); ++k) {
+  for (std::size_t k = 0; k < columns.size(); ++k) {
     if (is_counter(columns[k]) || columns[k].holds_words()) continue;
-    add("max", columns[k], csv_number(largest(history, k)));
+    cells += ',';
+    append_csv_number(cells, largest(history, k));
   }
-  outcome.columns = fmt::format("{}", fmt::join(headings, ","));
-  outcome.row.cells = fmt::format("{}", fmt::join(cells, ","));
 }
 
 [[nodiscard]] std::string messages_of(const ScenarioError& error) {
@@ -102,13 +123,21 @@ void keep_history(const Table& history, const fs::path& file) {
   write_text_file(file, text.view());
 }
 
+/// Runs without what only a run's own folder needs.
+[[nodiscard]] RunRecord record_of(const CheckedScenario& scenario) {
+  Scene scene = make_scene(scenario);
+  const IntegratorChoice integrator = choose_integrator(scenario.numerics.integrator, *scene.system);
+  return record_run(scene, integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
+}
+
 /// @param histories  folder for the run's history; empty: it is not kept
-[[nodiscard]] Outcome run_one(const Sweep& sweep, std::size_t index, const fs::path& histories) {
+[[nodiscard]] Outcome run_one(const Sweep& sweep, std::size_t index, const fs::path& histories, Headings& headings) {
   Outcome outcome;
   outcome.row.run = index + 1;
-  std::optional<Run> run;
+  std::optional<RunRecord> record;
   try {
-    run = run_scenario(sweep.scenario.with(overrides_of(sweep, index)));
+    const CheckedScenario scenario = scenario_of(sweep, index);
+    record = histories.empty() ? record_of(scenario) : run_scenario(scenario).record;
   } catch (const ScenarioError& error) {
     outcome.row.status = "refused";
     outcome.row.reason = plain(messages_of(error));
@@ -116,11 +145,11 @@ void keep_history(const Table& history, const fs::path& file) {
     outcome.row.status = to_string(RunStatus::failed);
     outcome.row.reason = plain(in_own_words(error));
   }
-  if (!run) return outcome;
-  outcome.row.status = to_string(run->record.status);
-  outcome.row.reason = plain(run->record.message);
-  summarise(run->record.history, outcome);
-  if (!histories.empty()) keep_history(run->record.history, histories / fmt::format("{}.csv", index + 1));
+  if (!record) return outcome;
+  outcome.row.status = to_string(record->status);
+  outcome.row.reason = plain(record->message);
+  summarise(record->history, headings, outcome);
+  if (!histories.empty()) keep_history(record->history, histories / fmt::format("{}.csv", index + 1));
   return outcome;
 }
 
@@ -155,7 +184,7 @@ void prepare(const fs::path& folder) {
   }
   const fs::path results = folder / k_results;
   if (fs::exists(fs::symlink_status(results)) &&
-      !read_text_file(results, k_largest_results).text.starts_with(k_program_line)) {
+      !read_text_file(results, k_program_line.size()).text.starts_with(k_program_line)) {
     throw std::runtime_error(
         fmt::format("{}: is none that monograin has written, and would be replaced; choose another folder with -o",
                     results.string()));
@@ -184,10 +213,10 @@ class Rows {
  public:
   Rows(const Sweep& sweep, const fs::path& folder) : sweep_(sweep), places_(sweep.runs.size()) {
     for (const fs::path& file : journals_in(folder)) {
-      records_.push_back(read_journal(file, sweep.digest));
-      for (std::size_t i = 0; i < records_.back().rows.size(); ++i) {
-        Place& place = places_.at(records_.back().rows[i].run - 1);
-        if (!place.is_there) place = {true, records_.size() - 1, i};
+      records_.emplace_back(file, sweep.digest);
+      for (const auto& [run, begin] : records_.back().rows()) {
+        Place& place = places_.at(run - 1);
+        if (!place.is_there) place = {true, static_cast<std::uint32_t>(records_.size() - 1), begin};
       }
     }
   }
@@ -197,21 +226,19 @@ class Rows {
     return static_cast<std::size_t>(std::ranges::count(places_, true, &Place::is_there));
   }
 
-  /// The results, all runs being there.
-  [[nodiscard]] std::string text() const {
+  /// Writes the results, all runs being there.
+  void write(const TextSink& sink) {
     const std::vector<std::string> columns = all_columns();
-    std::string text = fmt::format("{}{}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\n", k_program_line, version(),
-                                   sweep_.name, k_digest_line, sweep_.digest, sweep_.design, sweep_.scenario_name);
-    text += "run";
-    for (const SweepFactor& factor : sweep_.factors) text += ',' + factor.heading();
-    text += ",status,reason";
-    for (const std::string& column : columns) text += ',' + column;
-    text += '\n';
+    sink(fmt::format("{}{}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\nrun", k_program_line, version(),
+                     sweep_.name, k_digest_line, sweep_.digest, sweep_.design, sweep_.scenario_name));
+    for (const SweepFactor& factor : sweep_.factors) sink(',' + factor.heading());
+    sink(fmt::format(",status,reason{}{}\n", columns.empty() ? "" : ",", fmt::join(columns, ",")));
     std::unordered_map<std::string, std::vector<std::size_t>> targets;  // of each layout's cells
     std::vector<std::string_view> cells;
+    std::string text;
     for (std::size_t run = 0; run < places_.size(); ++run) {
-      const SweepRow& row = row_of(run);
-      const std::string& layout = layout_of(run);
+      const SweepRow row = row_of(run);
+      const std::string& layout = layout_of(run, row);
       const auto [target, is_new] = targets.try_emplace(layout);
       if (is_new) {
         for (const std::string_view heading : split(layout)) {
@@ -226,22 +253,22 @@ class Rows {
       text += fmt::format(",{},{}", row.status, row.reason);
       for (const std::string_view cell : cells) (text += ',') += cell;
       text += '\n';
+      if (text.size() < k_part && run + 1 < places_.size()) continue;
+      sink(text);
+      text.clear();
     }
-    return text;
   }
 
  private:
   struct Place {
     bool is_there = false;
-    std::size_t record = 0;
-    std::size_t row = 0;
+    std::uint32_t record = 0;
+    std::uint64_t begin = 0;  ///< of the row in its journal
   };
 
-  [[nodiscard]] const SweepRow& row_of(std::size_t run) const {
-    return records_[places_[run].record].rows[places_[run].row];
-  }
-  [[nodiscard]] const std::string& layout_of(std::size_t run) const {
-    return records_[places_[run].record].layouts.at(row_of(run).layout);
+  [[nodiscard]] SweepRow row_of(std::size_t run) { return records_[places_[run].record].row(places_[run].begin); }
+  [[nodiscard]] const std::string& layout_of(std::size_t run, const SweepRow& row) const {
+    return records_[places_[run].record].layouts().at(row.layout);
   }
 
   [[nodiscard]] static std::vector<std::string_view> split(std::string_view text) {
@@ -255,11 +282,11 @@ class Rows {
   }
 
   /// The columns of all runs, those of earlier runs first, final values before largest ones.
-  [[nodiscard]] std::vector<std::string> all_columns() const {
+  [[nodiscard]] std::vector<std::string> all_columns() {
     std::vector<std::string> columns;
     const std::string* last = nullptr;
     for (std::size_t run = 0; run < places_.size(); ++run) {
-      const std::string& layout = layout_of(run);
+      const std::string& layout = layout_of(run, row_of(run));
       if (&layout == last) continue;
       last = &layout;
       for (const std::string_view heading : split(layout)) {
@@ -283,11 +310,12 @@ void run_all(const Sweep& sweep, const SweepOptions& options, const std::vector<
   const int threads = options.threads > 0 ? options.threads : oneapi::tbb::info::default_concurrency();
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(threads));
+  oneapi::tbb::enumerable_thread_specific<Headings> headings;
   std::mutex mutex;
   std::size_t done = 0;
   oneapi::tbb::task_arena(threads).execute([&] {
     oneapi::tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
-      const Outcome outcome = run_one(sweep, runs[i], histories);
+      const Outcome outcome = run_one(sweep, runs[i], histories, headings.local());
       const std::scoped_lock lock(mutex);
       journal.append(outcome.row, outcome.columns);
       if (options.progress) options.progress(++done, runs.size());
@@ -304,7 +332,7 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
   {
     SweepJournal journal(journal_file(options), sweep.digest);
     std::vector<std::size_t> runs;
-    const Rows rows(sweep, options.folder);
+    Rows rows(sweep, options.folder);
     outcome.runs_before = rows.count();
     for (std::size_t run = options.shard.index - 1; run < sweep.runs.size(); run += options.shard.count) {
       if (!rows.has(run)) runs.push_back(run);
@@ -314,10 +342,10 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
   }
   const FolderLock lock(options.folder);
   if (has_results(sweep, options.folder)) return outcome;  // another shard was the last
-  const Rows rows(sweep, options.folder);
+  Rows rows(sweep, options.folder);
   outcome.runs_missing = sweep.runs.size() - rows.count();
   if (outcome.runs_missing > 0) return outcome;
-  write_text_file(options.folder / k_results, rows.text());
+  write_text_file(options.folder / k_results, [&rows](const TextSink& sink) { rows.write(sink); });
   sync_to_disk(options.folder / k_results);
   sync_to_disk(options.folder);
   for (const fs::path& file : journals_in(options.folder)) fs::remove(file);

@@ -359,12 +359,12 @@ class SweepReader {
       }
       std::vector<SweepValue> run = resolved(values);
       if (broken_constraint(run) == nullptr) {
-        runs_.push_back(std::move(run));
+        runs_.add(run);
       } else {
         ++left_out_;
       }
     }
-    if (runs_.empty()) faults_.add(constraints_.front().where, "no point of the grid meets the constraints");
+    if (runs_.size() == 0) faults_.add(constraints_.front().where, "no point of the grid meets the constraints");
   }
 
   void make_maxpro(const Section& root) {
@@ -404,7 +404,7 @@ class SweepReader {
       return;
     }
     for (std::size_t i = 0; i < runs; ++i) {
-      runs_.push_back(resolved(values_at(points_.point(i), points_.levels.empty() ? 0 : points_.levels[i])));
+      runs_.add(resolved(values_at(points_.point(i), points_.levels.empty() ? 0 : points_.levels[i])));
     }
   }
 
@@ -505,7 +505,7 @@ class SweepReader {
       faults_.add(row.front().where, fmt::format("the row breaks the constraint \"{}\"", *broken));
     }
     raw_.push_back(std::move(values));
-    runs_.push_back(std::move(run));
+    runs_.add(run);
   }
 
   /// The table's rows in the cube: numbers between the ends that [vary] gives, else between their own smallest and
@@ -547,9 +547,9 @@ class SweepReader {
   /// first run that is accepted tells which files the scenario names, which decide on the results too.
   void check_runs() {
     std::optional<std::vector<Fault>> own;
-    for (const std::vector<SweepValue>& run : runs_) {
+    for (std::size_t run = 0; run < runs_.size(); ++run) {
       try {
-        const CheckedScenario scenario = scenario_->with(overrides(run));
+        const CheckedScenario scenario = scenario_->with(overrides(runs_[run]));
         for (const auto& [option, curve] : scenario.curves) digested_ += '\n' + curve.text;
         return;
       } catch (const ScenarioError& error) {
@@ -566,7 +566,7 @@ class SweepReader {
     for (std::size_t f = 0; f < factors_.size(); ++f) {
       if (factors_[f].spec.kind != Kind::file) continue;
       std::set<std::string> names;
-      for (const std::vector<SweepValue>& run : runs_) names.insert(std::get<std::string>(run[f]));
+      for (std::size_t run = 0; run < runs_.size(); ++run) names.insert(std::get<std::string>(runs_[run][f]));
       for (const std::string& name : names) {
         digested_ += '\n' + read_text_file(scenario_folder_ / name, k_largest_text).text;
       }
@@ -602,7 +602,7 @@ class SweepReader {
   bool are_keys_known_ = true;  ///< every key in [vary] is one
   std::vector<PlacedConstraint> constraints_;
   std::vector<std::vector<FactorValue>> raw_;  ///< of a table
-  std::vector<std::vector<SweepValue>> runs_;
+  SweepRuns runs_;
   double base_radius_ = 1.0;  ///< the scenario's own [m]; where it has none that can be read, its check will tell
   std::size_t left_out_ = 0;
   Design points_;
@@ -612,12 +612,60 @@ class SweepReader {
 
 Sweep read_sweep(const fs::path& file) { return SweepReader(file).read(); }
 
+void SweepRuns::add(const std::vector<SweepValue>& values) {
+  words_.resize(values.size());
+  for (std::size_t f = 0; f < values.size(); ++f) {
+    if (const auto* number = std::get_if<double>(&values[f])) {
+      cells_.push_back(*number);
+      continue;
+    }
+    const std::string& word = std::get<std::string>(values[f]);
+    auto known = std::ranges::find(words_[f], word);
+    if (known == words_[f].end()) known = words_[f].insert(known, word);
+    cells_.push_back(static_cast<double>(known - words_[f].begin()));
+  }
+  ++size_;
+}
+
+std::vector<SweepValue> SweepRuns::operator[](std::size_t run) const {
+  const std::size_t factors = words_.size();
+  std::vector<SweepValue> values;
+  values.reserve(factors);
+  for (std::size_t f = 0; f < factors; ++f) {
+    const double cell = cells_[run * factors + f];
+    if (words_[f].empty()) {
+      values.emplace_back(cell);
+    } else {
+      values.emplace_back(words_[f][static_cast<std::size_t>(cell)]);
+    }
+  }
+  return values;
+}
+
 std::vector<std::string> overrides_of(const Sweep& sweep, std::size_t run) {
+  const std::vector<SweepValue> values = sweep.runs[run];
   std::vector<std::string> texts;
-  for (std::size_t f = 0; f < sweep.factors.size(); ++f) {
-    texts.push_back(override_text(sweep.factors[f].key, sweep.runs[run][f], sweep.factors[f].is_toggle));
+  for (std::size_t f = 0; f < values.size(); ++f) {
+    texts.push_back(override_text(sweep.factors[f].key, values[f], sweep.factors[f].is_toggle));
   }
   return texts;
+}
+
+CheckedScenario scenario_of(const Sweep& sweep, std::size_t run) {
+  const std::vector<SweepValue> values = sweep.runs[run];
+  std::vector<std::string> words;
+  std::vector<std::string> keys;
+  std::vector<double> numbers;
+  for (std::size_t f = 0; f < values.size(); ++f) {
+    const auto& [key, unit, is_toggle] = sweep.factors[f];
+    if (const auto* number = std::get_if<double>(&values[f])) {
+      keys.push_back(key);
+      numbers.push_back(*number);
+    } else {
+      words.push_back(override_text(key, values[f], is_toggle));
+    }
+  }
+  return sweep.scenario.with(words, keys, numbers);
 }
 
 std::string cell_of(const SweepValue& value) {
@@ -630,8 +678,8 @@ std::string design_text(const Sweep& sweep) {
   for (const SweepFactor& factor : sweep.factors) cells.push_back(factor.heading());
   std::string text = fmt::format("# program: monograin {}\n# sweep: {}\n# design: {}\n{}\n", version(), sweep.name,
                                  sweep.design, fmt::join(cells, ","));
-  for (const std::vector<SweepValue>& run : sweep.runs) {
-    std::ranges::transform(run, cells.begin(), cell_of);
+  for (std::size_t run = 0; run < sweep.runs.size(); ++run) {
+    std::ranges::transform(sweep.runs[run], cells.begin(), cell_of);
     text += fmt::format("{}\n", fmt::join(cells, ","));
   }
   return text;

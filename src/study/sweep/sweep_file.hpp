@@ -25,13 +25,30 @@ struct SweepFactor {
 /// What one run sets a key to: a number in SI, or a word.
 using SweepValue = std::variant<double, std::string>;
 
+/// Runs in the order of the design, each with a value for every factor. Of a million of them only numbers are kept:
+/// words stand in a list.
+class SweepRuns {
+ public:
+  void add(const std::vector<SweepValue>& values);
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] std::vector<SweepValue> operator[](std::size_t run) const;
+
+  bool operator==(const SweepRuns&) const = default;
+
+ private:
+  std::size_t size_ = 0;
+  std::vector<double> cells_;                    ///< run by run: numbers, and places in the factor's words
+  std::vector<std::vector<std::string>> words_;  ///< of each factor; empty: it has numbers
+};
+
 struct Sweep {
   std::string name;    ///< of the file, without folder and extension
   std::string design;  ///< grid, table, maxpro
   std::vector<SweepFactor> factors;
-  std::vector<std::vector<SweepValue>> runs;  ///< in the order of the design; a value for every factor
-  std::size_t left_out = 0;                   ///< points of a grid that the constraints exclude
-  Design points;                              ///< the runs as points of a cube
+  SweepRuns runs;
+  std::size_t left_out = 0;  ///< points of a grid that the constraints exclude
+  Design points;             ///< the runs as points of a cube
   ScenarioTemplate scenario;
   std::string scenario_name;
   bool keeps_histories = false;
@@ -46,6 +63,10 @@ struct Sweep {
 
 /// What a run sets, as `key=value`.
 [[nodiscard]] std::vector<std::string> overrides_of(const Sweep& sweep, std::size_t run);
+
+/// The scenario of a run.
+/// @throws ScenarioError with every fault of the scenario with these values
+[[nodiscard]] CheckedScenario scenario_of(const Sweep& sweep, std::size_t run);
 
 /// A value as a cell of a CSV file.
 [[nodiscard]] std::string cell_of(const SweepValue& value);

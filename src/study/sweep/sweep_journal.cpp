@@ -9,13 +9,10 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
-
-#include "scenario/text_file.hpp"
 
 namespace monograin {
 namespace {
@@ -59,15 +56,12 @@ std::string_view take_cell(std::string_view& text) {
 
 }  // namespace
 
-SweepRecord read_journal(const fs::path& file, const std::string& digest) {
-  const auto [text, problem] = read_text_file(file, std::numeric_limits<std::size_t>::max());
-  if (!problem.empty()) fail(file, problem);
-  SweepRecord record;
-  for (std::string_view rest = text; !rest.empty();) {
-    const std::size_t end = rest.find('\n');
-    if (end == std::string_view::npos) break;
-    const std::optional<std::string_view> payload = payload_of(rest.substr(0, end));
-    const bool is_first = record.length == 0;
+SweepRecord::SweepRecord(const fs::path& file, const std::string& digest)
+    : file_(file), stream_(file, std::ios::binary) {
+  if (!stream_.is_open()) fail(file, "cannot be read");
+  for (std::string line; std::getline(stream_, line) && !stream_.eof();) {
+    const std::optional<std::string_view> payload = payload_of(line);
+    const bool is_first = length_ == 0;
     if (!payload && is_first) fail(file, "is not the journal of a sweep; remove it, or choose another folder with -o");
     if (!payload) break;
     std::string_view cells = *payload;
@@ -77,21 +71,29 @@ SweepRecord read_journal(const fs::path& file, const std::string& digest) {
            "is the journal of another sweep, or of this one before its sweep file, its scenario, a table or the "
            "program changed; remove it to begin anew, or choose another folder with -o");
     }
-    if (kind == k_columns) {
-      record.layouts.emplace_back(cells);
-    } else if (kind == k_row) {
-      SweepRow row;
-      row.run = to_count(take_cell(cells));
-      row.status = take_cell(cells);
-      row.reason = take_cell(cells);
-      row.layout = to_count(take_cell(cells));
-      row.cells = cells;
-      record.rows.push_back(std::move(row));
-    }
-    record.length += end + 1;
-    rest.remove_prefix(end + 1);
+    if (kind == k_columns) layouts_.emplace_back(cells);
+    if (kind == k_row) rows_.push_back({to_count(take_cell(cells)), length_});
+    length_ += line.size() + 1;
   }
-  return record;
+  stream_.clear();
+}
+
+SweepRow SweepRecord::row(std::uint64_t begin) {
+  std::string line;
+  const auto place = static_cast<std::streamoff>(begin);
+  if (stream_.tellg() != place) stream_.seekg(place);
+  std::getline(stream_, line);
+  const std::optional<std::string_view> payload = payload_of(line);
+  if (!payload) fail(file_, "cannot be read again: another program has changed it");
+  std::string_view cells = *payload;
+  take_cell(cells);
+  SweepRow row;
+  row.run = to_count(take_cell(cells));
+  row.status = take_cell(cells);
+  row.reason = take_cell(cells);
+  row.layout = to_count(take_cell(cells));
+  row.cells = cells;
+  return row;
 }
 
 SweepJournal::SweepJournal(fs::path file, const std::string& digest) : file_(std::move(file)) {
@@ -99,12 +101,12 @@ SweepJournal::SweepJournal(fs::path file, const std::string& digest) : file_(std
   if (descriptor_ < 0) fail(file_, fmt::format("cannot be written: {}", std::strerror(errno)));
   try {
     if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) fail(file_, "another process is at work on this sweep");
-    const SweepRecord record = read_journal(file_, digest);
-    if (ftruncate(descriptor_, static_cast<off_t>(record.length)) != 0) {
+    const SweepRecord record(file_, digest);
+    if (ftruncate(descriptor_, static_cast<off_t>(record.length())) != 0) {
       fail(file_, fmt::format("cannot be written: {}", std::strerror(errno)));
     }
-    for (const std::string& columns : record.layouts) layouts_.emplace(columns, layouts_.size());
-    if (record.length == 0) write(fmt::format("{},{}", k_journal, digest));
+    for (const std::string& columns : record.layouts()) layouts_.emplace(columns, layouts_.size());
+    if (record.length() == 0) write(fmt::format("{},{}", k_journal, digest));
   } catch (...) {
     close(descriptor_);
     throw;

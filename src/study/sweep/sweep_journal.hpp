@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -18,23 +20,40 @@ struct SweepRow {
   std::string cells;
 };
 
-/// What a journal holds.
-struct SweepRecord {
-  std::vector<std::string> layouts;  ///< headings of columns
-  std::vector<SweepRow> rows;
-  std::size_t length = 0;  ///< bytes of whole lines; what follows was cut off in writing
-};
+/// A journal as it is found: where its rows are, which themselves stay in the file.
+class SweepRecord {
+ public:
+  /// Reads a journal up to its first line that is not whole.
+  /// @throws std::runtime_error where it is the journal of another sweep, or none at all, saying what to do
+  SweepRecord(const std::filesystem::path& file, const std::string& digest);
 
-/// Reads a journal up to its first line that is not whole.
-/// @throws std::runtime_error where it is the journal of another sweep, or none at all, saying what to do
-[[nodiscard]] SweepRecord read_journal(const std::filesystem::path& file, const std::string& digest);
+  struct Place {
+    std::size_t run = 0;  ///< from 1
+    std::uint64_t begin = 0;
+  };
+  [[nodiscard]] const std::vector<Place>& rows() const noexcept { return rows_; }
+  /// Headings of columns.
+  [[nodiscard]] const std::vector<std::string>& layouts() const noexcept { return layouts_; }
+  /// Bytes of whole lines; what follows was cut off in writing.
+  [[nodiscard]] std::uint64_t length() const noexcept { return length_; }
+
+  /// @throws std::runtime_error where it cannot be read
+  [[nodiscard]] SweepRow row(std::uint64_t begin);
+
+ private:
+  std::filesystem::path file_;
+  std::ifstream stream_;
+  std::vector<std::string> layouts_;
+  std::vector<Place> rows_;
+  std::uint64_t length_ = 0;
+};
 
 /// A journal that rows are appended to. Every line begins with its own digest, so that a torn one is known. A row that
 /// append() has returned from outlives the process.
 class SweepJournal {
  public:
   /// Begins a journal or goes on with one, without its torn end.
-  /// @throws std::runtime_error as read_journal does, and where another process is at work on it
+  /// @throws std::runtime_error as SweepRecord does, and where another process is at work on it
   SweepJournal(std::filesystem::path file, const std::string& digest);
   ~SweepJournal();
   SweepJournal(const SweepJournal&) = delete;
