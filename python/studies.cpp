@@ -8,6 +8,7 @@
 #include "history/compare.hpp"
 #include "interruptible.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/sweep/sensitivity.hpp"
 #include "study/sweep/sweep.hpp"
 
 namespace monograin::python {
@@ -34,6 +35,16 @@ py::tuple sweep(const std::string& file, const std::string& output, int threads,
                             }});
   });
   return py::make_tuple(folder.string(), outcome.runs_missing);
+}
+
+/// Runs what is left of a sweep and writes its sensitivities. @return the folder
+std::string sensitivity(const std::string& file, const std::string& output, int threads, double confidence) {
+  const py::tuple swept = sweep(file, output, threads, 1, 1);
+  const std::string folder = swept[0].cast<std::string>();
+  const py::gil_scoped_release released;
+  const Sweep plan = read_sweep(file);
+  static_cast<void>(write_sensitivities(plan, sensitivities_of(plan, folder, confidence), folder));
+  return folder;
 }
 
 /// Result of a calibration, in memory.
@@ -93,6 +104,7 @@ py::tuple as_python(const Comparison& comparison) {
 
 void add_studies(py::module_& module) {
   module.def("sweep", &sweep);
+  module.def("sensitivity", &sensitivity);
   py::class_<Fitted>(module, "Fitted")
       .def_readonly("name", &Fitted::name)
       .def_readonly("json", &Fitted::json)

@@ -22,6 +22,7 @@ from .studies import (
     Gap,
     calibrate,
     compare,
+    sensitivity,
     sweep,
 )
 from .tables import Table
@@ -53,5 +54,6 @@ __all__ = [
     "scenario_folder",
     "scenarios",
     "schema",
+    "sensitivity",
     "sweep",
 ]

@@ -40,6 +40,32 @@ def sweep(
     return Table.read_csv(os.path.join(where, "results.csv")) if missing == 0 else None
 
 
+def sensitivity(file: Path, folder: Optional[Path] = None, *, threads: int = 0, confidence: float = 0.95) -> Table:
+    """Says which key the spread of results is due to, as ``monograin sensitivity`` does.
+
+    Args:
+        file: a sweep file (TOML) of design ``saltelli`` or ``morris``, with the ``results`` that are asked for.
+        folder: of the results; ``runs/NAME`` if None. Runs that are there are not done again.
+        threads: 0 for one for each core.
+        confidence: level of the two-sided bootstrap intervals, between 0 and 1.
+
+    Returns:
+        A row for each result and key. Of ``saltelli`` the shares of the variance ``first`` and ``total`` with the ends of
+        their intervals (Saltelli et al., 2010; Jansen, 1999); of ``morris`` ``mean_size``, ``mean`` and
+        ``standard_deviation`` of the elementary effects over the whole range of a key (Morris, 1991). The table is
+        ``sensitivity.csv`` in the folder, beside its figure.
+
+    Raises:
+        ScenarioError: with every fault of the sweep and its scenario.
+        ValueError: for another design, or a confidence outside of (0, 1).
+        RuntimeError: for a formula that the columns of the results cannot answer.
+    """
+    if not 0.0 < confidence < 1.0:
+        raise ValueError("confidence: expected a number in (0, 1)")
+    where = _core.sensitivity(os.fspath(file), "" if folder is None else os.fspath(folder), threads, confidence)
+    return Table.read_csv(os.path.join(where, "sensitivity.csv"))
+
+
 class FittedParameter(NamedTuple):
     """A number of a scenario that was fitted; all in SI units.
 

@@ -49,6 +49,7 @@ void add_regress_command(CLI::App& app, Action& action);
 void add_calibrate_command(CLI::App& app, Action& action);
 void add_data_command(CLI::App& app, Action& action);
 void add_sweep_command(CLI::App& app, Action& action);
+void add_sensitivity_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);
 void add_stress_command(CLI::App& app, Action& action);
 void add_schema_command(CLI::App& app, Action& action);

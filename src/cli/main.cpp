@@ -154,6 +154,7 @@ int run_program(int argc, char** argv) {
   add_calibrate_command(app, action);
   add_data_command(app, action);
   add_sweep_command(app, action);
+  add_sensitivity_command(app, action);
   add_bench_command(app, action);
   add_stress_command(app, action);
   add_schema_command(app, action);

@@ -3,7 +3,7 @@
 _monograin() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} options
   if ((COMP_CWORD == 1)); then
-    mapfile -t COMPREPLY < <(compgen -W "run check models cite plot atlas compare regress calibrate data sweep bench stress schema --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "run check models cite plot atlas compare regress calibrate data sweep sensitivity bench stress schema --help --version" -- "$current")
     return
   fi
   if [[ $previous == models ]]; then
@@ -28,6 +28,7 @@ _monograin() {
     calibrate) options="--output --confidence --quiet --strict --help" ;;
     data) options="--x --y --plot --output --help" ;;
     sweep) options="--jobs --shard --design-only --output --help" ;;
+    sensitivity) options="--jobs --confidence --output --help" ;;
     bench) options="--scenes --integrator --rtol --profile --against-fe --redraw --plots --output --help" ;;
     stress) options="--time --seed --model --first --scenes --jobs --output --help" ;;
     regress) options="--accept --scenarios --curves --help" ;;

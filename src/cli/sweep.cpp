@@ -1,4 +1,4 @@
-// `monograin sweep`.
+// `monograin sweep` and `monograin sensitivity`.
 
 #include "study/sweep/sweep.hpp"
 
@@ -13,6 +13,7 @@
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "scenario/text_file.hpp"
+#include "study/sweep/sensitivity.hpp"
 
 namespace monograin {
 namespace {
@@ -44,7 +45,7 @@ int make_design(const Sweep& sweep, const fs::path& folder) {
   const fs::path file = folder / "design.csv";
   fs::create_directories(folder);
   write_text_file(file, design_text(sweep));
-  if (sweep.points.size() > 0) {
+  if (sweep.points.size() > 0 && sweep.results.empty()) {
     Design continuous = sweep.points;
     continuous.level_count = 0;
     print_data("psi: {:.10g}\n", maxpro_criterion(sweep.points));
@@ -66,23 +67,65 @@ void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds, con
   say("{}\n", text);
 }
 
-int sweep(const SweepCommandOptions& options) {
-  const SweepShard shard = parse_shard(options.shard);
-  const Sweep plan = read_sweep(options.file);
-  const fs::path folder = options.output.empty() ? fs::path("runs") / plan.name : fs::path(options.output);
-  if (plan.left_out > 0) {
-    say("{}: {} points of the grid do not meet the constraints\n", plan.name, plan.left_out);
-  }
-  if (options.makes_design_only) return make_design(plan, folder);
+[[nodiscard]] fs::path folder_of(const Sweep& plan, const std::string& output) {
+  return output.empty() ? fs::path("runs") / plan.name : fs::path(output);
+}
+
+/// Runs what is left of a sweep. @return how many runs are missing yet
+std::size_t run_all(const Sweep& plan, const fs::path& folder, int threads, SweepShard shard) {
   const auto start = std::chrono::steady_clock::now();
   const SweepOutcome outcome = [&] {
     ProgressBar bar("runs");
-    return run_sweep(
-        plan, {.folder = folder, .threads = options.threads, .shard = shard, .progress = [&](auto done, auto of) {
-                 bar.show(done, of);
-               }});
+    return run_sweep(plan, {.folder = folder, .threads = threads, .shard = shard, .progress = [&](auto done, auto of) {
+                              bar.show(done, of);
+                            }});
   }();
   report(plan, outcome, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), folder);
+  return outcome.runs_missing;
+}
+
+int sweep(const SweepCommandOptions& options) {
+  const SweepShard shard = parse_shard(options.shard);
+  const Sweep plan = read_sweep(options.file);
+  const fs::path folder = folder_of(plan, options.output);
+  if (plan.left_out > 0) {
+    say("{}: {} points of the design do not meet the constraints\n", plan.name, plan.left_out);
+  }
+  if (options.makes_design_only) return make_design(plan, folder);
+  run_all(plan, folder, options.threads, shard);
+  return k_success;
+}
+
+// --- sensitivity
+
+struct SensitivityOptions {
+  std::string file;
+  std::string output;
+  double confidence = 0.95;
+  int threads = 0;
+};
+
+int sensitivity(const SensitivityOptions& options) {
+  const Sweep plan = read_sweep(options.file);
+  if (plan.results.empty()) {
+    throw UsageError(fmt::format(
+        "{}: design = \"{}\"; expected \"saltelli\" for Sobol indices, or \"morris\" for elementary effects",
+        options.file, plan.design));
+  }
+  const fs::path folder = folder_of(plan, options.output);
+  run_all(plan, folder, options.threads, {});
+  const std::vector<ResultSensitivity> found = sensitivities_of(plan, folder, options.confidence);
+  const std::string no_figure = write_sensitivities(plan, found, folder);
+  print_data("{}", sensitivity_text(plan, found));
+  for (const ResultSensitivity& result : found) {
+    if (result.samples() == sample_count(plan)) continue;
+    say("warning: {}: {} of {} samples count; of the others a run has no value, see its reason in {}: this can bias "
+        "the "
+        "result\n",
+        result.result, result.samples(), sample_count(plan), (folder / "results.csv").string());
+  }
+  if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
+  say("{}: sensitivities -> {}\n", plan.name, folder.string());
   return k_success;
 }
 
@@ -103,6 +146,20 @@ void add_sweep_command(CLI::App& app, Action& action) {
   command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME]");
   command->footer("Example: monograin sweep scenarios/sweeps/poisson.toml -j 4");
   command->callback([options, &action] { action = [options] { return sweep(*options); }; });
+}
+
+void add_sensitivity_command(CLI::App& app, Action& action) {
+  auto options = std::make_shared<SensitivityOptions>();
+  CLI::App* command = app.add_subcommand(
+      "sensitivity", "Say which key the spread of results is due to: Sobol indices, Morris screening");
+  command->add_option("FILE", options->file, "Sweep file (TOML) with design = \"saltelli\" or \"morris\"")->required();
+  command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core]")
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--confidence", options->confidence, "Level of the two-sided intervals, between 0 and 1 [0.95]")
+      ->check(CLI::Range(1e-6, 1.0 - 1e-6));
+  command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME]");
+  command->footer("Example: monograin sensitivity scenarios/sweeps/sobol-indices.toml");
+  command->callback([options, &action] { action = [options] { return sensitivity(*options); }; });
 }
 
 }  // namespace monograin

@@ -54,7 +54,8 @@ struct ChartAxis {
   std::string label;               ///< gnuplot's enhanced text
   std::optional<double> lowest{};  ///< absent: what the values take
   std::optional<double> highest{};
-  bool is_logarithmic = false;  ///< only positive values are shown then
+  bool is_logarithmic = false;       ///< only positive values are shown then
+  std::vector<std::string> names{};  ///< gnuplot's enhanced texts at 1, 2, ... in the place of numbers
 };
 
 /// The part of the abscissa to which a law was fitted, or in which it holds: what lies outside is shaded.

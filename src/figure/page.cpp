@@ -75,6 +75,15 @@ void make_folder(const fs::path& folder) {
   return fmt::format("({})", tics);
 }
 
+/// Tics with names at 1, 2, ...
+[[nodiscard]] std::string tics_of(const std::vector<std::string>& names) {
+  std::string tics;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    tics += fmt::format("{}{} {}", k > 0 ? ", " : "", label_string(names[k]), k + 1);
+  }
+  return fmt::format("({})", tics);
+}
+
 [[nodiscard]] std::string axis_text(char name, const Axis& axis) {
   const auto& [lowest, highest, tic_step] = axis.range;
   if (axis.is_logarithmic) {
@@ -85,6 +94,9 @@ void make_folder(const fs::path& folder) {
         "set logscale {0}; set {0}range [{1:.6g}:{2:.6g}]; set {0}tics {3}; "
         "set format {0} '10^{{%T}}'\n",
         name, lowest, highest, tics);
+  }
+  if (!axis.names.empty()) {
+    return fmt::format("set {0}range [{1:.6g}:{2:.6g}]; set {0}tics {3}\n", name, lowest, highest, tics_of(axis.names));
   }
   const int power = shared_power(axis.range);
   return fmt::format("set {0}range [{1:.6g}:{2:.6g}]; set {0}tics {3}\n", name, lowest, highest,

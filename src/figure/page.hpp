@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "figure/panels.hpp"
 
@@ -14,7 +15,8 @@ enum class Format { svg, pdf, png };
 struct Axis {
   std::string label;
   AxisRange range{};
-  bool is_logarithmic = false;  ///< tics at powers of ten, whatever the range's tic step
+  bool is_logarithmic = false;       ///< tics at powers of ten, whatever the range's tic step
+  std::vector<std::string> names{};  ///< gnuplot's enhanced texts at 1, 2, ... in the place of numbers; empty: numbers
 };
 
 /// First part of a script: terminal and settings of the page. Sets the gnuplot variable `data` to the data file.

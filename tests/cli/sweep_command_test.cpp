@@ -107,6 +107,56 @@ TEST_F(SweepCommand, WritesNothingWhereTheFileIsAtFault) {
   EXPECT_FALSE(fs::exists(path("runs")));
 }
 
+constexpr const char* k_indices = R"toml(design = "saltelli"
+samples = 16
+results = ["max.axial.force", "end.work / max.work"]
+[vary]
+"material.yield_stress" = { mean = "20 MPa", std = "2 MPa" }
+"material.poisson_ratio" = { from = 0.2, to = 0.4 }
+"loading.configuration" = { values = ["simple"] }
+)toml";
+
+/// With the scenario of the other sweep.
+std::string index_file(const std::string& changed = k_indices) {
+  const std::string sweep = k_sweep;
+  return changed + sweep.substr(sweep.find("[scenario]"));
+}
+
+TEST_F(SweepCommand, SaysWhichKeyTheSpreadIsDueTo) {
+  write_text(path("indices.toml"), index_file());
+  ASSERT_EQ(monograin("sensitivity indices.toml").code, 0) << text("stderr.txt");
+  const std::string shown = text("stdout.txt");
+  EXPECT_NE(shown.find("max.axial.force, 16 samples\n"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("\nmaterial.yield_stress "), std::string::npos) << shown;
+  const Table table = read_csv(path("runs/indices/sensitivity.csv"));
+  ASSERT_EQ(table.row_count(), 6U);
+  EXPECT_EQ(table.word(1, *table.find("key")), "material.poisson_ratio");
+  EXPECT_GT(table.at(0, *table.find("total")), table.at(1, *table.find("total")));
+  EXPECT_TRUE(fs::exists(path("runs/indices/sensitivity.svg")));
+
+  std::string other = k_indices;
+  other.replace(other.find("end.work / max.work"), 19, "max.axial.fore");
+  write_text(path("indices.toml"), index_file(other));
+  EXPECT_NE(monograin("sensitivity indices.toml").code, 0);
+  EXPECT_NE(text("stderr.txt").find("80 were there already"), std::string::npos) << text("stderr.txt");
+  EXPECT_NE(text("stderr.txt").find("did you mean 'max.axial.force'?"), std::string::npos) << text("stderr.txt");
+}
+
+TEST_F(SweepCommand, SaysNothingOfSensitivitiesWithoutTheirDesign) {
+  EXPECT_EQ(monograin("sensitivity many.toml").code, 2);
+  EXPECT_NE(text("stderr.txt").find("expected \"saltelli\" for Sobol indices"), std::string::npos)
+      << text("stderr.txt");
+  EXPECT_FALSE(fs::exists(path("runs")));
+}
+
+TEST_F(SweepCommand, WarnsOfSamplesThatHaveNoValue) {
+  std::string beyond = k_indices;
+  beyond.replace(beyond.find("to = 0.4"), 8, "to = 0.6");
+  write_text(path("indices.toml"), index_file(beyond));
+  EXPECT_EQ(monograin("sensitivity indices.toml").code, 0) << text("stderr.txt");
+  EXPECT_NE(text("stderr.txt").find("of 16 samples count"), std::string::npos) << text("stderr.txt");
+}
+
 TEST_F(SweepCommand, RunsEveryReadySweep) {
   for (const auto& entry : fs::directory_iterator(fs::path(MONOGRAIN_SOURCE_DIR) / "scenarios/sweeps")) {
     if (entry.path().extension() != ".toml") continue;

@@ -34,6 +34,24 @@ def test_shards_merge_into_the_same_table(tmp_path):
         mg.sweep(file, tmp_path / "parts", shard=(3, 2))
 
 
+def test_sensitivities_are_those_of_the_program(run_program, tmp_path):
+    text = (mg.scenario_folder() / "sweeps" / "sobol-indices.toml").read_text().replace("512", "32")
+    file = tmp_path / "few.toml"
+    file.write_text(text.replace("../die.toml", str(mg.scenario_folder() / "die.toml")))
+    table = mg.sensitivity(file, tmp_path / "ours", confidence=0.9)
+    assert run_program("sensitivity", file, "-o", "theirs", "--confidence", "0.9", cwd=tmp_path).returncode == 0
+    assert (tmp_path / "ours" / "sensitivity.csv").read_text() == (tmp_path / "theirs" / "sensitivity.csv").read_text()
+    assert len(table) == 12
+    assert table["total"].max() > 0.5
+
+
+def test_sensitivities_need_a_design_that_tells_them(tmp_path):
+    with pytest.raises(ValueError, match="says nothing of sensitivities"):
+        mg.sensitivity(mg.scenario_folder() / "sweeps" / "poisson.toml", tmp_path / "grid")
+    with pytest.raises(ValueError, match="confidence"):
+        mg.sensitivity(mg.scenario_folder() / "sweeps" / "sobol-indices.toml", tmp_path / "x", confidence=1.0)
+
+
 def test_a_sweep_with_faults_runs_nothing(tmp_path):
     (tmp_path / "bad.toml").write_text('scenario = "none.toml"\ndesign = "grid"\n')
     with pytest.raises(mg.ScenarioError) as caught:

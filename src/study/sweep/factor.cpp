@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/distributions/lognormal.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/triangular.hpp>
 #include <cmath>
+#include <initializer_list>
 #include <set>
 #include <string_view>
 
@@ -43,6 +47,16 @@ std::vector<KeySpec> level_keys(const KeySpec& varied) {
        .choices = {k_scales.begin(), k_scales.end()},
        .default_value = k_scales.front()},
       {.name = "values", .meaning = "these values", .kind = Kind::texts, .example = "[0.2, 0.3, 0.4]"},
+      bound("mean", "mean of a normal distribution"),
+      bound("std", "its standard deviation"),
+      {.name = "lognormal",
+       .meaning = "median and standard deviation of the logarithm of a log-normal distribution",
+       .kind = Kind::texts,
+       .example = "[0.3, 0.1]"},
+      {.name = "triangular",
+       .meaning = "lowest, likeliest and highest value of a triangular distribution",
+       .kind = Kind::texts,
+       .example = "[0.2, 0.3, 0.4]"},
   };
 }
 
@@ -65,21 +79,42 @@ std::vector<KeySpec> level_keys(const KeySpec& varied) {
 /// Reads the table of one factor.
 class LevelReader {
  public:
-  LevelReader(Reading& reading, const toml::table& table, const SourceLocation& place, bool is_grid, Factor& factor)
+  LevelReader(Reading& reading, const toml::table& table, const SourceLocation& place, Levels levels, Factor& factor)
       : faults_(reading.faults),
         table_(table),
         label_("\"" + factor.key + "\""),
-        is_grid_(is_grid),
+        levels_(levels),
         factor_(factor),
         keys_(level_keys(factor.spec)),
         section_(reading, {&table, place, label_}, keys_) {}
 
   void read() {
-    const bool has_range = section_.has_or_misspells("from") || section_.has_or_misspells("to");
-    if (has_range == section_.has_or_misspells("values")) {
-      return fault_at(section_.place(), fmt::format("expected either {} or {{ values = [...] }}", k_example_range));
+    const auto has_any = [this](std::initializer_list<std::string_view> keys) {
+      return std::ranges::any_of(keys, [this](std::string_view key) { return section_.has_or_misspells(key); });
+    };
+    const bool has_range = has_any({"from", "to"});
+    const bool has_list = has_any({"values"});
+    const std::array is_distribution{has_any({"mean", "std"}), has_any({"lognormal"}), has_any({"triangular"})};
+    const auto distributions = std::ranges::count(is_distribution, true);
+    if ((has_range ? 1 : 0) + (has_list ? 1 : 0) + distributions != 1) {
+      return fault_at(section_.place(),
+                      fmt::format("expected one of {}, {{ values = [...] }}, {{ mean, std }}, {{ lognormal = [median, "
+                                  "standard deviation of the logarithm] }}, {{ triangular = [lowest, likeliest, "
+                                  "highest] }}",
+                                  k_example_range));
     }
-    has_range ? read_range() : read_list();
+    if (has_range) return read_range();
+    if (has_list) return read_list();
+    if (!is_quantity()) return;
+    if (levels_ != Levels::shares) {
+      return fault_at(section_.place(),
+                      "a distribution goes with design = \"sobol\", \"halton\", \"lhs\", \"random\", \"saltelli\" or "
+                      "\"morris\" only");
+    }
+    refuse_keys_of_ranges();
+    factor_.distribution.emplace();
+    if (is_distribution[0]) return read_normal();
+    read_parameters(is_distribution[1]);
   }
 
  private:
@@ -87,11 +122,62 @@ class LevelReader {
     faults_.add(where, fmt::format("{}: {}", label_, problem));
   }
 
-  void read_range() {
-    if (factor_.spec.kind != Kind::quantity) {
-      return fault_at(section_.place(), "its values form no range; expected { values = [...] }");
+  [[nodiscard]] bool is_quantity() {
+    if (factor_.spec.kind == Kind::quantity) return true;
+    fault_at(section_.place(), "its values form no range; expected { values = [...] }");
+    return false;
+  }
+
+  void refuse_keys_of_ranges() {
+    for (const std::string_view key : {"points", "scale"}) {
+      if (section_.has(key)) fault_at(section_.key_place(key), fmt::format("key '{}' goes with a range only", key));
     }
-    if (section_.has("points") && !is_grid_) {
+  }
+
+  void read_normal() {
+    const auto mean = bound("mean");
+    const auto deviation = bound("std");
+    if (!mean || !deviation) return;
+    if (mean->is_in_radii != deviation->is_in_radii) {
+      fault_at(section_.value_place("std"), "expected mean and std both in R0, or neither");
+    }
+    if (!(deviation->number > 0.0)) fault_at(section_.value_place("std"), "expected std above 0");
+    *factor_.distribution = {
+        FactorDistribution::Shape::normal, {mean->number, deviation->number, 0.0}, mean->is_in_radii};
+  }
+
+  /// Of a log-normal or a triangular distribution.
+  void read_parameters(bool is_lognormal) {
+    const std::string_view key = is_lognormal ? "lognormal" : "triangular";
+    const std::vector<std::string> texts = section_.texts(key);
+    FactorDistribution& distribution = *factor_.distribution;
+    distribution.shape = is_lognormal ? FactorDistribution::Shape::lognormal : FactorDistribution::Shape::triangular;
+    const std::size_t count = is_lognormal ? 2 : 3;
+    if (texts.size() != count) {
+      return fault_at(section_.value_place(key), fmt::format("expected {} values", count));
+    }
+    std::array<FactorValue, 3> values{};
+    KeySpec number{.name = key, .meaning = "a number", .kind = Kind::quantity};
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto [value, problem] = read_value(is_lognormal && k == 1 ? number : factor_.spec, texts[k], {});
+      if (!value) return fault_at(section_.value_place(key, k), fmt::format("{}: {}", shown(texts[k]), problem));
+      values[k] = *value;
+      distribution.parameters[k] = value->number;
+    }
+    distribution.is_in_radii = values[0].is_in_radii;
+    const auto& [first, second, third] = distribution.parameters;
+    if (is_lognormal) {
+      if (!(first > 0.0 && second > 0.0)) fault_at(section_.value_place(key), "expected both values above 0");
+    } else if (values[1].is_in_radii != values[0].is_in_radii || values[2].is_in_radii != values[0].is_in_radii) {
+      fault_at(section_.value_place(key), "expected all values in R0, or none");
+    } else if (!(first <= second && second <= third && first < third)) {
+      fault_at(section_.value_place(key), "expected the lowest, the likeliest and the highest value in this order");
+    }
+  }
+
+  void read_range() {
+    if (!is_quantity()) return;
+    if (section_.has("points") && levels_ != Levels::points) {
       fault_at(section_.key_place("points"), "key 'points' goes with design = \"grid\" only");
     }
     const auto from = bound("from");
@@ -110,7 +196,9 @@ class LevelReader {
 
   [[nodiscard]] std::optional<FactorValue> bound(std::string_view key) {
     if (!section_.has_or_misspells(key)) {
-      fault_at(section_.place(), fmt::format("key '{}' is missing; expected for example {}", key, k_example_range));
+      const bool is_of_range = key == "from" || key == "to";
+      fault_at(section_.place(), fmt::format("key '{}' is missing; expected for example {}", key,
+                                             is_of_range ? k_example_range : "{ mean = 0.3, std = 0.01 }"));
     }
     const std::optional<double> number = section_.number(key);
     if (!number) return std::nullopt;
@@ -119,9 +207,7 @@ class LevelReader {
   }
 
   void read_list() {
-    for (const std::string_view key : {"points", "scale"}) {
-      if (section_.has(key)) fault_at(section_.key_place(key), fmt::format("key '{}' goes with a range only", key));
-    }
+    refuse_keys_of_ranges();
     const std::vector<std::string> texts = section_.texts("values");
     std::set<FactorValue> seen;
     for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -143,7 +229,7 @@ class LevelReader {
   FaultList& faults_;
   const toml::table& table_;
   std::string label_;
-  bool is_grid_;
+  Levels levels_;
   Factor& factor_;
   std::vector<KeySpec> keys_;
   Section section_;
@@ -165,6 +251,30 @@ double FactorRange::share_of(double number) const {
   return (number - from.number) / (to.number - from.number);
 }
 
+FactorValue FactorDistribution::at(double share) const {
+  const auto& [first, second, third] = parameters;
+  FactorValue value{.is_in_radii = is_in_radii};
+  switch (shape) {
+    case Shape::normal:
+      value.number = boost::math::quantile(boost::math::normal(first, second), share);
+      break;
+    case Shape::lognormal:
+      value.number = boost::math::quantile(boost::math::lognormal(std::log(first), second), share);
+      break;
+    case Shape::triangular:
+      value.number = boost::math::quantile(boost::math::triangular(first, second, third), share);
+      break;
+  }
+  return value;
+}
+
+FactorValue Factor::at(double share) const {
+  if (range) return range->at(share);
+  if (distribution) return distribution->at(share);
+  const auto place = static_cast<std::size_t>(share * static_cast<double>(values.size()));
+  return values[std::min(place, values.size() - 1)];
+}
+
 bool Factor::is_number() const noexcept { return spec.kind == Kind::quantity || spec.kind == Kind::integer; }
 
 bool Factor::is_toggle() const noexcept { return spec.kind == Kind::toggle || spec.kind == Kind::mark; }
@@ -176,6 +286,7 @@ std::string Factor::unit() const {
 }
 
 bool Factor::admits(const FactorValue& value) const {
+  if (distribution) return true;
   if (!range) return values.empty() || std::ranges::find(values, value) != values.end();
   const double share = range->share_of(value.number);
   return value.is_in_radii == range->from.is_in_radii && share >= 0.0 && share <= 1.0;
@@ -229,9 +340,9 @@ std::string unit_problem(const KeySpec& spec, const std::string& unit) {
   return parse_quantity("1 " + unit, info.dimension, radius).problem;
 }
 
-void read_levels(Reading& reading, const toml::table& table, const SourceLocation& place, bool is_grid,
+void read_levels(Reading& reading, const toml::table& table, const SourceLocation& place, Levels levels,
                  Factor& factor) {
-  LevelReader(reading, table, place, is_grid, factor).read();
+  LevelReader(reading, table, place, levels, factor).read();
 }
 
 }  // namespace monograin

@@ -3,6 +3,7 @@
 
 #include <toml++/toml.h>
 
+#include <array>
 #include <compare>
 #include <optional>
 #include <string>
@@ -38,13 +39,31 @@ struct FactorRange {
   [[nodiscard]] double share_of(double number) const;
 };
 
-/// A key with what it is varied over: a range, a list of values, or neither where a table gives the values.
+/// Values that lie as a probability distribution says.
+struct FactorDistribution {
+  enum class Shape { normal, lognormal, triangular };
+
+  Shape shape = Shape::normal;
+  /// Mean and standard deviation; median and standard deviation of the logarithm; lowest, likeliest and highest value.
+  std::array<double, 3> parameters{};
+  bool is_in_radii = false;
+
+  /// The value that a share of all are below. @param share  between 0 and 1
+  [[nodiscard]] FactorValue at(double share) const;
+};
+
+/// A key with what it is varied over: a range, a distribution, a list of values, or none of them where a table gives
+/// the values.
 struct Factor {
   std::string key;  ///< path as of `--set`
   KeySpec spec;
   SourceLocation where;
   std::optional<FactorRange> range;
+  std::optional<FactorDistribution> distribution;
   std::vector<FactorValue> values;
+
+  /// The value at a share, between 0 and 1, of what it is varied over.
+  [[nodiscard]] FactorValue at(double share) const;
 
   [[nodiscard]] bool is_number() const noexcept;
   [[nodiscard]] bool is_toggle() const noexcept;
@@ -69,8 +88,16 @@ struct ReadValue {
 /// What is wrong with the unit in a column's heading; empty: nothing. No unit is SI.
 [[nodiscard]] std::string unit_problem(const KeySpec& spec, const std::string& unit);
 
-/// Fills the factor's range or values from `{ from, to, points, scale }` or `{ values }`.
-/// @param is_grid  whether ranges have points
-void read_levels(Reading& reading, const toml::table& table, const SourceLocation& place, bool is_grid, Factor& factor);
+/// What a design asks of the factors.
+enum class Levels {
+  points,  ///< a grid: ranges are divided
+  whole,   ///< ranges as they are
+  shares,  ///< shares of anything: distributions, too
+};
+
+/// Fills what the factor is varied over from `{ from, to, points, scale }`, `{ mean, std }`, `{ lognormal }`,
+/// `{ triangular }` or `{ values }`.
+void read_levels(Reading& reading, const toml::table& table, const SourceLocation& place, Levels levels,
+                 Factor& factor);
 
 }  // namespace monograin

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include "history/run.hpp"
@@ -18,8 +19,10 @@
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 #include "study/formula/constraint.hpp"
+#include "study/formula/expression.hpp"
 #include "study/sweep/design_table.hpp"
 #include "study/sweep/factor.hpp"
+#include "study/sweep/sampling.hpp"
 
 namespace monograin {
 namespace {
@@ -29,7 +32,20 @@ using Kind = KeySpec::Kind;
 
 constexpr double k_most_runs = 1e6;
 constexpr double k_most_maxpro_runs = 1e5;
-constexpr std::array<std::string_view, 3> k_designs{"grid", "table", "maxpro"};
+constexpr std::array<std::string_view, 9> k_designs{"grid", "table",  "maxpro",   "sobol", "halton",
+                                                    "lhs",  "random", "saltelli", "morris"};
+constexpr std::string_view k_filling_designs = "maxpro, sobol, halton, lhs, random";
+constexpr std::string_view k_random_designs = "maxpro, sobol, halton, lhs, random, saltelli, morris";
+constexpr std::string_view k_index_designs = "saltelli, morris";
+
+[[nodiscard]] bool is_one_of(std::string_view design, std::string_view listed) {
+  for (std::size_t begin = 0; begin < listed.size();) {
+    const std::size_t end = std::min(listed.find(", ", begin), listed.size());
+    if (listed.substr(begin, end - begin) == design) return true;
+    begin = end + 2;
+  }
+  return false;
+}
 
 // --- the language
 
@@ -46,17 +62,28 @@ std::vector<KeySpec> root_keys(bool contains_scenario) {
        .choices = {k_designs.begin(), k_designs.end()},
        .default_value = k_designs.front()},
       {.name = "runs",
-       .meaning = "number of runs of a space-filling design",
+       .meaning = "number of runs of a design that fills the space",
        .kind = Kind::integer,
-       .range = {.lower = 2.0, .upper = k_most_maxpro_runs},
+       .range = {.lower = 2.0, .upper = k_most_runs},
        .example = "100",
-       .only_with = "maxpro"},
+       .only_with = k_filling_designs},
+      {.name = "samples",
+       .meaning = "of saltelli: points whose changes are followed; of morris: trajectories",
+       .kind = Kind::integer,
+       .range = {.lower = 2.0, .upper = k_most_runs},
+       .example = "512",
+       .only_with = k_index_designs},
       {.name = "seed",
-       .meaning = "seed of a space-filling design",
+       .meaning = "seed of a design that is drawn",
        .kind = Kind::integer,
        .range = {.lower = 0.0, .upper = 1e15},
        .default_value = 1.0,
-       .only_with = "maxpro"},
+       .only_with = k_random_designs},
+      {.name = "results",
+       .meaning = "formulas over columns of the results, for which indices are estimated",
+       .kind = Kind::texts,
+       .example = "[\"max.axial.force\"]",
+       .only_with = k_index_designs},
       {.name = "table",
        .meaning = "file with one column per key",
        .kind = Kind::file,
@@ -81,6 +108,15 @@ std::vector<KeySpec> root_keys(bool contains_scenario) {
   return fmt::format("{}={}", key, is_toggle ? word : in_quotes(word));
 }
 
+/// What decides on the runs: the file without what is asked of their results, its comments and its layout.
+[[nodiscard]] std::string text_of_runs(const toml::table& tree) {
+  toml::table runs = tree;
+  runs.erase("results");
+  std::ostringstream text;
+  text << runs;
+  return text.str();
+}
+
 class SweepReader {
  public:
   explicit SweepReader(const fs::path& file) : named_(file), file_(name_of_file(file)), reading_{faults_} {}
@@ -88,8 +124,8 @@ class SweepReader {
   [[nodiscard]] Sweep read() {
     auto [text, problem] = read_text_file(named_, k_largest_text, FileKind::any);
     if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a sweep file");
-    digested_ = text;
     const toml::table tree = parse_document(text, file_.string());
+    digested_ = text_of_runs(tree);
     const std::vector<KeySpec> keys = root_keys(tree["scenario"].is_table());
     const SourceLocation top{file_.string()};
     const Section root(reading_, {&tree, top, "the sweep"}, keys);
@@ -101,12 +137,15 @@ class SweepReader {
 
     read_factors(root);
     read_constraints(root);
+    check_results(root);
     if (design_ == "table") {
       read_table(root);
     } else if (design_ == "grid") {
       make_grid();
-    } else {
+    } else if (design_ == "maxpro") {
       make_maxpro(root);
+    } else {
+      make_samples(root);
     }
     faults_.throw_if_any();
     check_runs();
@@ -122,6 +161,7 @@ class SweepReader {
                 .scenario = std::move(*scenario_),
                 .scenario_name = scenario_name_,
                 .keeps_histories = root.toggle("histories").value_or(false),
+                .results = root.texts("results"),
                 .digest = text_digest(fmt::format("monograin {}\n{}", version(), digested_))};
     for (const Factor& factor : factors_) {
       sweep.factors.push_back({factor.key, factor.unit(), factor.is_toggle()});
@@ -132,13 +172,14 @@ class SweepReader {
  private:
   void check_keys_of_design(const Section& root, const std::vector<KeySpec>& keys) {
     for (const KeySpec& spec : keys) {
-      if (!spec.only_with.empty() && spec.only_with != design_ && root.has(spec.name)) {
+      if (!spec.only_with.empty() && !is_one_of(design_, spec.only_with) && root.has(spec.name)) {
         faults_.add(root.key_place(spec.name),
-                    fmt::format("key '{}' goes with design = \"{}\" only", spec.name, spec.only_with));
+                    fmt::format("key '{}' goes with design = {} only", spec.name, spec.only_with));
       }
     }
     std::vector<std::string_view> needed{"vary"};
-    if (design_ == "maxpro") needed = {"runs", "vary"};
+    if (is_one_of(design_, k_filling_designs)) needed = {"runs", "vary"};
+    if (is_one_of(design_, k_index_designs)) needed = {"samples", "results", "vary"};
     if (design_ == "table") needed = {"table"};
     for (const std::string_view key : needed) {
       if (root.has_or_misspells(key)) continue;
@@ -222,7 +263,8 @@ class SweepReader {
       faults_.add(where, answer.problem);
       return std::nullopt;
     }
-    return Factor{.key = key, .spec = std::move(*answer.spec), .where = where, .range = {}, .values = {}};
+    return Factor{
+        .key = key, .spec = std::move(*answer.spec), .where = where, .range = {}, .distribution = {}, .values = {}};
   }
 
   // --- [vary]
@@ -241,13 +283,18 @@ class SweepReader {
       const toml::node& node = *vary.table->get(key);
       const SourceLocation place = place_of(node.source(), where);
       if (const toml::table* table = node.as_table()) {
-        read_levels(reading_, *table, place, design_ == "grid", *factor);
+        read_levels(reading_, *table, place, levels_of_design(), *factor);
       } else {
         faults_.add(place, fmt::format("{} = {}: expected {} or {{ values = [...] }}", shown(key), shown(node),
                                        k_example_range));
       }
       factors_.push_back(std::move(*factor));
     }
+  }
+
+  [[nodiscard]] Levels levels_of_design() const {
+    if (design_ == "grid") return Levels::points;
+    return design_ == "table" || design_ == "maxpro" ? Levels::whole : Levels::shares;
   }
 
   /// The models that the sweep goes over, whose languages all count.
@@ -264,6 +311,13 @@ class SweepReader {
     for (std::size_t i = 0; i < texts.size(); ++i) {
       const SourceLocation where = root.value_place("constraints", i);
       report_at(where, texts[i], [&] { constraints_.push_back({Constraint(texts[i]), texts[i], where}); });
+    }
+  }
+
+  void check_results(const Section& root) {
+    const std::vector<std::string> texts = root.texts("results");
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+      report_at(root.value_place("results", i), texts[i], [&] { static_cast<void>(Expression(texts[i])); });
     }
   }
 
@@ -386,6 +440,11 @@ class SweepReader {
                                                       "alone take design = \"grid\"",
                                                       k_example_range));
     }
+    if (static_cast<double>(runs) > k_most_maxpro_runs) {
+      faults_.add(root.value_place("runs"), fmt::format("runs = {}: expected at most {:g} of this design, whose time "
+                                                        "grows as their square",
+                                                        runs, k_most_maxpro_runs));
+    }
     if (runs % combinations != 0) {
       faults_.add(root.value_place("runs"),
                   fmt::format("runs = {}: expected a multiple of {}, the number of combinations of listed values", runs,
@@ -406,6 +465,45 @@ class SweepReader {
     for (std::size_t i = 0; i < runs; ++i) {
       runs_.add(resolved(values_at(points_.point(i), points_.levels.empty() ? 0 : points_.levels[i])));
     }
+  }
+
+  void make_samples(const Section& root) {
+    const bool is_for_indices = is_one_of(design_, k_index_designs);
+    if (is_for_indices && !constraints_.empty()) {
+      faults_.add(constraints_.front().where, "the points of this design depend on each other: it has no constraints");
+    }
+    check_constraint_names(true);
+    const std::size_t dimensions = factors_.size() * (design_ == "saltelli" ? 2 : 1);
+    if (design_ != "lhs" && design_ != "random" && design_ != "morris" && dimensions > k_most_sobol_dimensions) {
+      faults_.add(factors_.front().where, fmt::format("{} keys are varied; expected at most {}", factors_.size(),
+                                                      k_most_sobol_dimensions * factors_.size() / dimensions));
+    }
+    const auto count = static_cast<std::size_t>(root.number(is_for_indices ? "samples" : "runs").value_or(0.0));
+    const std::size_t each = design_ == "saltelli" ? factors_.size() + 2
+                             : design_ == "morris" ? factors_.size() + 1
+                                                   : 1;
+    if (static_cast<double>(count * each) > k_most_runs) {
+      faults_.add(root.value_place("samples"),
+                  fmt::format("{} runs for each of {} samples; expected at most {:g} runs", each, count, k_most_runs));
+    }
+    if (faults_.size() > 0) return;
+    const auto seed = static_cast<std::uint64_t>(root.number("seed").value_or(1.0));
+    points_ = design_ == "saltelli" ? saltelli_design(factors_.size(), count, seed)
+              : design_ == "morris" ? morris_design(factors_.size(), count, seed)
+                                    : sampled_design(design_, factors_.size(), count, seed);
+    std::vector<FactorValue> values(factors_.size());
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const std::span<const double> point = points_.point(i);
+      for (std::size_t f = 0; f < factors_.size(); ++f) values[f] = factors_[f].at(point[f]);
+      const std::vector<SweepValue> run = resolved(values);
+      if (broken_constraint(run) == nullptr) {
+        runs_.add(run);
+      } else {
+        ++left_out_;
+      }
+    }
+    if (runs_.size() == 0) faults_.add(constraints_.front().where, "no point of the design meets the constraints");
+    if (left_out_ > 0) points_ = {};  // those that are left fill another space
   }
 
   /// The values of a point of the cube at a level of the product of all lists.

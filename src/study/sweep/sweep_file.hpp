@@ -44,7 +44,7 @@ class SweepRuns {
 
 struct Sweep {
   std::string name;    ///< of the file, without folder and extension
-  std::string design;  ///< grid, table, maxpro
+  std::string design;  ///< grid, table, maxpro, sobol, halton, lhs, random, saltelli, morris
   std::vector<SweepFactor> factors;
   SweepRuns runs;
   std::size_t left_out = 0;  ///< points of a grid that the constraints exclude
@@ -52,7 +52,8 @@ struct Sweep {
   ScenarioTemplate scenario;
   std::string scenario_name;
   bool keeps_histories = false;
-  std::string digest;  ///< of all that decides on the results: sweep, scenario, tables, program version
+  std::vector<std::string> results;  ///< formulas for which indices are estimated
+  std::string digest;                ///< of all that decides on the results: sweep, scenario, tables, program version
 };
 
 /// Reads and checks a sweep file with its scenario and table, which are sought from its folder, and makes its runs.

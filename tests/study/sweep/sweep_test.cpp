@@ -163,7 +163,98 @@ TEST_F(SweepFiles, AScenarioMayBePartOfTheSweep) {
   EXPECT_EQ(sweep.scenario.with(overrides_of(sweep, 0)).material.at("poisson_ratio"), 0.2);
 }
 
+constexpr const char* k_uncertain = R"toml(scenario = "small.toml"
+design = "sobol"
+runs = 2000
+[vary]
+"material.youngs_modulus" = { mean = "1 GPa", std = "0.1 GPa" }
+"material.yield_stress" = { lognormal = ["20 MPa", 0.2] }
+"material.poisson_ratio" = { triangular = [0.2, 0.25, 0.4] }
+"loading.steps[0].displacement" = { mean = "0.1 R0", std = "0.01 R0" }
+"loading.configuration" = { values = ["simple", "die"] }
+)toml";
+
+TEST_F(SweepFiles, DistributionsHaveTheirMoments) {
+  const Sweep sweep = read(k_uncertain);
+  ASSERT_EQ(sweep.runs.size(), 2000U);
+  const auto moments = [&](std::size_t factor, auto value_of) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t run = 0; run < 2000; ++run) {
+      const double value = value_of(number(sweep, run, factor));
+      sum += value / 2000.0;
+      squares += value * value / 2000.0;
+    }
+    return std::pair(sum, std::sqrt(squares - sum * sum));
+  };
+  const auto as_it_is = [](double value) { return value; };
+  const auto [modulus, modulus_spread] = moments(0, [](double value) { return value / 1e9; });
+  EXPECT_NEAR(modulus, 1.0, 1e-3);
+  EXPECT_NEAR(modulus_spread, 0.1, 1e-3);
+  const auto [log_stress, log_spread] = moments(1, [](double value) { return std::log(value / 20e6); });
+  EXPECT_NEAR(log_stress, 0.0, 1e-3);
+  EXPECT_NEAR(log_spread, 0.2, 2e-3);
+  const auto [ratio, ratio_spread] = moments(2, as_it_is);
+  EXPECT_NEAR(ratio, 0.85 / 3.0, 1e-4);
+  const double triangle = (0.04 + 0.0625 + 0.16 - 0.05 - 0.08 - 0.1) / 18.0;
+  EXPECT_NEAR(ratio_spread, std::sqrt(triangle), 1e-4);
+  const auto [depth, depth_spread] = moments(3, [](double value) { return value / 0.002; });
+  EXPECT_NEAR(depth, 0.1, 1e-4);
+  EXPECT_NEAR(depth_spread, 0.01, 1e-4);
+  std::size_t dies = 0;
+  for (std::size_t run = 0; run < 2000; ++run) dies += cell_of(sweep.runs[run][4]) == "die" ? 1 : 0;
+  EXPECT_NEAR(static_cast<double>(dies), 1000.0, 10.0);
+}
+
+TEST_F(SweepFiles, SamplesLeaveOutWhatTheConstraintsExclude) {
+  const std::string text = k_uncertain;
+  const Sweep sweep = read("constraints = [\"material.youngs_modulus / material.yield_stress > 50\"]\n" + text);
+  EXPECT_EQ(sweep.runs.size() + sweep.left_out, 2000U);
+  EXPECT_GT(sweep.left_out, 500U);
+  for (std::size_t run = 0; run < sweep.runs.size(); ++run) {
+    EXPECT_GT(number(sweep, run, 0) / number(sweep, run, 1), 50.0);
+  }
+}
+
+TEST_F(SweepFiles, WhatIsAskedOfResultsDoesNotDecideOnTheRuns) {
+  const std::string head = "scenario = \"small.toml\"\ndesign = \"saltelli\"\nsamples = 4\n";
+  const std::string vary = "[vary]\n\"material.poisson_ratio\" = { from = 0.2, to = 0.3 }\n";
+  const Sweep one = read(head + "results = [\"end.work\"]\n" + vary);
+  const Sweep other = read("# a comment\n" + head + "results = [\"max.axial.force\", \"end.work^2\"]\n" + vary);
+  EXPECT_EQ(one.runs.size(), 12U);
+  EXPECT_EQ(one.digest, other.digest);
+  EXPECT_EQ(other.results, (std::vector<std::string>{"max.axial.force", "end.work^2"}));
+  EXPECT_NE(read(head + "seed = 2\nresults = [\"end.work\"]\n" + vary).digest, one.digest);
+}
+
 // --- faults
+
+TEST_F(SweepFiles, FaultsOfDistributionsAreAtTheirPlaces) {
+  const std::string head = "scenario = \"small.toml\"\ndesign = \"lhs\"\nruns = 10\n";
+  EXPECT_EQ(
+      faults_of(head + R"toml([vary]
+"material.youngs_modulus" = { mean = "1 GPa" }
+"material.yield_stress" = { lognormal = ["20 MPa"] }
+"material.poisson_ratio" = { triangular = [0.4, 0.3, 0.2] }
+"particle.radius" = { mean = "1 mm", std = "0 mm" }
+"loading.configuration" = { mean = 1, std = 2 }
+"loading.steps[0].displacement" = { lognormal = ["0.1 R0", "1 mm"], scale = "log" }
+)toml"),
+      (std::vector<std::string>{
+          "sweep.toml:5:29: \"material.youngs_modulus\": key 'std' is missing; expected for example { mean = 0.3, "
+          "std = 0.01 }",
+          "sweep.toml:6:41: \"material.yield_stress\": expected 2 values",
+          "sweep.toml:7:43: \"material.poisson_ratio\": expected the lowest, the likeliest and the highest value "
+          "in this order",
+          "sweep.toml:8:44: \"particle.radius\": expected std above 0",
+          "sweep.toml:9:27: \"loading.configuration\": its values form no range; expected { values = [...] }",
+          "sweep.toml:10:60: \"loading.steps[0].displacement\": 1 mm: expected a number",
+          "sweep.toml:10:69: \"loading.steps[0].displacement\": key 'scale' goes with a range only",
+      }));
+  EXPECT_EQ(faults_of("scenario = \"small.toml\"\n[vary]\n\"material.poisson_ratio\" = { mean = 0.3, std = 0.01 }\n"),
+            (std::vector<std::string>{"sweep.toml:3:28: \"material.poisson_ratio\": a distribution goes with design = "
+                                      "\"sobol\", \"halton\", \"lhs\", \"random\", \"saltelli\" or \"morris\" only"}));
+}
 
 TEST_F(SweepFiles, AllFaultsAreReportedAtOnceAndAtTheirPlaces) {
   EXPECT_EQ(
@@ -183,14 +274,16 @@ material.surface_energy = { values = [1] }
 )toml"),
       (std::vector<std::string>{
           "sweep.toml:2:13: histories = 3: expected true or false",
-          "sweep.toml:3:1: key 'runs' goes with design = \"maxpro\" only",
+          "sweep.toml:3:1: key 'runs' goes with design = maxpro, sobol, halton, lhs, random only",
           "sweep.toml:4:20: \"1 <\": expected a number or a name",
           "sweep.toml:6:1: unknown key 'poison_ratio'; did you mean 'poisson_ratio'?",
           "sweep.toml:7:49: loading.configuration = dia: expected one of simple, die, hydrostatic, oblique-die, "
           "walls; did you mean 'die'?",
           "sweep.toml:8:36: from = \"10 MPA\": unknown unit 'MPA'; expected a stress, for example \"50 MPa\"",
-          "sweep.toml:9:29: \"material.youngs_modulus\": expected either { from = 0.2, to = 0.48 } or { values = "
-          "[...] }",
+          "sweep.toml:9:29: \"material.youngs_modulus\": expected one of { from = 0.2, to = 0.48 }, { values = [...] "
+          "}, "
+          "{ mean, std }, { lognormal = [median, standard deviation of the logarithm] }, { triangular = [lowest, "
+          "likeliest, highest] }",
           "sweep.toml:10:1: unknown key 'displacment'; did you mean 'displacement'?",
           "sweep.toml:11:1: the scenario has nothing at 'loading.steps[7].displacement'",
           "sweep.toml:12:20: loading.centre = \"fixed\": expected { from = 0.2, to = 0.48 } or { values = [...] }",
@@ -347,7 +440,7 @@ TEST_F(StoppedSweep, RefusesTheJournalOfAnotherSweep) {
   for (const char* file : {"sweep.journal", "sweep-2-of-2.journal"}) {
     fs::create_directories(path("cut"));
     write(std::string("cut/") + file, journal_);
-    const Sweep changed = read("# changed\n" + std::string(k_grid));
+    const Sweep changed = read("histories = true\n" + std::string(k_grid));
     try {
       static_cast<void>(results(changed, "cut"));
       ADD_FAILURE() << "the journal was taken";

@@ -1,0 +1,228 @@
+#include "study/sweep/sensitivity.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "figure/chart.hpp"
+#include "figure/figure.hpp"
+#include "figure/gnuplot.hpp"
+#include "figure/page.hpp"
+#include "history/table.hpp"
+#include "scenario/text_file.hpp"
+#include "scenario/words.hpp"
+#include "study/formula/expression.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[nodiscard]] bool is_morris(const Sweep& sweep) { return sweep.design == "morris"; }
+
+/// One value for each run.
+[[nodiscard]] std::vector<double> values_of(const std::string& formula, const Table& results) {
+  std::vector<std::string_view> names;
+  for (const Column& column : results.columns()) {
+    if (!column.holds_words()) names.push_back(column.name);
+  }
+  try {
+    std::vector<double> values =
+        Expression(formula).evaluate([&](std::string_view name) -> std::optional<std::vector<double>> {
+          if (std::ranges::find(names, name) == names.end()) return std::nullopt;
+          return results.column(name);
+        });
+    if (values.size() == results.row_count()) return values;
+  } catch (const ExpressionError& error) {
+    throw std::runtime_error(
+        fmt::format("results: '{}': {}{}", formula, error.what(), did_you_mean(error.unknown_name(), names)));
+  }
+  throw std::runtime_error(fmt::format(
+      "results: '{}' has one value for all runs; expected one for each, for example max.axial.force", formula));
+}
+
+[[nodiscard]] std::string with_interval(const Estimate& estimate) {
+  // No zero has a sign.
+  const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3 + 0.0; };
+  return fmt::format("{:.3f} [{:.3f}, {:.3f}]", rounded(estimate.value), rounded(estimate.lower),
+                     rounded(estimate.upper));
+}
+
+/// The factor's name without its tables where that says enough.
+[[nodiscard]] std::string short_name(const Sweep& sweep, std::size_t factor) {
+  const auto last_part = [](const std::string& key) { return key.substr(key.rfind('.') + 1); };
+  const std::string name = last_part(sweep.factors[factor].key);
+  const auto same =
+      std::ranges::count_if(sweep.factors, [&](const SweepFactor& other) { return last_part(other.key) == name; });
+  return same > 1 ? sweep.factors[factor].key : name;
+}
+
+using Style = figure::ChartSeries::Style;
+
+/// The name of a result, cut where a panel has no more room.
+[[nodiscard]] std::string note_of(const ResultSensitivity& found) {
+  constexpr std::size_t k_room = 28;
+  const std::string& name = found.result;
+  return figure::verbatim_text(name.size() <= k_room ? name : name.substr(0, k_room - 3) + "...");
+}
+
+/// First-order indices beside total ones, each with its interval; a colour for each factor.
+[[nodiscard]] figure::ChartPanel index_panel(const Sweep& sweep, const ResultSensitivity& found) {
+  figure::ChartPanel panel{.x = {.label = "index", .lowest = 0.5, .highest = 2.5, .names = {"first order", "total"}},
+                           .y = {.label = "share of the variance"},
+                           .note = note_of(found)};
+  const std::size_t count = sweep.factors.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::string legend = figure::verbatim_text(short_name(sweep, k));
+    const double offset = 0.7 * ((static_cast<double>(k) + 0.5) / static_cast<double>(count) - 0.5);
+    const double first = 1.0 + offset;
+    const double second = 2.0 + offset;
+    const Estimate& own = found.sobol.first[k];
+    const Estimate& total = found.sobol.total[k];
+    panel.series.push_back(
+        {.legend = legend, .style = Style::points, .colour = k, .x = {first, second}, .y = {own.value, total.value}});
+    for (const auto& [x, estimate] : {std::pair(first, own), std::pair(second, total)}) {
+      panel.series.push_back(
+          {.legend = {}, .style = Style::solid, .colour = k, .x = {x, x}, .y = {estimate.lower, estimate.upper}});
+    }
+  }
+  return panel;
+}
+
+[[nodiscard]] figure::ChartPanel effect_panel(const Sweep& sweep, const ResultSensitivity& found) {
+  figure::ChartPanel panel{.x = {.label = "mean size of the effects", .lowest = 0.0},
+                           .y = {.label = "their standard deviation", .lowest = 0.0},
+                           .note = note_of(found)};
+  for (std::size_t k = 0; k < sweep.factors.size(); ++k) {
+    const auto& [size, lower, upper] = found.morris.mean_size[k];
+    const double spread = found.morris.spread[k];
+    panel.series.push_back({.legend = figure::verbatim_text(short_name(sweep, k)),
+                            .style = Style::points,
+                            .colour = k,
+                            .x = {size},
+                            .y = {spread}});
+    panel.series.push_back(
+        {.legend = {}, .style = Style::solid, .colour = k, .x = {lower, upper}, .y = {spread, spread}});
+  }
+  return panel;
+}
+
+/// A row for each result and factor.
+[[nodiscard]] Table sensitivity_table(const Sweep& sweep, const std::vector<ResultSensitivity>& found) {
+  std::vector<std::string> results;
+  std::vector<std::string> keys;
+  for (const ResultSensitivity& result : found) results.push_back(result.result);
+  for (const SweepFactor& factor : sweep.factors) keys.push_back(factor.key);
+  std::vector<Column> columns{{"result", "", results}, {"key", "", keys}};
+  for (const std::string_view name :
+       is_morris(sweep) ? std::vector{"mean_size", "mean_size_lower", "mean_size_upper", "mean", "standard_deviation"}
+                        : std::vector{"first", "first_lower", "first_upper", "total", "total_lower", "total_upper"}) {
+    columns.push_back({std::string(name), is_morris(sweep) ? "" : "-", {}});
+  }
+  Table table(std::move(columns));
+  table.header = {{"sweep", sweep.name}, {"sweep_digest", sweep.digest}, {"design", sweep.design}};
+  for (std::size_t r = 0; r < found.size(); ++r) {
+    table.header.emplace_back("samples of " + found[r].result, fmt::format("{}", found[r].samples()));
+    for (std::size_t k = 0; k < sweep.factors.size(); ++k) {
+      std::vector<double> row{static_cast<double>(r), static_cast<double>(k)};
+      const auto add = [&row](const Estimate& estimate) {
+        row.insert(row.end(), {estimate.value, estimate.lower, estimate.upper});
+      };
+      if (is_morris(sweep)) {
+        add(found[r].morris.mean_size[k]);
+        row.insert(row.end(), {found[r].morris.mean[k], found[r].morris.spread[k]});
+      } else {
+        add(found[r].sobol.first[k]);
+        add(found[r].sobol.total[k]);
+      }
+      table.append(row);
+    }
+  }
+  return table;
+}
+
+void draw_sensitivities(const Sweep& sweep, const std::vector<ResultSensitivity>& found, const fs::path& output) {
+  figure::Chart chart;
+  for (const ResultSensitivity& result : found) {
+    chart.panels.push_back(is_morris(sweep) ? effect_panel(sweep, result) : index_panel(sweep, result));
+  }
+  const figure::FigureFiles files(output);
+  files.write(figure::chart_data(chart, "sensitivities of sweep " + sweep.name),
+              figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
+}
+
+}  // namespace
+
+std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const fs::path& folder, double confidence) {
+  if (sweep.results.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "design = \"{}\" says nothing of sensitivities; expected \"saltelli\" for Sobol indices, or \"morris\" for "
+        "elementary effects",
+        sweep.design));
+  }
+  const Table results = read_csv(folder / "results.csv");
+  std::vector<ResultSensitivity> found;
+  for (const std::string& formula : sweep.results) {
+    const std::vector<double> values = values_of(formula, results);
+    ResultSensitivity result{.result = formula};
+    if (is_morris(sweep)) {
+      result.morris = morris_effects(sweep.points, values, confidence);
+    } else {
+      result.sobol = sobol_indices(values, sweep.factors.size(), confidence);
+    }
+    found.push_back(std::move(result));
+  }
+  return found;
+}
+
+std::size_t sample_count(const Sweep& sweep) {
+  return sweep.runs.size() / (sweep.factors.size() + (is_morris(sweep) ? 1 : 2));
+}
+
+std::string sensitivity_text(const Sweep& sweep, const std::vector<ResultSensitivity>& found) {
+  std::size_t width = std::string_view("key").size();
+  for (const SweepFactor& factor : sweep.factors) width = std::max(width, factor.key.size());
+  std::string text;
+  for (const ResultSensitivity& result : found) {
+    text += fmt::format("{}{}, {} samples\n", text.empty() ? "" : "\n", result.result, result.samples());
+    if (is_morris(sweep)) {
+      text += fmt::format("{:<{}}  {:>12}  {:>25}  {:>12}  {:>12}\n", "key", width, "mean size", "interval", "mean",
+                          "deviation");
+      for (std::size_t k = 0; k < sweep.factors.size(); ++k) {
+        const auto& [size, lower, upper] = result.morris.mean_size[k];
+        text +=
+            fmt::format("{:<{}}  {:>12.4g}  {:>25}  {:>12.4g}  {:>12.4g}\n", sweep.factors[k].key, width, size,
+                        fmt::format("[{:.4g}, {:.4g}]", lower, upper), result.morris.mean[k], result.morris.spread[k]);
+      }
+      continue;
+    }
+    text += fmt::format("{:<{}}  {:>22}  {:>22}\n", "key", width, "first order", "total");
+    for (std::size_t k = 0; k < sweep.factors.size(); ++k) {
+      text += fmt::format("{:<{}}  {:>22}  {:>22}\n", sweep.factors[k].key, width, with_interval(result.sobol.first[k]),
+                          with_interval(result.sobol.total[k]));
+    }
+  }
+  return text;
+}
+
+std::string write_sensitivities(const Sweep& sweep, const std::vector<ResultSensitivity>& found,
+                                const fs::path& folder) {
+  std::ostringstream table;
+  write_csv(sensitivity_table(sweep, found), table);
+  write_text_file(folder / "sensitivity.csv", table.view());
+  try {
+    draw_sensitivities(sweep, found, folder / "sensitivity.svg");
+  } catch (const FigureError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace monograin
