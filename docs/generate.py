@@ -60,7 +60,8 @@ DIMENSIONS = {
 MODEL_WORDS = ("hertz", "mdr", "cel", "similarity", "semimech", "hardening", "nonlocal", "compressible")
 
 # Keys in the order in which a scenario file is written.
-ORDER = ("title", "model", "particle", "material", "loading", "output", "numerics", "configuration", "centre", "angle",
+ORDER = ("title", "model", "particle", "material", "loading", "output", "numerics",
+         "sensitivities", "configuration", "centre", "angle",
          "oblique_walls", "name", "normal", "gap", "fixed", "wall", "duration", "rate", "until", "steps", "integrator",
          "rtol", "atol")
 
@@ -315,6 +316,7 @@ def write_language(schema):
     text += key_table(until_of(definitions["mdr-step"]), [])
     text += "\n### `[output]`\n\n" + key_table(walls["output"]["properties"], [])
     text += "\n### `[numerics]`\n\n" + key_table(walls["numerics"]["properties"], [], (), ORDER)
+    text += "\n### `[sensitivities]`\n\n" + key_table(walls["sensitivities"]["properties"], ["keys"])
     write("scenario-keys.md", text)
 
     units = {}

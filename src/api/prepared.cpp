@@ -66,7 +66,7 @@ struct PreparedScenario::Content {
 
 PreparedScenario::PreparedScenario(const Scenario& scenario, std::vector<std::string> keys) {
   const CheckedScenario all_right = checked(scenario);
-  ScenarioTemplate prepared(all_right.text, scenario.origin(), all_right.overrides);
+  ScenarioTemplate prepared({.text = all_right.text, .origin = scenario.origin()}, all_right.overrides);
   FaultList faults;
   for (const std::string& key : keys) {
     if (const std::string problem = prepared.problem_of_number(key); !problem.empty()) faults.add({key}, problem);

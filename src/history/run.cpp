@@ -8,6 +8,7 @@
 #include "catalogue.hpp"
 #include "history/energy.hpp"
 #include "history/recorder.hpp"
+#include "history/sensitivities.hpp"
 #include "scenario/remarks.hpp"
 
 namespace monograin {
@@ -111,6 +112,7 @@ Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped) 
     run.record.warnings.push_back(std::move(*warning));
     run.record.creates_energy = true;
   }
+  if (!scenario.sensitivities.empty()) add_sensitivities(run);
   run.record.history.header = header_of(run);
   run.record.events.header = run.record.history.header;
   return run;

@@ -41,12 +41,21 @@ struct Timings {
 /// Gives back a system with something around it, such as a clock.
 using SystemWrapper = std::function<std::unique_ptr<HybridSystem>(std::unique_ptr<HybridSystem>)>;
 
+/// How the derivatives by a number were found.
+struct Sensitivity {
+  std::string key;
+  double value = 0.0;  ///< [SI]
+  double step = 0.0;   ///< to either side [SI]
+  double error = 0.0;  ///< estimate, over the largest derivative of the same column; nan: there are none
+};
+
 struct Run {
   CheckedScenario scenario;
   RunRecord record;
   IntegratorChoice integrator;
   std::vector<ClassSummary> classes;
   std::vector<std::string> skipped;
+  std::vector<Sensitivity> sensitivities;
   Timings timings;
 };
 

@@ -46,6 +46,10 @@ Json to_json(const Run& run) {
   for (const ClassSummary& c : run.classes) {
     classes.push_back({{"name", c.name}, {"multiplicity", c.walls.size()}, {"walls", c.walls}});
   }
+  Json sensitivities = Json::array();
+  for (const auto& [key, value, step, error] : run.sensitivities) {
+    sensitivities.push_back({{"key", key}, {"value", value}, {"step", step}, {"error", error}});
+  }
   return {{"program", "monograin"},
           {"format", k_run_format},
           {"status", to_string(record.status)},
@@ -55,6 +59,7 @@ Json to_json(const Run& run) {
           {"references", reference_texts(*find_model(scenario.model))},
           {"classes", classes},
           {"skipped", run.skipped},
+          {"sensitivities", std::move(sensitivities)},
           {"integrator", {{"asked", run.integrator.asked}, {"used", run.integrator.used}, {"why", run.integrator.why}}},
           {"tolerances", {{"rtol", scenario.numerics.rtol}, {"atol", scenario.numerics.atol}}},
           {"statistics",

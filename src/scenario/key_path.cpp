@@ -29,6 +29,7 @@ class KeyFinder {
     if (name == "material") return find_in_material();
     if (name == "output") return last_key(take_name(), language_.output);
     if (name == "numerics") return last_key(take_name(), language_.numerics);
+    if (name == "sensitivities") return last_key(take_name(), language_.sensitivities);
     if (language_.model != nullptr && name == language_.model->name) return last_key(take_name(), language_.options);
     return no_such_path();
   }

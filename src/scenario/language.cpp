@@ -84,6 +84,10 @@ std::vector<KeySpec> root_keys() {
       {.name = "loading", .meaning = "what the walls do", .kind = Kind::table, .example = "[loading]"},
       {.name = "output", .meaning = "what is recorded", .kind = Kind::table, .example = "[output]"},
       {.name = "numerics", .meaning = "how the equations are solved", .kind = Kind::table, .example = "[numerics]"},
+      {.name = "sensitivities",
+       .meaning = "what the history is differentiated by",
+       .kind = Kind::table,
+       .example = "[sensitivities]"},
   };
 }
 
@@ -111,6 +115,14 @@ std::vector<KeySpec> output_keys() {
        .range = k_not_negative,
        .example = "[0.1, 0.25]"},
   };
+}
+
+std::vector<KeySpec> sensitivity_keys() {
+  return {{.name = "keys",
+           .meaning = "numbers of the scenario, by their paths",
+           .kind = Kind::texts,
+           .is_required = true,
+           .example = "[\"material.yield_stress\"]"}};
 }
 
 std::vector<KeySpec> numerics_keys() {
@@ -517,6 +529,7 @@ Language make_language(const Model* info) {
   language.particle = particle_keys();
   language.output = output_keys();
   language.numerics = numerics_keys();
+  language.sensitivities = sensitivity_keys();
   add_model_tables(language, info != nullptr ? info->name : string_view());
   if (info != nullptr) add_material_and_options(language, *info);
   if (info != nullptr && !info->has_walls()) {

@@ -88,6 +88,7 @@ struct Language {
   std::vector<KeySpec> until;
   std::vector<KeySpec> output;
   std::vector<KeySpec> numerics;
+  std::vector<KeySpec> sensitivities;
   std::vector<StepForm> steps;
 
   std::vector<ForeignKey> foreign_tables;  ///< tables of other models

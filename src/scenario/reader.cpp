@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "scenario/curve_file.hpp"
+#include "scenario/key_path.hpp"
 #include "scenario/language.hpp"
 #include "scenario/loading_reader.hpp"
 #include "scenario/rules.hpp"
 #include "scenario/section.hpp"
+#include "scenario/units.hpp"
 #include "scenario/words.hpp"
 
 namespace monograin {
@@ -176,6 +179,49 @@ void read_numerics(Reading& reading, const Section& root, const Language& langua
   scenario.numerics.atol = numerics.number("atol").value_or(0.0);
 }
 
+struct ReadQuantity {
+  std::optional<SensitivityKey> found;
+  std::string problem;
+};
+
+/// The number at a path, in SI; a problem where there is none that a history can be differentiated by.
+ReadQuantity quantity_at(const std::string& path, const toml::table& tree, const CheckedScenario& scenario) {
+  const KeyAnswer answer = key_at(path, tree, scenario.model);
+  if (!answer.spec) return {{}, answer.problem};
+  const KeySpec& spec = *answer.spec;
+  const toml::node* node = tree.at_path(path).node();
+  if (spec.kind != KeySpec::Kind::quantity) return {{}, fmt::format("'{}' is no quantity", shown(path))};
+  if (node == nullptr) return {{}, fmt::format("the scenario does not give '{}'", shown(path))};
+  std::optional<double> number = node->value<double>();
+  if (const auto text = node->value<std::string>()) {
+    const auto radius = scenario.radius > 0.0 ? std::optional(scenario.radius) : std::nullopt;
+    number = parse_quantity(*text, spec.dimension, radius).value;
+  }
+  if (number && *number == 0.0) return {{}, fmt::format("'{}' is 0, which gives its step no size", shown(path))};
+  const std::string_view si = dimension_info(spec.dimension).si;
+  return {SensitivityKey{path, si.empty() ? "-" : std::string(si), number.value_or(0.0)}, {}};
+}
+
+void read_sensitivities(Reading& reading, const Section& root, const toml::table& tree, const Language& language,
+                        CheckedScenario& scenario) {
+  if (!root.has("sensitivities")) return;
+  const Section section(reading, root.table("sensitivities", "[sensitivities]"), language.sensitivities);
+  const std::vector<std::string> paths = section.texts("keys");
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    auto [found, problem] = quantity_at(paths[i], tree, scenario);
+    const auto is_same = [&](const SensitivityKey& other) { return other.key == paths[i]; };
+    if (std::ranges::any_of(scenario.sensitivities, is_same)) problem = fmt::format("'{}' is there twice", paths[i]);
+    if (!problem.empty()) {
+      reading.faults.add(section.value_place("keys", i),
+                         problem +
+                             "; expected the path of a number that the scenario gives, for example "
+                             "\"material.yield_stress\"");
+    } else {
+      scenario.sensitivities.push_back(std::move(*found));
+    }
+  }
+}
+
 }  // namespace
 
 CheckedScenario read_tree(const toml::table& tree, const std::string& origin, const FileTexts* files,
@@ -199,6 +245,7 @@ CheckedScenario read_tree(const toml::table& tree, const std::string& origin, co
   const std::size_t faults_so_far = reading.faults.size();
   read_output(reading, root, language, scenario);
   read_numerics(reading, root, language, scenario);
+  if (faults_so_far == 0) read_sensitivities(reading, root, tree, language, scenario);
   if (language.model != nullptr && faults_so_far == 0) check_rules(reading, tree, origin, language, scenario);
   return scenario;
 }

@@ -34,45 +34,46 @@ toml::table parse_table(std::string_view text, std::string_view key, const std::
   return std::move(*table);
 }
 
+/// The tree of a source, with overrides in it.
+toml::table tree_of(const ScenarioSource& source, const std::vector<std::string>& overrides, FaultList& faults) {
+  toml::table root = source.table.empty() ? parse_document(source.text, source.origin)
+                                          : parse_table(source.text, source.table, source.origin);
+  for (const std::string& override_text : overrides) apply_override(root, override_text, faults);
+  return root;
+}
+
 /// @param overrides  that the tree has already, for the record
-CheckedScenario parse_tree(const toml::table& root, std::string_view text, const std::string& origin,
-                           std::vector<std::string> overrides, FaultList& faults, const FileTexts* files = nullptr) {
-  CheckedScenario scenario = read_tree(root, origin, files, faults);
+CheckedScenario check_tree(const toml::table& root, const ScenarioSource& source, std::vector<std::string> overrides,
+                           FaultList& faults) {
+  CheckedScenario scenario = read_tree(root, source.origin, source.files ? &*source.files : nullptr, faults);
   faults.throw_if_any();
-  scenario.name = name_of(origin);
-  scenario.text = text;
+  scenario.name = name_of(source.origin);
+  scenario.text = source.text;
+  if (!scenario.sensitivities.empty()) scenario.variants = std::make_shared<ScenarioTemplate>(source, overrides);
   scenario.overrides = std::move(overrides);
   return scenario;
 }
 
-CheckedScenario override_and_parse(toml::table root, std::string_view text, const std::string& origin,
-                                   const std::vector<std::string>& overrides, const FileTexts* files = nullptr) {
+CheckedScenario parse_source(const ScenarioSource& source, const std::vector<std::string>& overrides) {
   FaultList faults;
-  for (const std::string& override_text : overrides) apply_override(root, override_text, faults);
-  return parse_tree(root, text, origin, overrides, faults, files);
+  const toml::table root = tree_of(source, overrides, faults);
+  return check_tree(root, source, overrides, faults);
 }
 
 }  // namespace
 
 struct ScenarioTemplate::Document {
-  std::string text;
-  std::string key;  ///< of the scenario's table; empty: the whole text
-  std::string origin;
+  ScenarioSource source;
   std::vector<std::string> overrides;
   toml::table root;
 };
 
-ScenarioTemplate::ScenarioTemplate(std::string_view text, const std::string& origin,
-                                   std::vector<std::string> overrides) {
-  toml::table root = parse_document(text, origin);
+ScenarioTemplate::ScenarioTemplate(ScenarioSource source, std::vector<std::string> overrides) {
   FaultList faults;
-  for (const std::string& override_text : overrides) apply_override(root, override_text, faults);
+  toml::table root = tree_of(source, overrides, faults);
   faults.throw_if_any();
-  document_.reset(new Document{std::string(text), {}, origin, std::move(overrides), std::move(root)});
+  document_.reset(new Document{std::move(source), std::move(overrides), std::move(root)});
 }
-
-ScenarioTemplate::ScenarioTemplate(std::string_view text, std::string_view key, const std::string& origin)
-    : document_(new Document{std::string(text), std::string(key), origin, {}, parse_table(text, key, origin)}) {}
 
 ScenarioTemplate::~ScenarioTemplate() = default;
 ScenarioTemplate::ScenarioTemplate(ScenarioTemplate&&) noexcept = default;
@@ -80,6 +81,7 @@ ScenarioTemplate& ScenarioTemplate::operator=(ScenarioTemplate&&) noexcept = def
 
 CheckedScenario ScenarioTemplate::with(const std::vector<std::string>& overrides, std::span<const std::string> keys,
                                        std::span<const double> numbers) const {
+  const ScenarioSource& source = document_->source;
   std::vector<std::string> all = document_->overrides;
   all.insert(all.end(), overrides.begin(), overrides.end());
   for (std::size_t k = 0; k < keys.size(); ++k) all.push_back(fmt::format("{}={}", keys[k], numbers[k]));
@@ -89,12 +91,9 @@ CheckedScenario ScenarioTemplate::with(const std::vector<std::string>& overrides
     for (const std::string& text : overrides) apply_override(copy, text, faults);
     const std::size_t first = all.size() - keys.size();
     for (std::size_t k = 0; k < keys.size(); ++k) apply_number(copy, all[first + k], numbers[k], faults);
-    return parse_tree(copy, document_->text, document_->origin, all, faults);
+    return check_tree(copy, source, all, faults);
   } catch (const ScenarioError&) {
-    // A copy does not know its places, so that faults are located in the text itself.
-    const Document& from = *document_;
-    return from.key.empty() ? parse_scenario(from.text, from.origin, all)
-                            : parse_scenario_table(from.text, from.key, from.origin, all);
+    return parse_source(source, all);  // a copy does not know its places
   }
 }
 
@@ -150,17 +149,17 @@ CheckedScenario read_scenario(const std::filesystem::path& file, const std::vect
 
 CheckedScenario parse_scenario(std::string_view text, const std::string& origin,
                                const std::vector<std::string>& overrides) {
-  return override_and_parse(parse_document(text, origin), text, origin, overrides);
+  return parse_source({.text = std::string(text), .origin = origin}, overrides);
 }
 
 CheckedScenario parse_recorded_scenario(std::string_view text, const std::string& origin,
                                         const std::vector<std::string>& overrides, const FileTexts& files) {
-  return override_and_parse(parse_document(text, origin), text, origin, overrides, &files);
+  return parse_source({.text = std::string(text), .origin = origin, .files = files}, overrides);
 }
 
 CheckedScenario parse_scenario_table(std::string_view text, std::string_view key, const std::string& origin,
                                      const std::vector<std::string>& overrides) {
-  return override_and_parse(parse_table(text, key, origin), text, origin, overrides);
+  return parse_source({.text = std::string(text), .origin = origin, .table = std::string(key)}, overrides);
 }
 
 }  // namespace monograin

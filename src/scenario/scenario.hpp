@@ -73,6 +73,15 @@ struct Numerics {
   double atol = 1e-12;  ///< relative to the state's own scale
 };
 
+class ScenarioTemplate;
+
+/// A number that a history is differentiated by.
+struct SensitivityKey {
+  std::string key;     ///< path as of an override
+  std::string unit;    ///< SI, "-" of a pure number
+  double value = 0.0;  ///< not 0
+};
+
 struct CheckedScenario {
   std::string name;  ///< file name without folder and extension; names the run's folder
   std::string text;  ///< the file as it was read
@@ -86,6 +95,19 @@ struct CheckedScenario {
   Loading loading;
   Output output;
   Numerics numerics;
+  std::vector<SensitivityKey> sensitivities;
+  std::shared_ptr<const ScenarioTemplate> variants;  ///< this scenario, for other numbers; null without sensitivities
+};
+
+/// Texts of the files that a scenario names, by the names that it has for them.
+using FileTexts = std::map<std::string, std::string>;
+
+/// Where a scenario comes from.
+struct ScenarioSource {
+  std::string text;                  ///< TOML
+  std::string origin;                ///< stands for the file's name in messages and names the scenario
+  std::string table{};               ///< of the text that is the scenario; empty: all of it
+  std::optional<FileTexts> files{};  ///< of the files that it names; none: they are read, beside `origin`
 };
 
 /// A scenario's text, parsed once to be checked many times, each time with other values of some keys.
@@ -93,9 +115,7 @@ class ScenarioTemplate {
  public:
   /// @param overrides  of every scenario that is made
   /// @throws ScenarioError where the text is not TOML; what it says is not checked here
-  ScenarioTemplate(std::string_view text, const std::string& origin, std::vector<std::string> overrides = {});
-  /// The table of that name in a larger document; see parse_scenario_table.
-  ScenarioTemplate(std::string_view text, std::string_view key, const std::string& origin);
+  explicit ScenarioTemplate(ScenarioSource source, std::vector<std::string> overrides = {});
   ~ScenarioTemplate();
   ScenarioTemplate(ScenarioTemplate&&) noexcept;
   ScenarioTemplate& operator=(ScenarioTemplate&&) noexcept;
@@ -129,9 +149,6 @@ class ScenarioTemplate {
 /// The same from a text in memory; `origin` stands for the file's name in messages and names the scenario.
 [[nodiscard]] CheckedScenario parse_scenario(std::string_view text, const std::string& origin,
                                              const std::vector<std::string>& overrides = {});
-
-/// Texts of the files that a scenario names, by the names that it has for them.
-using FileTexts = std::map<std::string, std::string>;
 
 /// A scenario that was recorded with the files that it names. No file is opened: one that is not in `files` is reported
 /// as missing.

@@ -156,6 +156,7 @@ class ModelSchema {
                             {"loading", reference("loading")},
                             {"output", table_schema(language_.output)},
                             {"numerics", table_schema(language_.numerics)},
+                            {"sensitivities", table_schema(language_.sensitivities)},
                             {name_, table_schema(language_.options)}};
     json schema = table_schema(language_.root, contents);
     schema["properties"]["model"]["enum"] = {name_};

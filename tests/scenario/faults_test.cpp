@@ -47,7 +47,7 @@ const std::vector<FaultRow> k_rows{
              {"die.toml:1:1: key 'model' is missing in the scenario; expected for example model = \"mdr\"",
               "die.toml:1:2: unknown key 'outptu' in the scenario; did you mean 'output'?",
               "die.toml:3:2: unknown key '_' in the scenario; expected one of title, model, particle, material, "
-              "loading, output, numerics, " +
+              "loading, output, numerics, sensitivities, " +
                   k_models}},
     FaultRow{"UnknownRootKey",
              1,

@@ -193,7 +193,7 @@ class SweepReader {
   void read_scenario_of(const Section& root, const toml::table& tree, const std::string& text) {
     if (const toml::table* table = tree["scenario"].as_table()) {
       scenario_tree_ = *table;
-      scenario_.emplace(text, "scenario", file_.string());
+      scenario_.emplace(ScenarioSource{.text = text, .origin = file_.string(), .table = "scenario"});
       scenario_name_ = file_.stem().string();
       scenario_folder_ = file_.parent_path();
       return;
@@ -211,7 +211,7 @@ class SweepReader {
     }
     try {
       scenario_tree_ = parse_document(scenario_text, file.string());
-      scenario_.emplace(scenario_text, file.string());
+      scenario_.emplace(ScenarioSource{.text = scenario_text, .origin = file.string()});
     } catch (const ScenarioError& error) {
       for (const Fault& fault : error.faults()) faults_.add(fault.where, fault.message);
     }

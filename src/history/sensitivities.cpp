@@ -1,0 +1,286 @@
+#include "history/sensitivities.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "history/run.hpp"
+#include "scenario/faults.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr double k_no_derivative = std::numeric_limits<double>::quiet_NaN();
+constexpr double k_same_instant = 1e-13;  // share of the time of a history
+constexpr double k_direct_noise = 1e-14;  // of states that are solved for
+constexpr double k_finest_rtol = 1e-11;   // of runs that are integrated
+constexpr double k_finest_atol = 1e-14;
+
+constexpr std::size_t k_time = 0;
+constexpr std::size_t k_step = 1;
+constexpr std::size_t k_side = 2;
+
+/// A history as segments between corners, which are the rows just before and after events and ends of steps.
+class Segments {
+ public:
+  explicit Segments(const Table& history) : history_(history) {
+    std::size_t segment = 0;
+    for (std::size_t row = 0; row < history.row_count(); ++row) {
+      if (side(row) > 0.0) ++segment;
+      of_row_.push_back(segment);
+      if (side(row) != 0.0) corners_.push_back(row);
+    }
+  }
+
+  [[nodiscard]] double time(std::size_t row) const { return history_.at(row, k_time); }
+  [[nodiscard]] double side(std::size_t row) const { return history_.at(row, k_side); }
+  [[nodiscard]] std::size_t segment(std::size_t row) const { return of_row_[row]; }
+  /// Rows of corners.
+  [[nodiscard]] const std::vector<std::size_t>& corners() const noexcept { return corners_; }
+  [[nodiscard]] double duration() const { return history_.row_count() == 0 ? 0.0 : time(history_.row_count() - 1); }
+
+  /// The output row of a segment at an instant.
+  [[nodiscard]] std::optional<std::size_t> row_at(double instant, std::size_t segment) const {
+    const double slack = k_same_instant * duration();
+    std::size_t low = 0;
+    std::size_t high = of_row_.size();
+    while (low < high) {
+      const std::size_t middle = low + (high - low) / 2;
+      (time(middle) < instant - slack ? low : high) = time(middle) < instant - slack ? middle + 1 : middle;
+    }
+    for (std::size_t row = low; row < of_row_.size() && time(row) <= instant + slack; ++row) {
+      if (side(row) == 0.0 && of_row_[row] == segment) return row;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const Table& history_;
+  std::vector<std::size_t> of_row_;
+  std::vector<std::size_t> corners_;
+};
+
+/// Whether runs come by the same events in the same order, up to an event of the first.
+[[nodiscard]] std::size_t same_events(const Table& one, const Table& other) {
+  const std::size_t event = *one.find("event");
+  const std::size_t of_class = *one.find("class");
+  std::size_t row = 0;
+  for (; row < std::min(one.row_count(), other.row_count()); ++row) {
+    if (one.word(row, event) != other.word(row, event) || one.word(row, of_class) != other.word(row, of_class)) break;
+  }
+  return row;
+}
+
+/// A run with another number, and its segments.
+struct Variant {
+  RunRecord record;
+  Segments segments;
+
+  explicit Variant(RunRecord made) : record(std::move(made)), segments(record.history) {}
+  Variant(const Variant&) = delete;
+  Variant& operator=(const Variant&) = delete;
+};
+
+[[nodiscard]] std::string quotient_unit(const std::string& unit, const std::string& by) {
+  if (by == "-") return unit.empty() ? "-" : unit;
+  const bool has_unit = !unit.empty() && unit != "-";
+  if (unit == by) return "-";
+  const std::string own = has_unit ? unit : "1";
+  return by.find('/') == std::string::npos ? fmt::format("{}/{}", own, by) : fmt::format("{}/({})", own, by);
+}
+
+[[nodiscard]] Column derivative_column(const std::string& name, const std::string& unit, const SensitivityKey& key) {
+  return {fmt::format("d({})/d({})", name, key.key), quotient_unit(unit, key.unit), {}};
+}
+
+/// The derivatives by one number.
+class Differences {
+ public:
+  Differences(const Table& history, const Segments& base, const Table& events, const Variant& lower,
+              const Variant& upper, double width)
+      : history_(history), base_(base), lower_(lower), upper_(upper), width_(width) {
+    same_events_ = std::min(same_events(events, lower.record.events), same_events(events, upper.record.events));
+    const double end =
+        same_events_ < events.row_count() ? events.at(same_events_, k_time) : std::numeric_limits<double>::infinity();
+    const auto& corners = base.corners();
+    const auto is_same = [&](const Segments& other, std::size_t corner) {
+      return corner < other.corners().size() && other.side(other.corners()[corner]) == base.side(corners[corner]);
+    };
+    while (corners_ < corners.size() && base.time(corners[corners_]) < end && is_same(lower.segments, corners_) &&
+           is_same(upper.segments, corners_)) {
+      ++corners_;
+    }
+    corner_of_row_.assign(history.row_count(), corners.size());
+    for (std::size_t corner = 0; corner < corners.size(); ++corner) {
+      const std::size_t row = corners[corner];
+      corner_of_row_[row] = corner;
+      // An output row on a corner comes just after the row before it.
+      const bool is_shared = base.side(row) < 0.0 && row + 1 < history.row_count() && base.side(row + 1) == 0.0 &&
+                             base.time(row + 1) == base.time(row);
+      if (is_shared) corner_of_row_[row + 1] = corner;
+      if (corner < corners_ && base.side(row) > 0.0) ++begun_;
+    }
+  }
+
+  /// At a row of the history.
+  [[nodiscard]] double at_row(std::size_t row, std::size_t column) const {
+    const auto [below, above] = rows_of(row);
+    if (!below || !above) return k_no_derivative;
+    return (upper_.record.history.at(*above, column) - lower_.record.history.at(*below, column)) / width_;
+  }
+
+  /// At an event, following it. @param column  of the table of events
+  [[nodiscard]] double at_event(std::size_t row, std::size_t column) const {
+    if (row >= same_events_) return k_no_derivative;
+    return (upper_.record.events.at(row, column) - lower_.record.events.at(row, column)) / width_;
+  }
+
+  /// How far the differences to either side are apart.
+  [[nodiscard]] double bend(std::size_t row, std::size_t column) const {
+    const auto [below, above] = rows_of(row);
+    if (!below || !above) return 0.0;
+    const double sum = upper_.record.history.at(*above, column) + lower_.record.history.at(*below, column);
+    return std::abs(sum - 2.0 * history_.at(row, column)) / (0.5 * width_);
+  }
+
+ private:
+  /// The rows of the two runs that go with one of the history: the same corner, or the same instant of the segment.
+  [[nodiscard]] std::pair<std::optional<std::size_t>, std::optional<std::size_t>> rows_of(std::size_t row) const {
+    if (base_.segment(row) > begun_) return {};
+    if (const std::size_t corner = corner_of_row_[row]; corner < base_.corners().size()) {
+      if (corner >= corners_) return {};
+      return {lower_.segments.corners()[corner], upper_.segments.corners()[corner]};
+    }
+    return {lower_.segments.row_at(base_.time(row), base_.segment(row)),
+            upper_.segments.row_at(base_.time(row), base_.segment(row))};
+  }
+
+  const Table& history_;
+  const Segments& base_;
+  const Variant& lower_;
+  const Variant& upper_;
+  double width_;
+  std::size_t same_events_ = 0;
+  std::size_t corners_ = 0;                 ///< that all runs come by
+  std::size_t begun_ = 0;                   ///< segments after them
+  std::vector<std::size_t> corner_of_row_;  ///< the number of corners: none
+};
+
+/// The instants of output rows.
+[[nodiscard]] std::vector<double> instants_of(const Segments& base, std::size_t rows) {
+  std::vector<double> instants;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const bool is_new = base.time(row) > (instants.empty() ? 0.0 : instants.back());
+    if (base.side(row) == 0.0 && is_new) instants.push_back(base.time(row));
+  }
+  return instants;
+}
+
+/// A table with more columns, which are filled row by row.
+class Widened {
+ public:
+  explicit Widened(const Table& table) : columns_(table.columns()), header_(table.header) {
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+      rows_.emplace_back(table.row(row).begin(), table.row(row).end());
+    }
+  }
+
+  void add(Column column, const std::function<double(std::size_t row)>& value) {
+    columns_.push_back(std::move(column));
+    for (std::size_t row = 0; row < rows_.size(); ++row) rows_[row].push_back(value(row));
+  }
+
+  [[nodiscard]] Table table() && {
+    Table made(std::move(columns_));
+    made.header = std::move(header_);
+    for (const std::vector<double>& row : rows_) made.append(row);
+    return made;
+  }
+
+ private:
+  std::vector<Column> columns_;
+  std::vector<std::pair<std::string, std::string>> header_;
+  std::vector<std::vector<double>> rows_;
+};
+
+[[nodiscard]] double largest_of(std::size_t rows, const std::function<double(std::size_t row)>& value) {
+  double largest = 0.0;
+  for (std::size_t row = 0; row < rows; ++row) largest = std::fmax(largest, std::abs(value(row)));
+  return largest;
+}
+
+}  // namespace
+
+void add_sensitivities(Run& run) {
+  const CheckedScenario& scenario = run.scenario;
+  const Table history = run.record.history;
+  const Table events = run.record.events;
+  const Segments base(history);
+  const bool is_direct = run.integrator.is_direct();
+  const double noise = is_direct ? k_direct_noise : std::min(scenario.numerics.rtol, k_finest_rtol);
+  const Tolerances tolerances{std::min(scenario.numerics.rtol, k_finest_rtol),
+                              std::min(scenario.numerics.atol, k_finest_atol)};
+  const Output output{.points = 0, .times = instants_of(base, history.row_count())};
+  const auto run_with = [&](const SensitivityKey& key, double number) {
+    Scene scene = make_scene(scenario.variants->with({}, std::span(&key.key, 1), std::span(&number, 1)));
+    return record_run(scene, run.integrator.used, tolerances, output);
+  };
+  Widened of_history(history);
+  Widened of_events(events);
+  for (const SensitivityKey& key : scenario.sensitivities) {
+    const double share = std::cbrt(noise);
+    const double step = share * std::abs(key.value);
+    std::optional<Variant> lower;
+    std::optional<Variant> upper;
+    try {
+      lower.emplace(run_with(key, key.value - step));
+      upper.emplace(run_with(key, key.value + step));
+    } catch (const ScenarioError& error) {
+      run.record.warnings.push_back(
+          fmt::format("no derivatives by {}: they are differences over {:.3g} to either side of {:.6g}, which the "
+                      "scenario does not "
+                      "take: {}",
+                      key.key, step, key.value, error.faults().front().message));
+    }
+    std::optional<Differences> differences;
+    if (upper) differences.emplace(history, base, events, *lower, *upper, 2.0 * step);
+    double error = 0.0;
+    for (std::size_t column = 0; column < history.columns().size(); ++column) {
+      const auto& [name, unit, words] = history.columns()[column];
+      if (!words.empty() || column == k_step || column == k_side) continue;
+      const auto value = [&](std::size_t row) {
+        return differences ? differences->at_row(row, column) : k_no_derivative;
+      };
+      of_history.add(derivative_column(name, unit, key), value);
+      if (!differences) continue;
+      const double size = largest_of(history.row_count(), value);
+      const double rounding =
+          noise * largest_of(history.row_count(), [&](std::size_t row) { return history.at(row, column); }) / step;
+      if (size <= 10.0 * rounding) continue;  // the column does not depend on the number
+      const double bend =
+          largest_of(history.row_count(), [&](std::size_t row) { return differences->bend(row, column); });
+      error = std::max(error, (share * bend / 6.0 + rounding) / size);
+    }
+    for (std::size_t column = 0; column < events.columns().size(); ++column) {
+      const auto& [name, unit, words] = events.columns()[column];
+      if (!words.empty() || name == "step") continue;
+      of_events.add(derivative_column(name, unit, key), [&](std::size_t row) {
+        return differences ? differences->at_event(row, column) : k_no_derivative;
+      });
+    }
+    run.sensitivities.push_back({key.key, key.value, step, differences ? error : k_no_derivative});
+  }
+  run.record.history = std::move(of_history).table();
+  run.record.events = std::move(of_events).table();
+}
+
+}  // namespace monograin

@@ -1,0 +1,237 @@
+#include "history/sensitivities.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "history/run.hpp"
+#include "scenario/faults.hpp"
+
+namespace monograin::sensitivities_test {
+namespace {
+
+constexpr const char* k_hertz = R"toml(model = "hertz"
+[particle]
+radius = "10 mm"
+[material]
+youngs_modulus = "1 GPa"
+poisson_ratio = 0.3
+[loading]
+configuration = "simple"
+steps = [{ displacement = "0.02 R0", duration = "1 s" }]
+[output]
+points = 10
+[sensitivities]
+keys = ["material.youngs_modulus", "material.poisson_ratio", "particle.radius"]
+)toml";
+
+constexpr const char* k_die = R"toml(model = "mdr"
+[particle]
+radius = "10 mm"
+[material]
+youngs_modulus = "1 GPa"
+poisson_ratio = 0.3
+yield_stress = "50 MPa"
+[loading]
+configuration = "die"
+steps = [
+  { displacement = "0.4 R0", duration = "1 s" },
+  { displacement = "0.31 R0", duration = "1 s" },
+  { displacement = "0.42 R0", duration = "1 s" },
+]
+[output]
+points = 20
+[sensitivities]
+keys = ["material.yield_stress"]
+)toml";
+
+using HistoryRun = monograin::Run;  // gtest has a Run of its own
+
+HistoryRun run_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return run_scenario(parse_scenario(text, "s.toml", overrides));
+}
+
+std::vector<double> column(const HistoryRun& run, const std::string& name) { return run.record.history.column(name); }
+
+double largest(const std::vector<double>& values) {
+  double result = 0.0;
+  for (const double value : values) result = std::fmax(result, std::abs(value));
+  return result;
+}
+
+/// The first row of a table of events with that name.
+std::size_t event_row(const HistoryRun& run, const std::string& name) {
+  const Table& events = run.record.events;
+  std::size_t row = 0;
+  while (row < events.row_count() && events.word(row, *events.find("event")) != name) ++row;
+  return row;
+}
+
+double of_event(const HistoryRun& run, std::size_t row, const std::string& name) {
+  return run.record.events.at(row, *run.record.events.find(name));
+}
+
+// F = 4/3 E/(1 - nu^2) sqrt(R) d^(3/2), and d is a share of R.
+TEST(Sensitivities, OfHertzAreThoseOfItsFormula) {
+  const HistoryRun run = run_of(k_hertz);
+  const std::vector<double> force = column(run, "axial.force");
+  const std::array expected{1.0 / 1e9, 2.0 * 0.3 / (1.0 - 0.09), 2.0 / 0.01};
+  const std::array keys{"material.youngs_modulus", "material.poisson_ratio", "particle.radius"};
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const std::vector<double> derivative = column(run, "d(axial.force)/d(" + std::string(keys[k]) + ")");
+    ASSERT_EQ(derivative.size(), force.size());
+    for (std::size_t row = 0; row < force.size(); ++row) {
+      EXPECT_NEAR(derivative[row], expected[k] * force[row], 1e-8 * expected[k] * force.back()) << keys[k];
+    }
+    EXPECT_LT(run.sensitivities[k].error, 1e-7);
+  }
+  EXPECT_EQ(run.record.history.columns()[*run.record.history.find("d(axial.force)/d(particle.radius)")].unit, "N/m");
+  EXPECT_EQ(run.record.history.columns()[*run.record.history.find("d(work)/d(material.poisson_ratio)")].unit, "J");
+}
+
+TEST(Sensitivities, HaveTheErrorThatTheySay) {
+  const HistoryRun run = run_of(k_hertz);
+  const std::vector<double> force = column(run, "axial.force");
+  const std::vector<double> derivative = column(run, "d(axial.force)/d(material.poisson_ratio)");
+  double error = 0.0;
+  for (std::size_t row = 0; row < force.size(); ++row) {
+    error = std::max(error, std::abs(derivative[row] - 0.6 / 0.91 * force[row]) / (0.6 / 0.91 * force.back()));
+  }
+  EXPECT_LT(error, run.sensitivities[1].error);
+  EXPECT_GT(error, 1e-4 * run.sensitivities[1].error);
+}
+
+constexpr double k_step = 1e-3 * 50e6;
+constexpr std::array<double, 4> k_weights{1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0};
+
+/// Runs of the die with other yield stresses, for differences of fourth order.
+std::array<HistoryRun, 4> neighbours() {
+  std::array<HistoryRun, 4> runs;
+  const std::array<double, 4> places{-2.0, -1.0, 1.0, 2.0};
+  for (std::size_t k = 0; k < 4; ++k) {
+    runs[k] = run_of(k_die, {"material.yield_stress=" + std::to_string(50e6 + places[k] * k_step)});
+  }
+  return runs;
+}
+
+TEST(Sensitivities, MeetDifferencesOfHigherOrderThroughYieldAndReload) {
+  const HistoryRun run = run_of(k_die);
+  const std::array<HistoryRun, 4> others = neighbours();
+  for (const char* name : {"axial.force", "lateral.force", "apparent_radius", "work", "stored_energy"}) {
+    const std::vector<double> derivative = column(run, "d(" + std::string(name) + ")/d(material.yield_stress)");
+    const double scale = largest(derivative);
+    std::size_t compared = 0;
+    const Table& history = run.record.history;
+    for (std::size_t row = 0; row < history.row_count(); ++row) {
+      if (history.at(row, 2) != 0.0) continue;
+      const double time = history.at(row, 0);
+      const auto near_event = [&](double at) { return std::abs(at - time) < 0.02; };
+      if (std::ranges::any_of(run.record.events.column("time"), near_event)) continue;
+      double other = 0.0;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Table& table = others[k].record.history;
+        std::size_t at = 0;
+        while (table.at(at, 2) != 0.0 || std::abs(table.at(at, 0) - time) > 1e-12) ++at;
+        other += k_weights[k] * table.at(at, *table.find(name)) / k_step;
+      }
+      EXPECT_NEAR(derivative[row], other, 1e-8 * scale) << name << " at " << time;
+      ++compared;
+    }
+    EXPECT_GT(compared, 45U);
+  }
+}
+
+TEST(Sensitivities, AreThoseOfTheIntegratedForms) {
+  const HistoryRun direct = run_of(k_die);
+  for (const char* integrator : {"cvode-bdf", "ida", "odeint-dopri5"}) {
+    const HistoryRun integrated = run_of(k_die, {"numerics.integrator=" + std::string(integrator)});
+    for (const char* name : {"time", "apparent_radius", "lateral.force", "work"}) {
+      const std::string heading = "d(" + std::string(name) + ")/d(material.yield_stress)";
+      const std::vector<double> expected = column(direct, heading);
+      const std::vector<double> actual = column(integrated, heading);
+      ASSERT_EQ(actual.size(), expected.size());
+      for (std::size_t row = 0; row < actual.size(); ++row) {
+        EXPECT_NEAR(actual[row], expected[row], 1e-6 * largest(expected)) << integrator << ", " << name;
+      }
+    }
+  }
+}
+
+TEST(Sensitivities, FollowEvents) {
+  const HistoryRun run = run_of(k_die);
+  const std::array<HistoryRun, 4> others = neighbours();
+  for (const char* event : {"yield", "contact-lost", "dent-touched", "reload"}) {
+    const std::size_t row = event_row(run, event);
+    ASSERT_LT(row, run.record.events.row_count()) << event;
+    for (const char* name : {"time", "axial.displacement", "work", "lateral.force"}) {
+      double expected = 0.0;
+      for (std::size_t k = 0; k < 4; ++k) {
+        expected += k_weights[k] * of_event(others[k], event_row(others[k], event), name) / k_step;
+      }
+      const double scale = std::abs(of_event(run, row, name)) / 50e6;
+      EXPECT_NEAR(of_event(run, row, "d(" + std::string(name) + ")/d(material.yield_stress)"), expected, 2e-8 * scale)
+          << name << " at " << event;
+    }
+  }
+  const std::size_t yield = event_row(run, "yield");
+  const double time = of_event(run, yield, "time");
+  const std::vector<double> times = column(run, "d(time)/d(material.yield_stress)");
+  const Table& history = run.record.history;
+  for (std::size_t row = 0; row < history.row_count(); ++row) {
+    const bool is_at_yield = history.at(row, 0) == time;
+    if (is_at_yield) {
+      EXPECT_EQ(times[row], of_event(run, yield, "d(time)/d(material.yield_stress)"));
+    } else if (history.at(row, 2) == 0.0) {
+      EXPECT_NEAR(times[row], 0.0, 1e-13 / 50e6) << "output rows stay where they are";
+    }
+  }
+}
+
+TEST(Sensitivities, EndWhereTheEventsAreOthers) {
+  // The yield stress at which the contact just does not yield lies within the step.
+  std::string text = k_die;
+  text.replace(text.find("{ displacement = \"0.31"), text.size(),
+               "]\n[output]\npoints = 5\n[sensitivities]\nkeys = [\"material.yield_stress\"]\n");
+  const HistoryRun yields = run_of(text);
+  const double depth = of_event(yields, event_row(yields, "yield"), "axial.displacement");
+  char to_there[64];
+  std::snprintf(to_there, sizeof to_there, "loading.steps[0].displacement=%.17g", depth * (1.0 + 1e-7));
+  const HistoryRun run = run_of(text, {to_there});
+  const std::vector<double> derivative = column(run, "d(axial.force)/d(material.yield_stress)");
+  EXPECT_TRUE(std::isfinite(derivative.front()));
+  EXPECT_TRUE(std::isnan(derivative.back()));
+}
+
+TEST(Sensitivities, AtTheEndOfARangeAreUndefinedWithAWarning) {
+  const HistoryRun run = run_of(k_hertz, {"material.poisson_ratio=0.5"});
+  EXPECT_TRUE(std::isnan(column(run, "d(axial.force)/d(material.poisson_ratio)").back()));
+  EXPECT_TRUE(std::isfinite(column(run, "d(axial.force)/d(particle.radius)").back()));
+  ASSERT_EQ(run.record.warnings.size(), 1U);
+  EXPECT_NE(run.record.warnings[0].find("no derivatives by material.poisson_ratio"), std::string::npos);
+}
+
+TEST(Sensitivities, NameWhatCannotBeDifferentiatedBy) {
+  std::string text = k_hertz;
+  text.replace(
+      text.find("keys = ["), std::string::npos,
+      "keys = [\"material.youngs_modulos\", \"output.points\", \"material.yield_stress\", \"loading.steps[0].rate\","
+      " \"particle.radius\", \"particle.radius\"]\n");
+  std::vector<std::string> messages;
+  try {
+    static_cast<void>(parse_scenario(text, "s.toml"));
+  } catch (const ScenarioError& error) {
+    for (const Fault& fault : error.faults()) messages.push_back(fault.message);
+  }
+  ASSERT_EQ(messages.size(), 5U);
+  EXPECT_NE(messages[0].find("did you mean 'youngs_modulus'?"), std::string::npos) << messages[0];
+  EXPECT_NE(messages[1].find("'output.points' is no quantity"), std::string::npos) << messages[1];
+  EXPECT_NE(messages[3].find("does not give 'loading.steps[0].rate'"), std::string::npos) << messages[3];
+  EXPECT_NE(messages[4].find("is there twice"), std::string::npos) << messages[4];
+}
+
+}  // namespace
+}  // namespace monograin::sensitivities_test
