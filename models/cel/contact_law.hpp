@@ -57,10 +57,11 @@ struct Contact {
 /// The inverse: u under a force F >= 0.
 [[nodiscard]] Contact contact_under(const Material& material, const Dent& dent, double l, double m, double F) noexcept;
 
-/// Advance of a wall that the core makes room for, by the support distance of the core, and its first two derivatives.
+/// Advance of a wall that the core makes room for, and its first two derivatives by the support distance of the core.
 struct Advance {
   double c, c_l, c_ll;
 };
-[[nodiscard]] Advance advance_of(double l) noexcept;
+/// @param growth  l - 1, which is small next to 1 while the core has hardly flowed
+[[nodiscard]] Advance advance_of(double growth) noexcept;
 
 }  // namespace monograin::cel

@@ -52,14 +52,33 @@ CoreShape::Tensor CoreShape::of(const Eigen::Matrix3d& tensor) const noexcept {
   return components;
 }
 
+CoreShape::Tensor CoreShape::unit() const noexcept { return {std::sqrt(3.0)}; }
+
+CoreShape::Map CoreShape::product_with(const Tensor& b) const {
+  Map map;
+  for (auto factor = products_.begin(); factor != products_.end();) {
+    double& sum = map.emplace_back(0.0);
+    for (std::size_t j = 0; j < dimension(); ++j) sum += *factor++ * b[j];
+  }
+  return map;
+}
+
+CoreShape::Tensor CoreShape::apply(const Map& map, const Tensor& a) const noexcept {
+  Tensor result{};
+  auto factor = map.begin();
+  for (std::size_t c = 0; c < dimension(); ++c) {
+    for (std::size_t i = 0; i < dimension(); ++i) result[c] += a[i] * *factor++;
+  }
+  return result;
+}
+
 CoreShape::Tensor CoreShape::product(const Tensor& a, const Tensor& b) const noexcept {
   Tensor result{};
-  const std::size_t n = dimension();
   auto factor = products_.begin();
-  for (std::size_t c = 0; c < n; ++c) {
-    for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t c = 0; c < dimension(); ++c) {
+    for (std::size_t i = 0; i < dimension(); ++i) {
       double sum = 0.0;
-      for (std::size_t j = 0; j < n; ++j) sum += *factor++ * b[j];
+      for (std::size_t j = 0; j < dimension(); ++j) sum += *factor++ * b[j];
       result[c] += a[i] * sum;
     }
   }

@@ -27,6 +27,13 @@ class CoreShape {
   [[nodiscard]] std::size_t dimension() const noexcept { return dimension_; }
   /// Components of what a tensor has in common with the basis.
   [[nodiscard]] Tensor of(const Eigen::Matrix3d& tensor) const noexcept;
+  /// Linear map of a tensor to one.
+  using Map = std::vector<double>;
+  /// The unit tensor.
+  [[nodiscard]] Tensor unit() const noexcept;
+  /// a -> (a b + b a)/2 for a given b.
+  [[nodiscard]] Map product_with(const Tensor& b) const;
+  [[nodiscard]] Tensor apply(const Map& map, const Tensor& a) const noexcept;
   /// (a b + b a)/2.
   [[nodiscard]] Tensor product(const Tensor& a, const Tensor& b) const noexcept;
   /// sum of a_ij b_ij.

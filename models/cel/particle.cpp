@@ -80,8 +80,7 @@ Particle::Particle(const Material& material, double poisson_ratio, std::span<con
       shape_(spreads_of(classes)),
       lines_(classes, centre_is_free),
       layout_(classes.size(), static_cast<std::size_t>(lines_.dimension()), shape_.dimension()),
-      classes_(classes.size()),
-      unknowns_(layout_.core() + 1) {
+      classes_(classes.size()) {
   const std::vector<Eigen::Matrix3d> spreads = spreads_of(classes);
   Influences influences(poisson_ratio);
   const double self = nonlocal::sphere_self_influence(poisson_ratio, k_self_half_sine, k_last_term);
@@ -89,7 +88,7 @@ Particle::Particle(const Material& material, double poisson_ratio, std::span<con
     const Eigen::Vector3d& normal = classes[i].normals.front();
     counts_.push_back(classes[i].multiplicity());
     directions_.push_back(shape_.of(normal * normal.transpose()));
-    spreads_.push_back(shape_.of(spreads[i]));
+    spreads_.push_back(shape_.product_with(shape_.of(spreads[i])));
     for (std::size_t j = 0; j < size(); ++j) {
       Coupling& sum = coupling_.emplace_back();
       for (std::size_t wall = 0; wall < classes[j].normals.size(); ++wall) {
@@ -109,25 +108,17 @@ Particle::Particle(const Material& material, double poisson_ratio, std::span<con
   choose_balance();
   F_by_.resize(size());
   rows_.resize((2 * size() + 1) * (2 * size() + 2));
-  matrix_.resize(unknowns_ * (unknowns_ + 1));
-  dense_.resize(matrix_.size());
-  order_.resize(unknowns_);
-  solution_.resize(unknowns_);
-  rest_of_equations_.resize(unknowns_);
-  before_.resize(unknowns_);
-}
-
-void Particle::start_core(std::span<double> y) const noexcept {
-  if (!layout_.has_core()) return;
-  std::ranges::fill(y.subspan(layout_.core(), layout_.core_size()), 0.0);
-  y[layout_.core()] = std::sqrt(3.0);
+  const std::size_t unknowns = layout_.core();
+  active_.reserve(unknowns);
+  matrix_.resize(unknowns * (unknowns + k_right_sides));
+  order_.resize(unknowns);
+  for (auto* values : {&solution_, &drift_, &rest_of_equations_, &before_}) values->resize(unknowns);
 }
 
 Core Particle::core_of(std::span<const double> y) const noexcept {
-  Core core;
-  core.C[0] = std::sqrt(3.0);
+  Core core{.C = shape_.unit()};
   if (!layout_.has_core()) return core;
-  std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(layout_.core()), shape_.dimension(), core.C.begin());
+  for (std::size_t j = 0; j < shape_.dimension(); ++j) core.C[j] += y[layout_.core() + j];
   core.e = y[layout_.size() - 1];
   return core;
 }
@@ -154,16 +145,18 @@ void Particle::evaluate(std::span<const double> y) {
 /// Evaluates only the equations of elastic motion.
 void Particle::evaluate_elastically(std::span<const double> y) {
   for (std::size_t d = 0; d < layout_.directions(); ++d) centre_[axis(d)] = y[layout_.centre(d)];
-  evaluate_contacts(y, core_of(y));
+  evaluate_contacts(y);
   evaluate_coupling();
 }
 
 /// Dents, coverage and forces.
-void Particle::evaluate_contacts(std::span<const double> y, const Core& core) {
+void Particle::evaluate_contacts(std::span<const double> y) {
   Om_ = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
-    const double square = shape_.dot(directions_[i], core.C);
+    double excess = 0.0;  // l^2 - 1, without the rounding of 1
+    for (std::size_t j = 0; j + 1 < layout_.core_size(); ++j) excess += directions_[i][j] * y[layout_.core() + j];
+    const double square = 1.0 + excess;
     const double zeta = y[layout_.dent(i)];
     if (!(square > 0.0) || !(zeta > 0.0)) throw std::domain_error("the core or a dent of the particle has no size");
     c.l = std::sqrt(square);
@@ -171,7 +164,7 @@ void Particle::evaluate_contacts(std::span<const double> y, const Core& core) {
       c.dent = dent_of(material_, zeta);
       c.root_Gam = std::sqrt(c.dent.Gam);
     }
-    c.advance = advance_of(c.l);
+    c.advance = advance_of(excess / (1.0 + c.l));
     Om_ += 0.5 * counts_[i] * (zeta * zeta - material_.a_Y * material_.a_Y) / square;
   }
   const double m = 1.0 - k::m2 * Om_ * Om_ + k::m4 * raised<4>(Om_);
@@ -193,7 +186,7 @@ void Particle::evaluate_core(const Core& core) {
   if (!layout_.has_core()) return;
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
-    load_[i] = shape_.deviator(shape_.product(core.C, spreads_[i]), -c.advance.c_l / c.l);
+    load_[i] = shape_.deviator(shape_.apply(spreads_[i], core.C), -c.advance.c_l / c.l);
     shape_.add(load_[i], c.contact.F, T_);
   }
   const double load = 0.5 * std::sqrt(1.5 * shape_.dot(T_, T_));
@@ -233,16 +226,16 @@ void Particle::evaluate_coupling() {
   stored_ = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
-    c.lift = 0.0;
+    double lift = 0.0;  // sum of G F
     for (std::size_t j = 0; j < size(); ++j) {
       const ClassState& other = classes_[j];
       if (other.contact.F == 0.0) continue;
       const Coupling& g = coupling_[i * size() + j];
       const double root = c.root_Gam * other.root_Gam;
-      c.lift += (g.mixed + g.across * shade + root * (g.same + g.mixed * shade)) * other.contact.F;
+      lift += (g.mixed + g.across * shade + root * (g.same + g.mixed * shade)) * other.contact.F;
     }
-    c.kinematic = c.dent.h + c.advance.c + c.contact.u - c.lift;
-    stored_ += counts_[i] * (c.contact.stored - 0.5 * c.contact.F * c.lift);
+    c.kinematic = c.dent.h + c.advance.c + c.contact.u - lift;
+    stored_ += counts_[i] * (c.contact.stored - 0.5 * c.contact.F * lift);
   }
 }
 
@@ -286,11 +279,6 @@ void Particle::choose_balance() {
 
 // --- their derivatives
 
-std::span<double> Particle::row_at(std::size_t row) noexcept {
-  const std::size_t width = 2 * size() + 2;
-  return std::span(rows_).subspan(row * width, width);
-}
-
 Particle::Row Particle::row_of(std::size_t i, const Slopes& by) const noexcept {
   return {by.coordinate, by.zeta, by.m * m_by_Om_, by.l * l_by_flow_[i]};
 }
@@ -301,10 +289,6 @@ inline void Particle::add(std::size_t i, const Row& by, double factor, std::span
   row[n + i] += factor * by.zeta;
   row[2 * n] += factor * by.Om;
   row[2 * n + 1] += factor * by.flow;
-}
-
-void Particle::add_force(std::size_t j, double factor, std::span<double> row) const noexcept {
-  add(j, F_by_[j], factor, row);
 }
 
 /// Writes the coverage as what it depends on.
@@ -327,7 +311,7 @@ void Particle::differentiate() {
     F_by_[i] = row_of(i, c.contact.F_by);
   }
   for (std::size_t i = 0; i < size(); ++i) differentiate_kinematics(i, row_at(i));
-  if (!flows_) return;
+  if (!any_flows()) return;
   differentiate_core();
   for (std::size_t i = 0; i < size(); ++i) {
     if (classes_[i].flows) differentiate_yield(i, row_at(size() + i));
@@ -345,7 +329,7 @@ void Particle::differentiate_core() {
     const double w_l = (c.advance.c_l / c.l - c.advance.c_ll) / c.l;
     s_by_F_[i] = 0.375 / s_ * shape_.dot(T_, load_[i]);
     shape_.add(load_[i], c.contact.F * w_l / w * l_by_flow_[i], T_by_flow_);
-    shape_.add(shape_.deviator(shape_.product(flow_.C, spreads_[i]), w), c.contact.F, T_by_flow_);
+    shape_.add(shape_.deviator(shape_.apply(spreads_[i], flow_.C), w), c.contact.F, T_by_flow_);
   }
   s_by_flow_ = 0.375 / s_ * shape_.dot(T_, T_by_flow_);
 }
@@ -365,7 +349,7 @@ void Particle::differentiate_kinematics(std::size_t i, std::span<double> row) {
     const Coupling& g = coupling_[i * n + j];
     const double root = c.root_Gam * other.root_Gam;
     const double of_root = g.same + g.mixed * shade;
-    add_force(j, -(g.mixed + g.across * shade + root * of_root), row);
+    add(j, F_by_[j], -(g.mixed + g.across * shade + root * of_root), row);
     row[n + i] -= 0.5 * root * of_root * F * c.dent.Gam_zeta / c.dent.Gam;
     row[n + j] -= 0.5 * root * of_root * F * other.dent.Gam_zeta / other.dent.Gam;
     row[2 * n] -= (g.across + root * g.mixed) * shade_by_Om * F;
@@ -385,7 +369,7 @@ void Particle::differentiate_yield(std::size_t i, std::span<double> row) {
   const double use = s_ / S_;
   const double outer = (1.0 + c.f) / (k::n1 * (c.X + Q_));
   const double of_X = outer * k::n1 * c.X;
-  add_force(i, of_X / c.contact.F, row);
+  add(i, F_by_[i], of_X / c.contact.F, row);
   add(i, row_of(i, c.contact.H_by), -of_X / c.contact.H, row);
   if (s_ > 0.0) {
     double of_use = outer * k::n2 * raised<k::n2 - 1>(use);
@@ -401,7 +385,7 @@ void Particle::differentiate_yield(std::size_t i, std::span<double> row) {
     const double of_s = of_use / S_ - of_tau * c.tau / s_;
     const double per_tau = of_tau / (4.0 / 3.0 * s_);
     for (std::size_t j = 0; j < n; ++j)
-      add_force(j, of_s * s_by_F_[j] + per_tau * shape_.dot(directions_[i], load_[j]), row);
+      add(j, F_by_[j], of_s * s_by_F_[j] + per_tau * shape_.dot(directions_[i], load_[j]), row);
     row[2 * n + 1] += of_s * s_by_flow_ + per_tau * shape_.dot(directions_[i], T_by_flow_) -
                       of_use * use / S_ * material_.Y * k::s1 * flow_.e;
   }
@@ -416,70 +400,66 @@ double Particle::pace_of_core(std::size_t i) const noexcept {
   return c.X > 0.0 ? counts_[i] * c.contact.F * (1.0 - c.b) / c.X * c.dent.h_zeta : 0.0;
 }
 
-/// The linear equations of all unknowns up to the core, and of Lam in the last place, without right side.
-void Particle::assemble() {
-  flows_ = any_flows();
+/// The linear equations of the unknowns up to the core that move: coordinates, the centre, and dents that grow.
+/// @param takes_core_along  whether the core flows as the dents do; otherwise it stays
+void Particle::assemble(bool takes_core_along) {
   differentiate();
   const std::size_t n = size();
-  const std::size_t lambda = unknowns_ - 1;
-  std::ranges::fill(matrix_, 0.0);
-  const auto put = [&](std::size_t at, std::span<const double> row, double sign) {
-    for (std::size_t j = 0; j < 2 * n; ++j) entry(at, j) = sign * row[j];
-    entry(at, lambda) = sign * row[2 * n + 1];
+  active_.clear();
+  for (std::size_t i = 0; i < n; ++i) active_.push_back(layout_.coordinate(i));
+  for (std::size_t d = 0; d < layout_.directions(); ++d) active_.push_back(layout_.centre(d));
+  for (std::size_t i = 0; i < n; ++i) {
+    if (classes_[i].flows) active_.push_back(layout_.dent(i));
+  }
+  const std::size_t dents = n + layout_.directions();
+  const auto row_begin = [&](std::size_t at) {
+    return order_[at] = matrix_.data() + at * (active_.size() + k_right_sides);
+  };
+  const auto put = [&](std::size_t at, std::span<const double> by, double sign) {
+    double* const row = row_begin(at);
+    for (std::size_t j = 0; j < n; ++j) row[j] = sign * by[j];
+    std::fill(row + n, row + dents, 0.0);
+    for (std::size_t k = dents; k < active_.size(); ++k) {
+      const double pace = takes_core_along ? pace_of_core(active_[k] - n) : 0.0;
+      row[k] = sign * (by[active_[k]] + pace * by[2 * n + 1]);
+    }
+    return row;
   };
   for (std::size_t i = 0; i < n; ++i) {
-    const ClassState& c = classes_[i];
-    if (c.takes_force) {
-      entry(i, i) = 1.0;
+    if (classes_[i].takes_force) {
+      double* const row = row_begin(i);
+      std::fill(row, row + active_.size(), 0.0);
+      row[i] = 1.0;
     } else {
-      put(i, row_at(i), 1.0);
-      for (std::size_t d = 0; d < layout_.directions(); ++d) entry(i, layout_.centre(d)) = -lines_.arm(i)[axis(d)];
-    }
-    if (c.flows) {
-      put(n + i, row_at(n + i), -1.0);
-      entry(lambda, n + i) = -pace_of_core(i);
-    } else {
-      entry(n + i, n + i) = 1.0;
+      double* const row = put(i, row_at(i), 1.0);
+      for (std::size_t d = 0; d < layout_.directions(); ++d) row[n + d] = -lines_.arm(i)[axis(d)];
     }
   }
   for (std::size_t d = 0; d < layout_.directions(); ++d) {
-    const auto row = row_at(2 * n);
-    std::ranges::fill(row, 0.0);
+    const auto by = row_at(2 * n);
+    std::ranges::fill(by, 0.0);
     for (std::size_t i = 0; i < n; ++i)
-      add_force(i, shares_[lines_.line_of(i)][axis(d)] * counts_[i] * lines_.along(i), row);
-    fold_coverage(row);
-    put(layout_.centre(d), row, 1.0);
-    for (std::size_t k = 0; k < layout_.directions(); ++k)
-      entry(layout_.centre(d), layout_.centre(k)) += k_weak_spring * balance_(axis(k), axis(d));
+      add(i, F_by_[i], shares_[lines_.line_of(i)][axis(d)] * counts_[i] * lines_.along(i), by);
+    fold_coverage(by);
+    double* const row = put(n + d, by, 1.0);
+    for (std::size_t k = 0; k < layout_.directions(); ++k) row[n + k] = k_weak_spring * balance_(axis(k), axis(d));
   }
-  entry(lambda, lambda) = 1.0;
+  for (std::size_t k = dents; k < active_.size(); ++k) put(k, row_at(active_[k]), -1.0);
 }
 
-/// An unknown that does not move: the dent of a contact that does not flow, or Lam where none does.
-bool Particle::is_idle(std::size_t unknown) const noexcept {
-  if (unknown == unknowns_ - 1) return !flows_;
-  return unknown >= size() && unknown < 2 * size() && !classes_[unknown - size()].flows;
-}
-
-/// Gauss's elimination of the first unknowns but idle ones, rows by their largest entries, with the right side in the
-/// last column.
+/// Gauss's elimination of the linear equations, rows by their largest entries.
+/// @param right  their right side, by the places in a state
+/// @param drift  another one; empty: none
 /// @return the sign of the determinant, which is positive at the unloaded particle
-double Particle::eliminate(std::size_t count) {
-  active_.clear();
-  for (std::size_t r = 0; r < count; ++r) {
-    if (!is_idle(r)) active_.push_back(r);
-  }
-  // Equations of the unknowns that move, each over its largest entry, with the right side behind.
+double Particle::eliminate(std::span<const double> right, std::span<const double> drift) {
   const std::size_t n = active_.size();
-  const std::size_t width = n + 1;
+  const std::size_t width = n + k_right_sides;
   for (std::size_t at = 0; at < n; ++at) {
-    double* const row = order_[at] = dense_.data() + at * width;
+    double* const row = order_[at];
+    row[n] = right[active_[at]];
+    row[n + 1] = drift.empty() ? 0.0 : drift[active_[at]];
     double largest = 0.0;
-    for (std::size_t c = 0; c < n; ++c) {
-      row[c] = entry(active_[at], active_[c]);
-      largest = std::max(largest, std::abs(row[c]));
-    }
-    row[n] = entry(active_[at], unknowns_);
+    for (std::size_t c = 0; c < n; ++c) largest = std::max(largest, std::abs(row[c]));
     if (!(largest > 0.0)) throw DomainError(Limit::applicability);
     const double scale = 1.0 / largest;
     for (std::size_t c = 0; c < width; ++c) row[c] *= scale;
@@ -495,77 +475,80 @@ double Particle::eliminate(std::size_t count) {
       sign = -sign;
     }
     const double* const row = order_[at];
-    const double pivot = row[at];
-    if (pivot == 0.0) throw DomainError(Limit::applicability);
-    if (pivot < 0.0) sign = -sign;
+    if (row[at] == 0.0) throw DomainError(Limit::applicability);
+    if (row[at] < 0.0) sign = -sign;
+    const double per_pivot = 1.0 / row[at];
     for (std::size_t other = at + 1; other < n; ++other) {
       double* const rest = order_[other];
       if (rest[at] == 0.0) continue;
-      const double factor = rest[at] / pivot;
+      const double factor = rest[at] * per_pivot;
       for (std::size_t c = at + 1; c < width; ++c) rest[c] -= factor * row[c];
     }
   }
-  std::ranges::fill(solution_, 0.0);
-  for (std::size_t at = n; at-- > 0;) {
-    const double* const row = order_[at];
-    double sum = row[n];
-    for (std::size_t c = at + 1; c < n; ++c) sum -= row[c] * solution_[active_[c]];
-    solution_[active_[at]] = sum / row[at];
+  for (auto [values, column] : {std::pair{&solution_, n}, {&drift_, n + 1}}) {
+    std::ranges::fill(*values, 0.0);
+    for (std::size_t at = n; at-- > 0;) {
+      const double* const row = order_[at];
+      double sum = row[column];
+      for (std::size_t c = at + 1; c < n; ++c) sum -= row[c] * (*values)[active_[c]];
+      (*values)[active_[at]] = sum / row[at];
+    }
   }
   return sign;
 }
 
 void Particle::solve(double xi, std::span<double> y) {
-  const std::size_t count = unknowns_ - 1;
-  const auto rest = std::span(rest_of_equations_).first(count);
+  const std::span<double> rest = rest_of_equations_;
   const bool is_elastic = !any_flows();
   double largest = is_elastic ? 0.0 : material_.Y;
   for (const ClassState& c : classes_) largest = std::max(largest, std::abs(c.drive.value(xi)));
-  const auto error_at = [&] {
-    if (is_elastic)
-      evaluate_elastically(y);
-    else
-      evaluate(y);
+  const auto evaluate_state = [&] { is_elastic ? evaluate_elastically(y) : evaluate(y); };
+  // As displacements: a yield function is known as well as the elastic displacement is, over itself.
+  const auto error_of_state = [&] {
     residual(xi, rest);
     double error = 0.0;
-    for (const double value : rest) error = std::max(error, std::abs(value));
+    for (std::size_t j = 0; j < rest.size(); ++j) {
+      const bool is_yield = j >= size() && j < 2 * size();
+      error = std::max(error, std::abs(rest[j]) * (is_yield ? std::min(1.0, classes_[j - size()].contact.u) : 1.0));
+    }
     return error;
   };
-  double error = error_at();
+  evaluate_state();
   choose_balance();
-  error = error_at();
+  double error = error_of_state();
   // Where the weak spring decides, the balance of forces says more of the centre than the largest residual does.
   const bool is_free = layout_.directions() > 0;
   int polished = 0;
   for (int i = 0; i < k_most_corrections && (is_free || error > k_rounding * largest); ++i) {
     const bool is_polishing = error <= k_stalled * largest;
-    assemble();
-    for (std::size_t r = 0; r < count; ++r) entry(r, unknowns_) = -rest[r];
-    eliminate(count);
+    assemble(false);
+    eliminate(rest);
     double correction = 0.0;
-    for (std::size_t r = 0; r < count; ++r) {
-      if (r < size() || r >= 2 * size()) correction = std::max(correction, std::abs(solution_[r]));
+    for (const std::size_t at : active_) {
+      if (at < size() || at >= 2 * size()) correction = std::max(correction, std::abs(solution_[at]));
     }
     double share = 1.0;
     for (std::size_t j = 0; j < size(); ++j) {
       const double growth = std::abs(solution_[layout_.dent(j)]);
       if (growth * share > k_most_growth) share = k_most_growth / growth;
     }
-    std::copy_n(y.begin(), count, before_.begin());
+    std::copy_n(y.begin(), before_.size(), before_.begin());
     double next = 0.0;
     int halvings = 0;
     for (; halvings < k_most_halvings; ++halvings, share *= 0.5) {
-      for (std::size_t r = 0; r < count; ++r) y[r] = before_[r] + share * solution_[r];
+      for (const std::size_t at : active_) y[at] = before_[at] - share * solution_[at];
       for (std::size_t j = 0; j < size(); ++j) {
         double& dent = y[layout_.dent(j)];
         dent = std::max(dent, k_least_dent * material_.a_Y);
       }
-      next = error_at();
+      evaluate_state();
+      next = error_of_state();
       if (next < error || is_polishing) break;
     }
     if (!(next < error) && (!is_polishing || !is_free)) {
-      std::copy_n(before_.begin(), count, y.begin());
-      error = error_at();
+      std::ranges::copy(before_, y.begin());
+      evaluate_state();
+      error = error_of_state();
       break;
     }
     error = next;
@@ -578,17 +561,16 @@ void Particle::solve(double xi, std::span<double> y) {
 }
 
 double Particle::rates(std::span<double> dy, std::span<const double> drift) {
-  assemble();
-  for (std::size_t r = 0; r < unknowns_; ++r) entry(r, unknowns_) = r < size() ? classes_[r].drive.rate() : 0.0;
-  for (std::size_t r = 0; r < drift.size(); ++r) entry(r, unknowns_) += drift[r];
-  const double sign = eliminate(unknowns_);
-  std::copy_n(solution_.begin(), layout_.core(), dy.begin());
-  const double margin = sign * slowness();
-  if (!layout_.has_core()) return margin;
-  const double Lam = solution_[unknowns_ - 1];
-  for (std::size_t j = 0; j < shape_.dimension(); ++j) dy[layout_.core() + j] = Lam * flow_.C[j];
-  dy[layout_.size() - 1] = Lam * flow_.e;
-  return margin;
+  assemble(true);
+  std::ranges::fill(before_, 0.0);
+  for (std::size_t i = 0; i < size(); ++i) before_[layout_.coordinate(i)] = classes_[i].drive.rate();
+  const double sign = eliminate(before_, drift);
+  Lam_ = flow_rate(solution_);
+  for (std::size_t j = 0; j < layout_.core(); ++j) dy[j] = solution_[j] + drift_[j];
+  const double Lam = flow_rate(dy);
+  for (std::size_t j = 0; j + 1 < layout_.core_size(); ++j) dy[layout_.core() + j] = Lam * flow_.C[j];
+  if (layout_.has_core()) dy[layout_.size() - 1] = Lam * flow_.e;
+  return sign * slowness();
 }
 
 /// How fast walls go, as displacements, over how fast they and their contacts do: 0 where the equations turn back.
@@ -607,9 +589,8 @@ double Particle::slowness() const noexcept {
 
 /// Rate of what a row of derivatives is of.
 double Particle::rate_of(std::size_t at) const noexcept {
-  const std::size_t width = 2 * size() + 2;
-  const auto row = std::span(rows_).subspan(at * width, width);
-  double sum = row.back() * solution_[unknowns_ - 1];
+  const auto row = row_at(at);
+  double sum = row.back() * Lam_;
   for (std::size_t j = 0; j < 2 * size(); ++j) sum += row[j] * solution_[j];
   return sum;
 }

@@ -36,7 +36,7 @@ class Layout {
   [[nodiscard]] std::size_t coordinate(std::size_t i) const noexcept { return i; }
   [[nodiscard]] std::size_t dent(std::size_t i) const noexcept { return classes_ + i; }
   [[nodiscard]] std::size_t centre(std::size_t k) const noexcept { return 2 * classes_ + k; }
-  /// C by its components, then e.
+  /// C - 1 by its components, then e.
   [[nodiscard]] std::size_t core() const noexcept { return 2 * classes_ + directions_; }
   [[nodiscard]] std::size_t size() const noexcept { return core() + core_size_; }
 
@@ -59,7 +59,8 @@ struct ClassState {
   contacts::WallDrive drive{};
   bool takes_force = false;  ///< its own coordinate is the force, not u
   bool gives_way = false;    ///< bears no force: its wall stands until the surface comes to it, and then goes with it
-  bool flows = false;        ///< dent grows
+  bool touches = false;
+  bool flows = false;  ///< dent grows
 
   double coordinate = 0.0;
   Dent dent{};
@@ -68,7 +69,6 @@ struct ClassState {
   Advance advance{};
   double l = 1.0;
   double kinematic = 0.0;  ///< right side of (K)
-  double lift = 0.0;       ///< sum of G F in it
   double f = -1.0;         ///< yield function
   double X = 0.0;
   double tau = 0.0;  ///< share of the wall in the load of the core
@@ -90,8 +90,6 @@ class Particle {
   [[nodiscard]] const ClassState& at(std::size_t i) const noexcept { return classes_[i]; }
   [[nodiscard]] bool any_flows() const noexcept;
   [[nodiscard]] const contacts::CentreLines& lines() const noexcept { return lines_; }
-  /// Writes the core of the fresh particle.
-  void start_core(std::span<double> y) const noexcept;
   [[nodiscard]] Core core_of(std::span<const double> y) const noexcept;
   /// n.x, what the centre adds to the overlap of a class.
   [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const noexcept;
@@ -103,6 +101,8 @@ class Particle {
   void evaluate(std::span<const double> y);
   [[nodiscard]] double coverage() const noexcept { return Om_; }
   [[nodiscard]] double stored_energy() const noexcept { return stored_; }
+  /// Energy of the weak spring, which no particle has.
+  [[nodiscard]] double spring_energy() const noexcept { return 0.5 * k_weak_spring * (centre_ - rest_).squaredNorm(); }
   /// Residuals of (K), or of the prescribed force; of the yield functions of contacts that flow; of (E): in the order
   /// of the unknowns up to the core.
   void residual(double xi, std::span<double> residual) const;
@@ -110,10 +110,13 @@ class Particle {
   /// @throws std::domain_error where there is no solution near the state
   void solve(double xi, std::span<double> y);
   /// Rates of all unknowns with the step coordinate at the state that was evaluated.
-  /// @param drift  rates of the residuals besides, which draw a state back that is off; empty: none
+  /// @param drift  rates of the residuals besides, which draw a state back that is off; empty: none. Nothing else of
+  ///   what is asked below has them.
   /// @return the margin to where the path turns back: how fast walls go over how fast their contacts follow; negative
   /// beyond, where the determinant of the equations has changed its sign
   double rates(std::span<double> dy, std::span<const double> drift = {});
+  /// Rate of a dent, by the last rates().
+  [[nodiscard]] double dent_rate(std::size_t i) const noexcept { return solution_[layout_.dent(i)]; }
   /// Rate of the yield function of a class, by the last rates().
   [[nodiscard]] double yield_rate(std::size_t i);
   /// Rate of the work of all walls, by the last rates().
@@ -133,29 +136,31 @@ class Particle {
   };
 
   void evaluate_elastically(std::span<const double> y);
-  void evaluate_contacts(std::span<const double> y, const Core& core);
+  void evaluate_contacts(std::span<const double> y);
+  void evaluate_coupling();
   void evaluate_core(const Core& core);
   void evaluate_yield(std::span<const double> y);
-  void evaluate_coupling();
   void differentiate();
+  void differentiate_kinematics(std::size_t i, std::span<double> row);
   void differentiate_core();
   void differentiate_yield(std::size_t i, std::span<double> row);
-  void differentiate_kinematics(std::size_t i, std::span<double> row);
   [[nodiscard]] Row row_of(std::size_t i, const Slopes& by) const noexcept;
-  void add_force(std::size_t j, double factor, std::span<double> row) const noexcept;
   void add(std::size_t i, const Row& by, double factor, std::span<double> row) const noexcept;
   void fold_coverage(std::span<double> row) const noexcept;
   [[nodiscard]] double push_on(std::size_t line, std::size_t i) const noexcept;
   void choose_balance();
-  void assemble();
   [[nodiscard]] double pace_of_core(std::size_t i) const noexcept;
-  [[nodiscard]] bool is_idle(std::size_t unknown) const noexcept;
-  double eliminate(std::size_t count);
+  void assemble(bool takes_core_along);
+  double eliminate(std::span<const double> right, std::span<const double> drift = {});
   [[nodiscard]] double slowness() const noexcept;
   [[nodiscard]] double rate_of(std::size_t at) const noexcept;
-  [[nodiscard]] std::span<double> row_at(std::size_t row) noexcept;
-  [[nodiscard]] double& entry(std::size_t row, std::size_t column) noexcept {
-    return matrix_[row * (unknowns_ + 1) + column];
+  [[nodiscard]] std::span<const double> row_at(std::size_t row) const noexcept {
+    const std::size_t width = 2 * size() + 2;
+    return std::span(rows_).subspan(row * width, width);
+  }
+  [[nodiscard]] std::span<double> row_at(std::size_t row) noexcept {
+    const std::size_t width = 2 * size() + 2;
+    return std::span(rows_).subspan(row * width, width);
   }
 
   Material material_;
@@ -164,7 +169,7 @@ class Particle {
   Layout layout_;
   std::vector<double> counts_;                 ///< of walls
   std::vector<CoreShape::Tensor> directions_;  ///< n n of the first wall of each class
-  std::vector<CoreShape::Tensor> spreads_;     ///< sum of n n over the walls of a class
+  std::vector<CoreShape::Map> spreads_;        ///< a core's product with the sum of n n over the walls of a class
   std::vector<Coupling> coupling_;             ///< row by row
   std::vector<ClassState> classes_;
   Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();  ///< where the centre is at ease
@@ -187,14 +192,17 @@ class Particle {
   std::vector<double> s_by_F_;
   double s_by_flow_ = 0.0;  ///< at given forces
   CoreShape::Tensor T_by_flow_{};
-  std::vector<double> rows_;         ///< of (K), of the yield functions, and of one equation (E)
-  std::size_t unknowns_;             ///< coordinates, dents, centre, and Lam
-  std::vector<double> matrix_;       ///< of the linear equations for rates or corrections, with their right side
-  std::vector<std::size_t> active_;  ///< unknowns that move
-  std::vector<double> dense_;        ///< their equations
-  std::vector<double*> order_;       ///< rows of these, in the order of elimination
-  bool flows_ = false;               ///< any contact does, in these
-  std::vector<double> solution_, rest_of_equations_, before_;
+  std::vector<double> rows_;  ///< of (K), of the yield functions, and of one equation (E)
+
+  // The linear equations for rates or corrections of the unknowns up to the core that move.
+  std::vector<std::size_t> active_;  ///< their places in a state
+  static constexpr std::size_t k_right_sides = 2;
+  std::vector<double> matrix_;    ///< row by row, with the right sides behind
+  std::vector<double*> order_;    ///< rows in the order of elimination
+  std::vector<double> solution_;  ///< of all unknowns up to the core
+  std::vector<double> drift_;     ///< by the other right side
+  double Lam_ = 0.0;              ///< by the last rates
+  std::vector<double> rest_of_equations_, before_;
 };
 
 }  // namespace monograin::cel

@@ -32,7 +32,8 @@ constexpr double k_alike = 1e-6;
 constexpr double k_least_margin = 1e-5;
 constexpr double k_hard_margin = 1e-3;
 /// How fast an integrated state is drawn back to the equations, over a step of the program: its errors across them
-/// would stay, and add up.
+/// would stay, and add up. Next to the beginning of flow, where a contact may be as shallow, it is one over the
+/// distance from there: no faster than steps are long.
 constexpr double k_pull = 20.0;
 /// Half the surface over pi R0^2 is 2; the law is fitted up to here.
 constexpr double k_most_coverage = 1.7;
@@ -40,14 +41,28 @@ constexpr double k_most_coverage = 1.7;
 constexpr double k_least_modulus_over_yield = 6.25;
 constexpr double k_deepest = 0.5;
 
+/// Whether a program goes on in the direction in which it has gone. A step that is cut in two does, but for rounding.
+bool goes_on(std::span<const double> before, std::span<const double> after) {
+  constexpr double k_alike_directions = 1e-9;
+  const auto largest = [](std::span<const double> of) {
+    return std::abs(*std::ranges::max_element(of, {}, [](double rate) { return std::abs(rate); }));
+  };
+  const double a = largest(before);
+  const double b = largest(after);
+  if (a == 0.0 || b == 0.0) return a == b;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (std::abs(before[i] / a - after[i] / b) > k_alike_directions) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 System::System(const Settings& settings, std::vector<ContactClass> classes)
     : settings_(settings),
       classes_(std::move(classes)),
       particle_(Material(settings.yield_stress / settings.youngs_modulus, settings.poisson_ratio),
-                settings.poisson_ratio, classes_, settings.centre_is_free),
-      touches_(classes_.size(), false) {
+                settings.poisson_ratio, classes_, settings.centre_is_free) {
   depth_ = settings_.reach.displacement / settings_.initial_radius;
   if (settings_.reach.force > 0.0) {
     const double force = settings_.reach.force / force_unit();
@@ -69,11 +84,13 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
                          .may_rest = true});
   while (unknowns_.size() < particle_.layout().size()) unknowns_.push_back({.name = "core", .kind = differential});
   work_place_ = unknowns_.size();
-  unknowns_.push_back(
-      {.name = "work", .kind = Unknown::Kind::quadrature, .scale = depth_ * depth_ * std::sqrt(depth_)});
+  // Of elastic contacts, or of ones that flow, whichever is less.
+  const double work = depth_ * depth_ * std::min(std::sqrt(depth_), particle_.material().Y);
+  unknowns_.push_back({.name = "work", .kind = Unknown::Kind::quadrature, .scale = work});
   at_.resize(unknowns_.size());
   rates_.resize(unknowns_.size());
   trial_.resize(unknowns_.size());
+  state_.resize(unknowns_.size());
   drift_.resize(particle_.layout().core());
 
   observables_ = {{"work", "J", {}},
@@ -105,11 +122,10 @@ void System::start(std::span<double> y) {
     const double gap = classes_[i].gap / settings_.initial_radius;
     y[layout.coordinate(i)] = -gap;
     y[layout.dent(i)] = particle_.material().a_Y;
-    particle_.at(i).flows = particle_.at(i).gives_way = false;
+    ClassState& c = particle_.at(i);
+    c.flows = c.gives_way = c.touches = false;
     hold(i, -gap);
   }
-  particle_.start_core(y);
-  std::ranges::fill(touches_, false);
   has_begun_ = false;
   deepest_ = 0.0;
 }
@@ -130,22 +146,39 @@ double System::evaluate_rates(double xi, std::span<const double> y) {
   evaluate(xi, y);
   if (knows_rates_) return margin_;
   particle_.residual(xi, drift_);
-  for (double& residual : drift_) residual *= -k_pull;
+  const double pull = xi > flow_begin_ ? std::max(k_pull, 1.0 / (xi - flow_begin_)) : k_pull;
+  for (double& residual : drift_) residual *= -pull;
   margin_ = particle_.rates(rates_, drift_);
   knows_rates_ = true;
   return margin_;
 }
 
 void System::complete(double xi, std::span<double> y) {
+  prescribe(xi, y);
+  if (!is_solvable_here()) return;
+  // Dents and core are as they were, without the round-off of integrators, and the last solution is a better guess than
+  // where the unknowns rest.
+  std::ranges::copy(y, trial_.begin());
+  std::copy_n(at_.begin(), work_place_, y.begin());
+  try {
+    solve(xi, y);
+  } catch (const std::domain_error&) {
+    std::ranges::copy(trial_, y.begin());
+    solve(xi, y);
+  }
+}
+
+/// Writes the forces that are prescribed.
+void System::prescribe(double xi, std::span<double> y) const {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const ClassState& c = particle_.at(i);
     if (c.takes_force) y[particle_.layout().coordinate(i)] = c.drive.value(xi);
   }
-  if (is_solvable_here()) solve(xi, y);
 }
 
 void System::solve(double xi, std::span<double> y) {
   is_known_ = knows_rates_ = false;
+  prescribe(xi, y);
   particle_.solve(xi, y);
   std::ranges::copy(y, at_.begin());
   at_xi_ = xi;
@@ -154,39 +187,32 @@ void System::solve(double xi, std::span<double> y) {
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
   evaluate_rates(xi, y);
-  std::ranges::copy(rates_, dy.begin());
+  if (particle_.any_flows())
+    std::ranges::copy(rates_, dy.begin());
+  else
+    std::ranges::fill(dy, 0.0);
   dy[work_place_] = particle_.power();
 }
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
-  const Layout& layout = particle_.layout();
   if (!particle_.any_flows()) {
-    // Contacts and a centre may be too soft, or too stiff, for a corrector: they are where the equations put them.
-    std::ranges::copy(y, trial_.begin());
-    try {
-      solve(xi, trial_);
-    } catch (const std::domain_error&) {
-      // Trials of a corrector may lie far from the last state.
-      std::ranges::copy(y, trial_.begin());
-      std::copy_n(at_.begin(), classes_.size(), trial_.begin());
-      for (std::size_t d = 0; d < layout.directions(); ++d) trial_[layout.centre(d)] = at_[layout.centre(d)];
-      solve(xi, trial_);
-    }
-    evaluate_rates(xi, trial_);
-    for (std::size_t j = 0; j < layout.core(); ++j) res[j] = y[j] - trial_[j];
+    std::ranges::copy(dy, res.begin());
+    std::ranges::copy(y, state_.begin());
+    complete(xi, state_);
+    evaluate_rates(xi, state_);
   } else {
-    evaluate_rates(xi, y);
+    const Layout& layout = particle_.layout();
+    evaluate(xi, y);
     particle_.residual(xi, res);
-  }
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    if (!particle_.at(i).flows) res[layout.dent(i)] = dy[layout.dent(i)];
-  }
-  if (layout.has_core()) {
+    for (std::size_t i = 0; i < classes_.size(); ++i) {
+      if (!particle_.at(i).flows) res[layout.dent(i)] = dy[layout.dent(i)];
+    }
     const double Lam = particle_.flow_rate(dy);
     const Core& flow = particle_.core_flow();
-    const std::size_t last = layout.size() - 1;
-    for (std::size_t j = layout.core(); j < last; ++j) res[j] = dy[j] - Lam * flow.C[j - layout.core()];
-    res[last] = dy[last] - Lam * flow.e;
+    for (std::size_t j = 0; j + 1 < layout.core_size(); ++j)
+      res[layout.core() + j] = dy[layout.core() + j] - Lam * flow.C[j];
+    if (layout.has_core()) res[layout.size() - 1] = dy[layout.size() - 1] - Lam * flow.e;
+    evaluate_rates(xi, y);
   }
   res[work_place_] = dy[work_place_] - particle_.power();
 }
@@ -195,7 +221,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
   if (particle_.any_flows()) return std::nullopt;
   evaluate(xi, y);
-  return particle_.stored_energy();
+  return particle_.stored_energy() + particle_.spring_energy();
 }
 
 // --- the program
@@ -232,12 +258,23 @@ void System::take_up(std::size_t i, const Ramp& ramp, std::span<double> y) {
   c.drive = contacts::WallDrive(ramp, takes_force ? force_unit() : settings_.initial_radius);
 }
 
+/// Rates of what the program prescribes: displacements of all walls, then forces.
+std::vector<double> System::velocities() const {
+  std::vector<double> rates(2 * classes_.size());
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    const ClassState& c = particle_.at(i);
+    rates[c.takes_force ? classes_.size() + i : i] = c.drive.rate();
+  }
+  return rates;
+}
+
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
   is_known_ = false;
   evaluate(0.0, y);
+  const std::vector<double> before = velocities();
   for (std::size_t i = 0; i < ramps.size(); ++i) take_up(i, ramps[i], y);
-  particle_.rest_centre(y);
-  complete(0.0, y);
+  if (!goes_on(before, velocities())) particle_.rest_centre(y);
+  prescribe(0.0, y);
   solve(0.0, y);
   decide_mode(0.0, y, log, {});
   // Contacts that begin to flow are off their yield function by what counts as being at it.
@@ -281,14 +318,14 @@ double System::displacement_ahead(std::size_t i, double xi, std::span<const doub
 
 /// Elastic displacement that does not put a contact on a side.
 double System::slack(std::size_t i) const noexcept {
-  const bool may_carry = particle_.layout().directions() > 0 && touches_[i] != 0;
+  const bool may_carry = particle_.layout().directions() > 0 && particle_.at(i).touches;
   return (may_carry ? k_idle_touch : k_touch) * depth_;
 }
 
 /// Whether a contact bears from here on, by its elastic displacement or, next to none, by where that goes.
 void System::decide_touch(std::size_t i, double xi, std::span<const double> y, std::vector<Event>& log) {
-  const ClassState& c = particle_.at(i);
-  bool touches = touches_[i] != 0;
+  ClassState& c = particle_.at(i);
+  bool touches = c.touches;
   if (c.takes_force) {
     touches = c.contact.F > 0.0 || c.drive.rate() > 0.0;
   } else if (std::abs(c.contact.u) > slack(i)) {
@@ -296,8 +333,8 @@ void System::decide_touch(std::size_t i, double xi, std::span<const double> y, s
   } else {
     touches = displacement_ahead(i, xi, y) > 0.0;
   }
-  if (touches == (touches_[i] != 0)) return;
-  touches_[i] = touches;
+  if (touches == c.touches) return;
+  c.touches = touches;
   // Walls that touch the fresh particle are in contact from the start, without an event.
   if (has_begun_ || classes_[i].gap > 0.0)
     log.push_back({touches ? "contact-made" : "contact-lost", static_cast<int>(i)});
@@ -307,23 +344,22 @@ void System::decide_touch(std::size_t i, double xi, std::span<const double> y, s
 /// those whose dents would shrink. Those that are most against it leave first, together and for good, so that neither
 /// the order of the walls nor their symmetry decides.
 void System::decide_flow(double xi, std::span<const double> y, std::span<char> may_flow) {
-  const Layout& layout = particle_.layout();
   for (std::size_t i = 0; i < particle_.size(); ++i) particle_.at(i).flows = false;
   is_known_ = false;
   for (bool has_changed = true; has_changed;) {
     evaluate_rates(xi, y);
     double worst = 0.0;
     for (std::size_t i = 0; i < particle_.size(); ++i) {
-      if (particle_.at(i).flows) worst = std::min(worst, rates_[layout.dent(i)]);
+      if (particle_.at(i).flows) worst = std::min(worst, particle_.dent_rate(i));
     }
     has_changed = worst < 0.0;
     for (std::size_t i = 0; i < particle_.size(); ++i) {
       ClassState& c = particle_.at(i);
       if (worst < 0.0) {
-        const bool leaves = c.flows && rates_[layout.dent(i)] <= worst * (1.0 - k_alike);
+        const bool leaves = c.flows && particle_.dent_rate(i) <= worst * (1.0 - k_alike);
         c.flows = c.flows && !leaves;
         may_flow[i] = may_flow[i] != 0 && !leaves;
-      } else if (!c.flows && may_flow[i] != 0 && touches_[i] != 0 && c.f > -k_at_yield &&
+      } else if (!c.flows && may_flow[i] != 0 && c.touches && c.f > -k_at_yield &&
                  particle_.yield_rate(i) > k_least_rate) {
         c.flows = has_changed = true;
       }
@@ -351,6 +387,7 @@ void System::decide_mode(double xi, std::span<const double> y, std::vector<Event
         fired, [&](std::size_t g) { return guards_[g].kind == k_reversal && guards_[g].index == static_cast<int>(i); });
   }
   decide_flow(xi, y, may_flow);
+  flow_begin_ = xi;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const bool flows = particle_.at(i).flows;
     if (flows != (flowed[i] != 0)) log.push_back({flows ? "yield" : "load-reversal", static_cast<int>(i)});
@@ -367,13 +404,13 @@ void System::arm_guards() {
     const int index = static_cast<int>(i);
     const ClassState& c = particle_.at(i);
     if (!c.takes_force) {
-      add(touches_[i] ? k_lost : k_made, index, touches_[i] ? -1 : 1, touches_[i] ? "contact-lost" : "contact-made");
+      add(c.touches ? k_lost : k_made, index, c.touches ? -1 : 1, c.touches ? "contact-lost" : "contact-made");
       guards_.back().is_silent = c.gives_way;
     } else if (c.drive.end() < 0.0) {
       add(k_lost, index, -1, "contact-lost");
       guards_.back().is_exact = guards_.back().is_monotone = true;
     }
-    if (!touches_[i]) continue;
+    if (!c.touches) continue;
     add(c.flows ? k_reversal : k_yield, index, c.flows ? -1 : 1, c.flows ? "load-reversal" : "yield");
   }
   add(k_fold, -1, -1, "limit");
@@ -396,7 +433,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = c.f - k_beyond_yield;
         break;
       case k_reversal: {
-        const double rate = rates_[particle_.layout().dent(i)];
+        const double rate = particle_.dent_rate(i);
         values[g] = rate / (std::abs(rate) + std::abs(c.drive.rate()) + depth_);
         break;
       }
@@ -432,8 +469,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     }
     const auto i = static_cast<std::size_t>(guard.index);
     if (guard.kind > k_lost) continue;
-    const ClassState& c = particle_.at(i);
-    touches_[i] = guard.kind == k_made && !c.gives_way;
+    ClassState& c = particle_.at(i);
+    c.touches = guard.kind == k_made && !c.gives_way;
     if (!guard.is_silent) log.push_back({guard.name, guard.index});
     // Walls that would have to pull, too.
     if (c.takes_force || c.gives_way) give_way(i, y);
@@ -486,7 +523,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
                                          .force = at.force,
                                          .contact_radius = at.contact_radius,
                                          .pressure = at.pressure,
-                                         .regime = static_cast<double>(touches_[i] ? closed : k_open)};
+                                         .regime = static_cast<double>(c.touches ? closed : k_open)};
     for (const contacts::ContactColumn& column : contacts::k_contact_columns) *out++ = shown.*column.value;
   }
   if (!settings_.centre_is_free) return;
@@ -520,7 +557,7 @@ std::optional<Difficulty> System::difficulty(double xi, std::span<const double> 
   constexpr double k_ways = 10.0;
   const double least = k_ways * Particle::k_weak_spring * depth_;
   for (std::size_t i = 0; i < classes_.size() && particle_.layout().directions() > 0; ++i) {
-    if (touches_[i] && particle_.at(i).contact.F < least) return Difficulty::singular_balance;
+    if (particle_.at(i).touches && particle_.at(i).contact.F < least) return Difficulty::singular_balance;
   }
   return std::nullopt;
 }

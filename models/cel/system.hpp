@@ -3,7 +3,8 @@
 /// Unknowns: the own coordinate of every class (elastic displacement, or force where that is prescribed), its dent, a
 /// free centre, the core, and the work of the walls. While a contact flows and the core can yield, the state depends on
 /// the way to it: explicit, rates from the derivatives of all equations; implicit, the equations themselves and the
-/// flow rule of the core. Otherwise the equations determine the state at any instant, and nothing is integrated.
+/// flow rule of the core. Otherwise the equations determine the state at any instant. Then nothing but the work is
+/// integrated, in any form: the unknowns rest, and complete() solves for them.
 ///
 /// Own law of this project (docs/theory/cel.md).
 #pragma once
@@ -37,7 +38,6 @@ class System final : public HybridSystem {
     return [this, then = *this] { *this = then; };
   }
   void complete(double xi, std::span<double> y) override;
-  [[nodiscard]] bool has_corrections() const noexcept override { return true; }
   void rates(double xi, std::span<const double> y, std::span<double> dy) override;
   void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
@@ -55,7 +55,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override {
-    return !touches_[static_cast<std::size_t>(contact_class)];
+    return !particle_.at(static_cast<std::size_t>(contact_class)).touches;
   }
   [[nodiscard]] std::vector<Diagnostic> warnings() const override;
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
@@ -65,6 +65,7 @@ class System final : public HybridSystem {
 
   [[nodiscard]] double force_unit() const noexcept;
   [[nodiscard]] bool is_at_rest() const noexcept;
+  void prescribe(double xi, std::span<double> y) const;
   void evaluate(double xi, std::span<const double> y);
   double evaluate_rates(double xi, std::span<const double> y);
   [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const;
@@ -72,6 +73,7 @@ class System final : public HybridSystem {
   void give_way(std::size_t i, std::span<double> y);
   void take_up(std::size_t i, const Ramp& ramp, std::span<double> y);
   void hold(std::size_t i, double displacement);
+  [[nodiscard]] std::vector<double> velocities() const;
   [[nodiscard]] double slack(std::size_t i) const noexcept;
   [[nodiscard]] double displacement_ahead(std::size_t i, double xi, std::span<const double> y);
   void decide_touch(std::size_t i, double xi, std::span<const double> y, std::vector<Event>& log);
@@ -90,7 +92,6 @@ class System final : public HybridSystem {
   std::size_t work_place_ = 0;
   double depth_ = 1.0;  ///< how far walls go, over R0
 
-  std::vector<char> touches_;
   bool has_begun_ = false;
   double deepest_ = 0.0;  ///< overlap over R0, as far as observed
   std::vector<Guard> guards_;
@@ -101,7 +102,8 @@ class System final : public HybridSystem {
   bool is_known_ = false, knows_rates_ = false;
   double margin_ = 1.0;
   std::vector<double> rates_;
-  std::vector<double> drift_, trial_;  ///< work space
+  double flow_begin_ = 0.0;                    ///< step coordinate at which the contacts that flow were decided
+  std::vector<double> drift_, trial_, state_;  ///< work space
 };
 
 }  // namespace monograin::cel

@@ -340,13 +340,13 @@ TEST(CelContact, IsAGapBelowFirstTouch) {
 // --- the core
 
 TEST(CelAdvance, IsSmoothFromShrinkingToBulging) {
-  EXPECT_EQ(advance_of(1.0).c, 0.0);
+  EXPECT_EQ(advance_of(0.0).c, 0.0);
   for (const double l : {0.5, 0.95, 0.98, 0.995, 1.0, 1.002, 1.01, 1.05, 1.4}) {
     // The slope changes over the width w of the law, from where differences take their length.
     const double step = 1e-3 * std::hypot(l - 1.0, k::w);
-    const Advance advance = advance_of(l);
-    const double slope = central_difference([](double x) { return advance_of(x).c; }, l, step);
-    const double curvature = central_difference([](double x) { return advance_of(x).c_l; }, l, step);
+    const Advance advance = advance_of(l - 1.0);
+    const double slope = central_difference([](double x) { return advance_of(x - 1.0).c; }, l, step);
+    const double curvature = central_difference([](double x) { return advance_of(x - 1.0).c_l; }, l, step);
     EXPECT_NEAR(advance.c_l, slope, 4 * k_epsilon / step) << l;
     EXPECT_NEAR(advance.c_ll, curvature, 8 * k_epsilon / step) << l;
   }
@@ -354,9 +354,9 @@ TEST(CelAdvance, IsSmoothFromShrinkingToBulging) {
 
 TEST(CelAdvance, IsAsFarAsTheCoreShrinksAndFurtherThanItBulges) {
   // Far from the change of slope, but for its width.
-  EXPECT_NEAR(advance_of(0.5).c_l, -1.0, 1e-4);
-  EXPECT_NEAR(advance_of(1.5).c_l, -k::chi, 1e-4);
-  EXPECT_EQ(advance_of(1.0).c_l, -0.5 * (1.0 + k::chi));
+  EXPECT_NEAR(advance_of(-0.5).c_l, -1.0, 1e-4);
+  EXPECT_NEAR(advance_of(0.5).c_l, -k::chi, 1e-4);
+  EXPECT_EQ(advance_of(0.0).c_l, -0.5 * (1.0 + k::chi));
 }
 
 }  // namespace

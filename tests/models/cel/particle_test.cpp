@@ -112,7 +112,7 @@ struct RandomCase {
 
   static void set_core(std::vector<double>& state, const Particle& of, const CoreShape& among, const Matrix3d& C,
                        double e) {
-    const CoreShape::Tensor components = among.of(C);
+    const CoreShape::Tensor components = among.of(C - Matrix3d::Identity());
     const std::size_t first = of.layout().core();
     for (std::size_t j = 0; j < among.dimension(); ++j) state[first + j] = components[j];
     state[first + among.dimension()] = e;
@@ -231,7 +231,7 @@ TEST(CelParticleRates, LetTheCoreFlowAsTheDentsThatDriveItGrow) {
     const double Lam = now.particle.flow_rate(dy);
     const Matrix3d flow = tensor_of(now.shape, now.particle.core_flow().C);
     const double strain = now.particle.core_flow().e;
-    EXPECT_LE((now.core_at(dy) - Lam * flow).norm(), 1e-12 * (1.0 + std::abs(Lam)));
+    EXPECT_LE((now.core_at(dy) - Matrix3d::Identity() - Lam * flow).norm(), 1e-12 * (1.0 + std::abs(Lam)));
     EXPECT_NEAR(now.particle.core_of(dy).e, Lam * strain, 1e-12 * (1.0 + std::abs(Lam)));
     // The equivalent strain of the flow, by the logarithm of the metric: C' = -(L C + C L).
     const Matrix3d C = now.core_at(now.y);
