@@ -160,13 +160,16 @@ void Particle::evaluate_contacts(std::span<const double> y) {
     const double zeta = y[layout_.dent(i)];
     if (!(square > 0.0) || !(zeta > 0.0)) throw std::domain_error("the core or a dent of the particle has no size");
     c.l = std::sqrt(square);
+    c.per_l = 1.0 / c.l;
     if (zeta != c.dent.zeta) {
       c.dent = dent_of(material_, zeta);
       c.root_Gam = std::sqrt(c.dent.Gam);
+      c.half_Gam_log = 0.5 * c.dent.Gam_zeta / c.dent.Gam;
     }
     c.advance = advance_of(excess / (1.0 + c.l));
-    Om_ += 0.5 * counts_[i] * (zeta * zeta - material_.a_Y * material_.a_Y) / square;
+    Om_ += 0.5 * counts_[i] * (zeta * zeta - material_.a_Y * material_.a_Y) * c.per_l * c.per_l;
   }
+  shade_ = 1.0 / (1.0 + k::kap * raised<4>(Om_));
   const double m = 1.0 - k::m2 * Om_ * Om_ + k::m4 * raised<4>(Om_);
   m_by_Om_ = -2.0 * k::m2 * Om_ + 4.0 * k::m4 * raised<3>(Om_);
   for (std::size_t i = 0; i < size(); ++i) {
@@ -181,48 +184,49 @@ void Particle::evaluate_contacts(std::span<const double> y) {
 void Particle::evaluate_core(const Core& core) {
   T_ = {};
   flow_ = {};
-  S_ = material_.Y * (k::s0 + k::s1 * core.e);
-  s_ = Q_ = 0.0;
+  per_S_ = 1.0 / (material_.Y * (k::s0 + k::s1 * core.e));
+  s_ = per_s_ = Q_ = 0.0;
   if (!layout_.has_core()) return;
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
-    load_[i] = shape_.deviator(shape_.apply(spreads_[i], core.C), -c.advance.c_l / c.l);
+    load_[i] = shape_.deviator(shape_.apply(spreads_[i], core.C), -c.advance.c_l * c.per_l);
     shape_.add(load_[i], c.contact.F, T_);
   }
   const double load = 0.5 * std::sqrt(1.5 * shape_.dot(T_, T_));
   if (!(load > k_no_load * material_.Y)) return;
   s_ = load;
-  Q_ = raised<k::n2>(s_ / S_);
-  const double pace = static_cast<double>(k::n2) / k::n1 * Q_ / s_;
+  per_s_ = 1.0 / s_;
+  Q_ = raised<k::n2>(s_ * per_S_);
+  const double pace = static_cast<double>(k::n2) / k::n1 * Q_ * per_s_;
   const Tensor direction = shape_.product(T_, core.C);
-  shape_.add(direction, -2.0 * pace * 0.375 / s_, flow_.C);
+  shape_.add(direction, -2.0 * pace * 0.375 * per_s_, flow_.C);
   flow_.e = 0.5 * pace;
 }
 
 /// Which contacts drive the core and which it carries, how weak those are, and the yield functions.
 void Particle::evaluate_yield(std::span<const double> y) {
   evaluate_core(core_of(y));
-  const double use = s_ / S_;
+  const double use = s_ * per_S_;
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
-    c.X = c.b = c.tau = 0.0;
+    c.X = c.b = c.tau = c.pace = 0.0;
     c.wk = 1.0;
     c.f = -1.0;
     if (!(c.contact.F > 0.0)) continue;
     if (s_ > 0.0) {
-      c.tau = shape_.dot(directions_[i], T_) / (4.0 / 3.0 * s_);
+      c.tau = 0.75 * per_s_ * shape_.dot(directions_[i], T_);
       const double z = std::clamp(-2.0 * c.tau, 0.0, 1.0);
       c.b = z * z * (3.0 - 2.0 * z);
       if (c.b > 0.0) c.wk = 1.0 - k::beta * raised<k::n3>(use) * c.b * std::exp(-c.contact.alpha / k::ab);
     }
     c.X = raised<k::n1>(c.contact.F_over_H / c.wk);
+    if (c.X > 0.0) c.pace = counts_[i] * c.contact.F * (1.0 - c.b) / c.X * c.dent.h_zeta;
     if (c.X + Q_ > 0.0) c.f = std::pow(c.X + Q_, 1.0 / k::n1) - 1.0;
   }
 }
 
 /// Right sides of (K), and the stored energy.
 void Particle::evaluate_coupling() {
-  const double shade = 1.0 / (1.0 + k::kap * raised<4>(Om_));
   stored_ = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
@@ -232,7 +236,7 @@ void Particle::evaluate_coupling() {
       if (other.contact.F == 0.0) continue;
       const Coupling& g = coupling_[i * size() + j];
       const double root = c.root_Gam * other.root_Gam;
-      lift += (g.mixed + g.across * shade + root * (g.same + g.mixed * shade)) * other.contact.F;
+      lift += (g.mixed + g.across * shade_ + root * (g.same + g.mixed * shade_)) * other.contact.F;
     }
     c.kinematic = c.dent.h + c.advance.c + c.contact.u - lift;
     stored_ += counts_[i] * (c.contact.stored - 0.5 * c.contact.F * lift);
@@ -303,11 +307,11 @@ void Particle::differentiate() {
   Om_by_flow_ = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
-    const double square = c.l * c.l;
+    const double per_square = c.per_l * c.per_l;
     const double grown = c.dent.zeta * c.dent.zeta - material_.a_Y * material_.a_Y;
-    l_by_flow_[i] = shape_.dot(directions_[i], flow_.C) / (2.0 * c.l);
-    Om_by_zeta_[i] = counts_[i] * c.dent.zeta / square;
-    Om_by_flow_ -= counts_[i] * grown / (square * c.l) * l_by_flow_[i];
+    l_by_flow_[i] = 0.5 * c.per_l * shape_.dot(directions_[i], flow_.C);
+    Om_by_zeta_[i] = counts_[i] * c.dent.zeta * per_square;
+    Om_by_flow_ -= counts_[i] * grown * per_square * c.per_l * l_by_flow_[i];
     F_by_[i] = row_of(i, c.contact.F_by);
   }
   for (std::size_t i = 0; i < size(); ++i) differentiate_kinematics(i, row_at(i));
@@ -325,22 +329,20 @@ void Particle::differentiate_core() {
   if (!(s_ > 0.0)) return;
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
-    const double w = -c.advance.c_l / c.l;
-    const double w_l = (c.advance.c_l / c.l - c.advance.c_ll) / c.l;
-    s_by_F_[i] = 0.375 / s_ * shape_.dot(T_, load_[i]);
+    const double w = -c.advance.c_l * c.per_l;
+    const double w_l = -(w + c.advance.c_ll) * c.per_l;
+    s_by_F_[i] = 0.375 * per_s_ * shape_.dot(T_, load_[i]);
     shape_.add(load_[i], c.contact.F * w_l / w * l_by_flow_[i], T_by_flow_);
     shape_.add(shape_.deviator(shape_.apply(spreads_[i], flow_.C), w), c.contact.F, T_by_flow_);
   }
-  s_by_flow_ = 0.375 / s_ * shape_.dot(T_, T_by_flow_);
+  s_by_flow_ = 0.375 * per_s_ * shape_.dot(T_, T_by_flow_);
 }
 
 /// Writes the derivatives of (K).
 void Particle::differentiate_kinematics(std::size_t i, std::span<double> row) {
   const std::size_t n = size();
   const ClassState& c = classes_[i];
-  const double Om3 = raised<3>(Om_);
-  const double shade = 1.0 / (1.0 + k::kap * Om3 * Om_);
-  const double shade_by_Om = -4.0 * k::kap * Om3 * shade * shade;
+  const double shade_by_Om = -4.0 * k::kap * raised<3>(Om_) * shade_ * shade_;
   std::ranges::fill(row, 0.0);
   for (std::size_t j = 0; j < n; ++j) {
     const ClassState& other = classes_[j];
@@ -348,10 +350,10 @@ void Particle::differentiate_kinematics(std::size_t i, std::span<double> row) {
     if (F == 0.0) continue;
     const Coupling& g = coupling_[i * n + j];
     const double root = c.root_Gam * other.root_Gam;
-    const double of_root = g.same + g.mixed * shade;
-    add(j, F_by_[j], -(g.mixed + g.across * shade + root * of_root), row);
-    row[n + i] -= 0.5 * root * of_root * F * c.dent.Gam_zeta / c.dent.Gam;
-    row[n + j] -= 0.5 * root * of_root * F * other.dent.Gam_zeta / other.dent.Gam;
+    const double of_root = root * (g.same + g.mixed * shade_);
+    add(j, F_by_[j], -(g.mixed + g.across * shade_ + of_root), row);
+    row[n + i] -= of_root * F * c.half_Gam_log;
+    row[n + j] -= of_root * F * other.half_Gam_log;
     row[2 * n] -= (g.across + root * g.mixed) * shade_by_Om * F;
   }
   add(i, row_of(i, c.contact.u_by), 1.0, row);
@@ -366,13 +368,12 @@ void Particle::differentiate_yield(std::size_t i, std::span<double> row) {
   const ClassState& c = classes_[i];
   std::ranges::fill(row, 0.0);
   if (!(c.X + Q_ > 0.0) || !(c.contact.F > 0.0)) return;
-  const double use = s_ / S_;
-  const double outer = (1.0 + c.f) / (k::n1 * (c.X + Q_));
-  const double of_X = outer * k::n1 * c.X;
+  const double use = s_ * per_S_;
+  const double of_X = (1.0 + c.f) * c.X / (c.X + Q_);
   add(i, F_by_[i], of_X / c.contact.F, row);
   add(i, row_of(i, c.contact.H_by), -of_X / c.contact.H, row);
   if (s_ > 0.0) {
-    double of_use = outer * k::n2 * raised<k::n2 - 1>(use);
+    double of_use = (1.0 + c.f) / (c.X + Q_) * (static_cast<double>(k::n2) / k::n1) * raised<k::n2 - 1>(use);
     double of_tau = 0.0;
     if (c.b > 0.0) {
       const double of_weakness = of_X / c.wk * (1.0 - c.wk);
@@ -382,23 +383,17 @@ void Particle::differentiate_yield(std::size_t i, std::span<double> row) {
       add(i, row_of(i, c.contact.alpha_by), -of_weakness / k::ab, row);
     }
     // By the load s, by its share tau under this wall, and by the strength S.
-    const double of_s = of_use / S_ - of_tau * c.tau / s_;
-    const double per_tau = of_tau / (4.0 / 3.0 * s_);
+    const double of_s = of_use * per_S_ - of_tau * c.tau * per_s_;
+    const double per_tau = 0.75 * of_tau * per_s_;
     for (std::size_t j = 0; j < n; ++j)
       add(j, F_by_[j], of_s * s_by_F_[j] + per_tau * shape_.dot(directions_[i], load_[j]), row);
     row[2 * n + 1] += of_s * s_by_flow_ + per_tau * shape_.dot(directions_[i], T_by_flow_) -
-                      of_use * use / S_ * material_.Y * k::s1 * flow_.e;
+                      of_use * use * per_S_ * material_.Y * k::s1 * flow_.e;
   }
   fold_coverage(row);
 }
 
 // --- solving them
-
-/// Lam per rate of a dent that flows.
-double Particle::pace_of_core(std::size_t i) const noexcept {
-  const ClassState& c = classes_[i];
-  return c.X > 0.0 ? counts_[i] * c.contact.F * (1.0 - c.b) / c.X * c.dent.h_zeta : 0.0;
-}
 
 /// The linear equations of the unknowns up to the core that move: coordinates, the centre, and dents that grow.
 /// @param takes_core_along  whether the core flows as the dents do; otherwise it stays
@@ -420,7 +415,7 @@ void Particle::assemble(bool takes_core_along) {
     for (std::size_t j = 0; j < n; ++j) row[j] = sign * by[j];
     std::fill(row + n, row + dents, 0.0);
     for (std::size_t k = dents; k < active_.size(); ++k) {
-      const double pace = takes_core_along ? pace_of_core(active_[k] - n) : 0.0;
+      const double pace = takes_core_along ? classes_[active_[k] - n].pace : 0.0;
       row[k] = sign * (by[active_[k]] + pace * by[2 * n + 1]);
     }
     return row;
@@ -614,7 +609,7 @@ double Particle::power() const {
 double Particle::flow_rate(std::span<const double> dy) const noexcept {
   double Lam = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
-    if (classes_[i].flows) Lam += pace_of_core(i) * dy[layout_.dent(i)];
+    if (classes_[i].flows) Lam += classes_[i].pace * dy[layout_.dent(i)];
   }
   return Lam;
 }

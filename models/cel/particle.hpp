@@ -64,16 +64,17 @@ struct ClassState {
 
   double coordinate = 0.0;
   Dent dent{};
-  double root_Gam = 1.0;  ///< square root of its Gam
+  double root_Gam = 1.0, half_Gam_log = 0.0;  ///< square root of its Gam, and the logarithmic derivative of that
   Contact contact{};
   Advance advance{};
-  double l = 1.0;
+  double l = 1.0, per_l = 1.0;
   double kinematic = 0.0;  ///< right side of (K)
   double f = -1.0;         ///< yield function
   double X = 0.0;
-  double tau = 0.0;  ///< share of the wall in the load of the core
-  double b = 0.0;    ///< 1: carried by the flow of the core; 0: drives it
-  double wk = 1.0;   ///< strength of a carried contact over its own
+  double tau = 0.0;   ///< share of the wall in the load of the core
+  double b = 0.0;     ///< 1: carried by the flow of the core; 0: drives it
+  double wk = 1.0;    ///< strength of a carried contact over its own
+  double pace = 0.0;  ///< Lam per rate of the dent, where it grows
 };
 
 class Particle {
@@ -149,7 +150,6 @@ class Particle {
   void fold_coverage(std::span<double> row) const noexcept;
   [[nodiscard]] double push_on(std::size_t line, std::size_t i) const noexcept;
   void choose_balance();
-  [[nodiscard]] double pace_of_core(std::size_t i) const noexcept;
   void assemble(bool takes_core_along);
   double eliminate(std::span<const double> right, std::span<const double> drift = {});
   [[nodiscard]] double slowness() const noexcept;
@@ -178,8 +178,8 @@ class Particle {
   std::vector<Eigen::Vector3d> shares_;                    ///< of the pushes along a line, in these
 
   // At the state that was evaluated.
-  double Om_ = 0.0, m_by_Om_ = 0.0;
-  double s_ = 0.0, S_ = 1.0, Q_ = 0.0;
+  double Om_ = 0.0, m_by_Om_ = 0.0, shade_ = 1.0;
+  double s_ = 0.0, per_s_ = 0.0, per_S_ = 1.0, Q_ = 0.0;
   double stored_ = 0.0;
   CoreShape::Tensor T_{};                ///< deviator of the load
   std::vector<CoreShape::Tensor> load_;  ///< that of a class by its force

@@ -17,8 +17,9 @@ using std::numbers::pi;
 enum RegimeWord { k_open, k_elastic, k_plastic, k_unloaded };
 constexpr std::array<string_view, 4> k_regime_words{"open", "elastic", "plastic", "unloaded"};
 
-/// Elastic displacement over the program's depth that is rounding.
-constexpr double k_touch = 1e-13;
+/// Elastic displacement over the program's depth that is rounding, and more than what counts as having arrived at a
+/// guard.
+constexpr double k_touch = 4e-13;
 /// That of a contact which may only carry a free centre along: no integrator is exact enough to say that it bears.
 constexpr double k_idle_touch = 1e-8;
 /// Yield function of a contact that may flow, and the least rate at which it then would be passed.
@@ -32,9 +33,10 @@ constexpr double k_alike = 1e-6;
 constexpr double k_least_margin = 1e-5;
 constexpr double k_hard_margin = 1e-3;
 /// How fast an integrated state is drawn back to the equations, over a step of the program: its errors across them
-/// would stay, and add up. Next to the beginning of flow, where a contact may be as shallow, it is one over the
-/// distance from there: no faster than steps are long.
+/// would stay, and add up. Next to the beginning of flow, where a contact may be as shallow, it is half over the
+/// distance from there: slower than the first step is long, for correctors that iterate.
 constexpr double k_pull = 20.0;
+constexpr double k_first_pull = 0.5;
 /// Half the surface over pi R0^2 is 2; the law is fitted up to here.
 constexpr double k_most_coverage = 1.7;
 /// Fitted range of the law.
@@ -146,7 +148,7 @@ double System::evaluate_rates(double xi, std::span<const double> y) {
   evaluate(xi, y);
   if (knows_rates_) return margin_;
   particle_.residual(xi, drift_);
-  const double pull = xi > flow_begin_ ? std::max(k_pull, 1.0 / (xi - flow_begin_)) : k_pull;
+  const double pull = xi > flow_begin_ ? std::max(k_pull, k_first_pull / (xi - flow_begin_)) : k_pull;
   for (double& residual : drift_) residual *= -pull;
   margin_ = particle_.rates(rates_, drift_);
   knows_rates_ = true;
