@@ -34,9 +34,11 @@ constexpr double k_least_margin = 1e-5;
 constexpr double k_hard_margin = 1e-3;
 /// How fast an integrated state is drawn back to the equations, over a step of the program: its errors across them
 /// would stay, and add up. Next to the beginning of flow, where a contact may be as shallow, it is half over the
-/// distance from there: slower than the first step is long, for correctors that iterate.
+/// distance from there: slower than the first step is long, for correctors that iterate. Steps as short as the last
+/// constant see it change smoothly.
 constexpr double k_pull = 20.0;
 constexpr double k_first_pull = 0.5;
+constexpr double k_nearest_flow = 1e-9;
 /// Half the surface over pi R0^2 is 2; the law is fitted up to here.
 constexpr double k_most_coverage = 1.7;
 /// Fitted range of the law.
@@ -148,7 +150,7 @@ double System::evaluate_rates(double xi, std::span<const double> y) {
   evaluate(xi, y);
   if (knows_rates_) return margin_;
   particle_.residual(xi, drift_);
-  const double pull = xi > flow_begin_ ? std::max(k_pull, k_first_pull / (xi - flow_begin_)) : k_pull;
+  const double pull = xi > flow_begin_ ? std::max(k_pull, k_first_pull / (xi - flow_begin_ + k_nearest_flow)) : k_pull;
   for (double& residual : drift_) residual *= -pull;
   margin_ = particle_.rates(rates_, drift_);
   knows_rates_ = true;
