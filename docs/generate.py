@@ -235,6 +235,8 @@ def accepts(schema):
         return "name of a file"
     kinds = {"string": "text", "integer": "whole number", "number": "number"}
     kind = schema.get("type")
+    if isinstance(kind, list):  # texts that may be written as numbers
+        kind = kind[0]
     return kinds.get(kind) or fail(f"a kind of value that this script does not know: {schema}")
 
 
