@@ -220,7 +220,7 @@ class IndependentContacts final : public HybridSystem {
       else if (guards_[g].kind == Centre::k_lost)
         c.lose(law_, log, carried(i, y));
       else if (guards_[g].kind == Centre::k_retreat)
-        c.turn(law_, displacement(i, xi, y), guards_[g].name, log);
+        c.retreat(law_, displacement(i, xi, y), guards_[g].name, log, carried(i, y));
       else
         end = c.pass(law_, *c.next(law_), log);
       // A dent may be shallower than the round-off of a ramp, and so may be what lies beyond a boundary.

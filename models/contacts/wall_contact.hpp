@@ -218,6 +218,11 @@ class WallContact {
     return touches_ && goes_in ? pass_reached(law, 0.0, log) : std::nullopt;
   }
 
+  /// Begins to unload at d. A wall that has only touched leaves no dent, and is lost.
+  void retreat(Law& law, double d, std::string_view event, std::vector<Event>& log, double carried) {
+    if (d > law.opening(branch_)) return turn(law, d, event, log);
+    lose(law, log, carried);
+  }
   /// Begins to unload at d.
   void turn(Law& law, double d, std::string_view event, std::vector<Event>& log) {
     if constexpr (requires { law.refuses_unloading(); }) {

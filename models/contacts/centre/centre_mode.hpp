@@ -144,6 +144,9 @@ class CentreMode {
                                    double target, double xi, std::span<const double> y, const Vector& velocity) {
     const WallDrive& drive = contacts[i].drive();
     if (kind == k_retreat) {
+      // A dent so shallow is gone with the contact: which of several carry the centre is round-off.
+      const double overlap = drive.value(xi) + carried(i, y) - law.opening(contacts[i].branch());
+      if (overlap <= k_shallow) return k_at_rest / reach_;
       // A contact at rest has a rate of round-off.
       const double fastest = std::max(velocity.norm(), fastest_wall_);
       return (drive.rate() + centre_.along(i, velocity) + k_at_rest * fastest) / reach_;
@@ -162,6 +165,8 @@ class CentreMode {
   static constexpr double k_no_change = 1e-14;
   /// Gap or overlap of a wall that is where it meets the particle: it is lost where the gap would be larger.
   static constexpr double k_touch = 1e-12;
+  /// Overlap that is hardly more.
+  static constexpr double k_shallow = 10.0 * k_touch;
   /// Rate of a contact's displacement over the fastest one that is round-off.
   static constexpr double k_at_rest = 1e-9;
 
