@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <random>
@@ -70,8 +72,11 @@ TEST_F(SweepCommand, GoesOnAfterBeingKilledAtRandomMoments) {
     ASSERT_EQ(text(output + "/results.csv"), expected) << "round " << round;
     EXPECT_EQ(text(output + "/histories/7.csv"), text("whole/histories/7.csv"));
   }
-  ASSERT_TRUE(start_and_kill_sweep("early", std::chrono::microseconds(static_cast<long>(0.3 * whole.count()))))
-      << "the sweep is too short to be killed";
+  // A busy machine makes the first sweep longer than those that follow it.
+  ASSERT_TRUE(std::ranges::any_of(std::array{0.3, 0.1, 0.03, 0.01}, [&](double share) {
+    return start_and_kill_sweep("early-" + std::to_string(share),
+                                std::chrono::microseconds(static_cast<long>(share * whole.count())));
+  })) << "the sweep is too short to be killed";
 }
 
 TEST_F(SweepCommand, ShardsOfSeveralProcessesMerge) {
