@@ -119,21 +119,25 @@ class Differences {
            is_same(upper.segments, corners_)) {
       ++corners_;
     }
-    corner_of_row_.assign(history.row_count(), corners.size());
+    std::vector<std::size_t> corner_of_row(history.row_count(), corners.size());
+    std::size_t begun = 0;  // segments after corners that all runs come by
     for (std::size_t corner = 0; corner < corners.size(); ++corner) {
       const std::size_t row = corners[corner];
-      corner_of_row_[row] = corner;
+      corner_of_row[row] = corner;
       // An output row on a corner comes just after the row before it.
       const bool is_shared = base.side(row) < 0.0 && row + 1 < history.row_count() && base.side(row + 1) == 0.0 &&
                              base.time(row + 1) == base.time(row);
-      if (is_shared) corner_of_row_[row + 1] = corner;
-      if (corner < corners_ && base.side(row) > 0.0) ++begun_;
+      if (is_shared) corner_of_row[row + 1] = corner;
+      if (corner < corners_ && base.side(row) > 0.0) ++begun;
+    }
+    for (std::size_t row = 0; row < history.row_count(); ++row) {
+      partners_.push_back(base.segment(row) > begun ? Partners() : partners_of(row, corner_of_row[row]));
     }
   }
 
   /// At a row of the history.
   [[nodiscard]] double at_row(std::size_t row, std::size_t column) const {
-    const auto [below, above] = rows_of(row);
+    const auto& [below, above] = partners_[row];
     if (!below || !above) return k_no_derivative;
     return (upper_.record.history.at(*above, column) - lower_.record.history.at(*below, column)) / width_;
   }
@@ -146,7 +150,7 @@ class Differences {
 
   /// How far the differences to either side are apart.
   [[nodiscard]] double bend(std::size_t row, std::size_t column) const {
-    const auto [below, above] = rows_of(row);
+    const auto& [below, above] = partners_[row];
     if (!below || !above) return 0.0;
     const double sum = upper_.record.history.at(*above, column) + lower_.record.history.at(*below, column);
     return std::abs(sum - 2.0 * history_.at(row, column)) / (0.5 * width_);
@@ -154,12 +158,12 @@ class Differences {
 
  private:
   /// The rows of the two runs that go with one of the history: the same corner, or the same instant of the segment.
-  [[nodiscard]] std::pair<std::optional<std::size_t>, std::optional<std::size_t>> rows_of(std::size_t row) const {
-    if (base_.segment(row) > begun_) return {};
-    if (const std::size_t corner = corner_of_row_[row]; corner < base_.corners().size()) {
-      if (corner >= corners_) return {};
-      return {lower_.segments.corners()[corner], upper_.segments.corners()[corner]};
-    }
+  using Partners = std::pair<std::optional<std::size_t>, std::optional<std::size_t>>;
+
+  /// @param corner  of the row; the number of corners: it is at none
+  [[nodiscard]] Partners partners_of(std::size_t row, std::size_t corner) const {
+    if (corner < corners_) return {lower_.segments.corners()[corner], upper_.segments.corners()[corner]};
+    if (corner < base_.corners().size()) return {};
     return {lower_.segments.row_at(base_.time(row), base_.segment(row)),
             upper_.segments.row_at(base_.time(row), base_.segment(row))};
   }
@@ -170,9 +174,8 @@ class Differences {
   const Variant& upper_;
   double width_;
   std::size_t same_events_ = 0;
-  std::size_t corners_ = 0;                 ///< that all runs come by
-  std::size_t begun_ = 0;                   ///< segments after them
-  std::vector<std::size_t> corner_of_row_;  ///< the number of corners: none
+  std::size_t corners_ = 0;         ///< that all runs come by
+  std::vector<Partners> partners_;  ///< of every row
 };
 
 /// The instants of output rows.
