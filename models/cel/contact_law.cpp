@@ -15,7 +15,7 @@ namespace k = constants;
 
 constexpr double X = 3.0 * pi / 4.0;
 
-/// What a dent and its surroundings say: the contact at no force, and the elastic displacement u_H at the limit force.
+/// The contact of a dent at no force, and its elastic displacement u_H at the limit force.
 struct AtLimit {
   Contact contact;
   double u_H;

@@ -88,7 +88,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
                          .may_rest = true});
   while (unknowns_.size() < particle_.layout().size()) unknowns_.push_back({.name = "core", .kind = differential});
   work_place_ = unknowns_.size();
-  // Of elastic contacts, or of ones that flow, whichever is less.
+  // The work of elastic contacts, or that of contacts that flow, whichever is less.
   const double work = depth_ * depth_ * std::min(std::sqrt(depth_), particle_.material().Y);
   unknowns_.push_back({.name = "work", .kind = Unknown::Kind::quadrature, .scale = work});
   at_.resize(unknowns_.size());

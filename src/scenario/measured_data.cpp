@@ -24,7 +24,7 @@ bool is_missing(std::string_view text) {
   return std::ranges::find(k_missing, word) != k_missing.end();
 }
 
-/// What a cell that is no number may be, and what to do; empty where nothing is known.
+/// Advice on a cell that is no number: its likely meaning, and the way out. Empty where nothing is known.
 std::string advice_for(std::string_view text, char decimal) {
   const char other = decimal == '.' ? ',' : '.';
   if (text.find(other) == std::string_view::npos) return {};

@@ -10,7 +10,7 @@
 
 namespace monograin {
 
-/// What the user gives; absent: to be found.
+/// Layout as the user gives it; absent: to be found.
 struct TableFormat {
   enum class Units { found, row, none };
 
@@ -22,7 +22,7 @@ struct TableFormat {
   double most_missing = 0.0;           ///< share of the rows that may lack a number in a column that is asked for
 };
 
-/// What was found. Lines are counted from 1 as an editor does; 0: there is none.
+/// Layout as it was found. Lines are counted from 1 as an editor does; 0: there is none.
 struct TableLayout {
   std::string encoding{};  ///< see DecodedText
   char separator = ',';
@@ -50,7 +50,7 @@ struct TableLayout {
 /// Whether this is CSV in UTF-8 with commas and points, the headings first and nothing between them and the data.
 [[nodiscard]] bool is_plain(const TableLayout& layout) noexcept;
 
-/// What was found: "UTF-16LE, semicolon between cells, decimal comma, headings in line 3, units in line 4".
+/// Describes a layout: "UTF-16LE, semicolon between cells, decimal comma, headings in line 3, units in line 4".
 [[nodiscard]] std::string describe(const TableLayout& layout);
 
 /// The word for a separator: "comma", "semicolon", "tab", "blanks".

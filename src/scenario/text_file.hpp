@@ -33,7 +33,7 @@ enum class FileKind {
 /// @throws std::runtime_error naming the file and why it cannot be written
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
-/// The same of a text that comes in parts: `produce` hands each to the sink that it is given.
+/// Writes a text that comes in parts, whole or not at all: `produce` hands each part to the sink that it is given.
 using TextSink = std::function<void(std::string_view part)>;
 void write_text_file(const std::filesystem::path& file, const std::function<void(const TextSink&)>& produce);
 

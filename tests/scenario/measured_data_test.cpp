@@ -43,7 +43,7 @@ std::string line_of(const Cells& cells, const Writing& writing) {
   return line;
 }
 
-/// What stands above the headings.
+/// Lines above the headings.
 enum class Preamble { none, title, specimen, comments };
 
 std::string preamble_text(Preamble preamble, const Writing& writing) {

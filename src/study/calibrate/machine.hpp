@@ -19,7 +19,7 @@ struct Machine {
   std::vector<double> deflections{};  ///< [m]
 
   [[nodiscard]] bool is_rigid() const noexcept { return offset == 0.0 && compliance == 0.0 && forces.empty(); }
-  /// What the machine adds to the displacement of the particle under this force [m]. The table is continued by its
+  /// Displacement [m] that the machine adds to that of the particle under this force. The table is continued by its
   /// first and last pieces.
   [[nodiscard]] double addition(double force) const noexcept;
 };

@@ -146,7 +146,7 @@ class LevelReader {
         FactorDistribution::Shape::normal, {mean->number, deviation->number, 0.0}, mean->is_in_radii};
   }
 
-  /// Of a log-normal or a triangular distribution.
+  /// Reads a log-normal or a triangular distribution.
   void read_parameters(bool is_lognormal) {
     const std::string_view key = is_lognormal ? "lognormal" : "triangular";
     const std::vector<std::string> texts = section_.texts(key);

@@ -88,7 +88,7 @@ struct ReadValue {
 /// What is wrong with the unit in a column's heading; empty: nothing. No unit is SI.
 [[nodiscard]] std::string unit_problem(const KeySpec& spec, const std::string& unit);
 
-/// What a design asks of the factors.
+/// A design asks one of these of its factors.
 enum class Levels {
   points,  ///< a grid: ranges are divided
   whole,   ///< ranges as they are

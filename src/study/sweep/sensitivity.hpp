@@ -1,4 +1,4 @@
-/// What a sweep of design "saltelli" or "morris" says of its results: which factor their spread is due to.
+/// Sensitivities by a sweep of design "saltelli" or "morris": which factor the spread of its results is due to.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace monograin {
 
-/// Of one result: what goes with the design, the other is empty.
+/// One result with its indices or its effects, as the design has it; the other member is empty.
 struct ResultSensitivity {
   std::string result;  ///< its formula
   SobolIndices sobol{};

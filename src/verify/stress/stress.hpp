@@ -37,7 +37,7 @@ struct StressFailure {
   std::string file;  ///< its name in the folder
 };
 
-/// What a stress test has come to. Scene by scene the same for the same seed and models, whatever the number of
+/// Outcome of a stress test. Scene by scene the same for the same seed and models, whatever the number of
 /// threads.
 struct StressReport {
   std::uint64_t seed = 1;

@@ -1,4 +1,4 @@
-// What `monograin data` shows: how a file is written, its columns, and its ways of loading and unloading.
+// `monograin data` shows how a file is written, its columns, and its ways of loading and unloading.
 
 #include "study/calibrate/data_report.hpp"
 

@@ -53,7 +53,7 @@ TEST(SobolIndices, OfIshigamisFunctionAreWithinTheirIntervals) {
       }
     }
   }
-  // Of 120 intervals six may be, if the samples were random; those of a sequence are nearer than their intervals say.
+  // Six of 120 intervals may miss if the samples are random; those of a sequence are nearer than their intervals say.
   EXPECT_LE(outside, 6);
 }
 
