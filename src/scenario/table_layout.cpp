@@ -32,10 +32,8 @@ constexpr std::array<std::string_view, 9> k_other_units{"-", "1", "%", "sec", "H
 bool is_unit(std::string_view text) {
   if (text.empty()) return false;
   if (std::ranges::find(k_other_units, text) != k_other_units.end()) return true;
-  return std::ranges::any_of(k_measured_dimensions, [text](Dimension dimension) {
-    const auto& units = dimension_info(dimension).units;
-    return std::ranges::find(units, text, &Unit::symbol) != units.end();
-  });
+  return std::ranges::any_of(k_measured_dimensions,
+                             [text](Dimension dimension) { return is_unit_of(text, dimension); });
 }
 
 std::string_view without_blanks(std::string_view text) {

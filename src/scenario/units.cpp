@@ -115,6 +115,11 @@ const DimensionInfo& dimension_info(Dimension dimension) noexcept {
   return *std::ranges::find(k_dimensions, dimension, &DimensionInfo::dimension);
 }
 
+bool is_unit_of(std::string_view text, Dimension dimension) noexcept {
+  const auto& units = dimension_info(dimension).units;
+  return std::ranges::find(units, text, &Unit::symbol) != units.end();
+}
+
 Range plausible_range(Dimension dimension, Range range) noexcept {
   const DimensionInfo& info = dimension_info(dimension);
   if (range.lower == 0.0 && range.lower_is_open && info.smallest > 0.0) {

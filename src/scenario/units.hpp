@@ -29,6 +29,9 @@ struct DimensionInfo {
 
 [[nodiscard]] const DimensionInfo& dimension_info(Dimension dimension) noexcept;
 
+/// Whether a text is a unit of the dimension.
+[[nodiscard]] bool is_unit_of(std::string_view text, Dimension dimension) noexcept;
+
 /// The part of `range` that is physically plausible; bounds are finite.
 ///
 /// Huge and tiny values come from slips of unit or sign and would only fail later, far from the line that caused them.

@@ -50,15 +50,13 @@ void scale(MeasuredQuantity& quantity, double factor) {
 
 /// The unit a thousand times larger or smaller; empty where there is none.
 std::string_view other_unit(const MeasuredQuantity& quantity, double factor) {
-  for (const Dimension dimension : {Dimension::length, Dimension::stress, Dimension::force}) {
-    const DimensionInfo& info = dimension_info(dimension);
-    if (info.si != quantity.si) continue;
-    const double wanted = quantity.unit_factor * factor;
-    const auto found =
-        std::ranges::find_if(info.units, [=](const Unit& u) { return std::abs(u.factor / wanted - 1.0) < k_same; });
-    if (found != info.units.end()) return found->symbol;
-  }
-  return {};
+  const auto dimension = calibration::dimension_of(quantity.si);
+  if (!dimension) return {};
+  const double wanted = quantity.unit_factor * factor;
+  const auto& units = dimension_info(*dimension).units;
+  const auto found =
+      std::ranges::find_if(units, [=](const Unit& u) { return std::abs(u.factor / wanted - 1.0) < k_same; });
+  return found == units.end() ? std::string_view() : found->symbol;
 }
 
 void add_units(const Calibration& calibration, std::vector<Suspicion>& suspicions) {

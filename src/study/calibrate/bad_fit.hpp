@@ -23,8 +23,8 @@ struct TrialFit {
 };
 using FitTrial = std::function<TrialFit(const Calibration&)>;
 
-/// What makes the fit good: units of x or y a thousand times larger or smaller, other signs, a first touch elsewhere.
-/// Each is tried alone.
+/// Finds a change of the data that makes the fit good: units of x or y a thousand times larger or smaller, other signs,
+/// a first touch elsewhere. Each is tried alone.
 /// @return a clause without capital and full stop; empty where nothing makes it explain k_least_explained
 [[nodiscard]] std::string likely_cause(const Calibration& calibration, const FitTrial& fit);
 

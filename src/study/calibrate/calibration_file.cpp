@@ -21,6 +21,7 @@
 #include "scenario/words.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/data_section.hpp"
 
 namespace monograin {
 namespace {
@@ -30,32 +31,6 @@ using namespace calibration;
 
 constexpr double k_ratio_for_log = 100.0;  // of bounds: from here on their parameter is sought in its logarithm
 constexpr std::size_t k_most_zeros = 20;   // that are reported one by one
-
-struct SeparatorWord {
-  std::string_view word;
-  char separator;
-};
-constexpr std::array k_separators{SeparatorWord{"comma", ','}, SeparatorWord{"semicolon", ';'},
-                                  SeparatorWord{"tab", '\t'},  SeparatorWord{"blanks", ' '},
-                                  SeparatorWord{",", ','},     SeparatorWord{";", ';'},
-                                  SeparatorWord{"\t", '\t'},   SeparatorWord{" ", ' '}};
-
-/// The dimension whose SI unit this is.
-std::optional<Dimension> dimension_of(std::string_view si) {
-  for (const Dimension dimension : {Dimension::length, Dimension::stress, Dimension::force}) {
-    if (dimension_info(dimension).si == si) return dimension;
-  }
-  return std::nullopt;
-}
-
-/// What a file says of one column.
-struct ColumnSpec {
-  ColumnRequest request;
-  std::string quantity;  ///< empty: that of the heading
-  std::string unit;      ///< empty: that of the heading
-  SourceLocation quantity_at;
-  SourceLocation unit_at;
-};
 
 class CalibrationReader {
  public:
@@ -173,52 +148,6 @@ class CalibrationReader {
     for (const Section::Origin& origin : curves) read_curve(origin);
   }
 
-  /// How a key is written that may be a name, a number, a list or a table.
-  static KeySpec::Kind kind_of(const toml::table& table, std::string_view key, KeySpec::Kind otherwise) {
-    const toml::node* node = table.get(key);
-    if (node == nullptr) return otherwise;
-    if (node->is_table()) return KeySpec::Kind::table;
-    if (node->is_array()) return KeySpec::Kind::texts;
-    if (node->is_integer() && otherwise == KeySpec::Kind::text) return KeySpec::Kind::integer;
-    return otherwise;
-  }
-
-  static DataKinds kinds_of(const toml::table& data) {
-    const auto column = [&data](std::string_view key) {
-      const KeySpec::Kind kind = kind_of(data, key, KeySpec::Kind::text);
-      return kind == KeySpec::Kind::texts ? KeySpec::Kind::text : kind;
-    };
-    DataKinds kinds{.x = column("x"), .y = column("y"), .weight_column = column("weight_column")};
-    if (kinds.weight_column == KeySpec::Kind::table) kinds.weight_column = KeySpec::Kind::text;
-    if (kind_of(data, "units", KeySpec::Kind::choice) == KeySpec::Kind::texts) kinds.units = KeySpec::Kind::texts;
-    const toml::node* compliance = data.get("compliance");
-    if (compliance != nullptr && compliance->is_number()) kinds.compliance = KeySpec::Kind::quantity;
-    if (compliance != nullptr && compliance->is_table()) kinds.compliance = KeySpec::Kind::table;
-    return kinds;
-  }
-
-  /// How the file is written, as far as the user says.
-  TableFormat format_of(const Section& data, const DataKinds& kinds) {
-    TableFormat format{.most_missing = k_most_missing};
-    if (const std::string word = data.text("separator"); !word.empty()) {
-      const auto found = std::ranges::find(k_separators, word, &SeparatorWord::word);
-      if (found != k_separators.end()) {
-        format.separator = found->separator;
-      } else {
-        faults_.add(data.value_place("separator"),
-                    fmt::format("separator = \"{}\": expected comma, semicolon, tab or blanks", shown(word)));
-      }
-    }
-    if (const std::string decimal = data.text("decimal"); !decimal.empty()) format.decimal = decimal.front();
-    if (const auto skip = data.number("skip")) format.skip = static_cast<std::size_t>(*skip);
-    if (kinds.units == KeySpec::Kind::texts) {
-      format.unit_of = data.texts("units");
-    } else if (const std::string row = data.text("units"); !row.empty()) {
-      format.units = row == "row" ? TableFormat::Units::row : TableFormat::Units::none;
-    }
-    return format;
-  }
-
   void read_curve(const Section::Origin& origin) {
     const DataKinds kinds = kinds_of(*origin.table);
     const Keys keys = data_keys(kinds);
@@ -232,13 +161,13 @@ class CalibrationReader {
                   fmt::format("weights = \"{}\": those of the first curve are \"{}\"; expected the same for all",
                               weighting, made_.weighting));
     }
-    std::vector<ColumnSpec> specs{column_spec(data, "x", kinds.x), column_spec(data, "y", kinds.y)};
+    std::vector<ColumnSpec> specs{column_spec(reading_, data, "x", kinds.x), column_spec(reading_, data, "y", kinds.y)};
     if (weighting == "column") {
       if (!data.has_or_misspells("weight_column")) {
         faults_.add(data.value_place("weights"),
                     "weights = \"column\" needs the column; expected for example weight_column = \"weight[-]\"");
       }
-      specs.push_back(column_spec(data, "weight_column", kinds.weight_column));
+      specs.push_back(column_spec(reading_, data, "weight_column", kinds.weight_column));
     } else if (is_clean && data.has("weight_column")) {
       faults_.add(data.key_place("weight_column"),
                   fmt::format("key 'weight_column' belongs to weights = \"column\"; this is \"{}\"", weighting));
@@ -261,12 +190,12 @@ class CalibrationReader {
     curve.file = path.string();
     std::vector<ColumnRequest> wanted;
     for (const ColumnSpec& spec : specs) wanted.push_back(spec.request);
-    MeasuredData measured = parse_measured(text, curve.file, wanted, faults_, format_of(data, kinds));
+    MeasuredData measured = parse_measured(text, curve.file, wanted, faults_, format_of(reading_, data, kinds));
     curve.text = std::move(measured.text);
     curve.layout = std::move(measured.layout);
     curve.columns = {measured.columns[0].number, measured.columns[1].number};
     curve.left_out = std::move(measured.left_out);
-    curve.machine = machine_in(data, kinds.compliance);
+    curve.machine = machine_in(reading_, data, kinds.compliance, file_.parent_path());
     curve.overrides = data.texts("set");
     take_scenario(data, curve);
     const MeasuredQuantity x = quantity(specs[0], measured.columns[0]);
@@ -316,38 +245,6 @@ class CalibrationReader {
       faults_.add(data.value_place("set"),
                   fmt::format("the scenario's model is '{}'; expected the same for every curve", made_.scenario.model));
     }
-  }
-
-  [[nodiscard]] ColumnRequest request_of(const Section& section, std::string_view key, KeySpec::Kind kind) const {
-    ColumnRequest request{.name = {}, .where = section.value_place(key), .naming = {}};
-    if (kind == KeySpec::Kind::integer) {
-      request.number = static_cast<std::size_t>(section.number(key).value_or(0.0));
-      request.naming = fmt::format("{} = {}", key, request.number);
-    } else {
-      request.name = section.text(key);
-      request.naming = fmt::format("{} = \"{}\"", key, shown(request.name));
-    }
-    return request;
-  }
-
-  [[nodiscard]] ColumnSpec column_spec(const Section& data, std::string_view key, KeySpec::Kind kind) {
-    if (kind != KeySpec::Kind::table) {
-      return {.request = request_of(data, key, kind),
-              .quantity = {},
-              .unit = {},
-              .quantity_at = data.value_place(key),
-              .unit_at = data.value_place(key)};
-    }
-    const Section::Origin origin = data.table(key, std::string(key));
-    const KeySpec::Kind column_kind = kind_of(*origin.table, "column", KeySpec::Kind::text);
-    const bool is_number = column_kind == KeySpec::Kind::integer;
-    const Keys keys = column_keys(is_number ? column_kind : KeySpec::Kind::text);
-    const Section column(reading_, origin, keys);
-    return {.request = request_of(column, "column", column_kind),
-            .quantity = column.text("quantity"),
-            .unit = column.text("unit"),
-            .quantity_at = column.value_place("quantity"),
-            .unit_at = column.value_place(column.has("unit") ? "unit" : "column")};
   }
 
   /// The column in SI; without an observable where something is wrong with it, or with the scenario.
@@ -418,65 +315,7 @@ class CalibrationReader {
 
   // --- the machine
 
-  /// What the curve's table says of the machine.
-  [[nodiscard]] Machine machine_in(const Section& data, KeySpec::Kind kind) {
-    Machine machine{.offset = data.number("offset").value_or(0.0)};
-    if (!data.has("compliance")) return machine;
-    if (kind == KeySpec::Kind::quantity) machine.compliance = data.number("compliance").value_or(0.0);
-    if (kind == KeySpec::Kind::text) machine.compliance = compliance_in(data, "compliance").value.value_or(0.0);
-    if (kind == KeySpec::Kind::table) read_deflections(data, machine);
-    return machine;
-  }
-
-  /// A compliance written with its unit; says what is wrong with it.
-  [[nodiscard]] ParsedCompliance compliance_in(const Section& section, std::string_view key) {
-    const std::string text = section.text(key);
-    ParsedCompliance parsed = parse_compliance(text);
-    if (parsed.value && !(*parsed.value >= 0.0)) parsed.value.reset();
-    if (!parsed.value && !text.empty()) {
-      faults_.add(section.value_place(key),
-                  fmt::format("{} = \"{}\": expected a length over a force, 0 or more, for example \"20 nm/N\"", key,
-                              shown(text)));
-    }
-    return parsed;
-  }
-
-  void read_deflections(const Section& data, Machine& machine) {
-    const Keys keys = deflection_keys();
-    const Section section(reading_, data.table("compliance", "compliance"), keys);
-    const std::string name = section.text("table");
-    if (name.empty()) return;
-    const fs::path path = file_.parent_path() / name;
-    const auto [text, problem] = read_text_file(path, k_largest_data);
-    if (!problem.empty()) {
-      return faults_.add(section.value_place("table"),
-                         fmt::format("table = \"{}\": {} ({}); expected a path relative to this file", shown(name),
-                                     problem, on_one_line(path.string())));
-    }
-    const std::vector<ColumnRequest> wanted{request_of(section, "force", KeySpec::Kind::text),
-                                            request_of(section, "displacement", KeySpec::Kind::text)};
-    const std::size_t before = faults_.size();
-    MeasuredData measured = parse_measured(text, path.string(), wanted, faults_);
-    if (faults_.size() > before) return;
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-      const std::string& unit = measured.columns[k].unit;
-      const ParsedQuantity one = parse_quantity("1 " + unit, k == 0 ? Dimension::force : Dimension::length, {});
-      if (!one.value) {
-        faults_.add(wanted[k].where, fmt::format("{}: {}", wanted[k].naming, one.problem));
-        continue;
-      }
-      for (double& value : measured.columns[k].values) value *= *one.value;
-    }
-    machine.forces = std::move(measured.columns[0].values);
-    machine.deflections = std::move(measured.columns[1].values);
-    const auto fall = std::ranges::adjacent_find(machine.forces, std::greater_equal<>());
-    if (machine.forces.size() < 2 || fall != machine.forces.end()) {
-      faults_.add(section.value_place("table"),
-                  fmt::format("table = \"{}\": expected at least two rows, the forces ascending", shown(name)));
-    }
-  }
-
-  /// What belongs together only when all is read: the machine adds to a displacement, under the force beside it.
+  /// The machine adds to a displacement, under the force beside it: that both are there shows when all is read.
   void check_machine(const Section& root) {
     const auto is_free = [this](std::string_view path) {
       return std::ranges::find(made_.free, path, [](const auto& free) { return free.key.path; }) != made_.free.end();
@@ -643,7 +482,8 @@ class CalibrationReader {
     const Keys keys = bounds_keys(number, {kind_of_bound("from"), kind_of_bound("to"), kind_of_bound("start")});
     const Section bounds(reading_, origin, keys);
     const auto bound = [&](std::string_view key) {
-      return kind_of_bound(key) == KeySpec::Kind::text ? compliance_in(bounds, key).value : bounds.number(key);
+      return kind_of_bound(key) == KeySpec::Kind::text ? compliance_in(reading_, bounds, key).value
+                                                       : bounds.number(key);
     };
     const auto from = bound("from");
     const auto to = bound("to");

@@ -164,6 +164,13 @@ Keys bounds_keys(const NumberKey& number, const std::array<Kind, 3>& kinds) {
   };
 }
 
+std::optional<Dimension> dimension_of(std::string_view si) {
+  for (const Dimension dimension : {Dimension::length, Dimension::stress, Dimension::force}) {
+    if (dimension_info(dimension).si == si) return dimension;
+  }
+  return std::nullopt;
+}
+
 Keys fit_keys() {
   KeySpec loss = choice_key("loss", "how much large residuals count", k_losses);
   loss.default_value = k_losses.front();

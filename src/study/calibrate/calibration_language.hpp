@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -40,10 +41,12 @@ struct DataKinds {
 [[nodiscard]] Keys column_keys(KeySpec::Kind column);
 /// The parameters that are sought among a scenario's numbers.
 [[nodiscard]] Keys free_keys(const std::vector<NumberKey>& numbers);
-/// What the machine adds to the displacement, which may be sought, too.
+/// Numbers of the machine, which may be sought, too: first touch and the give of its frame.
 [[nodiscard]] std::vector<NumberKey> machine_keys();
 /// One of the parameters. @param from, to, start  quantity; text for a compliance with its unit
 [[nodiscard]] Keys bounds_keys(const NumberKey& number, const std::array<KeySpec::Kind, 3>& kinds);
+/// The dimension of a measured column, by its SI unit; none for columns of pure numbers.
+[[nodiscard]] std::optional<Dimension> dimension_of(std::string_view si);
 /// How the fit is made.
 [[nodiscard]] Keys fit_keys();
 

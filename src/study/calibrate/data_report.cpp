@@ -72,16 +72,10 @@ std::vector<DataBranch> branches_of(const std::vector<double>& x) {
   return branches;
 }
 
-/// Whether a unit is one of the dimension.
-bool is_of(std::string_view unit, Dimension dimension) {
-  const auto& units = dimension_info(dimension).units;
-  return std::ranges::find(units, unit, &Unit::symbol) != units.end();
-}
-
 /// The first column of numbers in units of the dimension.
 std::optional<std::size_t> column_of(const TableLayout& layout, Dimension dimension) {
   for (std::size_t k = 0; k < layout.units.size(); ++k) {
-    if (layout.is_numeric[k] && is_of(layout.units[k], dimension)) return k + 1;
+    if (layout.is_numeric[k] && is_unit_of(layout.units[k], dimension)) return k + 1;
   }
   return std::nullopt;
 }

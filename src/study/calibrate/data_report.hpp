@@ -1,4 +1,4 @@
-/// What was read from a file of measured data: for a look at it before anything is fitted.
+/// Report of a file of measured data as it was read, to be seen before anything is fitted.
 #pragma once
 
 #include <cstddef>

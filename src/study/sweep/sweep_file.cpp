@@ -23,6 +23,7 @@
 #include "study/sweep/design_table.hpp"
 #include "study/sweep/factor.hpp"
 #include "study/sweep/sampling.hpp"
+#include "study/sweep/sweep_language.hpp"
 
 namespace monograin {
 namespace {
@@ -30,85 +31,8 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = KeySpec::Kind;
 
-constexpr double k_most_runs = 1e6;
 constexpr double k_most_maxpro_runs = 1e5;
-constexpr std::array<std::string_view, 9> k_designs{"grid", "table",  "maxpro",   "sobol", "halton",
-                                                    "lhs",  "random", "saltelli", "morris"};
-constexpr std::string_view k_filling_designs = "maxpro, sobol, halton, lhs, random";
-constexpr std::string_view k_random_designs = "maxpro, sobol, halton, lhs, random, saltelli, morris";
-constexpr std::string_view k_index_designs = "saltelli, morris";
-
-[[nodiscard]] bool is_one_of(std::string_view design, std::string_view listed) {
-  for (std::size_t begin = 0; begin < listed.size();) {
-    const std::size_t end = std::min(listed.find(", ", begin), listed.size());
-    if (listed.substr(begin, end - begin) == design) return true;
-    begin = end + 2;
-  }
-  return false;
-}
-
-// --- the language
-
-std::vector<KeySpec> root_keys(bool contains_scenario) {
-  return {
-      {.name = "scenario",
-       .meaning = "scenario that is varied, or the name of its file",
-       .kind = contains_scenario ? Kind::table : Kind::file,
-       .is_required = true,
-       .example = contains_scenario ? "[scenario]" : "\"die.toml\""},
-      {.name = "design",
-       .meaning = "how the runs are chosen",
-       .kind = Kind::choice,
-       .choices = {k_designs.begin(), k_designs.end()},
-       .default_value = k_designs.front()},
-      {.name = "runs",
-       .meaning = "number of runs of a design that fills the space",
-       .kind = Kind::integer,
-       .range = {.lower = 2.0, .upper = k_most_runs},
-       .example = "100",
-       .only_with = k_filling_designs},
-      {.name = "samples",
-       .meaning = "of saltelli: points whose changes are followed; of morris: trajectories",
-       .kind = Kind::integer,
-       .range = {.lower = 2.0, .upper = k_most_runs},
-       .example = "512",
-       .only_with = k_index_designs},
-      {.name = "seed",
-       .meaning = "seed of a design that is drawn",
-       .kind = Kind::integer,
-       .range = {.lower = 0.0, .upper = 1e15},
-       .default_value = 1.0,
-       .only_with = k_random_designs},
-      {.name = "results",
-       .meaning = "formulas over columns of the results, for which indices are estimated",
-       .kind = Kind::texts,
-       .example = "[\"max.axial.force\"]",
-       .only_with = k_index_designs},
-      {.name = "table",
-       .meaning = "file with one column per key",
-       .kind = Kind::file,
-       .example = "\"runs.csv\"",
-       .only_with = "table"},
-      {.name = "histories", .meaning = "keep the history of every run", .kind = Kind::toggle, .default_value = false},
-      {.name = "vary",
-       .meaning = "the keys that are varied, and over what",
-       .kind = Kind::table,
-       .may_be_empty = false,
-       .example = "[vary]"},
-      {.name = "constraints",
-       .meaning = "inequalities between varied keys, in SI",
-       .kind = Kind::texts,
-       .example = "[\"100 <= material.youngs_modulus / material.yield_stress\"]"},
-  };
-}
-
-[[nodiscard]] std::string override_text(const std::string& key, const SweepValue& value, bool is_toggle) {
-  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}={}", key, *number);
-  const std::string& word = std::get<std::string>(value);
-  return fmt::format("{}={}", key, is_toggle ? word : in_quotes(word));
-}
-
-/// What decides on the runs: the file without what is asked of their results, its comments and its layout.
+/// The file as far as it decides on the runs: without what is asked of their results, comments and layout.
 [[nodiscard]] std::string text_of_runs(const toml::table& tree) {
   toml::table runs = tree;
   runs.erase("results");
@@ -126,7 +50,7 @@ class SweepReader {
     if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a sweep file");
     const toml::table tree = parse_document(text, file_.string());
     digested_ = text_of_runs(tree);
-    const std::vector<KeySpec> keys = root_keys(tree["scenario"].is_table());
+    const std::vector<KeySpec> keys = sweep::root_keys(tree["scenario"].is_table());
     const SourceLocation top{file_.string()};
     const Section root(reading_, {&tree, top, "the sweep"}, keys);
     design_ = root.text("design");
@@ -152,34 +76,30 @@ class SweepReader {
     faults_.throw_if_any();
     digest_varied_files();
 
-    Sweep sweep{.name = file_.stem().string(),
-                .design = design_,
-                .factors = {},
-                .runs = std::move(runs_),
-                .left_out = left_out_,
-                .points = std::move(points_),
-                .scenario = std::move(*scenario_),
-                .scenario_name = scenario_name_,
-                .keeps_histories = root.toggle("histories").value_or(false),
-                .results = root.texts("results"),
-                .digest = text_digest(fmt::format("monograin {}\n{}", version(), digested_))};
-    for (const Factor& factor : factors_) {
-      sweep.factors.push_back({factor.key, factor.unit(), factor.is_toggle()});
-    }
-    return sweep;
+    return {.name = file_.stem().string(),
+            .design = design_,
+            .factors = sweep_factors(),
+            .runs = std::move(runs_),
+            .left_out = left_out_,
+            .points = std::move(points_),
+            .scenario = std::move(*scenario_),
+            .scenario_name = scenario_name_,
+            .keeps_histories = root.toggle("histories").value_or(false),
+            .results = root.texts("results"),
+            .digest = text_digest(fmt::format("monograin {}\n{}", version(), digested_))};
   }
 
  private:
   void check_keys_of_design(const Section& root, const std::vector<KeySpec>& keys) {
     for (const KeySpec& spec : keys) {
-      if (!spec.only_with.empty() && !is_one_of(design_, spec.only_with) && root.has(spec.name)) {
+      if (!spec.only_with.empty() && !sweep::is_one_of(design_, spec.only_with) && root.has(spec.name)) {
         faults_.add(root.key_place(spec.name),
                     fmt::format("key '{}' goes with design = {} only", spec.name, spec.only_with));
       }
     }
     std::vector<std::string_view> needed{"vary"};
-    if (is_one_of(design_, k_filling_designs)) needed = {"runs", "vary"};
-    if (is_one_of(design_, k_index_designs)) needed = {"samples", "results", "vary"};
+    if (sweep::is_one_of(design_, sweep::k_filling_designs)) needed = {"runs", "vary"};
+    if (sweep::is_one_of(design_, sweep::k_index_designs)) needed = {"samples", "results", "vary"};
     if (design_ == "table") needed = {"table"};
     for (const std::string_view key : needed) {
       if (root.has_or_misspells(key)) continue;
@@ -400,9 +320,9 @@ class SweepReader {
       }
       count *= static_cast<double>(factor.values.size());
     }
-    if (count > k_most_runs) {
+    if (count > sweep::k_most_runs) {
       faults_.add(factors_.front().where,
-                  fmt::format("the grid has {:g} points; expected at most {:g}", count, k_most_runs));
+                  fmt::format("the grid has {:g} points; expected at most {:g}", count, sweep::k_most_runs));
       return;
     }
     std::vector<FactorValue> values(factors_.size());
@@ -468,7 +388,7 @@ class SweepReader {
   }
 
   void make_samples(const Section& root) {
-    const bool is_for_indices = is_one_of(design_, k_index_designs);
+    const bool is_for_indices = sweep::is_one_of(design_, sweep::k_index_designs);
     if (is_for_indices && !constraints_.empty()) {
       faults_.add(constraints_.front().where, "the points of this design depend on each other: it has no constraints");
     }
@@ -482,9 +402,9 @@ class SweepReader {
     const std::size_t each = design_ == "saltelli" ? factors_.size() + 2
                              : design_ == "morris" ? factors_.size() + 1
                                                    : 1;
-    if (static_cast<double>(count * each) > k_most_runs) {
-      faults_.add(root.value_place("samples"),
-                  fmt::format("{} runs for each of {} samples; expected at most {:g} runs", each, count, k_most_runs));
+    if (static_cast<double>(count * each) > sweep::k_most_runs) {
+      faults_.add(root.value_place("samples"), fmt::format("{} runs for each of {} samples; expected at most {:g} runs",
+                                                           each, count, sweep::k_most_runs));
     }
     if (faults_.size() > 0) return;
     const auto seed = static_cast<std::uint64_t>(root.number("seed").value_or(1.0));
@@ -644,10 +564,11 @@ class SweepReader {
   /// Refuses a sweep whose scenario is itself at fault: whatever a run sets, the scenario's own text has a fault. The
   /// first run that is accepted tells which files the scenario names, which decide on the results too.
   void check_runs() {
+    const std::vector<SweepFactor> factors = sweep_factors();
     std::optional<std::vector<Fault>> own;
     for (std::size_t run = 0; run < runs_.size(); ++run) {
       try {
-        const CheckedScenario scenario = scenario_->with(overrides(runs_[run]));
+        const CheckedScenario scenario = scenario_with(*scenario_, factors, runs_[run]);
         for (const auto& [option, curve] : scenario.curves) digested_ += '\n' + curve.text;
         return;
       } catch (const ScenarioError& error) {
@@ -671,12 +592,10 @@ class SweepReader {
     }
   }
 
-  [[nodiscard]] std::vector<std::string> overrides(const std::vector<SweepValue>& run) const {
-    std::vector<std::string> texts;
-    for (std::size_t f = 0; f < factors_.size(); ++f) {
-      texts.push_back(override_text(factors_[f].key, run[f], factors_[f].is_toggle()));
-    }
-    return texts;
+  [[nodiscard]] std::vector<SweepFactor> sweep_factors() const {
+    std::vector<SweepFactor> factors;
+    for (const Factor& factor : factors_) factors.push_back({factor.key, factor.unit(), factor.is_toggle()});
+    return factors;
   }
 
   struct PlacedConstraint {
@@ -710,65 +629,8 @@ class SweepReader {
 
 Sweep read_sweep(const fs::path& file) { return SweepReader(file).read(); }
 
-void SweepRuns::add(const std::vector<SweepValue>& values) {
-  words_.resize(values.size());
-  for (std::size_t f = 0; f < values.size(); ++f) {
-    if (const auto* number = std::get_if<double>(&values[f])) {
-      cells_.push_back(*number);
-      continue;
-    }
-    const std::string& word = std::get<std::string>(values[f]);
-    auto known = std::ranges::find(words_[f], word);
-    if (known == words_[f].end()) known = words_[f].insert(known, word);
-    cells_.push_back(static_cast<double>(known - words_[f].begin()));
-  }
-  ++size_;
-}
-
-std::vector<SweepValue> SweepRuns::operator[](std::size_t run) const {
-  const std::size_t factors = words_.size();
-  std::vector<SweepValue> values;
-  values.reserve(factors);
-  for (std::size_t f = 0; f < factors; ++f) {
-    const double cell = cells_[run * factors + f];
-    if (words_[f].empty()) {
-      values.emplace_back(cell);
-    } else {
-      values.emplace_back(words_[f][static_cast<std::size_t>(cell)]);
-    }
-  }
-  return values;
-}
-
-std::vector<std::string> overrides_of(const Sweep& sweep, std::size_t run) {
-  const std::vector<SweepValue> values = sweep.runs[run];
-  std::vector<std::string> texts;
-  for (std::size_t f = 0; f < values.size(); ++f) {
-    texts.push_back(override_text(sweep.factors[f].key, values[f], sweep.factors[f].is_toggle));
-  }
-  return texts;
-}
-
 CheckedScenario scenario_of(const Sweep& sweep, std::size_t run) {
-  const std::vector<SweepValue> values = sweep.runs[run];
-  std::vector<std::string> words;
-  std::vector<std::string> keys;
-  std::vector<double> numbers;
-  for (std::size_t f = 0; f < values.size(); ++f) {
-    const auto& [key, unit, is_toggle] = sweep.factors[f];
-    if (const auto* number = std::get_if<double>(&values[f])) {
-      keys.push_back(key);
-      numbers.push_back(*number);
-    } else {
-      words.push_back(override_text(key, values[f], is_toggle));
-    }
-  }
-  return sweep.scenario.with(words, keys, numbers);
-}
-
-std::string cell_of(const SweepValue& value) {
-  const auto* number = std::get_if<double>(&value);
-  return number == nullptr ? std::get<std::string>(value) : csv_number(*number);
+  return scenario_with(sweep.scenario, sweep.factors, sweep.runs[run]);
 }
 
 std::string design_text(const Sweep& sweep) {

@@ -1,0 +1,72 @@
+#include "study/sweep/sweep_language.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace monograin::sweep {
+
+using Kind = KeySpec::Kind;
+
+bool is_one_of(std::string_view design, std::string_view listed) {
+  for (std::size_t begin = 0; begin < listed.size();) {
+    const std::size_t end = std::min(listed.find(", ", begin), listed.size());
+    if (listed.substr(begin, end - begin) == design) return true;
+    begin = end + 2;
+  }
+  return false;
+}
+
+std::vector<KeySpec> root_keys(bool contains_scenario) {
+  return {
+      {.name = "scenario",
+       .meaning = "scenario that is varied, or the name of its file",
+       .kind = contains_scenario ? Kind::table : Kind::file,
+       .is_required = true,
+       .example = contains_scenario ? "[scenario]" : "\"die.toml\""},
+      {.name = "design",
+       .meaning = "how the runs are chosen",
+       .kind = Kind::choice,
+       .choices = {k_designs.begin(), k_designs.end()},
+       .default_value = k_designs.front()},
+      {.name = "runs",
+       .meaning = "number of runs of a design that fills the space",
+       .kind = Kind::integer,
+       .range = {.lower = 2.0, .upper = k_most_runs},
+       .example = "100",
+       .only_with = k_filling_designs},
+      {.name = "samples",
+       .meaning = "of saltelli: points whose changes are followed; of morris: trajectories",
+       .kind = Kind::integer,
+       .range = {.lower = 2.0, .upper = k_most_runs},
+       .example = "512",
+       .only_with = k_index_designs},
+      {.name = "seed",
+       .meaning = "seed of a design that is drawn",
+       .kind = Kind::integer,
+       .range = {.lower = 0.0, .upper = 1e15},
+       .default_value = 1.0,
+       .only_with = k_random_designs},
+      {.name = "results",
+       .meaning = "formulas over columns of the results, for which indices are estimated",
+       .kind = Kind::texts,
+       .example = "[\"max.axial.force\"]",
+       .only_with = k_index_designs},
+      {.name = "table",
+       .meaning = "file with one column per key",
+       .kind = Kind::file,
+       .example = "\"runs.csv\"",
+       .only_with = "table"},
+      {.name = "histories", .meaning = "keep the history of every run", .kind = Kind::toggle, .default_value = false},
+      {.name = "vary",
+       .meaning = "the keys that are varied, and over what",
+       .kind = Kind::table,
+       .may_be_empty = false,
+       .example = "[vary]"},
+      {.name = "constraints",
+       .meaning = "inequalities between varied keys, in SI",
+       .kind = Kind::texts,
+       .example = "[\"100 <= material.youngs_modulus / material.yield_stress\"]"},
+  };
+}
+
+}  // namespace monograin::sweep
