@@ -1,9 +1,13 @@
 #include "numerics/least_squares.hpp"
 
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit_nlinear.h>
+#include <gsl/gsl_qrng.h>
 
+#include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -14,22 +18,33 @@
 namespace monograin {
 namespace {
 
-constexpr std::size_t k_most_scanned = 1089;  // of the scan: 33 x 33
-constexpr std::size_t k_most_per_axis = 129;  // of one parameter alone
-constexpr std::size_t k_polished_to_end = 6;  // places
-constexpr double k_same_place = 1e-3;         // distance in z below which two places are one
-constexpr double k_near_bound = 1e-4;         // share of the range
+constexpr std::array<std::size_t, 4> k_scanned{31, 63, 127, 255};  // places, by the number of parameters
+constexpr std::size_t k_most_passed_over = 4;  // times as many places are drawn where some have no residuals
+constexpr std::size_t k_slices = 9;            // of each axis
+constexpr std::size_t k_most_in_vain = 10;     // polishes one after another that find nothing better
+constexpr double k_better = 0.99;              // cost over the best one's
+constexpr std::size_t k_polished_to_end = 3;   // places
+constexpr double k_worth_an_end = 4.0;         // cost over the best one's: those above it are not polished to the end
+constexpr double k_same_place = 1e-3;          // distance in z below which two places are one
+constexpr double k_near_place = 0.02;          // within which short polishes have come to the same minimum
+constexpr double k_near_bound = 1e-4;          // share of the range
 constexpr double k_end_of_z = std::numbers::pi / 2.0;
 constexpr double k_scan_share = 0.5;  // of the whole search, for its progress
 constexpr double k_no_cost = std::numeric_limits<double>::infinity();
+constexpr int k_refinements = 3;
+constexpr double k_small_step = 1e-4;         // of z: a longer one shows that there is no minimum near
+constexpr double k_rounding_of_cost = 1e-12;  // over the cost
+constexpr double k_exact_step = 1e-12;        // of z
+constexpr double k_nearly_exact = 1e-9;       // of z: where Gauss-Newton steps take over
 
-/// How far a polish goes.
+/// How far a polish goes, and how it finds derivatives.
 struct Effort {
   std::size_t iterations;
-  double step;  ///< relative change of the variables that ends it
+  double step;      ///< estimated distance to the minimum, in z, that ends it
+  bool is_central;  ///< central differences in every iteration; otherwise one-sided ones, brought up to date by secants
 };
-constexpr Effort k_short_polish{8, 1e-4};  // enough to leave a slice for its valley
-constexpr Effort k_full_polish{200, 1e-13};
+constexpr Effort k_short_polish{7, 1e-3, false};  // enough to leave a slice for its valley
+constexpr Effort k_long_polish{40, 1e-7, false};
 
 template <auto Free>
 struct Deleter {
@@ -40,6 +55,7 @@ struct Deleter {
 };
 using Vector = std::unique_ptr<gsl_vector, Deleter<gsl_vector_free>>;
 using Solver = std::unique_ptr<gsl_multifit_nlinear_workspace, Deleter<gsl_multifit_nlinear_free>>;
+using Sequence = std::unique_ptr<gsl_qrng, Deleter<gsl_qrng_free>>;
 
 /// GSL ends the process at an error unless it is told not to.
 class QuietGsl {
@@ -67,7 +83,15 @@ double share_of(const BoundedParameter& bounds, double parameter) {
 double share_at(double z) { return std::sin(z) * std::sin(z); }
 
 /// Where z has a value of its own: sin(z)^2 takes every share twice in each period.
-double folded(double z) { return std::asin(std::sqrt(std::clamp(share_at(z), 0.0, 1.0))); }
+double folded(double z) {
+  return z >= 0.0 && z <= k_end_of_z ? z : std::asin(std::sqrt(std::clamp(share_at(z), 0.0, 1.0)));
+}
+
+void check_size(const LeastSquaresProblem& problem) {
+  if (problem.parameters.empty() || problem.parameters.size() > k_most_parameters) {
+    throw std::invalid_argument("least squares: too many parameters, or none");
+  }
+}
 
 class Search {
  public:
@@ -75,46 +99,66 @@ class Search {
       : problem_(problem), size_(problem.parameters.size()), parameters_(size_), residuals_(problem.residual_count) {}
 
   std::optional<LeastSquaresSolution> run() {
-    std::vector<Place> starts = slice_minima();
-    add_given_start(starts);
-    if (starts.empty()) return std::nullopt;
+    std::vector<Place> scanned = scan();
+    add_given_start(scanned);
+    if (scanned.empty()) return std::nullopt;
     advance_to(k_scan_share);
-    for (std::size_t k = 0; k < starts.size(); ++k) {
-      starts[k] = polish(starts[k], k_short_polish);
+    const std::vector<Place> starts = starts_of(scanned);
+    std::vector<Place> ends;
+    double best = k_no_cost;
+    std::size_t in_vain = 0;
+    for (std::size_t k = 0; k < starts.size() && in_vain < k_most_in_vain; ++k) {
+      Place end = polish(starts[k], k_short_polish, ends);
+      in_vain = end.cost < k_better * best ? 0 : in_vain + 1;
+      best = std::min(best, end.cost);
+      ends.push_back(std::move(end));
       advance_to(std::lerp(k_scan_share, 1.0, static_cast<double>(k + 1) / static_cast<double>(starts.size())));
     }
-    keep_distinct(starts);
-    starts.resize(std::min(starts.size(), k_polished_to_end));
-    for (Place& place : starts) place = polish(place, k_full_polish);
-    keep_distinct(starts);
-    Place best = starts.front();
-    settle_at_bounds(best);
-    return solution(best, starts);
+    return finish(std::move(ends));
+  }
+
+  /// From places that are near minima already.
+  std::optional<LeastSquaresSolution> run_from(std::span<const LocalMinimum> minima) {
+    std::vector<Place> starts;
+    for (const LocalMinimum& minimum : minima) {
+      Place place = place_at(minimum.parameters);
+      place.cost = cost_at(place);
+      if (place.cost < k_no_cost) starts.push_back(std::move(place));
+    }
+    if (starts.empty()) return std::nullopt;
+    return finish(std::move(starts));
   }
 
  private:
   /// A point of the box, with what is known of it.
   struct Place {
     std::vector<double> z;
-    std::vector<double> fixed;  ///< parameters that are held there; nan: free
     double cost = k_no_cost;
     bool has_converged = false;
   };
 
   [[nodiscard]] double parameter(const Place& place, std::size_t k) const {
-    return std::isnan(place.fixed[k]) ? parameter_at(problem_.parameters[k], share_at(place.z[k])) : place.fixed[k];
+    return parameter_at(problem_.parameters[k], share_at(place.z[k]));
   }
 
-  /// Residuals with the loss put in, so that the sum of their squares is the cost: sign(r) sqrt(rho(r)).
+  /// Residuals with the loss put in, so that the sum of their squares is the cost: sign(r) sqrt(rho(r)). A polish may
+  /// begin where the last one has ended.
   bool evaluate(const Place& place, std::span<double> values) {
     for (std::size_t k = 0; k < size_; ++k) parameters_[k] = parameter(place, k);
+    if (parameters_ == last_parameters_) {
+      std::ranges::copy(last_values_, values.begin());
+      return true;
+    }
     ++evaluations_;
     if (!problem_.residuals(parameters_, values)) {
       ++failures_;
       return false;
     }
-    if (problem_.loss.kind == Loss::linear) return true;
-    for (double& r : values) r = std::copysign(std::sqrt(problem_.loss.rho(r)), r);
+    if (problem_.loss.kind != Loss::linear) {
+      for (double& r : values) r = std::copysign(std::sqrt(problem_.loss.rho(r)), r);
+    }
+    last_parameters_ = parameters_;
+    last_values_.assign(values.begin(), values.end());
     return true;
   }
 
@@ -125,43 +169,51 @@ class Search {
     return cost;
   }
 
-  [[nodiscard]] Place free_place() const {
-    return {std::vector<double>(size_), std::vector<double>(size_, std::numeric_limits<double>::quiet_NaN())};
-  }
+  [[nodiscard]] Place free_place() const { return {.z = std::vector<double>(size_)}; }
 
-  [[nodiscard]] std::size_t nodes_per_axis() const {
-    std::size_t count = 3;
-    const auto nodes = [this](std::size_t n) { return std::pow(static_cast<double>(n), static_cast<double>(size_)); };
-    while (count < k_most_per_axis && nodes(count + 1) <= k_most_scanned) ++count;
-    return count;
-  }
-
-  /// The best place of each slice of the box, in which one parameter has one of its values.
-  [[nodiscard]] std::vector<Place> slice_minima() {
-    const std::size_t n = nodes_per_axis();
-    std::vector<Place> best(size_ * n, free_place());
-    std::vector<std::size_t> node(size_, 0);
+  [[nodiscard]] Place place_at(std::span<const double> parameters) const {
     Place place = free_place();
-    std::size_t total = 1;
-    for (std::size_t k = 0; k < size_; ++k) total *= n;
-    for (std::size_t count = 0; count < total; ++count) {
-      for (std::size_t k = 0, rest = count; k < size_; ++k, rest /= n) {
-        node[k] = rest % n;
-        // Between the ends, where a law may be singular; equally spaced in z, so that places crowd at the bounds.
-        place.z[k] = (static_cast<double>(node[k]) + 0.5) / static_cast<double>(n) * k_end_of_z;
-      }
-      place.cost = cost_at(place);
-      for (std::size_t k = 0; k < size_; ++k) {
-        Place& slice = best[k * n + node[k]];
-        if (place.cost < slice.cost) slice = place;
-      }
-      advance_to(k_scan_share * static_cast<double>(count + 1) / static_cast<double>(total));
+    for (std::size_t k = 0; k < size_; ++k) {
+      const double share = share_of(problem_.parameters[k], parameters[k]);
+      place.z[k] = std::asin(std::sqrt(std::clamp(share, k_near_bound, 1.0 - k_near_bound)));
     }
-    std::erase_if(best, [](const Place& slice) { return slice.cost == k_no_cost; });
-    std::ranges::stable_sort(best, {}, &Place::cost);
-    const auto is_repeated = [](const Place& a, const Place& b) { return a.z == b.z; };
-    best.erase(std::unique(best.begin(), best.end(), is_repeated), best.end());
-    return best;
+    return place;
+  }
+
+  /// Places of a Sobol sequence in z, so that they crowd at the bounds; those with residuals, the best first.
+  [[nodiscard]] std::vector<Place> scan() {
+    const std::size_t wanted = k_scanned[std::min(size_, k_scanned.size()) - 1];
+    const Sequence sequence(gsl_qrng_alloc(gsl_qrng_sobol, static_cast<unsigned>(size_)));
+    if (!sequence) throw std::bad_alloc();
+    std::vector<Place> places;
+    Place place = free_place();
+    for (std::size_t count = 0; count < k_most_passed_over * wanted && places.size() < wanted; ++count) {
+      gsl_qrng_get(sequence.get(), place.z.data());
+      for (double& z : place.z) z *= k_end_of_z;
+      place.cost = cost_at(place);
+      if (place.cost < k_no_cost) places.push_back(place);
+      advance_to(k_scan_share * std::min(1.0, static_cast<double>(count) / static_cast<double>(wanted)));
+    }
+    std::ranges::stable_sort(places, {}, &Place::cost);
+    return places;
+  }
+
+  /// The best place of each slice of the box, in which one parameter has about one value.
+  [[nodiscard]] std::vector<Place> starts_of(const std::vector<Place>& scanned) const {
+    std::vector<Place> starts;
+    for (std::size_t k = 0; k < size_; ++k) {
+      std::vector<bool> is_taken(k_slices, false);
+      for (const Place& place : scanned) {  // the best first
+        const double share = std::clamp(place.z[k] / k_end_of_z, 0.0, 1.0);
+        const auto slice = std::min(static_cast<std::size_t>(share * k_slices), k_slices - 1);
+        if (is_taken[slice]) continue;
+        is_taken[slice] = true;
+        if (std::ranges::any_of(starts, [&](const Place& start) { return start.z == place.z; })) continue;
+        starts.push_back(place);
+      }
+    }
+    std::ranges::stable_sort(starts, {}, &Place::cost);
+    return starts;
   }
 
   void add_given_start(std::vector<Place>& starts) {
@@ -175,42 +227,59 @@ class Search {
     }
     if (!is_given) return;
     place.cost = cost_at(place);
-    if (place.cost < k_no_cost) starts.push_back(std::move(place));
+    if (place.cost < k_no_cost) starts.insert(starts.begin(), std::move(place));
+  }
+
+  [[nodiscard]] LeastSquaresSolution finish(std::vector<Place> places) {
+    keep_distinct(places, k_near_place);
+    const double limit = k_worth_an_end * places.front().cost;
+    std::erase_if(places, [&](const Place& place) { return place.cost > limit; });
+    places.resize(std::min(places.size(), k_polished_to_end));
+    for (Place& place : places) place = polish(place, k_long_polish);
+    keep_distinct(places, k_same_place);
+    places.front() = refined(polish(places.front(), full_polish()));
+    const Place best = places.front();
+    return settled_at_bounds(best, places);
+  }
+
+  [[nodiscard]] Effort full_polish() const { return {100, std::max(k_nearly_exact, problem_.noise), true}; }
+
+  static bool is_near(const std::vector<double>& a, const std::vector<double>& b, double distance) {
+    return std::ranges::equal(a, b, [distance](double x, double y) { return std::abs(x - y) < distance; });
+  }
+
+  static bool near_one_of(const std::vector<Place>& places, const std::vector<double>& z) {
+    return std::ranges::any_of(places, [&](const Place& place) { return is_near(place.z, z, k_near_place); });
   }
 
   /// The best first, and of those that are one place only the best.
-  static void keep_distinct(std::vector<Place>& places) {
+  static void keep_distinct(std::vector<Place>& places, double distance) {
     std::ranges::stable_sort(places, {}, &Place::cost);
     std::vector<Place> distinct;
     for (Place& place : places) {
-      const auto is_same = [&](const Place& other) {
-        return std::ranges::equal(place.z, other.z, [](double a, double b) { return std::abs(a - b) < k_same_place; });
-      };
+      const auto is_same = [&](const Place& other) { return is_near(place.z, other.z, distance); };
       if (std::ranges::none_of(distinct, is_same)) distinct.push_back(std::move(place));
     }
     places = std::move(distinct);
-  }
-
-  /// Which parameters are free in a place.
-  [[nodiscard]] std::vector<std::size_t> free_of(const Place& place) const {
-    std::vector<std::size_t> free;
-    for (std::size_t k = 0; k < size_; ++k) {
-      if (std::isnan(place.fixed[k])) free.push_back(k);
-    }
-    return free;
   }
 
   /// What the callbacks of one polish share.
   struct Polish {
     Search& search;
     Place trial;
-    std::vector<std::size_t> free;
-    std::vector<double> values;
-    std::vector<double> other;
+    bool is_central = false;
+    std::vector<double> z;         ///< where residuals were found last
+    std::vector<double> values;    ///< they
+    std::vector<double> before_z;  ///< where derivatives were found last
+    std::vector<double> before;
+    std::size_t trials = 0;  ///< since then
+    Eigen::MatrixXd jacobian;
+    std::vector<double> above;
+    std::vector<double> below;
     std::exception_ptr pending;  ///< exceptions do not cross C
 
-    void put(const gsl_vector* z) {
-      for (std::size_t j = 0; j < free.size(); ++j) trial.z[free[j]] = gsl_vector_get(z, j);
+    void put(const gsl_vector* at) {
+      for (std::size_t k = 0; k < trial.z.size(); ++k) trial.z[k] = gsl_vector_get(at, k);
     }
   };
 
@@ -229,6 +298,8 @@ class Search {
     auto& polish = *static_cast<Polish*>(self);
     return guarded(polish, [&] {
       polish.put(z);
+      polish.z = polish.trial.z;
+      ++polish.trials;
       // A place without residuals is worse than any other: the step to it is refused, and a shorter one tried.
       if (!polish.search.evaluate(polish.trial, polish.values)) {
         const double count = static_cast<double>(polish.values.size());
@@ -238,94 +309,190 @@ class Search {
     });
   }
 
+  /// Derivatives at a place whose residuals are the last that were found.
   static int jacobian_callback(const gsl_vector* z, void* self, gsl_matrix* jacobian) noexcept {
     auto& polish = *static_cast<Polish*>(self);
     return guarded(polish, [&] {
       polish.put(z);
-      for (std::size_t j = 0; j < polish.free.size(); ++j) {
-        polish.search.differentiate(polish, polish.free[j]);
-        for (std::size_t i = 0; i < polish.values.size(); ++i) gsl_matrix_set(jacobian, i, j, polish.values[i]);
+      // A step that was not taken at once shows derivatives that are too old.
+      if (polish.is_central || polish.before.empty() || polish.trials > 1 || !update(polish)) {
+        for (std::size_t k = 0; k < polish.z.size(); ++k) polish.search.differentiate(polish, k);
+      }
+      polish.before_z = polish.z;
+      polish.before = polish.values;
+      polish.trials = 0;
+      for (std::size_t k = 0; k < polish.z.size(); ++k) {
+        for (std::size_t i = 0; i < polish.values.size(); ++i) {
+          gsl_matrix_set(jacobian, i, k, polish.jacobian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
+        }
       }
     });
   }
 
-  /// Derivative with respect to one z, into polish.values.
+  /// Brings derivatives up to date with the last step (Broyden (1965), the first method). @return false: there was none
+  static bool update(Polish& polish) {
+    const auto size = static_cast<Eigen::Index>(polish.z.size());
+    const auto count = static_cast<Eigen::Index>(polish.values.size());
+    const Eigen::VectorXd step = Eigen::Map<const Eigen::VectorXd>(polish.z.data(), size) -
+                                 Eigen::Map<const Eigen::VectorXd>(polish.before_z.data(), size);
+    if (step.squaredNorm() == 0.0) return false;
+    const Eigen::Map<const Eigen::VectorXd> now(polish.values.data(), count);
+    const Eigen::Map<const Eigen::VectorXd> before(polish.before.data(), count);
+    polish.jacobian += (now - before - polish.jacobian * step) * step.transpose() / step.squaredNorm();
+    return true;
+  }
+
+  /// Derivative with respect to one z, into the Jacobian's column.
   void differentiate(Polish& polish, std::size_t k) {
     const double middle = polish.trial.z[k];
-    double above = middle + difference_step();
-    double below = middle - difference_step();
+    const double step = difference_step(polish.is_central);
+    double above = middle + step;
+    double below = polish.is_central ? middle - step : middle;
     const auto at = [&](double z, std::vector<double>& values) {
       polish.trial.z[k] = z;
-      return evaluate(polish.trial, values);
+      if (z != middle) return evaluate(polish.trial, values);
+      values = polish.values;
+      return true;
     };
-    if (!at(above, polish.values)) {
+    if (!at(above, polish.above)) {
       above = middle;
-      if (!at(above, polish.values)) above = below;
+      static_cast<void>(at(above, polish.above));
+      below = middle - step;
     }
-    if (!at(below, polish.other)) {
+    if (!at(below, polish.below)) {
       below = middle;
-      if (!at(below, polish.other)) below = above;
+      static_cast<void>(at(below, polish.below));
     }
     polish.trial.z[k] = middle;
     for (std::size_t i = 0; i < polish.values.size(); ++i) {
-      polish.values[i] = above > below ? (polish.values[i] - polish.other[i]) / (above - below) : 0.0;
+      polish.jacobian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+          above > below ? (polish.above[i] - polish.below[i]) / (above - below) : 0.0;
     }
   }
 
-  /// Where truncation, h^2, and rounding, noise/h, are alike.
-  [[nodiscard]] double difference_step() const { return std::cbrt(problem_.noise); }
+  /// Where truncation, h or h^2, and rounding, noise/h, are alike.
+  [[nodiscard]] double difference_step(bool is_central) const {
+    return is_central ? std::cbrt(problem_.noise) : std::sqrt(problem_.noise);
+  }
 
-  /// The minimum downhill from a place, as far as the effort goes.
-  [[nodiscard]] Place polish(const Place& start, const Effort& effort) {
-    Polish polish{*this, start, free_of(start), residuals_, residuals_, {}};
-    if (polish.free.empty() || problem_.residual_count < polish.free.size()) return start;
+  [[nodiscard]] Polish prepared(const Place& start, bool is_central) {
+    return {.search = *this,
+            .trial = start,
+            .is_central = is_central,
+            .z = {},
+            .values = residuals_,
+            .before_z = {},
+            .before = {},
+            .jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(problem_.residual_count),
+                                              static_cast<Eigen::Index>(size_)),
+            .above = residuals_,
+            .below = residuals_,
+            .pending = {}};
+  }
+
+  /// A minimum by Gauss-Newton steps: the cost, whose rounding hides the last half of the parameters' digits, has no
+  /// say.
+  [[nodiscard]] Place refined(Place place) {
+    Polish polish = prepared(place, true);
+    const auto count = static_cast<Eigen::Index>(residuals_.size());
+    for (int round = 0; round < k_refinements && evaluate(place, polish.values); ++round) {
+      polish.trial = place;
+      for (std::size_t k = 0; k < size_; ++k) differentiate(polish, k);
+      const Eigen::Map<const Eigen::VectorXd> residuals(polish.values.data(), count);
+      const Eigen::VectorXd step = polish.jacobian.completeOrthogonalDecomposition().solve(-residuals);
+      if (!(step.norm() <= k_small_step)) break;
+      Place next = place;
+      for (std::size_t k = 0; k < size_; ++k) next.z[k] = folded(place.z[k] + step[static_cast<Eigen::Index>(k)]);
+      next.cost = cost_at(next);
+      if (!(next.cost <= place.cost * (1.0 + k_rounding_of_cost))) break;
+      place = std::move(next);
+      if (step.norm() <= k_exact_step) break;
+    }
+    return place;
+  }
+
+  /// The minimum downhill from a place, as far as the effort goes, or until it comes near a known place.
+  [[nodiscard]] Place polish(const Place& start, const Effort& effort, const std::vector<Place>& known = {}) {
+    Polish polish = prepared(start, effort.is_central);
+    if (problem_.residual_count < size_) return start;
     gsl_multifit_nlinear_fdf fdf{};
     fdf.f = residuals_callback;
     fdf.df = jacobian_callback;
     fdf.n = problem_.residual_count;
-    fdf.p = polish.free.size();
+    fdf.p = size_;
     fdf.params = &polish;
     const gsl_multifit_nlinear_parameters settings = gsl_multifit_nlinear_default_parameters();
     const Solver solver(gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &settings, fdf.n, fdf.p));
     const Vector z(gsl_vector_alloc(fdf.p));
     if (!solver || !z) throw std::bad_alloc();
-    for (std::size_t j = 0; j < fdf.p; ++j) gsl_vector_set(z.get(), j, start.z[polish.free[j]]);
+    for (std::size_t j = 0; j < fdf.p; ++j) gsl_vector_set(z.get(), j, start.z[j]);
 
     int status = gsl_multifit_nlinear_init(z.get(), &fdf, solver.get());
-    int reason = 0;
-    // The gradient of an exact fit vanishes long before its parameters are exact; their change decides.
-    constexpr double k_gradient_tolerance = 1e-30;
-    if (status == GSL_SUCCESS) {
-      status = gsl_multifit_nlinear_driver(effort.iterations, effort.step, k_gradient_tolerance, 0.0, nullptr, nullptr,
-                                           &reason, solver.get());
+    bool has_converged = false;
+    double step_before = 0.0;
+    for (std::size_t count = 0; status == GSL_SUCCESS && count < effort.iterations && !has_converged; ++count) {
+      status = gsl_multifit_nlinear_iterate(solver.get());
+      const double step = gsl_blas_dnrm2(solver->dx);
+      const double rate = step < step_before ? step / step_before : 1.0;
+      has_converged = step * rate <= effort.step;
+      step_before = step;
+      if (known.empty()) continue;
+      polish.put(gsl_multifit_nlinear_position(solver.get()));
+      if (near_one_of(known, polish.trial.z)) break;
     }
     if (polish.pending) std::rethrow_exception(polish.pending);
 
-    polish.put(gsl_multifit_nlinear_position(solver.get()));
-    Place end = polish.trial;
-    for (const std::size_t k : polish.free) end.z[k] = folded(end.z[k]);
-    end.cost = cost_at(end);
+    Place end = start;
+    for (std::size_t j = 0; j < fdf.p; ++j) {
+      end.z[j] = folded(gsl_vector_get(gsl_multifit_nlinear_position(solver.get()), j));
+    }
+    const double norm = gsl_blas_dnrm2(gsl_multifit_nlinear_residual(solver.get()));
+    end.cost = norm * norm;
     if (!(end.cost <= start.cost)) end = start;
     // No progress means that no step, however short, leads down any more.
-    end.has_converged = status == GSL_SUCCESS || reason == GSL_ENOPROG;
+    end.has_converged = has_converged || status == GSL_ENOPROG;
     return end;
   }
 
-  /// Puts parameters that lie almost at a bound on it, where that costs nothing.
-  void settle_at_bounds(Place& best) {
+  /// Puts a parameter that lies almost at a bound on it, where that costs nothing, and searches that face of the box
+  /// for its own minimum.
+  [[nodiscard]] LeastSquaresSolution settled_at_bounds(const Place& best, const std::vector<Place>& all) {
+    LeastSquaresSolution found = solution(best, all);
     const double rounding = problem_.noise * problem_.noise * static_cast<double>(problem_.residual_count);
     for (std::size_t k = 0; k < size_; ++k) {
       const double share = share_at(best.z[k]);
       if (share > k_near_bound && share < 1.0 - k_near_bound) continue;
-      Place fixed = best;
-      fixed.fixed[k] = share < 0.5 ? problem_.parameters[k].lower : problem_.parameters[k].upper;
-      fixed.cost = cost_at(fixed);
-      if (fixed.cost == k_no_cost) continue;
-      fixed = polish(fixed, k_full_polish);
-      if (free_of(fixed).empty()) fixed.has_converged = true;
+      const bool is_lower = share < 0.5;
+      const double bound = is_lower ? problem_.parameters[k].lower : problem_.parameters[k].upper;
+      auto face = minimum_of_face(k, bound);
+      evaluations_ += face ? face->evaluations : 1;
+      failures_ += face ? face->failures : 1;
       constexpr double k_same_cost = 1e-9;
-      if (fixed.cost <= best.cost * (1.0 + k_same_cost) + rounding) best = fixed;
+      if (!face || face->cost > found.cost * (1.0 + k_same_cost) + rounding) continue;
+      const auto place = static_cast<std::ptrdiff_t>(k);
+      using Bound = LeastSquaresSolution::Bound;
+      face->parameters.insert(face->parameters.begin() + place, bound);
+      face->bounds.insert(face->bounds.begin() + place, is_lower ? Bound::lower : Bound::upper);
+      for (LocalMinimum& other : face->minima) other.parameters.insert(other.parameters.begin() + place, bound);
+      found = std::move(*face);
+      break;
     }
+    found.evaluations = evaluations_;
+    found.failures = failures_;
+    return found;
+  }
+
+  [[nodiscard]] std::optional<LeastSquaresSolution> minimum_of_face(std::size_t k, double bound) const {
+    const LeastSquaresProblem face = with_held(problem_, k, bound);
+    if (size_ > 1) return Search(face).run();
+    LeastSquaresSolution corner;
+    corner.residuals.resize(problem_.residual_count);
+    if (!face.residuals({}, corner.residuals)) return std::nullopt;
+    for (const double r : corner.residuals) corner.cost += problem_.loss.rho(r);
+    corner.minima = {{{}, corner.cost}};
+    corner.has_converged = true;
+    corner.evaluations = 1;
+    return corner;
   }
 
   [[nodiscard]] LocalMinimum minimum(const Place& place) const {
@@ -337,11 +504,7 @@ class Search {
   [[nodiscard]] LeastSquaresSolution solution(const Place& best, const std::vector<Place>& all) {
     LeastSquaresSolution solution;
     static_cast<LocalMinimum&>(solution) = minimum(best);
-    for (std::size_t k = 0; k < size_; ++k) {
-      const bool is_lower = best.fixed[k] == problem_.parameters[k].lower;
-      using Bound = LeastSquaresSolution::Bound;
-      solution.bounds.push_back(std::isnan(best.fixed[k]) ? Bound::none : is_lower ? Bound::lower : Bound::upper);
-    }
+    solution.bounds.assign(size_, LeastSquaresSolution::Bound::none);
     for (const Place& place : all) solution.minima.push_back(minimum(place));
     solution.residuals.resize(problem_.residual_count);
     problem_.residuals(solution.parameters, solution.residuals);
@@ -359,6 +522,8 @@ class Search {
   std::size_t size_;
   std::vector<double> parameters_;
   std::vector<double> residuals_;
+  std::vector<double> last_parameters_;  ///< that had residuals
+  std::vector<double> last_values_;
   double worst_cost_ = 0.0;
   long evaluations_ = 0;
   long failures_ = 0;
@@ -411,12 +576,32 @@ double LossFunction::curvature(double residual) const noexcept {
   return 0.0;
 }
 
+LeastSquaresProblem with_held(const LeastSquaresProblem& problem, std::size_t k, double value) {
+  LeastSquaresProblem held = problem;
+  held.parameters.erase(held.parameters.begin() + static_cast<std::ptrdiff_t>(k));
+  held.residuals = [&problem, k, value, all = std::vector<double>(problem.parameters.size())](
+                       std::span<const double> others, std::span<double> residuals) mutable {
+    const auto place = static_cast<std::ptrdiff_t>(k);
+    std::copy(others.begin(), others.begin() + place, all.begin());
+    all[k] = value;
+    std::copy(others.begin() + place, others.end(), all.begin() + place + 1);
+    return problem.residuals(all, residuals);
+  };
+  held.progress = {};
+  return held;
+}
+
 std::optional<LeastSquaresSolution> minimise(const LeastSquaresProblem& problem) {
-  if (problem.parameters.empty() || problem.parameters.size() > k_most_parameters) {
-    throw std::invalid_argument("least squares: too many parameters, or none");
-  }
+  check_size(problem);
   const QuietGsl quiet;
   return Search(problem).run();
+}
+
+std::optional<LeastSquaresSolution> minimise_near(const LeastSquaresProblem& problem,
+                                                  std::span<const LocalMinimum> starts) {
+  check_size(problem);
+  const QuietGsl quiet;
+  return Search(problem).run_from(starts);
 }
 
 double difference_step(const LeastSquaresProblem& problem, std::span<const double> parameters, std::size_t k) {

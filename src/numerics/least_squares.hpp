@@ -1,4 +1,4 @@
-/// Nonlinear least squares with few, bounded parameters: the global minimum, by a scan and then a trust region.
+/// Nonlinear least squares with few, bounded parameters: the global minimum, by many starts and a trust region.
 #pragma once
 
 #include <cstddef>
@@ -71,15 +71,23 @@ struct LeastSquaresSolution : LocalMinimum {
   long failures = 0;  ///< evaluations without residuals
 };
 
-/// Scans the box of the bounds, densely near its faces, polishes from the best places of every slice of it, and
-/// polishes the best of what that gives to the end with GSL's multifit_nlinear (Levenberg-Marquardt in a trust region,
-/// central differences). Bounds are kept by the transform u = sin(z)^2; a parameter that is driven into a bound is set
-/// to it.
+/// The global minimum: draws places of a Sobol sequence, which crowd at the faces of the box of bounds; lets GSL's
+/// multifit_nlinear (Levenberg-Marquardt in a trust region) go downhill from the best of every slice of the box, with
+/// derivatives that secants bring up to date (Broyden (1965)); and polishes the best of what that gives to the end,
+/// with central differences. Bounds are kept by the transform u = sin(z)^2; a parameter that is driven into a bound is
+/// set to it. Two parameters take about 250 evaluations.
 ///
-/// Slices matter where parameters are correlated: the valley of low cost is then narrower than the scan's meshes and a
-/// minimum of the scan alone may lie in the wrong part of it.
-/// @return nothing where no place that was looked at has residuals
+/// Slices matter where parameters are correlated: the valley of low cost is then narrower than the draw is dense, and
+/// the best place of all may lie in the wrong part of it.
+/// @return nothing where no place that was drawn has residuals
 [[nodiscard]] std::optional<LeastSquaresSolution> minimise(const LeastSquaresProblem& problem);
+
+/// The minimum downhill from the best of some places. @return nothing where none of them has residuals
+[[nodiscard]] std::optional<LeastSquaresSolution> minimise_near(const LeastSquaresProblem& problem,
+                                                                std::span<const LocalMinimum> starts);
+
+/// The problem in the other parameters, with the k-th held at a value; it refers to the given one.
+[[nodiscard]] LeastSquaresProblem with_held(const LeastSquaresProblem& problem, std::size_t k, double value);
 
 /// The step of central differences in a parameter: truncation, the square of it, and rounding, noise over it, are alike
 /// where the residuals change on the scale of the parameter, or of its range where that is less.

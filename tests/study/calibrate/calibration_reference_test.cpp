@@ -109,6 +109,15 @@ TEST_F(HardeningCalibration, PassesOverTheSecondMinimumNearNoHardeningFromAnySta
   }
 }
 
+TEST(ReadyCalibration, OfTwoParametersTakesAtMostThreeHundredTrialRuns) {
+  for (const char* name : {"uniaxial", "cellulose", "cel"}) {
+    const CalibrationResult result =
+        calibrate(read_calibration(fmt::format("{}/scenarios/calibrate/{}.toml", MONOGRAIN_SOURCE_DIR, name)));
+    EXPECT_LE(result.solution.evaluations, 300) << name;
+    EXPECT_TRUE(result.solution.has_converged) << name;
+  }
+}
+
 /// Recovers a parameter of a model from its own exact data.
 void expect_recovery(const TemporaryFolder& folder, const std::string& scenario, const std::string& key, double truth,
                      const std::string& bounds, const Table& history) {
