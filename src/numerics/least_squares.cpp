@@ -237,12 +237,15 @@ class Search {
     places.resize(std::min(places.size(), k_polished_to_end));
     for (Place& place : places) place = polish(place, k_long_polish);
     keep_distinct(places, k_same_place);
-    places.front() = refined(polish(places.front(), full_polish()));
+    places.front().has_converged = false;
+    places.front() = refined(places.front());
+    if (!places.front().has_converged) places.front() = refined(polish(places.front(), full_polish()));
     const Place best = places.front();
     return settled_at_bounds(best, places);
   }
 
-  [[nodiscard]] Effort full_polish() const { return {100, std::max(k_nearly_exact, problem_.noise), true}; }
+  [[nodiscard]] double nearly_exact() const { return std::max(k_nearly_exact, problem_.noise); }
+  [[nodiscard]] Effort full_polish() const { return {100, nearly_exact(), true}; }
 
   static bool is_near(const std::vector<double>& a, const std::vector<double>& b, double distance) {
     return std::ranges::equal(a, b, [distance](double x, double y) { return std::abs(x - y) < distance; });
@@ -393,6 +396,7 @@ class Search {
   /// A minimum by Gauss-Newton steps: the cost, whose rounding hides the last half of the parameters' digits, has no
   /// say.
   [[nodiscard]] Place refined(Place place) {
+    if (problem_.residual_count < size_) return place;
     Polish polish = prepared(place, true);
     const auto count = static_cast<Eigen::Index>(residuals_.size());
     for (int round = 0; round < k_refinements && evaluate(place, polish.values); ++round) {
@@ -406,6 +410,7 @@ class Search {
       next.cost = cost_at(next);
       if (!(next.cost <= place.cost * (1.0 + k_rounding_of_cost))) break;
       place = std::move(next);
+      if (step.norm() <= nearly_exact()) place.has_converged = true;
       if (step.norm() <= k_exact_step) break;
     }
     return place;

@@ -13,6 +13,7 @@
 #include "scenario/integrators.hpp"
 #include "study/calibrate/bad_fit.hpp"
 #include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/thinning.hpp"
 #include "system/undefined.hpp"
 
 namespace monograin {
@@ -22,6 +23,8 @@ constexpr double k_direct_noise = 1e-13;     // of a response without time integ
 constexpr double k_jump_share = 0.7;         // of a central difference: a smaller one to one side has no jump
 constexpr double k_series_noise = 1e-12;     // of a response in series with a machine
 constexpr std::size_t k_curve_points = 400;  // of the curve between the data
+constexpr std::size_t k_dense = 800;         // rows: more of them are thinned while the fit is sought
+constexpr std::size_t k_thinned = 400;       // about so many rows are left
 constexpr double k_high_correlation = 0.95;  // of two parameters
 constexpr double k_poor = 0.1;               // relative standard error
 
@@ -191,16 +194,30 @@ class Fit {
   Fit(const Fit&) = delete;
   Fit& operator=(const Fit&) = delete;
 
+  /// The best fit. Many rows are thinned while it is sought. Nothing: no parameters that were tried have a response.
+  [[nodiscard]] std::optional<LeastSquaresSolution> search() {
+    if (calibration_.x.values.size() <= k_dense) return minimise(problem_);
+    const Calibration thin = thinned(calibration_, k_thinned);
+    if (thin.counted() <= calibration_.free.size()) return minimise(problem_);
+    const auto near = Fit(thin, problem_.progress).search();
+    if (!near) return minimise(problem_);
+    auto solution = minimise_near(problem_, near->minima);
+    if (!solution) return minimise(problem_);
+    solution->evaluations += near->evaluations;
+    solution->failures += near->failures;
+    return solution;
+  }
+
   /// How much the best fit explains.
   TrialFit explain() {
-    const auto solution = minimise(problem_);
+    const auto solution = search();
     if (!solution) return {k_nan, {}};
     return {explained_share(calibration_, solution->cost), solution->parameters};
   }
 
   /// @param trial  for the cause where there is no fit
   CalibrationResult run(const FitTrial& trial) {
-    auto solution = minimise(problem_);
+    auto solution = search();
     if (!solution) no_response(trial);
     CalibrationResult result;
     result.solution = std::move(*solution);
@@ -209,14 +226,11 @@ class Fit {
     if (!procedures_.fits.empty()) {
       result.procedures.fits.push_back(measured_fit(calibration_, procedures_, parameters));
     }
-    result.uncertainty = uncertainty_of(problem_, result.solution, jacobian_of(problem_, parameters), rows_.size(),
-                                        calibration_.confidence);
-    for (const MeasuredCurve& curve : calibration_.curves) {
-      const std::vector<double> x = x_of(calibration_, curve);
-      const std::vector<double> y = y_of(calibration_, curve);
-      append(curve_through(curve, x, y, result, &result.particle), result.fit);
-      result.curves.push_back(curve_through(curve, refined(x, parts_of(x)), refined(y, parts_of(x)), result));
-    }
+    const Eigen::MatrixXd gradients = response_jacobian(parameters);
+    result.uncertainty =
+        uncertainty_of(problem_, result.solution, weighted(gradients), rows_.size(), calibration_.confidence);
+    fit_at_data(result, gradients);
+    for (const MeasuredCurve& curve : calibration_.curves) result.curves.push_back(curve_through(curve, result));
     result.points = rows_.size();
     for (const Response& response : responses_) {
       result.program_steps += response.replay().scenario().loading.steps.size();
@@ -251,13 +265,7 @@ class Fit {
     return responses_.size();
   }
 
-  static void append(const FittedCurve& part, FittedCurve& whole) {
-    whole.x.insert(whole.x.end(), part.x.begin(), part.x.end());
-    whole.y.insert(whole.y.end(), part.y.begin(), part.y.end());
-    whole.band.insert(whole.band.end(), part.band.begin(), part.band.end());
-  }
-
-  /// No place of the scan has a response: says what happens in the middle of the bounds.
+  /// No place that was drawn has a response: says what happens in the middle of the bounds.
   [[noreturn]] void no_response(const FitTrial& trial) {
     std::vector<double> middle;
     for (const FreeParameter& parameter : calibration_.free)
@@ -275,10 +283,58 @@ class Fit {
                     cause.empty() ? "" : "; likely cause: " + cause));
   }
 
-  [[nodiscard]] FittedCurve curve_through(const MeasuredCurve& measured, const std::vector<double>& x,
-                                          const std::vector<double>& y, const CalibrationResult& result,
-                                          std::vector<double>* particle = nullptr) {
-    Response response_through(calibration_, measured, x, y);
+  /// Derivatives of the response in all rows, also in those that do not count.
+  [[nodiscard]] Eigen::MatrixXd response_jacobian(std::span<const double> parameters) {
+    LeastSquaresProblem problem = problem_;
+    problem.residual_count = response_.size();
+    problem.residuals = [this](std::span<const double> trial, std::span<double> response) {
+      if (failing(trial) < responses_.size()) return false;
+      std::ranges::copy(response_, response.begin());
+      return true;
+    };
+    return jacobian_of(problem, parameters);
+  }
+
+  /// The Jacobian of the residuals.
+  [[nodiscard]] Eigen::MatrixXd weighted(const Eigen::MatrixXd& gradients) const {
+    Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(rows_.size()), gradients.cols());
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      jacobian.row(static_cast<Eigen::Index>(i)) =
+          -calibration_.weights[rows_[i]] * gradients.row(static_cast<Eigen::Index>(rows_[i]));
+    }
+    return jacobian;
+  }
+
+  void fit_at_data(CalibrationResult& result, const Eigen::MatrixXd& gradients) {
+    static_cast<void>(failing(result.solution.parameters));
+    result.fit = {calibration_.x.values, response_, bands(result, gradients)};
+    if (!calibration_.has_machine()) return;
+    for (const Response& response : responses_) {
+      result.particle.insert(result.particle.end(), response.particle().begin(), response.particle().end());
+    }
+  }
+
+  [[nodiscard]] static std::vector<double> bands(const CalibrationResult& result, const Eigen::MatrixXd& gradients) {
+    std::vector<double> band;
+    for (Eigen::Index i = 0; i < gradients.rows(); ++i) {
+      band.push_back(result.uncertainty.half_width(gradients.row(i).transpose()));
+    }
+    return band;
+  }
+
+  /// The fit to one curve between the data, too.
+  [[nodiscard]] FittedCurve curve_through(const MeasuredCurve& measured, const CalibrationResult& result) {
+    const std::vector<double> data_x = x_of(calibration_, measured);
+    const std::size_t parts = parts_of(data_x);
+    if (parts == 1) {
+      const auto rows = [&measured](const std::vector<double>& values) {
+        return std::vector(values.begin() + static_cast<std::ptrdiff_t>(measured.begin),
+                           values.begin() + static_cast<std::ptrdiff_t>(measured.end));
+      };
+      return {data_x, rows(result.fit.y), rows(result.fit.band)};
+    }
+    const std::vector<double> x = refined(data_x, parts);
+    Response response_through(calibration_, measured, x, refined(y_of(calibration_, measured), parts));
     LeastSquaresProblem problem = problem_;
     problem.residual_count = x.size();
     problem.residuals = [&response_through](std::span<const double> parameters, std::span<double> response) {
@@ -286,14 +342,7 @@ class Fit {
     };
     FittedCurve curve{x, std::vector<double>(x.size(), k_nan), std::vector<double>(x.size(), k_nan)};
     if (!response_through(result.solution.parameters, curve.y)) return curve;
-    if (particle != nullptr && calibration_.has_machine()) {
-      const std::vector<double>& own = response_through.particle();
-      particle->insert(particle->end(), own.begin(), own.end());
-    }
-    const Eigen::MatrixXd gradients = jacobian_of(problem, result.solution.parameters);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      curve.band[i] = result.uncertainty.half_width(gradients.row(static_cast<Eigen::Index>(i)).transpose());
-    }
+    curve.band = bands(result, jacobian_of(problem, result.solution.parameters));
     return curve;
   }
 
