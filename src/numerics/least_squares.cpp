@@ -155,7 +155,9 @@ class Search {
       return false;
     }
     if (problem_.loss.kind != Loss::linear) {
-      for (double& r : values) r = std::copysign(std::sqrt(problem_.loss.rho(r)), r);
+      for (double& r : values.first(values.size() - problem_.plain_count)) {
+        r = std::copysign(std::sqrt(problem_.loss.rho(r)), r);
+      }
     }
     last_parameters_ = parameters_;
     last_values_.assign(values.begin(), values.end());
@@ -493,7 +495,7 @@ class Search {
     LeastSquaresSolution corner;
     corner.residuals.resize(problem_.residual_count);
     if (!face.residuals({}, corner.residuals)) return std::nullopt;
-    for (const double r : corner.residuals) corner.cost += problem_.loss.rho(r);
+    corner.cost = cost_of(problem_, corner.residuals);
     corner.minima = {{{}, corner.cost}};
     corner.has_converged = true;
     corner.evaluations = 1;
@@ -579,6 +581,15 @@ double LossFunction::curvature(double residual) const noexcept {
       return (1.0 - u2) / ((1.0 + u2) * (1.0 + u2));
   }
   return 0.0;
+}
+
+double cost_of(const LeastSquaresProblem& problem, std::span<const double> residuals) noexcept {
+  double cost = 0.0;
+  const std::size_t lossy = residuals.size() - problem.plain_count;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    cost += i < lossy ? problem.loss.rho(residuals[i]) : residuals[i] * residuals[i];
+  }
+  return cost;
 }
 
 LeastSquaresProblem with_held(const LeastSquaresProblem& problem, std::size_t k, double value) {

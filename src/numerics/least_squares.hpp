@@ -49,11 +49,15 @@ struct LeastSquaresProblem {
   std::size_t residual_count = 0;
   Residuals residuals;
   LossFunction loss;
-  double noise = 1e-13;  ///< relative error of the residuals' model; sets the steps of differences
-  Progress progress;     ///< may be empty
+  std::size_t plain_count = 0;  ///< of the last residuals, whose loss is their square: those of priors
+  double noise = 1e-13;         ///< relative error of the residuals' model; sets the steps of differences
+  Progress progress;            ///< may be empty
 };
 
 inline constexpr std::size_t k_most_parameters = 8;
+
+/// The sum of rho of residuals, which is minimised.
+[[nodiscard]] double cost_of(const LeastSquaresProblem& problem, std::span<const double> residuals) noexcept;
 
 /// A minimum that a search has come to.
 struct LocalMinimum {

@@ -2,6 +2,7 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
@@ -10,17 +11,6 @@ namespace monograin {
 namespace {
 
 constexpr double k_share_of_null_vector = 1e-2;  // with which a parameter belongs to what is not determined
-
-/// s, or the factor that stands for it where the loss is not linear.
-double deviation_of(const LossFunction& loss, const std::vector<double>& residuals, std::size_t n, double degrees) {
-  double influence = 0.0;
-  double curvature = 0.0;
-  for (const double r : residuals) {
-    influence += loss.influence(r) * loss.influence(r);
-    curvature += loss.curvature(r);
-  }
-  return std::sqrt(influence / degrees) * static_cast<double>(n) / curvature;
-}
 
 }  // namespace
 
@@ -46,8 +36,20 @@ double Uncertainty::half_width(const Eigen::Ref<const Eigen::VectorXd>& gradient
   return t_quantile * std::sqrt(std::max(variance, 0.0));
 }
 
+double deviation_of(const LeastSquaresProblem& problem, std::span<const double> residuals, std::size_t n) {
+  const std::size_t p = problem.parameters.size();
+  if (n <= p) return std::numeric_limits<double>::quiet_NaN();
+  double influence = 0.0;
+  double curvature = 0.0;
+  for (const double r : residuals.first(n)) {
+    influence += problem.loss.influence(r) * problem.loss.influence(r);
+    curvature += problem.loss.curvature(r);
+  }
+  return std::sqrt(influence / static_cast<double>(n - p)) * static_cast<double>(n) / curvature;
+}
+
 Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
-                           const Eigen::MatrixXd& jacobian, std::size_t n, double level) {
+                           const Eigen::MatrixXd& jacobian, std::size_t n, double level, std::optional<double> known) {
   using Bound = LeastSquaresSolution::Bound;
   const std::size_t p = problem.parameters.size();
   Uncertainty result;
@@ -97,11 +99,13 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
       }
     }
   }
-  if (result.degrees_of_freedom == 0) return result;
+  if (!known && result.degrees_of_freedom == 0) return result;
 
+  const double share = 0.5 * (1.0 + level);
   const auto degrees = static_cast<double>(result.degrees_of_freedom);
-  result.t_quantile = boost::math::quantile(boost::math::students_t(degrees), 0.5 * (1.0 + level));
-  result.standard_deviation = deviation_of(problem.loss, solution.residuals, n, degrees);
+  result.t_quantile = known ? boost::math::quantile(boost::math::normal(), share)
+                            : boost::math::quantile(boost::math::students_t(degrees), share);
+  result.standard_deviation = known ? *known : deviation_of(problem, solution.residuals, n);
   const double variance = result.standard_deviation * result.standard_deviation;
   for (Eigen::Index i = 0; i < size; ++i) {
     for (Eigen::Index j = 0; j < size; ++j) {

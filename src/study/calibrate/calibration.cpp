@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -23,6 +24,10 @@ constexpr double k_direct_noise = 1e-13;     // of a response without time integ
 constexpr double k_jump_share = 0.7;         // of a central difference: a smaller one to one side has no jump
 constexpr double k_series_noise = 1e-12;     // of a response in series with a machine
 constexpr std::size_t k_curve_points = 400;  // of the curve between the data
+constexpr int k_most_rounds = 50;            // of fits and the noise they leave
+constexpr double k_improbable = 1e-3;        // share of cases in which a test is wrong
+constexpr double k_far_from_prior = 3.0;     // standard deviations
+constexpr double k_same_weight = 1e-9;
 constexpr std::size_t k_dense = 800;         // rows: more of them are thinned while the fit is sought
 constexpr std::size_t k_thinned = 400;       // about so many rows are left
 constexpr double k_high_correlation = 0.95;  // of two parameters
@@ -168,8 +173,12 @@ Eigen::MatrixXd jacobian_beside_jumps(const LeastSquaresProblem& problem, std::s
 
 class Fit {
  public:
-  Fit(const Calibration& calibration, const LeastSquaresProblem::Progress& progress)
-      : calibration_(calibration), procedures_(model_fits(calibration)), response_(calibration.x.values.size()) {
+  /// @param prior_weight  factor of the priors' residuals, where it is known
+  Fit(const Calibration& calibration, const LeastSquaresProblem::Progress& progress, double prior_weight = 1.0)
+      : calibration_(calibration),
+        procedures_(model_fits(calibration)),
+        response_(calibration.x.values.size()),
+        prior_weight_(prior_weight) {
     for (const MeasuredCurve& curve : calibration.curves) {
       responses_.emplace_back(calibration, curve, x_of(calibration, curve), y_of(calibration, curve));
     }
@@ -178,7 +187,11 @@ class Fit {
     }
     problem_.parameters.assign(calibration.free.begin(), calibration.free.end());
     begin_at(procedures_.starts);
-    problem_.residual_count = rows_.size();
+    for (std::size_t k = 0; k < calibration.free.size(); ++k) {
+      if (calibration.free[k].prior && calibration.free[k].prior->is_residual()) priors_.push_back(k);
+    }
+    problem_.residual_count = rows_.size() + priors_.size();
+    problem_.plain_count = priors_.size();
     problem_.loss = calibration.loss;
     problem_.noise = noise_of(calibration);
     problem_.progress = progress;
@@ -188,18 +201,43 @@ class Fit {
         const std::size_t row = rows_[i];
         residuals[i] = calibration_.weights[row] * (calibration_.y.values[row] - response_[row]);
       }
+      for (std::size_t j = 0; j < priors_.size(); ++j) {
+        const std::size_t k = priors_[j];
+        residuals[rows_.size() + j] = prior_weight_ * calibration_.free[k].prior->deviation(parameters[k]);
+      }
       return true;
     };
   }
   Fit(const Fit&) = delete;
   Fit& operator=(const Fit&) = delete;
 
-  /// The best fit. Many rows are thinned while it is sought. Nothing: no parameters that were tried have a response.
+  /// The best fit; nothing where no parameters that were tried have a response. Where the noise is not known, priors
+  /// count beside the one that the data's residuals show.
   [[nodiscard]] std::optional<LeastSquaresSolution> search() {
+    if (priors_.empty() || calibration_.knows_noise()) return search_once();
+    prior_weight_ = 0.0;
+    auto solution = search_once();
+    for (int round = 0; solution && round < k_most_rounds; ++round) {
+      const double before = std::exchange(prior_weight_, deviation_of(problem_, solution->residuals, rows_.size()));
+      if (!(prior_weight_ > 0.0)) prior_weight_ = 0.0;
+      const LocalMinimum& start = *solution;
+      auto next = round == 0 ? search_once() : minimise_near(problem_, {&start, 1});
+      if (!next) break;
+      next->evaluations += solution->evaluations;
+      next->failures += solution->failures;
+      solution = std::move(next);
+      if (std::abs(prior_weight_ - before) <= k_same_weight * prior_weight_) break;
+    }
+    return solution;
+  }
+
+  /// Many rows are thinned while a fit is sought.
+  [[nodiscard]] std::optional<LeastSquaresSolution> search_once() {
     if (calibration_.x.values.size() <= k_dense) return minimise(problem_);
     const Calibration thin = thinned(calibration_, k_thinned);
     if (thin.counted() <= calibration_.free.size()) return minimise(problem_);
-    const auto near = Fit(thin, problem_.progress).search();
+    const double share = static_cast<double>(thin.counted()) / static_cast<double>(rows_.size());
+    const auto near = Fit(thin, problem_.progress, prior_weight_ * std::sqrt(share)).search_once();
     if (!near) return minimise(problem_);
     auto solution = minimise_near(problem_, near->minima);
     if (!solution) return minimise(problem_);
@@ -212,7 +250,7 @@ class Fit {
   TrialFit explain() {
     const auto solution = search();
     if (!solution) return {k_nan, {}};
-    return {explained_share(calibration_, solution->cost), solution->parameters};
+    return {explained_share(calibration_, cost_of_data(*solution)), solution->parameters};
   }
 
   /// @param trial  for the cause where there is no fit
@@ -228,7 +266,8 @@ class Fit {
     }
     const Eigen::MatrixXd gradients = response_jacobian(parameters);
     result.uncertainty =
-        uncertainty_of(problem_, result.solution, weighted(gradients), rows_.size(), calibration_.confidence);
+        uncertainty_of(problem_, result.solution, weighted(gradients, parameters), rows_.size(),
+                       calibration_.confidence, calibration_.knows_noise() ? std::optional(1.0) : std::nullopt);
     fit_at_data(result, gradients);
     for (const MeasuredCurve& curve : calibration_.curves) result.curves.push_back(curve_through(curve, result));
     result.points = rows_.size();
@@ -295,9 +334,22 @@ class Fit {
     return jacobian_of(problem, parameters);
   }
 
+  /// Sum of rho without the priors.
+  [[nodiscard]] double cost_of_data(const LeastSquaresSolution& solution) const {
+    double cost = 0.0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) cost += problem_.loss.rho(solution.residuals[i]);
+    return cost;
+  }
+
   /// The Jacobian of the residuals.
-  [[nodiscard]] Eigen::MatrixXd weighted(const Eigen::MatrixXd& gradients) const {
-    Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(rows_.size()), gradients.cols());
+  [[nodiscard]] Eigen::MatrixXd weighted(const Eigen::MatrixXd& gradients, std::span<const double> parameters) const {
+    const auto count = static_cast<Eigen::Index>(problem_.residual_count);
+    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(count, gradients.cols());
+    for (std::size_t j = 0; j < priors_.size(); ++j) {
+      const std::size_t k = priors_[j];
+      jacobian(static_cast<Eigen::Index>(rows_.size() + j), static_cast<Eigen::Index>(k)) =
+          prior_weight_ * calibration_.free[k].prior->slope(parameters[k]);
+    }
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       jacobian.row(static_cast<Eigen::Index>(i)) =
           -calibration_.weights[rows_[i]] * gradients.row(static_cast<Eigen::Index>(rows_[i]));
@@ -360,10 +412,12 @@ class Fit {
       result.largest = std::abs(residual);
       result.largest_at = row;
     }
-    for (const double r : result.solution.residuals) result.sum_of_squares += r * r;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      result.sum_of_squares += result.solution.residuals[i] * result.solution.residuals[i];
+    }
     result.rms = std::sqrt(about_fit / static_cast<double>(rows_.size()));
     result.r_squared = is_constant(calibration_) ? k_nan : 1.0 - about_fit / about_mean;
-    result.explained = explained_share(calibration_, result.solution.cost);
+    result.explained = explained_share(calibration_, cost_of_data(result.solution));
   }
 
   void add_notes(CalibrationResult& result) const {
@@ -386,12 +440,14 @@ class Fit {
         note(fmt::format("the data hardly determine '{}': its interval is wider than its bounds", path));
       }
     }
-    if (result.uncertainty.degrees_of_freedom == 0) {
+    if (result.uncertainty.degrees_of_freedom == 0 && !calibration_.knows_noise()) {
       note(
           fmt::format("{} parameters for {} points: the fit leaves nothing to estimate errors from; no errors and no "
                       "intervals",
                       calibration_.free.size(), rows_.size()));
     }
+    if (calibration_.knows_noise()) note_chi_squared(result);
+    note_priors(result);
     if (!solution.has_converged) note("the search ended before its steps had vanished; the fit may not be the best");
     if (solution.failures > 0) {
       note(fmt::format("{} of {} trial runs ended early, outside the model's domain, and were passed over",
@@ -406,6 +462,40 @@ class Fit {
       }
     }
     note_correlations(result);
+  }
+
+  /// Says where the residuals do not have the size of the noise.
+  void note_chi_squared(CalibrationResult& result) const {
+    const auto degrees = static_cast<double>(result.uncertainty.degrees_of_freedom);
+    if (degrees == 0.0) return;
+    const boost::math::chi_squared distribution(degrees);
+    const double above = boost::math::cdf(boost::math::complement(distribution, result.sum_of_squares));
+    const double reduced = result.sum_of_squares / degrees;
+    if (above < k_improbable) {
+      result.notes.push_back(
+          fmt::format("chi^2 over degrees of freedom is {:.3g}: the residuals are larger than the noise given, by the "
+                      "law or by the "
+                      "data; the intervals are too narrow by a factor of about {:.2g}",
+                      reduced, std::sqrt(reduced)));
+    } else if (1.0 - above < k_improbable) {
+      result.notes.push_back(
+          fmt::format("chi^2 over degrees of freedom is {:.3g}: the noise given is larger than the residuals; the "
+                      "intervals are too wide",
+                      reduced));
+    }
+  }
+
+  /// Says which priors the data contradict.
+  void note_priors(CalibrationResult& result) const {
+    for (const std::size_t k : priors_) {
+      const FreeParameter& parameter = calibration_.free[k];
+      const double deviation = parameter.prior->deviation(result.solution.parameters[k]);
+      if (std::abs(deviation) <= k_far_from_prior) continue;
+      result.notes.push_back(
+          fmt::format("'{}' lies {:.2g} standard deviations of its prior from its centre: data and "
+                      "prior contradict each other",
+                      parameter.key.path, std::abs(deviation)));
+    }
   }
 
   void note_table_ends(const MeasuredCurve& curve, const std::vector<double>& x, CalibrationResult& result) const {
@@ -445,6 +535,8 @@ class Fit {
   std::vector<Response> responses_;  ///< of the curves
   std::vector<double> response_;     ///< in every row
   std::vector<std::size_t> rows_;    ///< that take part
+  std::vector<std::size_t> priors_;  ///< parameters whose priors are residuals
+  double prior_weight_;              ///< standard deviation of weighted residuals
   LeastSquaresProblem problem_;
 };
 

@@ -18,6 +18,7 @@
 #include "scenario/table_layout.hpp"
 #include "study/calibrate/machine.hpp"
 #include "study/calibrate/model_fit.hpp"
+#include "study/calibrate/prior.hpp"
 #include "study/calibrate/replay.hpp"
 
 namespace monograin {
@@ -27,6 +28,7 @@ struct FreeParameter : BoundedParameter {
   NumberKey key;
   std::string unit;          ///< that of its lower bound as given, which it is shown in; empty for a pure number
   double unit_factor = 1.0;  ///< one unit in SI
+  std::optional<Prior> prior{};
 };
 
 /// What a column of the data holds.
@@ -66,7 +68,7 @@ struct Calibration {
   std::vector<MeasuredCurve> curves;  ///< at least one
   MeasuredQuantity x;
   MeasuredQuantity y;
-  std::string weighting;           ///< absolute, relative, column, area
+  std::string weighting;           ///< absolute, relative, column, area; noise
   std::vector<double> weights;     ///< factors of y's residuals [1/SI], >= 0; 0: a row that only drives
   std::vector<std::size_t> lines;  ///< of the rows in their data file
   std::vector<FreeParameter> free;
@@ -76,6 +78,8 @@ struct Calibration {
 
   /// The machine of a curve with these values of the free parameters.
   [[nodiscard]] Machine machine_of(const MeasuredCurve& curve, std::span<const double> parameters) const;
+  /// Whether the size of the noise is given, and weights are one over standard deviations.
+  [[nodiscard]] bool knows_noise() const noexcept;
   /// Whether the machine adds to the displacement of any curve, or may.
   [[nodiscard]] bool has_machine() const noexcept;
   /// Which of the quantities the machine adds to: the displacement.
@@ -108,7 +112,7 @@ struct CalibrationResult {
   std::vector<FittedCurve> curves;    ///< in between, too: one for each measured curve
   std::size_t points = 0;             ///< rows that take part
   std::size_t program_steps = 0;      ///< of the loading made from the data
-  double sum_of_squares = 0.0;        ///< of weighted residuals
+  double sum_of_squares = 0.0;        ///< of weighted residuals; chi^2 where the noise is known
   double rms = 0.0;                   ///< of residuals [SI of y], over all rows that take part
   double largest = 0.0;               ///< of their magnitudes
   std::size_t largest_at = 0;         ///< its row

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <span>
@@ -52,6 +53,7 @@ class CalibrationReader {
     read_fit(root);
     if (root.has("data")) read_data(root);
     if (root.has("free") && has_scenario_) read_free(root);
+    if (root.has("prior") && !made_.free.empty()) read_priors(root);
     faults_.throw_if_any();
     check_machine(root);
     check_count(root);
@@ -154,7 +156,12 @@ class CalibrationReader {
     const std::size_t before = faults_.size();
     const Section data(reading_, origin, keys);
     const bool is_clean = faults_.size() == before;
-    const std::string weighting = data.text("weights");
+    const bool has_noise = data.has(k_noise);
+    if (has_noise && data.has("weights")) {
+      faults_.add(data.key_place("weights"),
+                  "key 'weights' does not go with 'noise': weights say how the noise is shared, noise how large it is");
+    }
+    const std::string weighting = has_noise ? std::string(k_noise) : data.text("weights");
     if (made_.curves.empty()) made_.weighting = weighting;
     if (weighting != made_.weighting) {
       faults_.add(data.value_place("weights"),
@@ -171,6 +178,12 @@ class CalibrationReader {
     } else if (is_clean && data.has("weight_column")) {
       faults_.add(data.key_place("weight_column"),
                   fmt::format("key 'weight_column' belongs to weights = \"column\"; this is \"{}\"", weighting));
+    }
+
+    if (has_noise) {
+      const std::size_t column = specs.size();
+      add_noise_column(data, specs);
+      noise_column_ = specs.size() > column;
     }
 
     const std::string name = data.text("file");
@@ -202,7 +215,10 @@ class CalibrationReader {
     const MeasuredQuantity y = quantity(specs[1], measured.columns[1]);
     if (!x.observable.empty()) check_drive(specs[0], x, curve);
     std::vector<double> weights;
-    if (faults_.size() == before && !y.values.empty()) weights = weights_of(measured, x, y, curve.file);
+    if (faults_.size() == before && !y.values.empty()) {
+      weights =
+          has_noise ? weights_by_noise(data, specs, measured, y, curve.file) : weights_of(measured, x, y, curve.file);
+    }
     if (faults_.size() > before) return;
     curve.end += measured.lines.size();
     append(measured.lines, made_.lines);
@@ -423,6 +439,59 @@ class CalibrationReader {
     return weights;
   }
 
+  [[nodiscard]] static KeySpec::Kind noise_column_kind(const Section::Origin& noise) {
+    return kind_of(*noise.table, "column", KeySpec::Kind::text);
+  }
+
+  /// The column of standard deviations, if there is one.
+  void add_noise_column(const Section& data, std::vector<ColumnSpec>& specs) {
+    const Section::Origin origin = data.table(k_noise, std::string(k_noise));
+    const KeySpec::Kind kind = noise_column_kind(origin);
+    if (!origin.table->contains("column") || (kind != KeySpec::Kind::text && kind != KeySpec::Kind::integer)) return;
+    FaultList reported_later;
+    Reading reading{reported_later};
+    const Keys keys = noise_keys(Dimension::none, kind);
+    const Section noise(reading, origin, keys);
+    specs.push_back({.request = request_of(noise, "column", kind),
+                     .quantity = {},
+                     .unit = {},
+                     .quantity_at = noise.value_place("column"),
+                     .unit_at = noise.value_place("column")});
+  }
+
+  /// One over the standard deviations.
+  [[nodiscard]] std::vector<double> weights_by_noise(const Section& data, const std::vector<ColumnSpec>& specs,
+                                                     const MeasuredData& measured, const MeasuredQuantity& y,
+                                                     const std::string& file) {
+    const Section::Origin origin = data.table(k_noise, std::string(k_noise));
+    const Keys keys = noise_keys(dimension_of(y.si).value_or(Dimension::none), noise_column_kind(origin));
+    const std::size_t before = faults_.size();
+    const Section noise(reading_, origin, keys);
+    const double absolute = noise.number("absolute").value_or(0.0);
+    const double relative = noise.number("relative").value_or(0.0);
+    double factor = 0.0;  // of the column
+    if (noise_column_) {
+      MeasuredQuantity column{.observable = {}, .unit = measured.columns[2].unit, .si = y.si, .values = {}};
+      factor = unit_factor(column, specs[2]).value_or(0.0);
+      if (noise.has("absolute") || noise.has("relative")) {
+        faults_.add(noise.value_place("column"), "a column of standard deviations stands alone; expected no other key");
+      }
+    }
+    std::vector<double> weights;
+    std::size_t found = 0;
+    for (std::size_t row = 0; row < y.values.size() && faults_.size() < before + k_most_zeros; ++row) {
+      const double deviation =
+          noise_column_ ? factor * measured.columns[2].values[row] : std::hypot(absolute, relative * y.values[row]);
+      weights.push_back(1.0 / deviation);
+      if (deviation > 0.0 || faults_.size() > before + found) continue;
+      ++found;
+      faults_.add({file, measured.lines[row], measured.columns[noise_column_ ? 2 : 1].at[row]},
+                  noise_column_ ? "a standard deviation has to be above zero"
+                                : "y = 0 has no relative noise; expected an absolute part, too");
+    }
+    return weights;
+  }
+
   /// The roots of the trapezoidal rule's weights, along the path of x; 1 on the mean.
   static void weigh_by_path(const std::vector<double>& x, std::vector<double>& weights) {
     double path = 0.0;
@@ -453,6 +522,129 @@ class CalibrationReader {
                   fmt::format("{} parameters are free; expected at most {}", found.size(), k_most_parameters));
     }
     for (const auto& [where, number] : found) read_bounds(free, *number);
+  }
+
+  // --- priors
+
+  void read_priors(const Section& root) {
+    std::vector<std::string> paths;
+    for (const FreeParameter& parameter : made_.free) paths.push_back(parameter.key.path);
+    const Keys keys = prior_keys(paths);
+    const Section::Origin origin = root.table("prior", "[prior]");
+    std::vector<NumberKey> numbers = number_keys(made_.scenario);
+    append(machine_keys(), numbers);
+    std::vector<ForeignKey> foreign;
+    for (const NumberKey& number : numbers) {
+      if (std::ranges::find(paths, number.path) == paths.end()) {
+        foreign.push_back({number.path, "is not free; expected it in [free], too"});
+      }
+    }
+    const Section priors(reading_, origin, keys, foreign);
+    for (FreeParameter& parameter : made_.free) {
+      if (priors.has(parameter.key.path)) read_prior(priors, parameter);
+    }
+  }
+
+  void read_prior(const Section& priors, FreeParameter& parameter) {
+    const Section::Origin origin = priors.table(parameter.key.path, fmt::format("\"{}\"", parameter.key.path));
+    const Keys keys = distribution_keys();
+    const std::size_t before = faults_.size();
+    const Section distribution(reading_, origin, keys);
+    if (faults_.size() > before) return;
+    constexpr std::array k_kinds{Prior::Kind::normal, Prior::Kind::lognormal, Prior::Kind::uniform};
+    std::vector<Prior::Kind> given;
+    for (const Prior::Kind kind : k_kinds) {
+      if (distribution.has(word_of(kind))) given.push_back(kind);
+    }
+    if (given.size() != 1) {
+      return faults_.add(distribution.place(), fmt::format("a prior with {} distributions; expected one of normal, "
+                                                           "lognormal, uniform",
+                                                           given.size()));
+    }
+    Prior prior{.kind = given.front()};
+    const std::string_view word = word_of(prior.kind);
+    const std::vector<std::string> values = distribution.texts(word);
+    if (values.size() != 2) {
+      return faults_.add(distribution.value_place(word), fmt::format("{} = {} value{}; expected two", word,
+                                                                     values.size(), values.size() == 1 ? "" : "s"));
+    }
+    const bool is_lognormal = prior.kind == Prior::Kind::lognormal;
+    const auto first = value_in(distribution, word, 0, parameter.key, values[0]);
+    const auto second = is_lognormal ? plain_number(distribution, word, 1, values[1])
+                                     : value_in(distribution, word, 1, parameter.key, values[1]);
+    if (!first || !second) return;
+    prior.first = *first;
+    prior.second = *second;
+    check_prior(distribution, prior, parameter, values);
+  }
+
+  void check_prior(const Section& distribution, const Prior& prior, FreeParameter& parameter,
+                   const std::vector<std::string>& values) {
+    const std::string_view word = word_of(prior.kind);
+    if (prior.kind != Prior::Kind::uniform && !(prior.second > 0.0)) {
+      return faults_.add(
+          distribution.value_place(word, 1),
+          fmt::format("{}: the standard deviation is {}; expected one above zero", word, shown(values[1])));
+    }
+    if (prior.kind == Prior::Kind::lognormal && !(prior.first > 0.0 && parameter.lower > 0.0)) {
+      return faults_.add(distribution.value_place(word, 0),
+                         "lognormal: expected a median above zero, and bounds in [free] above zero");
+    }
+    if (prior.kind == Prior::Kind::uniform) {
+      if (!(prior.first < prior.second)) {
+        return faults_.add(distribution.value_place(word, 1),
+                           fmt::format("uniform: {} is not above {}; expected the bounds the other way round",
+                                       shown(values[1]), shown(values[0])));
+      }
+      const double lower = std::max(parameter.lower, prior.first);
+      const double upper = std::min(parameter.upper, prior.second);
+      if (!(lower < upper) || (parameter.start && !(*parameter.start >= lower && *parameter.start <= upper))) {
+        return faults_.add(
+            distribution.value_place(word, 0),
+            "uniform: expected an interval that shares values, and the start, with the bounds in [free]");
+      }
+      parameter.lower = lower;
+      parameter.upper = upper;
+    }
+    parameter.prior = prior;
+  }
+
+  [[nodiscard]] static std::optional<double> bare_number(const std::string& text) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+    return value;
+  }
+
+  [[nodiscard]] std::optional<double> plain_number(const Section& section, std::string_view key, std::size_t entry,
+                                                   const std::string& text) {
+    const auto number = bare_number(text);
+    if (!number) {
+      faults_.add(section.value_place(key, entry),
+                  fmt::format("{}: '{}' is no number; expected the standard deviation of the natural logarithm, for "
+                              "example 0.1",
+                              key, shown(text)));
+    }
+    return number;
+  }
+
+  /// A value of a parameter in a list: a number in SI, or a text with a unit.
+  [[nodiscard]] std::optional<double> value_in(const Section& section, std::string_view key, std::size_t entry,
+                                               const NumberKey& number, const std::string& text) {
+    if (const auto bare = bare_number(text)) return bare;
+    if (number.path == k_compliance) {
+      const ParsedCompliance parsed = parse_compliance(text);
+      if (!parsed.value) {
+        faults_.add(section.value_place(key, entry),
+                    fmt::format("{}: '{}': expected a length over a force, for example "
+                                "\"20 nm/N\"",
+                                key, shown(text)));
+      }
+      return parsed.value;
+    }
+    const ParsedQuantity parsed = parse_quantity(text, number.dimension, std::nullopt);
+    if (!parsed.value) faults_.add(section.value_place(key, entry), fmt::format("{}: {}", key, parsed.problem));
+    return parsed.value;
   }
 
   /// Keys that stand in the scenario, or are written so that TOML takes them apart.
@@ -564,6 +756,7 @@ class CalibrationReader {
   std::string scenario_file_;
   Measurable measurable_;
   bool has_scenario_ = false;
+  bool noise_column_ = false;  ///< of the curve that is read
 };
 
 }  // namespace
@@ -571,6 +764,8 @@ class CalibrationReader {
 std::size_t Calibration::counted() const noexcept {
   return static_cast<std::size_t>(std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }));
 }
+
+bool Calibration::knows_noise() const noexcept { return weighting == k_noise && loss.kind == Loss::linear; }
 
 Machine Calibration::machine_of(const MeasuredCurve& curve, std::span<const double> parameters) const {
   Machine machine = curve.machine;

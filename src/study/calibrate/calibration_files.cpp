@@ -93,6 +93,21 @@ std::string correlation_table(const Calibration& calibration, const CalibrationR
   return aligned(rows);
 }
 
+/// Priors, and how far the fit is from them.
+std::string prior_table(const Calibration& calibration, const CalibrationResult& result) {
+  std::vector<Row> rows;
+  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
+    const FreeParameter& parameter = calibration.free[k];
+    if (!parameter.prior) continue;
+    if (rows.empty()) rows.push_back({"prior", "", "std. deviations off"});
+    rows.push_back({parameter.key.path, describe(*parameter.prior, parameter.unit, parameter.unit_factor),
+                    parameter.prior->is_residual()
+                        ? fmt::format("{:.2f}", parameter.prior->deviation(result.solution.parameters[k]))
+                        : "-"});
+  }
+  return rows.empty() ? std::string() : aligned(rows) + '\n';
+}
+
 /// The model's own procedures, and this fit by their measures.
 std::string procedure_table(const ModelFits& procedures) {
   std::vector<Row> rows{{"procedure"}};
@@ -208,6 +223,14 @@ std::string draw(const Calibration& calibration, const CalibrationResult& result
   return {};
 }
 
+Json prior_json(const FreeParameter& parameter, double value) {
+  if (!parameter.prior) return {};
+  const Prior& prior = *parameter.prior;
+  return {{"distribution", word_of(prior.kind)},
+          {"values", {prior.first, prior.second}},
+          {"deviation", prior.is_residual() ? Json(prior.deviation(value)) : Json()}};
+}
+
 Json parameters_json(const Calibration& calibration, const CalibrationResult& result) {
   Json parameters = Json::array();
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
@@ -221,6 +244,7 @@ Json parameters_json(const Calibration& calibration, const CalibrationResult& re
                           {"bounds", {parameter.lower, parameter.upper}},
                           {"at_bound", bound == Bound::none ? Json() : Json(word_of(bound))},
                           {"is_determined", static_cast<bool>(result.uncertainty.is_determined[k])},
+                          {"prior", prior_json(parameter, result.solution.parameters[k])},
                           {"unit", parameter.unit},
                           {"value_in_unit", result.solution.parameters[k] / parameter.unit_factor}});
   }
@@ -306,6 +330,7 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
             {"degrees_of_freedom", uncertainty.degrees_of_freedom},
             {"level", uncertainty.level},
             {"t_quantile", uncertainty.t_quantile},
+            {"standard_deviation", uncertainty.standard_deviation},
             {"cost", solution.cost},
             {"sum_of_squares", result.sum_of_squares},
             {"rms", result.rms},
@@ -317,6 +342,7 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
            {{"x", {{"quantity", calibration.x.observable}, {"unit", calibration.x.si}}},
             {"y", {{"quantity", calibration.y.observable}, {"unit", calibration.y.si}}},
             {"weights", calibration.weighting},
+            {"noise", calibration.knows_noise() ? "known" : "estimated"},
             {"loss", calibration::k_losses[static_cast<std::size_t>(calibration.loss.kind)]},
             {"loss_scale", calibration.loss.kind == Loss::linear ? Json() : Json(calibration.loss.scale)},
             {"has_converged", solution.has_converged},
@@ -370,10 +396,12 @@ std::string calibration_text(const Calibration& calibration, const CalibrationRe
   const std::string of_file = calibration.curves.size() > 1 ? worst.filename().string() + ", " : "";
   std::string text = parameter_table(calibration, result) + '\n';
   if (calibration.free.size() > 1 && has_errors(result)) text += correlation_table(calibration, result) + '\n';
+  text += prior_table(calibration, result);
   if (!result.procedures.fits.empty()) text += procedure_table(result.procedures) + '\n';
   std::vector<Row> rows{{"points", fmt::format("{}", result.points)},
                         {"degrees of freedom", fmt::format("{}", result.uncertainty.degrees_of_freedom)},
-                        {"sum of squares (weighted)", shown_number(result.sum_of_squares)},
+                        {calibration.knows_noise() ? "chi^2 (noise known)" : "sum of squares (weighted)",
+                         shown_number(result.sum_of_squares)},
                         {"rms residual", in_y(result.rms)},
                         {"largest residual", fmt::format("{} ({}line {})", in_y(result.largest), of_file,
                                                          calibration.lines[result.largest_at])},

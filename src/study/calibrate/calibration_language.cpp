@@ -60,6 +60,10 @@ Keys root_keys(bool scenario_is_table, bool data_is_list) {
        .is_required = true,
        .may_be_empty = false,
        .example = "[free]"},
+      {.name = "prior",
+       .meaning = "what is known of sought numbers before the data are",
+       .kind = Kind::table,
+       .example = "[prior]"},
       {.name = "fit", .meaning = "how the fit is made", .kind = Kind::table, .example = "[fit]"},
   };
 }
@@ -96,6 +100,11 @@ Keys data_keys(const DataKinds& kinds) {
       column_key("y", "column that is fitted", kinds.y, "\"force[N]\""),
       weights,
       weight_column,
+      {.name = k_noise,
+       .meaning = "standard deviation of y, where it is known",
+       .kind = Kind::table,
+       .may_be_empty = false,
+       .example = "{ absolute = \"2 N\", relative = 0.01 }"},
       separator,
       choice_key("decimal", "decimal sign [found]", k_decimals),
       {.name = "skip",
@@ -169,6 +178,50 @@ std::optional<Dimension> dimension_of(std::string_view si) {
     if (dimension_info(dimension).si == si) return dimension;
   }
   return std::nullopt;
+}
+
+Keys prior_keys(const std::vector<std::string>& paths) {
+  Keys keys;
+  for (const std::string& path : paths) {
+    keys.push_back({.name = path,
+                    .meaning = "what is known of it",
+                    .kind = Kind::table,
+                    .example = "{ normal = [\"1.2 GPa\", \"0.1 GPa\"] }"});
+  }
+  return keys;
+}
+
+Keys distribution_keys() {
+  return {
+      {.name = "normal",
+       .meaning = "mean and standard deviation",
+       .kind = Kind::texts,
+       .example = "[\"1.2 GPa\", \"0.1 GPa\"]"},
+      {.name = "lognormal",
+       .meaning = "median, and standard deviation of the natural logarithm",
+       .kind = Kind::texts,
+       .example = "[\"1.2 GPa\", 0.1]"},
+      {.name = "uniform", .meaning = "tighter bounds", .kind = Kind::texts, .example = "[\"1 GPa\", \"1.5 GPa\"]"},
+  };
+}
+
+Keys noise_keys(Dimension dimension, Kind column) {
+  KeySpec standard_errors =
+      column_key("column", "column with the standard deviation of each y", column, "\"standard_error[N]\"");
+  standard_errors.is_required = false;
+  return {
+      {.name = "absolute",
+       .meaning = "part that is the same for all",
+       .kind = Kind::quantity,
+       .dimension = dimension,
+       .range = {.lower = 0.0, .upper = 1e300, .lower_is_open = true}},
+      {.name = "relative",
+       .meaning = "part in proportion to |y|",
+       .kind = Kind::quantity,
+       .range = {.lower = 0.0, .upper = 10.0, .lower_is_open = true},
+       .example = "0.01"},
+      standard_errors,
+  };
 }
 
 Keys fit_keys() {

@@ -17,6 +17,7 @@ using Keys = std::vector<KeySpec>;
 inline constexpr std::array<std::string_view, 4> k_weights{"absolute", "relative", "column", "area"};
 inline constexpr std::array<std::string_view, 4> k_losses{"linear", "huber", "soft-l1", "cauchy"};
 inline constexpr std::array<std::string_view, 2> k_scales{"linear", "log"};
+inline constexpr std::string_view k_noise = "noise";  ///< weighting by a known noise
 inline constexpr std::array<std::string_view, 2> k_decimals{".", ","};
 inline constexpr std::array<std::string_view, 2> k_unit_rows{"row", "none"};
 inline constexpr std::string_view k_data = "data.";  ///< begins the keys of the machine among the free parameters
@@ -47,6 +48,12 @@ struct DataKinds {
 [[nodiscard]] Keys bounds_keys(const NumberKey& number, const std::array<KeySpec::Kind, 3>& kinds);
 /// The dimension of a measured column, by its SI unit; none for columns of pure numbers.
 [[nodiscard]] std::optional<Dimension> dimension_of(std::string_view si);
+/// The free parameters of which something is known beforehand. @param paths  of the free parameters
+[[nodiscard]] Keys prior_keys(const std::vector<std::string>& paths);
+/// What is known of one of them: one of three distributions.
+[[nodiscard]] Keys distribution_keys();
+/// The noise of y. @param dimension  of y  @param column  text or integer
+[[nodiscard]] Keys noise_keys(Dimension dimension, KeySpec::Kind column);
 /// How the fit is made.
 [[nodiscard]] Keys fit_keys();
 
