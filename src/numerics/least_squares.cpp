@@ -3,9 +3,11 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit_nlinear.h>
+#include <gsl/gsl_multimin.h>
 #include <gsl/gsl_qrng.h>
 
 #include <Eigen/QR>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,8 +36,13 @@ constexpr double k_no_cost = std::numeric_limits<double>::infinity();
 constexpr int k_refinements = 3;
 constexpr double k_small_step = 1e-4;         // of z: a longer one shows that there is no minimum near
 constexpr double k_rounding_of_cost = 1e-12;  // over the cost
-constexpr double k_exact_step = 1e-12;        // of z
-constexpr double k_nearly_exact = 1e-9;       // of z: where Gauss-Newton steps take over
+constexpr double k_kinked = 1e-5;             // of the cost, which a smooth minimum does not promise to lose
+constexpr double k_margin_of_noise = 1e3;
+constexpr double k_longest_step = 0.1;       // of z
+constexpr std::size_t k_simplex_steps = 60;  // for each parameter
+constexpr double k_simplex_end = 1e-3;       // of a standard error
+constexpr double k_exact_step = 1e-12;       // of z
+constexpr double k_nearly_exact = 1e-9;      // of z: where Gauss-Newton steps take over
 
 /// How far a polish goes, and how it finds derivatives.
 struct Effort {
@@ -44,6 +51,7 @@ struct Effort {
   bool is_central;  ///< central differences in every iteration; otherwise one-sided ones, brought up to date by secants
 };
 constexpr Effort k_short_polish{7, 1e-3, false};  // enough to leave a slice for its valley
+constexpr Effort k_rough_polish{20, 1e-5, false};
 constexpr Effort k_long_polish{40, 1e-7, false};
 
 template <auto Free>
@@ -55,6 +63,7 @@ struct Deleter {
 };
 using Vector = std::unique_ptr<gsl_vector, Deleter<gsl_vector_free>>;
 using Solver = std::unique_ptr<gsl_multifit_nlinear_workspace, Deleter<gsl_multifit_nlinear_free>>;
+using Simplex = std::unique_ptr<gsl_multimin_fminimizer, Deleter<gsl_multimin_fminimizer_free>>;
 using Sequence = std::unique_ptr<gsl_qrng, Deleter<gsl_qrng_free>>;
 
 /// GSL ends the process at an error unless it is told not to.
@@ -118,7 +127,7 @@ class Search {
   }
 
   /// From places that are near minima already.
-  std::optional<LeastSquaresSolution> run_from(std::span<const LocalMinimum> minima) {
+  std::optional<LeastSquaresSolution> run_from(std::span<const LocalMinimum> minima, Accuracy accuracy) {
     std::vector<Place> starts;
     for (const LocalMinimum& minimum : minima) {
       Place place = place_at(minimum.parameters);
@@ -126,7 +135,10 @@ class Search {
       if (place.cost < k_no_cost) starts.push_back(std::move(place));
     }
     if (starts.empty()) return std::nullopt;
-    return finish(std::move(starts));
+    if (accuracy == Accuracy::full) return finish(std::move(starts));
+    std::ranges::stable_sort(starts, {}, &Place::cost);
+    const Place end = polish(starts.front(), k_rough_polish);
+    return solution(end, {end});
   }
 
  private:
@@ -242,6 +254,7 @@ class Search {
     places.front().has_converged = false;
     places.front() = refined(places.front());
     if (!places.front().has_converged) places.front() = refined(polish(places.front(), full_polish()));
+    places.front() = past_kinks(places.front());
     const Place best = places.front();
     return settled_at_bounds(best, places);
   }
@@ -418,6 +431,69 @@ class Search {
     return place;
   }
 
+  /// The minimum near a place at which derivatives predict a lower cost that is not there: downhill without
+  /// derivatives, by a simplex in directions in which the predicted cost rises alike.
+  [[nodiscard]] Place past_kinks(const Place& place) {
+    const auto count = static_cast<Eigen::Index>(residuals_.size());
+    if (count <= static_cast<Eigen::Index>(size_) || !(place.cost > 0.0)) return place;
+    Polish polish = prepared(place, true);
+    if (!evaluate(place, polish.values)) return place;
+    for (std::size_t k = 0; k < size_; ++k) differentiate(polish, k);
+    const Eigen::Map<const Eigen::VectorXd> residuals(polish.values.data(), count);
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(polish.jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const double predicted = (svd.matrixU().transpose() * residuals).squaredNorm();
+    const double rounding = k_margin_of_noise * problem_.noise * polish.jacobian.norm();
+    if (predicted <= k_kinked * place.cost || place.cost <= rounding * rounding) return place;
+    const double s = std::sqrt(place.cost / static_cast<double>(count - static_cast<Eigen::Index>(size_)));
+    Descent descent{*this, place, svd.matrixV(), place, {}};
+    for (Eigen::Index j = 0; j < svd.singularValues().size(); ++j) {
+      descent.directions.col(j) *= std::min(s / svd.singularValues()[j], k_longest_step);
+    }
+    gsl_multimin_function function{cost_callback, size_, &descent};
+    const Simplex simplex(gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, size_));
+    const Vector start(gsl_vector_calloc(size_));
+    const Vector steps(gsl_vector_alloc(size_));
+    if (!simplex || !start || !steps) throw std::bad_alloc();
+    gsl_vector_set_all(steps.get(), 1.0);
+    int status = gsl_multimin_fminimizer_set(simplex.get(), &function, start.get(), steps.get());
+    for (std::size_t step = 0; status == GSL_SUCCESS && step < k_simplex_steps * size_; ++step) {
+      status = gsl_multimin_fminimizer_iterate(simplex.get());
+      if (gsl_multimin_fminimizer_size(simplex.get()) < k_simplex_end) break;
+    }
+    if (descent.pending) std::rethrow_exception(descent.pending);
+    if (!(descent.best.cost < place.cost)) return place;
+    descent.best.has_converged = gsl_multimin_fminimizer_size(simplex.get()) < k_simplex_end;
+    return descent.best;
+  }
+
+  struct Descent {
+    Search& search;
+    Place from;
+    Eigen::MatrixXd directions;
+    Place best;
+    std::exception_ptr pending;
+  };
+
+  static double cost_callback(const gsl_vector* u, void* self) noexcept {
+    auto& descent = *static_cast<Descent*>(self);
+    try {
+      Place place = descent.from;
+      for (std::size_t k = 0; k < place.z.size(); ++k) {
+        for (std::size_t j = 0; j < place.z.size(); ++j) {
+          place.z[k] +=
+              descent.directions(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j)) * gsl_vector_get(u, j);
+        }
+        place.z[k] = folded(place.z[k]);
+      }
+      place.cost = descent.search.cost_at(place);
+      if (place.cost < descent.best.cost) descent.best = place;
+      return place.cost < k_no_cost ? place.cost : 2.0 * descent.search.worst_cost_ + 1.0;
+    } catch (...) {
+      descent.pending = std::current_exception();
+      return GSL_NAN;
+    }
+  }
+
   /// The minimum downhill from a place, as far as the effort goes, or until it comes near a known place.
   [[nodiscard]] Place polish(const Place& start, const Effort& effort, const std::vector<Place>& known = {}) {
     Polish polish = prepared(start, effort.is_central);
@@ -514,9 +590,14 @@ class Search {
     solution.bounds.assign(size_, LeastSquaresSolution::Bound::none);
     for (const Place& place : all) solution.minima.push_back(minimum(place));
     solution.residuals.resize(problem_.residual_count);
-    problem_.residuals(solution.parameters, solution.residuals);
+    if (problem_.loss.kind == Loss::linear && solution.parameters == last_parameters_) {
+      solution.residuals = last_values_;
+    } else {
+      problem_.residuals(solution.parameters, solution.residuals);
+      ++evaluations_;
+    }
     solution.has_converged = best.has_converged;
-    solution.evaluations = evaluations_ + 1;
+    solution.evaluations = evaluations_;
     solution.failures = failures_;
     return solution;
   }
@@ -614,10 +695,10 @@ std::optional<LeastSquaresSolution> minimise(const LeastSquaresProblem& problem)
 }
 
 std::optional<LeastSquaresSolution> minimise_near(const LeastSquaresProblem& problem,
-                                                  std::span<const LocalMinimum> starts) {
+                                                  std::span<const LocalMinimum> starts, Accuracy accuracy) {
   check_size(problem);
   const QuietGsl quiet;
-  return Search(problem).run_from(starts);
+  return Search(problem).run_from(starts, accuracy);
 }
 
 double difference_step(const LeastSquaresProblem& problem, std::span<const double> parameters, std::size_t k) {

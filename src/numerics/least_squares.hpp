@@ -86,9 +86,16 @@ struct LeastSquaresSolution : LocalMinimum {
 /// @return nothing where no place that was drawn has residuals
 [[nodiscard]] std::optional<LeastSquaresSolution> minimise(const LeastSquaresProblem& problem);
 
+enum class Accuracy {
+  full,  ///< parameters to the rounding of their residuals
+  rough  ///< the cost to a small share of the noise; one-sided differences and secants alone, bounds kept but not
+         ///< settled
+};
+
 /// The minimum downhill from the best of some places. @return nothing where none of them has residuals
 [[nodiscard]] std::optional<LeastSquaresSolution> minimise_near(const LeastSquaresProblem& problem,
-                                                                std::span<const LocalMinimum> starts);
+                                                                std::span<const LocalMinimum> starts,
+                                                                Accuracy accuracy = Accuracy::full);
 
 /// The problem in the other parameters, with the k-th held at a value; it refers to the given one.
 [[nodiscard]] LeastSquaresProblem with_held(const LeastSquaresProblem& problem, std::size_t k, double value);

@@ -12,6 +12,13 @@ namespace {
 
 constexpr double k_share_of_null_vector = 1e-2;  // with which a parameter belongs to what is not determined
 
+/// Of the loss, over the data.
+double mean_curvature(const LeastSquaresProblem& problem, std::span<const double> residuals, std::size_t n) {
+  double curvature = 0.0;
+  for (const double r : residuals.first(n)) curvature += problem.loss.curvature(r);
+  return curvature / static_cast<double>(n);
+}
+
 }  // namespace
 
 double Uncertainty::standard_error(std::size_t parameter) const {
@@ -40,12 +47,8 @@ double deviation_of(const LeastSquaresProblem& problem, std::span<const double> 
   const std::size_t p = problem.parameters.size();
   if (n <= p) return std::numeric_limits<double>::quiet_NaN();
   double influence = 0.0;
-  double curvature = 0.0;
-  for (const double r : residuals.first(n)) {
-    influence += problem.loss.influence(r) * problem.loss.influence(r);
-    curvature += problem.loss.curvature(r);
-  }
-  return std::sqrt(influence / static_cast<double>(n - p)) * static_cast<double>(n) / curvature;
+  for (const double r : residuals.first(n)) influence += problem.loss.influence(r) * problem.loss.influence(r);
+  return std::sqrt(influence / static_cast<double>(n - p)) / mean_curvature(problem, residuals, n);
 }
 
 Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
@@ -55,7 +58,7 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
   Uncertainty result;
   result.degrees_of_freedom = n > p ? n - p : 0;
   result.level = level;
-  result.t_quantile = result.standard_deviation = std::numeric_limits<double>::quiet_NaN();
+  result.t_quantile = result.standard_deviation = result.rise = std::numeric_limits<double>::quiet_NaN();
   result.is_determined.assign(p, true);
   result.covariance.setConstant(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(p),
                                 std::numeric_limits<double>::quiet_NaN());
@@ -85,6 +88,9 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
   // Below this a singular value is the error of the differences.
   const double least_singular = 10.0 * std::cbrt(problem.noise) * std::cbrt(problem.noise) * svd.singularValues()[0];
+  for (const double value : svd.singularValues()) {
+    if (value > least_singular) result.condition = svd.singularValues()[0] / value;
+  }
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(size, size);
   for (Eigen::Index s = 0; s < svd.singularValues().size(); ++s) {
     const double value = svd.singularValues()[s];
@@ -107,6 +113,7 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
                             : boost::math::quantile(boost::math::students_t(degrees), share);
   result.standard_deviation = known ? *known : deviation_of(problem, solution.residuals, n);
   const double variance = result.standard_deviation * result.standard_deviation;
+  result.rise = variance * mean_curvature(problem, solution.residuals, n);
   for (Eigen::Index i = 0; i < size; ++i) {
     for (Eigen::Index j = 0; j < size; ++j) {
       const std::size_t first = interior[static_cast<std::size_t>(i)];

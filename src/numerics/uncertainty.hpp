@@ -24,7 +24,9 @@ struct Uncertainty {
   double level = 0.95;                 ///< of the two-sided intervals
   double t_quantile = 0.0;             ///< Student's t for them, normal where s is known; nan where there is none
   double standard_deviation = 0.0;     ///< s, in units of the residuals; nan where there is none
+  double rise = 0.0;                   ///< of the cost, one standard error away: s^2 times the loss's mean curvature
   std::vector<bool> is_determined;     ///< whether the residuals tell this parameter, at a bound or not
+  double condition = 1.0;              ///< of the Jacobian with columns of length one, of what is determined
   Eigen::MatrixXd covariance;          ///< nan in rows and columns of parameters at a bound or not determined
 
   [[nodiscard]] double standard_error(std::size_t parameter) const;

@@ -1,0 +1,314 @@
+#include "numerics/intervals.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+namespace monograin {
+namespace {
+
+constexpr double k_quadratic = 0.2;   // a rise this much off the predicted one makes an interval a tenth too wide
+constexpr double k_kink_share = 0.7;  // of the difference at two standard errors, that a kink shows at one
+constexpr double k_less = 1e-3;       // of a standard error's rise, by which a better place is better
+constexpr double k_end = 3e-3;        // of the half-width, to which it is found
+constexpr int k_most_steps = 12;
+constexpr std::size_t k_least_rows = 20;
+
+/// Profiles of one fit.
+class Profile {
+ public:
+  Profile(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution, const Uncertainty& uncertainty)
+      : problem_(problem), solution_(solution), uncertainty_(uncertainty), residuals_(problem.residual_count) {}
+
+  struct Point {
+    double value = 0.0;
+    double rise = 0.0;  ///< of the cost, over that of one standard error; infinite without residuals
+    std::vector<double> parameters;
+  };
+
+  /// The cost with all parameters given.
+  [[nodiscard]] double rise_at(std::span<const double> parameters) {
+    ++evaluations_;
+    if (!problem_.residuals(parameters, residuals_)) return std::numeric_limits<double>::infinity();
+    const double rise = rise_of(cost_of(problem_, residuals_));
+    keep_better({parameters.begin(), parameters.end()}, rise);
+    return rise;
+  }
+
+  /// The least cost with the k-th parameter held. @param start  all parameters; the k-th is the value
+  [[nodiscard]] Point refit(std::size_t k, std::vector<double> start) {
+    if (start.size() == 1) return {start[0], rise_at(start), start};
+    const double value = start[k];
+    const LeastSquaresProblem held = with_held(problem_, k, value);
+    LocalMinimum others;
+    others.parameters = start;
+    others.parameters.erase(others.parameters.begin() + static_cast<std::ptrdiff_t>(k));
+    for (std::size_t j = 0; j < others.parameters.size(); ++j) {
+      others.parameters[j] = std::clamp(others.parameters[j], held.parameters[j].lower, held.parameters[j].upper);
+    }
+    const auto found = minimise_near(held, {&others, 1}, Accuracy::rough);
+    evaluations_ += found ? found->evaluations : 1;
+    if (!found) return {value, std::numeric_limits<double>::infinity(), std::move(start)};
+    std::vector<double> all = found->parameters;
+    all.insert(all.begin() + static_cast<std::ptrdiff_t>(k), value);
+    const double rise = rise_of(found->cost);
+    keep_better(all, rise);
+    return {value, rise, std::move(all)};
+  }
+
+  /// The parameters t standard errors along the k-th, the others as the covariance has them.
+  [[nodiscard]] std::vector<double> predicted(std::size_t k, double t) const {
+    std::vector<double> parameters = solution_.parameters;
+    const auto column = static_cast<Eigen::Index>(k);
+    const double error = uncertainty_.standard_error(k);
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      const double both = uncertainty_.covariance(static_cast<Eigen::Index>(j), column);
+      if (std::isfinite(both)) parameters[j] += t * both / error;
+    }
+    return parameters;
+  }
+
+  [[nodiscard]] bool is_inside(std::span<const double> parameters) const {
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      const BoundedParameter& bounds = problem_.parameters[j];
+      if (!(parameters[j] >= bounds.lower && parameters[j] <= bounds.upper)) return false;
+    }
+    return true;
+  }
+
+  /// Where the profile has risen by t^2, on one side.
+  /// @param is_cut  whether that is the bound
+  [[nodiscard]] double end(std::size_t k, bool is_above, bool& is_cut) {
+    const double best = solution_.parameters[k];
+    const double bound = is_above ? problem_.parameters[k].upper : problem_.parameters[k].lower;
+    is_cut = true;
+    if (best == bound) return bound;
+    const double t = uncertainty_.t_quantile;
+    const double error = uncertainty_.standard_error(k);
+    const double range = std::abs(bound - best);
+    double step = std::isfinite(error) && error > 0.0 ? std::min(t * error, range) : k_first_step * range;
+    Point inner{best, 0.0, solution_.parameters};
+    Point outer;
+    for (int count = 0;; ++count) {  // outwards
+      const double value = step >= range ? bound : best + (is_above ? step : -step);
+      outer = refit(k, moved(inner, k, value));
+      if (better_) return value;
+      if (outer.rise >= t * t) break;
+      if (value == bound || count == k_most_steps) return value;
+      inner = outer;
+      step *= std::clamp(1.1 * t / std::sqrt(std::max(outer.rise, 0.01)), 1.2, 4.0);
+    }
+    is_cut = false;
+    // The root of the rise is nearly linear in the value.
+    const auto excess = [t](const Point& point) { return std::sqrt(std::max(point.rise, 0.0)) - t; };
+    double low = excess(inner);
+    double high = std::min(excess(outer), k_far * t);
+    for (int count = 0; count < k_most_steps; ++count) {
+      if (std::abs(outer.value - inner.value) <= k_end * std::abs(outer.value - best)) break;
+      double share = std::clamp(low / (low - high), 0.02, 0.98);
+      if (!std::isfinite(outer.rise)) share = 0.5;
+      const Point point = refit(k, moved(inner, k, std::lerp(inner.value, outer.value, share)));
+      if (better_) return point.value;
+      const double found = excess(point);
+      if (std::abs(found) <= k_end * t) return point.value;
+      if (found < 0.0) {
+        inner = point;
+        low = found;
+        high *= 0.5;  // the end that stays counts less (Illinois)
+      } else {
+        outer = point;
+        high = std::min(found, k_far * t);
+        low *= 0.5;
+      }
+    }
+    return std::lerp(inner.value, outer.value, 0.5);
+  }
+
+  [[nodiscard]] const std::optional<LocalMinimum>& better() const noexcept { return better_; }
+  [[nodiscard]] long evaluations() const noexcept { return evaluations_; }
+
+ private:
+  static constexpr double k_first_step = 0.01;  // of the range
+  static constexpr double k_far = 3.0;          // widths
+
+  [[nodiscard]] double rise_of(double cost) const { return (cost - solution_.cost) / uncertainty_.rise; }
+
+  void keep_better(std::vector<double> parameters, double rise) {
+    if (!(rise < -k_less) || !is_inside(parameters)) return;
+    const double cost = solution_.cost + rise * uncertainty_.rise;
+    if (!better_ || cost < better_->cost) better_ = LocalMinimum{std::move(parameters), cost};
+  }
+
+  /// A start for a further value: the others change on in proportion.
+  [[nodiscard]] std::vector<double> moved(const Point& from, std::size_t k, double value) const {
+    std::vector<double> start = from.parameters;
+    const double done = from.value - solution_.parameters[k];
+    if (done != 0.0) {
+      const double factor = (value - solution_.parameters[k]) / done;
+      for (std::size_t j = 0; j < start.size(); ++j) {
+        start[j] = solution_.parameters[j] + factor * (from.parameters[j] - solution_.parameters[j]);
+      }
+    } else if (std::isfinite(uncertainty_.standard_error(k)) && uncertainty_.standard_error(k) > 0.0) {
+      start = predicted(k, (value - solution_.parameters[k]) / uncertainty_.standard_error(k));
+    }
+    start[k] = value;
+    return start;
+  }
+
+  const LeastSquaresProblem& problem_;
+  const LeastSquaresSolution& solution_;
+  const Uncertainty& uncertainty_;
+  std::vector<double> residuals_;
+  std::optional<LocalMinimum> better_;
+  long evaluations_ = 0;
+};
+
+}  // namespace
+
+CostCheck check_cost(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
+                     const Uncertainty& uncertainty) {
+  Profile profile(problem, solution, uncertainty);
+  CostCheck check;
+  double largest = k_quadratic;
+  double largest_at_one = 0.0;
+  double largest_at_two = 0.0;
+  for (std::size_t k = 0; k < solution.parameters.size(); ++k) {
+    if (!(uncertainty.standard_error(k) > 0.0)) continue;
+    bool differs = false;
+    for (const double t : {2.0, -2.0, 1.0, -1.0}) {
+      const std::vector<double> place = profile.predicted(k, t);
+      if (!profile.is_inside(place)) continue;  // the profile is that of a bound there, and cut
+      if (std::abs(t) == 1.0 && !differs) continue;
+      // At a kink the covariance knows the cost in its own direction, and a better one lies beside it.
+      const double ratio = profile.refit(k, place).rise / (t * t);
+      const double difference = std::abs(ratio - 1.0);
+      differs = differs || difference > k_quadratic;
+      double& of_distance = std::abs(t) == 1.0 ? largest_at_one : largest_at_two;
+      of_distance = std::max(of_distance, difference);
+      if (!(difference > largest)) continue;
+      largest = difference;
+      check.parameter = k;
+      check.ratio = ratio;
+      check.at = t;
+    }
+  }
+  if (check.at != 0.0) {
+    check.shape = largest_at_one >= k_kink_share * largest_at_two ? CostShape::kinked : CostShape::curved;
+  }
+  check.better = profile.better();
+  check.evaluations = profile.evaluations();
+  return check;
+}
+
+ProfileIntervals profile_intervals(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
+                                   const Uncertainty& uncertainty) {
+  Profile profile(problem, solution, uncertainty);
+  ProfileIntervals result;
+  constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
+  const bool has_size = uncertainty.standard_deviation > 0.0;
+  for (std::size_t k = 0; k < solution.parameters.size() && !profile.better(); ++k) {
+    Interval interval{.lower = k_none, .upper = k_none};
+    if (has_size && uncertainty.is_determined[k]) {
+      interval.lower = profile.end(k, false, interval.is_cut_below);
+      if (!profile.better()) interval.upper = profile.end(k, true, interval.is_cut_above);
+    }
+    result.intervals.push_back(interval);
+  }
+  result.better = profile.better();
+  result.evaluations = profile.evaluations();
+  return result;
+}
+
+Interval Bootstrap::interval(std::size_t parameter, double level) const {
+  std::vector<double> values;
+  for (const std::vector<double>& sample : samples) values.push_back(sample[parameter]);
+  std::ranges::sort(values);
+  const auto quantile = [&values](double share) {
+    const double place = share * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    return std::lerp(values[below], values[above], place - static_cast<double>(below));
+  };
+  return {.lower = quantile(0.5 * (1.0 - level)), .upper = quantile(0.5 * (1.0 + level))};
+}
+
+double Bootstrap::standard_error(std::size_t parameter) const {
+  const auto count = static_cast<double>(samples.size());
+  double mean = 0.0;
+  for (const std::vector<double>& sample : samples) mean += sample[parameter] / count;
+  double squares = 0.0;
+  for (const std::vector<double>& sample : samples) squares += std::pow(sample[parameter] - mean, 2);
+  return std::sqrt(squares / (count - 1.0));
+}
+
+Bootstrap bootstrap(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
+                    const Uncertainty& uncertainty, std::size_t n, std::size_t block, std::size_t count,
+                    std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> normal;
+  const std::size_t p = solution.parameters.size();
+  const double inflation = std::sqrt(static_cast<double>(n) / static_cast<double>(n - p));
+  const auto data = std::span(solution.residuals).first(n);
+  const double mean = std::accumulate(data.begin(), data.end(), 0.0) / static_cast<double>(n);
+  std::vector<double> change(solution.residuals.size());  // of the residuals, by other data
+  LeastSquaresProblem again = problem;
+  again.progress = {};
+  again.residuals = [&problem, &change](std::span<const double> parameters, std::span<double> residuals) {
+    if (!problem.residuals(parameters, residuals)) return false;
+    for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] += change[i];
+    return true;
+  };
+  Bootstrap result;
+  const double done_by_sample = 1.0 / static_cast<double>(count);
+  for (std::size_t sample = 0; sample < count; ++sample) {
+    for (std::size_t i = 0; i < n;) {
+      std::size_t from = std::uniform_int_distribution<std::size_t>(0, n - 1)(generator);
+      for (std::size_t k = 0; k < block && i < n; ++k, ++i, ++from) {
+        change[i] = inflation * (data[from % n] - mean) - data[i];
+      }
+    }
+    for (std::size_t i = n; i < change.size(); ++i) change[i] = uncertainty.standard_deviation * normal(generator);
+    const LocalMinimum& start = solution;
+    const auto found = minimise_near(again, {&start, 1}, Accuracy::rough);
+    if (!found) continue;
+    result.evaluations += found->evaluations;
+    result.samples.push_back(found->parameters);
+    if (problem.progress) problem.progress(done_by_sample * static_cast<double>(sample + 1));
+  }
+  return result;
+}
+
+std::optional<ResidualTests> test_residuals(std::span<const double> residuals) {
+  if (residuals.size() < k_least_rows) return std::nullopt;
+  const auto n = static_cast<double>(residuals.size());
+  ResidualTests tests;
+  double positive = 0.0;
+  double squares = 0.0;
+  double neighbours = 0.0;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    positive += residuals[i] > 0.0 ? 1.0 : 0.0;
+    squares += residuals[i] * residuals[i];
+    if (i > 0) neighbours += residuals[i] * residuals[i - 1];
+    if (i == 0 || (residuals[i] > 0.0) != (residuals[i - 1] > 0.0)) ++tests.runs;
+  }
+  const double negative = n - positive;
+  if (positive == 0.0 || negative == 0.0) return std::nullopt;
+  const boost::math::normal normal;
+  const auto two_sided = [&normal](double z) {
+    return 2.0 * boost::math::cdf(boost::math::complement(normal, std::abs(z)));
+  };
+  const double excess = 2.0 * positive * negative / n;
+  tests.expected_runs = excess + 1.0;
+  const double variance = excess * (excess - 1.0) / (n - 1.0);
+  if (variance > 0.0)
+    tests.runs_p = two_sided((static_cast<double>(tests.runs) - tests.expected_runs) / std::sqrt(variance));
+  tests.correlation = neighbours / squares;
+  tests.correlation_p = two_sided(tests.correlation * std::sqrt(n));
+  return tests;
+}
+
+}  // namespace monograin

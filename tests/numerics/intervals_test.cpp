@@ -1,0 +1,154 @@
+// Intervals of fitted parameters: the profile, the bootstrap, and what shows that the covariance does not tell them.
+
+#include "numerics/intervals.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace monograin::intervals_test {
+namespace {
+
+constexpr std::size_t k_rows = 200;
+
+double x_of(std::size_t row) { return static_cast<double>(row) / (k_rows - 1); }
+
+/// A fit to data of a function of x and two parameters, 1 and 2, with noise of 0.1.
+template <class Model>
+LeastSquaresProblem problem_of(Model model, double from = -20.0, double to = 20.0) {
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> noise(0.0, 0.1);
+  const std::vector<double> truth{1.0, 2.0};
+  std::vector<double> y;
+  for (std::size_t i = 0; i < k_rows; ++i) y.push_back(model(x_of(i), std::span(truth)) + noise(generator));
+  LeastSquaresProblem problem;
+  problem.parameters = {{from, to, false, {}}, {-20.0, 20.0, false, {}}};
+  problem.residual_count = k_rows;
+  problem.residuals = [y, model](std::span<const double> p, std::span<double> residuals) {
+    for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] = y[i] - model(x_of(i), p);
+    return true;
+  };
+  return problem;
+}
+
+struct Fitted {
+  LeastSquaresSolution solution;
+  Uncertainty uncertainty;
+};
+
+Fitted fitted(const LeastSquaresProblem& problem) {
+  const auto solution = minimise(problem);
+  EXPECT_TRUE(solution);
+  const Eigen::MatrixXd jacobian = residual_jacobian(problem, solution->parameters);
+  return {*solution, uncertainty_of(problem, *solution, jacobian, k_rows, 0.95)};
+}
+
+const auto k_line = [](double x, std::span<const double> p) { return p[0] + p[1] * x; };
+
+TEST(Intervals, ProfilesOfALinearProblemAreThoseOfTheCovariance) {
+  const auto problem = problem_of(k_line);
+  const auto [solution, uncertainty] = fitted(problem);
+  const CostCheck check = check_cost(problem, solution, uncertainty);
+  EXPECT_EQ(check.shape, CostShape::quadratic);
+  EXPECT_FALSE(check.better);
+  const ProfileIntervals found = profile_intervals(problem, solution, uncertainty);
+  ASSERT_EQ(found.intervals.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double half = uncertainty.half_width(k);
+    EXPECT_NEAR(found.intervals[k].lower, solution.parameters[k] - half, 3e-3 * half);
+    EXPECT_NEAR(found.intervals[k].upper, solution.parameters[k] + half, 3e-3 * half);
+    EXPECT_FALSE(found.intervals[k].is_cut_below || found.intervals[k].is_cut_above);
+  }
+}
+
+TEST(Intervals, ARobustLossChangesNeitherTheShapeNorTheProfileOfALine) {
+  auto problem = problem_of(k_line);
+  problem.loss = {.kind = Loss::soft_l1, .scale = 0.1};
+  const auto [solution, uncertainty] = fitted(problem);
+  EXPECT_EQ(check_cost(problem, solution, uncertainty).shape, CostShape::quadratic);
+  const ProfileIntervals found = profile_intervals(problem, solution, uncertainty);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double width = found.intervals[k].upper - found.intervals[k].lower;
+    EXPECT_NEAR(width, 2.0 * uncertainty.half_width(k), 0.1 * width);
+  }
+}
+
+TEST(Intervals, AKinkOfTheCostIsSeen) {
+  // Beyond a kink near the minimum the data say a tenth as much of the slope.
+  const double turn = fitted(problem_of(k_line)).solution.parameters[1];
+  const auto bent = [turn](double x, std::span<const double> p) {
+    const double slope = p[1] - turn;
+    return p[0] +
+           (turn + (std::abs(slope) < 1e-4 ? slope : std::copysign(1e-4 + 0.1 * (std::abs(slope) - 1e-4), slope))) * x;
+  };
+  auto problem = problem_of(k_line);
+  const auto data = problem.residuals;
+  problem.residuals = [data, bent](std::span<const double> p, std::span<double> residuals) {
+    const std::vector<double> none{0.0, 0.0};
+    if (!data(none, residuals)) return false;
+    for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] -= bent(x_of(i), p);
+    return true;
+  };
+  const auto [solution, uncertainty] = fitted(problem);
+  const CostCheck check = check_cost(problem, solution, uncertainty);
+  EXPECT_EQ(check.shape, CostShape::kinked);
+  EXPECT_EQ(check.parameter, 1U);
+  EXPECT_LT(check.ratio, 0.1);
+  const ProfileIntervals found = profile_intervals(problem, solution, uncertainty);
+  ASSERT_EQ(found.intervals.size(), 2U);
+  const double half = 0.5 * (found.intervals[1].upper - found.intervals[1].lower);
+  EXPECT_NEAR(half / uncertainty.half_width(1), 10.0, 0.3);
+}
+
+TEST(Intervals, EndAtTheBoundOfTheSearch) {
+  const auto [wide, errors] = fitted(problem_of(k_line));
+  const double upper = wide.parameters[0] + errors.standard_error(0);
+  const auto problem = problem_of(k_line, -20.0, upper);
+  const auto [solution, uncertainty] = fitted(problem);
+  const ProfileIntervals found = profile_intervals(problem, solution, uncertainty);
+  ASSERT_EQ(found.intervals.size(), 2U);
+  EXPECT_EQ(found.intervals[0].upper, upper);
+  EXPECT_TRUE(found.intervals[0].is_cut_above);
+  EXPECT_FALSE(found.intervals[0].is_cut_below);
+}
+
+TEST(Intervals, OfABootstrapOfALinearProblemAreThoseOfTheCovariance) {
+  const auto problem = problem_of(k_line);
+  const auto [solution, uncertainty] = fitted(problem);
+  const Bootstrap drawn = bootstrap(problem, solution, uncertainty, k_rows, 1, 1000, 3);
+  ASSERT_EQ(drawn.samples.size(), 1000U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(drawn.standard_error(k) / uncertainty.standard_error(k), 1.0, 0.1);
+    const Interval interval = drawn.interval(k, 0.95);
+    EXPECT_NEAR((interval.upper - interval.lower) / (2.0 * uncertainty.half_width(k)), 1.0, 0.1);
+  }
+}
+
+TEST(ResidualTests, FindResidualsThatAlternateOrFollowOneAnother) {
+  std::mt19937_64 generator(11);
+  std::normal_distribution<double> normal;
+  std::vector<double> independent;
+  std::vector<double> alternating;
+  std::vector<double> correlated{normal(generator)};
+  for (int i = 0; i < 100; ++i) {
+    independent.push_back(normal(generator));
+    alternating.push_back(i % 2 == 0 ? 1.0 : -1.0);
+    correlated.push_back(0.8 * correlated.back() + normal(generator));
+  }
+  EXPECT_TRUE(test_residuals(independent)->are_independent());
+  const auto many = test_residuals(alternating);
+  EXPECT_EQ(many->runs, 100U);
+  EXPECT_NEAR(many->correlation, -0.99, 1e-12);
+  EXPECT_FALSE(many->are_independent());
+  const auto few = test_residuals(correlated);
+  EXPECT_NEAR(few->correlation, 0.8, 0.15);
+  EXPECT_LT(static_cast<double>(few->runs), few->expected_runs);
+  EXPECT_FALSE(few->are_independent());
+  EXPECT_FALSE(test_residuals(std::span(correlated).first(19)));
+}
+
+}  // namespace
+}  // namespace monograin::intervals_test
