@@ -27,6 +27,11 @@ constexpr std::size_t k_curve_points = 400;  // of the curve between the data
 constexpr int k_most_rounds = 50;            // of fits and the noise they leave
 constexpr double k_improbable = 1e-3;        // share of cases in which a test is wrong
 constexpr double k_far_from_prior = 3.0;     // standard deviations
+constexpr int k_most_better = 3;             // better fits that intervals come upon
+constexpr double k_margin_of_rounding = 1e3;
+constexpr double k_bad_condition = 1e3;  // a correlation of 1 - 2e-6
+constexpr std::size_t k_bootstrap_samples = 400;
+constexpr std::uint64_t k_seed = 20260101;
 constexpr double k_same_weight = 1e-9;
 constexpr std::size_t k_dense = 800;         // rows: more of them are thinned while the fit is sought
 constexpr std::size_t k_thinned = 400;       // about so many rows are left
@@ -259,15 +264,12 @@ class Fit {
     if (!solution) no_response(trial);
     CalibrationResult result;
     result.solution = std::move(*solution);
+    const Eigen::MatrixXd gradients = find_intervals(result);
     const std::vector<double>& parameters = result.solution.parameters;
     result.procedures = procedures_;
     if (!procedures_.fits.empty()) {
       result.procedures.fits.push_back(measured_fit(calibration_, procedures_, parameters));
     }
-    const Eigen::MatrixXd gradients = response_jacobian(parameters);
-    result.uncertainty =
-        uncertainty_of(problem_, result.solution, weighted(gradients, parameters), rows_.size(),
-                       calibration_.confidence, calibration_.knows_noise() ? std::optional(1.0) : std::nullopt);
     fit_at_data(result, gradients);
     for (const MeasuredCurve& curve : calibration_.curves) result.curves.push_back(curve_through(curve, result));
     result.points = rows_.size();
@@ -320,6 +322,140 @@ class Fit {
                     "expected other bounds, or data that model '{}' can follow{}",
                     responses_[failed].problem(), calibration_.scenario.model,
                     cause.empty() ? "" : "; likely cause: " + cause));
+  }
+
+  // --- intervals
+
+  /// Errors and intervals; goes on to a better fit where the search for them comes upon one.
+  /// @return derivatives of the response in all rows
+  Eigen::MatrixXd find_intervals(CalibrationResult& result) {
+    for (int round = 0;; ++round) {
+      Eigen::MatrixXd gradients = response_jacobian(result.solution.parameters);
+      result.uncertainty =
+          uncertainty_of(problem_, result.solution, weighted(gradients, result.solution.parameters), rows_.size(),
+                         calibration_.confidence, calibration_.knows_noise() ? std::optional(1.0) : std::nullopt);
+      const std::optional<LocalMinimum> better = choose_intervals(result);
+      if (!better || round == k_most_better) return gradients;
+      auto solution = minimise_near(problem_, {&*better, 1});
+      if (!solution || !(solution->cost < result.solution.cost)) return gradients;
+      solution->evaluations += result.solution.evaluations;
+      solution->failures += result.solution.failures;
+      solution->minima.insert(solution->minima.end(), result.solution.minima.begin(), result.solution.minima.end());
+      result.solution = std::move(*solution);
+    }
+  }
+
+  /// @return a better fit, if one was found
+  std::optional<LocalMinimum> choose_intervals(CalibrationResult& result) {
+    result.method = calibration_.intervals;
+    result.method_reason = "asked for";
+    std::optional<LocalMinimum> better;
+    const bool has_size = result.uncertainty.standard_deviation > 0.0;
+    if (!has_size || is_exact(result)) {
+      result.method = IntervalMethod::covariance;
+      result.method_reason = has_size ? "the fit is exact" : "nothing is left to estimate errors from";
+    } else if (result.method == IntervalMethod::automatic) {
+      better = choose_method(result);
+    }
+    covariance_intervals(result);
+    if (better) return better;
+    if (result.method == IntervalMethod::profile) return by_profile(result);
+    if (result.method == IntervalMethod::bootstrap) by_bootstrap(result);
+    return std::nullopt;
+  }
+
+  /// Whether residuals are as small as rounding.
+  [[nodiscard]] bool is_exact(const CalibrationResult& result) const {
+    double squares = 0.0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      squares += std::pow(calibration_.weights[rows_[i]] * calibration_.y.values[rows_[i]], 2);
+    }
+    const double share = k_margin_of_rounding * problem_.noise;
+    return cost_of_data(result.solution) <= share * share * squares;
+  }
+
+  std::optional<LocalMinimum> choose_method(CalibrationResult& result) {
+    using Bound = LeastSquaresSolution::Bound;
+    const LeastSquaresSolution& solution = result.solution;
+    const auto reason = [&result](IntervalMethod method, std::string text) {
+      result.method = method;
+      result.method_reason = std::move(text);
+    };
+    for (std::size_t k = 0; k < solution.bounds.size(); ++k) {
+      if (solution.bounds[k] == Bound::none || !result.uncertainty.is_determined[k]) continue;
+      reason(IntervalMethod::profile, fmt::format("'{}' sits at its bound", calibration_.free[k].key.path));
+      return std::nullopt;
+    }
+    if (result.uncertainty.condition > k_bad_condition) {
+      reason(IntervalMethod::profile,
+             fmt::format("the data tell a combination of parameters {:.2g} times as well as another one, and the "
+                         "covariance loses its digits",
+                         result.uncertainty.condition));
+      return std::nullopt;
+    }
+    CostCheck check = check_cost(problem_, solution, result.uncertainty);
+    result.solution.evaluations += check.evaluations;
+    if (check.shape == CostShape::quadratic) {
+      reason(IntervalMethod::covariance, "the sum of squares is quadratic within two standard errors");
+      return check.better;
+    }
+    reason(
+        IntervalMethod::profile,
+        fmt::format("the sum of squares {} near the minimum: {:.0f} standard error{} along '{}' it rises {:.2g} times "
+                    "as far as the covariance says",
+                    check.shape == CostShape::kinked ? "has a kink" : "is not quadratic", check.at,
+                    std::abs(check.at) == 1.0 ? "" : "s", calibration_.free[check.parameter].key.path, check.ratio));
+    is_kinked_ = check.shape == CostShape::kinked;
+    return check.better;
+  }
+
+  static void covariance_intervals(CalibrationResult& result) {
+    result.intervals.clear();
+    for (std::size_t k = 0; k < result.solution.parameters.size(); ++k) {
+      const double half = result.uncertainty.half_width(k);
+      result.intervals.push_back(
+          {.lower = result.solution.parameters[k] - half, .upper = result.solution.parameters[k] + half});
+    }
+  }
+
+  std::optional<LocalMinimum> by_profile(CalibrationResult& result) {
+    ProfileIntervals found = profile_intervals(problem_, result.solution, result.uncertainty);
+    result.solution.evaluations += found.evaluations;
+    if (found.better) return found.better;
+    result.intervals = std::move(found.intervals);
+    // Errors and bands of a covariance at a kink are those of one of its sides.
+    for (std::size_t k = 0; is_kinked_ && k < result.intervals.size(); ++k) {
+      const Interval& interval = result.intervals[k];
+      if (interval.is_cut_below || interval.is_cut_above || !std::isfinite(interval.upper - interval.lower)) continue;
+      rescale(result.uncertainty, k, 0.5 * (interval.upper - interval.lower) / result.uncertainty.half_width(k));
+    }
+    return std::nullopt;
+  }
+
+  static void rescale(Uncertainty& uncertainty, std::size_t parameter, double factor) {
+    const auto k = static_cast<Eigen::Index>(parameter);
+    if (!std::isfinite(factor)) return;
+    uncertainty.covariance.row(k) *= factor;
+    uncertainty.covariance.col(k) *= factor;
+  }
+
+  void by_bootstrap(CalibrationResult& result) {
+    if (result.uncertainty.degrees_of_freedom == 0) return;
+    const auto tests = test_residuals(std::span(result.solution.residuals).first(rows_.size()));
+    const bool is_independent = !tests || tests->are_independent();
+    const auto block =
+        is_independent ? std::size_t{1} : static_cast<std::size_t>(std::cbrt(static_cast<double>(rows_.size())) + 0.5);
+    const Bootstrap drawn =
+        bootstrap(problem_, result.solution, result.uncertainty, rows_.size(), block, k_bootstrap_samples, k_seed);
+    result.solution.evaluations += drawn.evaluations;
+    result.method_reason = fmt::format("asked for: {} samples of the residuals{}", drawn.samples.size(),
+                                       block > 1 ? fmt::format(" in blocks of {}", block) : "");
+    if (drawn.samples.size() < k_bootstrap_samples / 2) return;
+    for (std::size_t k = 0; k < result.intervals.size(); ++k) {
+      if (!result.uncertainty.is_determined[k]) continue;
+      result.intervals[k] = drawn.interval(k, calibration_.confidence);
+      rescale(result.uncertainty, k, drawn.standard_error(k) / result.uncertainty.standard_error(k));
+    }
   }
 
   /// Derivatives of the response in all rows, also in those that do not count.
@@ -434,7 +570,7 @@ class Fit {
                         "fit as well",
                         path));
       } else if (solution.bounds[k] != Bound::none) {
-        note(fmt::format("'{}' sits at its {} bound; it has no interval there", path,
+        note(fmt::format("'{}' sits at its {} bound; its interval ends there", path,
                          solution.bounds[k] == Bound::lower ? "lower" : "upper"));
       } else if (result.uncertainty.half_width(k) > 0.5 * (parameter.upper - parameter.lower)) {
         note(fmt::format("the data hardly determine '{}': its interval is wider than its bounds", path));
@@ -462,6 +598,7 @@ class Fit {
       }
     }
     note_correlations(result);
+    note_residual_tests(result);
   }
 
   /// Says where the residuals do not have the size of the noise.
@@ -496,6 +633,25 @@ class Fit {
                       "prior contradict each other",
                       parameter.key.path, std::abs(deviation)));
     }
+  }
+
+  /// Says what it means where residuals are not independent.
+  void note_residual_tests(CalibrationResult& result) const {
+    if (is_exact(result)) return;
+    result.residual_tests = test_residuals(std::span(result.solution.residuals).first(rows_.size()));
+    if (!result.residual_tests || result.residual_tests->are_independent()) return;
+    const ResidualTests& tests = *result.residual_tests;
+    std::string note = fmt::format(
+        "the residuals are not independent: {} stretches of one sign where noise has {:.0f} (runs test, p = {:.2g}), "
+        "correlation of neighbours {:.2f} (p = {:.2g}); the law, or the machine, differs from the data in a way that "
+        "is "
+        "not noise",
+        tests.runs, tests.expected_runs, tests.runs_p, tests.correlation, tests.correlation_p);
+    if (tests.correlation > 0.0 && tests.correlation < 1.0) {
+      note += fmt::format(", and intervals are too narrow, by a factor of about {:.2g}",
+                          std::sqrt((1.0 + tests.correlation) / (1.0 - tests.correlation)));
+    }
+    result.notes.push_back(std::move(note));
   }
 
   void note_table_ends(const MeasuredCurve& curve, const std::vector<double>& x, CalibrationResult& result) const {
@@ -536,6 +692,7 @@ class Fit {
   std::vector<double> response_;     ///< in every row
   std::vector<std::size_t> rows_;    ///< that take part
   std::vector<std::size_t> priors_;  ///< parameters whose priors are residuals
+  bool is_kinked_ = false;           ///< the sum of squares, near its minimum
   double prior_weight_;              ///< standard deviation of weighted residuals
   LeastSquaresProblem problem_;
 };

@@ -11,6 +11,7 @@
 
 #include "history/staged_folder.hpp"
 #include "history/table.hpp"
+#include "numerics/intervals.hpp"
 #include "numerics/least_squares.hpp"
 #include "numerics/uncertainty.hpp"
 #include "scenario/numbers.hpp"
@@ -57,6 +58,9 @@ struct MeasuredCurve {
   double start = 0.0;  ///< of x, before the first step [SI]
 };
 
+/// How intervals are found.
+enum class IntervalMethod { automatic, covariance, profile, bootstrap };
+
 /// A calibration file with all that it names, checked. The rows of its curves follow one another.
 struct Calibration {
   std::string name;  ///< of the file, without folder and extension
@@ -74,6 +78,7 @@ struct Calibration {
   std::vector<FreeParameter> free;
   LossFunction loss;
   double confidence = 0.95;
+  IntervalMethod intervals = IntervalMethod::automatic;
   std::vector<std::string> notes;  ///< what was found in the data's files and may not be what was meant
 
   /// The machine of a curve with these values of the free parameters.
@@ -107,6 +112,10 @@ struct FittedCurve {
 struct CalibrationResult {
   LeastSquaresSolution solution;
   Uncertainty uncertainty;
+  std::vector<Interval> intervals;                     ///< of the parameters; nan where there is none
+  IntervalMethod method = IntervalMethod::covariance;  ///< by which they were found
+  std::string method_reason;                           ///< a clause
+  std::optional<ResidualTests> residual_tests;         ///< none for few rows, or where the fit is exact
   ModelFits procedures;               ///< of the model's own, and this fit by their measures; empty: it has none
   FittedCurve fit;                    ///< at the data
   std::vector<FittedCurve> curves;    ///< in between, too: one for each measured curve

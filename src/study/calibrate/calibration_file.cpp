@@ -132,6 +132,8 @@ class CalibrationReader {
     made_.loss.kind = static_cast<Loss>(std::ranges::find(k_losses, loss) - k_losses.begin());
     made_.loss.scale = fit.number("loss_scale").value_or(1.0);
     made_.confidence = fit.number("confidence").value_or(made_.confidence);
+    const std::string intervals = fit.text("intervals");
+    made_.intervals = static_cast<IntervalMethod>(std::ranges::find(k_intervals, intervals) - k_intervals.begin());
     const bool is_linear = made_.loss.kind == Loss::linear;
     if (is_linear && fit.has("loss_scale")) {
       faults_.add(fit.key_place("loss_scale"), "key 'loss_scale' is not used by the linear loss");

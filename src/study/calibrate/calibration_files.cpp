@@ -48,10 +48,8 @@ std::string with_unit(double value, const std::string& unit) {
   return unit.empty() || !std::isfinite(value) ? shown_number(value) : shown_number(value) + ' ' + unit;
 }
 
-/// A parameter's interval, within its bounds where it would reach beyond them.
 std::pair<double, double> interval_of(const CalibrationResult& result, std::size_t k) {
-  const double half = result.uncertainty.half_width(k);
-  return {result.solution.parameters[k] - half, result.solution.parameters[k] + half};
+  return {result.intervals[k].lower, result.intervals[k].upper};
 }
 
 // --- text
@@ -236,11 +234,13 @@ Json parameters_json(const Calibration& calibration, const CalibrationResult& re
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
     const FreeParameter& parameter = calibration.free[k];
     const auto [lower, upper] = interval_of(result, k);
+    const Interval& interval = result.intervals[k];
     const Bound bound = result.solution.bounds[k];
     parameters.push_back({{"key", parameter.key.path},
                           {"value", result.solution.parameters[k]},
                           {"standard_error", result.uncertainty.standard_error(k)},
                           {"interval", {lower, upper}},
+                          {"interval_is_cut", {interval.is_cut_below, interval.is_cut_above}},
                           {"bounds", {parameter.lower, parameter.upper}},
                           {"at_bound", bound == Bound::none ? Json() : Json(word_of(bound))},
                           {"is_determined", static_cast<bool>(result.uncertainty.is_determined[k])},
@@ -306,6 +306,17 @@ Json data_json(const Calibration& calibration) {
   return list.size() == 1 ? list.front() : list;
 }
 
+Json residual_tests_json(const CalibrationResult& result) {
+  if (!result.residual_tests) return {};
+  const ResidualTests& tests = *result.residual_tests;
+  return {{"runs", tests.runs},
+          {"expected_runs", tests.expected_runs},
+          {"runs_p", tests.runs_p},
+          {"correlation", tests.correlation},
+          {"correlation_p", tests.correlation_p},
+          {"are_independent", tests.are_independent()}};
+}
+
 /// Numbers that are undefined become null.
 Json to_json(const Calibration& calibration, const CalibrationResult& result) {
   const LeastSquaresSolution& solution = result.solution;
@@ -338,6 +349,11 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
             {"largest_in_line", calibration.lines[result.largest_at]},
             {"r_squared", result.r_squared},
             {"explained", result.explained}}},
+          {"intervals",
+           {{"method", calibration::k_intervals[static_cast<std::size_t>(result.method)]},
+            {"reason", result.method_reason},
+            {"level", uncertainty.level}}},
+          {"residual_tests", residual_tests_json(result)},
           {"fit",
            {{"x", {{"quantity", calibration.x.observable}, {"unit", calibration.x.si}}},
             {"y", {{"quantity", calibration.y.observable}, {"unit", calibration.y.si}}},
@@ -407,7 +423,16 @@ std::string calibration_text(const Calibration& calibration, const CalibrationRe
                                                          calibration.lines[result.largest_at])},
                         {"R^2", std::isfinite(result.r_squared) ? fmt::format("{:.8f}", result.r_squared) : "-"}};
   if (calibration.loss.kind != Loss::linear) rows.push_back({"cost (with loss)", shown_number(result.solution.cost)});
-  return text + aligned(rows);
+  if (result.residual_tests) {
+    const ResidualTests& tests = *result.residual_tests;
+    rows.push_back(
+        {"runs of one sign", fmt::format("{} of {:.0f}, p = {:.2g}", tests.runs, tests.expected_runs, tests.runs_p)});
+    rows.push_back(
+        {"correlation of neighbours", fmt::format("{:.2f}, p = {:.2g}", tests.correlation, tests.correlation_p)});
+  }
+  return text + aligned(rows) +
+         fmt::format("\nintervals: {} ({})\n", calibration::k_intervals[static_cast<std::size_t>(result.method)],
+                     result.method_reason);
 }
 
 Table fit_table(const Calibration& calibration, const CalibrationResult& result) {

@@ -227,6 +227,10 @@ Keys noise_keys(Dimension dimension, Kind column) {
 Keys fit_keys() {
   KeySpec loss = choice_key("loss", "how much large residuals count", k_losses);
   loss.default_value = k_losses.front();
+  KeySpec intervals = choice_key(
+      "intervals", "how intervals are found; auto: by the covariance, or the profile where that is not to be trusted",
+      k_intervals);
+  intervals.default_value = k_intervals.front();
   return {
       loss,
       {.name = "loss_scale",
@@ -239,6 +243,7 @@ Keys fit_keys() {
        .kind = Kind::quantity,
        .range = {.lower = 0.0, .upper = 1.0, .lower_is_open = true, .upper_is_open = true},
        .default_value = 0.95},
+      intervals,
   };
 }
 

@@ -17,6 +17,7 @@ using Keys = std::vector<KeySpec>;
 inline constexpr std::array<std::string_view, 4> k_weights{"absolute", "relative", "column", "area"};
 inline constexpr std::array<std::string_view, 4> k_losses{"linear", "huber", "soft-l1", "cauchy"};
 inline constexpr std::array<std::string_view, 2> k_scales{"linear", "log"};
+inline constexpr std::array<std::string_view, 4> k_intervals{"auto", "covariance", "profile", "bootstrap"};
 inline constexpr std::string_view k_noise = "noise";  ///< weighting by a known noise
 inline constexpr std::array<std::string_view, 2> k_decimals{".", ","};
 inline constexpr std::array<std::string_view, 2> k_unit_rows{"row", "none"};
