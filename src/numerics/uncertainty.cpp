@@ -63,6 +63,16 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
   result.covariance.setConstant(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(p),
                                 std::numeric_limits<double>::quiet_NaN());
 
+  const bool has_size = known || result.degrees_of_freedom > 0;
+  if (has_size) {
+    const double share = 0.5 * (1.0 + level);
+    const auto degrees = static_cast<double>(result.degrees_of_freedom);
+    result.t_quantile = known ? boost::math::quantile(boost::math::normal(), share)
+                              : boost::math::quantile(boost::math::students_t(degrees), share);
+    result.standard_deviation = known ? *known : deviation_of(problem, solution.residuals, n);
+    result.rise = std::pow(result.standard_deviation, 2) * mean_curvature(problem, solution.residuals, n);
+  }
+
   std::vector<std::size_t> interior;
   for (std::size_t k = 0; k < p; ++k) {
     // An influence that is no more than the error of its difference is none.
@@ -105,15 +115,9 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
       }
     }
   }
-  if (!known && result.degrees_of_freedom == 0) return result;
+  if (!has_size) return result;
 
-  const double share = 0.5 * (1.0 + level);
-  const auto degrees = static_cast<double>(result.degrees_of_freedom);
-  result.t_quantile = known ? boost::math::quantile(boost::math::normal(), share)
-                            : boost::math::quantile(boost::math::students_t(degrees), share);
-  result.standard_deviation = known ? *known : deviation_of(problem, solution.residuals, n);
   const double variance = result.standard_deviation * result.standard_deviation;
-  result.rise = variance * mean_curvature(problem, solution.residuals, n);
   for (Eigen::Index i = 0; i < size; ++i) {
     for (Eigen::Index j = 0; j < size; ++j) {
       const std::size_t first = interior[static_cast<std::size_t>(i)];

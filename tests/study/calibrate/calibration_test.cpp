@@ -357,7 +357,27 @@ TEST_F(CalibrationTest, ARobustLossForgetsAnOutlier) {
   }
 }
 
-TEST_F(CalibrationTest, AParameterAtItsBoundHasNoInterval) {
+TEST_F(CalibrationTest, FindsIntervalsAsAskedAndSaysHow) {
+  write("d.csv", csv_of(noisy_hertz(), "displacement[m],force[N],w"));
+  const CalibrationResult usual = calibrate(read());
+  EXPECT_EQ(usual.method, IntervalMethod::covariance);
+  EXPECT_NE(usual.method_reason.find("is quadratic"), std::string::npos) << usual.method_reason;
+  const double width = usual.intervals[0].upper - usual.intervals[0].lower;
+  EXPECT_NEAR(width, 2.0 * usual.uncertainty.half_width(0), 1e-9 * width);
+  // The force is linear in the modulus: all intervals are about one.
+  for (const auto& [word, share] : {std::pair("covariance", 1e-9), {"profile", 3e-3}, {"bootstrap", 0.15}}) {
+    write("c.toml", std::string(k_calibration) + fmt::format("[fit]\nintervals = \"{}\"\n", word));
+    const Calibration calibration = read();
+    const CalibrationResult result = calibrate(calibration);
+    EXPECT_NEAR((result.intervals[0].upper - result.intervals[0].lower) / width, 1.0, share) << word;
+    EXPECT_NE(calibration_text(calibration, result).find(fmt::format("intervals: {} (asked for", word)),
+              std::string::npos);
+  }
+  write("c.toml", std::string(k_calibration) + "[fit]\nintervals = \"guess\"\n");
+  EXPECT_EQ(faults().size(), 1U);
+}
+
+TEST_F(CalibrationTest, TheIntervalOfAParameterAtItsBoundEndsThere) {
   write("d.csv", csv_of(noisy_hertz(), "displacement[m],force[N],w"));
   write("c.toml", replaced(k_calibration, "300 GPa", "50 GPa"));
   const Calibration calibration = read();
@@ -366,6 +386,10 @@ TEST_F(CalibrationTest, AParameterAtItsBoundHasNoInterval) {
   EXPECT_NE(calibration_text(calibration, result).find("at its upper bound"), std::string::npos);
   ASSERT_FALSE(result.notes.empty());
   EXPECT_NE(result.notes[0].find("sits at its upper bound"), std::string::npos) << result.notes[0];
+  EXPECT_EQ(result.method, IntervalMethod::profile);
+  EXPECT_EQ(result.intervals[0].upper, 50e9);
+  EXPECT_TRUE(result.intervals[0].is_cut_above);
+  EXPECT_LT(result.intervals[0].lower, 50e9);
 }
 
 TEST_F(CalibrationTest, SaysWhatTheDataDoNotDetermine) {
