@@ -72,7 +72,8 @@ class FittedParameter(NamedTuple):
     Attributes:
         value: of the best fit.
         standard_error: of the linearised fit; nan where the data do not tell it.
-        interval: two-sided t-interval at the level of the calibration.
+        interval: two-sided, at the level of the calibration: of the covariance, the profile or the bootstrap,
+            as ``[fit] intervals`` has it; need not be symmetric, and may end at a bound.
         bounds: between which the value was sought.
         at_bound: ``"lower"`` or ``"upper"`` where the value sits at a bound, else None.
         is_determined: whether the data tell the value.
