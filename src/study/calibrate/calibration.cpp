@@ -611,8 +611,7 @@ class Fit {
     if (above < k_improbable) {
       result.notes.push_back(
           fmt::format("chi^2 over degrees of freedom is {:.3g}: the residuals are larger than the noise given, by the "
-                      "law or by the "
-                      "data; the intervals are too narrow by a factor of about {:.2g}",
+                      "law or by the data; the intervals are too narrow by a factor of about {:.2g}",
                       reduced, std::sqrt(reduced)));
     } else if (1.0 - above < k_improbable) {
       result.notes.push_back(
@@ -643,9 +642,8 @@ class Fit {
     const ResidualTests& tests = *result.residual_tests;
     std::string note = fmt::format(
         "the residuals are not independent: {} stretches of one sign where noise has {:.0f} (runs test, p = {:.2g}), "
-        "correlation of neighbours {:.2f} (p = {:.2g}); the law, or the machine, differs from the data in a way that "
-        "is "
-        "not noise",
+        "correlation of neighbours {:.2f} (p = {:.2g}); the law, or the machine, differs from the data in a way "
+        "that is not noise",
         tests.runs, tests.expected_runs, tests.runs_p, tests.correlation, tests.correlation_p);
     if (tests.correlation > 0.0 && tests.correlation < 1.0) {
       note += fmt::format(", and intervals are too narrow, by a factor of about {:.2g}",

@@ -5,12 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <functional>
 #include <span>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include "scenario/document.hpp"
@@ -23,6 +20,7 @@
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/data_section.hpp"
+#include "study/calibrate/parameter_section.hpp"
 
 namespace monograin {
 namespace {
@@ -30,8 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace calibration;
 
-constexpr double k_ratio_for_log = 100.0;  // of bounds: from here on their parameter is sought in its logarithm
-constexpr std::size_t k_most_zeros = 20;   // that are reported one by one
+constexpr std::size_t k_most_zeros = 20;  // that are reported one by one
 
 class CalibrationReader {
  public:
@@ -52,8 +49,10 @@ class CalibrationReader {
     has_scenario_ = read_own_scenario(root, scenario_is_table);
     read_fit(root);
     if (root.has("data")) read_data(root);
-    if (root.has("free") && has_scenario_) read_free(root);
-    if (root.has("prior") && !made_.free.empty()) read_priors(root);
+    if (root.has("free") && has_scenario_) {
+      made_.free = free_in(reading_, root, {made_.scenario, made_.scenario_text, scenario_file_});
+    }
+    if (root.has("prior") && !made_.free.empty()) read_priors(reading_, root, made_.scenario, made_.free);
     faults_.throw_if_any();
     check_machine(root);
     check_count(root);
@@ -182,12 +181,8 @@ class CalibrationReader {
                   fmt::format("key 'weight_column' belongs to weights = \"column\"; this is \"{}\"", weighting));
     }
 
-    if (has_noise) {
-      const std::size_t column = specs.size();
-      add_noise_column(data, specs);
-      noise_column_ = specs.size() > column;
-    }
-
+    const std::optional<ColumnSpec> deviations = has_noise ? noise_column_in(data) : std::nullopt;
+    if (deviations) specs.push_back(*deviations);
     const std::string name = data.text("file");
     if (name.empty()) return;
     const fs::path path = file_.parent_path() / name;
@@ -218,8 +213,8 @@ class CalibrationReader {
     if (!x.observable.empty()) check_drive(specs[0], x, curve);
     std::vector<double> weights;
     if (faults_.size() == before && !y.values.empty()) {
-      weights =
-          has_noise ? weights_by_noise(data, specs, measured, y, curve.file) : weights_of(measured, x, y, curve.file);
+      weights = has_noise ? weights_by_noise(data, deviations ? &*deviations : nullptr, measured, y, curve.file)
+                          : weights_of(measured, x, y, curve.file);
     }
     if (faults_.size() > before) return;
     curve.end += measured.lines.size();
@@ -441,55 +436,29 @@ class CalibrationReader {
     return weights;
   }
 
-  [[nodiscard]] static KeySpec::Kind noise_column_kind(const Section::Origin& noise) {
-    return kind_of(*noise.table, "column", KeySpec::Kind::text);
-  }
-
-  /// The column of standard deviations, if there is one.
-  void add_noise_column(const Section& data, std::vector<ColumnSpec>& specs) {
-    const Section::Origin origin = data.table(k_noise, std::string(k_noise));
-    const KeySpec::Kind kind = noise_column_kind(origin);
-    if (!origin.table->contains("column") || (kind != KeySpec::Kind::text && kind != KeySpec::Kind::integer)) return;
-    FaultList reported_later;
-    Reading reading{reported_later};
-    const Keys keys = noise_keys(Dimension::none, kind);
-    const Section noise(reading, origin, keys);
-    specs.push_back({.request = request_of(noise, "column", kind),
-                     .quantity = {},
-                     .unit = {},
-                     .quantity_at = noise.value_place("column"),
-                     .unit_at = noise.value_place("column")});
-  }
-
   /// One over the standard deviations.
-  [[nodiscard]] std::vector<double> weights_by_noise(const Section& data, const std::vector<ColumnSpec>& specs,
+  /// @param column  of them; null: y's noise is told in parts
+  [[nodiscard]] std::vector<double> weights_by_noise(const Section& data, const ColumnSpec* column,
                                                      const MeasuredData& measured, const MeasuredQuantity& y,
                                                      const std::string& file) {
-    const Section::Origin origin = data.table(k_noise, std::string(k_noise));
-    const Keys keys = noise_keys(dimension_of(y.si).value_or(Dimension::none), noise_column_kind(origin));
     const std::size_t before = faults_.size();
-    const Section noise(reading_, origin, keys);
-    const double absolute = noise.number("absolute").value_or(0.0);
-    const double relative = noise.number("relative").value_or(0.0);
+    const NoiseParts noise = noise_in(reading_, data, dimension_of(y.si).value_or(Dimension::none));
     double factor = 0.0;  // of the column
-    if (noise_column_) {
-      MeasuredQuantity column{.observable = {}, .unit = measured.columns[2].unit, .si = y.si, .values = {}};
-      factor = unit_factor(column, specs[2]).value_or(0.0);
-      if (noise.has("absolute") || noise.has("relative")) {
-        faults_.add(noise.value_place("column"), "a column of standard deviations stands alone; expected no other key");
-      }
+    if (column != nullptr) {
+      MeasuredQuantity quantity{.observable = {}, .unit = measured.columns[2].unit, .si = y.si, .values = {}};
+      factor = unit_factor(quantity, *column).value_or(0.0);
     }
     std::vector<double> weights;
     std::size_t found = 0;
     for (std::size_t row = 0; row < y.values.size() && faults_.size() < before + k_most_zeros; ++row) {
-      const double deviation =
-          noise_column_ ? factor * measured.columns[2].values[row] : std::hypot(absolute, relative * y.values[row]);
+      const double deviation = column != nullptr ? factor * measured.columns[2].values[row]
+                                                 : std::hypot(noise.absolute, noise.relative * y.values[row]);
       weights.push_back(1.0 / deviation);
       if (deviation > 0.0 || faults_.size() > before + found) continue;
       ++found;
-      faults_.add({file, measured.lines[row], measured.columns[noise_column_ ? 2 : 1].at[row]},
-                  noise_column_ ? "a standard deviation has to be above zero"
-                                : "y = 0 has no relative noise; expected an absolute part, too");
+      faults_.add({file, measured.lines[row], measured.columns[column != nullptr ? 2 : 1].at[row]},
+                  column != nullptr ? "a standard deviation has to be above zero"
+                                    : "y = 0 has no relative noise; expected an absolute part, too");
     }
     return weights;
   }
@@ -502,243 +471,6 @@ class CalibrationReader {
       const double before = row > 0 ? std::abs(x[row] - x[row - 1]) : 0.0;
       const double after = row + 1 < x.size() ? std::abs(x[row + 1] - x[row]) : 0.0;
       weights[row] *= std::sqrt(0.5 * (before + after) / path * static_cast<double>(x.size()));
-    }
-  }
-
-  // --- free parameters
-
-  void read_free(const Section& root) {
-    std::vector<NumberKey> numbers = number_keys(made_.scenario);
-    append(machine_keys(), numbers);
-    const Keys keys = free_keys(numbers);
-    const std::vector<ForeignKey> foreign = foreign_keys(root.table("free", "").table);
-    const Section free(reading_, root.table("free", "[free]"), keys, foreign);
-    std::vector<std::pair<SourceLocation, const NumberKey*>> found;
-    for (const NumberKey& number : numbers) {
-      if (free.has(number.path)) found.emplace_back(free.key_place(number.path), &number);
-    }
-    // In the order of the file, not of the model.
-    std::ranges::sort(found, {}, [](const auto& entry) { return std::pair(entry.first.line, entry.first.column); });
-    if (found.size() > k_most_parameters) {
-      faults_.add(found[k_most_parameters].first,
-                  fmt::format("{} parameters are free; expected at most {}", found.size(), k_most_parameters));
-    }
-    for (const auto& [where, number] : found) read_bounds(free, *number);
-  }
-
-  // --- priors
-
-  void read_priors(const Section& root) {
-    std::vector<std::string> paths;
-    for (const FreeParameter& parameter : made_.free) paths.push_back(parameter.key.path);
-    const Keys keys = prior_keys(paths);
-    const Section::Origin origin = root.table("prior", "[prior]");
-    std::vector<NumberKey> numbers = number_keys(made_.scenario);
-    append(machine_keys(), numbers);
-    std::vector<ForeignKey> foreign;
-    for (const NumberKey& number : numbers) {
-      if (std::ranges::find(paths, number.path) == paths.end()) {
-        foreign.push_back({number.path, "is not free; expected it in [free], too"});
-      }
-    }
-    const Section priors(reading_, origin, keys, foreign);
-    for (FreeParameter& parameter : made_.free) {
-      if (priors.has(parameter.key.path)) read_prior(priors, parameter);
-    }
-  }
-
-  void read_prior(const Section& priors, FreeParameter& parameter) {
-    const Section::Origin origin = priors.table(parameter.key.path, fmt::format("\"{}\"", parameter.key.path));
-    const Keys keys = distribution_keys();
-    const std::size_t before = faults_.size();
-    const Section distribution(reading_, origin, keys);
-    if (faults_.size() > before) return;
-    constexpr std::array k_kinds{Prior::Kind::normal, Prior::Kind::lognormal, Prior::Kind::uniform};
-    std::vector<Prior::Kind> given;
-    for (const Prior::Kind kind : k_kinds) {
-      if (distribution.has(word_of(kind))) given.push_back(kind);
-    }
-    if (given.size() != 1) {
-      return faults_.add(distribution.place(), fmt::format("a prior with {} distributions; expected one of normal, "
-                                                           "lognormal, uniform",
-                                                           given.size()));
-    }
-    Prior prior{.kind = given.front()};
-    const std::string_view word = word_of(prior.kind);
-    const std::vector<std::string> values = distribution.texts(word);
-    if (values.size() != 2) {
-      return faults_.add(distribution.value_place(word), fmt::format("{} = {} value{}; expected two", word,
-                                                                     values.size(), values.size() == 1 ? "" : "s"));
-    }
-    const bool is_lognormal = prior.kind == Prior::Kind::lognormal;
-    const auto first = value_in(distribution, word, 0, parameter.key, values[0]);
-    const auto second = is_lognormal ? plain_number(distribution, word, 1, values[1])
-                                     : value_in(distribution, word, 1, parameter.key, values[1]);
-    if (!first || !second) return;
-    prior.first = *first;
-    prior.second = *second;
-    check_prior(distribution, prior, parameter, values);
-  }
-
-  void check_prior(const Section& distribution, const Prior& prior, FreeParameter& parameter,
-                   const std::vector<std::string>& values) {
-    const std::string_view word = word_of(prior.kind);
-    if (prior.kind != Prior::Kind::uniform && !(prior.second > 0.0)) {
-      return faults_.add(
-          distribution.value_place(word, 1),
-          fmt::format("{}: the standard deviation is {}; expected one above zero", word, shown(values[1])));
-    }
-    if (prior.kind == Prior::Kind::lognormal && !(prior.first > 0.0 && parameter.lower > 0.0)) {
-      return faults_.add(distribution.value_place(word, 0),
-                         "lognormal: expected a median above zero, and bounds in [free] above zero");
-    }
-    if (prior.kind == Prior::Kind::uniform) {
-      if (!(prior.first < prior.second)) {
-        return faults_.add(distribution.value_place(word, 1),
-                           fmt::format("uniform: {} is not above {}; expected the bounds the other way round",
-                                       shown(values[1]), shown(values[0])));
-      }
-      const double lower = std::max(parameter.lower, prior.first);
-      const double upper = std::min(parameter.upper, prior.second);
-      if (!(lower < upper) || (parameter.start && !(*parameter.start >= lower && *parameter.start <= upper))) {
-        return faults_.add(
-            distribution.value_place(word, 0),
-            "uniform: expected an interval that shares values, and the start, with the bounds in [free]");
-      }
-      parameter.lower = lower;
-      parameter.upper = upper;
-    }
-    parameter.prior = prior;
-  }
-
-  [[nodiscard]] static std::optional<double> bare_number(const std::string& text) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-    return value;
-  }
-
-  [[nodiscard]] std::optional<double> plain_number(const Section& section, std::string_view key, std::size_t entry,
-                                                   const std::string& text) {
-    const auto number = bare_number(text);
-    if (!number) {
-      faults_.add(section.value_place(key, entry),
-                  fmt::format("{}: '{}' is no number; expected the standard deviation of the natural logarithm, for "
-                              "example 0.1",
-                              key, shown(text)));
-    }
-    return number;
-  }
-
-  /// A value of a parameter in a list: a number in SI, or a text with a unit.
-  [[nodiscard]] std::optional<double> value_in(const Section& section, std::string_view key, std::size_t entry,
-                                               const NumberKey& number, const std::string& text) {
-    if (const auto bare = bare_number(text)) return bare;
-    if (number.path == k_compliance) {
-      const ParsedCompliance parsed = parse_compliance(text);
-      if (!parsed.value) {
-        faults_.add(section.value_place(key, entry),
-                    fmt::format("{}: '{}': expected a length over a force, for example "
-                                "\"20 nm/N\"",
-                                key, shown(text)));
-      }
-      return parsed.value;
-    }
-    const ParsedQuantity parsed = parse_quantity(text, number.dimension, std::nullopt);
-    if (!parsed.value) faults_.add(section.value_place(key, entry), fmt::format("{}: {}", key, parsed.problem));
-    return parsed.value;
-  }
-
-  /// Keys that stand in the scenario, or are written so that TOML takes them apart.
-  [[nodiscard]] static std::vector<ForeignKey> foreign_keys(const toml::table* table) {
-    std::vector<ForeignKey> foreign;
-    for (const auto& [key, node] : *table) {
-      const std::string_view name = key.str();
-      const toml::table* inner = node.as_table();
-      if (name == "particle.radius") {
-        foreign.push_back({name, "cannot be free: lengths of the scenario may be given in R0"});
-      } else if (inner != nullptr && !inner->contains("from") && name.find('.') == std::string_view::npos) {
-        foreign.push_back({name,
-                           "is a table; expected the whole path in quotes, for example "
-                           "\"material.youngs_modulus\" = { from = ..., to = ... }"});
-      }
-    }
-    return foreign;
-  }
-
-  void read_bounds(const Section& free, const NumberKey& number) {
-    const Section::Origin origin = free.table(number.path, fmt::format("\"{}\"", number.path));
-    const bool is_compliance = number.path == k_compliance;
-    const auto kind_of_bound = [&](std::string_view key) {
-      const toml::node* node = origin.table->get(key);
-      return is_compliance && node != nullptr && node->is_string() ? KeySpec::Kind::text : KeySpec::Kind::quantity;
-    };
-    const Keys keys = bounds_keys(number, {kind_of_bound("from"), kind_of_bound("to"), kind_of_bound("start")});
-    const Section bounds(reading_, origin, keys);
-    const auto bound = [&](std::string_view key) {
-      return kind_of_bound(key) == KeySpec::Kind::text ? compliance_in(reading_, bounds, key).value
-                                                       : bounds.number(key);
-    };
-    const auto from = bound("from");
-    const auto to = bound("to");
-    FreeParameter parameter;
-    parameter.key = number;
-    if (!from || !to) return;
-    if (!(*from < *to)) {
-      return faults_.add(bounds.value_place("to"),
-                         fmt::format("to = {} is not above from = {}; expected bounds the other way round",
-                                     shown(*origin.table->get("to")), shown(*origin.table->get("from"))));
-    }
-    parameter.lower = *from;
-    parameter.upper = *to;
-    parameter.start = bound("start");
-    if (parameter.start && (*parameter.start < *from || *parameter.start > *to)) {
-      faults_.add(bounds.value_place("start"),
-                  fmt::format("start = {} is not between the bounds", shown(*origin.table->get("start"))));
-    }
-    const std::string scale = bounds.text("scale");
-    parameter.is_logarithmic = scale.empty() ? *from > 0.0 && *to >= k_ratio_for_log * *from : scale == "log";
-    if (parameter.is_logarithmic && *from <= 0.0) {
-      faults_.add(bounds.value_place("scale"), "scale = \"log\" needs bounds above zero");
-    }
-    // A bound of zero may be written without a unit.
-    const bool is_bare_zero = number.path.starts_with(k_data) && !origin.table->get("from")->is_string();
-    set_unit(parameter, *origin.table->get(is_bare_zero ? "to" : "from"));
-    check_place(free, parameter);
-    made_.free.push_back(std::move(parameter));
-  }
-
-  /// The unit of a bound, which is a bare number where it is in SI.
-  static void set_unit(FreeParameter& parameter, const toml::node& bound) {
-    const Dimension dimension = parameter.key.dimension;
-    parameter.unit = dimension_info(dimension).si;
-    const auto* text = bound.as_string();
-    if (parameter.key.path == k_compliance) {
-      const ParsedCompliance parsed = text == nullptr ? ParsedCompliance{.unit = "m/N"} : parse_compliance(text->get());
-      parameter.unit = parsed.unit;
-      parameter.unit_factor = parsed.unit_factor;
-    } else if (text != nullptr) {
-      parameter.unit = parse_quantity(text->get(), dimension, std::nullopt).unit;
-      parameter.unit_factor = parse_quantity("1 " + parameter.unit, dimension, std::nullopt).value.value_or(1.0);
-    }
-  }
-
-  /// Whether a number can be put into the scenario's text, so that what has been fitted can be run.
-  void check_place(const Section& free, const FreeParameter& parameter) {
-    const std::string& path = parameter.key.path;
-    if (path.starts_with(k_data)) return;  // no number of the scenario
-    try {
-      const std::string text =
-          with_values(made_.scenario_text, {{path, fmt::format("{:e}", parameter.start.value_or(parameter.lower))}});
-      static_cast<void>(parse_scenario(text, scenario_file_));
-    } catch (const ScenarioError& error) {
-      faults_.add(free.key_place(path), fmt::format("the scenario does not take '{}': {}", path,
-                                                    on_one_line(error.faults().front().message)));
-    } catch (const std::runtime_error&) {
-      faults_.add(free.key_place(path),
-                  fmt::format("the scenario does not give '{}', and has no table with a header to put it in; expected "
-                              "it there, with any value",
-                              path));
     }
   }
 
@@ -758,7 +490,6 @@ class CalibrationReader {
   std::string scenario_file_;
   Measurable measurable_;
   bool has_scenario_ = false;
-  bool noise_column_ = false;  ///< of the curve that is read
 };
 
 }  // namespace

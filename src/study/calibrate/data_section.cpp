@@ -140,6 +140,32 @@ ColumnSpec column_spec(Reading& reading, const Section& data, std::string_view k
           .unit_at = column.value_place(column.has("unit") ? "unit" : "column")};
 }
 
+std::optional<ColumnSpec> noise_column_in(const Section& data) {
+  const Section::Origin origin = data.table(k_noise, std::string(k_noise));
+  const KeySpec::Kind kind = kind_of(*origin.table, "column", KeySpec::Kind::text);
+  if (!origin.table->contains("column") || (kind != KeySpec::Kind::text && kind != KeySpec::Kind::integer)) return {};
+  FaultList reported_by_noise_in;
+  Reading reading{reported_by_noise_in};
+  const Keys keys = noise_keys(Dimension::none, kind);
+  const Section noise(reading, origin, keys);
+  return ColumnSpec{.request = request_of(noise, "column", kind),
+                    .quantity = {},
+                    .unit = {},
+                    .quantity_at = noise.value_place("column"),
+                    .unit_at = noise.value_place("column")};
+}
+
+NoiseParts noise_in(Reading& reading, const Section& data, Dimension of_y) {
+  const Section::Origin origin = data.table(k_noise, std::string(k_noise));
+  const Keys keys = noise_keys(of_y, kind_of(*origin.table, "column", KeySpec::Kind::text));
+  const Section noise(reading, origin, keys);
+  if (noise.has("column") && (noise.has("absolute") || noise.has("relative"))) {
+    reading.faults.add(noise.value_place("column"),
+                       "a column of standard deviations stands alone; expected no other key");
+  }
+  return {.absolute = noise.number("absolute").value_or(0.0), .relative = noise.number("relative").value_or(0.0)};
+}
+
 ParsedCompliance compliance_in(Reading& reading, const Section& section, std::string_view key) {
   const std::string text = section.text(key);
   ParsedCompliance parsed = parse_compliance(text);

@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -30,6 +31,17 @@ struct ColumnSpec {
   SourceLocation unit_at;
 };
 [[nodiscard]] ColumnSpec column_spec(Reading& reading, const Section& data, std::string_view key, KeySpec::Kind kind);
+
+/// The column of standard deviations of y that `noise` names; none where it has none.
+[[nodiscard]] std::optional<ColumnSpec> noise_column_in(const Section& data);
+
+/// The two parts of a standard deviation of y, whose squares add.
+struct NoiseParts {
+  double absolute = 0.0;  ///< [SI of y]
+  double relative = 0.0;  ///< over |y|
+};
+/// What `noise` gives beside a column; all its faults. @param of_y  dimension of y
+[[nodiscard]] NoiseParts noise_in(Reading& reading, const Section& data, Dimension of_y);
 
 /// A compliance written with its unit; a fault where it is none.
 [[nodiscard]] ParsedCompliance compliance_in(Reading& reading, const Section& section, std::string_view key);

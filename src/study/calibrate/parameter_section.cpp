@@ -1,0 +1,273 @@
+#include "study/calibrate/parameter_section.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "scenario/document.hpp"
+#include "scenario/edit.hpp"
+#include "scenario/text_file.hpp"
+#include "scenario/units.hpp"
+#include "scenario/words.hpp"
+#include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/data_section.hpp"
+
+namespace monograin::calibration {
+namespace {
+
+constexpr double k_ratio_for_log = 100.0;  // of bounds: from here on their parameter is sought in its logarithm
+
+/// Keys that stand in the scenario, or are written so that TOML takes them apart.
+std::vector<ForeignKey> foreign_keys(const toml::table* table) {
+  std::vector<ForeignKey> foreign;
+  for (const auto& [key, node] : *table) {
+    const std::string_view name = key.str();
+    const toml::table* inner = node.as_table();
+    if (name == "particle.radius") {
+      foreign.push_back({name, "cannot be free: lengths of the scenario may be given in R0"});
+    } else if (inner != nullptr && !inner->contains("from") && name.find('.') == std::string_view::npos) {
+      foreign.push_back({name,
+                         "is a table; expected the whole path in quotes, for example "
+                         "\"material.youngs_modulus\" = { from = ..., to = ... }"});
+    }
+  }
+  return foreign;
+}
+
+/// The unit of a bound, which is a bare number where it is in SI.
+void set_unit(FreeParameter& parameter, const toml::node& bound) {
+  const Dimension dimension = parameter.key.dimension;
+  parameter.unit = dimension_info(dimension).si;
+  const auto* text = bound.as_string();
+  if (parameter.key.path == k_compliance) {
+    const ParsedCompliance parsed = text == nullptr ? ParsedCompliance{.unit = "m/N"} : parse_compliance(text->get());
+    parameter.unit = parsed.unit;
+    parameter.unit_factor = parsed.unit_factor;
+  } else if (text != nullptr) {
+    parameter.unit = parse_quantity(text->get(), dimension, std::nullopt).unit;
+    parameter.unit_factor = parse_quantity("1 " + parameter.unit, dimension, std::nullopt).value.value_or(1.0);
+  }
+}
+
+/// Whether a number can be put into the scenario's text, so that what has been fitted can be run.
+void check_place(Reading& reading, const Section& free, const ScenarioText& scenario, const FreeParameter& parameter) {
+  const std::string& path = parameter.key.path;
+  if (path.starts_with(k_data)) return;  // no number of the scenario
+  try {
+    const std::string text =
+        with_values(scenario.text, {{path, fmt::format("{:e}", parameter.start.value_or(parameter.lower))}});
+    static_cast<void>(parse_scenario(text, scenario.file));
+  } catch (const ScenarioError& error) {
+    reading.faults.add(free.key_place(path), fmt::format("the scenario does not take '{}': {}", path,
+                                                         on_one_line(error.faults().front().message)));
+  } catch (const std::runtime_error&) {
+    reading.faults.add(
+        free.key_place(path),
+        fmt::format("the scenario does not give '{}', and has no table with a header to put it in; expected "
+                    "it there, with any value",
+                    path));
+  }
+}
+
+std::optional<FreeParameter> read_bounds(Reading& reading, const Section& free, const ScenarioText& scenario,
+                                         const NumberKey& number) {
+  const Section::Origin origin = free.table(number.path, fmt::format("\"{}\"", number.path));
+  const bool is_compliance = number.path == k_compliance;
+  const auto kind_of_bound = [&](std::string_view key) {
+    const toml::node* node = origin.table->get(key);
+    return is_compliance && node != nullptr && node->is_string() ? KeySpec::Kind::text : KeySpec::Kind::quantity;
+  };
+  const Keys keys = bounds_keys(number, {kind_of_bound("from"), kind_of_bound("to"), kind_of_bound("start")});
+  const Section bounds(reading, origin, keys);
+  const auto bound = [&](std::string_view key) {
+    return kind_of_bound(key) == KeySpec::Kind::text ? compliance_in(reading, bounds, key).value : bounds.number(key);
+  };
+  const auto from = bound("from");
+  const auto to = bound("to");
+  FreeParameter parameter;
+  parameter.key = number;
+  if (!from || !to) return {};
+  if (!(*from < *to)) {
+    reading.faults.add(bounds.value_place("to"),
+                       fmt::format("to = {} is not above from = {}; expected bounds the other way round",
+                                   shown(*origin.table->get("to")), shown(*origin.table->get("from"))));
+    return {};
+  }
+  parameter.lower = *from;
+  parameter.upper = *to;
+  parameter.start = bound("start");
+  if (parameter.start && (*parameter.start < *from || *parameter.start > *to)) {
+    reading.faults.add(bounds.value_place("start"),
+                       fmt::format("start = {} is not between the bounds", shown(*origin.table->get("start"))));
+  }
+  const std::string scale = bounds.text("scale");
+  parameter.is_logarithmic = scale.empty() ? *from > 0.0 && *to >= k_ratio_for_log * *from : scale == "log";
+  if (parameter.is_logarithmic && *from <= 0.0) {
+    reading.faults.add(bounds.value_place("scale"), "scale = \"log\" needs bounds above zero");
+  }
+  // A bound of zero may be written without a unit.
+  const bool is_bare_zero = number.path.starts_with(k_data) && !origin.table->get("from")->is_string();
+  set_unit(parameter, *origin.table->get(is_bare_zero ? "to" : "from"));
+  check_place(reading, free, scenario, parameter);
+  return parameter;
+}
+
+std::optional<double> bare_number(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::optional<double> plain_number(Reading& reading, const Section& section, std::string_view key, std::size_t entry,
+                                   const std::string& text) {
+  const auto number = bare_number(text);
+  if (!number) {
+    reading.faults.add(
+        section.value_place(key, entry),
+        fmt::format("{}: '{}' is no number; expected the standard deviation of the natural logarithm, for "
+                    "example 0.1",
+                    key, shown(text)));
+  }
+  return number;
+}
+
+/// A value of a parameter in a list: a number in SI, or a text with a unit.
+std::optional<double> value_in(Reading& reading, const Section& section, std::string_view key, std::size_t entry,
+                               const NumberKey& number, const std::string& text) {
+  if (const auto bare = bare_number(text)) return bare;
+  if (number.path == k_compliance) {
+    const ParsedCompliance parsed = parse_compliance(text);
+    if (!parsed.value) {
+      reading.faults.add(section.value_place(key, entry),
+                         fmt::format("{}: '{}': expected a length over a force, for example "
+                                     "\"20 nm/N\"",
+                                     key, shown(text)));
+    }
+    return parsed.value;
+  }
+  const ParsedQuantity parsed = parse_quantity(text, number.dimension, std::nullopt);
+  if (!parsed.value) reading.faults.add(section.value_place(key, entry), fmt::format("{}: {}", key, parsed.problem));
+  return parsed.value;
+}
+
+void check_prior(Reading& reading, const Section& distribution, const Prior& prior, FreeParameter& parameter,
+                 const std::vector<std::string>& values) {
+  const std::string_view word = word_of(prior.kind);
+  if (prior.kind != Prior::Kind::uniform && !(prior.second > 0.0)) {
+    return reading.faults.add(
+        distribution.value_place(word, 1),
+        fmt::format("{}: the standard deviation is {}; expected one above zero", word, shown(values[1])));
+  }
+  if (prior.kind == Prior::Kind::lognormal && !(prior.first > 0.0 && parameter.lower > 0.0)) {
+    return reading.faults.add(distribution.value_place(word, 0),
+                              "lognormal: expected a median above zero, and bounds in [free] above zero");
+  }
+  if (prior.kind == Prior::Kind::uniform) {
+    if (!(prior.first < prior.second)) {
+      return reading.faults.add(distribution.value_place(word, 1),
+                                fmt::format("uniform: {} is not above {}; expected the bounds the other way round",
+                                            shown(values[1]), shown(values[0])));
+    }
+    const double lower = std::max(parameter.lower, prior.first);
+    const double upper = std::min(parameter.upper, prior.second);
+    if (!(lower < upper) || (parameter.start && !(*parameter.start >= lower && *parameter.start <= upper))) {
+      return reading.faults.add(
+          distribution.value_place(word, 0),
+          "uniform: expected an interval that shares values, and the start, with the bounds in [free]");
+    }
+    parameter.lower = lower;
+    parameter.upper = upper;
+  }
+  parameter.prior = prior;
+}
+
+void read_prior(Reading& reading, const Section& priors, FreeParameter& parameter) {
+  const Section::Origin origin = priors.table(parameter.key.path, fmt::format("\"{}\"", parameter.key.path));
+  const Keys keys = distribution_keys();
+  const std::size_t before = reading.faults.size();
+  const Section distribution(reading, origin, keys);
+  if (reading.faults.size() > before) return;
+  constexpr std::array k_kinds{Prior::Kind::normal, Prior::Kind::lognormal, Prior::Kind::uniform};
+  std::vector<Prior::Kind> given;
+  for (const Prior::Kind kind : k_kinds) {
+    if (distribution.has(word_of(kind))) given.push_back(kind);
+  }
+  if (given.size() != 1) {
+    return reading.faults.add(distribution.place(),
+                              fmt::format("a prior with {} distributions; expected one of normal, "
+                                          "lognormal, uniform",
+                                          given.size()));
+  }
+  Prior prior{.kind = given.front()};
+  const std::string_view word = word_of(prior.kind);
+  const std::vector<std::string> values = distribution.texts(word);
+  if (values.size() != 2) {
+    return reading.faults.add(
+        distribution.value_place(word),
+        fmt::format("{} = {} value{}; expected two", word, values.size(), values.size() == 1 ? "" : "s"));
+  }
+  const bool is_lognormal = prior.kind == Prior::Kind::lognormal;
+  const auto first = value_in(reading, distribution, word, 0, parameter.key, values[0]);
+  const auto second = is_lognormal ? plain_number(reading, distribution, word, 1, values[1])
+                                   : value_in(reading, distribution, word, 1, parameter.key, values[1]);
+  if (!first || !second) return;
+  prior.first = *first;
+  prior.second = *second;
+  check_prior(reading, distribution, prior, parameter, values);
+}
+
+}  // namespace
+
+std::vector<FreeParameter> free_in(Reading& reading, const Section& root, const ScenarioText& scenario) {
+  std::vector<NumberKey> numbers = number_keys(scenario.checked);
+  std::ranges::move(machine_keys(), std::back_inserter(numbers));
+  const Keys keys = free_keys(numbers);
+  const std::vector<ForeignKey> foreign = foreign_keys(root.table("free", "").table);
+  const Section free(reading, root.table("free", "[free]"), keys, foreign);
+  std::vector<std::pair<SourceLocation, const NumberKey*>> found;
+  for (const NumberKey& number : numbers) {
+    if (free.has(number.path)) found.emplace_back(free.key_place(number.path), &number);
+  }
+  // In the order of the file, not of the model.
+  std::ranges::sort(found, {}, [](const auto& entry) { return std::pair(entry.first.line, entry.first.column); });
+  if (found.size() > k_most_parameters) {
+    reading.faults.add(found[k_most_parameters].first,
+                       fmt::format("{} parameters are free; expected at most {}", found.size(), k_most_parameters));
+  }
+  std::vector<FreeParameter> parameters;
+  for (const auto& [where, number] : found) {
+    if (auto parameter = read_bounds(reading, free, scenario, *number)) parameters.push_back(std::move(*parameter));
+  }
+  return parameters;
+}
+
+void read_priors(Reading& reading, const Section& root, const CheckedScenario& scenario,
+                 std::vector<FreeParameter>& free) {
+  std::vector<std::string> paths;
+  for (const FreeParameter& parameter : free) paths.push_back(parameter.key.path);
+  const Keys keys = prior_keys(paths);
+  const Section::Origin origin = root.table("prior", "[prior]");
+  std::vector<NumberKey> numbers = number_keys(scenario);
+  std::ranges::move(machine_keys(), std::back_inserter(numbers));
+  std::vector<ForeignKey> foreign;
+  for (const NumberKey& number : numbers) {
+    if (std::ranges::find(paths, number.path) == paths.end()) {
+      foreign.push_back({number.path, "is not free; expected it in [free], too"});
+    }
+  }
+  const Section priors(reading, origin, keys, foreign);
+  for (FreeParameter& parameter : free) {
+    if (priors.has(parameter.key.path)) read_prior(reading, priors, parameter);
+  }
+}
+
+}  // namespace monograin::calibration

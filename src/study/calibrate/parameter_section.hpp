@@ -1,0 +1,26 @@
+/// The tables [free] and [prior] of a calibration file. For readers of TOML files: includes the library.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenario/section.hpp"
+#include "study/calibrate/calibration.hpp"
+
+namespace monograin::calibration {
+
+/// The scenario whose numbers are free, with the text that they are put into.
+struct ScenarioText {
+  const CheckedScenario& checked;
+  const std::string& text;
+  const std::string& file;
+};
+
+/// The free parameters, in the order of the file; faults where a bound is missing or the scenario has no place for it.
+[[nodiscard]] std::vector<FreeParameter> free_in(Reading& reading, const Section& root, const ScenarioText& scenario);
+
+/// Gives parameters what `[prior]` says of them; a uniform distribution tightens their bounds.
+void read_priors(Reading& reading, const Section& root, const CheckedScenario& scenario,
+                 std::vector<FreeParameter>& free);
+
+}  // namespace monograin::calibration
