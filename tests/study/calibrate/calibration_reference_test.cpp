@@ -118,6 +118,35 @@ TEST(ReadyCalibration, OfTwoParametersTakesAtMostThreeHundredTrialRuns) {
   }
 }
 
+/// Modulus and yield stress of a noisy compression, with more of the file after them.
+CalibrationResult fit_compression(const TemporaryFolder& folder, const std::string& set, const std::string& more) {
+  std::ofstream(folder.path() / "c.toml") << fmt::format(
+      "scenario = \"{0}/scenarios/uniaxial.toml\"\n[data]\nfile = \"{0}/scenarios/calibrate/uniaxial.csv\"\n"
+      "x = \"displacement[mm]\"\ny = \"force[kN]\"\n{1}\n[free]\n"
+      "\"material.youngs_modulus\" = {{ from = \"0.1 GPa\", to = \"10 GPa\" }}\n"
+      "\"material.yield_stress\" = {{ from = \"1 MPa\", to = \"200 MPa\" }}\n{2}",
+      MONOGRAIN_SOURCE_DIR, set, more);
+  return calibrate(read_calibration(folder.path() / "c.toml"));
+}
+
+TEST(ReadyCalibration, IntervalOfPoissonsRatioEndsWhereFitsWithItHeldAreThatMuchWorse) {
+  const TemporaryFolder folder;
+  const CalibrationResult result =
+      fit_compression(folder, "", "\"material.poisson_ratio\" = { from = 0, to = 0.49 }\n");
+  EXPECT_EQ(result.method, IntervalMethod::profile);
+  EXPECT_NE(result.method_reason.find("has a kink"), std::string::npos) << result.method_reason;
+  const auto n = static_cast<double>(result.uncertainty.degrees_of_freedom);
+  const double t = result.uncertainty.t_quantile;
+  const Interval& interval = result.intervals.at(2);
+  EXPECT_FALSE(interval.is_cut_below || interval.is_cut_above);
+  EXPECT_GT(interval.upper - interval.lower, 0.08);
+  for (const double end : {interval.lower, interval.upper}) {
+    const CalibrationResult held =
+        fit_compression(folder, fmt::format("set = [\"material.poisson_ratio={:.17g}\"]", end), "");
+    EXPECT_NEAR((held.sum_of_squares / result.sum_of_squares - 1.0) * n, t * t, 0.03 * t * t) << end;
+  }
+}
+
 /// Recovers a parameter of a model from its own exact data.
 void expect_recovery(const TemporaryFolder& folder, const std::string& scenario, const std::string& key, double truth,
                      const std::string& bounds, const Table& history) {

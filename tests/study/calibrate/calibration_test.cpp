@@ -377,6 +377,19 @@ TEST_F(CalibrationTest, FindsIntervalsAsAskedAndSaysHow) {
   EXPECT_EQ(faults().size(), 1U);
 }
 
+TEST_F(CalibrationTest, ResidualsInWavesGetANote) {
+  auto rows = noisy_hertz();
+  const auto has_note = [this, &rows] {
+    write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
+    return std::ranges::any_of(calibrate(read()).notes, [](const std::string& note) {
+      return note.find("the residuals are not independent") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(has_note());
+  for (Row& row : rows) row.y = 70e9 * hertz_force_per_modulus(row.x) + 100.0 * std::sin(8e4 * row.x);
+  EXPECT_TRUE(has_note());
+}
+
 TEST_F(CalibrationTest, TheIntervalOfAParameterAtItsBoundEndsThere) {
   write("d.csv", csv_of(noisy_hertz(), "displacement[m],force[N],w"));
   write("c.toml", replaced(k_calibration, "300 GPa", "50 GPa"));
@@ -550,6 +563,10 @@ TEST_F(CalibrationTest, FilesHoldDataFitAndStatistics) {
   EXPECT_EQ(json["parameters"][0]["unit"], "GPa");
   EXPECT_EQ(json["statistics"]["points"], 25);
   EXPECT_EQ(json["correlation"][0][0], 1.0);
+  EXPECT_EQ(json["intervals"]["method"], "covariance");
+  EXPECT_EQ(json["intervals"]["reason"], result.method_reason);
+  EXPECT_EQ(json["parameters"][0]["interval_is_cut"], nlohmann::json::parse("[false, false]"));
+  EXPECT_TRUE(json["residual_tests"]["are_independent"]);
   for (const char* file : {"figure.svg", "figure.gp", "figure.dat"}) {
     EXPECT_GT(fs::file_size(folder() / "out" / file), 300U) << file;
   }
