@@ -33,8 +33,7 @@ KeySpec bound_key(std::string_view name, std::string_view meaning, const NumberK
               .kind = kind,
               .is_required = is_required,
               .dimension = number.dimension,
-              .range = number.range,
-              .knows_initial_radius = false};
+              .range = number.range};
   if (number.path == k_compliance) key.example = "\"20 nm/N\"";
   return key;
 }

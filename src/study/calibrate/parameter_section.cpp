@@ -43,7 +43,7 @@ std::vector<ForeignKey> foreign_keys(const toml::table* table) {
 }
 
 /// The unit of a bound, which is a bare number where it is in SI.
-void set_unit(FreeParameter& parameter, const toml::node& bound) {
+void set_unit(FreeParameter& parameter, const toml::node& bound, double initial_radius) {
   const Dimension dimension = parameter.key.dimension;
   parameter.unit = dimension_info(dimension).si;
   const auto* text = bound.as_string();
@@ -52,8 +52,8 @@ void set_unit(FreeParameter& parameter, const toml::node& bound) {
     parameter.unit = parsed.unit;
     parameter.unit_factor = parsed.unit_factor;
   } else if (text != nullptr) {
-    parameter.unit = parse_quantity(text->get(), dimension, std::nullopt).unit;
-    parameter.unit_factor = parse_quantity("1 " + parameter.unit, dimension, std::nullopt).value.value_or(1.0);
+    parameter.unit = parse_quantity(text->get(), dimension, initial_radius).unit;
+    parameter.unit_factor = parse_quantity("1 " + parameter.unit, dimension, initial_radius).value.value_or(1.0);
   }
 }
 
@@ -115,7 +115,7 @@ std::optional<FreeParameter> read_bounds(Reading& reading, const Section& free, 
   }
   // A bound of zero may be written without a unit.
   const bool is_bare_zero = number.path.starts_with(k_data) && !origin.table->get("from")->is_string();
-  set_unit(parameter, *origin.table->get(is_bare_zero ? "to" : "from"));
+  set_unit(parameter, *origin.table->get(is_bare_zero ? "to" : "from"), reading.initial_radius);
   check_place(reading, free, scenario, parameter);
   return parameter;
 }
@@ -154,7 +154,7 @@ std::optional<double> value_in(Reading& reading, const Section& section, std::st
     }
     return parsed.value;
   }
-  const ParsedQuantity parsed = parse_quantity(text, number.dimension, std::nullopt);
+  const ParsedQuantity parsed = parse_quantity(text, number.dimension, reading.initial_radius);
   if (!parsed.value) reading.faults.add(section.value_place(key, entry), fmt::format("{}: {}", key, parsed.problem));
   return parsed.value;
 }

@@ -377,6 +377,15 @@ TEST_F(CalibrationTest, FindsIntervalsAsAskedAndSaysHow) {
   EXPECT_EQ(faults().size(), 1U);
 }
 
+TEST_F(CalibrationTest, LengthsInFreeMayBeSharesOfTheRadius) {
+  write("c.toml", std::string(k_calibration) + "\"data.offset\" = { from = \"-0.01 R0\", to = \"0.02 R0\" }\n");
+  const FreeParameter offset = read().free.at(1);
+  EXPECT_DOUBLE_EQ(offset.lower, -0.01 * k_radius);
+  EXPECT_DOUBLE_EQ(offset.upper, 0.02 * k_radius);
+  EXPECT_EQ(offset.unit, "R0");
+  EXPECT_DOUBLE_EQ(offset.unit_factor, k_radius);
+}
+
 TEST_F(CalibrationTest, ResidualsInWavesGetANote) {
   auto rows = noisy_hertz();
   const auto has_note = [this, &rows] {
