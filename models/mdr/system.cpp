@@ -36,22 +36,21 @@ void System::start(std::span<double> y) {
   now_.particle.set_drives(ramps);
 }
 
-/// Runs a search on a copy of the particle, and takes the mode over that it finds. Where it finds none, the last row of
-/// the history shows the one that it tried last.
+/// Runs a search on a copy of the particle, and takes the mode over that it finds. Where it finds none, particle and
+/// state stay as they were: what it tried last is no state of the particle.
 template <class Search>
-void System::decide_mode(Search&& search) {
-  const auto take_over = [&] {
-    std::swap(now_.particle, search_.particle());
-    if (!now_.validity) now_.validity = search_.validity();
-  };
+void System::decide_mode(std::span<double> y, Search&& search) {
+  before_search_.assign(y.begin(), y.end());
   search_.begin(now_.particle);
   try {
     search();
   } catch (const std::domain_error&) {
-    take_over();
+    std::ranges::copy(before_search_, y.begin());
+    if (!now_.validity) now_.validity = search_.validity();
     throw;
   }
-  take_over();
+  std::swap(now_.particle, search_.particle());
+  if (!now_.validity) now_.validity = search_.validity();
 }
 
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
@@ -69,7 +68,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   now_.has_begun = true;
   y[k_work] -= now_.particle.force_work(y);
   if (now_.particle.centre().is_free()) now_.particle.evaluate(0.0, y);
-  decide_mode([&] {
+  decide_mode(y, [&] {
     for (std::size_t i = 0; i < now_.particle.size(); ++i) {
       // The nearest walls close with it, as no guard is met by one that touches already.
       const contacts::WallDrive& drive = now_.particle.drive(i);
@@ -89,7 +88,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   for (const std::size_t g : fired) fired_.push_back(now_.guards.list()[g]);
   const bool are_marks = std::ranges::all_of(fired_, &Guard::is_mark);
   std::optional<DomainEnd> end;
-  decide_mode([&] {
+  decide_mode(y, [&] {
     end = search_.apply(fired_, xi, y, now_.caps, log);
     if (!end && !are_marks) search_.resolve(xi, y, log);
   });

@@ -69,7 +69,7 @@ class System final : public HybridSystem {
 
   explicit System(std::shared_ptr<const Setup> setup);
   template <class Search>
-  void decide_mode(Search&& search);
+  void decide_mode(std::span<double> y, Search&& search);
   [[nodiscard]] const Contact& visible_contact(std::size_t i) const;
   [[nodiscard]] std::optional<DomainEnd> reach_centre_at_once(double xi, std::span<const double> y);
 
@@ -82,6 +82,7 @@ class System final : public HybridSystem {
   ModeSearch search_;
   std::vector<Guard> fired_;
   std::vector<double> trial_;
+  std::vector<double> before_search_;
 };
 
 }  // namespace monograin::mdr
