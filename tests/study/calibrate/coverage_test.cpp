@@ -1,0 +1,181 @@
+// How often intervals hold the truth, over many synthetic experiments with a machine between them and the particle.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "history/run.hpp"
+#include "history/table.hpp"
+#include "study/calibrate/calibration.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/text_file.hpp"
+
+namespace monograin::coverage_test {
+namespace {
+
+// Ten sets a law show gross faults within half a minute; MONOGRAIN_COVERAGE_SETS=200 makes a measurement of it.
+
+/// A law, a scenario with the true numbers, and those that are sought beside offset and compliance.
+struct Experiment {
+  const char* name;
+  const char* scenario;
+  const char* free;
+  std::vector<double> truth;
+  double radius;
+};
+
+const std::vector<Experiment> k_experiments{
+    {.name = "hertz",
+     .scenario = R"(model = "hertz"
+[particle]
+radius = 0.01
+[material]
+youngs_modulus = 2e9
+poisson_ratio = 0.3
+[loading]
+configuration = "simple"
+steps = [{ displacement = "0.05 R0", duration = 1 }]
+[output]
+points = 80
+)",
+     .free = R"("material.youngs_modulus" = { from = "0.2 GPa", to = "20 GPa" })",
+     .truth = {2e9},
+     .radius = 0.01},
+    {.name = "mdr",
+     .scenario = R"(model = "mdr"
+[particle]
+radius = 0.01
+[material]
+youngs_modulus = 1.2e9
+poisson_ratio = 0.3
+yield_stress = 45e6
+[loading]
+configuration = "simple"
+steps = [{ displacement = "0.25 R0", duration = 1 }, { displacement = "0.22 R0", duration = 1 }]
+[output]
+points = 60
+)",
+     .free = R"("material.youngs_modulus" = { from = "0.1 GPa", to = "10 GPa" }
+"material.yield_stress" = { from = "1 MPa", to = "200 MPa" })",
+     .truth = {1.2e9, 45e6},
+     .radius = 0.01},
+    {.name = "semimech",
+     .scenario = R"(model = "semimech"
+[particle]
+radius = 0.01
+[material]
+youngs_modulus = 5e9
+poisson_ratio = 0.3
+yield_stress = 50e6
+[loading]
+configuration = "simple"
+steps = [{ displacement = "0.3 R0", duration = 1 }]
+[output]
+points = 80
+)",
+     .free = R"("material.yield_stress" = { from = "5 MPa", to = "500 MPa" })",
+     .truth = {50e6},
+     .radius = 0.01},
+    {.name = "compressible",
+     .scenario = R"(model = "compressible"
+[particle]
+radius = 0.01
+[material]
+yield_pressure = 150e6
+stiffness_ratio = 100
+shear_ratio = 1.0
+tensile_ratio = 0.01
+nu0 = 0.3
+[compressible]
+k = 3.0
+[loading]
+configuration = "simple"
+steps = [{ displacement = "0.4 R0", duration = 1 }]
+[output]
+points = 80
+)",
+     .free = R"("compressible.k" = { from = 0.1, to = 20 })",
+     .truth = {3.0},
+     .radius = 0.01}};
+
+constexpr double k_level = 0.95;
+constexpr double k_noise = 0.01;               // of the largest force
+constexpr double k_largest_offset = 0.02;      // of R0
+constexpr double k_largest_compliance = 5e-8;  // [m/N]
+
+/// One measured file: the machine adds an offset and its give.
+std::string measured(const std::vector<double>& x, const std::vector<double>& force, double offset, double compliance,
+                     std::mt19937_64& generator) {
+  std::normal_distribution<double> noise(0.0, k_noise * std::ranges::max(force));
+  std::string text = "displacement[m],force[N]\n";
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    text += fmt::format("{:.17g},{:.17g}\n", x[i] + offset + compliance * force[i], force[i] + noise(generator));
+  }
+  return text;
+}
+
+class Coverage : public ::testing::TestWithParam<Experiment> {};
+
+TEST_P(Coverage, OfIntervalsIsThatOfTheirLevelWithOffsetAndComplianceSought) {
+  const Experiment& experiment = GetParam();
+  const char* asked = std::getenv("MONOGRAIN_COVERAGE_SETS");
+  const int sets = asked == nullptr ? 10 : std::atoi(asked);
+  const TemporaryFolder folder;
+  write_text(folder.path() / "s.toml", experiment.scenario);
+  write_text(folder.path() / "c.toml", fmt::format("scenario = \"s.toml\"\n[data]\nfile = \"d.csv\"\n"
+                                                   "x = \"displacement[m]\"\ny = \"force[N]\"\n[free]\n{}\n"
+                                                   "\"data.offset\" = {{ from = \"-0.05 R0\", to = \"0.05 R0\" }}\n"
+                                                   "\"data.compliance\" = {{ from = 0, to = \"500 nm/N\" }}\n",
+                                                   experiment.free));
+  const Table history = run_scenario(parse_scenario(experiment.scenario, "s.toml")).record.history;
+  std::vector<double> x;
+  std::vector<double> force;
+  for (std::size_t row = 0; row < history.row_count(); ++row) {
+    if (history.column("row")[row] != 0.0) continue;
+    x.push_back(history.column("axial.displacement")[row]);
+    force.push_back(history.column("axial.force")[row]);
+  }
+  const std::size_t count = experiment.truth.size() + 2;
+  std::vector<int> held(count, 0);
+  std::vector<double> bias(count, 0.0);
+  std::vector<double> spread(count, 0.0);
+  std::mt19937_64 generator(17);
+  std::uniform_real_distribution<double> uniform;
+  for (int set = 0; set < sets; ++set) {
+    std::vector<double> truth = experiment.truth;
+    truth.push_back(k_largest_offset * experiment.radius * uniform(generator));
+    truth.push_back(k_largest_compliance * uniform(generator));
+    write_text(folder.path() / "d.csv", measured(x, force, truth[count - 2], truth[count - 1], generator));
+    const CalibrationResult result = calibrate(read_calibration(folder.path() / "c.toml"));
+    for (std::size_t k = 0; k < count; ++k) {
+      const Interval& interval = result.intervals[k];
+      if (truth[k] >= interval.lower && truth[k] <= interval.upper) ++held[k];
+      bias[k] += (result.solution.parameters[k] - truth[k]) / sets;
+      spread[k] += std::pow(result.solution.parameters[k] - truth[k], 2) / sets;
+    }
+  }
+  const std::vector<FreeParameter> free = read_calibration(folder.path() / "c.toml").free;
+  const double share_error = std::sqrt(k_level * (1.0 - k_level) / sets);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double share = static_cast<double>(held[k]) / sets;
+    const double bias_over_error = bias[k] / std::sqrt(spread[k]);
+    EXPECT_NEAR(share, k_level, 3.0 * share_error) << free[k].key.path << " is held in " << held[k] << " of " << sets;
+    EXPECT_LE(std::abs(bias_over_error), 3.0 / std::sqrt(sets)) << free[k].key.path;
+    if (asked != nullptr) {
+      fmt::print("{}, {}: held in {:.1f} %, bias {:.3f} of the standard error {:.3g}\n", experiment.name,
+                 free[k].key.path, 100.0 * share, bias_over_error, std::sqrt(spread[k]));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Coverage, ::testing::ValuesIn(k_experiments),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace monograin::coverage_test
