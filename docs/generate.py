@@ -728,9 +728,12 @@ def draw_wedge(program, scratch):
     shutil.copy(scratch / "wedge" / "figure.svg", GENERATED / "figures" / "wedge.svg")
 
 
-def draw_calibration(program, scratch):
-    run(program, "calibrate", ROOT / "scenarios" / "calibrate" / "uniaxial.toml", "-o", scratch / "calibration")
+def draw_calibrations(program, scratch):
+    ready = ROOT / "scenarios" / "calibrate"
+    run(program, "calibrate", ready / "uniaxial.toml", "-o", scratch / "calibration")
     shutil.copy(scratch / "calibration" / "figure.svg", GENERATED / "figures" / "calibration.svg")
+    run(program, "calibrate", ready / "cel.toml", ready / "cel-by-mdr.toml", "-o", scratch / "laws")
+    shutil.copy(scratch / "laws" / "comparison.svg", GENERATED / "figures" / "calibration-laws.svg")
 
 
 # --- examples, and the interfaces for programs
@@ -856,7 +859,7 @@ def main():
     schema = json.loads(run(program, "schema"))
     with tempfile.TemporaryDirectory() as scratch:
         ready = run_ready_scenarios(program, pathlib.Path(scratch))
-        draw_calibration(program, pathlib.Path(scratch))
+        draw_calibrations(program, pathlib.Path(scratch))
         draw_comparison(program, pathlib.Path(scratch))
         draw_own_figure(program, pathlib.Path(scratch))
         draw_wedge(program, pathlib.Path(scratch))

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include "scenario/text_file.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/data_report.hpp"
+#include "study/calibrate/model_comparison.hpp"
 
 namespace monograin {
 namespace {
@@ -22,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CalibrateOptions {
-  std::string file;
+  std::vector<std::string> files;
   std::string output;
   std::optional<double> confidence;
   bool is_quiet = false;
@@ -51,12 +53,17 @@ class ProgressLine {
   int percent_ = -1;
 };
 
-int run_calibration(const CalibrateOptions& options) {
-  Calibration calibration = read_calibration(options.file);
+Calibration read(const std::string& file, const CalibrateOptions& options) {
+  Calibration calibration = read_calibration(file);
   if (options.confidence) calibration.confidence = *options.confidence;
-  const fs::path folder = options.output.empty() ? fs::path("runs") / calibration.name : fs::path(options.output);
+  return calibration;
+}
+
+/// Fits, and leaves the results in a folder.
+CalibrationResult run_calibration(const Calibration& calibration, const fs::path& folder,
+                                  const CalibrateOptions& options) {
   StagedFolder staged(folder, k_calibration_marker);
-  const CalibrationResult result = [&] {
+  CalibrationResult result = [&] {
     ProgressLine line(!options.is_quiet);
     return calibrate(calibration, [&line](double done) { line.show(done); });
   }();
@@ -64,15 +71,45 @@ int run_calibration(const CalibrateOptions& options) {
   print_data("{}", calibration_text(calibration, result));
   if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
   for (const std::string& warning : result.warnings) say("warning: {}\n", warning);
-  const int code = options.is_strict && !result.warnings.empty() ? k_differs : k_success;
-  if (options.is_quiet) return code;
+  if (options.is_quiet) return result;
   for (const std::string& note : result.notes) say("note: {}\n", note);
   say("{}: the data drive the particle, in {} step{}; the scenario's own steps were not run, and are kept in "
       "fitted.toml\n"
       "{}: {} trial runs -> {}\n",
       calibration.name, result.program_steps, result.program_steps == 1 ? "" : "s", calibration.name,
       result.solution.evaluations, folder.string());
-  return code;
+  return result;
+}
+
+int run_calibrations(const CalibrateOptions& options) {
+  std::vector<Calibration> calibrations;
+  for (const std::string& file : options.files) calibrations.push_back(read(file, options));
+  const bool has_several = calibrations.size() > 1;
+  if (has_several) check_comparable(calibrations);
+  const fs::path named = options.output;
+  const fs::path runs = "runs";
+  const fs::path together = named.empty() ? runs / "comparison" : named;
+  const fs::path alone = named.empty() ? runs / calibrations.front().name : named;
+  std::optional<StagedFolder> staged;
+  if (has_several) staged.emplace(together, k_comparison_marker);
+  std::vector<CalibrationResult> results;
+  for (const Calibration& calibration : calibrations) {
+    if (!results.empty()) print_data("\n");
+    if (has_several) print_data("{}\n", calibration.name);
+    results.push_back(run_calibration(calibration, has_several ? together / calibration.name : alone, options));
+  }
+  if (staged) {
+    const ModelComparison comparison = [&] {
+      ProgressLine line(!options.is_quiet);
+      return compare_models(calibrations, results, [&line](double done) { line.show(done); });
+    }();
+    print_data("\n{}", comparison_text(calibrations, results, comparison));
+    const std::string no_figure = write_comparison(calibrations, results, comparison, *staged);
+    if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
+    if (!options.is_quiet) say("comparison -> {}\n", together.string());
+  }
+  const auto is_bad = [](const CalibrationResult& result) { return !result.warnings.empty(); };
+  return options.is_strict && std::ranges::any_of(results, is_bad) ? k_differs : k_success;
 }
 
 // --- data
@@ -135,9 +172,12 @@ void add_calibrate_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command =
       app.add_subcommand("calibrate", "Fit numbers of a scenario to measured data, with confidence intervals");
-  command->add_option("FILE", options->file, "Calibration file (TOML): scenario, data, free parameters and bounds")
+  command
+      ->add_option("FILE", options->files,
+                   "Calibration file (TOML): scenario, data, free parameters and bounds; several of common data are "
+                   "compared")
       ->required();
-  command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME]");
+  command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME, or runs/comparison]");
   command
       ->add_option("--confidence", options->confidence,
                    "Level of the two-sided intervals, between 0 and 1, e.g. 0.99 [the file's, or 0.95]")
@@ -145,7 +185,7 @@ void add_calibrate_command(CLI::App& app, Action& action) {
   command->add_flag("--quiet", options->is_quiet, "Say nothing but the result, warnings and errors");
   command->add_flag("--strict", options->is_strict, "Exit with 5 where the fit is bad and a warning says so");
   command->footer("Example: monograin calibrate scenarios/calibrate/uniaxial.toml");
-  command->callback([options, &action] { action = [options] { return run_calibration(*options); }; });
+  command->callback([options, &action] { action = [options] { return run_calibrations(*options); }; });
 }
 
 }  // namespace monograin

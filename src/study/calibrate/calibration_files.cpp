@@ -16,6 +16,7 @@
 #include "history/run.hpp"
 #include "scenario/edit.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/calibrate/calibration_figure.hpp"
 #include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/text_table.hpp"
 #include "system/undefined.hpp"
@@ -26,8 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Bound = LeastSquaresSolution::Bound;
-
-constexpr const char* k_figure = "figure.svg";
 
 std::string_view word_of(Bound bound) {
   switch (bound) {
@@ -133,92 +132,6 @@ void write_csv_file(const Table& table, const fs::path& file) {
   std::ostringstream text;
   write_csv(table, text);
   figure::write_whole(file, text.str());
-}
-
-/// "contact_radius" as it begins a label.
-std::string label_of(const MeasuredQuantity& quantity) {
-  std::string name = quantity.observable.substr(quantity.observable.rfind('.') + 1);
-  std::ranges::replace(name, '_', ' ');
-  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-  const std::string unit = quantity.unit == "R0" ? "{/Helvetica-Oblique R}_0" : quantity.unit;
-  return quantity.unit == "-" ? name : fmt::format("{} [{}]", name, unit);
-}
-
-std::vector<double> in_unit(const std::vector<double>& values, const MeasuredQuantity& quantity) {
-  std::vector<double> result = values;
-  for (double& value : result) value /= quantity.unit_factor;
-  return result;
-}
-
-/// What tells a curve from the others.
-std::string name_of(const MeasuredCurve& curve) {
-  return curve.overrides.empty() ? fs::path(curve.file).stem().string()
-                                 : fmt::format("{}", fmt::join(curve.overrides, ", "));
-}
-
-figure::Chart chart_of(const Calibration& calibration, const CalibrationResult& result) {
-  using Style = figure::ChartSeries::Style;
-  const std::string x_label = label_of(calibration.x);
-  const std::string y_label = label_of(calibration.y);
-  figure::ChartPanel curves{.x = {.label = x_label}, .y = {.label = y_label}};
-  figure::ChartPanel rest{.x = {.label = x_label}, .y = {.label = "Data - fit: " + y_label}};
-  rest.y.label[rest.y.label.find(y_label)] = static_cast<char>(std::tolower(y_label[0]));
-  const std::vector<double> x = in_unit(calibration.x.values, calibration.x);
-  const std::vector<double> y = in_unit(calibration.y.values, calibration.y);
-  for (std::size_t c = 0; c < calibration.curves.size(); ++c) {
-    const MeasuredCurve& measured = calibration.curves[c];
-    const FittedCurve& fitted = result.curves[c];
-    const bool is_only_one = calibration.curves.size() == 1;
-    const std::string suffix = is_only_one ? "" : ": " + figure::verbatim_text(name_of(measured));
-    const auto own_colour = is_only_one ? std::nullopt : std::optional(c);
-    const std::vector<double> curve_x = in_unit(fitted.x, calibration.x);
-    const std::vector<double> curve_y = in_unit(fitted.y, calibration.y);
-    const auto band = [&](const std::vector<double>& middle) {
-      figure::ChartBand made{.legend = fmt::format("{:g} % confidence band", 100.0 * result.uncertainty.level),
-                             .colour = 0x9FC5E8,
-                             .x = curve_x,
-                             .lower = middle,
-                             .upper = middle};
-      for (std::size_t i = 0; i < middle.size(); ++i) {
-        made.lower[i] -= fitted.band[i] / calibration.y.unit_factor;
-        made.upper[i] += fitted.band[i] / calibration.y.unit_factor;
-      }
-      return made;
-    };
-    if (result.uncertainty.degrees_of_freedom > 0) {
-      curves.bands.push_back(band(curve_y));
-      rest.bands.push_back(band(std::vector<double>(curve_x.size(), 0.0)));
-    }
-    std::vector<double> own_x;
-    std::vector<double> own_y;
-    std::vector<double> residuals;
-    for (std::size_t row = measured.begin; row < measured.end; ++row) {
-      own_x.push_back(x[row]);
-      own_y.push_back(y[row]);
-      residuals.push_back(calibration.weights[row] > 0.0 ? y[row] - result.fit.y[row] / calibration.y.unit_factor
-                                                         : k_nan);
-    }
-    curves.series.push_back({.legend = "fit" + suffix, .style = Style::solid, .colour = c, .x = curve_x, .y = curve_y});
-    curves.series.push_back(
-        {.legend = "data" + suffix, .style = Style::points, .colour = own_colour, .x = own_x, .y = own_y});
-    rest.series.push_back(
-        {.legend = "data" + suffix, .style = Style::points, .colour = own_colour, .x = own_x, .y = residuals});
-  }
-  return {{std::move(curves), std::move(rest)}};
-}
-
-/// @return why there is no figure
-std::string draw(const Calibration& calibration, const CalibrationResult& result, const fs::path& folder) {
-  try {
-    const figure::FigureFiles files(folder / k_figure);
-    figure::Chart chart = chart_of(calibration, result);
-    chart.references = reference_texts(*find_model(calibration.scenario.model));
-    files.write(figure::chart_data(chart, fmt::format("{}: {}", calibration.name, data_names(calibration))),
-                figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
-  } catch (const FigureError& error) {
-    return error.what();
-  }
-  return {};
 }
 
 Json prior_json(const FreeParameter& parameter, double value) {
@@ -485,7 +398,7 @@ std::string write_calibration(const Calibration& calibration, const CalibrationR
     figure::write_whole(folder.path() / table_name(option), curve.text);
   }
   figure::write_whole(folder.path() / k_calibration_marker, calibration_json(calibration, result));
-  const std::string problem = draw(calibration, result, folder.path());
+  const std::string problem = draw_calibration(calibration, result, folder.path());
   folder.publish();
   return problem;
 }

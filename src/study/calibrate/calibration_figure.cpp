@@ -1,0 +1,165 @@
+#include "study/calibrate/calibration_figure.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "catalogue.hpp"
+#include "figure/chart.hpp"
+#include "figure/figure.hpp"
+#include "figure/page.hpp"
+#include "system/undefined.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "contact_radius" as it begins a label.
+std::string label_of(const MeasuredQuantity& quantity) {
+  std::string name = quantity.observable.substr(quantity.observable.rfind('.') + 1);
+  std::ranges::replace(name, '_', ' ');
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  const std::string unit = quantity.unit == "R0" ? "{/Helvetica-Oblique R}_0" : quantity.unit;
+  return quantity.unit == "-" ? name : fmt::format("{} [{}]", name, unit);
+}
+
+std::vector<double> in_unit(const std::vector<double>& values, const MeasuredQuantity& quantity) {
+  std::vector<double> result = values;
+  for (double& value : result) value /= quantity.unit_factor;
+  return result;
+}
+
+/// What tells a curve from the others.
+std::string name_of(const MeasuredCurve& curve) {
+  return curve.overrides.empty() ? fs::path(curve.file).stem().string()
+                                 : fmt::format("{}", fmt::join(curve.overrides, ", "));
+}
+
+/// "Data - fit: force [N]".
+std::string data_less_fit(std::string y_label) {
+  y_label[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(y_label[0])));
+  return "Data - fit: " + y_label;
+}
+
+figure::Chart chart_of(const Calibration& calibration, const CalibrationResult& result) {
+  using Style = figure::ChartSeries::Style;
+  const std::string x_label = label_of(calibration.x);
+  const std::string y_label = label_of(calibration.y);
+  figure::ChartPanel curves{.x = {.label = x_label}, .y = {.label = y_label}};
+  figure::ChartPanel rest{.x = {.label = x_label}, .y = {.label = data_less_fit(y_label)}};
+  const std::vector<double> x = in_unit(calibration.x.values, calibration.x);
+  const std::vector<double> y = in_unit(calibration.y.values, calibration.y);
+  for (std::size_t c = 0; c < calibration.curves.size(); ++c) {
+    const MeasuredCurve& measured = calibration.curves[c];
+    const FittedCurve& fitted = result.curves[c];
+    const bool is_only_one = calibration.curves.size() == 1;
+    const std::string suffix = is_only_one ? "" : ": " + figure::verbatim_text(name_of(measured));
+    const auto own_colour = is_only_one ? std::nullopt : std::optional(c);
+    const std::vector<double> curve_x = in_unit(fitted.x, calibration.x);
+    const std::vector<double> curve_y = in_unit(fitted.y, calibration.y);
+    const auto band = [&](const std::vector<double>& middle) {
+      figure::ChartBand made{.legend = fmt::format("{:g} % confidence band", 100.0 * result.uncertainty.level),
+                             .colour = 0x9FC5E8,
+                             .x = curve_x,
+                             .lower = middle,
+                             .upper = middle};
+      for (std::size_t i = 0; i < middle.size(); ++i) {
+        made.lower[i] -= fitted.band[i] / calibration.y.unit_factor;
+        made.upper[i] += fitted.band[i] / calibration.y.unit_factor;
+      }
+      return made;
+    };
+    if (result.uncertainty.degrees_of_freedom > 0) {
+      curves.bands.push_back(band(curve_y));
+      rest.bands.push_back(band(std::vector<double>(curve_x.size(), 0.0)));
+    }
+    std::vector<double> own_x;
+    std::vector<double> own_y;
+    std::vector<double> residuals;
+    for (std::size_t row = measured.begin; row < measured.end; ++row) {
+      own_x.push_back(x[row]);
+      own_y.push_back(y[row]);
+      residuals.push_back(calibration.weights[row] > 0.0 ? y[row] - result.fit.y[row] / calibration.y.unit_factor
+                                                         : k_nan);
+    }
+    curves.series.push_back({.legend = "fit" + suffix, .style = Style::solid, .colour = c, .x = curve_x, .y = curve_y});
+    curves.series.push_back(
+        {.legend = "data" + suffix, .style = Style::points, .colour = own_colour, .x = own_x, .y = own_y});
+    rest.series.push_back(
+        {.legend = "data" + suffix, .style = Style::points, .colour = own_colour, .x = own_x, .y = residuals});
+  }
+  return {{std::move(curves), std::move(rest)}};
+}
+
+/// Data, the fits of all models over them, and below what is left.
+figure::Chart chart_of(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results) {
+  using Style = figure::ChartSeries::Style;
+  const Calibration& first = calibrations.front();
+  const std::string x_label = label_of(first.x);
+  const std::string y_label = label_of(first.y);
+  figure::ChartPanel curves{.x = {.label = x_label}, .y = {.label = y_label}};
+  figure::ChartPanel rest{.x = {.label = x_label}, .y = {.label = data_less_fit(y_label)}};
+  const std::vector<double> x = in_unit(first.x.values, first.x);
+  for (std::size_t k = 0; k < calibrations.size(); ++k) {
+    const Calibration& calibration = calibrations[k];
+    const std::string legend = figure::verbatim_text(calibration.name);
+    for (const FittedCurve& fitted : results[k].curves) {
+      curves.series.push_back({.legend = legend,
+                               .style = Style::solid,
+                               .colour = k,
+                               .x = in_unit(fitted.x, first.x),
+                               .y = in_unit(fitted.y, first.y)});
+    }
+    std::vector<double> residuals;
+    for (std::size_t row = 0; row < first.y.values.size(); ++row) {
+      residuals.push_back(first.weights[row] > 0.0 ? first.y.values[row] - results[k].fit.y[row] : k_nan);
+    }
+    rest.series.push_back(
+        {.legend = legend, .style = Style::points, .colour = k, .x = x, .y = in_unit(residuals, first.y)});
+  }
+  curves.series.push_back({.legend = "data",
+                           .style = Style::points,
+                           .colour = calibrations.size(),
+                           .x = x,
+                           .y = in_unit(first.y.values, first.y)});
+  return {{std::move(curves), std::move(rest)}};
+}
+
+std::string write(const figure::Chart& chart, const std::string& title, const fs::path& figure) {
+  try {
+    const figure::FigureFiles files(figure);
+    files.write(figure::chart_data(chart, title),
+                figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
+  } catch (const FigureError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string draw_calibration(const Calibration& calibration, const CalibrationResult& result, const fs::path& folder) {
+  figure::Chart chart = chart_of(calibration, result);
+  chart.references = reference_texts(*find_model(calibration.scenario.model));
+  return write(chart, fmt::format("{}: {}", calibration.name, data_names(calibration)), folder / "figure.svg");
+}
+
+std::string draw_comparison(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
+                            const fs::path& figure) {
+  figure::Chart chart = chart_of(calibrations, results);
+  std::vector<std::string> names;
+  for (const Calibration& calibration : calibrations) {
+    names.push_back(calibration.name);
+    for (std::string& reference : reference_texts(*find_model(calibration.scenario.model))) {
+      if (std::ranges::find(chart.references, reference) == chart.references.end()) {
+        chart.references.push_back(std::move(reference));
+      }
+    }
+  }
+  return write(chart, fmt::format("{}: {}", fmt::join(names, ", "), data_names(calibrations.front())), figure);
+}
+
+}  // namespace monograin

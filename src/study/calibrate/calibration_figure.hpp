@@ -1,0 +1,21 @@
+/// Figures of calibrations: data, fits and what is left.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "study/calibrate/calibration.hpp"
+
+namespace monograin {
+
+/// Draws figure.svg with its script and data. @return why there is no figure; empty: there is
+[[nodiscard]] std::string draw_calibration(const Calibration& calibration, const CalibrationResult& result,
+                                           const std::filesystem::path& folder);
+
+/// Draws the fits of several models over their common data. @return why there is no figure; empty: there is
+[[nodiscard]] std::string draw_comparison(std::span<const Calibration> calibrations,
+                                          std::span<const CalibrationResult> results,
+                                          const std::filesystem::path& figure);
+
+}  // namespace monograin

@@ -1,0 +1,198 @@
+#include "study/calibrate/model_comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+
+#include "figure/figure.hpp"
+#include "history/branches.hpp"
+#include "study/calibrate/calibration_figure.hpp"
+#include "study/calibrate/text_table.hpp"
+#include "system/undefined.hpp"
+
+namespace monograin {
+namespace {
+
+// A difference of criteria below which the data do not decide (Kass and Raftery (1995)).
+constexpr double k_undecided = 2.0;
+
+/// Rows of the data that are left out together.
+struct Part {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+struct Parts {
+  std::vector<Part> list;
+  bool are_cycles = false;
+};
+
+/// Cycles begin where x begins to rise.
+Parts parts_of(const Calibration& calibration) {
+  std::vector<Part> cycles;
+  std::vector<Part> stretches;
+  for (const MeasuredCurve& curve : calibration.curves) {
+    const auto x = std::span(calibration.x.values).subspan(curve.begin, curve.end - curve.begin);
+    const std::vector<std::size_t> turns = turning_points(x);
+    for (std::size_t k = 0; k + 1 < turns.size(); ++k) {
+      // A turn belongs to the stretch that leads there.
+      const Part stretch{curve.begin + (k == 0 ? 0 : turns[k] + 1), curve.begin + turns[k + 1] + 1};
+      stretches.push_back(stretch);
+      if (k == 0 || x[turns[k + 1]] > x[turns[k]]) {
+        cycles.push_back(stretch);
+      } else {
+        cycles.back().end = stretch.end;
+      }
+    }
+  }
+  if (cycles.size() > 1) return {std::move(cycles), true};
+  if (stretches.size() > 1) return {std::move(stretches), false};
+  return {};
+}
+
+/// Sum of squares of what a part differs from a fit to the others; nothing where there is no such fit.
+std::optional<double> squares_of_prediction(const Calibration& calibration, const Part& part) {
+  Calibration others = calibration;
+  others.intervals = IntervalMethod::covariance;
+  std::fill(others.weights.begin() + static_cast<std::ptrdiff_t>(part.begin),
+            others.weights.begin() + static_cast<std::ptrdiff_t>(part.end), 0.0);
+  if (others.counted() < others.free.size()) return std::nullopt;
+  try {
+    const CalibrationResult result = calibrate(others);
+    double squares = 0.0;
+    for (std::size_t row = part.begin; row < part.end; ++row) {
+      if (calibration.weights[row] > 0.0) squares += std::pow(calibration.y.values[row] - result.fit.y[row], 2);
+    }
+    return squares;
+  } catch (const ScenarioError&) {
+    return std::nullopt;
+  }
+}
+
+std::vector<std::size_t> best_first(const ModelComparison& comparison) {
+  std::vector<std::size_t> order(comparison.fits.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return comparison.fits[k].bic; });
+  return order;
+}
+
+/// A value in the unit of y, or a dash.
+std::string in_y(double value, const Calibration& calibration) {
+  if (!std::isfinite(value)) return "-";
+  return fmt::format("{:.4g} {}", value / calibration.y.unit_factor, calibration.y.unit);
+}
+
+}  // namespace
+
+void check_comparable(std::span<const Calibration> calibrations) {
+  const Calibration& first = calibrations.front();
+  for (const Calibration& other : calibrations) {
+    if (other.loss.kind != Loss::linear) {
+      throw std::runtime_error(
+          fmt::format("{}: criteria of a comparison are of sums of squares; expected loss = \"linear\"", other.file));
+    }
+    if (other.x.observable != first.x.observable || other.y.observable != first.y.observable ||
+        other.x.values != first.x.values || other.y.values != first.y.values) {
+      throw std::runtime_error(fmt::format(
+          "{}: its data are not those of {}; expected the same columns of the same files", other.file, first.file));
+    }
+    if (other.weights != first.weights) {
+      throw std::runtime_error(
+          fmt::format("{}: its weights, or its noise, are not those of {}; expected the same", other.file, first.file));
+    }
+  }
+  for (std::size_t k = 0; k < calibrations.size(); ++k) {
+    for (std::size_t j = 0; j < k; ++j) {
+      if (calibrations[j].name != calibrations[k].name) continue;
+      throw std::runtime_error(fmt::format("{} and {} are both called '{}'; expected different names of the files",
+                                           calibrations[j].file, calibrations[k].file, calibrations[k].name));
+    }
+  }
+}
+
+ModelComparison compare_models(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
+                               const std::function<void(double)>& progress) {
+  check_comparable(calibrations);
+  const Parts parts = parts_of(calibrations.front());
+  ModelComparison comparison{.fits = {}, .parts = parts.list.size(), .are_cycles = parts.are_cycles};
+  const double steps = static_cast<double>(calibrations.size() * parts.list.size());
+  double done = 0.0;
+  for (std::size_t k = 0; k < calibrations.size(); ++k) {
+    const Calibration& calibration = calibrations[k];
+    const auto n = static_cast<double>(results[k].points);
+    const double squares = results[k].sum_of_squares;
+    const bool is_known = calibration.knows_noise();
+    // The size of the noise is a parameter, too, where it is estimated.
+    const auto parameters = static_cast<double>(calibration.free.size()) + (is_known ? 0.0 : 1.0);
+    const double misfit = is_known ? squares : n * std::log(squares / n);
+    double of_predictions = 0.0;
+    for (const Part& part : parts.list) {
+      of_predictions += squares_of_prediction(calibration, part).value_or(k_nan);
+      if (progress) progress(++done / steps);
+    }
+    comparison.fits.push_back({.parameters = calibration.free.size(),
+                               .aic = misfit + 2.0 * parameters,
+                               .bic = misfit + std::log(n) * parameters,
+                               .prediction = parts.list.empty() ? k_nan : std::sqrt(of_predictions / n)});
+  }
+  return comparison;
+}
+
+std::string comparison_text(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
+                            const ModelComparison& comparison) {
+  const std::vector<std::size_t> order = best_first(comparison);
+  std::vector<TextRow> rows{{"fit", "model", "parameters", "rms", "R^2", "AIC", "BIC", "rms of predictions"}};
+  double least_aic = comparison.fits.front().aic;
+  for (const RankedFit& fit : comparison.fits) least_aic = std::min(least_aic, fit.aic);
+  const double least_bic = comparison.fits[order.front()].bic;
+  for (const std::size_t k : order) {
+    const RankedFit& fit = comparison.fits[k];
+    rows.push_back({calibrations[k].name, calibrations[k].scenario.model, fmt::format("{}", fit.parameters),
+                    in_y(results[k].rms, calibrations[k]), fmt::format("{:.6f}", results[k].r_squared),
+                    fmt::format("+{:.1f}", fit.aic - least_aic), fmt::format("+{:.1f}", fit.bic - least_bic),
+                    in_y(fit.prediction, calibrations[k])});
+  }
+  std::string text = aligned(rows) + '\n';
+  if (comparison.parts > 0) {
+    text += fmt::format("predictions: each of {} {} from a fit to the others\n", comparison.parts,
+                        comparison.are_cycles ? "cycles" : "stretches between two turns");
+  } else {
+    text += "predictions: none, as the data neither turn nor are several curves\n";
+  }
+  const bool are_rival = order.size() > 1 && comparison.fits[order[1]].bic - least_bic < k_undecided;
+  text += are_rival ? fmt::format("the data do not decide between '{}' and '{}'\n", calibrations[order[0]].name,
+                                  calibrations[order[1]].name)
+                    : fmt::format("the BIC is for '{}'\n", calibrations[order[0]].name);
+  const auto is_dependent = [](const CalibrationResult& result) {
+    return result.residual_tests && !result.residual_tests->are_independent();
+  };
+  if (std::ranges::any_of(results, is_dependent)) {
+    text +=
+        "AIC and BIC take residuals for independent, which they are not here: differences are too large, and "
+        "predictions say more\n";
+  }
+  return text;
+}
+
+std::string write_comparison(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
+                             const ModelComparison& comparison, StagedFolder& folder) {
+  const Calibration& first = calibrations.front();
+  std::string csv = fmt::format("fit,model,parameters,points,rms[{0}],r_squared,aic,bic,prediction_rms[{0}]\n",
+                                first.y.si.empty() ? "-" : first.y.si);
+  for (const std::size_t k : best_first(comparison)) {
+    const RankedFit& fit = comparison.fits[k];
+    csv += fmt::format("{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", calibrations[k].name,
+                       calibrations[k].scenario.model, fit.parameters, results[k].points, results[k].rms,
+                       results[k].r_squared, fit.aic, fit.bic, fit.prediction);
+  }
+  figure::write_whole(folder.path() / k_comparison_marker, csv);
+  std::string problem = draw_comparison(calibrations, results, folder.path() / "comparison.svg");
+  folder.publish();
+  return problem;
+}
+
+}  // namespace monograin
