@@ -29,6 +29,7 @@ struct CalibrateOptions {
   std::optional<double> confidence;
   bool is_quiet = false;
   bool is_strict = false;
+  bool has_report = false;
 };
 
 /// A line that tells how far a search has come, on a terminal.
@@ -67,7 +68,7 @@ CalibrationResult run_calibration(const Calibration& calibration, const fs::path
     ProgressLine line(!options.is_quiet);
     return calibrate(calibration, [&line](double done) { line.show(done); });
   }();
-  const std::string no_figure = write_calibration(calibration, result, staged);
+  const std::string no_figure = write_calibration(calibration, result, staged, options.has_report);
   print_data("{}", calibration_text(calibration, result));
   if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
   for (const std::string& warning : result.warnings) say("warning: {}\n", warning);
@@ -182,6 +183,8 @@ void add_calibrate_command(CLI::App& app, Action& action) {
       ->add_option("--confidence", options->confidence,
                    "Level of the two-sided intervals, between 0 and 1, e.g. 0.99 [the file's, or 0.95]")
       ->check(CLI::Range(1e-6, 1.0 - 1e-6));
+  command->add_flag("--report", options->has_report,
+                    "Leave report.md, too: data, figure, intervals, residuals, warnings");
   command->add_flag("--quiet", options->is_quiet, "Say nothing but the result, warnings and errors");
   command->add_flag("--strict", options->is_strict, "Exit with 5 where the fit is bad and a warning says so");
   command->footer("Example: monograin calibrate scenarios/calibrate/uniaxial.toml");

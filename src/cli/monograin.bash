@@ -25,7 +25,7 @@ _monograin() {
     plot) options="--output --profile --help" ;;
     atlas) options="--plots --output --list --help" ;;
     compare) options="--x --y --tol --help" ;;
-    calibrate) options="--output --confidence --quiet --strict --help" ;;
+    calibrate) options="--output --confidence --report --quiet --strict --help" ;;
     data) options="--x --y --plot --output --help" ;;
     sweep) options="--jobs --shard --design-only --output --help" ;;
     sensitivity) options="--jobs --confidence --output --help" ;;

@@ -1,4 +1,4 @@
-// What a calibration leaves: text, tables, a figure and a scenario.
+// What a calibration leaves: tables, a figure, a report and a scenario.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,7 +18,7 @@
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_figure.hpp"
 #include "study/calibrate/calibration_language.hpp"
-#include "study/calibrate/text_table.hpp"
+#include "study/calibrate/calibration_text.hpp"
 #include "system/undefined.hpp"
 
 namespace monograin {
@@ -27,106 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Bound = LeastSquaresSolution::Bound;
-
-std::string_view word_of(Bound bound) {
-  switch (bound) {
-    case Bound::none:
-      return "";
-    case Bound::lower:
-      return "lower";
-    case Bound::upper:
-      return "upper";
-  }
-  return "";
-}
-
-/// A number that a reader may compare with others.
-std::string shown_number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; }
-
-std::string with_unit(double value, const std::string& unit) {
-  return unit.empty() || !std::isfinite(value) ? shown_number(value) : shown_number(value) + ' ' + unit;
-}
-
-std::pair<double, double> interval_of(const CalibrationResult& result, std::size_t k) {
-  return {result.intervals[k].lower, result.intervals[k].upper};
-}
-
-// --- text
-
-using Row = TextRow;
-
-std::string parameter_table(const Calibration& calibration, const CalibrationResult& result) {
-  const std::string level = fmt::format("{:g} % interval", 100.0 * result.uncertainty.level);
-  std::vector<Row> rows{{"parameter", "SI", "value", "std. error", level, ""}};
-  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
-    const FreeParameter& parameter = calibration.free[k];
-    const auto own = [&](double si) { return si / parameter.unit_factor; };
-    const auto [lower, upper] = interval_of(result, k);
-    const Bound bound = result.solution.bounds[k];
-    std::string remark;
-    if (bound != Bound::none) remark = fmt::format("at its {} bound", word_of(bound));
-    if (!result.uncertainty.is_determined[k]) remark = "not determined";
-    rows.push_back({parameter.key.path, fmt::format("{:.10g}", result.solution.parameters[k]),
-                    with_unit(own(result.solution.parameters[k]), parameter.unit),
-                    with_unit(own(result.uncertainty.standard_error(k)), parameter.unit),
-                    std::isfinite(lower)
-                        ? fmt::format("{} ... {}", shown_number(own(lower)), with_unit(own(upper), parameter.unit))
-                        : "-",
-                    remark});
-  }
-  return aligned(rows);
-}
-
-std::string correlation_table(const Calibration& calibration, const CalibrationResult& result) {
-  std::vector<Row> rows{{"correlation"}};
-  for (const FreeParameter& parameter : calibration.free) rows.front().push_back(parameter.key.path);
-  for (std::size_t i = 0; i < calibration.free.size(); ++i) {
-    rows.push_back({calibration.free[i].key.path});
-    for (std::size_t j = 0; j < calibration.free.size(); ++j) {
-      const double value = result.uncertainty.correlation(i, j);
-      rows.back().push_back(std::isfinite(value) ? fmt::format("{:.4f}", value) : "-");
-    }
-  }
-  return aligned(rows);
-}
-
-/// Priors, and how far the fit is from them.
-std::string prior_table(const Calibration& calibration, const CalibrationResult& result) {
-  std::vector<Row> rows;
-  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
-    const FreeParameter& parameter = calibration.free[k];
-    if (!parameter.prior) continue;
-    if (rows.empty()) rows.push_back({"prior", "", "std. deviations off"});
-    rows.push_back({parameter.key.path, describe(*parameter.prior, parameter.unit, parameter.unit_factor),
-                    parameter.prior->is_residual()
-                        ? fmt::format("{:.2f}", parameter.prior->deviation(result.solution.parameters[k]))
-                        : "-"});
-  }
-  return rows.empty() ? std::string() : aligned(rows) + '\n';
-}
-
-/// The model's own procedures, and this fit by their measures.
-std::string procedure_table(const ModelFits& procedures) {
-  std::vector<Row> rows{{"procedure"}};
-  rows.front().insert(rows.front().end(), procedures.keys.begin(), procedures.keys.end());
-  rows.front().insert(rows.front().end(), {"area error", "peak error"});
-  for (const ProcedureFit& fit : procedures.fits) {
-    rows.push_back({fit.procedure});
-    for (const double value : fit.parameters) rows.back().push_back(fmt::format("{:.10g}", value));
-    rows.back().push_back(fmt::format("{:.8f}", fit.area_error));
-    rows.back().push_back(fmt::format("{:.8f}", fit.peak_error));
-  }
-  return aligned(rows);
-}
-
-bool has_errors(const CalibrationResult& result) {
-  for (std::size_t k = 0; k < result.solution.parameters.size(); ++k) {
-    if (std::isfinite(result.uncertainty.standard_error(k))) return true;
-  }
-  return false;
-}
-
-// --- files
 
 void write_csv_file(const Table& table, const fs::path& file) {
   std::ostringstream text;
@@ -146,13 +46,12 @@ Json parameters_json(const Calibration& calibration, const CalibrationResult& re
   Json parameters = Json::array();
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
     const FreeParameter& parameter = calibration.free[k];
-    const auto [lower, upper] = interval_of(result, k);
     const Interval& interval = result.intervals[k];
     const Bound bound = result.solution.bounds[k];
     parameters.push_back({{"key", parameter.key.path},
                           {"value", result.solution.parameters[k]},
                           {"standard_error", result.uncertainty.standard_error(k)},
-                          {"interval", {lower, upper}},
+                          {"interval", {interval.lower, interval.upper}},
                           {"interval_is_cut", {interval.is_cut_below, interval.is_cut_above}},
                           {"bounds", {parameter.lower, parameter.upper}},
                           {"at_bound", bound == Bound::none ? Json() : Json(word_of(bound))},
@@ -318,36 +217,6 @@ std::string fitted_scenario_text(const Calibration& calibration, const Calibrati
   return head + with_values(calibration.scenario_text, edits);
 }
 
-std::string calibration_text(const Calibration& calibration, const CalibrationResult& result) {
-  const MeasuredQuantity& y = calibration.y;
-  const auto in_y = [&y](double value) { return with_unit(value / y.unit_factor, y.unit == "-" ? "" : y.unit); };
-  const fs::path worst = calibration.curve_of(result.largest_at).file;
-  const std::string of_file = calibration.curves.size() > 1 ? worst.filename().string() + ", " : "";
-  std::string text = parameter_table(calibration, result) + '\n';
-  if (calibration.free.size() > 1 && has_errors(result)) text += correlation_table(calibration, result) + '\n';
-  text += prior_table(calibration, result);
-  if (!result.procedures.fits.empty()) text += procedure_table(result.procedures) + '\n';
-  std::vector<Row> rows{{"points", fmt::format("{}", result.points)},
-                        {"degrees of freedom", fmt::format("{}", result.uncertainty.degrees_of_freedom)},
-                        {calibration.knows_noise() ? "chi^2 (noise known)" : "sum of squares (weighted)",
-                         shown_number(result.sum_of_squares)},
-                        {"rms residual", in_y(result.rms)},
-                        {"largest residual", fmt::format("{} ({}line {})", in_y(result.largest), of_file,
-                                                         calibration.lines[result.largest_at])},
-                        {"R^2", std::isfinite(result.r_squared) ? fmt::format("{:.8f}", result.r_squared) : "-"}};
-  if (calibration.loss.kind != Loss::linear) rows.push_back({"cost (with loss)", shown_number(result.solution.cost)});
-  if (result.residual_tests) {
-    const ResidualTests& tests = *result.residual_tests;
-    rows.push_back(
-        {"runs of one sign", fmt::format("{} of {:.0f}, p = {:.2g}", tests.runs, tests.expected_runs, tests.runs_p)});
-    rows.push_back(
-        {"correlation of neighbours", fmt::format("{:.2f}, p = {:.2g}", tests.correlation, tests.correlation_p)});
-  }
-  return text + aligned(rows) +
-         fmt::format("\nintervals: {} ({})\n", calibration::k_intervals[static_cast<std::size_t>(result.method)],
-                     result.method_reason);
-}
-
 Table fit_table(const Calibration& calibration, const CalibrationResult& result) {
   const MeasuredQuantity& x = calibration.x;
   const MeasuredQuantity& y = calibration.y;
@@ -391,7 +260,8 @@ std::string calibration_json(const Calibration& calibration, const CalibrationRe
   return to_json(calibration, result).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-std::string write_calibration(const Calibration& calibration, const CalibrationResult& result, StagedFolder& folder) {
+std::string write_calibration(const Calibration& calibration, const CalibrationResult& result, StagedFolder& folder,
+                              bool has_report) {
   write_csv_file(fit_table(calibration, result), folder.path() / "fit.csv");
   figure::write_whole(folder.path() / "fitted.toml", fitted_scenario_text(calibration, result));
   for (const auto& [option, curve] : calibration.scenario.curves) {
@@ -399,6 +269,9 @@ std::string write_calibration(const Calibration& calibration, const CalibrationR
   }
   figure::write_whole(folder.path() / k_calibration_marker, calibration_json(calibration, result));
   const std::string problem = draw_calibration(calibration, result, folder.path());
+  if (has_report) {
+    figure::write_whole(folder.path() / "report.md", calibration_report(calibration, result, problem.empty()));
+  }
   folder.publish();
   return problem;
 }

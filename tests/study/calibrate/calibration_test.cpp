@@ -581,6 +581,29 @@ TEST_F(CalibrationTest, FilesHoldDataFitAndStatistics) {
   }
 }
 
+TEST_F(CalibrationTest, AReportHasDataFigureParametersResidualsAndWhatIsWrong) {
+  auto rows = noisy_hertz();
+  write("c.toml", "title = \"Steel on steel\"\n" + replaced(k_calibration, "300 GPa", "50 GPa"));
+  write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  StagedFolder staged(folder() / "out", k_calibration_marker);
+  EXPECT_EQ(write_calibration(calibration, result, staged, true), "");
+  const std::string report = text_of("out/report.md");
+  EXPECT_EQ(report.find("# Steel on steel\n"), 0U);
+  std::size_t last = 0;
+  for (const std::string part : {"\n## Data\n", "`d.csv`: 25 rows", "![data, fit and residuals](figure.svg)",
+                                 "\n## Parameters\n", "| material.youngs_modulus | 5e+10 | 50 GPa |",
+                                 "at its upper bound |", "intervals: profile", "\n## Residuals\n", "| points | 25 |",
+                                 "\n## Notes\n", "sits at its upper bound", "\n## Sources of the model\n"}) {
+    const std::size_t place = report.find(part, last);
+    EXPECT_NE(place, std::string::npos) << part << " in\n" << report;
+    if (place != std::string::npos) last = place;
+  }
+  EXPECT_EQ(written(calibration, result, folder() / "out"), "");
+  EXPECT_FALSE(fs::exists(folder() / "out/report.md")) << "a report of an older result would mislead";
+}
+
 TEST_F(CalibrationTest, ANewResultReplacesItsFilesAndNoOthers) {
   const Calibration calibration = read();
   const CalibrationResult result = calibrate(calibration);

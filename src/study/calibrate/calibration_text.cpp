@@ -1,0 +1,210 @@
+#include "study/calibrate/calibration_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+#include "catalogue.hpp"
+#include "monograin/version.hpp"
+#include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/text_table.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+using Bound = LeastSquaresSolution::Bound;
+
+std::vector<TextRow> parameter_rows(const Calibration& calibration, const CalibrationResult& result) {
+  const std::string level = fmt::format("{:g} % interval", 100.0 * result.uncertainty.level);
+  std::vector<TextRow> rows{{"parameter", "SI", "value", "std. error", level, ""}};
+  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
+    const FreeParameter& parameter = calibration.free[k];
+    const auto own = [&](double si) { return si / parameter.unit_factor; };
+    const auto [lower, upper, is_cut_below, is_cut_above] = result.intervals[k];
+    const Bound bound = result.solution.bounds[k];
+    std::string remark;
+    if (bound != Bound::none) remark = fmt::format("at its {} bound", word_of(bound));
+    if (!result.uncertainty.is_determined[k]) remark = "not determined";
+    rows.push_back({parameter.key.path, fmt::format("{:.10g}", result.solution.parameters[k]),
+                    with_unit(own(result.solution.parameters[k]), parameter.unit),
+                    with_unit(own(result.uncertainty.standard_error(k)), parameter.unit),
+                    std::isfinite(lower)
+                        ? fmt::format("{} ... {}", shown_number(own(lower)), with_unit(own(upper), parameter.unit))
+                        : "-",
+                    remark});
+  }
+  return rows;
+}
+
+std::vector<TextRow> correlation_rows(const Calibration& calibration, const CalibrationResult& result) {
+  std::vector<TextRow> rows{{"correlation"}};
+  for (const FreeParameter& parameter : calibration.free) rows.front().push_back(parameter.key.path);
+  for (std::size_t i = 0; i < calibration.free.size(); ++i) {
+    rows.push_back({calibration.free[i].key.path});
+    for (std::size_t j = 0; j < calibration.free.size(); ++j) {
+      const double value = result.uncertainty.correlation(i, j);
+      rows.back().push_back(std::isfinite(value) ? fmt::format("{:.4f}", value) : "-");
+    }
+  }
+  return rows;
+}
+
+/// Priors, and how far the fit is from them.
+std::vector<TextRow> prior_rows(const Calibration& calibration, const CalibrationResult& result) {
+  std::vector<TextRow> rows;
+  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
+    const FreeParameter& parameter = calibration.free[k];
+    if (!parameter.prior) continue;
+    if (rows.empty()) rows.push_back({"prior", "", "std. deviations off"});
+    rows.push_back({parameter.key.path, describe(*parameter.prior, parameter.unit, parameter.unit_factor),
+                    parameter.prior->is_residual()
+                        ? fmt::format("{:.2f}", parameter.prior->deviation(result.solution.parameters[k]))
+                        : "-"});
+  }
+  return rows;
+}
+
+/// The model's own procedures, and this fit by their measures.
+std::vector<TextRow> procedure_rows(const ModelFits& procedures) {
+  std::vector<TextRow> rows{{"procedure"}};
+  rows.front().insert(rows.front().end(), procedures.keys.begin(), procedures.keys.end());
+  rows.front().insert(rows.front().end(), {"area error", "peak error"});
+  for (const ProcedureFit& fit : procedures.fits) {
+    rows.push_back({fit.procedure});
+    for (const double value : fit.parameters) rows.back().push_back(fmt::format("{:.10g}", value));
+    rows.back().push_back(fmt::format("{:.8f}", fit.area_error));
+    rows.back().push_back(fmt::format("{:.8f}", fit.peak_error));
+  }
+  return rows;
+}
+
+std::vector<TextRow> residual_rows(const Calibration& calibration, const CalibrationResult& result) {
+  const MeasuredQuantity& y = calibration.y;
+  const auto in_y = [&y](double value) { return with_unit(value / y.unit_factor, y.unit == "-" ? "" : y.unit); };
+  const fs::path worst = calibration.curve_of(result.largest_at).file;
+  const std::string of_file = calibration.curves.size() > 1 ? worst.filename().string() + ", " : "";
+  std::vector<TextRow> rows{{"points", fmt::format("{}", result.points)},
+                            {"degrees of freedom", fmt::format("{}", result.uncertainty.degrees_of_freedom)},
+                            {calibration.knows_noise() ? "chi^2 (noise known)" : "sum of squares (weighted)",
+                             shown_number(result.sum_of_squares)},
+                            {"rms residual", in_y(result.rms)},
+                            {"largest residual", fmt::format("{} ({}line {})", in_y(result.largest), of_file,
+                                                             calibration.lines[result.largest_at])},
+                            {"R^2", std::isfinite(result.r_squared) ? fmt::format("{:.8f}", result.r_squared) : "-"}};
+  if (calibration.loss.kind != Loss::linear) rows.push_back({"cost (with loss)", shown_number(result.solution.cost)});
+  if (result.residual_tests) {
+    const ResidualTests& tests = *result.residual_tests;
+    rows.push_back(
+        {"runs of one sign", fmt::format("{} of {:.0f}, p = {:.2g}", tests.runs, tests.expected_runs, tests.runs_p)});
+    rows.push_back(
+        {"correlation of neighbours", fmt::format("{:.2f}, p = {:.2g}", tests.correlation, tests.correlation_p)});
+  }
+  return rows;
+}
+
+bool has_errors(const CalibrationResult& result) {
+  for (std::size_t k = 0; k < result.solution.parameters.size(); ++k) {
+    if (std::isfinite(result.uncertainty.standard_error(k))) return true;
+  }
+  return false;
+}
+
+struct TitledTable {
+  std::string title;
+  std::vector<TextRow> rows;
+  bool has_headings = true;
+};
+
+/// All that was found, in the order in which it is read.
+std::vector<TitledTable> tables_of(const Calibration& calibration, const CalibrationResult& result) {
+  std::vector<TitledTable> tables{{"Parameters", parameter_rows(calibration, result)}};
+  if (calibration.free.size() > 1 && has_errors(result)) {
+    tables.push_back({"Correlations", correlation_rows(calibration, result)});
+  }
+  if (auto priors = prior_rows(calibration, result); !priors.empty()) tables.push_back({"Priors", std::move(priors)});
+  if (!result.procedures.fits.empty()) {
+    tables.push_back({"The procedures of the model's source, and this fit", procedure_rows(result.procedures)});
+  }
+  tables.push_back({"Residuals", residual_rows(calibration, result), false});
+  return tables;
+}
+
+std::string intervals_line(const CalibrationResult& result) {
+  return fmt::format("intervals: {} ({})\n", calibration::k_intervals[static_cast<std::size_t>(result.method)],
+                     result.method_reason);
+}
+
+std::string list_of(const std::string& title, const std::vector<std::string>& entries) {
+  if (entries.empty()) return {};
+  std::string text = fmt::format("\n## {}\n\n", title);
+  for (const std::string& entry : entries) text += fmt::format("- {}\n", entry);
+  return text;
+}
+
+/// Where the numbers come from: files, rows, what lies between machine and particle.
+std::vector<std::string> data_lines(const Calibration& calibration) {
+  std::vector<std::string> lines;
+  for (const MeasuredCurve& curve : calibration.curves) {
+    std::string line = fmt::format("`{}`: {} rows, {}", fs::path(curve.file).filename().string(),
+                                   curve.end - curve.begin, describe(curve.layout));
+    if (!curve.left_out.empty()) line += fmt::format("; {} rows left out", curve.left_out.size());
+    if (curve.machine.offset != 0.0) line += fmt::format("; offset {:g} m", curve.machine.offset);
+    if (curve.machine.compliance != 0.0) line += fmt::format("; compliance {:g} m/N", curve.machine.compliance);
+    if (!curve.machine.forces.empty()) line += "; deflection of the machine by a table";
+    lines.push_back(std::move(line));
+  }
+  lines.push_back(fmt::format("`{}` drives the particle, `{}` is fitted; weights: {}; loss: {}",
+                              calibration.x.observable, calibration.y.observable, calibration.weighting,
+                              calibration::k_losses[static_cast<std::size_t>(calibration.loss.kind)]));
+  return lines;
+}
+
+}  // namespace
+
+std::string_view word_of(Bound bound) {
+  switch (bound) {
+    case Bound::none:
+      return "";
+    case Bound::lower:
+      return "lower";
+    case Bound::upper:
+      return "upper";
+  }
+  return "";
+}
+
+/// A number that a reader may compare with others.
+std::string shown_number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; }
+
+std::string with_unit(double value, const std::string& unit) {
+  return unit.empty() || !std::isfinite(value) ? shown_number(value) : shown_number(value) + ' ' + unit;
+}
+
+std::string calibration_text(const Calibration& calibration, const CalibrationResult& result) {
+  std::string text;
+  for (const TitledTable& table : tables_of(calibration, result)) text += aligned(table.rows) + '\n';
+  return text + intervals_line(result);
+}
+
+std::string calibration_report(const Calibration& calibration, const CalibrationResult& result, bool has_figure) {
+  std::string text = fmt::format("# {}\n\nModel `{}`, scenario `{}`, monograin {}.\n",
+                                 calibration.title.empty() ? calibration.name : calibration.title,
+                                 calibration.scenario.model, calibration.scenario.name, version());
+  text += list_of("Data", data_lines(calibration));
+  if (has_figure) text += "\n![data, fit and residuals](figure.svg)\n";
+  for (const TitledTable& table : tables_of(calibration, result)) {
+    text += fmt::format("\n## {}\n\n{}", table.title, markdown(table.rows, table.has_headings));
+    if (table.title == "Parameters") text += '\n' + intervals_line(result);
+  }
+  text += list_of("Warnings", result.warnings) + list_of("Notes", result.notes);
+  text +=
+      "\n## Files\n\n`fit.csv` has the rows of data and fit, `calibration.json` all numbers, `fitted.toml` the "
+      "scenario with the fitted numbers.\n";
+  return text + list_of("Sources of the model", reference_texts(*find_model(calibration.scenario.model)));
+}
+
+}  // namespace monograin
