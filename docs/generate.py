@@ -728,6 +728,15 @@ def draw_wedge(program, scratch):
     shutil.copy(scratch / "wedge" / "figure.svg", GENERATED / "figures" / "wedge.svg")
 
 
+def draw_bands(program, scratch):
+    page = (ROOT / "docs" / "howto" / "sweeps.md").read_text(encoding="utf-8")
+    text = page.split("<!-- test: file curves.toml -->")[1].split("```toml\n")[1].split("```")[0]
+    sweep = scratch / "curves.toml"
+    sweep.write_text(text.replace("scenarios/die.toml", str(ROOT / "scenarios" / "die.toml")), encoding="utf-8")
+    run(program, "sweep", sweep, "-o", scratch / "bands")
+    shutil.copy(scratch / "bands" / "bands.svg", GENERATED / "figures" / "bands.svg")
+
+
 def draw_calibrations(program, scratch):
     ready = ROOT / "scenarios" / "calibrate"
     run(program, "calibrate", ready / "uniaxial.toml", "-o", scratch / "calibration")
@@ -860,6 +869,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         ready = run_ready_scenarios(program, pathlib.Path(scratch))
         draw_calibrations(program, pathlib.Path(scratch))
+        draw_bands(program, pathlib.Path(scratch))
         draw_comparison(program, pathlib.Path(scratch))
         draw_own_figure(program, pathlib.Path(scratch))
         draw_wedge(program, pathlib.Path(scratch))

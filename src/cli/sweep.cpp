@@ -13,6 +13,7 @@
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "scenario/text_file.hpp"
+#include "study/sweep/bands.hpp"
 #include "study/sweep/sensitivity.hpp"
 
 namespace monograin {
@@ -92,7 +93,10 @@ int sweep(const SweepCommandOptions& options) {
     say("{}: {} points of the design do not meet the constraints\n", plan.name, plan.left_out);
   }
   if (options.makes_design_only) return make_design(plan, folder);
-  run_all(plan, folder, options.threads, shard);
+  if (run_all(plan, folder, options.threads, shard) > 0 || !plan.bands) return k_success;
+  const std::string no_figure = write_bands(plan, bands_of(plan, folder), folder);
+  if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
+  say("{}: bands -> {}\n", plan.name, (folder / "bands.csv").string());
   return k_success;
 }
 

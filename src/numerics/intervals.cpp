@@ -8,6 +8,8 @@
 #include <numeric>
 #include <random>
 
+#include "numerics/quantile.hpp"
+
 namespace monograin {
 namespace {
 
@@ -227,13 +229,7 @@ Interval Bootstrap::interval(std::size_t parameter, double level) const {
   std::vector<double> values;
   for (const std::vector<double>& sample : samples) values.push_back(sample[parameter]);
   std::ranges::sort(values);
-  const auto quantile = [&values](double share) {
-    const double place = share * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    return std::lerp(values[below], values[above], place - static_cast<double>(below));
-  };
-  return {.lower = quantile(0.5 * (1.0 - level)), .upper = quantile(0.5 * (1.0 + level))};
+  return {.lower = quantile(values, 0.5 * (1.0 - level)), .upper = quantile(values, 0.5 * (1.0 + level))};
 }
 
 double Bootstrap::standard_error(std::size_t parameter) const {

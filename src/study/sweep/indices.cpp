@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
+
+#include "numerics/quantile.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin {
 namespace {
 
 constexpr std::size_t k_resamples = 500;
 constexpr double k_rounding = 1e-12;  // share of a mean by which results that are the same may differ
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Groups of `size` results that are all there, one after another.
 [[nodiscard]] std::vector<double> whole_groups(std::span<const double> results, std::size_t size) {
@@ -27,14 +28,8 @@ constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 /// @param values  of the resamples
 [[nodiscard]] Estimate with_interval(double value, std::vector<double>& values, double confidence) {
   std::ranges::sort(values);
-  const auto at = [&](double share) {
-    const double place = share * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    return std::lerp(values[below], values[above], place - static_cast<double>(below));
-  };
   const double tail = 0.5 * (1.0 - confidence);
-  return {value, at(tail), at(1.0 - tail)};
+  return {value, quantile(values, tail), quantile(values, 1.0 - tail)};
 }
 
 /// Calls estimate(samples, values) with all samples, then with resamples of them; the k-th value makes the k-th

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <map>
 #include <optional>
 #include <set>
@@ -36,6 +37,7 @@ constexpr double k_most_maxpro_runs = 1e5;
 [[nodiscard]] std::string text_of_runs(const toml::table& tree) {
   toml::table runs = tree;
   runs.erase("results");
+  if (runs.erase("bands") > 0) runs.insert_or_assign("histories", true);
   std::ostringstream text;
   text << runs;
   return text.str();
@@ -62,6 +64,7 @@ class SweepReader {
     read_factors(root);
     read_constraints(root);
     check_results(root);
+    if (root.has("bands")) read_bands(root);
     if (design_ == "table") {
       read_table(root);
     } else if (design_ == "grid") {
@@ -84,8 +87,9 @@ class SweepReader {
             .points = std::move(points_),
             .scenario = std::move(*scenario_),
             .scenario_name = scenario_name_,
-            .keeps_histories = root.toggle("histories").value_or(false),
+            .keeps_histories = bands_ || root.toggle("histories").value_or(false),
             .results = root.texts("results"),
+            .bands = std::move(bands_),
             .digest = text_digest(fmt::format("monograin {}\n{}", version(), digested_))};
   }
 
@@ -239,6 +243,30 @@ class SweepReader {
     for (std::size_t i = 0; i < texts.size(); ++i) {
       report_at(root.value_place("results", i), texts[i], [&] { static_cast<void>(Expression(texts[i])); });
     }
+  }
+
+  void read_bands(const Section& root) {
+    const std::vector<KeySpec> keys = sweep::band_keys();
+    const Section section(reading_, root.table("bands", "[bands]"), keys);
+    BandRequest request{.x = section.text("x"), .y = section.texts("y")};
+    request.points = static_cast<int>(section.number("points").value_or(request.points));
+    if (section.has("y") && request.y.empty()) faults_.add(section.value_place("y"), "y: expected at least one column");
+    const std::vector<std::string> texts = section.texts("percentiles");
+    if (!texts.empty()) request.percentiles.clear();
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+      double value = 0.0;
+      const char* const end = texts[i].data() + texts[i].size();
+      const auto [rest, error] = std::from_chars(texts[i].data(), end, value);
+      const double least = request.percentiles.empty() ? 0.0 : request.percentiles.back();
+      if (error != std::errc{} || rest != end || !(value >= 0.0 && value <= 100.0) || (i > 0 && !(value > least))) {
+        return faults_.add(section.value_place("percentiles", i),
+                           fmt::format("percentiles: '{}': expected ascending numbers between 0 and 100, for example "
+                                       "[5, 50, 95]",
+                                       shown(texts[i])));
+      }
+      request.percentiles.push_back(value);
+    }
+    bands_ = std::move(request);
   }
 
   template <class Action>
@@ -620,6 +648,7 @@ class SweepReader {
   std::vector<PlacedConstraint> constraints_;
   std::vector<std::vector<FactorValue>> raw_;  ///< of a table
   SweepRuns runs_;
+  std::optional<BandRequest> bands_;
   double base_radius_ = 1.0;  ///< the scenario's own [m]; where it has none that can be read, its check will tell
   std::size_t left_out_ = 0;
   Design points_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,14 @@
 #include "study/sweep/sweep_runs.hpp"
 
 namespace monograin {
+
+/// Which percentiles of the histories are asked for.
+struct BandRequest {
+  std::string x;                                     ///< column of the histories
+  std::vector<std::string> y;                        ///< columns
+  std::vector<double> percentiles{5.0, 50.0, 95.0};  ///< ascending, between 0 and 100
+  int points = 51;                                   ///< abscissae in each step
+};
 
 struct Sweep {
   std::string name;    ///< of the file, without folder and extension
@@ -22,7 +31,8 @@ struct Sweep {
   std::string scenario_name;
   bool keeps_histories = false;
   std::vector<std::string> results;  ///< formulas for which indices are estimated
-  std::string digest;                ///< of all that decides on the results: sweep, scenario, tables, program version
+  std::optional<BandRequest> bands{};
+  std::string digest;  ///< of all that decides on the results: sweep, scenario, tables, program version
 };
 
 /// Reads and checks a sweep file with its scenario and table, which are sought from its folder, and makes its runs.

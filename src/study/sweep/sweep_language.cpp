@@ -56,6 +56,10 @@ std::vector<KeySpec> root_keys(bool contains_scenario) {
        .kind = Kind::file,
        .example = "\"runs.csv\"",
        .only_with = "table"},
+      {.name = "bands",
+       .meaning = "percentiles of the histories over common abscissae",
+       .kind = Kind::table,
+       .example = "[bands]"},
       {.name = "histories", .meaning = "keep the history of every run", .kind = Kind::toggle, .default_value = false},
       {.name = "vary",
        .meaning = "the keys that are varied, and over what",
@@ -66,6 +70,27 @@ std::vector<KeySpec> root_keys(bool contains_scenario) {
        .meaning = "inequalities between varied keys, in SI",
        .kind = Kind::texts,
        .example = "[\"100 <= material.youngs_modulus / material.yield_stress\"]"},
+  };
+}
+
+std::vector<KeySpec> band_keys() {
+  return {
+      {.name = "x",
+       .meaning = "column of the histories: the abscissa",
+       .kind = Kind::text,
+       .is_required = true,
+       .example = "\"axial.displacement\""},
+      {.name = "y",
+       .meaning = "columns of the histories whose spread is asked for",
+       .kind = Kind::texts,
+       .is_required = true,
+       .example = "[\"axial.force\"]"},
+      {.name = "percentiles", .meaning = "ascending, between 0 and 100", .kind = Kind::texts, .example = "[5, 50, 95]"},
+      {.name = "points",
+       .meaning = "abscissae in each step of the program",
+       .kind = Kind::integer,
+       .range = {.lower = 2.0, .upper = 10000.0},
+       .default_value = 51.0},
   };
 }
 

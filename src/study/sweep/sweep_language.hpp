@@ -22,4 +22,7 @@ inline constexpr std::string_view k_index_designs = "saltelli, morris";
 /// The sweep as a whole. @param contains_scenario  whether the scenario stands in the file itself
 [[nodiscard]] std::vector<KeySpec> root_keys(bool contains_scenario);
 
+/// The percentile bands of histories.
+[[nodiscard]] std::vector<KeySpec> band_keys();
+
 }  // namespace monograin::sweep

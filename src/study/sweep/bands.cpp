@@ -1,0 +1,258 @@
+#include "study/sweep/bands.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <stdexcept>
+
+#include "figure/chart.hpp"
+#include "figure/figure.hpp"
+#include "figure/page.hpp"
+#include "numerics/quantile.hpp"
+#include "scenario/text_file.hpp"
+#include "scenario/words.hpp"
+#include "system/undefined.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of all runs that have a history. Those that are missing where contacts are lost or limits reached may all lie on one
+// side: percentiles of the rest would not be those of the sweep.
+constexpr double k_least_share = 0.95;
+constexpr unsigned k_band_colour = 0x9FC5E8;
+
+/// Where a column of a history is.
+[[nodiscard]] std::size_t place_of(const Table& history, const std::string& name) {
+  const auto found = history.find(name);
+  if (found && !history.columns()[*found].holds_words()) return *found;
+  std::vector<std::string_view> names;
+  for (const Column& column : history.columns()) {
+    if (!column.holds_words()) names.push_back(column.name);
+  }
+  throw std::runtime_error(fmt::format("bands: '{}' is no column of the histories{}; expected one of {}", name,
+                                       did_you_mean(name, names), fmt::join(names, ", ")));
+}
+
+/// Calls `use` with every history of the sweep. A run that was refused has none.
+template <class Use>
+void for_each_history(const Sweep& sweep, const fs::path& folder, Use&& use) {
+  for (std::size_t run = 1; run <= sweep.runs.size(); ++run) {
+    const fs::path file = folder / "histories" / fmt::format("{}.csv", run);
+    if (fs::exists(file)) use(read_csv(file));
+  }
+}
+
+/// Rows of one step of a history: x with one y beside it.
+struct Stretch {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+[[nodiscard]] std::map<std::size_t, Stretch> stretches_of(const Table& history) {
+  std::map<std::size_t, Stretch> stretches;
+  const std::size_t step = place_of(history, "step");
+  for (std::size_t row = 0; row < history.row_count(); ++row) {
+    const auto own = static_cast<std::size_t>(history.at(row, step));
+    stretches.try_emplace(own, Stretch{row, row}).first->second.end = row + 1;
+  }
+  return stretches;
+}
+
+/// The two rows between which a stretch first comes by an abscissa, and how far between them.
+struct Crossing {
+  std::size_t row = 0;
+  double share = 0.0;
+};
+
+/// Crossings in the order of the abscissae; none from where the stretch does not reach.
+[[nodiscard]] std::vector<std::optional<Crossing>> crossings(const Table& history, const Stretch& stretch,
+                                                             std::size_t x, std::span<const double> abscissae) {
+  std::vector<std::optional<Crossing>> found(abscissae.size());
+  std::size_t row = stretch.begin;
+  for (std::size_t k = 0; k < abscissae.size(); ++k) {
+    for (std::size_t next = row; next + 1 < stretch.end; ++next) {
+      const double from = history.at(next, x);
+      const double to = history.at(next + 1, x);
+      const double share = (abscissae[k] - from) / (to - from);
+      if (!(share >= 0.0 && share <= 1.0)) continue;
+      found[k] = Crossing{next, share};
+      row = next;
+      break;
+    }
+  }
+  return found;
+}
+
+/// Least and largest x of a step over all runs, in the direction of the first run.
+struct Abscissae {
+  double lowest = 0.0;
+  double highest = 0.0;
+  bool is_rising = true;
+};
+
+[[nodiscard]] std::map<std::size_t, Abscissae> ranges_of(const Sweep& sweep, const fs::path& folder,
+                                                         HistoryBands& bands) {
+  std::map<std::size_t, Abscissae> ranges;
+  for_each_history(sweep, folder, [&](const Table& history) {
+    const std::size_t x = place_of(history, sweep.bands->x);
+    if (ranges.empty()) {
+      bands.x = history.columns()[x];
+      for (const std::string& y : sweep.bands->y) bands.y.push_back(history.columns()[place_of(history, y)]);
+    }
+    for (const auto& [step, stretch] : stretches_of(history)) {
+      const double first = history.at(stretch.begin, x);
+      const double last = history.at(stretch.end - 1, x);
+      Abscissae& range = ranges.try_emplace(step, Abscissae{first, first, last >= first}).first->second;
+      for (std::size_t row = stretch.begin; row < stretch.end; ++row) {
+        range.lowest = std::min(range.lowest, history.at(row, x));
+        range.highest = std::max(range.highest, history.at(row, x));
+      }
+    }
+  });
+  return ranges;
+}
+
+[[nodiscard]] std::vector<double> abscissae_of(const Abscissae& range, int points) {
+  std::vector<double> x;
+  for (int k = 0; k < points; ++k) {
+    const double share = static_cast<double>(range.is_rising ? k : points - 1 - k) / (points - 1);
+    x.push_back(std::lerp(range.lowest, range.highest, share));
+  }
+  return x;
+}
+
+/// "p5" of 5, "p2.5" of 2.5.
+[[nodiscard]] std::string name_of(double percentile) { return fmt::format("p{:g}", percentile); }
+
+[[nodiscard]] Table table_of(const Sweep& sweep, const HistoryBands& bands) {
+  std::vector<Column> columns{{"step", "", {}}, bands.x, {"runs", "", {}}};
+  for (const Column& y : bands.y) {
+    for (const double percentile : sweep.bands->percentiles) {
+      columns.push_back({fmt::format("{}.{}", name_of(percentile), y.name), y.unit, {}});
+    }
+  }
+  Table table(std::move(columns));
+  table.header = {{"sweep", sweep.name}, {"sweep_digest", sweep.digest}, {"design", sweep.design}};
+  for (const StepBands& step : bands.steps) {
+    for (std::size_t i = 0; i < step.x.size(); ++i) {
+      std::vector<double> row{static_cast<double>(step.step), step.x[i], static_cast<double>(step.runs[i])};
+      for (const auto& of_y : step.percentiles) {
+        for (const auto& values : of_y) row.push_back(values[i]);
+      }
+      table.append(row);
+    }
+  }
+  return table;
+}
+
+[[nodiscard]] std::string label_of(const Column& column) { return figure::verbatim_text(column.heading()); }
+
+/// The outermost percentiles as an area, those between them as lines, the middle one drawn through.
+[[nodiscard]] figure::ChartPanel panel_of(const Sweep& sweep, const HistoryBands& bands, std::size_t y) {
+  using Style = figure::ChartSeries::Style;
+  const std::vector<double>& percentiles = sweep.bands->percentiles;
+  const std::size_t last = percentiles.size() - 1;
+  figure::ChartPanel panel{.x = {.label = label_of(bands.x)}, .y = {.label = label_of(bands.y[y])}};
+  for (const StepBands& step : bands.steps) {
+    const auto& curves = step.percentiles[y];
+    if (last > 0) {
+      panel.bands.push_back({.legend = fmt::format("{:g} % to {:g} %", percentiles.front(), percentiles.back()),
+                             .colour = k_band_colour,
+                             .x = step.x,
+                             .lower = curves.front(),
+                             .upper = curves.back()});
+    }
+    for (std::size_t p = last > 0 ? 1 : 0; p < std::max<std::size_t>(last, 1); ++p) {
+      const bool is_median = percentiles[p] == 50.0;
+      panel.series.push_back({.legend = is_median ? "median" : fmt::format("{:g} %", percentiles[p]),
+                              .style = is_median ? Style::solid : Style::dashed,
+                              .colour = p,
+                              .x = step.x,
+                              .y = curves[p]});
+    }
+  }
+  return panel;
+}
+
+}  // namespace
+
+HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
+  const BandRequest& request = *sweep.bands;
+  HistoryBands bands;
+  const std::map<std::size_t, Abscissae> ranges = ranges_of(sweep, folder, bands);
+  if (ranges.empty()) {
+    throw std::runtime_error(fmt::format("{}: no run has a history; the reasons are in results.csv", folder.string()));
+  }
+  std::map<std::size_t, std::size_t> place;
+  for (const auto& [step, range] : ranges) {
+    place.emplace(step, bands.steps.size());
+    StepBands made{.step = step, .x = abscissae_of(range, request.points), .runs = {}, .percentiles = {}};
+    made.runs.assign(made.x.size(), 0);
+    bands.steps.push_back(std::move(made));
+  }
+  // Of each step, of each y, of each abscissa: the values of the runs.
+  std::vector<std::vector<std::vector<std::vector<double>>>> values(
+      bands.steps.size(),
+      std::vector(request.y.size(), std::vector<std::vector<double>>(static_cast<std::size_t>(request.points))));
+  std::size_t histories = 0;
+  for_each_history(sweep, folder, [&](const Table& history) {
+    ++histories;
+    const std::size_t x = place_of(history, request.x);
+    std::vector<std::size_t> y;
+    for (const std::string& name : request.y) y.push_back(place_of(history, name));
+    for (const auto& [step, stretch] : stretches_of(history)) {
+      StepBands& own = bands.steps[place.at(step)];
+      const auto found = crossings(history, stretch, x, own.x);
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        if (!found[i]) continue;
+        ++own.runs[i];
+        for (std::size_t k = 0; k < y.size(); ++k) {
+          const double value =
+              std::lerp(history.at(found[i]->row, y[k]), history.at(found[i]->row + 1, y[k]), found[i]->share);
+          if (std::isfinite(value)) values[place.at(step)][k][i].push_back(value);
+        }
+      }
+    }
+  });
+  for (std::size_t s = 0; s < bands.steps.size(); ++s) {
+    StepBands& own = bands.steps[s];
+    own.percentiles.assign(request.y.size(), std::vector(request.percentiles.size(), std::vector(own.x.size(), k_nan)));
+    for (std::size_t k = 0; k < request.y.size(); ++k) {
+      for (std::size_t i = 0; i < own.x.size(); ++i) {
+        std::vector<double>& of_runs = values[s][k][i];
+        std::ranges::sort(of_runs);
+        if (static_cast<double>(of_runs.size()) < k_least_share * static_cast<double>(histories)) continue;
+        for (std::size_t p = 0; p < request.percentiles.size(); ++p) {
+          own.percentiles[k][p][i] = quantile(of_runs, 0.01 * request.percentiles[p]);
+        }
+      }
+    }
+  }
+  return bands;
+}
+
+std::string write_bands(const Sweep& sweep, const HistoryBands& bands, const fs::path& folder) {
+  std::ostringstream table;
+  write_csv(table_of(sweep, bands), table);
+  write_text_file(folder / "bands.csv", table.view());
+  try {
+    figure::Chart chart;
+    for (std::size_t y = 0; y < bands.y.size(); ++y) chart.panels.push_back(panel_of(sweep, bands, y));
+    const figure::FigureFiles files(folder / "bands.svg");
+    files.write(figure::chart_data(chart, "percentiles of the histories of sweep " + sweep.name),
+                figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
+  } catch (const FigureError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace monograin

@@ -1,0 +1,42 @@
+/// Percentile bands of a sweep's histories: how far inputs that are not known exactly spread the curves.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "history/table.hpp"
+#include "study/sweep/sweep_file.hpp"
+
+namespace monograin {
+
+/// Percentiles of one step of the program, over abscissae that all runs share.
+struct StepBands {
+  std::size_t step = 0;  ///< from 1
+  std::vector<double> x;
+  std::vector<std::size_t> runs;  ///< that reach x in this step
+  /// Of each y, of each percentile, over x; nan where less than 95 % of the runs have a value.
+  std::vector<std::vector<std::vector<double>>> percentiles;
+};
+
+struct HistoryBands {
+  Column x;
+  std::vector<Column> y;
+  std::vector<StepBands> steps;
+};
+
+/// Interpolates the histories of all runs at common abscissae, step by step, since a history that goes forth and back
+/// has several y over one x. Abscissae go from the first to the last x that any run has in the step.
+/// @param folder  where the sweep has been run, with its histories
+/// @throws std::runtime_error for a column that a history does not have, and which there are; where no run has a
+/// history
+[[nodiscard]] HistoryBands bands_of(const Sweep& sweep, const std::filesystem::path& folder);
+
+/// Writes bands.csv, with a row for each step and abscissa, and bands.svg: median and outermost percentiles, a panel
+/// for each y.
+/// @return why there is no figure; empty: there is one
+[[nodiscard]] std::string write_bands(const Sweep& sweep, const HistoryBands& bands,
+                                      const std::filesystem::path& folder);
+
+}  // namespace monograin
