@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "scenario/document.hpp"
-#include "scenario/edit.hpp"
 #include "scenario/measured_data.hpp"
 #include "scenario/section.hpp"
 #include "scenario/text_file.hpp"
@@ -21,6 +20,7 @@
 #include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/data_section.hpp"
 #include "study/calibrate/parameter_section.hpp"
+#include "study/calibrate/scenario_section.hpp"
 
 namespace monograin {
 namespace {
@@ -50,7 +50,7 @@ class CalibrationReader {
     read_fit(root);
     if (root.has("data")) read_data(root);
     if (root.has("free") && has_scenario_) {
-      made_.free = free_in(reading_, root, {made_.scenario, made_.scenario_text, scenario_file_});
+      made_.free = free_in(reading_, root, {made_.scenario, made_.scenario_text, named_scenario_.file});
     }
     if (root.has("prior") && !made_.free.empty()) read_priors(reading_, root, made_.scenario, made_.free);
     faults_.throw_if_any();
@@ -61,34 +61,13 @@ class CalibrationReader {
   }
 
  private:
-  /// The scenario with overrides, from wherever it stands.
-  [[nodiscard]] CheckedScenario scenario_with(const std::vector<std::string>& overrides) const {
-    return scenario_file_ == made_.file ? parse_scenario_table(made_.text, "scenario", made_.file, overrides)
-                                        : read_scenario(scenario_file_, overrides);
-  }
-
   bool read_own_scenario(const Section& root, bool is_table) {
-    if (!root.has("scenario")) return false;
+    auto found = scenario_in(reading_, root, is_table, made_.text, made_.file);
+    if (!found) return false;
+    named_scenario_ = std::move(*found);
+    made_.scenario = named_scenario_.checked;
+    made_.scenario_text = named_scenario_.text;
     try {
-      if (is_table) {
-        scenario_file_ = made_.file;
-        made_.scenario = scenario_with({});
-        made_.scenario_text = text_of_table(made_.text, "scenario", made_.file);
-      } else {
-        const std::string name = root.text("scenario");
-        if (name.empty()) return false;
-        const fs::path path = file_.parent_path() / name;
-        if (!fs::is_regular_file(path)) {
-          faults_.add(
-              root.value_place("scenario"),
-              fmt::format("scenario = \"{}\": there is no such file ({}); expected a path relative to this file",
-                          shown(name), on_one_line(path.string())));
-          return false;
-        }
-        scenario_file_ = path.string();
-        made_.scenario = scenario_with({});
-        made_.scenario_text = made_.scenario.text;
-      }
       measurable_ = measurable_in(made_.scenario);
     } catch (const ScenarioError& error) {
       for (const Fault& fault : error.faults()) faults_.add(fault.where, fault.message);
@@ -247,7 +226,7 @@ class CalibrationReader {
   void take_scenario(const Section& data, MeasuredCurve& curve) {
     if (!has_scenario_) return;
     try {
-      curve.scenario = curve.overrides.empty() ? made_.scenario : scenario_with(curve.overrides);
+      curve.scenario = curve.overrides.empty() ? made_.scenario : named_scenario_.with(curve.overrides);
       measurable_ = measurable_in(curve.scenario);
       if (!curve.overrides.empty()) check_lateral(curve.scenario, data.value_place("set"));
     } catch (const ScenarioError& error) {
@@ -487,7 +466,7 @@ class CalibrationReader {
   FaultList faults_;
   Reading reading_;
   Calibration made_;
-  std::string scenario_file_;
+  NamedScenario named_scenario_;
   Measurable measurable_;
   bool has_scenario_ = false;
 };
