@@ -1,0 +1,226 @@
+#include "study/identify/identify.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "history/run.hpp"
+#include "scenario/faults.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr double k_infinite = std::numeric_limits<double>::infinity();
+constexpr double k_undefined = std::numeric_limits<double>::quiet_NaN();
+constexpr double k_fixed_instant = 1e-9;  // change of an instant with the relative change of a number, over the time
+constexpr double k_direct_error = 1e-13;  // of runs whose states are solved for
+constexpr double k_integrated_error = 1e-10;  // of runs that are integrated
+constexpr double k_level = 0.95;
+
+std::string derivative_name(std::string_view column, std::string_view key) {
+  return fmt::format("d({})/d({})", column, key);
+}
+
+/// Measured instants: the middles of equal spans, so that none coincides with the beginning or end of the program.
+std::vector<double> measured_instants(double duration, int points) {
+  std::vector<double> instants;
+  for (int k = 0; k < points; ++k) instants.push_back(duration * (k + 0.5) / points);
+  return instants;
+}
+
+/// Says which rows of a history stay at their instants when a free number changes.
+class Instants {
+ public:
+  Instants(const ExperimentPlan& plan, const Table& history) : plan_(plan), history_(history) {
+    for (const FreeParameter& parameter : plan.free) {
+      columns_.push_back(*history.find(derivative_name("time", parameter.key.path)));
+    }
+    if (history.row_count() > 0) duration_ = history.at(history.row_count() - 1, 0);
+  }
+
+  /// True if the instant of a row depends on no free number; false where a derivative is undefined.
+  [[nodiscard]] bool is_fixed(std::size_t row) const { return !mover(row, true); }
+
+  /// The first free number that the instant of a row depends on.
+  /// @param counts_undefined  whether an undefined derivative counts as a dependence
+  [[nodiscard]] std::optional<std::size_t> mover(std::size_t row, bool counts_undefined = false) const {
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const double change = history_.at(row, columns_[k]) * plan_.values[k];
+      if (std::isnan(change) ? counts_undefined : std::abs(change) > k_fixed_instant * duration_) return k;
+    }
+    return {};
+  }
+
+ private:
+  const ExperimentPlan& plan_;
+  const Table& history_;
+  std::vector<std::size_t> columns_;
+  double duration_ = 0.0;
+};
+
+/// Notes the first step, other than the last one, whose end depends on a free number.
+void note_moving_ends(const ExperimentPlan& plan, const Table& history, const Instants& instants,
+                      std::vector<std::string>& notes) {
+  const std::size_t step = *history.find("step");
+  for (std::size_t row = 0; row + 1 < history.row_count(); ++row) {
+    if (history.at(row, step) == history.at(row + 1, step)) continue;
+    const auto mover = instants.mover(row);
+    if (!mover) continue;
+    notes.push_back(
+        fmt::format("the instant at which step {:.0f} ends depends on '{}', and is taken as measured, too; for errors "
+                    "of a fit along a measured displacement, prescribe displacements",
+                    history.at(row, step), plan.free[*mover].key.path));
+    return;
+  }
+}
+
+Eigen::MatrixXd stacked(const std::vector<FreeParameter>& free, std::span<const double> values,
+                        std::span<const ProgramInformation* const> programs) {
+  const auto p = static_cast<Eigen::Index>(free.size());
+  std::vector<Eigen::RowVectorXd> rows;
+  for (const ProgramInformation* program : programs) {
+    for (const auto& row : program->jacobian.rowwise()) rows.emplace_back(row);
+  }
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    if (!free[k].prior || !free[k].prior->is_residual()) continue;
+    rows.emplace_back(Eigen::RowVectorXd::Zero(p));
+    rows.back()[static_cast<Eigen::Index>(k)] = free[k].prior->slope(values[k]);
+  }
+  // The decomposition of fewer rows than parameters would not return the undetermined directions.
+  const auto count = std::max(static_cast<Eigen::Index>(rows.size()), p);
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(count, p);
+  for (std::size_t row = 0; row < rows.size(); ++row) jacobian.row(static_cast<Eigen::Index>(row)) = rows[row];
+  return jacobian;
+}
+
+/// Index of the candidate with the least measure; none if that is infinite.
+template <class Measure>
+std::optional<std::size_t> best_of(const std::vector<CandidateErrors>& candidates, Measure measure) {
+  const auto best = std::ranges::min_element(candidates, {}, measure);
+  if (best == candidates.end() || !std::isfinite(measure(*best))) return {};
+  return static_cast<std::size_t>(best - candidates.begin());
+}
+
+}  // namespace
+
+ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentProgram& program) {
+  ProgramInformation information;
+  CheckedScenario scenario = program.scenario;
+  scenario.sensitivities.clear();
+  scenario.output = {.points = 1, .times = {}};
+  const Run first = run_scenario(scenario);
+  const Table& rough = first.record.history;
+  if (first.record.status != RunStatus::complete) {
+    information.notes.push_back("the run ends early: " + first.record.message);
+  }
+  const double duration = rough.row_count() > 0 ? rough.at(rough.row_count() - 1, *rough.find("time")) : 0.0;
+
+  scenario.sensitivities = program.scenario.sensitivities;
+  scenario.output = {.points = 0, .times = measured_instants(duration, program.points)};
+  const Run run = run_scenario(scenario);
+  information.noise = run.integrator.is_direct() ? k_direct_error : k_integrated_error;
+  const Table& history = run.record.history;
+  const Instants instants(plan, history);
+  note_moving_ends(plan, history, instants, information.notes);
+  const std::size_t time = *history.find("time");
+  const std::size_t side = *history.find("row");
+  const std::size_t y = *history.find(program.observable);
+  std::vector<std::size_t> columns;
+  for (const FreeParameter& parameter : plan.free) {
+    columns.push_back(*history.find(derivative_name(program.observable, parameter.key.path)));
+  }
+  std::vector<Eigen::RowVectorXd> rows;
+  for (std::size_t row = 0; row < history.row_count(); ++row) {
+    if (history.at(row, side) != 0.0 || history.at(row, time) == 0.0) continue;
+    Eigen::RowVectorXd derivatives(static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      derivatives[static_cast<Eigen::Index>(k)] = history.at(row, columns[k]);
+    }
+    const double value = history.at(row, y);
+    if (!derivatives.allFinite() || !std::isfinite(value) || !instants.is_fixed(row)) {
+      ++information.left_out;
+      continue;
+    }
+    const double deviation = std::hypot(program.absolute_noise, program.relative_noise * value);
+    if (!(deviation > 0.0)) {
+      throw_fault(program.noise_at,
+                  fmt::format("{} = 0 at {:.6g} s has no relative noise; expected an absolute part, too",
+                              program.observable, history.at(row, time)));
+    }
+    information.largest = std::max(information.largest, std::abs(value) / deviation);
+    rows.emplace_back(derivatives / deviation);
+  }
+  information.jacobian.resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    information.jacobian.row(static_cast<Eigen::Index>(row)) = rows[row];
+  }
+  for (const std::string& warning : run.record.warnings) information.notes.push_back(warning);
+  if (information.left_out > 0) {
+    information.notes.push_back(
+        fmt::format("{} of {} rows left out: an event passes them as a parameter changes, and they have no derivative",
+                    information.left_out, information.left_out + rows.size()));
+  }
+  return information;
+}
+
+ExpectedErrors expected_errors(const std::vector<FreeParameter>& free, std::span<const double> values,
+                               std::span<const ProgramInformation* const> programs) {
+  LeastSquaresProblem problem;
+  problem.parameters.assign(free.begin(), free.end());
+  LeastSquaresSolution solution;
+  solution.parameters.assign(values.begin(), values.end());
+  solution.bounds.assign(free.size(), LeastSquaresSolution::Bound::none);
+  const Eigen::MatrixXd jacobian = stacked(free, values, programs);
+  solution.residuals.assign(static_cast<std::size_t>(jacobian.rows()), 0.0);
+  // Rows are scaled to y of order one, so that the error of derivatives can be compared with them.
+  double scale = 0.0;
+  for (const ProgramInformation* program : programs) {
+    scale = std::max(scale, program->largest);
+    problem.noise = std::max(problem.noise, program->noise);
+  }
+  if (scale == 0.0) scale = 1.0;
+  ExpectedErrors expected;
+  expected.uncertainty =
+      uncertainty_of(problem, solution, jacobian / scale, solution.residuals.size(), k_level, 1.0 / scale);
+  expected.log_determinant = expected.relative_variances = k_infinite;
+  if (std::ranges::count(expected.uncertainty.is_determined, false) > 0) return expected;
+  const Eigen::Map<const Eigen::VectorXd> sizes(values.data(), static_cast<Eigen::Index>(values.size()));
+  const Eigen::VectorXd inverse = sizes.cwiseInverse();
+  const Eigen::MatrixXd relative = inverse.asDiagonal() * expected.uncertainty.covariance * inverse.asDiagonal();
+  expected.relative_variances = relative.trace();
+  const Eigen::MatrixXd factor = relative.llt().matrixL();
+  expected.log_determinant = 2.0 * factor.diagonal().array().log().sum();
+  return expected;
+}
+
+IdentifyResult identify(const ExperimentPlan& plan) {
+  IdentifyResult result;
+  for (const ExperimentProgram& program : plan.programs) result.programs.push_back(information_of(plan, program));
+  std::vector<const ProgramInformation*> planned;
+  for (std::size_t k = 0; k < plan.programs.size(); ++k) {
+    if (plan.programs[k].is_planned) planned.push_back(&result.programs[k]);
+  }
+  const bool has_prior =
+      std::ranges::any_of(plan.free, [](const auto& free) { return free.prior && free.prior->is_residual(); });
+  if (!planned.empty() || has_prior) result.planned = expected_errors(plan.free, plan.values, planned);
+  const double before = result.planned ? result.planned->log_determinant : k_infinite;
+  for (std::size_t k = 0; k < plan.programs.size(); ++k) {
+    if (plan.programs[k].is_planned) continue;
+    std::vector<const ProgramInformation*> together = planned;
+    together.push_back(&result.programs[k]);
+    CandidateErrors candidate{.program = k, .errors = expected_errors(plan.free, plan.values, together)};
+    candidate.volume =
+        std::isfinite(before) ? std::exp(0.5 * (candidate.errors.log_determinant - before)) : k_undefined;
+    result.candidates.push_back(std::move(candidate));
+  }
+  result.best_by_volume =
+      best_of(result.candidates, [](const CandidateErrors& each) { return each.errors.log_determinant; });
+  result.best_by_variances =
+      best_of(result.candidates, [](const CandidateErrors& each) { return each.errors.relative_variances; });
+  return result;
+}
+
+}  // namespace monograin

@@ -1,0 +1,231 @@
+#include "study/identify/identify_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "scenario/document.hpp"
+#include "scenario/section.hpp"
+#include "scenario/text_file.hpp"
+#include "scenario/units.hpp"
+#include "scenario/words.hpp"
+#include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/data_section.hpp"
+#include "study/calibrate/parameter_section.hpp"
+#include "study/calibrate/replay.hpp"
+#include "study/calibrate/scenario_section.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+using calibration::Keys;
+using calibration::NamedScenario;
+using Kind = KeySpec::Kind;
+
+constexpr double k_most_points = 1e5;
+
+/// Keys of a plan: those of a calibration file, with programs in place of data.
+Keys plan_keys(bool scenario_is_table) {
+  Keys keys;
+  for (KeySpec& key : calibration::root_keys(scenario_is_table, false)) {
+    if (key.name == "scenario" || key.name == "free" || key.name == "prior") keys.push_back(std::move(key));
+  }
+  keys.push_back(
+      {.name = "title", .meaning = "what is planned", .kind = Kind::text, .example = "\"granules, batch 12\""});
+  keys.push_back({.name = "program",
+                  .meaning = "programs of loads that could be measured",
+                  .kind = Kind::tables,
+                  .is_required = true,
+                  .example = "[[program]]"});
+  return keys;
+}
+
+std::vector<ForeignKey> keys_of_calibrations() {
+  return {{"data", "belongs to a calibration file; expected [[program]]"}, {"fit", "belongs to a calibration file"}};
+}
+
+Keys program_keys() {
+  return {
+      {.name = "name",
+       .meaning = "of the program, in tables and figures",
+       .kind = Kind::identifier,
+       .is_required = true,
+       .example = "\"unloading\""},
+      {.name = "set",
+       .meaning = "overrides of the scenario for this program",
+       .kind = Kind::texts,
+       .example = "[\"loading.steps[0].displacement=0.2 R0\"]"},
+      {.name = "y",
+       .meaning = "what is measured: a number of the history",
+       .kind = Kind::text,
+       .default_value = std::string_view("axial.force"),
+       .example = "\"axial.force\""},
+      {.name = "points",
+       .meaning = "rows that are measured, evenly in time",
+       .kind = Kind::integer,
+       .range = {.lower = 1.0, .upper = k_most_points},
+       .default_value = 100.0,
+       .example = "100"},
+      {.name = calibration::k_noise,
+       .meaning = "standard deviation of y",
+       .kind = Kind::table,
+       .is_required = true,
+       .may_be_empty = false,
+       .example = "{ absolute = \"2 N\", relative = 0.01 }"},
+      {.name = "planned",
+       .meaning = "whether it is measured in any case; the others are candidates",
+       .kind = Kind::toggle,
+       .default_value = false},
+  };
+}
+
+std::string override_of_keys(const std::vector<std::string>& paths) {
+  std::vector<std::string> quoted;
+  for (const std::string& path : paths) quoted.push_back('"' + path + '"');
+  return fmt::format("sensitivities.keys=[{}]", fmt::join(quoted, ", "));
+}
+
+class PlanReader {
+ public:
+  explicit PlanReader(const fs::path& file) : file_(name_of_file(file)), reading_{faults_} {
+    auto [text, problem] = read_text_file(file, k_largest_text, FileKind::any);
+    if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a plan of an experiment");
+    text_ = std::move(text);
+  }
+
+  ExperimentPlan read() {
+    made_.name = file_.stem().string();
+    const toml::table tree = parse_document(text_, file_.string());
+    const bool scenario_is_table = tree["scenario"].is_table();
+    const Keys keys = plan_keys(scenario_is_table);
+    const std::vector<ForeignKey> foreign = keys_of_calibrations();
+    const SourceLocation top{file_.string()};
+    const Section root(reading_, {&tree, top, "the plan"}, keys, foreign);
+    made_.title = root.text("title");
+    auto found = calibration::scenario_in(reading_, root, scenario_is_table, text_, file_.string());
+    if (!found) faults_.throw_if_any();
+    scenario_ = std::move(*found);
+    made_.scenario = scenario_.checked;
+    reading_.initial_radius = made_.scenario.radius;
+    if (root.has("free")) {
+      made_.free = calibration::free_in(reading_, root, {scenario_.checked, scenario_.text, scenario_.file});
+    }
+    if (root.has("prior") && !made_.free.empty()) {
+      calibration::read_priors(reading_, root, made_.scenario, made_.free);
+    }
+    faults_.throw_if_any();
+    take_values(root);
+    for (const Section::Origin& origin : root.tables("program", "[[program]]")) read_program(origin);
+    faults_.throw_if_any();
+    return std::move(made_);
+  }
+
+ private:
+  /// Takes the values of the free numbers from the scenario; a fault where a history cannot be differentiated by one.
+  void take_values(const Section& root) {
+    const Section::Origin free = root.table("free", "[free]");
+    for (const FreeParameter& parameter : made_.free) {
+      const std::string& path = parameter.key.path;
+      const SourceLocation place = place_of(free.table->find(path)->first.source(), free.place);
+      if (path.starts_with(calibration::k_data)) {
+        faults_.add(place, fmt::format("'{}' is of a testing machine, which a plan does not have", path));
+        continue;
+      }
+      try {
+        const double value = scenario_.with({override_of_keys({path})}).sensitivities.front().value;
+        made_.values.push_back(value);
+        if (value >= parameter.lower && value <= parameter.upper) continue;
+        faults_.add(place,
+                    fmt::format("'{}' is {:.6g}{}{} in the scenario, which is not between the bounds", path,
+                                value / parameter.unit_factor, parameter.unit.empty() ? "" : " ", parameter.unit));
+      } catch (const ScenarioError& error) {
+        faults_.add(place, on_one_line(error.faults().front().message));
+      }
+    }
+    faults_.throw_if_any();
+    for (const FreeParameter& parameter : made_.free) paths_.push_back(parameter.key.path);
+  }
+
+  void read_program(const Section::Origin& origin) {
+    const Keys keys = program_keys();
+    const std::size_t before = faults_.size();
+    const Section section(reading_, origin, keys);
+    if (faults_.size() > before) return;
+    ExperimentProgram program;
+    program.name = section.text("name");
+    program.overrides = section.texts("set");
+    program.points = static_cast<int>(section.number("points").value_or(0.0));
+    program.is_planned = section.toggle("planned").value_or(false);
+    program.noise_at = section.value_place(calibration::k_noise);
+    if (std::ranges::find(made_.programs, program.name, &ExperimentProgram::name) != made_.programs.end()) {
+      faults_.add(section.value_place("name"), fmt::format("two programs are named '{}'", program.name));
+    }
+    if (!take_scenario(section, program)) return;
+    const Measurable::Column* y = column_of(section, program.scenario);
+    if (y == nullptr) return;
+    program.observable = y->name;
+    const Section::Origin noise = section.table(calibration::k_noise, std::string(calibration::k_noise));
+    if (noise.table->contains("column")) {
+      return faults_.add(program.noise_at, "key 'column' is for data; expected absolute, relative or both");
+    }
+    const auto parts =
+        calibration::noise_in(reading_, section, calibration::dimension_of(y->unit).value_or(Dimension::none));
+    program.absolute_noise = parts.absolute;
+    program.relative_noise = parts.relative;
+    made_.programs.push_back(std::move(program));
+  }
+
+  /// Applies the overrides of a program. @return false, with a fault, where they are wrong or change a free number
+  bool take_scenario(const Section& section, ExperimentProgram& program) {
+    std::vector<std::string> overrides = program.overrides;
+    overrides.push_back(override_of_keys(paths_));
+    const SourceLocation place = section.has("set") ? section.value_place("set") : section.place();
+    try {
+      program.scenario = scenario_.with(overrides);
+      measurable_ = measurable_in(program.scenario);
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) faults_.add(place, fault.message);
+      return false;
+    }
+    for (std::size_t k = 0; k < paths_.size(); ++k) {
+      if (program.scenario.sensitivities[k].value == made_.values[k]) continue;
+      faults_.add(place, fmt::format("'{}' is free; expected its one value in the scenario", paths_[k]));
+      return false;
+    }
+    return true;
+  }
+
+  /// The column of y; a fault where the scenario has none of that name.
+  [[nodiscard]] const Measurable::Column* column_of(const Section& section, const CheckedScenario& scenario) {
+    const std::string name = section.text("y");
+    const Measurable::Column* found = measurable_.find(name);
+    if (found == nullptr) found = measurable_.find(measurable_.prefix() + name);
+    if (found != nullptr) return found;
+    std::vector<std::string_view> names;
+    for (const Measurable::Column& column : measurable_.columns) names.push_back(column.name);
+    faults_.add(section.has("y") ? section.value_place("y") : section.place(),
+                fmt::format("y = \"{}\" is no quantity of this scenario, whose model is '{}'; expected one of {}{}",
+                            shown(name), scenario.model, listed(names), did_you_mean(name, names)));
+    return nullptr;
+  }
+
+  fs::path file_;
+  std::string text_;
+  FaultList faults_;
+  Reading reading_;
+  ExperimentPlan made_;
+  NamedScenario scenario_;
+  std::vector<std::string> paths_;  ///< paths of the free numbers
+  Measurable measurable_;           ///< columns of the program being read
+};
+
+}  // namespace
+
+ExperimentPlan read_experiment_plan(const fs::path& file) { return PlanReader(file).read(); }
+
+}  // namespace monograin

@@ -1,0 +1,40 @@
+/// Plans of experiments: programs of loads that could be measured, their noise, and the parameters to be identified.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.hpp"
+#include "study/calibrate/calibration.hpp"
+
+namespace monograin {
+
+/// A program of loads that could be measured.
+struct ExperimentProgram {
+  std::string name;
+  std::vector<std::string> overrides;  ///< of the scenario, for this program
+  CheckedScenario scenario;            ///< overridden; differentiates its history by the free numbers
+  std::string observable;              ///< measured quantity y: "axial.force"
+  int points = 100;                    ///< measured rows, evenly in time
+  double absolute_noise = 0.0;         ///< constant part of the standard deviation of y [SI of y]
+  double relative_noise = 0.0;         ///< part in proportion to |y|; the squares of both parts add
+  bool is_planned = false;             ///< measured in any case; other programs are candidates
+  SourceLocation noise_at;
+};
+
+/// A checked plan.
+struct ExperimentPlan {
+  std::string name;  ///< of the file, without folder and extension
+  std::string title;
+  CheckedScenario scenario;
+  std::vector<FreeParameter> free;          ///< parameters whose errors are asked for
+  std::vector<double> values;               ///< their values in the scenario, taken as true [SI]; none is zero
+  std::vector<ExperimentProgram> programs;  ///< at least one
+};
+
+/// Reads and checks a plan and its scenario.
+/// @throws ScenarioError with all faults
+[[nodiscard]] ExperimentPlan read_experiment_plan(const std::filesystem::path& file);
+
+}  // namespace monograin
