@@ -745,6 +745,11 @@ def draw_calibrations(program, scratch):
     shutil.copy(scratch / "laws" / "comparison.svg", GENERATED / "figures" / "calibration-laws.svg")
 
 
+def draw_design(program, scratch):
+    run(program, "design", ROOT / "scenarios" / "design" / "uniaxial.toml", "-o", scratch / "expected")
+    shutil.copy(scratch / "expected" / "figure.svg", GENERATED / "figures" / "design.svg")
+
+
 # --- examples, and the interfaces for programs
 
 
@@ -870,6 +875,7 @@ def main():
         ready = run_ready_scenarios(program, pathlib.Path(scratch))
         draw_calibrations(program, pathlib.Path(scratch))
         draw_bands(program, pathlib.Path(scratch))
+        draw_design(program, pathlib.Path(scratch))
         draw_comparison(program, pathlib.Path(scratch))
         draw_own_figure(program, pathlib.Path(scratch))
         draw_wedge(program, pathlib.Path(scratch))

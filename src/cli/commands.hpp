@@ -47,6 +47,7 @@ void add_atlas_command(CLI::App& app, Action& action);
 void add_compare_command(CLI::App& app, Action& action);
 void add_regress_command(CLI::App& app, Action& action);
 void add_calibrate_command(CLI::App& app, Action& action);
+void add_design_command(CLI::App& app, Action& action);
 void add_data_command(CLI::App& app, Action& action);
 void add_sweep_command(CLI::App& app, Action& action);
 void add_sensitivity_command(CLI::App& app, Action& action);

@@ -3,7 +3,7 @@
 _monograin() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} options
   if ((COMP_CWORD == 1)); then
-    mapfile -t COMPREPLY < <(compgen -W "run check models cite plot atlas compare regress calibrate data sweep sensitivity bench stress schema --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "run check models cite plot atlas compare regress calibrate design data sweep sensitivity bench stress schema --help --version" -- "$current")
     return
   fi
   if [[ $previous == models ]]; then
@@ -26,6 +26,7 @@ _monograin() {
     atlas) options="--plots --output --list --help" ;;
     compare) options="--x --y --tol --help" ;;
     calibrate) options="--output --confidence --report --quiet --strict --help" ;;
+    design) options="--output --help" ;;
     data) options="--x --y --plot --output --help" ;;
     sweep) options="--jobs --shard --design-only --output --help" ;;
     sensitivity) options="--jobs --confidence --output --help" ;;

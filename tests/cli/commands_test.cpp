@@ -450,7 +450,7 @@ TEST_F(Commands, RunLeavesTheReferencesOfTheModel) {
 
 TEST_F(Commands, HelpEndsWithAnExample) {
   for (const char* command : {"", "run", "check", "models", "cite", "plot", "atlas", "compare", "regress", "calibrate",
-                              "data", "sweep", "schema"}) {
+                              "design", "data", "sweep", "schema"}) {
     const Outcome help = monograin(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Example: monograin "), std::string::npos) << command;
@@ -629,6 +629,43 @@ TEST_F(Commands, CalibrateWarnsOfABadFitAndIsStrictWhereAsked) {
   const Outcome good =
       monograin("calibrate '" MONOGRAIN_SOURCE_DIR "/scenarios/calibrate/uniaxial.toml' --strict --quiet -o good");
   EXPECT_EQ(good.code, 0) << good.err;
+}
+
+TEST_F(Commands, DesignSaysWhichErrorsToExpect) {
+  const std::string ready = "'" MONOGRAIN_SOURCE_DIR "/scenarios/design/uniaxial.toml'";
+  const Outcome outcome = monograin("design " + ready);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* part : {"planned: loading\n", "\nmaterial.yield_stress    40 MPa", "\ntwo_unloadings ",
+                           "\nbest by the volume (D): unloading\n"}) {
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part << '\n' << outcome.out;
+  }
+  EXPECT_NE(outcome.err.find("uniaxial: expected errors -> runs/uniaxial\n"), std::string::npos) << outcome.err;
+  for (const char* file : {"errors.csv", "figure.svg", "figure.gp", "figure.dat"}) {
+    EXPECT_TRUE(fs::exists(path("runs/uniaxial") / file)) << file;
+  }
+  const Table table = read_csv(path("runs/uniaxial/errors.csv"));
+  EXPECT_EQ(table.row_count(), 6U);
+  EXPECT_LT(table.at(3, *table.find("relative")), table.at(1, *table.find("relative")));
+}
+
+TEST_F(Commands, DesignWritesNothingWhereSomethingIsAtFault) {
+  write_text(path("small.toml"), k_small);
+  write_text(path("plan.toml"), R"toml(scenario = "small.toml"
+[free]
+"material.youngs_modulus" = { from = 1, to = "1000 GPa" }
+[[program]]
+name = "loading"
+noise = { absolute = "2 s" }
+)toml");
+  const auto before = files();
+  const Outcome outcome = monograin("design plan.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err.find("plan.toml:6:22: "), 0U) << outcome.err;
+  EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  EXPECT_EQ(monograin("design").code, 2);
+  EXPECT_EQ(monograin("design nowhere.toml").code, 2);
+  EXPECT_EQ(monograin("design small.toml").code, 2);
+  EXPECT_EQ(files(), before);
 }
 
 TEST_F(Commands, DataShowsWhatIsReadFromAMachinesFile) {

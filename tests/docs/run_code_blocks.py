@@ -8,7 +8,7 @@ run one after the other, with the program on the PATH:
 
     sh        has to end with exit code 0
     console   lines that begin with "$ " are commands; they print what stands below them, "..." for any text
-    toml      a scenario, a sweep, a calibration or a figure definition that the program has to accept
+    toml      a scenario, a sweep, a calibration, a design or a figure definition that the program has to accept
     python    has to end without an exception; skipped, and counted, where the interpreter has no package monograin
     cpp       has to compile as a part of the tree
     cmake     cannot be run here: needs a mark
@@ -175,6 +175,8 @@ class Page:
         file.write_text(block.text, encoding="utf-8")
         if "vary" in tree:
             command = ["sweep", file, "--design-only", "-o", self.folder / "design"]
+        elif "program" in tree:
+            command = ["design", file, "-o", self.folder / "expected"]
         elif "free" in tree:
             command = ["calibrate", file, "--quiet", "-o", self.folder / "calibration"]
         elif "panel" in tree or "curve" in tree:
