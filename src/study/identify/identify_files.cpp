@@ -111,6 +111,12 @@ std::vector<NamedErrors> all_sets(const ExperimentPlan& plan, const IdentifyResu
   return sets;
 }
 
+/// The name of a set, cut where a legend has no more room.
+std::string legend_of(const std::string& name) {
+  constexpr std::size_t k_room = 28;
+  return figure::verbatim_text(name.size() <= k_room ? name : name.substr(0, k_room - 3) + "...");
+}
+
 figure::ChartPanel error_panel(const ExperimentPlan& plan, const std::vector<NamedErrors>& sets, std::size_t k) {
   figure::ChartPanel panel{
       .x = {.label = sets.front().name == "planned" ? "planned, and with each candidate" : "candidate",
@@ -122,8 +128,7 @@ figure::ChartPanel error_panel(const ExperimentPlan& plan, const std::vector<Nam
   for (std::size_t s = 0; s < sets.size(); ++s) {
     const bool is_determined = sets[s].errors->uncertainty.is_determined[k];
     panel.x.names.emplace_back(is_determined ? " " : "?");
-    figure::ChartArea bar{
-        .legend = figure::verbatim_text(sets[s].name), .colour = k_colours[s % k_colours.size()], .boxes = {}};
+    figure::ChartArea bar{.legend = legend_of(sets[s].name), .colour = k_colours[s % k_colours.size()], .boxes = {}};
     if (is_determined) {
       const double error = 100.0 * relative_error(plan, *sets[s].errors, k);
       const double place = static_cast<double>(s) + 1.0;
