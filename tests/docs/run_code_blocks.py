@@ -173,7 +173,7 @@ class Page:
         if block.mark.startswith("file "):
             file = self.folder / block.mark.removeprefix("file ")
         file.write_text(block.text, encoding="utf-8")
-        if "vary" in tree:
+        if "vary" in tree or "design" in tree:
             command = ["sweep", file, "--design-only", "-o", self.folder / "design"]
         elif "program" in tree:
             command = ["design", file, "-o", self.folder / "expected"]

@@ -23,6 +23,7 @@
 #include "study/formula/expression.hpp"
 #include "study/sweep/design_table.hpp"
 #include "study/sweep/factor.hpp"
+#include "study/sweep/joint_normal.hpp"
 #include "study/sweep/sampling.hpp"
 #include "study/sweep/sweep_language.hpp"
 
@@ -62,6 +63,7 @@ class SweepReader {
     read_radius();
 
     read_factors(root);
+    if (root.has("calibration")) read_calibrated(root);
     read_constraints(root);
     check_results(root);
     if (root.has("bands")) read_bands(root);
@@ -106,7 +108,7 @@ class SweepReader {
     if (sweep::is_one_of(design_, sweep::k_index_designs)) needed = {"samples", "results", "vary"};
     if (design_ == "table") needed = {"table"};
     for (const std::string_view key : needed) {
-      if (root.has_or_misspells(key)) continue;
+      if (root.has_or_misspells(key) || (key == "vary" && root.has("calibration"))) continue;
       faults_.add(root.place(), fmt::format("key '{}' is missing for design = \"{}\"; expected for example {}", key,
                                             design_, example_line(*find_key(keys, key))));
     }
@@ -213,6 +215,41 @@ class SweepReader {
                                        k_example_range));
       }
       factors_.push_back(std::move(*factor));
+    }
+  }
+
+  /// Numbers that a calibration has found are varied, too, together.
+  void read_calibrated(const Section& root) {
+    const std::string name = root.text("calibration");
+    if (name.empty()) return;
+    const SourceLocation where = root.value_place("calibration");
+    fs::path file = file_.parent_path() / name;
+    if (fs::is_directory(file)) file /= "calibration.json";
+    const auto fault = [&](std::string_view problem) {
+      faults_.add(where, fmt::format("calibration = \"{}\": {}", shown(name), problem));
+    };
+    const auto [text, problem] = read_text_file(file, k_largest_text);
+    if (!problem.empty()) {
+      return fault(fmt::format("{} ({}); expected a path relative to this file", problem, on_one_line(file.string())));
+    }
+    try {
+      JointNormal joint = read_joint_normal(text);
+      first_calibrated_ = factors_.size();
+      for (std::size_t k = 0; k < joint.keys.size(); ++k) {
+        if (std::ranges::find(factors_, joint.keys[k], &Factor::key) != factors_.end()) {
+          return fault(fmt::format("'{}' is varied in [vary], too; expected one of them", joint.keys[k]));
+        }
+        std::optional<Factor> factor = make_factor(joint.keys[k], where);
+        are_keys_known_ = are_keys_known_ && factor;
+        if (!factor) continue;
+        factor->distribution = FactorDistribution{.shape = FactorDistribution::Shape::normal,
+                                                  .parameters = {joint.means[k], joint.standard_errors[k], 0.0}};
+        factors_.push_back(std::move(*factor));
+      }
+      digested_ += '\n' + text;
+      joint_ = std::move(joint);
+    } catch (const std::runtime_error& error) {
+      fault(error.what());
     }
   }
 
@@ -442,7 +479,9 @@ class SweepReader {
     std::vector<FactorValue> values(factors_.size());
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const std::span<const double> point = points_.point(i);
-      for (std::size_t f = 0; f < factors_.size(); ++f) values[f] = factors_[f].at(point[f]);
+      std::vector<double> shares(point.begin(), point.end());
+      if (joint_) joint_->correlate(std::span(shares).subspan(first_calibrated_));
+      for (std::size_t f = 0; f < factors_.size(); ++f) values[f] = factors_[f].at(shares[f]);
       const std::vector<SweepValue> run = resolved(values);
       if (broken_constraint(run) == nullptr) {
         runs_.add(run);
@@ -649,6 +688,8 @@ class SweepReader {
   std::vector<std::vector<FactorValue>> raw_;  ///< of a table
   SweepRuns runs_;
   std::optional<BandRequest> bands_;
+  std::optional<JointNormal> joint_;
+  std::size_t first_calibrated_ = 0;  ///< factor: those from here on are numbers of the calibration
   double base_radius_ = 1.0;  ///< the scenario's own [m]; where it has none that can be read, its check will tell
   std::size_t left_out_ = 0;
   Design points_;

@@ -66,6 +66,12 @@ std::vector<KeySpec> root_keys(bool contains_scenario) {
        .kind = Kind::table,
        .may_be_empty = false,
        .example = "[vary]"},
+      {.name = "calibration",
+       .meaning =
+           "result of a calibration whose numbers are varied, with their covariance: its folder or calibration.json",
+       .kind = Kind::file,
+       .example = "\"runs/fit\"",
+       .only_with = k_correlated_designs},
       {.name = "constraints",
        .meaning = "inequalities between varied keys, in SI",
        .kind = Kind::texts,

@@ -12,9 +12,11 @@ namespace monograin::sweep {
 inline constexpr double k_most_runs = 1e6;
 inline constexpr std::array<std::string_view, 9> k_designs{"grid", "table",  "maxpro",   "sobol", "halton",
                                                            "lhs",  "random", "saltelli", "morris"};
-/// Lists of designs, as messages name them: those that take a number of runs, a seed, and a number of samples.
+/// Lists of designs, as messages name them: those that take a number of runs, a seed, correlated inputs, and a number
+/// of samples.
 inline constexpr std::string_view k_filling_designs = "maxpro, sobol, halton, lhs, random";
 inline constexpr std::string_view k_random_designs = "maxpro, sobol, halton, lhs, random, saltelli, morris";
+inline constexpr std::string_view k_correlated_designs = "sobol, halton, lhs, random";
 inline constexpr std::string_view k_index_designs = "saltelli, morris";
 
 [[nodiscard]] bool is_one_of(std::string_view design, std::string_view listed);
