@@ -47,6 +47,8 @@ constexpr double k_deep_inside = 0.5;
 constexpr double k_inside = 0.99;
 constexpr double k_event_accuracy = 1e-13;
 constexpr double k_just_beyond = 1.001;
+// Over its scale: an unknown that has gone so far within the rounding of the step coordinate has jumped.
+constexpr double k_spring = 1e-8;
 // Where there are several solutions, what the last terms of a piece's series are at most, over the largest: the way
 // from one solution to another is a jump, or goes like a root, and no piece on one of them does.
 constexpr double k_unresolved = 1e-2;
@@ -241,6 +243,10 @@ class Direct final : public EventLocator {
     }
     move_end(piece_end_);
     locate_event();
+    if (has_sprung()) {
+      factor = k_most_shrinkage;
+      return false;
+    }
     if (goes_from_nodes() && end_ < piece_end_ && end_ - begin_ > least_progress(begin_)) forget_what_follows();
     if (has_branches_) {
       if (!is_resolved()) {
@@ -255,6 +261,16 @@ class Direct final : public EventLocator {
     }
     if (quadrature_) end_state_[*quadrature_] = quadrature_at(end_, end_state_);
     return true;
+  }
+
+  /// Whether an event at the beginning shows that the states of the piece are others than those that lead on from
+  /// there: next to a fold, the first node of a long piece may have gone over to them. Shorter pieces follow.
+  [[nodiscard]] bool has_sprung() const noexcept {
+    if (fired_.empty() || end_ - begin_ > least_progress(begin_) || piece_length() <= k_tiny) return false;
+    for (std::size_t k = 0; k < end_state_.size(); ++k) {
+      if (std::abs(end_state_[k] - begin_state_[k]) > k_spring * system_.unknowns()[k].scale) return true;
+    }
+    return false;
   }
 
   [[nodiscard]] double longest() const noexcept {
