@@ -12,7 +12,7 @@ namespace {
 
 constexpr double k_share_of_null_vector = 1e-2;  // with which a parameter belongs to what is not determined
 
-/// Of the loss, over the data.
+/// Mean curvature of the loss over the data.
 double mean_curvature(const LeastSquaresProblem& problem, std::span<const double> residuals, std::size_t n) {
   double curvature = 0.0;
   for (const double r : residuals.first(n)) curvature += problem.loss.curvature(r);

@@ -32,7 +32,7 @@ std::vector<double> in_unit(const std::vector<double>& values, const MeasuredQua
   return result;
 }
 
-/// What tells a curve from the others.
+/// The name of a curve, by its overrides or its file.
 std::string name_of(const MeasuredCurve& curve) {
   return curve.overrides.empty() ? fs::path(curve.file).stem().string()
                                  : fmt::format("{}", fmt::join(curve.overrides, ", "));

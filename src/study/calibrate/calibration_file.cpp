@@ -416,7 +416,7 @@ class CalibrationReader {
   }
 
   /// One over the standard deviations.
-  /// @param column  of them; null: y's noise is told in parts
+  /// @param column  with the deviations; null: `noise` gives the parts of them
   [[nodiscard]] std::vector<double> weights_by_noise(const Section& data, const ColumnSpec* column,
                                                      const MeasuredData& measured, const MeasuredQuantity& y,
                                                      const std::string& file) {

@@ -1,4 +1,4 @@
-// What a calibration leaves: tables, a figure, a report and a scenario.
+// The files of a calibration: tables, a figure, a report and a scenario.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

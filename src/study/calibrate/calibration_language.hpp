@@ -51,7 +51,7 @@ struct DataKinds {
 [[nodiscard]] std::optional<Dimension> dimension_of(std::string_view si);
 /// The free parameters of which something is known beforehand. @param paths  of the free parameters
 [[nodiscard]] Keys prior_keys(const std::vector<std::string>& paths);
-/// What is known of one of them: one of three distributions.
+/// The knowledge of one of them: one of three distributions.
 [[nodiscard]] Keys distribution_keys();
 /// The noise of y. @param dimension  of y  @param column  text or integer
 [[nodiscard]] Keys noise_keys(Dimension dimension, KeySpec::Kind column);

@@ -40,7 +40,7 @@ struct NoiseParts {
   double absolute = 0.0;  ///< [SI of y]
   double relative = 0.0;  ///< over |y|
 };
-/// What `noise` gives beside a column; all its faults. @param of_y  dimension of y
+/// Reads the parts that `noise` gives, and reports its faults. @param of_y  dimension of y
 [[nodiscard]] NoiseParts noise_in(Reading& reading, const Section& data, Dimension of_y);
 
 /// A compliance written with its unit; a fault where it is none.

@@ -12,7 +12,7 @@
 
 namespace monograin {
 
-/// What speaks for one of the fits, and against it.
+/// Criteria and predictions of one of the fits.
 struct RankedFit {
   std::size_t parameters = 0;
   double aic = 0.0;         ///< Akaike (1974), of n ln(S/n), or of chi^2 where the noise is known; less is better

@@ -1,4 +1,4 @@
-/// What is known of a parameter before the data are.
+/// Priors: the knowledge of a parameter before there are data.
 #pragma once
 
 #include <string>

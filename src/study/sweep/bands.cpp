@@ -24,8 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of all runs that have a history. Those that are missing where contacts are lost or limits reached may all lie on one
-// side: percentiles of the rest would not be those of the sweep.
+// Least share of the runs with a history that reach an abscissa. Those that are missing where contacts are lost or
+// limits reached may all lie on one side: percentiles of the rest would not be those of the sweep.
 constexpr double k_least_share = 0.95;
 constexpr unsigned k_band_colour = 0x9FC5E8;
 
@@ -198,7 +198,7 @@ HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
     made.runs.assign(made.x.size(), 0);
     bands.steps.push_back(std::move(made));
   }
-  // Of each step, of each y, of each abscissa: the values of the runs.
+  // The values of the runs, for each step, y and abscissa.
   std::vector<std::vector<std::vector<std::vector<double>>>> values(
       bands.steps.size(),
       std::vector(request.y.size(), std::vector<std::vector<double>>(static_cast<std::size_t>(request.points))));

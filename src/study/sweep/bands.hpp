@@ -16,7 +16,7 @@ struct StepBands {
   std::size_t step = 0;  ///< from 1
   std::vector<double> x;
   std::vector<std::size_t> runs;  ///< that reach x in this step
-  /// Of each y, of each percentile, over x; nan where less than 95 % of the runs have a value.
+  /// For each y and each percentile the values over x; nan where less than 95 % of the runs have a value.
   std::vector<std::vector<std::vector<double>>> percentiles;
 };
 

@@ -22,7 +22,7 @@ struct SweepFactor {
   [[nodiscard]] std::string heading() const { return Column{key, unit, {}}.heading(); }
 };
 
-/// What one run sets a key to: a number in SI, or a word.
+/// The value of a key in one run: a number in SI, or a word.
 using SweepValue = std::variant<double, std::string>;
 
 /// Runs in the order of the design, each with a value for every factor. Of a million of them only numbers are kept:
