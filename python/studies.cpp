@@ -8,6 +8,7 @@
 #include "history/compare.hpp"
 #include "interruptible.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/sweep/bands.hpp"
 #include "study/sweep/sensitivity.hpp"
 #include "study/sweep/sweep.hpp"
 
@@ -34,6 +35,10 @@ py::tuple sweep(const std::string& file, const std::string& output, int threads,
                               if (stop) throw Stopped();
                             }});
   });
+  if (outcome.runs_missing == 0 && plan.bands) {
+    const py::gil_scoped_release released;
+    static_cast<void>(write_bands(plan, bands_of(plan, folder), folder));
+  }
   return py::make_tuple(folder.string(), outcome.runs_missing);
 }
 

@@ -29,7 +29,7 @@ def sweep(
     Returns:
         The results: a row for each run with its keys, ``status``, ``reason``, and the final (``end.axial.force``) and
         largest (``max.axial.force``) value of every column. None where runs are left to other shards. The table is
-        ``results.csv`` in the folder.
+        ``results.csv`` in the folder; percentiles of the histories, where the file has ``[bands]``, are ``bands.csv``.
 
     Raises:
         ScenarioError: with every fault of the sweep and its scenario.

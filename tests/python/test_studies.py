@@ -23,6 +23,21 @@ def test_a_sweep_has_the_table_of_the_program(run_program, tmp_path):
     assert table.header["sweep"] == "poisson"
 
 
+def test_bands_of_a_sweep_are_those_of_the_program(run_program, tmp_path):
+    scenario = (mg.scenario_folder() / "die.toml").as_posix()
+    file = tmp_path / "spread.toml"
+    file.write_text(
+        f'scenario = "{scenario}"\ndesign = "lhs"\nruns = 20\n'
+        '[vary]\n"material.yield_stress" = { mean = "40 MPa", std = "2 MPa" }\n'
+        '[bands]\nx = "axial.displacement"\ny = ["axial.force"]\n'
+    )
+    assert len(mg.sweep(file, tmp_path / "ours")) == 20
+    assert run_program("sweep", file, "-o", "theirs", cwd=tmp_path).returncode == 0
+    bands = mg.Table.read_csv(tmp_path / "ours" / "bands.csv")
+    assert (tmp_path / "ours" / "bands.csv").read_bytes() == (tmp_path / "theirs" / "bands.csv").read_bytes()
+    assert (bands["p5.axial.force"] <= bands["p95.axial.force"]).all()
+
+
 def test_shards_merge_into_the_same_table(tmp_path):
     file = mg.scenario_folder() / "sweeps" / "poisson.toml"
     whole = mg.sweep(file, tmp_path / "whole")
