@@ -12,6 +12,7 @@
 #include <sstream>
 #include <utility>
 
+#include "history/recorder.hpp"
 #include "history/run.hpp"
 #include "scenario/document.hpp"
 #include "scenario/key_path.hpp"
@@ -19,6 +20,7 @@
 #include "scenario/section.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
+#include "scene/scene.hpp"
 #include "study/formula/constraint.hpp"
 #include "study/formula/expression.hpp"
 #include "study/sweep/design_table.hpp"
@@ -287,6 +289,10 @@ class SweepReader {
     const Section section(reading_, root.table("bands", "[bands]"), keys);
     BandRequest request{.x = section.text("x"), .y = section.texts("y")};
     request.points = static_cast<int>(section.number("points").value_or(request.points));
+    band_columns_.emplace_back(request.x, section.value_place("x"));
+    for (std::size_t i = 0; i < request.y.size(); ++i) {
+      band_columns_.emplace_back(request.y[i], section.value_place("y", i));
+    }
     if (section.has("y") && request.y.empty()) faults_.add(section.value_place("y"), "y: expected at least one column");
     const std::vector<std::string> texts = section.texts("percentiles");
     if (!texts.empty()) request.percentiles.clear();
@@ -304,6 +310,22 @@ class SweepReader {
       request.percentiles.push_back(value);
     }
     bands_ = std::move(request);
+  }
+
+  /// Columns are known before the first run, which may be one of many long ones.
+  void check_band_columns(const CheckedScenario& scenario) {
+    if (!bands_) return;
+    const Scene scene = make_scene(scenario);
+    const Table history = Recorder(*scene.system).take_history();
+    std::vector<std::string_view> names;
+    for (const Column& column : history.columns()) {
+      if (!column.holds_words()) names.push_back(column.name);
+    }
+    for (const auto& [name, where] : band_columns_) {
+      if (name.empty() || std::ranges::find(names, name) != names.end()) continue;
+      faults_.add(where, fmt::format("'{}' is no column of the histories; expected one of {}{}", shown(name),
+                                     listed(names), did_you_mean(name, names)));
+    }
   }
 
   template <class Action>
@@ -637,6 +659,7 @@ class SweepReader {
       try {
         const CheckedScenario scenario = scenario_with(*scenario_, factors, runs_[run]);
         for (const auto& [option, curve] : scenario.curves) digested_ += '\n' + curve.text;
+        check_band_columns(scenario);
         return;
       } catch (const ScenarioError& error) {
         if (own && own->empty()) continue;
@@ -688,6 +711,7 @@ class SweepReader {
   std::vector<std::vector<FactorValue>> raw_;  ///< of a table
   SweepRuns runs_;
   std::optional<BandRequest> bands_;
+  std::vector<std::pair<std::string, SourceLocation>> band_columns_;
   std::optional<JointNormal> joint_;
   std::size_t first_calibrated_ = 0;  ///< factor: those from here on are numbers of the calibration
   double base_radius_ = 1.0;  ///< the scenario's own [m]; where it has none that can be read, its check will tell
