@@ -21,88 +21,52 @@ namespace {
 
 // Ten sets a law show gross faults within half a minute; MONOGRAIN_COVERAGE_SETS=200 makes a measurement of it.
 
-/// A law, a scenario with the true numbers, and those that are sought beside offset and compliance.
+/// A law with its true numbers, and those that are sought beside offset and compliance.
 struct Experiment {
-  const char* name;
-  const char* scenario;
+  const char* model;
+  const char* material;
+  const char* steps;
+  int points;  ///< in each step
   const char* free;
   std::vector<double> truth;
-  double radius;
 };
 
 const std::vector<Experiment> k_experiments{
-    {.name = "hertz",
-     .scenario = R"(model = "hertz"
-[particle]
-radius = 0.01
-[material]
-youngs_modulus = 2e9
-poisson_ratio = 0.3
-[loading]
-configuration = "simple"
-steps = [{ displacement = "0.05 R0", duration = 1 }]
-[output]
-points = 80
-)",
-     .free = R"("material.youngs_modulus" = { from = "0.2 GPa", to = "20 GPa" })",
-     .truth = {2e9},
-     .radius = 0.01},
-    {.name = "mdr",
-     .scenario = R"(model = "mdr"
-[particle]
-radius = 0.01
-[material]
-youngs_modulus = 1.2e9
-poisson_ratio = 0.3
-yield_stress = 45e6
-[loading]
-configuration = "simple"
-steps = [{ displacement = "0.25 R0", duration = 1 }, { displacement = "0.22 R0", duration = 1 }]
-[output]
-points = 60
-)",
-     .free = R"("material.youngs_modulus" = { from = "0.1 GPa", to = "10 GPa" }
+    {"hertz",
+     "youngs_modulus = 2e9\npoisson_ratio = 0.3",
+     "{ displacement = '0.05 R0', duration = 1 }",
+     80,
+     R"("material.youngs_modulus" = { from = "0.2 GPa", to = "20 GPa" })",
+     {2e9}},
+    {"mdr",
+     "youngs_modulus = 1.2e9\npoisson_ratio = 0.3\nyield_stress = 45e6",
+     "{ displacement = '0.25 R0', duration = 1 }, { displacement = '0.22 R0', duration = 1 }",
+     60,
+     R"("material.youngs_modulus" = { from = "0.1 GPa", to = "10 GPa" }
 "material.yield_stress" = { from = "1 MPa", to = "200 MPa" })",
-     .truth = {1.2e9, 45e6},
-     .radius = 0.01},
-    {.name = "semimech",
-     .scenario = R"(model = "semimech"
-[particle]
-radius = 0.01
-[material]
-youngs_modulus = 5e9
-poisson_ratio = 0.3
-yield_stress = 50e6
-[loading]
-configuration = "simple"
-steps = [{ displacement = "0.3 R0", duration = 1 }]
-[output]
-points = 80
-)",
-     .free = R"("material.yield_stress" = { from = "5 MPa", to = "500 MPa" })",
-     .truth = {50e6},
-     .radius = 0.01},
-    {.name = "compressible",
-     .scenario = R"(model = "compressible"
-[particle]
-radius = 0.01
-[material]
-yield_pressure = 150e6
-stiffness_ratio = 100
-shear_ratio = 1.0
-tensile_ratio = 0.01
-nu0 = 0.3
-[compressible]
-k = 3.0
-[loading]
-configuration = "simple"
-steps = [{ displacement = "0.4 R0", duration = 1 }]
-[output]
-points = 80
-)",
-     .free = R"("compressible.k" = { from = 0.1, to = 20 })",
-     .truth = {3.0},
-     .radius = 0.01}};
+     {1.2e9, 45e6}},
+    {"semimech",
+     "youngs_modulus = 5e9\npoisson_ratio = 0.3\nyield_stress = 50e6",
+     "{ displacement = '0.3 R0', duration = 1 }",
+     80,
+     R"("material.yield_stress" = { from = "5 MPa", to = "500 MPa" })",
+     {50e6}},
+    {"compressible",
+     "yield_pressure = 150e6\nstiffness_ratio = 100\nshear_ratio = 1.0\ntensile_ratio = 0.01\nnu0 = 0.3\n"
+     "[compressible]\nk = 3.0",
+     "{ displacement = '0.4 R0', duration = 1 }",
+     80,
+     R"("compressible.k" = { from = 0.1, to = 20 })",
+     {3.0}}};
+
+constexpr double k_radius = 0.01;  // [m]
+
+std::string scenario_of(const Experiment& experiment) {
+  return fmt::format(
+      "model = \"{}\"\n[particle]\nradius = {}\n[material]\n{}\n[loading]\nconfiguration = \"simple\"\n"
+      "steps = [{}]\n[output]\npoints = {}\n",
+      experiment.model, k_radius, experiment.material, experiment.steps, experiment.points);
+}
 
 constexpr double k_level = 0.95;
 constexpr double k_noise = 0.01;               // of the largest force
@@ -127,13 +91,14 @@ TEST_P(Coverage, OfIntervalsIsThatOfTheirLevelWithOffsetAndComplianceSought) {
   const char* asked = std::getenv("MONOGRAIN_COVERAGE_SETS");
   const int sets = asked == nullptr ? 10 : std::atoi(asked);
   const TemporaryFolder folder;
-  write_text(folder.path() / "s.toml", experiment.scenario);
+  const std::string scenario = scenario_of(experiment);
+  write_text(folder.path() / "s.toml", scenario);
   write_text(folder.path() / "c.toml", fmt::format("scenario = \"s.toml\"\n[data]\nfile = \"d.csv\"\n"
                                                    "x = \"displacement[m]\"\ny = \"force[N]\"\n[free]\n{}\n"
                                                    "\"data.offset\" = {{ from = \"-0.05 R0\", to = \"0.05 R0\" }}\n"
                                                    "\"data.compliance\" = {{ from = 0, to = \"500 nm/N\" }}\n",
                                                    experiment.free));
-  const Table history = run_scenario(parse_scenario(experiment.scenario, "s.toml")).record.history;
+  const Table history = run_scenario(parse_scenario(scenario, "s.toml")).record.history;
   std::vector<double> x;
   std::vector<double> force;
   for (std::size_t row = 0; row < history.row_count(); ++row) {
@@ -149,7 +114,7 @@ TEST_P(Coverage, OfIntervalsIsThatOfTheirLevelWithOffsetAndComplianceSought) {
   std::uniform_real_distribution<double> uniform;
   for (int set = 0; set < sets; ++set) {
     std::vector<double> truth = experiment.truth;
-    truth.push_back(k_largest_offset * experiment.radius * uniform(generator));
+    truth.push_back(k_largest_offset * k_radius * uniform(generator));
     truth.push_back(k_largest_compliance * uniform(generator));
     write_text(folder.path() / "d.csv", measured(x, force, truth[count - 2], truth[count - 1], generator));
     const CalibrationResult result = calibrate(read_calibration(folder.path() / "c.toml"));
@@ -168,14 +133,14 @@ TEST_P(Coverage, OfIntervalsIsThatOfTheirLevelWithOffsetAndComplianceSought) {
     EXPECT_NEAR(share, k_level, 3.0 * share_error) << free[k].key.path << " is held in " << held[k] << " of " << sets;
     EXPECT_LE(std::abs(bias_over_error), 3.0 / std::sqrt(sets)) << free[k].key.path;
     if (asked != nullptr) {
-      fmt::print("{}, {}: held in {:.1f} %, bias {:.3f} of the standard error {:.3g}\n", experiment.name,
+      fmt::print("{}, {}: held in {:.1f} %, bias {:.3f} of the standard error {:.3g}\n", experiment.model,
                  free[k].key.path, 100.0 * share, bias_over_error, std::sqrt(spread[k]));
     }
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Coverage, ::testing::ValuesIn(k_experiments),
-                         [](const auto& test) { return std::string(test.param.name); });
+                         [](const auto& test) { return std::string(test.param.model); });
 
 }  // namespace
 }  // namespace monograin::coverage_test

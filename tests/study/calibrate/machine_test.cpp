@@ -18,6 +18,7 @@
 #include "elastic/hertz.hpp"
 #include "history/table.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "support/scenario_texts.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 
@@ -312,18 +313,7 @@ y = "force[N]"
 )";
 
 void write_hertz(const fs::path& folder) {
-  write_text(folder / "s.toml", R"(model = "hertz"
-[particle]
-radius = "10 mm"
-[material]
-youngs_modulus = "50 GPa"
-poisson_ratio = 0.22
-[loading]
-configuration = "simple"
-[[loading.steps]]
-displacement = "0.01 R0"
-duration = "1 s"
-)");
+  write_text(folder / "s.toml", k_hertz_text);
   std::string text = "displacement[um],force[N]\n";
   for (const MachineRow& row : hertz_on_a_machine(3e-5, 1e-8)) {
     text += fmt::format("{:.17g},{:.17g}\n", 1e6 * row.x, row.force);

@@ -13,6 +13,7 @@
 
 #include "elastic/hertz.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "support/scenario_texts.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 
@@ -43,18 +44,7 @@ struct Gaussian {
 class LinearCalibration : public ::testing::Test {
  protected:
   void SetUp() override {
-    write_text(folder_.path() / "s.toml", R"(model = "hertz"
-[particle]
-radius = "10 mm"
-[material]
-youngs_modulus = "50 GPa"
-poisson_ratio = 0.22
-[loading]
-configuration = "simple"
-[[loading.steps]]
-displacement = "0.01 R0"
-duration = "1 s"
-)");
+    write_text(folder_.path() / "s.toml", k_hertz_text);
     std::mt19937 generator(17);
     std::normal_distribution<double> noise;
     std::string text = "displacement[m],force[N],error[kN]\n";

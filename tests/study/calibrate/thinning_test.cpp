@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "elastic/hertz.hpp"
+#include "support/scenario_texts.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 
@@ -28,18 +29,7 @@ class ThinnedCalibration : public ::testing::Test {
   static constexpr std::size_t k_rows = 8001;
 
   void SetUp() override {
-    write_text(folder_.path() / "s.toml", R"(model = "hertz"
-[particle]
-radius = "10 mm"
-[material]
-youngs_modulus = "50 GPa"
-poisson_ratio = 0.22
-[loading]
-configuration = "simple"
-[[loading.steps]]
-displacement = "0.01 R0"
-duration = "1 s"
-)");
+    write_text(folder_.path() / "s.toml", k_hertz_text);
     write_text(folder_.path() / "c.toml", R"(scenario = "s.toml"
 [data]
 file = "d.csv"

@@ -14,6 +14,7 @@
 #include "history/run.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/identify/identify_files.hpp"
+#include "support/scenario_texts.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 
@@ -21,19 +22,6 @@ namespace monograin::identify_test {
 namespace {
 
 constexpr double k_modulus = 50e9;
-
-constexpr const char* k_hertz = R"(model = "hertz"
-[particle]
-radius = "10 mm"
-[material]
-youngs_modulus = "50 GPa"
-poisson_ratio = 0.22
-[loading]
-configuration = "simple"
-[[loading.steps]]
-displacement = "0.01 R0"
-duration = "1 s"
-)";
 
 constexpr const char* k_hertz_plan = R"(scenario = "s.toml"
 [free]
@@ -75,12 +63,6 @@ points = 60
 noise = { absolute = "30 N" }
 )";
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  if (at == std::string::npos) throw std::logic_error("no '" + what + "'");
-  return text.replace(at, what.size(), by);
-}
-
 class PlanTest : public ::testing::Test {
  protected:
   [[nodiscard]] ExperimentPlan read(const std::string& scenario, const std::string& plan) const {
@@ -115,7 +97,7 @@ TEST_F(PlanTest, OfALawThatIsLinearInItsModulusHasTheErrorInClosedForm) {
     const double force = hertz_force(k_modulus / (1.0 - 0.22 * 0.22), 0.01, 1e-4 * (k + 0.5) / 40);
     precision += std::pow(force / k_modulus / std::hypot(5.0, 0.02 * force), 2);
   }
-  const IdentifyResult result = identify(read(k_hertz, k_hertz_plan));
+  const IdentifyResult result = identify(read(k_hertz_text, k_hertz_plan));
   EXPECT_NEAR(standard_error(result, 0) * std::sqrt(precision), 1.0, 1e-6);
   EXPECT_NEAR(result.planned->relative_variances * precision * k_modulus * k_modulus, 1.0, 1e-6);
 }
@@ -197,9 +179,9 @@ TEST_F(PlanTest, KnowsNoMoreThanThePriorWhereTheNoiseIsLarge) {
 }
 
 TEST_F(PlanTest, AddsWhatThePriorKnowsToWhatTheDataTell) {
-  const double alone = standard_error(identify(read(k_hertz, k_hertz_plan)), 0);
+  const double alone = standard_error(identify(read(k_hertz_text, k_hertz_plan)), 0);
   const double prior = 0.2e9;
-  const double both = standard_error(identify(read(k_hertz, std::string(k_hertz_plan) + R"([prior]
+  const double both = standard_error(identify(read(k_hertz_text, std::string(k_hertz_plan) + R"([prior]
 "material.youngs_modulus" = { normal = ["60 GPa", "0.2 GPa"] }
 )")),
                                      0);
@@ -298,7 +280,7 @@ TEST_F(PlanTest, WritesARowForEachSetAndParameter) {
 
 TEST_F(PlanTest, RefusesWhatItDoesNotUnderstand) {
   const auto fault = [&](const std::string& what, const std::string& by) {
-    return first_fault(k_hertz, replaced(k_hertz_plan, what, by));
+    return first_fault(k_hertz_text, replaced(k_hertz_plan, what, by));
   };
   EXPECT_EQ(fault("points = 40", "point = 40"), "7:1: unknown key 'point' in [[program]]; did you mean 'points'?");
   EXPECT_EQ(fault("name = \"loading\"\n", "").substr(0, 5), "4:1: ");
@@ -321,11 +303,11 @@ TEST_F(PlanTest, RefusesWhatItDoesNotUnderstand) {
   EXPECT_NE(fault("s.toml", "t.toml").find("1:12: scenario = \"t.toml\": there is no such file"), std::string::npos);
   const std::string twice =
       std::string(k_hertz_plan) + "[[program]]\nname = \"loading\"\nnoise = { absolute = \"5 N\" }\n";
-  EXPECT_EQ(first_fault(k_hertz, twice), "10:8: two programs are named 'loading'");
+  EXPECT_EQ(first_fault(k_hertz_text, twice), "10:8: two programs are named 'loading'");
 }
 
 TEST_F(PlanTest, RefusesRowsWithoutNoise) {
-  const std::string apart = std::string(k_hertz) +
+  const std::string apart = std::string(k_hertz_text) +
                             "[[loading.steps]]\ndisplacement = \"0 R0\"\nduration = \"1 s\"\n"
                             "[[loading.steps]]\nhold = true\nduration = \"1 s\"\n";
   const std::string fault = first_fault(apart, replaced(k_hertz_plan, "absolute = \"5 N\", ", ""));

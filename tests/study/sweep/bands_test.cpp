@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "history/table.hpp"
-#include "scenario/faults.hpp"
 #include "study/sweep/sweep.hpp"
-#include "support/temporary_folder.hpp"
+#include "study/sweep/sweep_file_test.hpp"
+#include "support/scenario_texts.hpp"
 #include "support/text_file.hpp"
 
 namespace monograin::bands_test {
@@ -41,35 +41,13 @@ steps = [{ displacement = "0.02 R0", duration = "1 s" }, { displacement = "0.01 
 points = 2000
 )toml";
 
-std::string replaced(std::string text, const std::string& old, const std::string& by) {
-  const std::size_t at = text.find(old);
-  EXPECT_NE(at, std::string::npos) << old;
-  return text.replace(at, old.size(), by);
-}
-
-class Bands : public ::testing::Test {
+class Bands : public SweepFileTest {
  protected:
-  [[nodiscard]] Sweep read(const std::string& text) const {
-    write_text(folder() / "s.toml", text);
-    return read_sweep(folder() / "s.toml");
-  }
   [[nodiscard]] HistoryBands bands(const Sweep& sweep, const std::string& name) const {
     EXPECT_EQ(run_sweep(sweep, {.folder = folder() / name, .threads = 2, .shard = {}, .progress = {}}).runs_missing,
               0U);
     return bands_of(sweep, folder() / name);
   }
-  [[nodiscard]] std::string fault(const std::string& text) const {
-    try {
-      static_cast<void>(read(text));
-    } catch (const ScenarioError& error) {
-      return error.what();
-    }
-    return {};
-  }
-  [[nodiscard]] const fs::path& folder() const { return folder_.path(); }
-
- private:
-  TemporaryFolder folder_;
 };
 
 TEST_F(Bands, OfAForceInProportionToTheModulusAreThoseOfTheModulus) {

@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "scenario/faults.hpp"
-#include "study/sweep/sweep_file.hpp"
-#include "support/temporary_folder.hpp"
+#include "study/sweep/sweep_file_test.hpp"
+#include "support/scenario_texts.hpp"
 #include "support/text_file.hpp"
 
 namespace monograin::joint_normal_test {
@@ -38,34 +37,13 @@ configuration = "simple"
 steps = [{ displacement = "0.1 R0", duration = "1 s" }]
 )toml";
 
-std::string replaced(std::string text, const std::string& old, const std::string& by) {
-  const std::size_t at = text.find(old);
-  EXPECT_NE(at, std::string::npos) << old;
-  return text.replace(at, old.size(), by);
-}
-
-class CorrelatedSweep : public ::testing::Test {
+class CorrelatedSweep : public SweepFileTest {
  protected:
   CorrelatedSweep() {
-    std::filesystem::create_directory(folder_.path() / "fit");
-    write_text(folder_.path() / "fit/calibration.json", k_fit);
+    std::filesystem::create_directory(folder() / "fit");
+    write_fit(k_fit);
   }
-  [[nodiscard]] Sweep read(const std::string& text) const {
-    write_text(folder_.path() / "s.toml", text);
-    return read_sweep(folder_.path() / "s.toml");
-  }
-  [[nodiscard]] std::string fault(const std::string& text) const {
-    try {
-      static_cast<void>(read(text));
-    } catch (const ScenarioError& error) {
-      return error.what();
-    }
-    return {};
-  }
-  void write_fit(const std::string& text) const { write_text(folder_.path() / "fit/calibration.json", text); }
-
- private:
-  TemporaryFolder folder_;
+  void write_fit(const std::string& text) const { write_text(folder() / "fit/calibration.json", text); }
 };
 
 TEST_F(CorrelatedSweep, DrawsMeansErrorsAndCorrelationOfTheCalibration) {

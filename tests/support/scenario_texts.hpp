@@ -1,0 +1,30 @@
+/// Texts of scenarios that several tests begin with.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace monograin {
+
+inline constexpr const char* k_hertz_text = R"(model = "hertz"
+[particle]
+radius = "10 mm"
+[material]
+youngs_modulus = "50 GPa"
+poisson_ratio = 0.22
+[loading]
+configuration = "simple"
+[[loading.steps]]
+displacement = "0.01 R0"
+duration = "1 s"
+)";
+
+/// A text with a part of it, which has to be there, in another form.
+[[nodiscard]] inline std::string replaced(std::string text, const std::string& old, const std::string& by) {
+  const std::size_t at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return at == std::string::npos ? text : text.replace(at, old.size(), by);
+}
+
+}  // namespace monograin
