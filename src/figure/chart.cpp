@@ -10,8 +10,10 @@
 #include <fmt/ranges.h>
 
 #include "figure/data_file.hpp"
+#include "figure/figure.hpp"
 #include "figure/gnuplot.hpp"
 #include "figure/legend.hpp"
+#include "figure/page.hpp"
 
 namespace monograin::figure {
 namespace {
@@ -404,6 +406,20 @@ std::string chart_script(const Chart& chart, Format format, const std::string& f
   }
   text += "unset logscale; unset object\n" + legend_text(rows, layout);
   return text + k_page_foot;
+}
+
+void draw_chart(const Chart& chart, const std::string& source, const std::filesystem::path& output) {
+  const FigureFiles files(output);
+  files.write(chart_data(chart, source), chart_script(chart, files.format(), files.figure_name(), files.data_name()));
+}
+
+std::string try_to_draw(const Chart& chart, const std::string& source, const std::filesystem::path& output) {
+  try {
+    draw_chart(chart, source, output);
+  } catch (const FigureError& error) {
+    return error.what();
+  }
+  return {};
 }
 
 }  // namespace monograin::figure

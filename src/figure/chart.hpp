@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -87,5 +88,12 @@ struct Chart {
 /// @param figure_name, data_name  files in the script's own folder
 [[nodiscard]] std::string chart_script(const Chart& chart, Format format, const std::string& figure_name,
                                        const std::string& data_name);
+
+/// Draws a chart, with its script and its data beside it. @throws FigureError
+void draw_chart(const Chart& chart, const std::string& source, const std::filesystem::path& output);
+
+/// Draws a chart that its results can do without. @return why there is none; empty: there is one
+[[nodiscard]] std::string try_to_draw(const Chart& chart, const std::string& source,
+                                      const std::filesystem::path& output);
 
 }  // namespace monograin::figure

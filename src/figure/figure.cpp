@@ -11,11 +11,7 @@ namespace monograin {
 void draw_runs(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& output) {
   if (runs.empty()) throw FigureError("there is no run to draw");
   const figure::FigureFiles files(output);
-  if (const auto chart = figure::body_chart(runs)) {
-    files.write(figure::chart_data(*chart, "runs"),
-                figure::chart_script(*chart, files.format(), files.figure_name(), files.data_name()));
-    return;
-  }
+  if (const auto chart = figure::body_chart(runs)) return figure::draw_chart(*chart, "runs", output);
   const auto curves = figure::read_runs(runs);
   const figure::Scales scales(curves);
   files.write(figure::data_text(curves, scales),

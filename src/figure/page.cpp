@@ -178,6 +178,11 @@ std::string verbatim_text(std::string_view name) {
   return text;
 }
 
+std::string short_text(const std::string& name) {
+  constexpr std::size_t k_room = 28;
+  return verbatim_text(name.size() <= k_room ? name : name.substr(0, k_room - 3) + "...");
+}
+
 void write_whole(const fs::path& file, const std::string& text) {
   try {
     write_text_file(file, text);

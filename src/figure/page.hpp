@@ -36,6 +36,9 @@ struct Axis {
 /// A name that is to appear as it is, as gnuplot's enhanced text.
 [[nodiscard]] std::string verbatim_text(std::string_view name);
 
+/// A name as it is, cut where a panel or a legend has no more room.
+[[nodiscard]] std::string short_text(const std::string& name);
+
 /// Last part of a script.
 inline constexpr const char* k_page_foot = "unset multiplot\nunset output\n";
 

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
 
 #include "catalogue.hpp"
@@ -20,11 +19,7 @@ using Json = nlohmann::ordered_json;
 constexpr int k_run_format = 1;  ///< of run.json
 constexpr std::size_t k_largest_run = std::size_t{256} << 20U;
 
-void write_table(const Table& table, const fs::path& file) {
-  std::ostringstream text;
-  write_csv(table, text);
-  write_text_file(file, text.view());
-}
+void write_table(const Table& table, const fs::path& file) { write_text_file(file, csv_text(table)); }
 
 Json versions() { return {{"monograin", version()}, {"sundials", sundials_version()}, {"compiler", __VERSION__}}; }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <ostream>
+#include <sstream>
 #include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
@@ -328,6 +329,12 @@ void write_csv(const Table& table, std::ostream& out) {
     if (text.size() >= k_chunk) write();
   }
   write();
+}
+
+std::string csv_text(const Table& table) {
+  std::ostringstream text;
+  write_csv(table, text);
+  return std::move(text).str();
 }
 
 Table read_csv(const std::filesystem::path& file, FileKind kind) {

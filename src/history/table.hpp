@@ -74,6 +74,8 @@ void append_csv_number(std::string& text, double value);
 /// Nothing is quoted: a line break in a header line becomes a space.
 /// @throws std::invalid_argument when a heading or a word contains a comma, a quote or a line break
 void write_csv(const Table& table, std::ostream& out);
+/// The text that write_csv writes.
+[[nodiscard]] std::string csv_text(const Table& table);
 
 /// Reads what write_csv writes, and any CSV with one row of headings and optional `#` lines.
 /// Blank lines, blanks around cells, a byte order mark and CRLF line ends do no harm; quotes have no meaning. A column

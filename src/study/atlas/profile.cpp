@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <sstream>
 #include <stdexcept>
 
 #include "catalogue.hpp"
@@ -150,14 +149,10 @@ fs::path draw_profiles(const Table& profiles, const fs::path& output) {
   if (lowest < -2.0 * highest) pressure.y.lowest = -2.0 * highest;
   const figure::Chart chart{.panels = {std::move(pressure), std::move(surface)},
                             .references = figure::references_of(profiles)};
-  const figure::FigureFiles files(output);
-  files.write(figure::chart_data(chart, fmt::format("contact profiles of {}", profiles.header_value("scenario"))),
-              figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
+  figure::draw_chart(chart, fmt::format("contact profiles of {}", profiles.header_value("scenario")), output);
   fs::path csv = output;
   csv.replace_extension(".csv");
-  std::ostringstream text;
-  write_csv(profiles, text);
-  figure::write_whole(csv, text.str());
+  figure::write_whole(csv, csv_text(profiles));
   return csv;
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -14,38 +13,25 @@
 #include "scenario/integrators.hpp"
 #include "study/calibrate/bad_fit.hpp"
 #include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/fit_notes.hpp"
+#include "study/calibrate/response.hpp"
 #include "study/calibrate/thinning.hpp"
 #include "system/undefined.hpp"
 
 namespace monograin {
 namespace {
 
-constexpr double k_direct_noise = 1e-13;     // of a response without time integration
 constexpr double k_jump_share = 0.7;         // of a central difference: a smaller one to one side has no jump
-constexpr double k_series_noise = 1e-12;     // of a response in series with a machine
 constexpr std::size_t k_curve_points = 400;  // of the curve between the data
 constexpr int k_most_rounds = 50;            // of fits and the noise they leave
-constexpr double k_improbable = 1e-3;        // share of cases in which a test is wrong
-constexpr double k_far_from_prior = 3.0;     // standard deviations
 constexpr int k_most_better = 3;             // better fits that intervals come upon
 constexpr double k_margin_of_rounding = 1e3;
 constexpr double k_bad_condition = 1e3;  // a correlation of 1 - 2e-6
 constexpr std::size_t k_bootstrap_samples = 400;
 constexpr std::uint64_t k_seed = 20260101;
 constexpr double k_same_weight = 1e-9;
-constexpr std::size_t k_dense = 800;         // rows: more of them are thinned while the fit is sought
-constexpr std::size_t k_thinned = 400;       // about so many rows are left
-constexpr double k_high_correlation = 0.95;  // of two parameters
-constexpr double k_poor = 0.1;               // relative standard error
-
-/// Relative error of the responses.
-double noise_of(const Calibration& calibration) {
-  const Scene scene = make_scene(calibration.scenario);
-  const Numerics& numerics = calibration.scenario.numerics;
-  const bool is_direct = choose_integrator(numerics.integrator, *scene.system).used == integrators::k_direct;
-  const double noise = is_direct ? k_direct_noise : numerics.rtol;
-  return calibration.has_machine() ? std::max(noise, k_series_noise) : noise;
-}
+constexpr std::size_t k_dense = 800;    // rows: more of them are thinned while the fit is sought
+constexpr std::size_t k_thinned = 400;  // about so many rows are left
 
 /// Into how many parts a curve's pieces are divided, so that it is smooth.
 std::size_t parts_of(std::span<const double> x) { return std::max<std::size_t>(1, k_curve_points / x.size()); }
@@ -62,87 +48,10 @@ std::vector<double> refined(std::span<const double> x, std::size_t parts) {
   return result;
 }
 
-/// The response of one curve's scenario as the residuals of a problem, with the parameters of a fit.
-class Response {
- public:
-  /// @param x, y  what was measured
-  Response(const Calibration& calibration, const MeasuredCurve& curve, std::vector<double> x, std::vector<double> y)
-      : calibration_(calibration),
-        curve_(curve),
-        replay_(curve.scenario, {curve.driven, calibration.y.observable, curve.control, curve.start}, x),
-        x_(std::move(x)),
-        y_(std::move(y)),
-        noise_(noise_of(calibration)) {}
-
-  bool operator()(std::span<const double> parameters, std::span<double> response) {
-    problem_.clear();
-    for (std::size_t k = 0; k < parameters.size(); ++k) {
-      const std::string& path = calibration_.free[k].key.path;
-      if (!path.starts_with(calibration::k_data)) replay_.set(path, parameters[k]);
-    }
-    const Machine machine = calibration_.machine_of(curve_, parameters);
-    if (calibration_.machine_moves_x()) {
-      if (!machine.is_rigid()) return run_in_series(machine, response);
-      if (std::exchange(is_moved_, false)) replay_.follow(x_);
-      particle_ = x_;
-      return replay_.run(response);
-    }
-    if (!replay_.run(response)) return false;
-    particle_.assign(response.begin(), response.end());
-    for (std::size_t i = 0; i < x_.size(); ++i) response[i] += machine.addition(x_[i]);
-    return true;
-  }
-
-  /// Displacements at the particle in the last run, where x or y is a displacement.
-  [[nodiscard]] const std::vector<double>& particle() const noexcept { return particle_; }
-  [[nodiscard]] const Replay& replay() const noexcept { return replay_; }
-  /// Why there was no response.
-  [[nodiscard]] const std::string& problem() const noexcept { return problem_.empty() ? replay_.problem() : problem_; }
-
- private:
-  /// The machine shows the sum of its displacement and the particle's.
-  bool run_in_series(const Machine& machine, std::span<double> response) {
-    is_moved_ = true;
-    particle_ = x_;
-    for (std::size_t i = 0; i < x_.size(); ++i) particle_[i] -= machine.addition(y_[i]);
-    double largest = 0.0;
-    for (const double x : x_) largest = std::max(largest, std::abs(x));
-    bool has_run = true;
-    const auto forces_of = [&](const std::vector<double>& particle, std::span<double> forces) {
-      replay_.follow(particle);
-      has_run = replay_.run(forces);
-      return has_run;
-    };
-    if (put_in_series(machine, x_, forces_of, noise_ * largest, particle_, response)) return true;
-    if (has_run) problem_ = "no displacements of the particle and of the machine add up to those measured";
-    return false;
-  }
-
-  const Calibration& calibration_;
-  const MeasuredCurve& curve_;
-  Replay replay_;
-  std::vector<double> x_;
-  std::vector<double> y_;
-  double noise_;  ///< relative error of a response
-  std::vector<double> particle_;
-  bool is_moved_ = false;  ///< the replay follows other values than x
-  std::string problem_;
-};
-
 /// A curve's share of values that are kept row by row.
 template <class T>
 std::span<T> rows_of(std::vector<T>& values, const MeasuredCurve& curve) {
   return std::span(values).subspan(curve.begin, curve.end - curve.begin);
-}
-
-std::vector<double> x_of(const Calibration& calibration, const MeasuredCurve& curve) {
-  const auto begin = calibration.x.values.begin();
-  return {begin + static_cast<std::ptrdiff_t>(curve.begin), begin + static_cast<std::ptrdiff_t>(curve.end)};
-}
-
-std::vector<double> y_of(const Calibration& calibration, const MeasuredCurve& curve) {
-  const auto begin = calibration.y.values.begin();
-  return {begin + static_cast<std::ptrdiff_t>(curve.begin), begin + static_cast<std::ptrdiff_t>(curve.end)};
 }
 
 /// residual_jacobian, but for residuals that jump within a step: there the difference to the side without the jump. In
@@ -277,7 +186,7 @@ class Fit {
       result.program_steps += response.replay().scenario().loading.steps.size();
     }
     add_statistics(result);
-    add_notes(result);
+    result.notes = notes_of(calibration_, result);
     return result;
   }
 
@@ -554,133 +463,8 @@ class Fit {
     result.rms = std::sqrt(about_fit / static_cast<double>(rows_.size()));
     result.r_squared = is_constant(calibration_) ? k_nan : 1.0 - about_fit / about_mean;
     result.explained = explained_share(calibration_, cost_of_data(result.solution));
-  }
-
-  void add_notes(CalibrationResult& result) const {
-    using Bound = LeastSquaresSolution::Bound;
-    const LeastSquaresSolution& solution = result.solution;
-    const auto note = [&result](std::string text) { result.notes.push_back(std::move(text)); };
-    result.notes = calibration_.notes;
-    for (std::size_t k = 0; k < calibration_.free.size(); ++k) {
-      const FreeParameter& parameter = calibration_.free[k];
-      const std::string& path = parameter.key.path;
-      if (!result.uncertainty.is_determined[k]) {
-        note(
-            fmt::format("the data do not determine '{}': other values of it, alone or together with other parameters, "
-                        "fit as well",
-                        path));
-      } else if (solution.bounds[k] != Bound::none) {
-        note(fmt::format("'{}' sits at its {} bound; its interval ends there", path,
-                         solution.bounds[k] == Bound::lower ? "lower" : "upper"));
-      } else if (result.uncertainty.half_width(k) > 0.5 * (parameter.upper - parameter.lower)) {
-        note(fmt::format("the data hardly determine '{}': its interval is wider than its bounds", path));
-      }
-    }
-    if (result.uncertainty.degrees_of_freedom == 0 && !calibration_.knows_noise()) {
-      note(
-          fmt::format("{} parameters for {} points: the fit leaves nothing to estimate errors from; no errors and no "
-                      "intervals",
-                      calibration_.free.size(), rows_.size()));
-    }
-    if (calibration_.knows_noise()) note_chi_squared(result);
-    note_priors(result);
-    if (!solution.has_converged) note("the search ended before its steps had vanished; the fit may not be the best");
-    if (solution.failures > 0) {
-      note(fmt::format("{} of {} trial runs ended early, outside the model's domain, and were passed over",
-                       solution.failures, solution.evaluations));
-    }
-    for (const MeasuredCurve& curve : calibration_.curves) {
-      const std::vector<double> x = x_of(calibration_, curve);
-      note_table_ends(curve, x, result);
-      const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
-      if (changed != x.end() && *changed < x.front() && x.front() > curve.start) {
-        note("the data begin with unloading; the particle is loaded to their first row from rest");
-      }
-    }
-    note_correlations(result);
-    note_residual_tests(result);
-  }
-
-  /// Says where the residuals do not have the size of the noise.
-  void note_chi_squared(CalibrationResult& result) const {
-    const auto degrees = static_cast<double>(result.uncertainty.degrees_of_freedom);
-    if (degrees == 0.0) return;
-    const boost::math::chi_squared distribution(degrees);
-    const double above = boost::math::cdf(boost::math::complement(distribution, result.sum_of_squares));
-    const double reduced = result.sum_of_squares / degrees;
-    if (above < k_improbable) {
-      result.notes.push_back(
-          fmt::format("chi^2 over degrees of freedom is {:.3g}: the residuals are larger than the noise given, by the "
-                      "law or by the data; the intervals are too narrow by a factor of about {:.2g}",
-                      reduced, std::sqrt(reduced)));
-    } else if (1.0 - above < k_improbable) {
-      result.notes.push_back(
-          fmt::format("chi^2 over degrees of freedom is {:.3g}: the noise given is larger than the residuals; the "
-                      "intervals are too wide",
-                      reduced));
-    }
-  }
-
-  /// Says which priors the data contradict.
-  void note_priors(CalibrationResult& result) const {
-    for (const std::size_t k : priors_) {
-      const FreeParameter& parameter = calibration_.free[k];
-      const double deviation = parameter.prior->deviation(result.solution.parameters[k]);
-      if (std::abs(deviation) <= k_far_from_prior) continue;
-      result.notes.push_back(
-          fmt::format("'{}' lies {:.2g} standard deviations of its prior from its centre: data and "
-                      "prior contradict each other",
-                      parameter.key.path, std::abs(deviation)));
-    }
-  }
-
-  /// Says what it means where residuals are not independent.
-  void note_residual_tests(CalibrationResult& result) const {
-    if (is_exact(result)) return;
-    result.residual_tests = test_residuals(std::span(result.solution.residuals).first(rows_.size()));
-    if (!result.residual_tests || result.residual_tests->are_independent()) return;
-    const ResidualTests& tests = *result.residual_tests;
-    std::string note = fmt::format(
-        "the residuals are not independent: {} stretches of one sign where noise has {:.0f} (runs test, p = {:.2g}), "
-        "correlation of neighbours {:.2f} (p = {:.2g}); the law, or the machine, differs from the data in a way "
-        "that is not noise",
-        tests.runs, tests.expected_runs, tests.runs_p, tests.correlation, tests.correlation_p);
-    if (tests.correlation > 0.0 && tests.correlation < 1.0) {
-      note += fmt::format(", and intervals are too narrow, by a factor of about {:.2g}",
-                          std::sqrt((1.0 + tests.correlation) / (1.0 - tests.correlation)));
-    }
-    result.notes.push_back(std::move(note));
-  }
-
-  void note_table_ends(const MeasuredCurve& curve, const std::vector<double>& x, CalibrationResult& result) const {
-    if (curve.machine.forces.empty()) return;
-    const std::vector<double> forces = calibration_.machine_moves_x() ? y_of(calibration_, curve) : x;
-    const double largest = *std::ranges::max_element(forces);
-    if (largest <= curve.machine.forces.back()) return;
-    result.notes.push_back(fmt::format(
-        "the table of the machine's displacement ends at {:.6g} N and is continued by its last piece to {:.6g} N",
-        curve.machine.forces.back(), largest));
-  }
-
-  /// Pairs of parameters of which the data tell little more than a combination.
-  void note_correlations(CalibrationResult& result) const {
-    for (std::size_t i = 0; i < calibration_.free.size(); ++i) {
-      for (std::size_t j = i + 1; j < calibration_.free.size(); ++j) {
-        const double correlation = result.uncertainty.correlation(i, j);
-        if (!(std::abs(correlation) > k_high_correlation)) continue;
-        // The one of which the data know less.
-        const auto relative = [&](std::size_t k) {
-          if (calibration_.free[k].key.path == calibration::k_offset) return 0.0;  // zero is a value as others
-          return result.uncertainty.standard_error(k) / std::abs(result.solution.parameters[k]);
-        };
-        const std::size_t poor = relative(i) > relative(j) ? i : j;
-        if (!(relative(poor) > k_poor)) continue;
-        result.notes.push_back(fmt::format(
-            "the data determine '{}' poorly, to {:.0f} %: its correlation with '{}' is {:.3f}; hold one of them if it "
-            "is known otherwise",
-            calibration_.free[poor].key.path, 100.0 * relative(poor), calibration_.free[i + j - poor].key.path,
-            correlation));
-      }
+    if (!is_exact(result)) {
+      result.residual_tests = test_residuals(std::span(result.solution.residuals).first(rows_.size()));
     }
   }
 

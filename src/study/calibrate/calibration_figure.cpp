@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 
 #include "catalogue.hpp"
 #include "figure/chart.hpp"
-#include "figure/figure.hpp"
 #include "figure/page.hpp"
 #include "system/undefined.hpp"
 
@@ -128,23 +128,13 @@ figure::Chart chart_of(std::span<const Calibration> calibrations, std::span<cons
   return {{std::move(curves), std::move(rest)}};
 }
 
-std::string write(const figure::Chart& chart, const std::string& title, const fs::path& figure) {
-  try {
-    const figure::FigureFiles files(figure);
-    files.write(figure::chart_data(chart, title),
-                figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
-  } catch (const FigureError& error) {
-    return error.what();
-  }
-  return {};
-}
-
 }  // namespace
 
 std::string draw_calibration(const Calibration& calibration, const CalibrationResult& result, const fs::path& folder) {
   figure::Chart chart = chart_of(calibration, result);
   chart.references = reference_texts(*find_model(calibration.scenario.model));
-  return write(chart, fmt::format("{}: {}", calibration.name, data_names(calibration)), folder / "figure.svg");
+  return figure::try_to_draw(chart, fmt::format("{}: {}", calibration.name, data_names(calibration)),
+                             folder / "figure.svg");
 }
 
 std::string draw_comparison(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
@@ -153,13 +143,10 @@ std::string draw_comparison(std::span<const Calibration> calibrations, std::span
   std::vector<std::string> names;
   for (const Calibration& calibration : calibrations) {
     names.push_back(calibration.name);
-    for (std::string& reference : reference_texts(*find_model(calibration.scenario.model))) {
-      if (std::ranges::find(chart.references, reference) == chart.references.end()) {
-        chart.references.push_back(std::move(reference));
-      }
-    }
+    std::ranges::move(reference_texts(*find_model(calibration.scenario.model)), std::back_inserter(chart.references));
   }
-  return write(chart, fmt::format("{}: {}", fmt::join(names, ", "), data_names(calibrations.front())), figure);
+  return figure::try_to_draw(chart, fmt::format("{}: {}", fmt::join(names, ", "), data_names(calibrations.front())),
+                             figure);
 }
 
 }  // namespace monograin

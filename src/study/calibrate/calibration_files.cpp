@@ -7,7 +7,6 @@
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "catalogue.hpp"
 #include "figure/chart.hpp"
@@ -27,12 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Bound = LeastSquaresSolution::Bound;
-
-void write_csv_file(const Table& table, const fs::path& file) {
-  std::ostringstream text;
-  write_csv(table, text);
-  figure::write_whole(file, text.str());
-}
 
 Json prior_json(const FreeParameter& parameter, double value) {
   if (!parameter.prior) return {};
@@ -262,7 +255,7 @@ std::string calibration_json(const Calibration& calibration, const CalibrationRe
 
 std::string write_calibration(const Calibration& calibration, const CalibrationResult& result, StagedFolder& folder,
                               bool has_report) {
-  write_csv_file(fit_table(calibration, result), folder.path() / "fit.csv");
+  figure::write_whole(folder.path() / "fit.csv", csv_text(fit_table(calibration, result)));
   figure::write_whole(folder.path() / "fitted.toml", fitted_scenario_text(calibration, result));
   for (const auto& [option, curve] : calibration.scenario.curves) {
     figure::write_whole(folder.path() / table_name(option), curve.text);

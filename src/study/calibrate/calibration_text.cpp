@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "catalogue.hpp"
+#include "figure/markdown.hpp"
 #include "monograin/version.hpp"
 #include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/text_table.hpp"
@@ -196,8 +197,10 @@ std::string calibration_report(const Calibration& calibration, const Calibration
                                  calibration.scenario.model, calibration.scenario.name, version());
   text += list_of("Data", data_lines(calibration));
   if (has_figure) text += "\n![data, fit and residuals](figure.svg)\n";
-  for (const TitledTable& table : tables_of(calibration, result)) {
-    text += fmt::format("\n## {}\n\n{}", table.title, markdown(table.rows, table.has_headings));
+  for (TitledTable& table : tables_of(calibration, result)) {
+    text += fmt::format("\n## {}\n\n", table.title);
+    if (!table.has_headings) table.rows.insert(table.rows.begin(), {"quantity", "value"});
+    append_markdown(text, table.rows);
     if (table.title == "Parameters") text += '\n' + intervals_line(result);
   }
   text += list_of("Warnings", result.warnings) + list_of("Notes", result.notes);

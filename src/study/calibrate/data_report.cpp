@@ -292,10 +292,7 @@ figure::Chart data_chart(const std::vector<DataReport>& reports) {
 }
 
 void draw_data(const std::vector<DataReport>& reports, const fs::path& output) {
-  const figure::FigureFiles files(output);
-  const figure::Chart chart = data_chart(reports);
-  files.write(figure::chart_data(chart, reports.front().file),
-              figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
+  figure::draw_chart(data_chart(reports), reports.front().file, output);
 }
 
 }  // namespace monograin

@@ -8,8 +8,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "figure/figure.hpp"
+#include "figure/page.hpp"
 #include "history/branches.hpp"
+#include "history/table.hpp"
 #include "study/calibrate/calibration_figure.hpp"
 #include "study/calibrate/text_table.hpp"
 #include "system/undefined.hpp"
@@ -78,6 +79,40 @@ std::vector<std::size_t> best_first(const ModelComparison& comparison) {
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return comparison.fits[k].bic; });
   return order;
+}
+
+Table table_of(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
+               const ModelComparison& comparison) {
+  std::vector<std::string> names;
+  std::vector<std::string> models;
+  for (const Calibration& calibration : calibrations) {
+    names.push_back(calibration.name);
+    models.push_back(calibration.scenario.model);
+  }
+  const std::string& unit = calibrations.front().y.si;
+  Table table({{"fit", "", names},
+               {"model", "", models},
+               {"parameters", "", {}},
+               {"points", "", {}},
+               {"rms", unit, {}},
+               {"r_squared", "", {}},
+               {"aic", "", {}},
+               {"bic", "", {}},
+               {"prediction_rms", unit, {}}});
+  for (const std::size_t k : best_first(comparison)) {
+    const RankedFit& fit = comparison.fits[k];
+    const std::vector<double> row{static_cast<double>(k),
+                                  static_cast<double>(k),
+                                  static_cast<double>(fit.parameters),
+                                  static_cast<double>(results[k].points),
+                                  results[k].rms,
+                                  results[k].r_squared,
+                                  fit.aic,
+                                  fit.bic,
+                                  fit.prediction};
+    table.append(row);
+  }
+  return table;
 }
 
 /// A value in the unit of y, or a dash.
@@ -180,16 +215,7 @@ std::string comparison_text(std::span<const Calibration> calibrations, std::span
 
 std::string write_comparison(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
                              const ModelComparison& comparison, StagedFolder& folder) {
-  const Calibration& first = calibrations.front();
-  std::string csv = fmt::format("fit,model,parameters,points,rms[{0}],r_squared,aic,bic,prediction_rms[{0}]\n",
-                                first.y.si.empty() ? "-" : first.y.si);
-  for (const std::size_t k : best_first(comparison)) {
-    const RankedFit& fit = comparison.fits[k];
-    csv += fmt::format("{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", calibrations[k].name,
-                       calibrations[k].scenario.model, fit.parameters, results[k].points, results[k].rms,
-                       results[k].r_squared, fit.aic, fit.bic, fit.prediction);
-  }
-  figure::write_whole(folder.path() / k_comparison_marker, csv);
+  figure::write_whole(folder.path() / k_comparison_marker, csv_text(table_of(calibrations, results, comparison)));
   std::string problem = draw_comparison(calibrations, results, folder.path() / "comparison.svg");
   folder.publish();
   return problem;

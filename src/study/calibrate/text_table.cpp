@@ -29,27 +29,4 @@ std::string aligned(const std::vector<TextRow>& rows) {
   return text;
 }
 
-std::string markdown(const std::vector<TextRow>& rows, bool has_headings) {
-  const std::size_t columns = rows.front().size();
-  std::string text;
-  const auto add = [&](const TextRow& row) {
-    text += '|';
-    for (std::size_t k = 0; k < columns; ++k) {
-      text += ' ';
-      for (const char c : k < row.size() ? row[k] : std::string()) {
-        if (c == '|') text += '\\';
-        text += c;
-      }
-      text += " |";
-    }
-    text += '\n';
-  };
-  add(has_headings ? rows.front() : TextRow{});
-  text += '|';
-  for (std::size_t k = 0; k < columns; ++k) text += k == 0 ? " --- |" : " ---: |";
-  text += '\n';
-  for (std::size_t row = has_headings ? 1 : 0; row < rows.size(); ++row) add(rows[row]);
-  return text;
-}
-
 }  // namespace monograin

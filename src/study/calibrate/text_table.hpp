@@ -12,7 +12,4 @@ using TextRow = std::vector<std::string>;
 /// shorter than the first one.
 [[nodiscard]] std::string aligned(const std::vector<TextRow>& rows);
 
-/// Rows as a table in Markdown. @param has_headings  whether the first row is that of the headings
-[[nodiscard]] std::string markdown(const std::vector<TextRow>& rows, bool has_headings);
-
 }  // namespace monograin

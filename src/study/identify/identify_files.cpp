@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "catalogue.hpp"
 #include "figure/chart.hpp"
-#include "figure/figure.hpp"
 #include "figure/page.hpp"
 #include "history/run.hpp"
 #include "scenario/units.hpp"
@@ -111,12 +109,6 @@ std::vector<NamedErrors> all_sets(const ExperimentPlan& plan, const IdentifyResu
   return sets;
 }
 
-/// The name of a set, cut where a legend has no more room.
-std::string legend_of(const std::string& name) {
-  constexpr std::size_t k_room = 28;
-  return figure::verbatim_text(name.size() <= k_room ? name : name.substr(0, k_room - 3) + "...");
-}
-
 figure::ChartPanel error_panel(const ExperimentPlan& plan, const std::vector<NamedErrors>& sets, std::size_t k) {
   figure::ChartPanel panel{
       .x = {.label = sets.front().name == "planned" ? "planned, and with each candidate" : "candidate",
@@ -128,7 +120,8 @@ figure::ChartPanel error_panel(const ExperimentPlan& plan, const std::vector<Nam
   for (std::size_t s = 0; s < sets.size(); ++s) {
     const bool is_determined = sets[s].errors->uncertainty.is_determined[k];
     panel.x.names.emplace_back(is_determined ? " " : "?");
-    figure::ChartArea bar{.legend = legend_of(sets[s].name), .colour = k_colours[s % k_colours.size()], .boxes = {}};
+    figure::ChartArea bar{
+        .legend = figure::short_text(sets[s].name), .colour = k_colours[s % k_colours.size()], .boxes = {}};
     if (is_determined) {
       const double error = 100.0 * relative_error(plan, *sets[s].errors, k);
       const double place = static_cast<double>(s) + 1.0;
@@ -143,17 +136,10 @@ figure::ChartPanel error_panel(const ExperimentPlan& plan, const std::vector<Nam
 
 std::string draw(const ExperimentPlan& plan, const std::vector<NamedErrors>& sets,
                  const std::filesystem::path& folder) {
-  try {
-    const figure::FigureFiles files(folder / k_figure);
-    figure::Chart chart;
-    for (std::size_t k = 0; k < plan.free.size(); ++k) chart.panels.push_back(error_panel(plan, sets, k));
-    chart.references = reference_texts(*find_model(plan.scenario.model));
-    files.write(figure::chart_data(chart, "expected errors of " + plan.name),
-                figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
-  } catch (const FigureError& error) {
-    return error.what();
-  }
-  return {};
+  figure::Chart chart;
+  for (std::size_t k = 0; k < plan.free.size(); ++k) chart.panels.push_back(error_panel(plan, sets, k));
+  chart.references = reference_texts(*find_model(plan.scenario.model));
+  return figure::try_to_draw(chart, "expected errors of " + plan.name, folder / k_figure);
 }
 
 }  // namespace
@@ -210,9 +196,7 @@ Table identify_table(const ExperimentPlan& plan, const IdentifyResult& result) {
 }
 
 std::string write_identify(const ExperimentPlan& plan, const IdentifyResult& result, StagedFolder& folder) {
-  std::ostringstream text;
-  write_csv(identify_table(plan, result), text);
-  figure::write_whole(folder.path() / k_identify_marker, std::string(text.view()));
+  figure::write_whole(folder.path() / k_identify_marker, csv_text(identify_table(plan, result)));
   const std::string problem = draw(plan, all_sets(plan, result), folder.path());
   folder.publish();
   return problem;

@@ -8,11 +8,9 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <stdexcept>
 
 #include "figure/chart.hpp"
-#include "figure/figure.hpp"
 #include "figure/page.hpp"
 #include "numerics/quantile.hpp"
 #include "scenario/text_file.hpp"
@@ -240,19 +238,10 @@ HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
 }
 
 std::string write_bands(const Sweep& sweep, const HistoryBands& bands, const fs::path& folder) {
-  std::ostringstream table;
-  write_csv(table_of(sweep, bands), table);
-  write_text_file(folder / "bands.csv", table.view());
-  try {
-    figure::Chart chart;
-    for (std::size_t y = 0; y < bands.y.size(); ++y) chart.panels.push_back(panel_of(sweep, bands, y));
-    const figure::FigureFiles files(folder / "bands.svg");
-    files.write(figure::chart_data(chart, "percentiles of the histories of sweep " + sweep.name),
-                figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
-  } catch (const FigureError& error) {
-    return error.what();
-  }
-  return {};
+  write_text_file(folder / "bands.csv", csv_text(table_of(sweep, bands)));
+  figure::Chart chart;
+  for (std::size_t y = 0; y < bands.y.size(); ++y) chart.panels.push_back(panel_of(sweep, bands, y));
+  return figure::try_to_draw(chart, "percentiles of the histories of sweep " + sweep.name, folder / "bands.svg");
 }
 
 }  // namespace monograin

@@ -7,6 +7,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
+
+#include "scenario/document.hpp"
+#include "scenario/text_file.hpp"
+#include "scenario/words.hpp"
 
 namespace monograin {
 namespace {
@@ -26,6 +31,16 @@ void JointNormal::correlate(std::span<double> shares) const {
   for (std::size_t k = 0; k < shares.size(); ++k) {
     shares[k] = boost::math::cdf(normal, z[static_cast<Eigen::Index>(k)]);
   }
+}
+
+std::string text_of_calibration(std::filesystem::path path) {
+  if (std::filesystem::is_directory(path)) path /= "calibration.json";
+  auto [text, problem] = read_text_file(path, k_largest_text);
+  if (!problem.empty()) {
+    throw std::runtime_error(
+        fmt::format("{} ({}); expected a path relative to this file", problem, on_one_line(path.string())));
+  }
+  return std::move(text);
 }
 
 JointNormal read_joint_normal(std::string_view text) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,10 @@ struct JointNormal {
   /// @param shares  between 0 and 1
   void correlate(std::span<double> shares) const;
 };
+
+/// Text of the result of a calibration. @param path  of its calibration.json, or of the folder with that
+/// @throws std::runtime_error with what is wrong
+[[nodiscard]] std::string text_of_calibration(std::filesystem::path path);
 
 /// Reads what `monograin calibrate` writes. Numbers of the machine are left out.
 /// @param text  of a calibration.json

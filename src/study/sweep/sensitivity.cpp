@@ -6,13 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "figure/chart.hpp"
-#include "figure/figure.hpp"
 #include "figure/gnuplot.hpp"
 #include "figure/page.hpp"
 #include "history/table.hpp"
@@ -66,18 +64,11 @@ namespace fs = std::filesystem;
 
 using Style = figure::ChartSeries::Style;
 
-/// The name of a result, cut where a panel has no more room.
-[[nodiscard]] std::string note_of(const ResultSensitivity& found) {
-  constexpr std::size_t k_room = 28;
-  const std::string& name = found.result;
-  return figure::verbatim_text(name.size() <= k_room ? name : name.substr(0, k_room - 3) + "...");
-}
-
 /// First-order indices beside total ones, each with its interval; a colour for each factor.
 [[nodiscard]] figure::ChartPanel index_panel(const Sweep& sweep, const ResultSensitivity& found) {
   figure::ChartPanel panel{.x = {.label = "index", .lowest = 0.5, .highest = 2.5, .names = {"first order", "total"}},
                            .y = {.label = "share of the variance"},
-                           .note = note_of(found)};
+                           .note = figure::short_text(found.result)};
   const std::size_t count = sweep.factors.size();
   for (std::size_t k = 0; k < count; ++k) {
     const std::string legend = figure::verbatim_text(short_name(sweep, k));
@@ -99,7 +90,7 @@ using Style = figure::ChartSeries::Style;
 [[nodiscard]] figure::ChartPanel effect_panel(const Sweep& sweep, const ResultSensitivity& found) {
   figure::ChartPanel panel{.x = {.label = "mean size of the effects", .lowest = 0.0},
                            .y = {.label = "their standard deviation", .lowest = 0.0},
-                           .note = note_of(found)};
+                           .note = figure::short_text(found.result)};
   for (std::size_t k = 0; k < sweep.factors.size(); ++k) {
     const auto& [size, lower, upper] = found.morris.mean_size[k];
     const double spread = found.morris.spread[k];
@@ -148,14 +139,12 @@ using Style = figure::ChartSeries::Style;
   return table;
 }
 
-void draw_sensitivities(const Sweep& sweep, const std::vector<ResultSensitivity>& found, const fs::path& output) {
+[[nodiscard]] figure::Chart chart_of(const Sweep& sweep, const std::vector<ResultSensitivity>& found) {
   figure::Chart chart;
   for (const ResultSensitivity& result : found) {
     chart.panels.push_back(is_morris(sweep) ? effect_panel(sweep, result) : index_panel(sweep, result));
   }
-  const figure::FigureFiles files(output);
-  files.write(figure::chart_data(chart, "sensitivities of sweep " + sweep.name),
-              figure::chart_script(chart, files.format(), files.figure_name(), files.data_name()));
+  return chart;
 }
 
 }  // namespace
@@ -214,15 +203,9 @@ std::string sensitivity_text(const Sweep& sweep, const std::vector<ResultSensiti
 
 std::string write_sensitivities(const Sweep& sweep, const std::vector<ResultSensitivity>& found,
                                 const fs::path& folder) {
-  std::ostringstream table;
-  write_csv(sensitivity_table(sweep, found), table);
-  write_text_file(folder / "sensitivity.csv", table.view());
-  try {
-    draw_sensitivities(sweep, found, folder / "sensitivity.svg");
-  } catch (const FigureError& error) {
-    return error.what();
-  }
-  return {};
+  write_text_file(folder / "sensitivity.csv", csv_text(sensitivity_table(sweep, found)));
+  return figure::try_to_draw(chart_of(sweep, found), "sensitivities of sweep " + sweep.name,
+                             folder / "sensitivity.svg");
 }
 
 }  // namespace monograin

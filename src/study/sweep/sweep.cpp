@@ -17,7 +17,6 @@
 #include <limits>
 #include <mutex>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <unordered_map>
@@ -117,11 +116,7 @@ void summarise(const Table& history, Headings& headings, Outcome& outcome) {
   return fmt::format("{}", fmt::join(messages, "; "));
 }
 
-void keep_history(const Table& history, const fs::path& file) {
-  std::ostringstream text;
-  write_csv(history, text);
-  write_text_file(file, text.view());
-}
+void keep_history(const Table& history, const fs::path& file) { write_text_file(file, csv_text(history)); }
 
 /// Runs without what only a run's own folder needs.
 [[nodiscard]] RunRecord record_of(const CheckedScenario& scenario) {

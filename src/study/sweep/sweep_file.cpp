@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <map>
 #include <optional>
 #include <set>
 #include <sstream>
 #include <utility>
 
-#include "history/recorder.hpp"
 #include "history/run.hpp"
 #include "scenario/document.hpp"
 #include "scenario/key_path.hpp"
@@ -20,9 +18,9 @@
 #include "scenario/section.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
-#include "scene/scene.hpp"
 #include "study/formula/constraint.hpp"
 #include "study/formula/expression.hpp"
+#include "study/sweep/band_section.hpp"
 #include "study/sweep/design_table.hpp"
 #include "study/sweep/factor.hpp"
 #include "study/sweep/joint_normal.hpp"
@@ -65,10 +63,10 @@ class SweepReader {
     read_radius();
 
     read_factors(root);
-    if (root.has("calibration")) read_calibrated(root);
+    if (!root.text("calibration").empty()) read_calibrated(root);
     read_constraints(root);
     check_results(root);
-    if (root.has("bands")) read_bands(root);
+    if (root.has("bands")) bands_ = sweep::bands_in(reading_, root);
     if (design_ == "table") {
       read_table(root);
     } else if (design_ == "grid") {
@@ -91,9 +89,9 @@ class SweepReader {
             .points = std::move(points_),
             .scenario = std::move(*scenario_),
             .scenario_name = scenario_name_,
-            .keeps_histories = bands_ || root.toggle("histories").value_or(false),
+            .keeps_histories = bands_.has_value() || root.toggle("histories").value_or(false),
             .results = root.texts("results"),
-            .bands = std::move(bands_),
+            .bands = bands_ ? std::optional(std::move(bands_->request)) : std::nullopt,
             .digest = text_digest(fmt::format("monograin {}\n{}", version(), digested_))};
   }
 
@@ -222,24 +220,15 @@ class SweepReader {
 
   /// Numbers that a calibration has found are varied, too, together.
   void read_calibrated(const Section& root) {
-    const std::string name = root.text("calibration");
-    if (name.empty()) return;
     const SourceLocation where = root.value_place("calibration");
-    fs::path file = file_.parent_path() / name;
-    if (fs::is_directory(file)) file /= "calibration.json";
-    const auto fault = [&](std::string_view problem) {
-      faults_.add(where, fmt::format("calibration = \"{}\": {}", shown(name), problem));
-    };
-    const auto [text, problem] = read_text_file(file, k_largest_text);
-    if (!problem.empty()) {
-      return fault(fmt::format("{} ({}); expected a path relative to this file", problem, on_one_line(file.string())));
-    }
+    const std::string named = fmt::format("calibration = \"{}\"", shown(root.text("calibration")));
     try {
+      const std::string text = text_of_calibration(file_.parent_path() / root.text("calibration"));
       JointNormal joint = read_joint_normal(text);
       first_calibrated_ = factors_.size();
       for (std::size_t k = 0; k < joint.keys.size(); ++k) {
         if (std::ranges::find(factors_, joint.keys[k], &Factor::key) != factors_.end()) {
-          return fault(fmt::format("'{}' is varied in [vary], too; expected one of them", joint.keys[k]));
+          throw std::runtime_error(fmt::format("'{}' is varied in [vary], too; expected one of them", joint.keys[k]));
         }
         std::optional<Factor> factor = make_factor(joint.keys[k], where);
         are_keys_known_ = are_keys_known_ && factor;
@@ -251,7 +240,7 @@ class SweepReader {
       digested_ += '\n' + text;
       joint_ = std::move(joint);
     } catch (const std::runtime_error& error) {
-      fault(error.what());
+      faults_.add(where, fmt::format("{}: {}", named, error.what()));
     }
   }
 
@@ -281,50 +270,6 @@ class SweepReader {
     const std::vector<std::string> texts = root.texts("results");
     for (std::size_t i = 0; i < texts.size(); ++i) {
       report_at(root.value_place("results", i), texts[i], [&] { static_cast<void>(Expression(texts[i])); });
-    }
-  }
-
-  void read_bands(const Section& root) {
-    const std::vector<KeySpec> keys = sweep::band_keys();
-    const Section section(reading_, root.table("bands", "[bands]"), keys);
-    BandRequest request{.x = section.text("x"), .y = section.texts("y")};
-    request.points = static_cast<int>(section.number("points").value_or(request.points));
-    band_columns_.emplace_back(request.x, section.value_place("x"));
-    for (std::size_t i = 0; i < request.y.size(); ++i) {
-      band_columns_.emplace_back(request.y[i], section.value_place("y", i));
-    }
-    if (section.has("y") && request.y.empty()) faults_.add(section.value_place("y"), "y: expected at least one column");
-    const std::vector<std::string> texts = section.texts("percentiles");
-    if (!texts.empty()) request.percentiles.clear();
-    for (std::size_t i = 0; i < texts.size(); ++i) {
-      double value = 0.0;
-      const char* const end = texts[i].data() + texts[i].size();
-      const auto [rest, error] = std::from_chars(texts[i].data(), end, value);
-      const double least = request.percentiles.empty() ? 0.0 : request.percentiles.back();
-      if (error != std::errc{} || rest != end || !(value >= 0.0 && value <= 100.0) || (i > 0 && !(value > least))) {
-        return faults_.add(section.value_place("percentiles", i),
-                           fmt::format("percentiles: '{}': expected ascending numbers between 0 and 100, for example "
-                                       "[5, 50, 95]",
-                                       shown(texts[i])));
-      }
-      request.percentiles.push_back(value);
-    }
-    bands_ = std::move(request);
-  }
-
-  /// Columns are known before the first run, which may be one of many long ones.
-  void check_band_columns(const CheckedScenario& scenario) {
-    if (!bands_) return;
-    const Scene scene = make_scene(scenario);
-    const Table history = Recorder(*scene.system).take_history();
-    std::vector<std::string_view> names;
-    for (const Column& column : history.columns()) {
-      if (!column.holds_words()) names.push_back(column.name);
-    }
-    for (const auto& [name, where] : band_columns_) {
-      if (name.empty() || std::ranges::find(names, name) != names.end()) continue;
-      faults_.add(where, fmt::format("'{}' is no column of the histories; expected one of {}{}", shown(name),
-                                     listed(names), did_you_mean(name, names)));
     }
   }
 
@@ -659,7 +604,7 @@ class SweepReader {
       try {
         const CheckedScenario scenario = scenario_with(*scenario_, factors, runs_[run]);
         for (const auto& [option, curve] : scenario.curves) digested_ += '\n' + curve.text;
-        check_band_columns(scenario);
+        if (bands_) sweep::check_columns(*bands_, scenario, faults_);
         return;
       } catch (const ScenarioError& error) {
         if (own && own->empty()) continue;
@@ -710,8 +655,7 @@ class SweepReader {
   std::vector<PlacedConstraint> constraints_;
   std::vector<std::vector<FactorValue>> raw_;  ///< of a table
   SweepRuns runs_;
-  std::optional<BandRequest> bands_;
-  std::vector<std::pair<std::string, SourceLocation>> band_columns_;
+  std::optional<sweep::PlacedBands> bands_;
   std::optional<JointNormal> joint_;
   std::size_t first_calibrated_ = 0;  ///< factor: those from here on are numbers of the calibration
   double base_radius_ = 1.0;  ///< the scenario's own [m]; where it has none that can be read, its check will tell

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <sstream>
 
 #include "engine/integrator.hpp"
 #include "figure/chart.hpp"
@@ -444,9 +443,7 @@ std::vector<fs::path> write_bench(const std::vector<BenchScene>& scenes, const s
                                   const std::vector<BenchSaving>& savings, const fs::path& folder) {
   std::vector<fs::path> written = draw_bench(scenes, machine_text(), folder);
   fs::create_directories(folder);
-  std::ostringstream csv;
-  write_csv(csv_of(scenes), csv);
-  figure::write_whole(folder / "bench.csv", csv.str());
+  figure::write_whole(folder / "bench.csv", csv_text(csv_of(scenes)));
   figure::write_whole(folder / "bench.md", bench_text(scenes, profiles, savings));
   written.insert(written.begin(), {folder / "bench.csv", folder / "bench.md"});
   return written;

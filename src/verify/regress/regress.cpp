@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -156,11 +155,7 @@ std::vector<RegressionResult> orphaned_curves(const std::vector<fs::path>& scena
   return results;
 }
 
-void store(const fs::path& file, const Table& table) {
-  std::ostringstream text;
-  write_csv(table, text);
-  write_text_file(file, text.view());
-}
+void store(const fs::path& file, const Table& table) { write_text_file(file, csv_text(table)); }
 
 }  // namespace
 

@@ -1,0 +1,154 @@
+#include "study/calibrate/fit_notes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <utility>
+
+#include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/response.hpp"
+
+namespace monograin {
+namespace {
+
+using Notes = std::vector<std::string>;
+
+constexpr double k_improbable = 1e-3;        // share of cases in which a test is wrong
+constexpr double k_far_from_prior = 3.0;     // standard deviations
+constexpr double k_high_correlation = 0.95;  // of two parameters
+constexpr double k_poor = 0.1;               // relative standard error
+
+/// Says where the residuals do not have the size of the noise.
+void note_chi_squared(const CalibrationResult& result, Notes& notes) {
+  const auto degrees = static_cast<double>(result.uncertainty.degrees_of_freedom);
+  if (degrees == 0.0) return;
+  const boost::math::chi_squared distribution(degrees);
+  const double above = boost::math::cdf(boost::math::complement(distribution, result.sum_of_squares));
+  const double reduced = result.sum_of_squares / degrees;
+  if (above < k_improbable) {
+    notes.push_back(
+        fmt::format("chi^2 over degrees of freedom is {:.3g}: the residuals are larger than the noise given, by the "
+                    "law or by the data; the intervals are too narrow by a factor of about {:.2g}",
+                    reduced, std::sqrt(reduced)));
+  } else if (1.0 - above < k_improbable) {
+    notes.push_back(
+        fmt::format("chi^2 over degrees of freedom is {:.3g}: the noise given is larger than the residuals; the "
+                    "intervals are too wide",
+                    reduced));
+  }
+}
+
+/// Says which priors the data contradict.
+void note_priors(const Calibration& calibration, const CalibrationResult& result, Notes& notes) {
+  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
+    const FreeParameter& parameter = calibration.free[k];
+    if (!parameter.prior || !parameter.prior->is_residual()) continue;
+    const double deviation = parameter.prior->deviation(result.solution.parameters[k]);
+    if (std::abs(deviation) <= k_far_from_prior) continue;
+    notes.push_back(
+        fmt::format("'{}' lies {:.2g} standard deviations of its prior from its centre: data and "
+                    "prior contradict each other",
+                    parameter.key.path, std::abs(deviation)));
+  }
+}
+
+/// Says what it means where residuals are not independent.
+void note_residual_tests(const CalibrationResult& result, Notes& notes) {
+  if (!result.residual_tests || result.residual_tests->are_independent()) return;
+  const ResidualTests& tests = *result.residual_tests;
+  std::string note = fmt::format(
+      "the residuals are not independent: {} stretches of one sign where noise has {:.0f} (runs test, p = {:.2g}), "
+      "correlation of neighbours {:.2f} (p = {:.2g}); the law, or the machine, differs from the data in a way "
+      "that is not noise",
+      tests.runs, tests.expected_runs, tests.runs_p, tests.correlation, tests.correlation_p);
+  if (tests.correlation > 0.0 && tests.correlation < 1.0) {
+    note += fmt::format(", and intervals are too narrow, by a factor of about {:.2g}",
+                        std::sqrt((1.0 + tests.correlation) / (1.0 - tests.correlation)));
+  }
+  notes.push_back(std::move(note));
+}
+
+void note_table_ends(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<double>& x,
+                     Notes& notes) {
+  if (curve.machine.forces.empty()) return;
+  const std::vector<double> forces = calibration.machine_moves_x() ? y_of(calibration, curve) : x;
+  const double largest = *std::ranges::max_element(forces);
+  if (largest <= curve.machine.forces.back()) return;
+  notes.push_back(fmt::format(
+      "the table of the machine's displacement ends at {:.6g} N and is continued by its last piece to {:.6g} N",
+      curve.machine.forces.back(), largest));
+}
+
+/// Pairs of parameters of which the data tell little more than a combination.
+void note_correlations(const Calibration& calibration, const CalibrationResult& result, Notes& notes) {
+  for (std::size_t i = 0; i < calibration.free.size(); ++i) {
+    for (std::size_t j = i + 1; j < calibration.free.size(); ++j) {
+      const double correlation = result.uncertainty.correlation(i, j);
+      if (!(std::abs(correlation) > k_high_correlation)) continue;
+      // The one of which the data know less.
+      const auto relative = [&](std::size_t k) {
+        if (calibration.free[k].key.path == calibration::k_offset) return 0.0;  // zero is a value as others
+        return result.uncertainty.standard_error(k) / std::abs(result.solution.parameters[k]);
+      };
+      const std::size_t poor = relative(i) > relative(j) ? i : j;
+      if (!(relative(poor) > k_poor)) continue;
+      notes.push_back(fmt::format(
+          "the data determine '{}' poorly, to {:.0f} %: its correlation with '{}' is {:.3f}; hold one of them if it "
+          "is known otherwise",
+          calibration.free[poor].key.path, 100.0 * relative(poor), calibration.free[i + j - poor].key.path,
+          correlation));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> notes_of(const Calibration& calibration, const CalibrationResult& result) {
+  using Bound = LeastSquaresSolution::Bound;
+  const LeastSquaresSolution& solution = result.solution;
+  Notes notes = calibration.notes;
+  const auto note = [&notes](std::string text) { notes.push_back(std::move(text)); };
+  for (std::size_t k = 0; k < calibration.free.size(); ++k) {
+    const FreeParameter& parameter = calibration.free[k];
+    const std::string& path = parameter.key.path;
+    if (!result.uncertainty.is_determined[k]) {
+      note(
+          fmt::format("the data do not determine '{}': other values of it, alone or together with other parameters, "
+                      "fit as well",
+                      path));
+    } else if (solution.bounds[k] != Bound::none) {
+      note(fmt::format("'{}' sits at its {} bound; its interval ends there", path,
+                       solution.bounds[k] == Bound::lower ? "lower" : "upper"));
+    } else if (result.uncertainty.half_width(k) > 0.5 * (parameter.upper - parameter.lower)) {
+      note(fmt::format("the data hardly determine '{}': its interval is wider than its bounds", path));
+    }
+  }
+  if (result.uncertainty.degrees_of_freedom == 0 && !calibration.knows_noise()) {
+    note(
+        fmt::format("{} parameters for {} points: the fit leaves nothing to estimate errors from; no errors and no "
+                    "intervals",
+                    calibration.free.size(), result.points));
+  }
+  if (calibration.knows_noise()) note_chi_squared(result, notes);
+  note_priors(calibration, result, notes);
+  if (!solution.has_converged) note("the search ended before its steps had vanished; the fit may not be the best");
+  if (solution.failures > 0) {
+    note(fmt::format("{} of {} trial runs ended early, outside the model's domain, and were passed over",
+                     solution.failures, solution.evaluations));
+  }
+  for (const MeasuredCurve& curve : calibration.curves) {
+    const std::vector<double> x = x_of(calibration, curve);
+    note_table_ends(calibration, curve, x, notes);
+    const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
+    if (changed != x.end() && *changed < x.front() && x.front() > curve.start) {
+      note("the data begin with unloading; the particle is loaded to their first row from rest");
+    }
+  }
+  note_correlations(calibration, result, notes);
+  note_residual_tests(result, notes);
+  return notes;
+}
+
+}  // namespace monograin

@@ -1,0 +1,84 @@
+#include "study/calibrate/response.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/drive.hpp"
+#include "scenario/integrators.hpp"
+#include "scene/scene.hpp"
+#include "study/calibrate/calibration_language.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr double k_direct_noise = 1e-13;  // of a response without time integration
+constexpr double k_series_noise = 1e-12;  // of a response in series with a machine
+
+}  // namespace
+
+double noise_of(const Calibration& calibration) {
+  const Scene scene = make_scene(calibration.scenario);
+  const Numerics& numerics = calibration.scenario.numerics;
+  const bool is_direct = choose_integrator(numerics.integrator, *scene.system).used == integrators::k_direct;
+  const double noise = is_direct ? k_direct_noise : numerics.rtol;
+  return calibration.has_machine() ? std::max(noise, k_series_noise) : noise;
+}
+
+std::vector<double> x_of(const Calibration& calibration, const MeasuredCurve& curve) {
+  const auto begin = calibration.x.values.begin();
+  return {begin + static_cast<std::ptrdiff_t>(curve.begin), begin + static_cast<std::ptrdiff_t>(curve.end)};
+}
+
+std::vector<double> y_of(const Calibration& calibration, const MeasuredCurve& curve) {
+  const auto begin = calibration.y.values.begin();
+  return {begin + static_cast<std::ptrdiff_t>(curve.begin), begin + static_cast<std::ptrdiff_t>(curve.end)};
+}
+
+Response::Response(const Calibration& calibration, const MeasuredCurve& curve, std::vector<double> x,
+                   std::vector<double> y)
+    : calibration_(calibration),
+      curve_(curve),
+      replay_(curve.scenario, {curve.driven, calibration.y.observable, curve.control, curve.start}, x),
+      x_(std::move(x)),
+      y_(std::move(y)),
+      noise_(noise_of(calibration)) {}
+
+bool Response::operator()(std::span<const double> parameters, std::span<double> response) {
+  problem_.clear();
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const std::string& path = calibration_.free[k].key.path;
+    if (!path.starts_with(calibration::k_data)) replay_.set(path, parameters[k]);
+  }
+  const Machine machine = calibration_.machine_of(curve_, parameters);
+  if (calibration_.machine_moves_x()) {
+    if (!machine.is_rigid()) return run_in_series(machine, response);
+    if (std::exchange(is_moved_, false)) replay_.follow(x_);
+    particle_ = x_;
+    return replay_.run(response);
+  }
+  if (!replay_.run(response)) return false;
+  particle_.assign(response.begin(), response.end());
+  for (std::size_t i = 0; i < x_.size(); ++i) response[i] += machine.addition(x_[i]);
+  return true;
+}
+
+/// The machine shows the sum of its displacement and the particle's.
+bool Response::run_in_series(const Machine& machine, std::span<double> response) {
+  is_moved_ = true;
+  particle_ = x_;
+  for (std::size_t i = 0; i < x_.size(); ++i) particle_[i] -= machine.addition(y_[i]);
+  double largest = 0.0;
+  for (const double x : x_) largest = std::max(largest, std::abs(x));
+  bool has_run = true;
+  const auto forces_of = [&](const std::vector<double>& particle, std::span<double> forces) {
+    replay_.follow(particle);
+    has_run = replay_.run(forces);
+    return has_run;
+  };
+  if (put_in_series(machine, x_, forces_of, noise_ * largest, particle_, response)) return true;
+  if (has_run) problem_ = "no displacements of the particle and of the machine add up to those measured";
+  return false;
+}
+
+}  // namespace monograin

@@ -1,0 +1,69 @@
+#include "study/sweep/band_section.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+#include "history/recorder.hpp"
+#include "scenario/words.hpp"
+#include "scene/scene.hpp"
+#include "study/sweep/sweep_language.hpp"
+
+namespace monograin::sweep {
+namespace {
+
+/// Ascending numbers from 0 to 100; what comes after a fault is left out.
+std::vector<double> percentiles_in(Reading& reading, const Section& section) {
+  std::vector<double> percentiles;
+  const std::vector<std::string> texts = section.texts("percentiles");
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    double value = 0.0;
+    const char* const end = texts[i].data() + texts[i].size();
+    const auto [rest, error] = std::from_chars(texts[i].data(), end, value);
+    const bool is_percentage = error == std::errc{} && rest == end && value >= 0.0 && value <= 100.0;
+    if (!is_percentage || (i > 0 && value <= percentiles.back())) {
+      reading.faults.add(section.value_place("percentiles", i),
+                         fmt::format("percentiles: '{}': expected ascending numbers between 0 and 100, for example "
+                                     "[5, 50, 95]",
+                                     shown(texts[i])));
+      break;
+    }
+    percentiles.push_back(value);
+  }
+  return percentiles;
+}
+
+}  // namespace
+
+PlacedBands bands_in(Reading& reading, const Section& root) {
+  const std::vector<KeySpec> keys = band_keys();
+  const Section section(reading, root.table("bands", "[bands]"), keys);
+  PlacedBands bands{.request = {.x = section.text("x"), .y = section.texts("y")}, .columns = {}};
+  bands.columns.emplace_back(bands.request.x, section.value_place("x"));
+  for (std::size_t i = 0; i < bands.request.y.size(); ++i) {
+    bands.columns.emplace_back(bands.request.y[i], section.value_place("y", i));
+  }
+  bands.request.points = static_cast<int>(section.number("points").value_or(bands.request.points));
+  if (auto percentiles = percentiles_in(reading, section); !percentiles.empty()) {
+    bands.request.percentiles = std::move(percentiles);
+  }
+  return bands;
+}
+
+void check_columns(const PlacedBands& bands, const CheckedScenario& scenario, FaultList& faults) {
+  const Scene scene = make_scene(scenario);
+  const Table history = Recorder(*scene.system).take_history();
+  std::vector<std::string_view> names;
+  for (const Column& column : history.columns()) {
+    if (!column.holds_words()) names.push_back(column.name);
+  }
+  for (const auto& [name, where] : bands.columns) {
+    if (name.empty() || std::ranges::find(names, name) != names.end()) continue;
+    faults.add(where, fmt::format("'{}' is no column of the histories; expected one of {}{}", shown(name),
+                                  listed(names), did_you_mean(name, names)));
+  }
+}
+
+}  // namespace monograin::sweep

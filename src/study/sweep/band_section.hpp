@@ -1,0 +1,25 @@
+/// The table [bands] of a sweep file. For readers of TOML files: includes the library.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenario/scenario.hpp"
+#include "scenario/section.hpp"
+#include "study/sweep/sweep_file.hpp"
+
+namespace monograin::sweep {
+
+/// The request, with the places of its columns in the file.
+struct PlacedBands {
+  BandRequest request;
+  std::vector<std::pair<std::string, SourceLocation>> columns;
+};
+
+[[nodiscard]] PlacedBands bands_in(Reading& reading, const Section& root);
+
+/// Asks whether histories of a scenario have the columns: before the first run, which may be one of many long ones.
+void check_columns(const PlacedBands& bands, const CheckedScenario& scenario, FaultList& faults);
+
+}  // namespace monograin::sweep
