@@ -656,41 +656,4 @@ std::optional<LeastSquaresSolution> minimise_near(const LeastSquaresProblem& pro
   return Search(problem).run_from(starts, accuracy);
 }
 
-double difference_step(const LeastSquaresProblem& problem, std::span<const double> parameters, std::size_t k) {
-  const double range = problem.parameters[k].upper - problem.parameters[k].lower;
-  const double scale = parameters[k] == 0.0 ? range : std::min(std::abs(parameters[k]), range);
-  return std::cbrt(problem.noise) * scale;
-}
-
-Eigen::MatrixXd residual_jacobian(const LeastSquaresProblem& problem, std::span<const double> parameters) {
-  const auto rows = static_cast<Eigen::Index>(problem.residual_count);
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(parameters.size()));
-  std::vector<double> trial(parameters.begin(), parameters.end());
-  for (std::size_t k = 0; k < trial.size(); ++k) {
-    const double lower = problem.parameters[k].lower;
-    const double upper = problem.parameters[k].upper;
-    const double present = trial[k];
-    const double step = difference_step(problem, parameters, k);
-    Eigen::VectorXd above(rows);
-    Eigen::VectorXd below(rows);
-    const auto at = [&](double value, Eigen::VectorXd& residuals) {
-      trial[k] = value;
-      return problem.residuals(trial, {residuals.data(), problem.residual_count});
-    };
-    double right = std::min(present + step, upper);
-    double left = std::max(present - step, lower);
-    if (!at(right, above)) {
-      right = present;
-      if (!at(right, above)) continue;
-    }
-    if (!at(left, below)) {
-      left = present;
-      if (!at(left, below)) continue;
-    }
-    trial[k] = present;
-    if (right > left) jacobian.col(static_cast<Eigen::Index>(k)) = (above - below) / (right - left);
-  }
-  return jacobian;
-}
-
 }  // namespace monograin

@@ -83,14 +83,4 @@ enum class Accuracy {
 /// The problem in the other parameters, with the k-th held at a value; it refers to the given one.
 [[nodiscard]] LeastSquaresProblem with_held(const LeastSquaresProblem& problem, std::size_t k, double value);
 
-/// The step of central differences in a parameter: truncation, the square of it, and rounding, noise over it, are alike
-/// where the residuals change on the scale of the parameter, or of its range where that is less.
-[[nodiscard]] double difference_step(const LeastSquaresProblem& problem, std::span<const double> parameters,
-                                     std::size_t k);
-
-/// Derivatives of the residuals with respect to the parameters [residual / parameter], by central differences,
-/// one-sided at a bound and where one side has no residuals.
-/// @return one row for each residual
-[[nodiscard]] Eigen::MatrixXd residual_jacobian(const LeastSquaresProblem& problem, std::span<const double> parameters);
-
 }  // namespace monograin

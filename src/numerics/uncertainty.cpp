@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "numerics/derivatives.hpp"
+
 namespace monograin {
 namespace {
 

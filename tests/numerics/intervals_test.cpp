@@ -8,6 +8,7 @@
 #include <cmath>
 #include <random>
 #include <vector>
+#include "numerics/derivatives.hpp"
 
 namespace monograin::intervals_test {
 namespace {

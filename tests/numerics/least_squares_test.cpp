@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "numerics/derivatives.hpp"
 #include "numerics/uncertainty.hpp"
 
 namespace monograin::least_squares_test {

@@ -8,9 +8,8 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/drive.hpp"
+#include "numerics/derivatives.hpp"
 #include "scenario/faults.hpp"
-#include "scenario/integrators.hpp"
 #include "study/calibrate/bad_fit.hpp"
 #include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/fit_notes.hpp"
@@ -21,7 +20,6 @@
 namespace monograin {
 namespace {
 
-constexpr double k_jump_share = 0.7;         // of a central difference: a smaller one to one side has no jump
 constexpr std::size_t k_curve_points = 400;  // of the curve between the data
 constexpr int k_most_rounds = 50;            // of fits and the noise they leave
 constexpr int k_most_better = 3;             // better fits that intervals come upon
@@ -52,37 +50,6 @@ std::vector<double> refined(std::span<const double> x, std::size_t parts) {
 template <class T>
 std::span<T> rows_of(std::vector<T>& values, const MeasuredCurve& curve) {
   return std::span(values).subspan(curve.begin, curve.end - curve.begin);
-}
-
-/// residual_jacobian, but for residuals that jump within a step: there the difference to the side without the jump. In
-/// series with a machine a datum may stand in a jump of the law over a range of parameters, and a fit may end at its
-/// edge.
-Eigen::MatrixXd jacobian_beside_jumps(const LeastSquaresProblem& problem, std::span<const double> parameters) {
-  Eigen::MatrixXd jacobian = residual_jacobian(problem, parameters);
-  const auto rows = jacobian.rows();
-  std::vector<double> trial(parameters.begin(), parameters.end());
-  Eigen::VectorXd present(rows);
-  Eigen::VectorXd moved(rows);
-  const auto at = [&](Eigen::VectorXd& residuals) {
-    return problem.residuals(trial, {residuals.data(), problem.residual_count});
-  };
-  if (!at(present)) return jacobian;
-  for (std::size_t k = 0; k < trial.size(); ++k) {
-    auto column = jacobian.col(static_cast<Eigen::Index>(k));
-    const double step = difference_step(problem, parameters, k);
-    for (const double signed_step : {step, -step}) {
-      trial[k] = parameters[k] + signed_step;
-      const bool is_inside = trial[k] >= problem.parameters[k].lower && trial[k] <= problem.parameters[k].upper;
-      const bool has_moved = is_inside && at(moved);
-      trial[k] = parameters[k];
-      if (!has_moved) continue;
-      for (Eigen::Index i = 0; i < rows; ++i) {
-        const double one_sided = (moved[i] - present[i]) / signed_step;
-        if (std::abs(one_sided) < k_jump_share * std::abs(column[i])) column[i] = one_sided;
-      }
-    }
-  }
-  return jacobian;
 }
 
 class Fit {
@@ -199,12 +166,6 @@ class Fit {
       if (found == starts.end() || parameter.start) continue;
       if (found->second >= parameter.lower && found->second <= parameter.upper) parameter.start = found->second;
     }
-  }
-
-  [[nodiscard]] Eigen::MatrixXd jacobian_of(const LeastSquaresProblem& problem,
-                                            std::span<const double> parameters) const {
-    return calibration_.has_machine() ? jacobian_beside_jumps(problem, parameters)
-                                      : residual_jacobian(problem, parameters);
   }
 
   /// Runs all curves. @return the first that cannot be followed; their number where all can
@@ -376,7 +337,7 @@ class Fit {
       std::ranges::copy(response_, response.begin());
       return true;
     };
-    return jacobian_of(problem, parameters);
+    return residual_jacobian(problem, parameters);
   }
 
   /// Sum of rho without the priors.
@@ -439,7 +400,7 @@ class Fit {
     };
     FittedCurve curve{x, std::vector<double>(x.size(), k_nan), std::vector<double>(x.size(), k_nan)};
     if (!response_through(result.solution.parameters, curve.y)) return curve;
-    curve.band = bands(result, jacobian_of(problem, result.solution.parameters));
+    curve.band = bands(result, residual_jacobian(problem, result.solution.parameters));
     return curve;
   }
 

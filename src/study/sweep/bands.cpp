@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -151,7 +152,15 @@ struct Abscissae {
   return table;
 }
 
-[[nodiscard]] std::string label_of(const Column& column) { return figure::verbatim_text(column.heading()); }
+/// "Axial contact radius [m]" of "axial.contact_radius".
+[[nodiscard]] std::string label_of(const Column& column) {
+  std::string name = column.name;
+  std::ranges::replace_if(
+      name, [](char c) { return c == '.' || c == '_'; }, ' ');
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return figure::verbatim_text(column.unit.empty() || column.unit == "-" ? name
+                                                                         : fmt::format("{} [{}]", name, column.unit));
+}
 
 /// The outermost percentiles as an area, those between them as lines, the middle one drawn through.
 [[nodiscard]] figure::ChartPanel panel_of(const Sweep& sweep, const HistoryBands& bands, std::size_t y) {

@@ -140,6 +140,11 @@ TEST(ReadyCalibration, IntervalOfPoissonsRatioEndsWhereFitsWithItHeldAreThatMuch
   const Interval& interval = result.intervals.at(2);
   EXPECT_FALSE(interval.is_cut_below || interval.is_cut_above);
   EXPECT_GT(interval.upper - interval.lower, 0.08);
+  // A jump of the force at yield, which the fit puts next to a datum, is no derivative.
+  EXPECT_NEAR(result.uncertainty.standard_error(2), 0.026, 0.0026);
+  EXPECT_LT(result.uncertainty.correlation(0, 2), -0.95);
+  EXPECT_LT(std::ranges::max(result.fit.band), 0.01 * std::ranges::max(result.fit.y));
+  EXPECT_LT(std::ranges::max(result.curves.at(0).band), 0.01 * std::ranges::max(result.fit.y));
   for (const double end : {interval.lower, interval.upper}) {
     const CalibrationResult held =
         fit_compression(folder, fmt::format("set = [\"material.poisson_ratio={:.17g}\"]", end), "");
