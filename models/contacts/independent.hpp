@@ -10,6 +10,7 @@
 ///   regime(b, touches)          index of a word
 /// and may have
 ///   work(b, d)                  primitive of the force up to a constant; without it the work is integrated
+///   is_work_costly(b)           true if it costs tens of forces
 ///   stored(b, d)                energy that unloading gives back; has_stored_energy(): whether there is any
 ///   contact(b, d)               force and contact radius, where the law knows the contact area
 ///   next(b), pass(b)            boundary ahead on the primary loading branch; what changes there
@@ -190,6 +191,15 @@ class IndependentContacts final : public HybridSystem {
       });
     } else {
       return std::nullopt;
+    }
+  }
+
+  [[nodiscard]] bool is_quadrature_costly() const noexcept override {
+    if constexpr (requires(const Law& law, const Branch& b) { law.is_work_costly(b); }) {
+      return std::ranges::any_of(contacts_,
+                                 [&](const Contact& c) { return c.touches() && law_.is_work_costly(c.branch()); });
+    } else {
+      return false;
     }
   }
 

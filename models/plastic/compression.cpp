@@ -17,11 +17,13 @@ constexpr double k_contact_density = 0.0593;  // Gamma (text after eq. 2.30)
 
 /// T(z) of the fall for an angle z - s.
 ValueAndSlope bump(double rate, double z, double angle) noexcept {
-  const double rise = std::tanh(rate * z);
+  // tanh and sech^2 by one exponential: 1 - tanh^2 would lose its digits where the rise is complete.
+  const double decay = std::exp(-2.0 * rate * std::abs(z));
+  const double complement = decay > 0.5 ? -std::expm1(-2.0 * rate * std::abs(z)) : 1.0 - decay;
+  const double rise = std::copysign(complement / (1.0 + decay), z);
+  const double sech_squared = 4.0 * decay / ((1.0 + decay) * (1.0 + decay));
   const double cosine = std::cos(angle);
-  // 1 - tanh^2 loses its digits where the rise is complete.
-  const double sech = 1.0 / std::cosh(rate * z);
-  return {.value = rise * cosine, .slope = rate * sech * sech * cosine - rise * std::sin(angle)};
+  return {.value = rise * cosine, .slope = rate * sech_squared * cosine - rise * std::sin(angle)};
 }
 
 /// Z - s = atan(2q csch(2qZ)) (eq. 2.26); in this form the hyperbolic sine does not overflow.

@@ -59,6 +59,15 @@ double small_force_coefficient(const HardeningLaw& law) noexcept {
   return pi * law.fall.greatest * law.radius.first * law.radius.first;
 }
 
+/// The farthest x of the fully plastic regime.
+double end_of_fall(const HardeningLaw& law) noexcept { return std::min(law.fall.end, std::nextafter(law.limit, 0.0)); }
+
+void set_end(HardeningLaw& law, double calibrated_end, double limit) {
+  law.calibrated_end = calibrated_end;
+  law.limit = limit;
+  law.force_at_least = state_in(law, Regime::fully_plastic, end_of_fall(law)).force;
+}
+
 }  // namespace
 
 HardeningLaw make_hardening(double exponent, Configuration configuration, MinimumCondition condition) {
@@ -72,15 +81,14 @@ HardeningLaw make_hardening(double exponent, Configuration configuration, Minimu
   const double greatest = 3.101 * std::exp(-1.748 * exponent);
   law.fall = make_pressure_fall(configuration, minimum, greatest, 0.0, 0.0, k_rate);
   if (!is_enclosed(law)) {
-    law.calibrated_end = 0.5;
-    law.limit = 1.0;
+    set_end(law, 0.5, 1.0);
     return law;
   }
   const double excess = cell_excess(configuration, law.fall.end);
   law.cell_at_least = 1.0 + excess;
   law.pressure_scale = excess / (0.467 * std::exp(-0.5883 * exponent));
   law.zero_porosity = filled_cell_approach(configuration);
-  law.calibrated_end = law.limit = law.zero_porosity;
+  set_end(law, law.zero_porosity, law.zero_porosity);
   return law;
 }
 
@@ -117,8 +125,8 @@ double approach_under(const HardeningLaw& law, double force, double near) {
   }
   const auto fully_plastic = [&](double x) { return state_in(law, Regime::fully_plastic, x); };
   const double last = std::nextafter(law.limit, 0.0);
-  const double end = std::min(law.fall.end, last);
-  double greatest = fully_plastic(end).force;
+  const double end = end_of_fall(law);
+  double greatest = law.force_at_least;
   if (force <= greatest) {
     if (const auto found = approach_near(fully_plastic, 0.0, end, force, near)) return *found;
     const double guess = std::pow(force / small_force_coefficient(law), 1.0 / (1.0 + 0.5 * law.exponent));

@@ -25,6 +25,7 @@ struct HardeningLaw {
   double zero_porosity = 0.0;   ///< x_zp, of the filled cell; 0 in simple compression
   double calibrated_end = 0.0;  ///< x up to which the source compares the law: 0.5 (simple), else x_zp
   double limit = 0.0;           ///< x at which the law ends: 1 (simple), else x_zp
+  double force_at_least = 0.0;  ///< P/(kappa R^2) at x_Hmin; in simple compression just below the limit
 };
 
 /// @param exponent  mu = 1/m

@@ -106,6 +106,12 @@ double WallLaw::work(const Branch& b, double x) const {
   return b.is_on_indenter ? mdr::unloading_energy(b.indenter, x) : work_in(settings_.law, primary_regime(b), x);
 }
 
+/// Work is a quadrature of 30 forces but for power laws and polynomials.
+bool WallLaw::is_work_costly(const Branch& b) const noexcept {
+  return !b.is_on_indenter && !std::holds_alternative<SimilarityLaw>(settings_.law) &&
+         primary_regime(b) != Regime::elastic && primary_regime(b) != Regime::elastic_volumetric;
+}
+
 double WallLaw::stored(const Branch& b, double x) const {
   if (b.is_on_indenter) return mdr::unloading_energy(b.indenter, x);
   if (primary_regime(b) == Regime::elastic) return work_per_wall(settings_.law, x);

@@ -62,6 +62,7 @@ class WallLaw {
   [[nodiscard]] bool is_integrated(const Branch& b) const noexcept;
   [[nodiscard]] double opening(const Branch& b) const noexcept;
   [[nodiscard]] double work(const Branch& b, double x) const;
+  [[nodiscard]] bool is_work_costly(const Branch& b) const noexcept;
   [[nodiscard]] bool has_stored_energy() const noexcept { return settings_.unloading != Unloading::none; }
   [[nodiscard]] double stored(const Branch& b, double x) const;
   [[nodiscard]] contacts::BearingContact contact(const Branch& b, double x) const;

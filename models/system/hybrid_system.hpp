@@ -203,6 +203,8 @@ class HybridSystem {
 
   /// Primitive of the quadrature along the present mode, up to a constant, where it has a closed form.
   [[nodiscard]] virtual std::optional<double> closed_quadrature(double xi, std::span<const double> y) = 0;
+  /// Whether that primitive costs tens of evaluations of the law, because it is itself computed by quadrature.
+  [[nodiscard]] virtual bool is_quadrature_costly() const noexcept { return false; }
 
   /// Guards alive until the next transition or the end of the step, in the order in which they are applied.
   [[nodiscard]] virtual std::span<const Guard> guards() const noexcept = 0;

@@ -36,6 +36,12 @@ constexpr double k_safety = 0.85;
 // touch, its error is up to a hundred times that.
 constexpr double k_rounding_of_work = 1e-16;
 constexpr double k_share_of_work = 1e-3;
+// Where a closed form of the work is costly and a step has many rows, they take the work from the series of their
+// piece. The closed form stays for pieces that are no longer than this and whose series is not that accurate, over the
+// work: those next to a singularity.
+constexpr std::size_t k_many_rows = 50;
+constexpr double k_shortest_for_series = 1.0 / 32.0;
+constexpr double k_accuracy_beside_primitive = 1e-15;
 // How many times as large last terms may be that are rounding, where the rates are next to nothing beside the work.
 constexpr double k_noise_of_nothing = 1e4;
 // From which of that on few nodes are enough for it.
@@ -100,8 +106,9 @@ class RateRounding {
 
 class Direct final : public EventLocator {
  public:
-  Direct(HybridSystem& system, double rtol, GuardSet& guard_set)
+  Direct(HybridSystem& system, double rtol, GuardSet& guard_set, std::size_t rows)
       : EventLocator(system, guard_set, k_most_nodes),
+        has_many_rows_(rows >= k_many_rows),
         work_accuracy_(std::max(k_rounding_of_work, rtol * std::max(rtol, k_share_of_work))) {
     const auto unknowns = system.unknowns();
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
@@ -123,11 +130,10 @@ class Direct final : public EventLocator {
     segment_begin_ = xi;
     refusals_ = 0;
     rounding_ = {};
-    is_closed_ = !quadrature_;
-    if (const auto primitive = system_.closed_quadrature(xi, y); quadrature_ && primitive) {
-      is_closed_ = true;
-      primitive_offset_ = y[*quadrature_] - *primitive;
-    }
+    const auto primitive = quadrature_ ? system_.closed_quadrature(xi, y) : std::nullopt;
+    has_primitive_ = primitive.has_value();
+    if (primitive) primitive_offset_ = y[*quadrature_] - *primitive;
+    is_closed_ = !quadrature_ || (has_primitive_ && !(has_many_rows_ && system_.is_quadrature_costly()));
     nodes_ = is_closed_ || work_accuracy_ >= k_few_nodes_accuracy ? &LegendreNodes::few() : &LegendreNodes::many();
     length_ = longest();
     begin_segment(xi, y);
@@ -194,6 +200,7 @@ class Direct final : public EventLocator {
     system_.solve(xi, y);
   }
 
+  [[nodiscard]] bool uses_series() const noexcept { return !is_closed_ && !uses_primitive_; }
   [[nodiscard]] bool goes_from_nodes() const noexcept { return may_rest_ && is_closed_; }
 
   void state_ahead(double xi, std::span<double> y) override { system_.solve(xi, y); }
@@ -235,11 +242,16 @@ class Direct final : public EventLocator {
       const double length = piece_length();
       // What is tolerated is no rounding: terms that fall slowly, as those of a kink do, leave out more than they show.
       const double rounding = std::max(rounding_.known(), k_noise_of_nothing * k_rounding_of_work * scale / length);
-      const double reach = work_.reach(2.0 * work_accuracy_ * scale / length, rounding);
+      const double accuracy = has_primitive_ ? k_accuracy_beside_primitive : work_accuracy_;
+      const double reach = work_.reach(2.0 * accuracy * scale / length, rounding);
       factor = std::clamp(k_safety * reach, k_most_shrinkage, k_most_growth);
-      const bool is_too_long = reach < 1.0 && length > k_smallest_quadrature;
+      const bool is_unresolved = reach < 1.0;
+      const bool is_too_long =
+          is_unresolved && length > (has_primitive_ ? k_shortest_for_series : k_smallest_quadrature);
       rounding_.see(work_, begin_, length, is_too_long);
       if (is_too_long) return false;
+      uses_primitive_ = is_unresolved && has_primitive_;
+      if (uses_primitive_) factor = k_most_growth;
     }
     move_end(piece_end_);
     locate_event();
@@ -255,7 +267,7 @@ class Direct final : public EventLocator {
       }
       factor = std::min(factor, std::max(k_safety / share_of_reach(end_state_), k_most_shrinkage));
     }
-    if (!is_closed_ && end_ - begin_ < k_inside * piece_length() && !holds_up_to_end()) {
+    if (uses_series() && end_ - begin_ < k_inside * piece_length() && !holds_up_to_end()) {
       factor = k_just_beyond * (end_ - begin_) / piece_length();
       return false;
     }
@@ -379,13 +391,16 @@ class Direct final : public EventLocator {
   }
 
   [[nodiscard]] double quadrature_at(double xi, std::span<const double> y) {
-    if (is_closed_) return primitive_offset_ + *system_.closed_quadrature(xi, y);
+    if (!uses_series()) return primitive_offset_ + *system_.closed_quadrature(xi, y);
     return begin_state_[*quadrature_] + 0.5 * piece_length() * work_.integral(place(xi));
   }
 
+  bool has_many_rows_;
   double work_accuracy_;
   std::optional<std::size_t> quadrature_;
-  bool is_closed_ = false;
+  bool is_closed_ = false;       ///< nothing is integrated in this segment
+  bool has_primitive_ = false;   ///< the work has a closed form
+  bool uses_primitive_ = false;  ///< in this piece, although the segment is integrated
   double primitive_offset_ = 0.0;
   bool has_slaves_ = false;
   bool may_rest_ = false;  ///< some unknown
@@ -407,8 +422,8 @@ class Direct final : public EventLocator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_direct(HybridSystem& system, double rtol, GuardSet& guard_set) {
-  return std::make_unique<Direct>(system, rtol, guard_set);
+std::unique_ptr<Integrator> make_direct(HybridSystem& system, double rtol, GuardSet& guard_set, std::size_t rows) {
+  return std::make_unique<Direct>(system, rtol, guard_set, rows);
 }
 
 }  // namespace monograin

@@ -50,6 +50,12 @@ struct OutputPoint {
   double time = 0.0;
 };
 
+/// About how many output points a step has.
+[[nodiscard]] std::size_t rows_of_step(const Scene& scene, const Output& output) {
+  if (output.times.empty()) return static_cast<std::size_t>(output.points);
+  return output.times.size() / std::max<std::size_t>(scene.step_count(), 1);
+}
+
 class Drive {
  public:
   Drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output,
@@ -57,7 +63,7 @@ class Drive {
       : scene_(scene),
         system_(*scene.system),
         guard_set_(system_),
-        integrator_(make_integrator(integrator, system_, guard_set_, tolerances)),
+        integrator_(make_integrator(integrator, system_, guard_set_, tolerances, rows_of_step(scene, output))),
         sink_(sink),
         output_(output),
         y_(system_.unknowns().size()),

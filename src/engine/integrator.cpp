@@ -104,9 +104,9 @@ bool suits_stiff_equations(std::string_view name) noexcept {
 }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, GuardSet& guard_set,
-                                            const Tolerances& asked) {
+                                            const Tolerances& asked, std::size_t rows) {
   if (name == integrators::k_direct && !system.is_solvable()) throw std::logic_error("the system has no direct form");
-  if (name == integrators::k_direct) return make_direct(system, asked.rtol, guard_set);
+  if (name == integrators::k_direct) return make_direct(system, asked.rtol, guard_set, rows);
   if (name == integrators::k_explicit) return make_fixed_step(system, guard_set, asked);
   const double gain = system.error_gain();
   const double rtol = std::max(asked.rtol / gain, std::min(asked.rtol, k_least_rtol));

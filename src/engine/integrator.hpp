@@ -115,9 +115,11 @@ class Integrator {
 [[nodiscard]] bool suits_stiff_equations(std::string_view name) noexcept;
 
 /// @param name  as in scenario files but "auto", or as choose_integrator() has chosen it
+/// @param rows  of the history in a step, about
 /// @throws std::logic_error for another name, or where direct is asked of a system that is not solvable
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system,
-                                                          GuardSet& guard_set, const Tolerances& tolerances);
+                                                          GuardSet& guard_set, const Tolerances& tolerances,
+                                                          std::size_t rows = 0);
 
 /// Which integrator runs, and why that one.
 struct IntegratorChoice {
@@ -136,7 +138,8 @@ struct IntegratorChoice {
 [[nodiscard]] std::string sundials_version();
 
 // One adapter per library.
-[[nodiscard]] std::unique_ptr<Integrator> make_direct(HybridSystem& system, double rtol, GuardSet& guard_set);
+[[nodiscard]] std::unique_ptr<Integrator> make_direct(HybridSystem& system, double rtol, GuardSet& guard_set,
+                                                      std::size_t rows);
 enum class OdeMethod { cvode_adams, cvode_bdf, arkode_erk, arkode_dirk };
 [[nodiscard]] std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, HybridSystem& system, GuardSet& guard_set,
                                                             const Tolerances& tolerances);

@@ -15,7 +15,7 @@ class Switching final : public Integrator {
  public:
   Switching(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances)
       : system_(system),
-        direct_(make_direct(system, tolerances.rtol, guard_set)),
+        direct_(make_direct(system, tolerances.rtol, guard_set, 0)),
         explicit_(make_stepped(OdeintMethod::dopri5, system, guard_set, tolerances)),
         implicit_(make_sundials_ode(OdeMethod::cvode_bdf, system, guard_set, tolerances)),
         state_(system.unknowns().size()) {}

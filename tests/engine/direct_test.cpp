@@ -22,9 +22,9 @@ constexpr double k_third = 0.520;
 /// Above zero between two instants only.
 double window(double y, double from, double to) { return 1e3 * (y - from) * (to - y); }
 
-TestRun run_directly(std::unique_ptr<ToySystem> toy) {
+TestRun run_directly(std::unique_ptr<ToySystem> toy, int points = 4) {
   TestRun result{toy_scene(std::move(toy)), {}};
-  result.record = record_run(result.scene, "direct", {}, {.points = 4, .times = {}});
+  result.record = record_run(result.scene, "direct", {}, {.points = points, .times = {}});
   return result;
 }
 
@@ -103,6 +103,25 @@ TEST(Direct, RefinesARootAndAKinkHoweverSmall) {
     const TestRun result = run_directly(std::move(toy));
     const double integral = 1.0 + k_small * (std::pow(0.3, power + 1.0) + std::pow(0.7, power + 1.0)) / (power + 1.0);
     EXPECT_NEAR(result.last("y0"), integral, 1e-11) << power;
+  }
+}
+
+TEST(Direct, SparesManyRowsACostlyPrimitiveButNextToASingularity) {
+  for (const int points : {10, 1000}) {
+    auto toy = std::make_unique<ToySystem>();
+    toy->is_quadrature = true;
+    toy->rates_function = [](double xi, View, std::span<double> dy) { dy[0] = 1.2 * std::pow(xi, 0.2) + 1.0; };
+    toy->costly_primitive = [](double xi) { return std::pow(xi, 1.2) + xi; };
+    const TestRun result = run_directly(std::move(toy), points);
+    const Table& history = result.record.history;
+    for (std::size_t row = 0; row < history.row_count(); ++row) {
+      const double xi = result.column("time")[row];
+      EXPECT_NEAR(result.column("y0")[row], std::pow(xi, 1.2) + xi, 1e-14) << xi;
+    }
+    const ToySystem& seen = toy_in(result.scene);
+    if (points == 10) EXPECT_EQ(seen.rates_count, 0) << "few rows cost less than a series";
+    EXPECT_LT(seen.primitive_count, points == 10 ? 20 : 100);
+    EXPECT_LT(seen.rates_count, 300);
   }
 }
 

@@ -37,6 +37,7 @@ class ToySystem final : public HybridSystem {
   /// Exact state at xi from that at the present mode's start, for the direct form.
   std::function<void(double start, View from, double xi, std::span<double> y)> flow =
       [](double start, View from, double xi, std::span<double> y) { y[0] = from[0] + xi - start; };
+  std::function<double(double xi)> costly_primitive;  ///< of y0, if it has one
   std::vector<ToyGuard> watched;
   bool is_quadrature = false;  ///< y0: rates do not depend on it
   bool adheres = false;        ///< whether a force may pass through zero
@@ -46,6 +47,7 @@ class ToySystem final : public HybridSystem {
   double earliest_xi = 1.0;
   double latest_xi = 0.0;
   int rates_count = 0;
+  int primitive_count = 0;
   std::vector<std::vector<std::size_t>> fired_together;
 
   /// Call when everything above is set.
@@ -85,7 +87,12 @@ class ToySystem final : public HybridSystem {
     see(xi);
     flow(mode_start_, mode_state_, xi, y);
   }
-  [[nodiscard]] std::optional<double> closed_quadrature(double, View) override { return std::nullopt; }
+  [[nodiscard]] std::optional<double> closed_quadrature(double xi, View) override {
+    if (!costly_primitive) return std::nullopt;
+    ++primitive_count;
+    return costly_primitive(xi);
+  }
+  [[nodiscard]] bool is_quadrature_costly() const noexcept override { return true; }
   [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
   void guard_values(double xi, View y, std::span<double> values) override {
     see(xi);

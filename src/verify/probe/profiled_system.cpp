@@ -55,6 +55,7 @@ class Wrapped : public HybridSystem {
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
     return system_->closed_quadrature(xi, y);
   }
+  [[nodiscard]] bool is_quadrature_costly() const noexcept override { return system_->is_quadrature_costly(); }
   [[nodiscard]] std::span<const Guard> guards() const noexcept override { return system_->guards(); }
   void guard_values(double xi, View y, State values) override { system_->guard_values(xi, y, values); }
   std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, State y,
