@@ -660,7 +660,9 @@ def write_measurements(program):
     for row in rows_of(ROOT / "plots" / "bench.csv"):
         measured.setdefault(row["scene"], []).append(row)
     with open(ROOT / "scenarios" / "bench" / "scenes.toml", "rb") as stream:
-        titles = {scene["name"]: scene.get("title", "") for scene in tomllib.load(stream)["scene"]}
+        titles = {scene["name"]: scene["title"] for scene in tomllib.load(stream)["scene"] if "name" in scene}
+    for file in (ROOT / "scenarios").glob("*.toml"):
+        titles.setdefault(file.stem, tomllib.loads(file.read_text(encoding="utf-8"))["title"])
     lines = []
     for scene, rows in measured.items():
         def at(integrator, scene_rows=rows):

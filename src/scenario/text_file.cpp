@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -106,6 +107,20 @@ void write_text_file(const fs::path& file, const std::function<void(const TextSi
     if (!partial.write(part)) fail(file, errno);
   });
   if (!partial.move_to(file)) fail(file, errno);
+}
+
+std::vector<std::filesystem::path> scenario_files(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) {
+    throw std::runtime_error(
+        fmt::format("{}: no such folder; run this in the project's folder, or name it", folder.string()));
+  }
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  if (files.empty()) throw std::runtime_error(fmt::format("{}: holds no scenario (.toml) to run", folder.string()));
+  std::ranges::sort(files);
+  return files;
 }
 
 void sync_to_disk(const fs::path& file) {

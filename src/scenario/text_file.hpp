@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace monograin {
 
@@ -36,6 +37,10 @@ void write_text_file(const std::filesystem::path& file, std::string_view text);
 /// Writes a text that comes in parts, whole or not at all: `produce` hands each part to the sink that it is given.
 using TextSink = std::function<void(std::string_view part)>;
 void write_text_file(const std::filesystem::path& file, const std::function<void(const TextSink&)>& produce);
+
+/// The scenario files (.toml) of a folder, in the order of their names.
+/// @throws std::runtime_error where there is no such folder, or none in it
+[[nodiscard]] std::vector<std::filesystem::path> scenario_files(const std::filesystem::path& folder);
 
 /// Waits until a file, or the list of names in a folder, is on the disk.
 /// @throws std::runtime_error naming the file and why it cannot be written

@@ -283,14 +283,18 @@ BenchList read_bench_list(const fs::path& file) {
                                     .meaning = "scenario file, sought from this file's folder",
                                     .is_required = true,
                                     .example = "\"../die.toml\""};
+  static const KeySpec scenarios_key{.name = "scenario",
+                                     .meaning = "scenario file, or a folder of them, sought from this file's folder",
+                                     .is_required = true,
+                                     .example = "\"../die.toml\""};
   static const KeySpec set_key{.name = "set",
                                .meaning = "overrides of the scenario",
                                .kind = Kind::texts,
                                .example = "[\"material.yield_stress=20 MPa\"]"};
   static const std::vector<KeySpec> scene_keys{
-      {.name = "name", .meaning = "name of the scene", .is_required = true, .example = "\"die\""},
-      {.name = "title", .meaning = "what it is", .is_required = true, .example = "\"Die compaction\""},
-      scenario_key,
+      {.name = "name", .meaning = "name of the scene [that of the file]", .example = "\"die\""},
+      {.name = "title", .meaning = "what it is [the scenario's title]", .example = "\"Die compaction\""},
+      scenarios_key,
       set_key};
   static const std::vector<KeySpec> saving_keys{
       {.name = "what", .meaning = "what is not computed", .is_required = true, .example = "\"no adhesion\""},
@@ -310,23 +314,33 @@ BenchList read_bench_list(const fs::path& file) {
   Reading reading{faults};
   const SourceLocation top{file.string()};
   const Section root(reading, {&tree, top, "the file"}, root_keys);
-  const auto scenario_of = [&](const Section& section) -> std::optional<CheckedScenario> {
-    if (section.text("scenario").empty()) return std::nullopt;
+  const auto read = [&](const fs::path& scenario, const Section& section) -> std::optional<CheckedScenario> {
     try {
-      return read_scenario(file.parent_path() / section.text("scenario"), section.texts("set"));
+      return read_scenario(scenario, section.texts("set"));
     } catch (const ScenarioError& error) {
       for (const Fault& fault : error.faults()) faults.add(fault.where, fault.message);
       return std::nullopt;
     }
   };
+  const auto scenario_of = [&](const Section& section) -> std::optional<CheckedScenario> {
+    if (section.text("scenario").empty()) return std::nullopt;
+    return read(file.parent_path() / section.text("scenario"), section);
+  };
   BenchList list;
   for (const auto& table : root.tables("scene", "[[scene]]")) {
     const Section section(reading, table, scene_keys);
-    const auto scenario = scenario_of(section);
-    if (!scenario) continue;
-    list.scenes.push_back(*scenario);
-    list.scenes.back().name = section.text("name");
-    list.scenes.back().title = section.text("title");
+    if (section.text("scenario").empty()) continue;
+    const fs::path named = file.parent_path() / section.text("scenario");
+    const bool is_folder = fs::is_directory(named);
+    if (is_folder && !section.text("name").empty())
+      faults.add(section.key_place("name"), "a folder of scenarios has no name of its own; remove it");
+    for (const fs::path& of_scene : is_folder ? scenario_files(named) : std::vector{named}) {
+      const auto scenario = read(of_scene, section);
+      if (!scenario) continue;
+      list.scenes.push_back(*scenario);
+      if (!section.text("name").empty()) list.scenes.back().name = section.text("name");
+      if (!section.text("title").empty()) list.scenes.back().title = section.text("title");
+    }
   }
   for (const auto& table : root.tables("saving", "[[saving]]")) {
     const Section section(reading, table, saving_keys);

@@ -35,20 +35,6 @@ constexpr std::array<std::string_view, 4> k_integrators{integrators::k_direct, i
 
 bool has_direct_form(const CheckedScenario& scenario) { return make_scene(scenario).system->is_solvable(); }
 
-std::vector<fs::path> scenario_files(const fs::path& folder) {
-  if (!fs::is_directory(folder)) {
-    throw std::runtime_error(
-        fmt::format("{}: no such folder; run this in the project's folder, or name it", folder.string()));
-  }
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
-  }
-  if (files.empty()) throw std::runtime_error(fmt::format("{}: holds no scenario (.toml) to run", folder.string()));
-  std::ranges::sort(files);
-  return files;
-}
-
 Run run_with(CheckedScenario scenario, std::string_view integrator) {
   scenario.numerics.integrator = integrator;
   return run_scenario(scenario);
