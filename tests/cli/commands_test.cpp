@@ -61,11 +61,14 @@ TEST_F(Commands, RunWithoutAFileLeavesTheDefaultSceneInRunsDie) {
   }
 }
 
-TEST_F(Commands, RunAndPlotDrawTheCommittedFigureOfTheDefaultScene) {
-  ASSERT_EQ(monograin("run").code, 0);
-  ASSERT_EQ(monograin("plot runs/die -o die.svg").code, 0);
-  const auto found = differences(read_svg(path("die.svg")), read_svg(MONOGRAIN_SOURCE_DIR "/plots/die.svg"));
-  EXPECT_TRUE(found.empty()) << found.size() << " differences: " << found.front();
+TEST_F(Commands, RunAndPlotDrawTheCommittedFiguresOfTheFirstScenes) {
+  for (const std::string name : {"die", "cel"}) {
+    const std::string of_project = MONOGRAIN_SOURCE_DIR;
+    ASSERT_EQ(monograin("run '" + of_project + "/scenarios/" + name + ".toml'").code, 0);
+    ASSERT_EQ(monograin("plot runs/" + name + " -o " + name + ".svg").code, 0);
+    const auto found = differences(read_svg(path(name + ".svg")), read_svg(of_project + "/plots/" + name + ".svg"));
+    EXPECT_TRUE(found.empty()) << found.size() << " differences: " << found.front();
+  }
 }
 
 TEST_F(Commands, RunWritesWhatIsNeededToRepeatIt) {
