@@ -2,13 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 #include "scenario/document.hpp"
 #include "scenario/faults.hpp"
 #include "scenario/key_path.hpp"
+#include "scenario/language.hpp"
 #include "scenario/overrides.hpp"
 #include "scenario/reader.hpp"
+#include "scenario/rules.hpp"
 #include "scenario/words.hpp"
 
 namespace monograin {
@@ -60,12 +65,63 @@ CheckedScenario parse_source(const ScenarioSource& source, const std::vector<std
   return check_tree(root, source, overrides, faults);
 }
 
+constexpr std::string_view k_of_material = "material.";
+
+/// Whether numbers of the material are all that a change of them changes.
+bool may_set_material(const toml::table& tree, const CheckedScenario& scenario) {
+  return !tree["material"]["ludwik"] && scenario.sensitivities.empty();
+}
+
+/// That scenario with other numbers of its material, at those of the keys that belong to it; none where one of them is
+/// no such number, or where something objects.
+/// @param tree  what the scenario was made of
+std::optional<CheckedScenario> with_material(const CheckedScenario& made, const toml::table& tree,
+                                             const std::string& origin, std::span<const std::string> keys,
+                                             std::span<const double> numbers) {
+  const Language& language = language_of(made.model);
+  std::optional<CheckedScenario> scenario = made;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    if (!keys[k].starts_with(k_of_material)) continue;
+    const std::string name = keys[k].substr(k_of_material.size());
+    const auto key = std::ranges::find(language.model->material, name, &QuantityKey::name);
+    if (key == language.model->material.end()) return std::nullopt;
+    if (!finite_range(quantity_key(*key)).contains(numbers[k])) return std::nullopt;
+    scenario->material.insert_or_assign(name, numbers[k]);
+  }
+  FaultList faults;
+  Reading reading{faults};
+  check_rules(reading, tree, origin, language, *scenario);
+  if (faults.size() > 0) return std::nullopt;
+  return scenario;
+}
+
 }  // namespace
 
 struct ScenarioTemplate::Document {
+  /// A checked scenario, and what it was made of.
+  struct Made {
+    std::vector<std::string> overrides;
+    std::vector<std::string> keys;
+    std::vector<double> numbers;  ///< at keys outside the material
+    toml::table tree;
+    CheckedScenario scenario;
+  };
+
   ScenarioSource source;
   std::vector<std::string> overrides;
   toml::table root;
+  mutable std::mutex mutex{};
+  mutable std::shared_ptr<const Made> last{};  ///< changed under the mutex
+
+  /// The last one, if it was made of these: numbers of the material at the same keys are all that it lacks.
+  [[nodiscard]] std::shared_ptr<const Made> find(const std::vector<std::string>& more,
+                                                 std::span<const std::string> keys,
+                                                 const std::vector<double>& numbers) const {
+    const std::lock_guard lock(mutex);
+    const bool is_same =
+        last && last->overrides == more && std::ranges::equal(last->keys, keys) && last->numbers == numbers;
+    return is_same ? last : nullptr;
+  }
 };
 
 ScenarioTemplate::ScenarioTemplate(ScenarioSource source, std::vector<std::string> overrides) {
@@ -85,13 +141,30 @@ CheckedScenario ScenarioTemplate::with(const std::vector<std::string>& overrides
   std::vector<std::string> all = document_->overrides;
   all.insert(all.end(), overrides.begin(), overrides.end());
   for (std::size_t k = 0; k < keys.size(); ++k) all.push_back(fmt::format("{}={}", keys[k], numbers[k]));
+  std::vector<double> other_numbers;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    if (!keys[k].starts_with(k_of_material)) other_numbers.push_back(numbers[k]);
+  }
+  if (const auto made = document_->find(overrides, keys, other_numbers)) {
+    if (auto scenario = with_material(made->scenario, made->tree, source.origin, keys, numbers)) {
+      scenario->overrides = std::move(all);
+      return *std::move(scenario);
+    }
+  }
   try {
     toml::table copy = document_->root;
     FaultList faults;
     for (const std::string& text : overrides) apply_override(copy, text, faults);
     const std::size_t first = all.size() - keys.size();
     for (std::size_t k = 0; k < keys.size(); ++k) apply_number(copy, all[first + k], numbers[k], faults);
-    return check_tree(copy, source, all, faults);
+    CheckedScenario scenario = check_tree(copy, source, all, faults);
+    if (other_numbers.size() < keys.size() && may_set_material(copy, scenario)) {
+      auto made = std::make_shared<Document::Made>(
+          Document::Made{overrides, {keys.begin(), keys.end()}, std::move(other_numbers), std::move(copy), scenario});
+      const std::lock_guard lock(document_->mutex);
+      document_->last = std::move(made);
+    }
+    return scenario;
   } catch (const ScenarioError&) {
     return parse_source(source, all);  // a copy does not know its places
   }
