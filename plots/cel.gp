@@ -30,9 +30,7 @@ plot data index 'run 1 axial loading' using 1:2 with lines lc rgb '#0072B2' lw 2
   data index 'run 1 lateral unloading' using 1:2 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
   data index 'run 1 lateral reloading' using 1:2 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
   data index 'event yield.' using 1:2 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event load-reversal.' using 1:2 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event contact-lost.' using 1:2 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event contact-made.' using 1:2 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000'
+  data index 'event load-reversal.' using 1:2 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000'
 
 set lmargin at screen 0.6294; set rmargin at screen 0.9735
 set bmargin at screen 0.6220; set tmargin at screen 0.9512
@@ -50,9 +48,7 @@ plot data index 'run 1 axial loading' using 1:3 with lines lc rgb '#0072B2' lw 2
   data index 'run 1 lateral unloading' using 1:3 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
   data index 'run 1 lateral reloading' using 1:3 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
   data index 'event yield.' using 1:3 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event load-reversal.' using 1:3 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event contact-lost.' using 1:3 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event contact-made.' using 1:3 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000'
+  data index 'event load-reversal.' using 1:3 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000'
 
 set lmargin at screen 0.1294; set rmargin at screen 0.4735
 set bmargin at screen 0.1341; set tmargin at screen 0.4634
@@ -70,9 +66,7 @@ plot data index 'run 1 axial loading' using 1:4 with lines lc rgb '#0072B2' lw 2
   data index 'run 1 lateral unloading' using 1:4 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
   data index 'run 1 lateral reloading' using 1:4 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
   data index 'event yield.' using 1:4 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event load-reversal.' using 1:4 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event contact-lost.' using 1:4 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event contact-made.' using 1:4 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000'
+  data index 'event load-reversal.' using 1:4 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000'
 
 # The legend: empty plots that show nothing but a key, each in its place; a terminal's own spacing of several
 # lines in one key would not be that of the headings.
@@ -98,9 +92,5 @@ plot [0:1] [0:1] NaN, keyentry with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000' t
 unset label 1
 set key at screen 0.6176, 0.2602 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000' title 'load-reversal'
-set key at screen 0.6176, 0.2195 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-lost'
-set key at screen 0.6176, 0.1789 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-made'
 unset multiplot
 unset output

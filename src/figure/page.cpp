@@ -20,7 +20,9 @@ namespace fs = std::filesystem;
 
 constexpr double k_x_label_cm = 1.05;  // from an axis down to the middle of its label
 constexpr std::string_view k_minus = "\u2212";
-constexpr double k_most_decade_tics = 6.0;  // of a logarithmic axis: more of their labels run into each other
+// Of a logarithmic axis: more of their labels run into each other, side by side sooner than one above the other.
+constexpr double k_most_decades_along = 5.0;
+constexpr double k_most_decades_up = 6.0;
 
 [[nodiscard]] Format format_of(const fs::path& output) {
   const std::string extension = output.extension().string();
@@ -88,8 +90,8 @@ void make_folder(const fs::path& folder) {
   const auto& [lowest, highest, tic_step] = axis.range;
   if (axis.is_logarithmic) {
     const double decades = std::log10(highest / lowest);
-    const std::string tics =
-        decades > k_most_decade_tics ? fmt::format("1e{:.0f}", std::ceil(decades / k_most_decade_tics)) : "autofreq";
+    const double most = name == 'x' ? k_most_decades_along : k_most_decades_up;
+    const std::string tics = decades > most ? fmt::format("1e{:.0f}", std::ceil(decades / most)) : "autofreq";
     return fmt::format(
         "set logscale {0}; set {0}range [{1:.6g}:{2:.6g}]; set {0}tics {3}; "
         "set format {0} '10^{{%T}}'\n",

@@ -756,7 +756,7 @@ TEST(ReadyAtlas, HasADefinitionForEachCommittedFigure) {
   const auto definitions = ready_definitions();
   for (const auto& entry : fs::directory_iterator(MONOGRAIN_SOURCE_DIR "/plots")) {
     const std::string name = entry.path().stem().string();
-    if (entry.path().extension() != ".svg" || name == "die" || name.starts_with("bench-")) continue;
+    if (entry.path().extension() != ".svg" || name == "die" || name == "cel" || name.starts_with("bench-")) continue;
     EXPECT_TRUE(std::ranges::binary_search(definitions, name)) << name << ".svg: nothing draws it";
   }
 }
