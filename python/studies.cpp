@@ -1,4 +1,4 @@
-// Sweeps, calibrations and comparisons.
+// Sweeps, calibrations, plans of experiments and comparisons.
 
 #include <pybind11/stl.h>
 
@@ -8,6 +8,7 @@
 #include "history/compare.hpp"
 #include "interruptible.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/identify/identify_files.hpp"
 #include "study/sweep/bands.hpp"
 #include "study/sweep/sensitivity.hpp"
 #include "study/sweep/sweep.hpp"
@@ -95,6 +96,57 @@ Fitted calibrate_file(const std::string& file, const std::string& output, double
   });
 }
 
+/// Result of a plan of an experiment, in memory.
+struct Designed {
+  std::string name;
+  std::vector<std::string> programs;    ///< names of all
+  std::vector<std::string> candidates;  ///< names of those that are not planned
+  bool has_planned = false;             ///< whether the table begins with the rows of the planned programs
+  std::optional<std::string> best_by_volume;
+  std::optional<std::string> best_by_variances;
+  std::vector<std::vector<std::string>> notes;  ///< by program
+  std::string text;
+  std::string no_figure;
+  History table;
+};
+
+/// @param output  folder for the files of the program; empty: none are written
+Designed design_file(const std::string& file, const std::string& output) {
+  const ExperimentPlan plan = [&] {
+    const py::gil_scoped_release released;
+    return read_experiment_plan(file);
+  }();
+  return run_interruptibly([&](const std::atomic<bool>& stop) {
+    const IdentifyResult result = identify(plan, [&stop] {
+      if (stop) throw Stopped();
+    });
+    Designed designed{.name = plan.name,
+                      .programs = {},
+                      .candidates = {},
+                      .has_planned = result.planned.has_value(),
+                      .best_by_volume = {},
+                      .best_by_variances = {},
+                      .notes = {},
+                      .text = identify_text(plan, result),
+                      .no_figure = {},
+                      .table = history_of(identify_table(plan, result))};
+    for (std::size_t k = 0; k < plan.programs.size(); ++k) {
+      designed.programs.push_back(plan.programs[k].name);
+      designed.notes.push_back(result.programs[k].notes);
+    }
+    for (const CandidateErrors& candidate : result.candidates) {
+      designed.candidates.push_back(plan.programs[candidate.program].name);
+    }
+    if (result.best_by_volume) designed.best_by_volume = designed.candidates[*result.best_by_volume];
+    if (result.best_by_variances) designed.best_by_variances = designed.candidates[*result.best_by_variances];
+    if (!output.empty()) {
+      StagedFolder staged(output, k_identify_marker);
+      designed.no_figure = write_identify(plan, result, staged);
+    }
+    return designed;
+  });
+}
+
 py::tuple as_python(const Comparison& comparison) {
   py::list curves;
   for (const CurveDifference& d : comparison.curves) {
@@ -120,6 +172,18 @@ void add_studies(py::module_& module) {
       .def_readonly("no_figure", &Fitted::no_figure)
       .def_readonly("fit", &Fitted::fit);
   module.def("calibrate", &calibrate_file);
+  py::class_<Designed>(module, "Designed")
+      .def_readonly("name", &Designed::name)
+      .def_readonly("programs", &Designed::programs)
+      .def_readonly("candidates", &Designed::candidates)
+      .def_readonly("has_planned", &Designed::has_planned)
+      .def_readonly("best_by_volume", &Designed::best_by_volume)
+      .def_readonly("best_by_variances", &Designed::best_by_variances)
+      .def_readonly("notes", &Designed::notes)
+      .def_readonly("text", &Designed::text)
+      .def_readonly("no_figure", &Designed::no_figure)
+      .def_readonly("table", &Designed::table);
+  module.def("design", &design_file);
   module.def("compare_tables", [](const History& a, const History& b, const std::string& x, const std::string& y) {
     return as_python(compare(a, b, x, y));
   });

@@ -23,8 +23,8 @@ Settings = Optional[Mapping[str, Any]]
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = "build/python"
 NAME = "monograin"
-# Ready scenarios, with what they name and what sweeps and calibrates them.
-DATA = ("*.toml", "*.csv", "sweeps/*", "calibrate/*")
+# Ready scenarios, with what they name and what sweeps, calibrates and plans them.
+DATA = ("*.toml", "*.csv", "sweeps/*", "calibrate/*", "design/*")
 # Folders that a source distribution does without.
 NO_SOURCE = ("build", "runs", "dist")
 

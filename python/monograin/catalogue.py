@@ -117,7 +117,7 @@ def schema() -> dict[str, Any]:
 
 
 def scenario_folder() -> pathlib.Path:
-    """Returns the folder of the ready scenarios; ``sweeps`` and ``calibrate`` in it hold files for both."""
+    """Returns the folder of the ready scenarios; ``sweeps``, ``calibrate`` and ``design`` in it hold files for them."""
     return pathlib.Path(__file__).parent / "scenarios"
 
 

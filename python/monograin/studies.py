@@ -1,4 +1,4 @@
-"""Sweeps, calibrations and comparisons."""
+"""Sweeps, calibrations, plans of experiments and comparisons."""
 
 from __future__ import annotations
 
@@ -177,6 +177,119 @@ def calibrate(file: Path, folder: Optional[Path] = None, *, confidence: Optional
     for warning in core.warnings:
         warnings.warn(warning, RuntimeWarning, stacklevel=2)
     return Calibration(core)
+
+
+class ExpectedErrors(NamedTuple):
+    """Errors to expect of one fit to the measurements of several programs of loads; all in SI units.
+
+    Attributes:
+        standard_errors: of every parameter, by its key; nan where the measurements do not determine it.
+        covariance: matrix of the parameters, shape (p, p), in the order of ``standard_errors``; nan as there.
+        correlation: matrix of the parameters, shape (p, p), as ``covariance``.
+        volume: D-criterion: volume of the confidence ellipsoid over that of the planned programs alone; 1 for these, nan
+            where theirs is infinite.
+        relative_variances: A-criterion: sum of the variances of the parameters, each over its value squared; inf where one
+            is not determined.
+        log_determinant: natural logarithm of the determinant of the relative covariance; inf where a parameter is not
+            determined.
+    """
+
+    standard_errors: dict[str, float]
+    covariance: NDArray[np.float64]
+    correlation: NDArray[np.float64]
+    volume: float
+    relative_variances: float
+    log_determinant: float
+
+    @property
+    def is_determined(self) -> dict[str, bool]:
+        """Whether the measurements determine a parameter, by its key."""
+        return {key: bool(np.isfinite(error)) for key, error in self.standard_errors.items()}
+
+
+class Design:
+    """Errors of parameters to expect of a planned experiment, alone and with each further program of loads."""
+
+    def __init__(self, core: _core.Designed) -> None:
+        self._core = core
+        self._table = Table(core.table)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Values of the parameters that are taken as true, by key, in SI units."""
+        count = len(self._table) // (len(self._core.candidates) + self._core.has_planned)
+        return dict(zip(self._table["key"][:count].tolist(), self._table["value"][:count].tolist()))
+
+    @property
+    def planned(self) -> Optional[ExpectedErrors]:
+        """Errors with the planned programs alone; None where no program is planned and no prior tells a parameter."""
+        return self._errors(0) if self._core.has_planned else None
+
+    @property
+    def candidates(self) -> dict[str, ExpectedErrors]:
+        """Errors with the planned programs and one candidate, by the candidate's name."""
+        first = int(self._core.has_planned)
+        return {name: self._errors(first + k) for k, name in enumerate(self._core.candidates)}
+
+    @property
+    def best_by_volume(self) -> Optional[str]:
+        """Name of the D-optimal candidate, which has the least volume; None where none determines all parameters."""
+        return self._core.best_by_volume
+
+    @property
+    def best_by_variances(self) -> Optional[str]:
+        """Name of the A-optimal candidate, which has the least sum of relative variances; None as above."""
+        return self._core.best_by_variances
+
+    @property
+    def notes(self) -> dict[str, list[str]]:
+        """Remarks on the run of each program, by its name."""
+        return dict(zip(self._core.programs, self._core.notes))
+
+    @property
+    def table(self) -> Table:
+        """A row for each parameter of the planned programs and of each candidate, as ``errors.csv`` holds it."""
+        return self._table
+
+    def _errors(self, block: int) -> ExpectedErrors:
+        values = self.values
+        rows = slice(block * len(values), (block + 1) * len(values))
+        errors = self._table["standard_error"][rows]
+        correlation: NDArray[np.float64] = np.column_stack([self._table[f"correlation({key})"][rows] for key in values])
+        return ExpectedErrors(
+            dict(zip(values, errors.tolist())),
+            errors[:, None] * correlation * errors,
+            correlation,
+            *(float(self._table[name][rows][0]) for name in ("volume", "relative_variances", "log_determinant")),
+        )
+
+    def __str__(self) -> str:
+        return self._core.text
+
+    def __repr__(self) -> str:
+        return f"<Design {self._core.name!r}: {', '.join(self._core.programs)}>"
+
+
+def design(file: Path, folder: Optional[Path] = None) -> Design:
+    """Says which errors of parameters to expect of a planned experiment, as ``monograin design`` does.
+
+    The errors are those of a fit whose law is right, nearly linear within the errors, and whose noise is known: the
+    covariance is the inverse of the Fisher information (Fedorov, 1972). A figure that could not be drawn is warned of
+    (RuntimeWarning).
+
+    Args:
+        file: a plan (TOML): scenario, free parameters, programs of loads with their noise.
+        folder: for the files of the program; None: none are written.
+
+    Raises:
+        ScenarioError: with every fault of plan and scenario, or where the noise of a measured row is zero.
+        RuntimeError: where the folder holds something else or cannot be written.
+        KeyboardInterrupt: on Ctrl-C; nothing has been written then.
+    """
+    core = _core.design(os.fspath(file), "" if folder is None else os.fspath(folder))
+    if core.no_figure:
+        warnings.warn(f"no figure: {core.no_figure}", RuntimeWarning, stacklevel=2)
+    return Design(core)
 
 
 class CurveDifference(NamedTuple):

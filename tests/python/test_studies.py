@@ -1,4 +1,4 @@
-"""Sweeps, calibrations, comparisons, and what the package tells about models."""
+"""Sweeps, calibrations, plans of experiments, comparisons, and what the package tells about models."""
 
 from __future__ import annotations
 
@@ -104,6 +104,60 @@ def test_the_level_of_a_calibration_can_be_chosen():
         assert parameter.interval[0] < narrow[key].interval[0] < narrow[key].interval[1] < parameter.interval[1]
     with pytest.raises(ValueError, match="confidence"):
         mg.calibrate(file, confidence=1.0)
+
+
+def test_expected_errors_are_those_of_the_program(run_program, tmp_path):
+    file = mg.scenario_folder() / "design" / "uniaxial.toml"
+    plan = mg.design(file, tmp_path / "ours")
+    called = run_program("design", file, "-o", "theirs", cwd=tmp_path)
+    assert called.returncode == 0
+    assert str(plan) == called.stdout
+    assert (tmp_path / "ours" / "errors.csv").read_bytes() == (tmp_path / "theirs" / "errors.csv").read_bytes()
+    assert plan.values == {"material.youngs_modulus": 1e9, "material.yield_stress": 40e6}
+    table = mg.Table.read_csv(tmp_path / "theirs" / "errors.csv")
+    for name, errors in {"planned": plan.planned, **plan.candidates}.items():
+        rows = table["with"] == name
+        assert list(errors.standard_errors.values()) == table["standard_error"][rows].tolist()
+        assert errors.covariance == pytest.approx(errors.covariance.T, rel=1e-12)
+        assert_array_equal(np.diag(errors.correlation), [1.0, 1.0])
+        assert np.sqrt(np.diag(errors.covariance)) == pytest.approx(table["standard_error"][rows], rel=1e-12)
+        relative = errors.covariance / np.outer(list(plan.values.values()), list(plan.values.values()))
+        assert errors.relative_variances == pytest.approx(np.trace(relative), rel=1e-12)
+        assert errors.log_determinant == pytest.approx(np.log(np.linalg.det(relative)), rel=1e-9)
+        assert errors.volume == pytest.approx(
+            np.sqrt(np.linalg.det(errors.covariance) / np.linalg.det(plan.planned.covariance)), rel=1e-9
+        )
+
+
+def test_the_best_candidate_has_the_least_volume_and_the_least_variances():
+    plan = mg.design(mg.scenario_folder() / "design" / "uniaxial.toml")
+    assert set(plan.candidates) == {"unloading", "two_unloadings"}
+    assert plan.best_by_volume == min(plan.candidates, key=lambda name: plan.candidates[name].volume)
+    assert plan.best_by_variances == min(plan.candidates, key=lambda name: plan.candidates[name].relative_variances)
+    assert plan.candidates[plan.best_by_volume].volume < plan.planned.volume == 1.0
+    assert set(plan.notes) == {"loading", *plan.candidates}
+
+
+def test_a_parameter_that_no_measurement_depends_on_is_not_determined(tmp_path):
+    scenario = (mg.scenario_folder() / "uniaxial.toml").as_posix()
+    file = tmp_path / "gentle.toml"
+    file.write_text(
+        f'scenario = "{scenario}"\n[free]\n"material.youngs_modulus" = {{ from = "0.1 GPa", to = "10 GPa" }}\n'
+        '"material.yield_stress" = { from = "1 MPa", to = "200 MPa" }\n[[program]]\nname = "gentle"\n'
+        "set = [\"loading.steps=[{ displacement = '0.001 R0', duration = '1 s' }]\"]\n"
+        'noise = { absolute = "0.1 N" }\n'
+    )
+    plan = mg.design(file)
+    assert plan.planned is None
+    assert plan.candidates["gentle"].is_determined == {
+        "material.youngs_modulus": True,
+        "material.yield_stress": False,
+    }
+    assert plan.candidates["gentle"].relative_variances == np.inf
+    assert plan.best_by_volume is None
+    file.write_text(f'scenario = "{scenario}"\n[free]\n"material.yield_stress" = {{ from = 1e6, to = 2e8 }}\n')
+    with pytest.raises(mg.ScenarioError, match="program"):
+        mg.design(file)
 
 
 def test_a_run_does_not_differ_from_itself_and_does_from_another(die, tmp_path):

@@ -196,9 +196,12 @@ ExpectedErrors expected_errors(const std::vector<FreeParameter>& free, std::span
   return expected;
 }
 
-IdentifyResult identify(const ExperimentPlan& plan) {
+IdentifyResult identify(const ExperimentPlan& plan, const std::function<void()>& before_run) {
   IdentifyResult result;
-  for (const ExperimentProgram& program : plan.programs) result.programs.push_back(information_of(plan, program));
+  for (const ExperimentProgram& program : plan.programs) {
+    if (before_run) before_run();
+    result.programs.push_back(information_of(plan, program));
+  }
   std::vector<const ProgramInformation*> planned;
   for (std::size_t k = 0; k < plan.programs.size(); ++k) {
     if (plan.programs[k].is_planned) planned.push_back(&result.programs[k]);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -60,7 +61,8 @@ struct IdentifyResult {
 };
 
 /// Runs all programs and compares the candidates.
+/// @param before_run  called before each program is run; an exception that it throws ends the work
 /// @throws ScenarioError where the standard deviation of y is zero in a row
-[[nodiscard]] IdentifyResult identify(const ExperimentPlan& plan);
+[[nodiscard]] IdentifyResult identify(const ExperimentPlan& plan, const std::function<void()>& before_run = {});
 
 }  // namespace monograin
