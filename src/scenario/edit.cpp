@@ -27,10 +27,10 @@ std::size_t offset_of(std::string_view text, const toml::source_position& positi
 }
 
 void apply(std::string& text, const TextEdit& edit) {
-  const std::size_t dot = edit.path.find('.');
+  const std::size_t dot = edit.path.rfind('.');
   const std::string_view key = std::string_view(edit.path).substr(dot + 1);
   const toml::table root = parse_document(text, "text");
-  const toml::table* table = root[std::string_view(edit.path).substr(0, dot)].as_table();
+  const toml::table* table = root.at_path(std::string_view(edit.path).substr(0, dot)).as_table();
   if (const toml::node* value = table == nullptr ? nullptr : table->get(key)) {
     const std::size_t begin = offset_of(text, value->source().begin);
     text.replace(begin, offset_of(text, value->source().end) - begin, edit.value);

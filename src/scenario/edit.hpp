@@ -9,7 +9,7 @@ namespace monograin {
 
 /// A value that is to stand at a key.
 struct TextEdit {
-  std::string path;   ///< "table.key"
+  std::string path;   ///< "table.key", "table.list[1].key"
   std::string value;  ///< as TOML
 };
 

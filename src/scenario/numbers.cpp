@@ -30,8 +30,15 @@ std::vector<NumberKey> number_keys(const CheckedScenario& scenario) {
     const KeySpec* angle = find_key(language.loading, "angle");
     if (angle != nullptr) append_quantities(numbers, "loading", std::span(angle, 1));
   }
+  const KeySpec* gap = find_key(language.wall, "gap");
+  for (std::size_t wall = 0; gap != nullptr && wall < scenario.loading.walls.size(); ++wall) {
+    numbers.push_back({gap_path(wall), gap->meaning, gap->dimension, finite_range(*gap)});
+  }
+  append_quantities(numbers, "particle", language.particle);
   return numbers;
 }
+
+std::string gap_path(std::size_t wall) { return fmt::format("loading.wall[{}].gap", wall); }
 
 void set_number(CheckedScenario& scenario, std::string_view path, double value) {
   if (path == k_angle) {
@@ -41,6 +48,11 @@ void set_number(CheckedScenario& scenario, std::string_view path, double value) 
   } else if (path.starts_with(scenario.model + '.')) {
     scenario.options.insert_or_assign(std::string(path.substr(scenario.model.size() + 1)), value);
   } else {
+    for (std::size_t wall = 0; wall < scenario.loading.walls.size(); ++wall) {
+      if (path != gap_path(wall)) continue;
+      scenario.loading.walls[wall].gap = value;
+      return;
+    }
     throw std::logic_error(fmt::format("'{}' is no number that can be set on its own", path));
   }
 }
