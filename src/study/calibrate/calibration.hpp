@@ -52,7 +52,7 @@ struct MeasuredCurve {
   std::vector<std::size_t> left_out;     ///< lines of the rows without a number in one of the columns
   Machine machine;                       ///< as given, without what is free
   std::vector<std::string> overrides;    ///< of the scenario, for this curve
-  CheckedScenario scenario;              ///< with them
+  CheckedScenario scenario;              ///< with them; has variants where the radius is free
   std::string driven;                    ///< observable that x holds
   Step::Kind control = Step::Kind::displacement;
   double start = 0.0;  ///< of x, before the first step [SI]

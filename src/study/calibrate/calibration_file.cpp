@@ -54,6 +54,7 @@ class CalibrationReader {
     }
     if (root.has("prior") && !made_.free.empty()) read_priors(reading_, root, made_.scenario, made_.free);
     faults_.throw_if_any();
+    check_lengths(root);
     check_machine(root);
     check_count(root);
     faults_.throw_if_any();
@@ -305,13 +306,31 @@ class CalibrationReader {
     return one.value;
   }
 
+  // --- lengths of the scenario
+
+  [[nodiscard]] bool is_free(std::string_view path) const {
+    return std::ranges::find(made_.free, path, [](const auto& free) { return free.key.path; }) != made_.free.end();
+  }
+
+  /// Displacements count from first touch, whatever the gap before it.
+  void check_lengths(const Section& root) {
+    for (MeasuredCurve& curve : made_.curves) {
+      if (is_free(k_radius_key)) curve.scenario.variants = named_scenario_.variants(curve.overrides);
+      const std::vector<WallSpec>& walls = curve.scenario.loading.walls;
+      for (std::size_t wall = 0; wall < walls.size(); ++wall) {
+        if (walls[wall].name != curve.driven.substr(0, curve.driven.rfind('.')) || !is_free(gap_path(wall))) continue;
+        faults_.add(root.value_place("free"),
+                    fmt::format("'{}' cannot be free: displacements of wall '{}', which x drives, count from first "
+                                "touch; expected \"{}\", or the gap of another wall",
+                                gap_path(wall), walls[wall].name, k_offset));
+      }
+    }
+  }
+
   // --- the machine
 
   /// The machine adds to a displacement, under the force beside it: that both are there shows when all is read.
   void check_machine(const Section& root) {
-    const auto is_free = [this](std::string_view path) {
-      return std::ranges::find(made_.free, path, [](const auto& free) { return free.key.path; }) != made_.free.end();
-    };
     const auto is_deflecting = [](const MeasuredCurve& curve) {
       return curve.machine.compliance > 0.0 || !curve.machine.forces.empty();
     };

@@ -33,7 +33,8 @@ KeySpec bound_key(std::string_view name, std::string_view meaning, const NumberK
               .kind = kind,
               .is_required = is_required,
               .dimension = number.dimension,
-              .range = number.range};
+              .range = number.range,
+              .knows_initial_radius = number.path != k_radius_key};
   if (number.path == k_compliance) key.example = "\"20 nm/N\"";
   return key;
 }

@@ -29,12 +29,13 @@ const CurveProcedure* procedure_of(const Calibration& calibration) {
   return find_model(calibration.scenario.model)->curve_procedure;
 }
 
-/// Whether the data are one curve, of forces over displacements of one contact, in units and with a machine that are
-/// not fitted.
+/// Whether the data are one curve, of forces over displacements of one contact, with a radius, units and a machine that
+/// are not fitted.
 bool is_force_curve(const Calibration& calibration) {
   return calibration.curves.size() == 1 && calibration.curves.front().control == Step::Kind::displacement &&
          calibration.y.observable.ends_with(".force") && class_of(calibration.x) == class_of(calibration.y) &&
-         !is_free(calibration, calibration::k_offset) && !is_free(calibration, calibration::k_compliance) &&
+         !is_free(calibration, k_radius_key) && !is_free(calibration, calibration::k_offset) &&
+         !is_free(calibration, calibration::k_compliance) &&
          std::ranges::none_of(procedure_of(calibration)->fixed_keys,
                               [&](std::string_view key) { return is_free(calibration, key); });
 }

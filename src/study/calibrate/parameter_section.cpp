@@ -25,14 +25,19 @@ namespace {
 
 constexpr double k_ratio_for_log = 100.0;  // of bounds: from here on their parameter is sought in its logarithm
 
-/// Keys that stand in the scenario, or are written so that TOML takes them apart.
-std::vector<ForeignKey> foreign_keys(const toml::table* table) {
+/// Keys of a scenario that cannot be free, or are written so that TOML takes them apart.
+std::vector<ForeignKey> foreign_keys(const toml::table* table, const std::vector<NumberKey>& numbers) {
   std::vector<ForeignKey> foreign;
   for (const auto& [key, node] : *table) {
     const std::string_view name = key.str();
     const toml::table* inner = node.as_table();
-    if (name == "particle.radius") {
-      foreign.push_back({name, "cannot be free: lengths of the scenario may be given in R0"});
+    if (std::ranges::find(numbers, name, &NumberKey::path) != numbers.end()) continue;
+    if (name.starts_with("loading.") && name.find("steps") != std::string_view::npos) {
+      foreign.push_back({name, "cannot be free: steps are what a test prescribes"});
+    } else if (name.starts_with("loading.wall")) {
+      foreign.push_back({name,
+                         "cannot be free; expected the gap of a wall of configuration = \"walls\", counted from 0, for "
+                         "example \"loading.wall[1].gap\""});
     } else if (inner != nullptr && !inner->contains("from") && name.find('.') == std::string_view::npos) {
       foreign.push_back({name,
                          "is a table; expected the whole path in quotes, for example "
@@ -154,7 +159,8 @@ std::optional<double> value_in(Reading& reading, const Section& section, std::st
     }
     return parsed.value;
   }
-  const ParsedQuantity parsed = parse_quantity(text, number.dimension, reading.initial_radius);
+  const auto radius = number.path == k_radius_key ? std::nullopt : std::optional(reading.initial_radius);
+  const ParsedQuantity parsed = parse_quantity(text, number.dimension, radius);
   if (!parsed.value) reading.faults.add(section.value_place(key, entry), fmt::format("{}: {}", key, parsed.problem));
   return parsed.value;
 }
@@ -231,7 +237,7 @@ std::vector<FreeParameter> free_in(Reading& reading, const Section& root, const 
   std::vector<NumberKey> numbers = number_keys(scenario.checked);
   std::ranges::move(machine_keys(), std::back_inserter(numbers));
   const Keys keys = free_keys(numbers);
-  const std::vector<ForeignKey> foreign = foreign_keys(root.table("free", "").table);
+  const std::vector<ForeignKey> foreign = foreign_keys(root.table("free", "").table, numbers);
   const Section free(reading, root.table("free", "[free]"), keys, foreign);
   std::vector<std::pair<SourceLocation, const NumberKey*>> found;
   for (const NumberKey& number : numbers) {

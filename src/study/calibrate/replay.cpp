@@ -18,10 +18,29 @@ constexpr double k_no_change = 1e-12;  // of the largest value; the engine resol
 
 constexpr double k_same_force = 1e-6;  // as prescribed, of the largest
 
-std::size_t place_of(const HybridSystem& system, std::string_view column) {
-  const auto found = std::ranges::find(system.observables(), column, &Observable::name);
-  if (found == system.observables().end()) throw std::logic_error(fmt::format("no observable '{}'", column));
-  return static_cast<std::size_t>(found - system.observables().begin());
+constexpr std::size_t k_no_class = std::numeric_limits<std::size_t>::max();
+
+/// Class of the wall that a column is of; as many as there are: none.
+std::size_t class_of(const Scene& scene, std::string_view column) {
+  const std::string_view name = column.substr(0, column.rfind('.'));
+  const auto named = std::ranges::find(scene.classes, name, &ContactClass::name);
+  if (named != scene.classes.end()) return static_cast<std::size_t>(named - scene.classes.begin());
+  const auto holding = std::ranges::find_if(
+      scene.walls, [&](const auto& walls) { return std::ranges::find(walls, name) != walls.end(); });
+  return static_cast<std::size_t>(holding - scene.walls.begin());
+}
+
+/// Place of a column among the observables. Gaps decide which walls symmetry makes one class: a wall whose gap is
+/// another one's has its columns under that one's name.
+std::size_t place_of(const Scene& scene, std::string_view column) {
+  const std::span<const Observable> all = scene.system->observables();
+  auto found = std::ranges::find(all, column, &Observable::name);
+  if (const std::size_t c = class_of(scene, column); found == all.end() && c < scene.classes.size()) {
+    found = std::ranges::find(all, scene.classes[c].name + std::string(column.substr(column.rfind('.'))),
+                              &Observable::name);
+  }
+  if (found == all.end()) throw std::logic_error(fmt::format("no observable '{}'", column));
+  return static_cast<std::size_t>(found - all.begin());
 }
 
 /// Keeps two columns at the output points.
@@ -29,10 +48,10 @@ class ColumnSink final : public HistorySink {
  public:
   using Rows = std::vector<std::array<double, 2>>;
 
-  ColumnSink(HybridSystem& system, const ReplayColumns& columns, Rows& rows)
-      : system_(system),
-        observed_(system.observables().size()),
-        places_{place_of(system, columns.driven), place_of(system, columns.watched)},
+  ColumnSink(const Scene& scene, const ReplayColumns& columns, Rows& rows)
+      : system_(*scene.system),
+        observed_(system_.observables().size()),
+        places_{place_of(scene, columns.driven), place_of(scene, columns.watched)},
         rows_(rows) {}
 
   void observe(double /*time*/, int /*step*/, double xi, std::span<const double> y) override {
@@ -126,13 +145,41 @@ void Replay::follow(std::vector<double> values) {
   if (columns_.control != Step::Kind::force) resolution_ = std::numeric_limits<double>::infinity();
 }
 
-void Replay::set(std::string_view path, double value) { set_number(scenario_, path, value); }
+bool Replay::set(std::string_view path, double value) {
+  if (path != k_radius_key) {
+    set_number(scenario_, path, value);
+    return true;
+  }
+  if (value == scenario_.radius) return true;
+  try {
+    CheckedScenario sized = scenario_.variants->with({}, std::array{std::string(path)}, std::array{value});
+    sized.variants = scenario_.variants;
+    sized.loading.steps = std::move(scenario_.loading.steps);
+    sized.output = std::move(scenario_.output);
+    scenario_ = std::move(sized);
+  } catch (const ScenarioError& error) {
+    problem_ = error.faults().front().message;
+    failed_at_ = 0;
+    return false;
+  }
+  return true;
+}
+
+/// The scene. A gap that has moved moves the place where displacements begin.
+Scene Replay::scene_from_start() {
+  Scene scene = make_scene(scenario_);
+  const std::size_t c = columns_.control == Step::Kind::displacement ? class_of(scene, columns_.driven) : k_no_class;
+  if (c >= scene.classes.size() || scene.channels[c].at_rest.start == columns_.start) return scene;
+  columns_.start = scene.channels[c].at_rest.start;
+  follow(std::move(values_));
+  return make_scene(scenario_);
+}
 
 bool Replay::run(std::span<double> response) {
   seen_.clear();
   try {
-    Scene scene = make_scene(scenario_);
-    ColumnSink sink(*scene.system, columns_, seen_);
+    Scene scene = scene_from_start();
+    ColumnSink sink(scene, columns_, seen_);
     const Tolerances tolerances{scenario_.numerics.rtol, scenario_.numerics.atol};
     problem_ = drive(scene, integrator_, tolerances, scenario_.output, sink).message;
   } catch (const std::domain_error& error) {

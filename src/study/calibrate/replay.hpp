@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scenario/scenario.hpp"
+#include "scene/scene.hpp"
 
 namespace monograin {
 
@@ -55,7 +56,7 @@ struct ReplayColumns {
   std::string driven;
   std::string watched;
   Step::Kind control = Step::Kind::displacement;  ///< that of the driven column
-  double start = 0.0;                             ///< its value before the first step
+  double start = 0.0;                             ///< its value before the first step, with the scenario's own numbers
 };
 
 /// Runs a scenario again and again, with other numbers and one program: through given values instead of its own steps.
@@ -64,8 +65,10 @@ class Replay {
   /// @param values  of the driven column
   Replay(CheckedScenario scenario, ReplayColumns columns, std::vector<double> values);
 
-  /// Sets one of the scenario's numbers, see number_keys. @param value  [SI]
-  void set(std::string_view path, double value);
+  /// Sets one of the scenario's numbers, see number_keys. The radius is to be set before all others: lengths that are
+  /// given in R0 follow it. @param value  [SI]
+  /// @return false where no scenario has a particle of that radius; problem() tells why
+  [[nodiscard]] bool set(std::string_view path, double value);
 
   /// Goes through these values from now on. @param values  of the driven column, as many as before
   void follow(std::vector<double> values);
@@ -81,6 +84,8 @@ class Replay {
   [[nodiscard]] const CheckedScenario& scenario() const noexcept { return scenario_; }
 
  private:
+  [[nodiscard]] Scene scene_from_start();
+
   CheckedScenario scenario_;
   std::string integrator_;
   ReplayColumns columns_;

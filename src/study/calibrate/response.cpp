@@ -46,9 +46,12 @@ Response::Response(const Calibration& calibration, const MeasuredCurve& curve, s
 
 bool Response::operator()(std::span<const double> parameters, std::span<double> response) {
   problem_.clear();
-  for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const std::string& path = calibration_.free[k].key.path;
-    if (!path.starts_with(calibration::k_data)) replay_.set(path, parameters[k]);
+  for (const bool is_radius : {true, false}) {  // lengths in R0 follow the radius, unless they are free, too
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      const std::string& path = calibration_.free[k].key.path;
+      if (path.starts_with(calibration::k_data) || (path == k_radius_key) != is_radius) continue;
+      if (!replay_.set(path, parameters[k])) return false;
+    }
   }
   const Machine machine = calibration_.machine_of(curve_, parameters);
   if (calibration_.machine_moves_x()) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "scenario/edit.hpp"
 #include "scenario/words.hpp"
@@ -17,6 +18,12 @@ namespace fs = std::filesystem;
 CheckedScenario NamedScenario::with(const std::vector<std::string>& overrides) const {
   return document.empty() ? read_scenario(file, overrides)
                           : parse_scenario_table(document, "scenario", file, overrides);
+}
+
+std::shared_ptr<const ScenarioTemplate> NamedScenario::variants(const std::vector<std::string>& overrides) const {
+  ScenarioSource source{.text = document.empty() ? text : document, .origin = file};
+  if (!document.empty()) source.table = "scenario";
+  return std::make_shared<const ScenarioTemplate>(std::move(source), overrides);
 }
 
 std::optional<NamedScenario> scenario_in(Reading& reading, const Section& root, bool is_table, const std::string& text,

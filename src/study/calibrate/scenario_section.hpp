@@ -1,6 +1,7 @@
 /// The scenario that a file of a study names or contains. For readers of TOML files: includes the library.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,9 @@ struct NamedScenario {
 
   /// @throws ScenarioError with every fault of the text and the overrides
   [[nodiscard]] CheckedScenario with(const std::vector<std::string>& overrides) const;
+
+  /// With the overrides, for other numbers.
+  [[nodiscard]] std::shared_ptr<const ScenarioTemplate> variants(const std::vector<std::string>& overrides) const;
 };
 
 /// The scenario of a study; none, and faults, where there is none or it is at fault.

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -197,7 +198,37 @@ class PlanReader {
       faults_.add(place, fmt::format("'{}' is free; expected its one value in the scenario", paths_[k]));
       return false;
     }
-    return true;
+    return take_lengths(program.scenario, place);
+  }
+
+  /// A testing machine prescribes lengths, and displacements from first touch, whatever radius and gap are.
+  /// @return false, with a fault, where the steps follow a radius that is free or the first driven wall's gap is free
+  bool take_lengths(const CheckedScenario& scenario, const SourceLocation& place) {
+    const auto is_free = [this](std::string_view path) { return std::ranges::find(paths_, path) != paths_.end(); };
+    std::string problem;
+    if (is_free(k_radius_key)) {
+      const CheckedScenario larger =
+          scenario.variants->with({}, std::array{std::string(k_radius_key)}, std::array{2.0 * scenario.radius});
+      const auto is_same = [](const Step& a, const Step& b) { return a.target == b.target && a.rate == b.rate; };
+      const auto has_same = [&](const auto& a, const auto& b) { return std::ranges::equal(a.steps, b.steps, is_same); };
+      if (!has_same(scenario.loading, larger.loading) ||
+          !std::ranges::equal(scenario.loading.walls, larger.loading.walls, has_same)) {
+        problem = fmt::format(
+            "'{}' is free, and steps are given in R0; expected lengths that a machine prescribes, for "
+            "example \"0.2 mm\"",
+            k_radius_key);
+      }
+    }
+    const std::vector<WallSpec>& walls = scenario.loading.walls;
+    for (std::size_t wall = 0; wall < walls.size(); ++wall) {
+      if (!is_free(gap_path(wall)) || measurable_.driven.empty() || walls[wall].name != measurable_.driven.front()) {
+        continue;
+      }
+      problem = fmt::format("'{}' cannot be free: displacements of wall '{}' count from first touch", gap_path(wall),
+                            walls[wall].name);
+    }
+    if (!problem.empty()) faults_.add(place, problem);
+    return problem.empty();
   }
 
   /// The column of y; a fault where the scenario has none of that name.

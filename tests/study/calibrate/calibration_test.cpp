@@ -166,6 +166,192 @@ TEST_F(CalibrationTest, FindsTheParametersOfForceDrivenData) {
   EXPECT_NEAR(result.solution.parameters[1] / 3.1e7, 1.0, 1e-8);
 }
 
+// --- lengths
+
+constexpr const char* k_free_radius = R"(scenario = "s.toml"
+[data]
+file = "d.csv"
+x = "displacement[m]"
+y = "force[N]"
+noise = { relative = 0.01 }
+[free]
+"particle.radius" = { from = "1 mm", to = "50 mm" }
+)";
+
+/// Displacements from first touch, and the forces of elastic contacts of that radius.
+std::vector<Row> hertz_of_radius(double radius, double deviation = 0.0) {
+  std::mt19937 generator(11);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  std::vector<Row> rows;
+  for (int i = 1; i <= 80; ++i) {
+    const double x = 1e-6 * i;
+    const double force = hertz_force(50e9 / (1.0 - k_poisson * k_poisson), radius, x);
+    rows.push_back({x, force * (1.0 + deviation * noise(generator))});
+  }
+  return rows;
+}
+
+TEST_F(CalibrationTest, FindsTheRadiusOfExactData) {
+  write("c.toml", k_free_radius);
+  write("d.csv", csv_of(hertz_of_radius(7.3e-3), "displacement[m],force[N],w"));
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_NEAR(result.solution.parameters[0] / 7.3e-3, 1.0, 1e-6);
+  const CheckedScenario fitted = parse_scenario(fitted_scenario_text(calibration, result), "fitted.toml");
+  EXPECT_EQ(fitted.radius, result.solution.parameters[0]);
+}
+
+// F ~ sqrt(R): with forces known to 1 % each, the radius is known to 2 % over the root of their number.
+TEST_F(CalibrationTest, KnowsTheRadiusTwiceAsBadlyAsTheForces) {
+  write("c.toml", k_free_radius);
+  write("d.csv", csv_of(hertz_of_radius(7.3e-3, 0.01), "displacement[m],force[N],w"));
+  const CalibrationResult result = calibrate(read());
+  const double expected = 7.3e-3 * 2.0 * 0.01 / std::sqrt(80.0);
+  EXPECT_NEAR(result.uncertainty.standard_error(0) / expected, 1.0, 0.03);
+  EXPECT_NEAR(result.solution.parameters[0], 7.3e-3, 3.0 * expected);
+  EXPECT_GT(std::abs(result.solution.parameters[0] / 7.3e-3 - 1.0), 1e-5);
+}
+
+constexpr const char* k_late_wall = R"(model = "hertz"
+[particle]
+radius = "10 mm"
+[material]
+youngs_modulus = "50 GPa"
+poisson_ratio = 0.22
+[loading]
+configuration = "walls"
+steps = [{ displacement = "0.01 R0", duration = "1 s" }]
+[[loading.wall]]
+name = "top"
+normal = [0, 0, 1]
+[[loading.wall]]
+name = "late"
+normal = [1, 0, 0]
+gap = "0.002 R0"
+)";
+
+constexpr const char* k_free_gap = R"(scenario = "s.toml"
+[data]
+file = "d.csv"
+x = "top.displacement[m]"
+y = "late.force[N]"
+noise = { absolute = "1 N" }
+[free]
+"loading.wall[1].gap" = { from = 0, to = "0.1 mm", start = 0 }
+)";
+
+/// Forces on a wall that goes from its gap to the displacement of another one, which touches from the start.
+std::vector<Row> late_hertz(double gap, double radius, double deviation = 0.0) {
+  std::mt19937 generator(3);
+  std::normal_distribution<double> noise(0.0, deviation > 0.0 ? deviation : 1.0);
+  const double end = 1e-4;
+  std::vector<Row> rows;
+  for (int i = 0; i <= 100; ++i) {
+    const double x = end * i / 100.0;
+    const double force = hertz_force(50e9 / (1.0 - k_poisson * k_poisson), radius, -gap + (end + gap) * x / end);
+    rows.push_back({x, force + (deviation > 0.0 ? noise(generator) : 0.0)});
+  }
+  return rows;
+}
+
+// Symmetry makes both walls one class, which has the name of the first, where neither is late.
+TEST(Replay, FindsAWallThatItsGapPutsIntoTheClassOfAnotherOne) {
+  Replay replay(parse_scenario(k_late_wall, "s.toml"), {.driven = "top.displacement", .watched = "late.force"},
+                {4e-5, 1e-4});
+  std::vector<double> forces(2);
+  ASSERT_TRUE(replay.run(forces));
+  EXPECT_LT(forces[0], 0.9 * 50e9 * hertz_force_per_modulus(4e-5));
+  ASSERT_TRUE(replay.set("loading.wall[1].gap", 0.0));
+  ASSERT_TRUE(replay.run(forces)) << replay.problem();
+  EXPECT_NEAR(forces[0] / (50e9 * hertz_force_per_modulus(4e-5)), 1.0, 1e-9);
+}
+
+TEST_F(CalibrationTest, FindsTheGapOfALateWall) {
+  write("s.toml", k_late_wall);
+  write("c.toml", k_free_gap);
+  write("d.csv", csv_of(late_hertz(3.7e-5, k_radius), "top.displacement[m],late.force[N],w"));
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_NEAR(result.solution.parameters[0] / 3.7e-5, 1.0, 1e-6);
+  const CheckedScenario fitted = parse_scenario(fitted_scenario_text(calibration, result), "fitted.toml");
+  EXPECT_EQ(fitted.loading.walls[1].gap, result.solution.parameters[0]);
+}
+
+TEST_F(CalibrationTest, KnowsTheGapAsWellAsTheForcesTellIt) {
+  write("s.toml", k_late_wall);
+  write("c.toml", replaced(k_free_gap, "1 N", "5 N"));
+  write("d.csv", csv_of(late_hertz(3.7e-5, k_radius, 5.0), "top.displacement[m],late.force[N],w"));
+  const CalibrationResult result = calibrate(read());
+  const auto above = late_hertz(3.7e-5 + 1e-9, k_radius);
+  const auto below = late_hertz(3.7e-5 - 1e-9, k_radius);
+  double information = 0.0;
+  for (std::size_t i = 0; i < above.size(); ++i) information += std::pow((above[i].y - below[i].y) / 2e-9 / 5.0, 2);
+  EXPECT_NEAR(result.uncertainty.standard_error(0) * std::sqrt(information), 1.0, 0.03);
+  EXPECT_NEAR(result.solution.parameters[0], 3.7e-5, 3.0 / std::sqrt(information));
+}
+
+TEST_F(CalibrationTest, AGapInR0MovesWithTheRadius) {
+  write("s.toml", k_late_wall);
+  write("c.toml", replaced(replaced(k_free_radius, "x = \"displacement[m]\"", "x = \"top.displacement[m]\""),
+                           "y = \"force[N]\"\nnoise = { relative = 0.01 }", "y = \"late.force[N]\""));
+  write("d.csv", csv_of(late_hertz(0.002 * 7.3e-3, 7.3e-3), "top.displacement[m],late.force[N],w"));
+  EXPECT_NEAR(calibrate(read()).solution.parameters[0] / 7.3e-3, 1.0, 1e-6);
+}
+
+// The driven wall begins behind its gap, and the late one is as late in time as that says.
+TEST_F(CalibrationTest, TheStartOfADrivenWallMovesWithTheRadius) {
+  const std::string scenario = replaced(k_late_wall, "normal = [0, 0, 1]", "normal = [0, 0, 1]\ngap = \"0.001 R0\"");
+  write("s.toml", scenario);
+  write("c.toml", replaced(replaced(k_free_radius, "x = \"displacement[m]\"", "x = \"top.displacement[m]\""),
+                           "y = \"force[N]\"\nnoise = { relative = 0.01 }", "y = \"late.force[N]\""));
+  write("d.csv", csv_of(measure(scenario, {"particle.radius=7.3 mm", "loading.steps[0].displacement=0.1 mm"},
+                                "top.displacement", "late.force"),
+                        "top.displacement[m],late.force[N],w"));
+  EXPECT_NEAR(calibrate(read()).solution.parameters[0] / 7.3e-3, 1.0, 1e-6);
+}
+
+TEST_F(CalibrationTest, FindsTheGapOfAFixedWallThatAGrowingParticleMeets) {
+  const std::string scenario = R"(model = "mdr"
+[particle]
+radius = "10 mm"
+[material]
+youngs_modulus = "1 GPa"
+poisson_ratio = 0.3
+yield_stress = "40 MPa"
+[loading]
+configuration = "walls"
+steps = [{ displacement = "0.4 R0", duration = "1 s" }]
+[[loading.wall]]
+name = "top"
+normal = [0, 0, 1]
+[[loading.wall]]
+name = "bottom"
+normal = [0, 0, -1]
+[[loading.wall]]
+name = "side"
+normal = [1, 0, 0]
+gap = "0.1 mm"
+fixed = true
+)";
+  write("s.toml", scenario);
+  write("c.toml", replaced(replaced(k_free_gap, "late.force[N]", "side.force[N]"),
+                           "loading.wall[1].gap\" = { from = 0, to = \"0.1 mm\", start = 0 }",
+                           "loading.wall[2].gap\" = { from = \"0.01 R0\", to = \"0.08 R0\" }"));
+  write("d.csv", csv_of(measure(scenario, {"loading.wall[2].gap=0.31 mm"}, "top.displacement", "side.force"),
+                        "top.displacement[m],side.force[N],w"));
+  EXPECT_NEAR(calibrate(read()).solution.parameters[0] / 3.1e-4, 1.0, 1e-6);
+}
+
+TEST_F(CalibrationTest, RefusesTheGapOfTheWallThatXDrives) {
+  write("s.toml", k_late_wall);
+  write("c.toml", replaced(k_free_gap, "wall[1]", "wall[0]"));
+  write("d.csv", csv_of(late_hertz(3.7e-5, k_radius), "top.displacement[m],late.force[N],w"));
+  ASSERT_EQ(faults().size(), 1U);
+  EXPECT_EQ(faults()[0],
+            "c.toml:7:1: 'loading.wall[0].gap' cannot be free: displacements of wall 'top', which x drives, count from "
+            "first touch; expected \"data.offset\", or the gap of another wall");
+}
+
 constexpr const char* k_powder = R"(model = "material-point"
 [material]
 preset = "MCC PH-200"
@@ -664,8 +850,12 @@ constexpr FaultCase k_faults[] = {
     {"FreeIsNoNumber", "c.toml", "material.youngs_modulus", "loading.configuration",
      "c.toml:7:1: unknown key 'loading.configuration' in [free]; expected one of material.youngs_modulus, "
      "material.poisson_ratio"},
-    {"FreeRadius", "c.toml", "material.youngs_modulus", "particle.radius",
-     "c.toml:7:1: key 'particle.radius' cannot be free: lengths of the scenario may be given in R0"},
+    {"FreeStep", "c.toml", "material.youngs_modulus", "loading.steps[0].displacement",
+     "c.toml:7:1: key 'loading.steps[0].displacement' cannot be free: steps are what a test prescribes"},
+    {"FreeGapOfNoWall", "c.toml", "material.youngs_modulus", "loading.wall[0].gap",
+     "c.toml:7:1: key 'loading.wall[0].gap' cannot be free; expected the gap of a wall of configuration = \"walls\""},
+    {"RadiusInRadii", "c.toml", "\"material.youngs_modulus\" = { from = \"10 GPa\", to = \"300 GPa\" }",
+     "\"particle.radius\" = { from = \"0.5 R0\", to = \"20 mm\" }", "c.toml:7:30: from = \"0.5 R0\": "},
     {"FreeWithoutQuotes", "c.toml", "\"material.youngs_modulus\"", "material.youngs_modulus",
      "c.toml:7:1: key 'material' is a table; expected the whole path in quotes"},
     {"BoundsInverted", "c.toml", "from = \"10 GPa\", to = \"300 GPa\"", "from = \"300 GPa\", to = \"10 GPa\"",

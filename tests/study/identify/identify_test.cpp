@@ -102,6 +102,32 @@ TEST_F(PlanTest, OfALawThatIsLinearInItsModulusHasTheErrorInClosedForm) {
   EXPECT_NEAR(result.planned->relative_variances * precision * k_modulus * k_modulus, 1.0, 1e-6);
 }
 
+// F ~ sqrt(R) at displacements in metres.
+TEST_F(PlanTest, KnowsTheRadiusByTheRootInTheForce) {
+  const std::string plan =
+      replaced(k_hertz_plan, "\"material.youngs_modulus\" = { from = \"10 GPa\", to = \"300 GPa\" }",
+               "\"particle.radius\" = { from = \"1 mm\", to = \"50 mm\" }");
+  double precision = 0.0;
+  for (int k = 0; k < 40; ++k) {
+    const double force = hertz_force(k_modulus / (1.0 - 0.22 * 0.22), 0.01, 1e-4 * (k + 0.5) / 40);
+    precision += std::pow(0.5 * force / 0.01 / std::hypot(5.0, 0.02 * force), 2);
+  }
+  const IdentifyResult result = identify(read(replaced(k_hertz_text, "0.01 R0", "0.1 mm"), plan));
+  EXPECT_NEAR(standard_error(result, 0) * std::sqrt(precision), 1.0, 1e-6);
+  EXPECT_EQ(first_fault(k_hertz_text, plan).substr(0, 64),
+            "4:1: 'particle.radius' is free, and steps are given in R0; expec");
+}
+
+TEST_F(PlanTest, RefusesTheGapOfTheWallThatIsDriven) {
+  const std::string walls = replaced(k_hertz_text, "\"simple\"", "\"walls\"") +
+                            "[[loading.wall]]\nname = \"top\"\nnormal = [0, 0, 1]\ngap = \"1 um\"\n";
+  const std::string plan =
+      replaced(k_hertz_plan, "\"material.youngs_modulus\" = { from = \"10 GPa\", to = \"300 GPa\" }",
+               "\"loading.wall[0].gap\" = { from = 0, to = \"50 um\" }");
+  EXPECT_EQ(first_fault(walls, plan),
+            "4:1: 'loading.wall[0].gap' cannot be free: displacements of wall 'top' count from first touch");
+}
+
 TEST_F(PlanTest, HasTheErrorsThatAFitToSuchDataReports) {
   const ExperimentPlan plan = read(k_mdr, std::string(k_mdr_free) + k_mdr_program);
   const IdentifyResult result = identify(plan);
