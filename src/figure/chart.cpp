@@ -196,18 +196,19 @@ class Looks {
   [[nodiscard]] std::vector<LegendRow> legend_rows(const Chart& chart) const {
     LegendRow curves{"Curve", {}};
     LegendRow points{"Points", {}};
-    LegendRow areas{"Area", {}};
+    LegendRow areas{chart.area_heading, {}};
+    LegendRow bands{"Band", {}};
     for (const ChartPanel& panel : chart.panels) {
       if (panel.range) put(areas, {panel.range->legend, area_style(k_shade)});
       for (const ChartArea& area : panel.areas) put(areas, {area.legend, area_style(area.colour)});
-      for (const ChartBand& band : panel.bands) put(areas, {band.legend, area_style(band.colour)});
+      for (const ChartBand& band : panel.bands) put(bands, {band.legend, area_style(band.colour)});
       for (const ChartSeries& series : panel.series) {
         const bool is_points = series.style == Style::points;
         put(is_points ? points : curves, {series.legend, is_points ? this->points(series) : line(series)});
       }
     }
     if (has_floor(chart)) put(points, {std::string(k_floor_legend), floor_style(k_neutral_colour)});
-    std::vector<LegendRow> rows{areas, curves, path_row(chart), points};
+    std::vector<LegendRow> rows{areas, bands, curves, path_row(chart), points};
     std::erase_if(rows, [](const LegendRow& row) { return row.entries.empty(); });
     return rows;
   }

@@ -78,6 +78,7 @@ struct ChartPanel {
 
 struct Chart {
   std::vector<ChartPanel> panels;         ///< at least one; arranged two by two
+  std::string area_heading = "Area";      ///< of areas and ranges in the legend; bands have their own
   std::vector<std::string> references{};  ///< of the models behind it, for the data file; a line may come twice
 };
 

@@ -77,6 +77,19 @@ TEST(Chart, DrawsABandPieceByPieceWhereXTurnsBack) {
   EXPECT_NE(script.find("set yrange [0:4"), std::string::npos) << "the band belongs to what the axis shows: " << script;
 }
 
+TEST(Chart, NamesWhatItFillsInItsLegend) {
+  Chart chart = chart_of({series("a")});
+  chart.panels[0].bands = {
+      {.legend = "spread", .colour = 1, .x = {0.0, 1.0}, .lower = {0.0, 0.0}, .upper = {1.0, 1.0}}};
+  EXPECT_EQ(count(script_of(chart), "'Band'"), 1U) << script_of(chart);
+  EXPECT_EQ(count(script_of(chart), "'Area'"), 0U);
+  chart.panels[0].areas = {{.legend = "planned", .colour = 2, .boxes = {{0.0, 1.0, 0.0, 1.0}}}};
+  EXPECT_EQ(count(script_of(chart), "'Area'"), 1U);
+  chart.area_heading = "Program";
+  EXPECT_EQ(count(script_of(chart), "'Area'"), 0U);
+  EXPECT_EQ(count(script_of(chart), "'Program'"), 1U);
+}
+
 TEST(Chart, SameLegendsLookTheSameAndStandOnceInTheLegend) {
   Chart chart = chart_of({series("a"), series("b")});
   chart.panels.push_back(chart.panels.front());

@@ -122,7 +122,7 @@ figure::Chart chart_of(std::span<const Calibration> calibrations, std::span<cons
   }
   curves.series.push_back({.legend = "data",
                            .style = Style::points,
-                           .colour = calibrations.size(),
+                           .colour = std::nullopt,
                            .x = x,
                            .y = in_unit(first.y.values, first.y)});
   return {{std::move(curves), std::move(rest)}};

@@ -136,7 +136,7 @@ figure::ChartPanel error_panel(const ExperimentPlan& plan, const std::vector<Nam
 
 std::string draw(const ExperimentPlan& plan, const std::vector<NamedErrors>& sets,
                  const std::filesystem::path& folder) {
-  figure::Chart chart;
+  figure::Chart chart{.panels = {}, .area_heading = "Program"};
   for (std::size_t k = 0; k < plan.free.size(); ++k) chart.panels.push_back(error_panel(plan, sets, k));
   chart.references = reference_texts(*find_model(plan.scenario.model));
   return figure::try_to_draw(chart, "expected errors of " + plan.name, folder / k_figure);

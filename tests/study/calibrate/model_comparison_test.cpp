@@ -212,6 +212,8 @@ TEST_F(ModelComparisonTest, LeavesATableAndAFigure) {
             "fit,model,parameters,points,rms[N],r_squared,aic,bic,prediction_rms[N]");
   EXPECT_EQ(std::ranges::count(table, '\n'), 3);
   EXPECT_GT(std::filesystem::file_size(folder() / "out/comparison.svg"), 300U);
+  const std::string script = read_text(folder() / "out/comparison.gp");
+  EXPECT_NE(script.find("pt 6 ps 0.5 lw 1 lc rgb '#303030' title 'data'"), std::string::npos) << script;
 }
 
 }  // namespace
