@@ -40,16 +40,7 @@ constexpr unsigned k_band_colour = 0x9FC5E8;
                                        did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
-/// Calls `use` with every history of the sweep. A run that was refused has none.
-template <class Use>
-void for_each_history(const Sweep& sweep, const fs::path& folder, Use&& use) {
-  for (std::size_t run = 1; run <= sweep.runs.size(); ++run) {
-    const fs::path file = folder / "histories" / fmt::format("{}.csv", run);
-    if (fs::exists(file)) use(read_csv(file));
-  }
-}
-
-/// Rows of one step of a history: x with one y beside it.
+/// Rows of one step of a history.
 struct Stretch {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -65,6 +56,34 @@ struct Stretch {
   return stretches;
 }
 
+/// The columns of a history that bands are made of.
+struct RunCurves {
+  std::map<std::size_t, Stretch> stretches;  ///< by step
+  std::vector<double> x;
+  std::vector<std::vector<double>> y;  ///< in the order of the request
+};
+
+/// All histories of the sweep. A run that was refused has none.
+/// @param bands  gets the columns of the first one
+[[nodiscard]] std::vector<RunCurves> read_curves(const Sweep& sweep, const fs::path& folder, HistoryBands& bands) {
+  std::vector<RunCurves> curves;
+  for (std::size_t run = 1; run <= sweep.runs.size(); ++run) {
+    const fs::path file = folder / "histories" / fmt::format("{}.csv", run);
+    if (!fs::exists(file)) continue;
+    const Table history = read_csv(file);
+    const std::size_t x = place_of(history, sweep.bands->x);
+    if (curves.empty()) bands.x = history.columns()[x];
+    RunCurves own{.stretches = stretches_of(history), .x = history.column(sweep.bands->x), .y = {}};
+    for (const std::string& name : sweep.bands->y) {
+      const std::size_t y = place_of(history, name);
+      if (curves.empty()) bands.y.push_back(history.columns()[y]);
+      own.y.push_back(history.column(name));
+    }
+    curves.push_back(std::move(own));
+  }
+  return curves;
+}
+
 /// The two rows between which a stretch first comes by an abscissa, and how far between them.
 struct Crossing {
   std::size_t row = 0;
@@ -72,15 +91,13 @@ struct Crossing {
 };
 
 /// Crossings in the order of the abscissae; none from where the stretch does not reach.
-[[nodiscard]] std::vector<std::optional<Crossing>> crossings(const Table& history, const Stretch& stretch,
-                                                             std::size_t x, std::span<const double> abscissae) {
+[[nodiscard]] std::vector<std::optional<Crossing>> crossings(std::span<const double> x, const Stretch& stretch,
+                                                             std::span<const double> abscissae) {
   std::vector<std::optional<Crossing>> found(abscissae.size());
   std::size_t row = stretch.begin;
   for (std::size_t k = 0; k < abscissae.size(); ++k) {
     for (std::size_t next = row; next + 1 < stretch.end; ++next) {
-      const double from = history.at(next, x);
-      const double to = history.at(next + 1, x);
-      const double share = (abscissae[k] - from) / (to - from);
+      const double share = (abscissae[k] - x[next]) / (x[next + 1] - x[next]);
       if (!(share >= 0.0 && share <= 1.0)) continue;
       found[k] = Crossing{next, share};
       row = next;
@@ -97,25 +114,19 @@ struct Abscissae {
   bool is_rising = true;
 };
 
-[[nodiscard]] std::map<std::size_t, Abscissae> ranges_of(const Sweep& sweep, const fs::path& folder,
-                                                         HistoryBands& bands) {
+[[nodiscard]] std::map<std::size_t, Abscissae> ranges_of(const std::vector<RunCurves>& runs) {
   std::map<std::size_t, Abscissae> ranges;
-  for_each_history(sweep, folder, [&](const Table& history) {
-    const std::size_t x = place_of(history, sweep.bands->x);
-    if (ranges.empty()) {
-      bands.x = history.columns()[x];
-      for (const std::string& y : sweep.bands->y) bands.y.push_back(history.columns()[place_of(history, y)]);
-    }
-    for (const auto& [step, stretch] : stretches_of(history)) {
-      const double first = history.at(stretch.begin, x);
-      const double last = history.at(stretch.end - 1, x);
+  for (const RunCurves& run : runs) {
+    for (const auto& [step, stretch] : run.stretches) {
+      const double first = run.x[stretch.begin];
+      const double last = run.x[stretch.end - 1];
       Abscissae& range = ranges.try_emplace(step, Abscissae{first, first, last >= first}).first->second;
       for (std::size_t row = stretch.begin; row < stretch.end; ++row) {
-        range.lowest = std::min(range.lowest, history.at(row, x));
-        range.highest = std::max(range.highest, history.at(row, x));
+        range.lowest = std::min(range.lowest, run.x[row]);
+        range.highest = std::max(range.highest, run.x[row]);
       }
     }
-  });
+  }
   return ranges;
 }
 
@@ -194,7 +205,8 @@ struct Abscissae {
 HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
   const BandRequest& request = *sweep.bands;
   HistoryBands bands;
-  const std::map<std::size_t, Abscissae> ranges = ranges_of(sweep, folder, bands);
+  const std::vector<RunCurves> runs = read_curves(sweep, folder, bands);
+  const std::map<std::size_t, Abscissae> ranges = ranges_of(runs);
   if (ranges.empty()) {
     throw std::runtime_error(fmt::format("{}: no run has a history; the reasons are in results.csv", folder.string()));
   }
@@ -209,26 +221,20 @@ HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
   std::vector<std::vector<std::vector<std::vector<double>>>> values(
       bands.steps.size(),
       std::vector(request.y.size(), std::vector<std::vector<double>>(static_cast<std::size_t>(request.points))));
-  std::size_t histories = 0;
-  for_each_history(sweep, folder, [&](const Table& history) {
-    ++histories;
-    const std::size_t x = place_of(history, request.x);
-    std::vector<std::size_t> y;
-    for (const std::string& name : request.y) y.push_back(place_of(history, name));
-    for (const auto& [step, stretch] : stretches_of(history)) {
+  for (const RunCurves& run : runs) {
+    for (const auto& [step, stretch] : run.stretches) {
       StepBands& own = bands.steps[place.at(step)];
-      const auto found = crossings(history, stretch, x, own.x);
+      const auto found = crossings(run.x, stretch, own.x);
       for (std::size_t i = 0; i < found.size(); ++i) {
         if (!found[i]) continue;
         ++own.runs[i];
-        for (std::size_t k = 0; k < y.size(); ++k) {
-          const double value =
-              std::lerp(history.at(found[i]->row, y[k]), history.at(found[i]->row + 1, y[k]), found[i]->share);
+        for (std::size_t k = 0; k < run.y.size(); ++k) {
+          const double value = std::lerp(run.y[k][found[i]->row], run.y[k][found[i]->row + 1], found[i]->share);
           if (std::isfinite(value)) values[place.at(step)][k][i].push_back(value);
         }
       }
     }
-  });
+  }
   for (std::size_t s = 0; s < bands.steps.size(); ++s) {
     StepBands& own = bands.steps[s];
     own.percentiles.assign(request.y.size(), std::vector(request.percentiles.size(), std::vector(own.x.size(), k_nan)));
@@ -236,7 +242,7 @@ HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
       for (std::size_t i = 0; i < own.x.size(); ++i) {
         std::vector<double>& of_runs = values[s][k][i];
         std::ranges::sort(of_runs);
-        if (static_cast<double>(of_runs.size()) < k_least_share * static_cast<double>(histories)) continue;
+        if (static_cast<double>(of_runs.size()) < k_least_share * static_cast<double>(runs.size())) continue;
         for (std::size_t p = 0; p < request.percentiles.size(); ++p) {
           own.percentiles[k][p][i] = quantile(of_runs, 0.01 * request.percentiles[p]);
         }
