@@ -11,7 +11,6 @@
 #include "numerics/derivatives.hpp"
 #include "scenario/faults.hpp"
 #include "study/calibrate/bad_fit.hpp"
-#include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/fit_notes.hpp"
 #include "study/calibrate/response.hpp"
 #include "study/calibrate/thinning.hpp"
@@ -132,6 +131,13 @@ class Fit {
     const auto solution = search();
     if (!solution) return {k_nan, {}};
     return {explained_share(calibration_, cost_of_data(*solution)), solution->parameters};
+  }
+
+  /// The best fit in every row; nothing where there is none.
+  std::optional<std::vector<double>> respond() {
+    const auto solution = search();
+    if (!solution || failing(solution->parameters) < responses_.size()) return std::nullopt;
+    return response_;
   }
 
   /// @param trial  for the cause where there is no fit
@@ -453,6 +459,10 @@ CalibrationResult calibrate(const Calibration& calibration, const LeastSquaresPr
   CalibrationResult result = Fit(calibration, progress).run(trial);
   result.warnings = warnings_of(calibration, result, trial);
   return result;
+}
+
+std::optional<std::vector<double>> best_response(const Calibration& calibration) {
+  return Fit(calibration, {}).respond();
 }
 
 }  // namespace monograin

@@ -147,6 +147,10 @@ inline constexpr double k_most_missing = 0.1;
 [[nodiscard]] CalibrationResult calibrate(const Calibration& calibration,
                                           const LeastSquaresProblem::Progress& progress = {});
 
+/// Response of the best fit in every row, without its uncertainty and without a search for causes where it is bad.
+/// @return nothing where the scenario cannot follow the data with any of the parameters tried
+[[nodiscard]] std::optional<std::vector<double>> best_response(const Calibration& calibration);
+
 /// The scenario with the fitted numbers, to 17 digits, and its own loading; all else as its author wrote it.
 [[nodiscard]] std::string fitted_scenario_text(const Calibration& calibration, const CalibrationResult& result);
 

@@ -58,20 +58,16 @@ Parts parts_of(const Calibration& calibration) {
 /// Sum of squares of what a part differs from a fit to the others; nothing where there is no such fit.
 std::optional<double> squares_of_prediction(const Calibration& calibration, const Part& part) {
   Calibration others = calibration;
-  others.intervals = IntervalMethod::covariance;
   std::fill(others.weights.begin() + static_cast<std::ptrdiff_t>(part.begin),
             others.weights.begin() + static_cast<std::ptrdiff_t>(part.end), 0.0);
   if (others.counted() < others.free.size()) return std::nullopt;
-  try {
-    const CalibrationResult result = calibrate(others);
-    double squares = 0.0;
-    for (std::size_t row = part.begin; row < part.end; ++row) {
-      if (calibration.weights[row] > 0.0) squares += std::pow(calibration.y.values[row] - result.fit.y[row], 2);
-    }
-    return squares;
-  } catch (const ScenarioError&) {
-    return std::nullopt;
+  const auto response = best_response(others);
+  if (!response) return std::nullopt;
+  double squares = 0.0;
+  for (std::size_t row = part.begin; row < part.end; ++row) {
+    if (calibration.weights[row] > 0.0) squares += std::pow(calibration.y.values[row] - (*response)[row], 2);
   }
+  return squares;
 }
 
 std::vector<std::size_t> best_first(const ModelComparison& comparison) {

@@ -958,6 +958,23 @@ wall = [{ name = "a", normal = [0, 0, 1], steps = [{ displacement = "1 mm", dura
   EXPECT_EQ(messages[0].find("c.toml:1:12: wall 'a' of the scenario has steps of its own"), 0U) << messages[0];
 }
 
+TEST_F(CalibrationTest, TheBestResponseIsThatOfTheFitHoweverBad) {
+  write("d.csv", "displacement[m],force[N]\n1e-5,100\n2e-5,35\n3e-5,-60\n");
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  ASSERT_FALSE(result.warnings.empty());
+  const auto response = best_response(calibration);
+  ASSERT_TRUE(response);
+  EXPECT_EQ(*response, result.fit.y);
+}
+
+TEST_F(CalibrationTest, ThereIsNoBestResponseWhereNoParametersCanFollowTheData) {
+  write("c.toml", replaced(replaced(k_calibration, "displacement[m]", "force[N]"), "y = \"force[N]\"",
+                           "y = \"displacement[m]\""));
+  write("d.csv", "force[N],displacement[m]\n10,1e-6\n-10,0\n-20,0\n");
+  EXPECT_FALSE(best_response(read()));
+}
+
 TEST_F(CalibrationTest, DataThatNoParametersCanFollowAreRefusedWithTheRow) {
   // A particle without adhesion bears no tension.
   write("c.toml", replaced(replaced(k_calibration, "displacement[m]", "force[N]"), "y = \"force[N]\"",
