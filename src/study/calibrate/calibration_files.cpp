@@ -1,16 +1,11 @@
 // The files of a calibration: tables, a figure, a report and a scenario.
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "catalogue.hpp"
-#include "figure/chart.hpp"
-#include "figure/figure.hpp"
 #include "figure/page.hpp"
 #include "history/run.hpp"
 #include "scenario/edit.hpp"

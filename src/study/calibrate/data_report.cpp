@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "figure/figure.hpp"
 #include "figure/page.hpp"
 #include "history/branches.hpp"
 #include "scenario/faults.hpp"

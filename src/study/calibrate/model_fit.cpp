@@ -1,7 +1,6 @@
 #include "study/calibrate/model_fit.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include "catalogue.hpp"
 #include "history/branches.hpp"

@@ -1,6 +1,5 @@
 #include "study/calibrate/thinning.hpp"
 
-#include <algorithm>
 #include <span>
 #include <vector>
 
