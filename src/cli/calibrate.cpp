@@ -184,7 +184,7 @@ void add_calibrate_command(CLI::App& app, Action& action) {
                    "Level of the two-sided intervals, between 0 and 1, e.g. 0.99 [the file's, or 0.95]")
       ->check(CLI::Range(1e-6, 1.0 - 1e-6));
   command->add_flag("--report", options->has_report,
-                    "Leave report.md, too: data, figure, intervals, residuals, warnings");
+                    "Leave report.md and report.pdf, too: data, figure, intervals, residuals, warnings");
   command->add_flag("--quiet", options->is_quiet, "Say nothing but the result, warnings and errors");
   command->add_flag("--strict", options->is_strict, "Exit with 5 where the fit is bad and a warning says so");
   command->footer("Example: monograin calibrate scenarios/calibrate/uniaxial.toml");

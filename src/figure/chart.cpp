@@ -22,6 +22,9 @@ using Style = ChartSeries::Style;
 
 constexpr double k_line_width = 1.8;
 constexpr unsigned k_shade = 0xECECECu;  ///< beyond the range of a law
+constexpr double k_text_line_cm = 0.36;
+constexpr double k_text_margin_cm = 0.5;
+constexpr double k_a4 = 1.4142;  ///< height over width
 constexpr std::string_view k_floor_legend = "at the lower end of the axis, or below";
 
 // The full stop keeps gnuplot, which compares beginnings, from taking one name for another.
@@ -362,6 +365,32 @@ class Looks {
   return text;
 }
 
+[[nodiscard]] double height_of(const std::vector<std::string>& lines) {
+  return lines.empty() ? 0.0 : k_text_margin_cm + k_text_line_cm * static_cast<double>(lines.size());
+}
+
+/// Moves panels and legend up, and the top of the page beyond them.
+void make_room(const Chart& chart, Layout& layout) {
+  if (chart.head.empty() && chart.foot.empty()) return;
+  const double needed = layout.height + height_of(chart.head) + height_of(chart.foot);
+  const double height = std::max(needed, k_a4 * layout.width);
+  const double rise = height - height_of(chart.head) - layout.height;
+  layout.height = height;
+  layout.legend.bottom += rise;
+  for (Panel& panel : layout.panels) panel.axes.bottom += rise;
+}
+
+/// Lines of text, the first one right below `top` [cm].
+[[nodiscard]] std::string lines_text(const std::vector<std::string>& lines, double top, const Layout& layout) {
+  std::string text;
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    text += fmt::format("set label {} {} at screen {:.4f}, {:.4f} left noenhanced font 'Monospace,6.5'\n", k + 10,
+                        gnuplot_string(lines[k]), k_text_margin_cm / layout.width,
+                        (top - k_text_line_cm * (static_cast<double>(k) + 0.5)) / layout.height);
+  }
+  return text.empty() ? text : "unset key; unset label\n" + text + "plot [0:1] [0:1] NaN\n";
+}
+
 }  // namespace
 
 std::string chart_data(const Chart& chart, const std::string& source) {
@@ -392,8 +421,8 @@ std::string chart_script(const Chart& chart, Format format, const std::string& f
                          const std::string& data_name) {
   const Looks looks(chart);
   const auto rows = looks.legend_rows(chart);
-  const Layout layout =
-      arrange(chart.panels.size(), line_count(rows, k_legend_strip_cm), line_count(rows, k_legend_cell_cm));
+  Layout layout = arrange(chart.panels.size(), line_count(rows, k_legend_strip_cm), line_count(rows, k_legend_cell_cm));
+  make_room(chart, layout);
 
   std::string text = page_head(format, layout, figure_name, data_name);
   for (std::size_t k = 0; k < chart.panels.size(); ++k) {
@@ -406,6 +435,9 @@ std::string chart_script(const Chart& chart, Format format, const std::string& f
     text += plots_of(panel, k, axes.y, looks);
   }
   text += "unset logscale; unset object\n" + legend_text(rows, layout);
+  text += lines_text(chart.head, layout.height - k_text_margin_cm, layout);
+  const double lines = static_cast<double>(line_count(rows, layout.legend.width));
+  text += lines_text(chart.foot, layout.legend.top() - k_legend_line_cm * lines - k_text_margin_cm, layout);
   return text + k_page_foot;
 }
 

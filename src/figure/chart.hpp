@@ -79,6 +79,8 @@ struct ChartPanel {
 struct Chart {
   std::vector<ChartPanel> panels;         ///< at least one; arranged two by two
   std::string area_heading = "Area";      ///< of areas and ranges in the legend; bands have their own
+  std::vector<std::string> head{};        ///< lines of text above the panels, in letters of one width
+  std::vector<std::string> foot{};        ///< lines below the legend; with any text the page is as tall as an A4 page
   std::vector<std::string> references{};  ///< of the models behind it, for the data file; a line may come twice
 };
 

@@ -90,6 +90,20 @@ TEST(Chart, NamesWhatItFillsInItsLegend) {
   EXPECT_EQ(count(script_of(chart), "'Program'"), 1U);
 }
 
+TEST(Chart, HasAPageOfA4ForItsText) {
+  Chart chart = chart_of({series("a")});
+  EXPECT_EQ(count(script_of(chart), "Monospace"), 0U);
+  chart.head = {"title_1"};
+  chart.foot = {"a  1.5", "it's b"};
+  const std::string script = chart_script(chart, Format::pdf, "a.pdf", "a.dat");
+  EXPECT_NE(script.find("size 17cm,24.04cm"), std::string::npos) << script;
+  EXPECT_EQ(count(script, "noenhanced font 'Monospace,6.5'"), 3U) << script;
+  EXPECT_LT(script.find("'title_1'"), script.find("'a  1.5'"));
+  chart.foot.resize(100, "more");
+  EXPECT_EQ(chart_script(chart, Format::pdf, "a.pdf", "a.dat").find("size 17cm,24.04cm"), std::string::npos)
+      << "many lines make the page taller";
+}
+
 TEST(Chart, SameLegendsLookTheSameAndStandOnceInTheLegend) {
   Chart chart = chart_of({series("a"), series("b")});
   chart.panels.push_back(chart.panels.front());

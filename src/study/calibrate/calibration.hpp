@@ -169,7 +169,7 @@ inline constexpr const char* k_calibration_marker = "calibration.json";
 /// Writes fit.csv, fitted.toml with the tables it names, calibration.json and figure.svg with its script and data, all
 /// of them or none.
 /// @param folder      made with k_calibration_marker
-/// @param has_report  report.md, too
+/// @param has_report  report.md and report.pdf, too
 /// @return why there is no figure; empty: there is
 /// @throws std::runtime_error naming what could not be written
 [[nodiscard]] std::string write_calibration(const Calibration& calibration, const CalibrationResult& result,

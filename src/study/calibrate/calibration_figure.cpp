@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cctype>
 #include <iterator>
+#include <utility>
 
 #include "catalogue.hpp"
 #include "figure/chart.hpp"
 #include "figure/page.hpp"
+#include "study/calibrate/calibration_text.hpp"
 #include "system/undefined.hpp"
 
 namespace monograin {
@@ -135,6 +137,16 @@ std::string draw_calibration(const Calibration& calibration, const CalibrationRe
   chart.references = reference_texts(*find_model(calibration.scenario.model));
   return figure::try_to_draw(chart, fmt::format("{}: {}", calibration.name, data_names(calibration)),
                              folder / "figure.svg");
+}
+
+std::string draw_report(const Calibration& calibration, const CalibrationResult& result, const fs::path& folder) {
+  figure::Chart chart = chart_of(calibration, result);
+  ReportLines lines = report_lines(calibration, result);
+  chart.head = std::move(lines.head);
+  chart.foot = std::move(lines.foot);
+  chart.references = reference_texts(*find_model(calibration.scenario.model));
+  return figure::try_to_draw(chart, fmt::format("{}: {}", calibration.name, data_names(calibration)),
+                             folder / "report.pdf");
 }
 
 std::string draw_comparison(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,

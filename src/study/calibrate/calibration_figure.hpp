@@ -18,4 +18,9 @@ namespace monograin {
                                           std::span<const CalibrationResult> results,
                                           const std::filesystem::path& figure);
 
+/// Draws report.pdf, a page with the figure and the lines of the report, with script and data beside it.
+/// @return why there is none; empty: there is one
+[[nodiscard]] std::string draw_report(const Calibration& calibration, const CalibrationResult& result,
+                                      const std::filesystem::path& folder);
+
 }  // namespace monograin

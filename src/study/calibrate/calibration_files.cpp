@@ -256,9 +256,10 @@ std::string write_calibration(const Calibration& calibration, const CalibrationR
     figure::write_whole(folder.path() / table_name(option), curve.text);
   }
   figure::write_whole(folder.path() / k_calibration_marker, calibration_json(calibration, result));
-  const std::string problem = draw_calibration(calibration, result, folder.path());
+  std::string problem = draw_calibration(calibration, result, folder.path());
   if (has_report) {
     figure::write_whole(folder.path() / "report.md", calibration_report(calibration, result, problem.empty()));
+    if (problem.empty()) problem = draw_report(calibration, result, folder.path());
   }
   folder.publish();
   return problem;

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "catalogue.hpp"
@@ -163,6 +165,40 @@ std::vector<std::string> data_lines(const Calibration& calibration) {
   return lines;
 }
 
+constexpr std::size_t k_line_length = 116;  // of a report's page
+
+/// Appends a text, its lines cut between words where they are too long.
+void append_wrapped(std::vector<std::string>& lines, std::string_view text, std::string_view indent = "") {
+  std::string line;
+  bool has_word = false;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::string_view word = text.substr(at, end - at);
+    if (has_word && line.size() + 1 + word.size() > k_line_length) {
+      lines.push_back(std::exchange(line, std::string(indent)));
+      has_word = false;
+    }
+    if (std::exchange(has_word, true)) line += ' ';
+    line += word;
+    at = end + 1;
+  }
+  lines.push_back(line);
+}
+
+void append_list(std::vector<std::string>& lines, const std::string& title, const std::vector<std::string>& entries) {
+  if (entries.empty()) return;
+  lines.insert(lines.end(), {"", title});
+  for (const std::string& entry : entries) append_wrapped(lines, "- " + entry, "  ");
+}
+
+void append_lines(std::vector<std::string>& lines, std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+}
+
 }  // namespace
 
 std::string_view word_of(Bound bound) {
@@ -188,6 +224,21 @@ std::string calibration_text(const Calibration& calibration, const CalibrationRe
   std::string text;
   for (const TitledTable& table : tables_of(calibration, result)) text += aligned(table.rows) + '\n';
   return text + intervals_line(result);
+}
+
+ReportLines report_lines(const Calibration& calibration, const CalibrationResult& result) {
+  ReportLines lines;
+  append_wrapped(lines.head, calibration.title.empty() ? calibration.name : calibration.title);
+  append_wrapped(lines.head, fmt::format("Model {}, scenario {}, monograin {}.", calibration.scenario.model,
+                                         calibration.scenario.name, version()));
+  std::vector<std::string> data = data_lines(calibration);
+  for (std::string& line : data) std::erase(line, '`');
+  append_list(lines.head, "Data", data);
+  append_lines(lines.foot, calibration_text(calibration, result));
+  append_list(lines.foot, "Warnings", result.warnings);
+  append_list(lines.foot, "Notes", result.notes);
+  append_list(lines.foot, "Sources of the model", reference_texts(*find_model(calibration.scenario.model)));
+  return lines;
 }
 
 std::string calibration_report(const Calibration& calibration, const CalibrationResult& result, bool has_figure) {

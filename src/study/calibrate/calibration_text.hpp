@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "study/calibrate/calibration.hpp"
 
@@ -19,5 +20,12 @@ namespace monograin {
 /// @param has_figure  whether figure.svg lies beside it
 [[nodiscard]] std::string calibration_report(const Calibration& calibration, const CalibrationResult& result,
                                              bool has_figure);
+
+/// The report as lines of text, above a figure of the fit and below it.
+struct ReportLines {
+  std::vector<std::string> head;
+  std::vector<std::string> foot;
+};
+[[nodiscard]] ReportLines report_lines(const Calibration& calibration, const CalibrationResult& result);
 
 }  // namespace monograin

@@ -771,7 +771,14 @@ TEST_F(CalibrationTest, AReportHasDataFigureParametersResidualsAndWhatIsWrong) {
     EXPECT_NE(place, std::string::npos) << part << " in\n" << report;
     if (place != std::string::npos) last = place;
   }
+  EXPECT_EQ(text_of("out/report.pdf").substr(0, 5), "%PDF-");
+  const std::string page = text_of("out/report.gp");
+  for (const char* part : {"'Steel on steel'", "'- d.csv: 25 rows", "'material.youngs_modulus  5e+10  50 GPa",
+                           "sits at its upper bound", "'Sources of the model'"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part << " in\n" << page;
+  }
   EXPECT_EQ(written(calibration, result, folder() / "out"), "");
+  EXPECT_FALSE(fs::exists(folder() / "out/report.pdf"));
   EXPECT_FALSE(fs::exists(folder() / "out/report.md")) << "a report of an older result would mislead";
 }
 
