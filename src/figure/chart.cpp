@@ -22,7 +22,7 @@ using Style = ChartSeries::Style;
 
 constexpr double k_line_width = 1.8;
 constexpr unsigned k_shade = 0xECECECu;  ///< beyond the range of a law
-constexpr double k_text_line_cm = 0.36;
+constexpr double k_text_line_cm = 0.38;
 constexpr double k_text_margin_cm = 0.5;
 constexpr double k_a4 = 1.4142;  ///< height over width
 constexpr std::string_view k_floor_legend = "at the lower end of the axis, or below";
@@ -384,7 +384,7 @@ void make_room(const Chart& chart, Layout& layout) {
 [[nodiscard]] std::string lines_text(const std::vector<std::string>& lines, double top, const Layout& layout) {
   std::string text;
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    text += fmt::format("set label {} {} at screen {:.4f}, {:.4f} left noenhanced font 'Monospace,6.5'\n", k + 10,
+    text += fmt::format("set label {} {} at screen {:.4f}, {:.4f} left noenhanced font 'Monospace,7.5'\n", k + 10,
                         gnuplot_string(lines[k]), k_text_margin_cm / layout.width,
                         (top - k_text_line_cm * (static_cast<double>(k) + 0.5)) / layout.height);
   }

@@ -97,7 +97,7 @@ TEST(Chart, HasAPageOfA4ForItsText) {
   chart.foot = {"a  1.5", "it's b"};
   const std::string script = chart_script(chart, Format::pdf, "a.pdf", "a.dat");
   EXPECT_NE(script.find("size 17cm,24.04cm"), std::string::npos) << script;
-  EXPECT_EQ(count(script, "noenhanced font 'Monospace,6.5'"), 3U) << script;
+  EXPECT_EQ(count(script, "noenhanced font 'Monospace,7.5'"), 3U) << script;
   EXPECT_LT(script.find("'title_1'"), script.find("'a  1.5'"));
   chart.foot.resize(100, "more");
   EXPECT_EQ(chart_script(chart, Format::pdf, "a.pdf", "a.dat").find("size 17cm,24.04cm"), std::string::npos)
