@@ -36,12 +36,12 @@ constexpr double k_safety = 0.85;
 // touch, its error is up to a hundred times that.
 constexpr double k_rounding_of_work = 1e-16;
 constexpr double k_share_of_work = 1e-3;
-// Where a closed form of the work is costly and a step has many rows, they take the work from the series of their
-// piece. The closed form stays for pieces that are no longer than this and whose series is not that accurate, over the
-// work: those next to a singularity.
+// Where a closed form of the work is costly and a step has many rows, they take the work from series over panels of a
+// piece: these are that accurate, over the work. The closed form stays for panels that are no longer than this and
+// whose series is not: those next to a singularity.
 constexpr std::size_t k_many_rows = 50;
-constexpr double k_shortest_for_series = 1.0 / 32.0;
-constexpr double k_accuracy_beside_primitive = 1e-15;
+constexpr double k_shortest_panel = 1.0 / 32.0;
+constexpr double k_panel_accuracy = 1e-15;
 // How many times as large last terms may be that are rounding, where the rates are next to nothing beside the work.
 constexpr double k_noise_of_nothing = 1e4;
 // From which of that on few nodes are enough for it.
@@ -130,10 +130,13 @@ class Direct final : public EventLocator {
     segment_begin_ = xi;
     refusals_ = 0;
     rounding_ = {};
-    const auto primitive = quadrature_ ? system_.closed_quadrature(xi, y) : std::nullopt;
-    has_primitive_ = primitive.has_value();
-    if (primitive) primitive_offset_ = y[*quadrature_] - *primitive;
-    is_closed_ = !quadrature_ || (has_primitive_ && !(has_many_rows_ && system_.is_quadrature_costly()));
+    is_closed_ = !quadrature_;
+    has_panels_ = false;
+    if (const auto primitive = system_.closed_quadrature(xi, y); quadrature_ && primitive) {
+      is_closed_ = true;
+      has_panels_ = has_many_rows_ && system_.is_quadrature_costly();
+      primitive_offset_ = y[*quadrature_] - *primitive;
+    }
     nodes_ = is_closed_ || work_accuracy_ >= k_few_nodes_accuracy ? &LegendreNodes::few() : &LegendreNodes::many();
     length_ = longest();
     begin_segment(xi, y);
@@ -159,6 +162,7 @@ class Direct final : public EventLocator {
       length_ = std::min(longest(), factor * tried);
     }
     statistics_.last_step = end_ - begin_;
+    if (has_panels_) begin_panels();
     return {.xi = end_, .hit_guard = !fired_.empty()};
   }
 
@@ -168,7 +172,7 @@ class Direct final : public EventLocator {
       return;
     }
     state_at(xi, y);
-    if (quadrature_) y[*quadrature_] = quadrature_at(xi, y);
+    if (quadrature_) y[*quadrature_] = has_panels_ ? panel_work_at(xi, y) : quadrature_at(xi, y);
   }
 
   [[nodiscard]] double guard_tolerance() const noexcept override { return 1e-13; }
@@ -200,7 +204,6 @@ class Direct final : public EventLocator {
     system_.solve(xi, y);
   }
 
-  [[nodiscard]] bool uses_series() const noexcept { return !is_closed_ && !uses_primitive_; }
   [[nodiscard]] bool goes_from_nodes() const noexcept { return may_rest_ && is_closed_; }
 
   void state_ahead(double xi, std::span<double> y) override { system_.solve(xi, y); }
@@ -242,16 +245,11 @@ class Direct final : public EventLocator {
       const double length = piece_length();
       // What is tolerated is no rounding: terms that fall slowly, as those of a kink do, leave out more than they show.
       const double rounding = std::max(rounding_.known(), k_noise_of_nothing * k_rounding_of_work * scale / length);
-      const double accuracy = has_primitive_ ? k_accuracy_beside_primitive : work_accuracy_;
-      const double reach = work_.reach(2.0 * accuracy * scale / length, rounding);
+      const double reach = work_.reach(2.0 * work_accuracy_ * scale / length, rounding);
       factor = std::clamp(k_safety * reach, k_most_shrinkage, k_most_growth);
-      const bool is_unresolved = reach < 1.0;
-      const bool is_too_long =
-          is_unresolved && length > (has_primitive_ ? k_shortest_for_series : k_smallest_quadrature);
+      const bool is_too_long = reach < 1.0 && length > k_smallest_quadrature;
       rounding_.see(work_, begin_, length, is_too_long);
       if (is_too_long) return false;
-      uses_primitive_ = is_unresolved && has_primitive_;
-      if (uses_primitive_) factor = k_most_growth;
     }
     move_end(piece_end_);
     locate_event();
@@ -267,7 +265,7 @@ class Direct final : public EventLocator {
       }
       factor = std::min(factor, std::max(k_safety / share_of_reach(end_state_), k_most_shrinkage));
     }
-    if (uses_series() && end_ - begin_ < k_inside * piece_length() && !holds_up_to_end()) {
+    if (!is_closed_ && end_ - begin_ < k_inside * piece_length() && !holds_up_to_end()) {
       factor = k_just_beyond * (end_ - begin_) / piece_length();
       return false;
     }
@@ -391,17 +389,74 @@ class Direct final : public EventLocator {
   }
 
   [[nodiscard]] double quadrature_at(double xi, std::span<const double> y) {
-    if (!uses_series()) return primitive_offset_ + *system_.closed_quadrature(xi, y);
+    if (is_closed_) return primitive_offset_ + *system_.closed_quadrature(xi, y);
     return begin_state_[*quadrature_] + 0.5 * piece_length() * work_.integral(place(xi));
+  }
+
+  // --- panels
+
+  void begin_panels() {
+    panel_begin_ = panel_end_ = begin_;
+    panel_length_ = end_ - begin_;
+    panel_work_ = begin_state_[*quadrature_];
+    is_panel_resolved_ = false;
+  }
+
+  [[nodiscard]] double panel_place(double xi) const noexcept {
+    return 2.0 * (xi - panel_begin_) / (panel_end_ - panel_begin_) - 1.0;
+  }
+  [[nodiscard]] double panel_integral(double t) const noexcept {
+    return 0.5 * (panel_end_ - panel_begin_) * work_.integral(t);
+  }
+
+  /// The work in a row. @param y  its state; rows come in their order, or the closed form gives it
+  double panel_work_at(double xi, std::span<const double> y) {
+    while (xi > panel_end_) take_next_panel();
+    if (!is_panel_resolved_ || xi < panel_begin_) return quadrature_at(xi, y);
+    return panel_work_ + panel_integral(panel_place(xi));
+  }
+
+  /// No event lies inside, so that the law holds at all nodes.
+  void take_next_panel() {
+    const LegendreNodes& nodes = LegendreNodes::many();
+    if (is_panel_resolved_) {
+      panel_work_ += panel_integral(1.0);
+    } else if (panel_end_ > begin_) {
+      state_at(panel_end_, trial_);
+      panel_work_ = quadrature_at(panel_end_, trial_);
+    }
+    panel_begin_ = panel_end_;
+    const double scale = std::max(std::abs(panel_work_), system_.unknowns()[*quadrature_].scale);
+    for (double factor = 0.0; factor < 1.0;) {
+      panel_end_ = end_ - panel_begin_ <= (1.0 + k_rest) * panel_length_ ? end_ : panel_begin_ + panel_length_;
+      const double length = panel_end_ - panel_begin_;
+      for (std::size_t j = 0; j < nodes.count; ++j) {
+        const double xi = panel_begin_ + 0.5 * length * (1.0 + nodes.places[j]);
+        state_at(xi, trial_);
+        system_.rates(xi, trial_, rates_);
+        slopes_[*quadrature_][j] = rates_[*quadrature_];
+      }
+      work_.fit(nodes, slopes_[*quadrature_]);
+      const double reach = work_.reach(2.0 * k_panel_accuracy * scale / length,
+                                       k_noise_of_nothing * k_rounding_of_work * scale / length);
+      is_panel_resolved_ = reach >= 1.0;
+      const bool is_last = is_panel_resolved_ || length <= k_shortest_panel;
+      factor = is_last ? k_most_growth : std::clamp(k_safety * reach, k_most_shrinkage, 0.5);
+      panel_length_ = factor * length;
+    }
   }
 
   bool has_many_rows_;
   double work_accuracy_;
   std::optional<std::size_t> quadrature_;
-  bool is_closed_ = false;       ///< nothing is integrated in this segment
-  bool has_primitive_ = false;   ///< the work has a closed form
-  bool uses_primitive_ = false;  ///< in this piece, although the segment is integrated
+  bool is_closed_ = false;
   double primitive_offset_ = 0.0;
+  // A panel of the piece, in which work_ is the series of the rates; with a closed form nothing else needs it.
+  bool has_panels_ = false;
+  double panel_begin_ = 0.0, panel_end_ = 0.0;
+  double panel_length_ = 0.0;  ///< of the next one
+  double panel_work_ = 0.0;    ///< where it begins
+  bool is_panel_resolved_ = false;
   bool has_slaves_ = false;
   bool may_rest_ = false;  ///< some unknown
   double segment_begin_ = 0.0;
