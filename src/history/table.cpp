@@ -19,8 +19,6 @@
 namespace monograin {
 namespace {
 
-/// Digits after which a double read back is the double that was written.
-constexpr int k_digits = std::numeric_limits<double>::max_digits10;
 /// Longest text of one number: sign, 17 digits, point, exponent such as e-308.
 constexpr std::size_t k_longest_number = 32;
 // Bounds of tables that are read: the largest file holds some two million rows of a history of a die.
@@ -37,17 +35,17 @@ constexpr std::size_t k_most_cells = 100'000'000;
 
 }  // namespace
 
-void append_csv_number(std::string& text, double value) {
+void append_csv_number(std::string& text, double value, int digits) {
   if (std::isnan(value)) {
     text += "nan";  // to_chars may print the sign of a NaN, which says nothing
     return;
   }
-  std::array<char, k_longest_number> digits;
-  char* const end = digits.data() + digits.size();
+  std::array<char, k_longest_number> cell;
+  char* const end = cell.data() + cell.size();
   const auto printed = prints_as_integer(value)
-                           ? std::to_chars(digits.data(), end, static_cast<long long>(value))
-                           : std::to_chars(digits.data(), end, value, std::chars_format::general, k_digits);
-  text.append(digits.data(), printed.ptr);
+                           ? std::to_chars(cell.data(), end, static_cast<long long>(value))
+                           : std::to_chars(cell.data(), end, value, std::chars_format::general, digits);
+  text.append(cell.data(), printed.ptr);
 }
 
 namespace {
@@ -79,14 +77,14 @@ void append_headings(std::string& text, const std::vector<Column>& columns) {
   text += '\n';
 }
 
-void append_row(std::string& text, const Table& table, std::size_t row) {
+void append_row(std::string& text, const Table& table, std::size_t row, int digits) {
   const auto& columns = table.columns();
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (k > 0) text += ',';
     if (columns[k].holds_words()) {
       text += table.word(row, k);
     } else {
-      append_csv_number(text, table.at(row, k));
+      append_csv_number(text, table.at(row, k), digits);
     }
   }
   text += '\n';
@@ -315,7 +313,9 @@ std::string csv_number(double value) {
   return text;
 }
 
-void write_csv(const Table& table, std::ostream& out) {
+namespace {
+
+void write_csv(const Table& table, std::ostream& out, int digits) {
   constexpr std::size_t k_chunk = std::size_t{1} << 20U;  // of text that is kept before it is written
   std::string text;
   const auto write = [&] {
@@ -325,15 +325,19 @@ void write_csv(const Table& table, std::ostream& out) {
   append_header(text, table);
   append_headings(text, table.columns());
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    append_row(text, table, row);
+    append_row(text, table, row, digits);
     if (text.size() >= k_chunk) write();
   }
   write();
 }
 
-std::string csv_text(const Table& table) {
+}  // namespace
+
+void write_csv(const Table& table, std::ostream& out) { write_csv(table, out, k_all_digits); }
+
+std::string csv_text(const Table& table, int digits) {
   std::ostringstream text;
-  write_csv(table, text);
+  write_csv(table, text, digits);
   return std::move(text).str();
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <iosfwd>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -64,10 +65,13 @@ class Table {
   std::vector<double> values_;
 };
 
+/// Digits after which a double read back is the double that was written.
+inline constexpr int k_all_digits = std::numeric_limits<double>::max_digits10;
+
 /// A number as write_csv writes it.
 [[nodiscard]] std::string csv_number(double value);
-/// Appends it to a text.
-void append_csv_number(std::string& text, double value);
+/// Appends it to a text. @param digits  significant ones; integers have all of theirs
+void append_csv_number(std::string& text, double value, int digits = k_all_digits);
 
 /// Writes `# key: value` lines, one row of headings, and the rows with 17 significant digits (`nan` for undefined
 /// values), whatever the locale. Reading the text back gives the same doubles, bit by bit.
@@ -75,7 +79,8 @@ void append_csv_number(std::string& text, double value);
 /// @throws std::invalid_argument when a heading or a word contains a comma, a quote or a line break
 void write_csv(const Table& table, std::ostream& out);
 /// The text that write_csv writes.
-[[nodiscard]] std::string csv_text(const Table& table);
+/// @param digits  significant ones: fewer for what has been measured, which is not read back bit by bit then
+[[nodiscard]] std::string csv_text(const Table& table, int digits = k_all_digits);
 
 /// Reads what write_csv writes, and any CSV with one row of headings and optional `#` lines.
 /// Blank lines, blanks around cells, a byte order mark and CRLF line ends do no harm; quotes have no meaning. A column

@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 using figure::ChartSeries;
 
 constexpr std::array k_errors{1e-4, 1e-6, 1e-8, 1e-10};
+constexpr int k_measured_digits = 6;
 // Below this, errors are those of the reference and of rounding.
 constexpr double k_rounding = 1e-11;
 
@@ -443,7 +444,7 @@ std::vector<fs::path> write_bench(const std::vector<BenchScene>& scenes, const s
                                   const std::vector<BenchSaving>& savings, const fs::path& folder) {
   std::vector<fs::path> written = draw_bench(scenes, machine_text(), folder);
   fs::create_directories(folder);
-  figure::write_whole(folder / "bench.csv", csv_text(csv_of(scenes)));
+  figure::write_whole(folder / "bench.csv", csv_text(csv_of(scenes), k_measured_digits));
   figure::write_whole(folder / "bench.md", bench_text(scenes, profiles, savings));
   written.insert(written.begin(), {folder / "bench.csv", folder / "bench.md"});
   return written;
