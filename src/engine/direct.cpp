@@ -241,11 +241,8 @@ class Direct final : public EventLocator {
     fit_gains();
     if (!is_closed_) {
       work_.fit(*nodes_, slopes_[*quadrature_]);
-      const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
       const double length = piece_length();
-      // What is tolerated is no rounding: terms that fall slowly, as those of a kink do, leave out more than they show.
-      const double rounding = std::max(rounding_.known(), k_noise_of_nothing * k_rounding_of_work * scale / length);
-      const double reach = work_.reach(2.0 * work_accuracy_ * scale / length, rounding);
+      const double reach = work_reach(begin_state_[*quadrature_], length, work_accuracy_, rounding_.known());
       factor = std::clamp(k_safety * reach, k_most_shrinkage, k_most_growth);
       const bool is_too_long = reach < 1.0 && length > k_smallest_quadrature;
       rounding_.see(work_, begin_, length, is_too_long);
@@ -271,6 +268,17 @@ class Direct final : public EventLocator {
     }
     if (quadrature_) end_state_[*quadrature_] = quadrature_at(end_, end_state_);
     return true;
+  }
+
+  /// How many times as long the interval of work_, the series of the work's rate, could be.
+  /// @param work      where the interval begins
+  /// @param accuracy  over the work
+  /// @param rounding  of the rates, that is known
+  [[nodiscard]] double work_reach(double work, double length, double accuracy, double rounding = 0.0) const {
+    const double scale = std::max(std::abs(work), system_.unknowns()[*quadrature_].scale);
+    // What is tolerated is no rounding: terms that fall slowly, as those of a kink do, leave out more than they show.
+    const double least = k_noise_of_nothing * k_rounding_of_work * scale / length;
+    return work_.reach(2.0 * accuracy * scale / length, std::max(rounding, least));
   }
 
   /// Whether an event at the beginning shows that the states of the piece are others than those that lead on from
@@ -426,7 +434,6 @@ class Direct final : public EventLocator {
       panel_work_ = quadrature_at(panel_end_, trial_);
     }
     panel_begin_ = panel_end_;
-    const double scale = std::max(std::abs(panel_work_), system_.unknowns()[*quadrature_].scale);
     for (double factor = 0.0; factor < 1.0;) {
       panel_end_ = end_ - panel_begin_ <= (1.0 + k_rest) * panel_length_ ? end_ : panel_begin_ + panel_length_;
       const double length = panel_end_ - panel_begin_;
@@ -437,8 +444,7 @@ class Direct final : public EventLocator {
         slopes_[*quadrature_][j] = rates_[*quadrature_];
       }
       work_.fit(nodes, slopes_[*quadrature_]);
-      const double reach = work_.reach(2.0 * k_panel_accuracy * scale / length,
-                                       k_noise_of_nothing * k_rounding_of_work * scale / length);
+      const double reach = work_reach(panel_work_, length, k_panel_accuracy);
       is_panel_resolved_ = reach >= 1.0;
       const bool is_last = is_panel_resolved_ || length <= k_shortest_panel;
       factor = is_last ? k_most_growth : std::clamp(k_safety * reach, k_most_shrinkage, 0.5);
