@@ -10,6 +10,7 @@
 
 #include "scenario/numbers.hpp"
 #include "scenario/scenario.hpp"
+#include "support/scenario_texts.hpp"
 
 namespace monograin::edit_test {
 namespace {
@@ -77,26 +78,8 @@ TEST(Numbers, AreThoseThatStandOnTheirOwn) {
                                       "material.surface_energy", "loading.angle", "particle.radius"}));
 }
 
-constexpr const char* k_walls = R"(model = "hertz"
-[particle]
-radius = "1 mm"
-[material]
-youngs_modulus = "1 GPa"
-poisson_ratio = 0.3
-[loading]
-configuration = "walls"
-steps = [{ displacement = "0.1 R0", duration = "1 s" }]
-[[loading.wall]]  # on top
-name = "top"
-normal = [0, 0, 1]
-[[loading.wall]]
-name = "side"
-normal = [1, 0, 0]
-gap = "0.02 R0"  # late
-)";
-
 TEST(Numbers, HaveTheGapOfEachWall) {
-  CheckedScenario scenario = parse_scenario(k_walls, "s.toml");
+  CheckedScenario scenario = parse_scenario(k_late_wall_text, "s.toml");
   set_number(scenario, "loading.wall[1].gap", 3e-6);
   EXPECT_EQ(scenario.loading.walls[0].gap, 0.0);
   EXPECT_EQ(scenario.loading.walls[1].gap, 3e-6);
@@ -104,7 +87,9 @@ TEST(Numbers, HaveTheGapOfEachWall) {
 }
 
 TEST(Edit, PutsAGapIntoTheTableOfItsWall) {
-  const std::string text = with_values(k_walls, {{"loading.wall[1].gap", "1e-6"}, {"loading.wall[0].gap", "2e-6"}});
+  const std::string commented = replaced(replaced(k_late_wall_text, "[[loading.wall]]", "[[loading.wall]]  # on top"),
+                                         "gap = \"0.002 R0\"", "gap = \"0.002 R0\"  # late");
+  const std::string text = with_values(commented, {{"loading.wall[1].gap", "1e-6"}, {"loading.wall[0].gap", "2e-6"}});
   const CheckedScenario scenario = parse_scenario(text, "edited.toml");
   EXPECT_EQ(scenario.loading.walls[0].gap, 2e-6);
   EXPECT_EQ(scenario.loading.walls[1].gap, 1e-6);

@@ -20,6 +20,25 @@ displacement = "0.01 R0"
 duration = "1 s"
 )";
 
+/// Two walls of their own, of which one is late.
+inline constexpr const char* k_late_wall_text = R"(model = "hertz"
+[particle]
+radius = "10 mm"
+[material]
+youngs_modulus = "50 GPa"
+poisson_ratio = 0.22
+[loading]
+configuration = "walls"
+steps = [{ displacement = "0.01 R0", duration = "1 s" }]
+[[loading.wall]]
+name = "top"
+normal = [0, 0, 1]
+[[loading.wall]]
+name = "late"
+normal = [1, 0, 0]
+gap = "0.002 R0"
+)";
+
 /// A text with a part of it, which has to be there, in another form.
 [[nodiscard]] inline std::string replaced(std::string text, const std::string& old, const std::string& by) {
   const std::size_t at = text.find(old);

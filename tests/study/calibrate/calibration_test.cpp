@@ -212,24 +212,6 @@ TEST_F(CalibrationTest, KnowsTheRadiusTwiceAsBadlyAsTheForces) {
   EXPECT_GT(std::abs(result.solution.parameters[0] / 7.3e-3 - 1.0), 1e-5);
 }
 
-constexpr const char* k_late_wall = R"(model = "hertz"
-[particle]
-radius = "10 mm"
-[material]
-youngs_modulus = "50 GPa"
-poisson_ratio = 0.22
-[loading]
-configuration = "walls"
-steps = [{ displacement = "0.01 R0", duration = "1 s" }]
-[[loading.wall]]
-name = "top"
-normal = [0, 0, 1]
-[[loading.wall]]
-name = "late"
-normal = [1, 0, 0]
-gap = "0.002 R0"
-)";
-
 constexpr const char* k_free_gap = R"(scenario = "s.toml"
 [data]
 file = "d.csv"
@@ -256,7 +238,7 @@ std::vector<Row> late_hertz(double gap, double radius, double deviation = 0.0) {
 
 // Symmetry makes both walls one class, which has the name of the first, where neither is late.
 TEST(Replay, FindsAWallThatItsGapPutsIntoTheClassOfAnotherOne) {
-  Replay replay(parse_scenario(k_late_wall, "s.toml"), {.driven = "top.displacement", .watched = "late.force"},
+  Replay replay(parse_scenario(k_late_wall_text, "s.toml"), {.driven = "top.displacement", .watched = "late.force"},
                 {4e-5, 1e-4});
   std::vector<double> forces(2);
   ASSERT_TRUE(replay.run(forces));
@@ -267,7 +249,7 @@ TEST(Replay, FindsAWallThatItsGapPutsIntoTheClassOfAnotherOne) {
 }
 
 TEST_F(CalibrationTest, FindsTheGapOfALateWall) {
-  write("s.toml", k_late_wall);
+  write("s.toml", k_late_wall_text);
   write("c.toml", k_free_gap);
   write("d.csv", csv_of(late_hertz(3.7e-5, k_radius), "top.displacement[m],late.force[N],w"));
   const Calibration calibration = read();
@@ -278,7 +260,7 @@ TEST_F(CalibrationTest, FindsTheGapOfALateWall) {
 }
 
 TEST_F(CalibrationTest, KnowsTheGapAsWellAsTheForcesTellIt) {
-  write("s.toml", k_late_wall);
+  write("s.toml", k_late_wall_text);
   write("c.toml", replaced(k_free_gap, "1 N", "5 N"));
   write("d.csv", csv_of(late_hertz(3.7e-5, k_radius, 5.0), "top.displacement[m],late.force[N],w"));
   const CalibrationResult result = calibrate(read());
@@ -291,7 +273,7 @@ TEST_F(CalibrationTest, KnowsTheGapAsWellAsTheForcesTellIt) {
 }
 
 TEST_F(CalibrationTest, AGapInR0MovesWithTheRadius) {
-  write("s.toml", k_late_wall);
+  write("s.toml", k_late_wall_text);
   write("c.toml", replaced(replaced(k_free_radius, "x = \"displacement[m]\"", "x = \"top.displacement[m]\""),
                            "y = \"force[N]\"\nnoise = { relative = 0.01 }", "y = \"late.force[N]\""));
   write("d.csv", csv_of(late_hertz(0.002 * 7.3e-3, 7.3e-3), "top.displacement[m],late.force[N],w"));
@@ -300,7 +282,8 @@ TEST_F(CalibrationTest, AGapInR0MovesWithTheRadius) {
 
 // The driven wall begins behind its gap, and the late one is as late in time as that says.
 TEST_F(CalibrationTest, TheStartOfADrivenWallMovesWithTheRadius) {
-  const std::string scenario = replaced(k_late_wall, "normal = [0, 0, 1]", "normal = [0, 0, 1]\ngap = \"0.001 R0\"");
+  const std::string scenario =
+      replaced(k_late_wall_text, "normal = [0, 0, 1]", "normal = [0, 0, 1]\ngap = \"0.001 R0\"");
   write("s.toml", scenario);
   write("c.toml", replaced(replaced(k_free_radius, "x = \"displacement[m]\"", "x = \"top.displacement[m]\""),
                            "y = \"force[N]\"\nnoise = { relative = 0.01 }", "y = \"late.force[N]\""));
@@ -343,7 +326,7 @@ fixed = true
 }
 
 TEST_F(CalibrationTest, RefusesTheGapOfTheWallThatXDrives) {
-  write("s.toml", k_late_wall);
+  write("s.toml", k_late_wall_text);
   write("c.toml", replaced(k_free_gap, "wall[1]", "wall[0]"));
   write("d.csv", csv_of(late_hertz(3.7e-5, k_radius), "top.displacement[m],late.force[N],w"));
   ASSERT_EQ(faults().size(), 1U);
