@@ -33,7 +33,7 @@ except ImportError as error:
     sys.exit(f"solve_ivp_uniaxial.py: {error}; on Debian: apt-get install python3-scipy")
 
 SCENARIO = pathlib.Path(__file__).resolve().parent.parent.parent / "scenarios" / "uniaxial.toml"
-# Of the scenario: m, Pa, R0, 1, and the rest in units of E.
+# Numbers of the scenario: m, Pa, R0, 1, and the rest in units of E.
 RADIUS, YOUNGS_MODULUS, DISPLACEMENT, POISSON_RATIO = 0.01, 1e9, 0.4, 0.3
 YIELD_STRESS = 0.04
 MODULUS = 1.0 / (1.0 - POISSON_RATIO**2)

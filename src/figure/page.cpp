@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr double k_x_label_cm = 1.05;  // from an axis down to the middle of its label
 constexpr std::string_view k_minus = "\u2212";
-// Of a logarithmic axis: more of their labels run into each other, side by side sooner than one above the other.
+// A logarithmic axis of more decades has no label at some of them: side by side, labels run into each other sooner than
+// one above the other.
 constexpr double k_most_decades_along = 5.0;
 constexpr double k_most_decades_up = 6.0;
 

@@ -83,9 +83,10 @@ std::optional<CheckedScenario> with_material(const CheckedScenario& made, const 
   for (std::size_t k = 0; k < keys.size(); ++k) {
     if (!keys[k].starts_with(k_of_material)) continue;
     const std::string name = keys[k].substr(k_of_material.size());
-    const auto key = std::ranges::find(language.model->material, name, &QuantityKey::name);
-    if (key == language.model->material.end()) return std::nullopt;
-    if (!finite_range(quantity_key(*key)).contains(numbers[k])) return std::nullopt;
+    if (std::ranges::find(language.model->material, name, &QuantityKey::name) == language.model->material.end() ||
+        !finite_range(*find_key(language.material, name)).contains(numbers[k])) {
+      return std::nullopt;
+    }
     scenario->material.insert_or_assign(name, numbers[k]);
   }
   FaultList faults;

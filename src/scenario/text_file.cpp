@@ -109,13 +109,13 @@ void write_text_file(const fs::path& file, const std::function<void(const TextSi
   if (!partial.move_to(file)) fail(file, errno);
 }
 
-std::vector<std::filesystem::path> scenario_files(const std::filesystem::path& folder) {
-  if (!std::filesystem::is_directory(folder)) {
+std::vector<fs::path> scenario_files(const fs::path& folder) {
+  if (!fs::is_directory(folder)) {
     throw std::runtime_error(
         fmt::format("{}: no such folder; run this in the project's folder, or name it", folder.string()));
   }
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
   if (files.empty()) throw std::runtime_error(fmt::format("{}: holds no scenario (.toml) to run", folder.string()));

@@ -281,14 +281,11 @@ BenchList read_bench_list(const fs::path& file) {
   static const std::vector<KeySpec> root_keys{
       {.name = "scene", .meaning = "scenes to measure", .kind = Kind::tables, .is_required = true},
       {.name = "saving", .meaning = "scenes that are spared something", .kind = Kind::tables}};
-  static const KeySpec scenario_key{.name = "scenario",
-                                    .meaning = "scenario file, sought from this file's folder",
-                                    .is_required = true,
-                                    .example = "\"../die.toml\""};
-  static const KeySpec scenarios_key{.name = "scenario",
-                                     .meaning = "scenario file, or a folder of them, sought from this file's folder",
-                                     .is_required = true,
-                                     .example = "\"../die.toml\""};
+  static const KeySpec scenario_key{
+      .name = "scenario",
+      .meaning = "scenario file, of a scene also a folder of them, sought from this file's folder",
+      .is_required = true,
+      .example = "\"../die.toml\""};
   static const KeySpec set_key{.name = "set",
                                .meaning = "overrides of the scenario",
                                .kind = Kind::texts,
@@ -296,7 +293,7 @@ BenchList read_bench_list(const fs::path& file) {
   static const std::vector<KeySpec> scene_keys{
       {.name = "name", .meaning = "name of the scene [that of the file]", .example = "\"die\""},
       {.name = "title", .meaning = "what it is [the scenario's title]", .example = "\"Die compaction\""},
-      scenarios_key,
+      scenario_key,
       set_key};
   static const std::vector<KeySpec> saving_keys{
       {.name = "what", .meaning = "what is not computed", .is_required = true, .example = "\"no adhesion\""},
