@@ -14,6 +14,7 @@ namespace monograin::nonlocal {
 namespace {
 
 constexpr int k_refinements = 2;                                        // of a place clear of all walls
+constexpr double k_no_approach = 1e-30;                                 // over R0; less is rounding of no way at all
 constexpr double k_no_wall = -std::numeric_limits<double>::infinity();  // displacement of one that does not count
 // How fast gaps of errors close, over a step of the program.
 constexpr double k_closing = 20.0;
@@ -459,7 +460,7 @@ double Contacts::free_approach(std::size_t index, const Eigen::Vector3d& centre,
   const Eigen::Vector3d arm = arm_of(index);
   const double sum = displacement + arm.dot(centre);
   const double size = std::abs(displacement) + arm.norm() * centre.norm();
-  return std::abs(sum) <= rounding * size ? 0.0 : sum;
+  return std::abs(sum) <= std::max(rounding * size, k_no_approach) ? 0.0 : sum;
 }
 
 /// Moves a centre in a subspace, whose projector is given, to the nearest place where no wall of free_displacements_ is
