@@ -1,7 +1,7 @@
 // The explicit form integrated by CVODE and ARKODE, which share everything but the names of their functions.
 
 #include <arkode/arkode_arkstep.h>
-#include <cvode/cvode.h>
+#include <cvodes/cvodes.h>
 #include <fmt/format.h>
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>

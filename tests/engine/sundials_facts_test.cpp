@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include <cvode/cvode.h>
+#include <cvodes/cvodes.h>
 #include <gtest/gtest.h>
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
