@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "engine/forward_sensitivities.hpp"
 #include "engine/guard_set.hpp"
 #include "engine/program_notes.hpp"
 #include "engine/step_plan.hpp"
@@ -59,12 +60,14 @@ struct OutputPoint {
 class Drive {
  public:
   Drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output,
-        HistorySink& sink)
+        HistorySink& sink, ForwardSensitivities* sensitivities)
       : scene_(scene),
         system_(*scene.system),
         guard_set_(system_),
-        integrator_(make_integrator(integrator, system_, guard_set_, tolerances, rows_of_step(scene, output))),
+        integrator_(
+            make_integrator(integrator, system_, guard_set_, tolerances, rows_of_step(scene, output), sensitivities)),
         sink_(sink),
+        sensitivities_(sensitivities),
         output_(output),
         y_(system_.unknowns().size()),
         output_state_(y_.size()),
@@ -98,6 +101,7 @@ class Drive {
       }
     }
     result.statistics = integrator_->statistics();
+    if (sensitivities_ != nullptr) result.statistics.rhs_evaluations += sensitivities_->evaluations();
     result.statistics.events = event_count_;
     for (const Diagnostic& warning : system_.warnings()) {
       result.warnings.push_back(fmt::format("{} ({} = {:.6g})", warning.message, warning.quantity, warning.value));
@@ -110,13 +114,14 @@ class Drive {
  private:
   void run_program() {
     system_.start(y_);
+    follow([](ForwardSensitivities& s) { s.start(); });
     std::vector<Event> log;
     for (step_ = 0; step_ < scene_.step_count(); ++step_) {
       plan_ = plan_step(scene_, step_, held_, guard_set_, xi_, y_);
       xi_ = 0.0;
       if (step_ > 0) {
         // The rows before this corner stand already; what comes after belongs to the step that begins.
-        system_.begin_step(plan_.ramps, y_, log);
+        begin_step(log);
         close_instant(step_start_, 0.0, log);
       } else {
         begin_history(log);
@@ -130,7 +135,7 @@ class Drive {
       if (is_met) log.push_back({"until-met"});
       log.push_back({"step-end"});
       step_start_ = time(xi_);
-      for (std::size_t c = 0; c < held_.size(); ++c) held_[c] = where_it_stands(static_cast<int>(c));
+      for (std::size_t c = 0; c < held_.size(); ++c) held_[c] = ramp_after(plan_, system_, static_cast<int>(c), xi_);
     }
     --step_;
     close_instant(step_start_, xi_, log);
@@ -162,15 +167,6 @@ class Drive {
 
   // --- the program
   // ----------------------------------------------------------------------------------------------------------
-
-  /// What a channel keeps when nothing else is said: the end of its ramp, or where that was interrupted. A wall whose
-  /// contact has snapped off bears no force any more.
-  [[nodiscard]] Ramp where_it_stands(int channel) {
-    const Ramp& ramp = plan_.ramps[static_cast<std::size_t>(channel)];
-    const bool is_lost = ramp.control == Control::force && system_.is_open(channel);
-    const double value = is_lost ? 0.0 : std::lerp(ramp.start, ramp.end, xi_);
-    return {value, value, ramp.control};
-  }
 
   [[nodiscard]] bool has_ending_event(const std::vector<Event>& log) const {
     return std::ranges::any_of(log, [&](const Event& event) {
@@ -232,14 +228,27 @@ class Drive {
     return !plan_.detaching.empty() && std::ranges::all_of(plan_.detaching, [&](int c) { return system_.is_open(c); });
   }
 
+  /// Has the derivatives do what the base does; not while a step is rehearsed.
+  template <class Action>
+  void follow(Action&& action) {
+    if (sensitivities_ != nullptr && !is_rehearsing_) action(*sensitivities_);
+  }
+
   // --- one step
   // -------------------------------------------------------------------------------------------------------------
+
+  void begin_step(std::vector<Event>& log) {
+    const std::size_t logged = log.size();
+    system_.begin_step(plan_.ramps, y_, log);
+    follow([&](ForwardSensitivities& s) { s.begin_step(step_, plan_, std::span(log).subspan(logged)); });
+  }
 
   /// Integrates the step that has begun; leaves xi_ and y_ where it ends. Returns whether a condition ended it.
   /// @param log  events at its beginning, which may be what it waits for
   bool integrate_step(const std::vector<Event>& log) {
     xi_ = 0.0;
     guard_set_.begin_step(plan_.conditions, 0.0, y_);
+    follow([this](ForwardSensitivities& s) { s.expect_held(guard_set_.held_at_begin().has_value()); });
     outputs_.clear();
     if (const auto held = guard_set_.held_at_begin()) {
       notes_.add(step_ + 1,
@@ -263,6 +272,7 @@ class Drive {
     const std::vector<double> state = y_;
     const long event_count = event_count_;
     is_rehearsing_ = stops_in_step_ = true;
+    if (sensitivities_ != nullptr) sensitivities_->set_active(false);
     try {
       static_cast<void>(integrate());
       stops_in_step_ = false;
@@ -271,6 +281,7 @@ class Drive {
     } catch (const SolverError&) {
     }
     is_rehearsing_ = false;
+    if (sensitivities_ != nullptr) sensitivities_->set_active(true);
     restore();
     // An end that is round-off leaves no room for rows.
     const double end = xi_ > output_.points * k_round_off ? xi_ : 0.0;
@@ -299,6 +310,7 @@ class Drive {
     while (plan_.duration > 0.0 && 1.0 - xi_ > k_round_off) {
       const double segment_start = xi_;
       change_state([this](std::span<double> y) { xi_ = system_.leave_singularity(xi_, y); });
+      follow([this](ForwardSensitivities& s) { s.leave_singularity(xi_); });
       if (xi_ == 1.0) break;
       const auto last = integrate_segment(work);
       if (!last) break;
@@ -306,8 +318,9 @@ class Drive {
       if (handle_event(*last)) return true;
       if (is_detached()) return false;
     }
-    solve_remainder();
+    const bool is_solved = solve_remainder();
     xi_ = 1.0;
+    follow([&](ForwardSensitivities& s) { s.end_step(y_, is_solved); });
     guard_set_.note_met({}, xi_, y_);
     return guard_set_.is_met(xi_, y_);
   }
@@ -329,6 +342,7 @@ class Drive {
       change_state([&](std::span<double> y) { integrator_->dense_output(advance.xi, y); });
       xi_ = advance.xi;
       emit_outputs_before(last, xi_);
+      follow([&](ForwardSensitivities&) { integrator_->dense_sensitivities(xi_); });
       if (advance.hit_guard) return last;
       if (xi_ >= 1.0) return std::nullopt;
     }
@@ -349,15 +363,16 @@ class Drive {
   }
 
   /// Solves for the end of the step: what an event leaves of the step may be round-off, because a contact may be as
-  /// shallow.
-  void solve_remainder() {
-    if (!(plan_.duration > 0.0 && xi_ < 1.0)) return;
+  /// shallow. Returns whether there was any.
+  bool solve_remainder() {
+    if (!(plan_.duration > 0.0 && xi_ < 1.0)) return false;
     change_state([this](std::span<double> y) {
       if (system_.is_solvable())
         system_.solve(1.0, y);
       else
         system_.complete(1.0, y);
     });
+    return true;
   }
 
   /// Changes the state wholly or, where that meets the end of the equations, not at all: the run ends in it.
@@ -372,6 +387,7 @@ class Drive {
   /// @param last  where the integrator's last step began
   bool handle_event(double last) {
     const std::vector<std::size_t> fired = collect_fired(last);
+    follow([&](ForwardSensitivities& s) { s.locate(fired, xi_, y_); });
     std::vector<std::size_t> of_system;
     for (const std::size_t guard : fired) {
       if (guard < guard_set_.system_guards()) of_system.push_back(guard);
@@ -380,6 +396,7 @@ class Drive {
     if (are_marks(of_system)) {
       std::vector<Event> log;
       static_cast<void>(system_.fire(of_system, xi_, y_, log));
+      follow([&](ForwardSensitivities& s) { s.fire(of_system, log); });
       if (!log.empty()) {
         open_instant(xi_);
         close_instant(time(xi_), xi_, log);
@@ -391,9 +408,11 @@ class Drive {
       if (is_seen) open_instant(xi_);
       std::vector<Event> log;
       const auto end = system_.fire(of_system, xi_, y_, log);
+      if (!end) follow([&](ForwardSensitivities& s) { s.fire(of_system, log); });
       std::exception_ptr failure;
       try {
         if (!end) change_state([this](std::span<double> y) { system_.solve(xi_, y); });
+        if (!end) follow([](ForwardSensitivities& s) { s.solve(); });
       } catch (const std::domain_error&) {
         failure = std::current_exception();
       }
@@ -405,6 +424,7 @@ class Drive {
     }
     if (is_met) guard_set_.note_met(fired, xi_, y_);
     guard_set_.renew();
+    follow([&](ForwardSensitivities& s) { s.end_event(fired, xi_, is_met); });
     note_open_contacts();
     return is_met;
   }
@@ -520,23 +540,35 @@ class Drive {
   /// its beginning.
   void emit_outputs_before(double last, double xi) {
     if (records_internal_steps() && xi < 1.0 && integrator_->fired().empty()) {
-      integrator_->dense_output(xi, output_state_);
-      sink_.observe(time(xi), step_label(), xi, output_state_);
-      sink_.append(RowSide::output);
+      emit_output(time(xi), xi);
     }
     for (; next_output_ < outputs_.size() && outputs_[next_output_].xi < xi - k_round_off; ++next_output_) {
       const double at = std::max(outputs_[next_output_].xi, last);
-      const double instant = outputs_[next_output_].time;
-      integrator_->dense_output(at, output_state_);
-      sink_.observe(instant, step_label(), at, output_state_);
-      sink_.append(RowSide::output);
+      emit_output(outputs_[next_output_].time, at);
     }
+  }
+
+  /// A row at a place of the integrator's last step.
+  void emit_output(double instant, double xi) {
+    integrator_->dense_output(xi, output_state_);
+    sink_.observe(instant, step_label(), xi, output_state_);
+    follow([&](ForwardSensitivities& s) {
+      integrator_->dense_sensitivities(xi);
+      sink_.differentiate(s.row_at(xi, output_state_, step_start_, plan_.duration));
+    });
+    sink_.append(RowSide::output);
+  }
+
+  /// Observes where the drive stands.
+  void observe_here(double instant, double xi) {
+    sink_.observe(instant, step_label(), xi, y_);
+    follow([&](ForwardSensitivities& s) { sink_.differentiate(s.row_here()); });
   }
 
   /// The first row. Nothing jumps at the start: before and after an event there are the same.
   void begin_history(std::vector<Event>& log) {
-    system_.begin_step(plan_.ramps, y_, log);
-    sink_.observe(0.0, 1, 0.0, y_);
+    begin_step(log);
+    observe_here(0.0, 0.0);
     if (!log.empty()) sink_.append(RowSide::before);
     sink_.append(RowSide::output);
     if (!log.empty()) close_instant(0.0, 0.0, log);
@@ -545,7 +577,7 @@ class Drive {
   /// Rows just before an event or corner, and its output point if one falls on it.
   void open_instant(double xi) {
     if (is_rehearsing_) return;
-    sink_.observe(time(xi), step_label(), xi, y_);
+    observe_here(time(xi), xi);
     sink_.append(RowSide::before);
     if (next_output_ < outputs_.size() && outputs_[next_output_].xi <= xi + k_round_off) {
       ++next_output_;
@@ -566,7 +598,7 @@ class Drive {
   /// Row just after it, and the events that lie in between.
   void close_instant(double instant, double xi, const std::vector<Event>& log) {
     if (is_rehearsing_) return;
-    sink_.observe(instant, step_label(), xi, y_);
+    observe_here(instant, xi);
     sink_.append(RowSide::after);
     for (const Event& event : log) sink_.event(event);
   }
@@ -577,6 +609,7 @@ class Drive {
   std::unique_ptr<Integrator> integrator_;
   std::optional<double> rtol_;  ///< none of the direct form, which has no tolerance
   HistorySink& sink_;
+  ForwardSensitivities* sensitivities_;  ///< none: null
   const Output& output_;
   std::vector<double> y_;
   std::vector<double> output_state_;
@@ -611,8 +644,8 @@ std::string_view to_string(RunStatus status) noexcept {
 }
 
 DriveResult drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output,
-                  HistorySink& sink) {
-  return Drive(scene, integrator, tolerances, output, sink).run();
+                  HistorySink& sink, ForwardSensitivities* sensitivities) {
+  return Drive(scene, integrator, tolerances, output, sink, sensitivities).run();
 }
 
 }  // namespace monograin

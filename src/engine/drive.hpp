@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/forward_sensitivities.hpp"
 #include "engine/integrator.hpp"
 #include "monograin/status.hpp"
 #include "scenario/scenario.hpp"
@@ -21,6 +22,8 @@ class HistorySink {
   virtual ~HistorySink() = default;
   /// Evaluates the observables. @param step  number of the program's step, from 1
   virtual void observe(double time, int step, double xi, std::span<const double> y) = 0;
+  /// Takes the derivatives of what was observed last: one row of ForwardSensitivities.
+  virtual void differentiate(std::span<const double> /*derivatives*/) {}
   /// Appends what was observed last as a row of the history.
   virtual void append(RowSide side) = 0;
   /// An event, with the state observed last.
@@ -42,8 +45,10 @@ struct DriveResult {
 ///
 /// @param integrator  one of integrator_names(), or as choose_integrator() has chosen it
 /// @param output      output points of every step, or instants of the whole run
+/// @param sensitivities  of this scene, carried along by an integrator that has_forward_sensitivities(); null: none.
+///   Throws LostSensitivities where they cannot be carried on.
 /// Never throws for what the model or the solver cannot do: that is the result's status.
 [[nodiscard]] DriveResult drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances,
-                                const Output& output, HistorySink& sink);
+                                const Output& output, HistorySink& sink, ForwardSensitivities* sensitivities = nullptr);
 
 }  // namespace monograin

@@ -104,7 +104,8 @@ bool suits_stiff_equations(std::string_view name) noexcept {
 }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, GuardSet& guard_set,
-                                            const Tolerances& asked, std::size_t rows) {
+                                            const Tolerances& asked, std::size_t rows,
+                                            ForwardSensitivities* sensitivities) {
   if (name == integrators::k_direct && !system.is_solvable()) throw std::logic_error("the system has no direct form");
   if (name == integrators::k_direct) return make_direct(system, asked.rtol, guard_set, rows);
   if (name == integrators::k_explicit) return make_fixed_step(system, guard_set, asked);
@@ -119,7 +120,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem&
     return std::visit(
         [&](auto chosen) {
           if constexpr (std::is_same_v<decltype(chosen), OdeMethod>)
-            return make_sundials_ode(chosen, system, guard_set, tolerances);
+            return make_sundials_ode(chosen, system, guard_set, tolerances, sensitivities);
           else
             return make_stepped(chosen, system, guard_set, tolerances);
         },

@@ -16,6 +16,8 @@
 
 namespace monograin {
 
+class ForwardSensitivities;
+
 struct Tolerances {
   double rtol = 1e-8;
   double atol = 1e-12;  ///< relative to each unknown's own scale
@@ -97,6 +99,9 @@ class Integrator {
   /// The complete state anywhere in the last internal step.
   virtual void dense_output(double xi, std::span<double> y) = 0;
 
+  /// Puts s anywhere in the last internal step into the sensitivities that it carries along.
+  virtual void dense_sensitivities(double /*xi*/) {}
+
   /// How near to zero a guard counts as fired together with one that has just fired.
   [[nodiscard]] virtual double guard_tolerance() const noexcept = 0;
 
@@ -115,11 +120,13 @@ class Integrator {
 [[nodiscard]] bool suits_stiff_equations(std::string_view name) noexcept;
 
 /// @param name  as in scenario files but "auto", or as choose_integrator() has chosen it
-/// @param rows  of the history in a step, about
+/// @param rows           of the history in a step, about
+/// @param sensitivities  to be carried along, by an integrator that can; null: none
 /// @throws std::logic_error for another name, or where direct is asked of a system that is not solvable
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system,
                                                           GuardSet& guard_set, const Tolerances& tolerances,
-                                                          std::size_t rows = 0);
+                                                          std::size_t rows = 0,
+                                                          ForwardSensitivities* sensitivities = nullptr);
 
 /// Which integrator runs, and why that one.
 struct IntegratorChoice {
@@ -142,7 +149,8 @@ struct IntegratorChoice {
                                                       std::size_t rows);
 enum class OdeMethod { cvode_adams, cvode_bdf, arkode_erk, arkode_dirk };
 [[nodiscard]] std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, HybridSystem& system, GuardSet& guard_set,
-                                                            const Tolerances& tolerances);
+                                                            const Tolerances& tolerances,
+                                                            ForwardSensitivities* sensitivities = nullptr);
 enum class OdeintMethod { dopri5, fehlberg78, bulirsch_stoer, rosenbrock4 };
 [[nodiscard]] std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, GuardSet& guard_set,
                                                        const Tolerances& tolerances);

@@ -32,6 +32,10 @@ struct StepPlan {
 [[nodiscard]] StepPlan plan_step(const Scene& scene, std::size_t step, std::span<const Ramp> held,
                                  const GuardSet& guard_set, double xi, std::span<const double> y);
 
+/// What a channel keeps after a step when nothing else is said: the end of its ramp, or where that was interrupted, at
+/// xi. A wall whose contact has snapped off bears no force any more.
+[[nodiscard]] Ramp ramp_after(const StepPlan& plan, const HybridSystem& system, int channel, double xi);
+
 /// A condition in the words of the scenario, e.g. "until axial.force = 1000 N".
 [[nodiscard]] std::string condition_text(const Scene& scene, const Condition& condition);
 

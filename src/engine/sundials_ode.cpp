@@ -9,8 +9,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
+#include "engine/cvode_sensitivities.hpp"
+#include "engine/forward_sensitivities.hpp"
 #include "engine/sundials.hpp"
 
 namespace monograin {
@@ -138,7 +141,8 @@ struct ArkodeLibrary {
 template <class Library>
 class SundialsOde final : public Integrator {
  public:
-  SundialsOde(OdeMethod method, HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances)
+  SundialsOde(OdeMethod method, HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances,
+              ForwardSensitivities* sensitivities)
       : system_(system),
         guard_set_(guard_set),
         method_(method),
@@ -156,6 +160,8 @@ class SundialsOde final : public Integrator {
       matrix_.reset(SUNDenseMatrix(size, size, context_));
       linear_ = make_dense_solver(y_.get(), matrix_.get(), context_);
     }
+    if (sensitivities != nullptr)
+      carried_.emplace(*sensitivities, y_.get(), method_ == OdeMethod::cvode_adams, context_);
     set_up();
   }
 
@@ -163,6 +169,7 @@ class SundialsOde final : public Integrator {
     form_.begin(y, view(y_.get()));
     segment_begin_ = xi;
     first_state_.assign(y.begin(), y.end());
+    if (carried_) carried_->take_state();
     start(xi, 0.0);
     last_length_ = 0.0;
     ++past_.segments;
@@ -172,10 +179,12 @@ class SundialsOde final : public Integrator {
     roots_.fired.clear();
     const double begin = end_;
     N_VScale(1.0, y_.get(), begin_state_.get());
+    if (carried_) carried_->keep();
     // Trials of a step that came to nothing may have led to where other solutions are found.
     begin_guess_.assign(form_.guess().begin(), form_.guess().end());
     const auto restart = [&](double step) {
       N_VScale(1.0, begin_state_.get(), y_.get());
+      if (carried_) carried_->restore();
       form_.guess(begin_guess_);
       start(begin, step);
     };
@@ -209,6 +218,7 @@ class SundialsOde final : public Integrator {
     } else if (flag == Library::stop_return) {
       end_ = 1.0;
     }
+    if (carried_) check("GetSens", carried_->get(memory_.get(), end_));
     return {.xi = end_, .hit_guard = flag == Library::root_return};
   }
 
@@ -219,6 +229,10 @@ class SundialsOde final : public Integrator {
     const bool is_at_end = xi == end_;
     if (!is_at_end) check("GetDky", Library::derivative(memory_.get(), xi, 0, errors_.get()));
     form_.complete(xi, view((is_at_end ? y_ : errors_).get()), y);
+  }
+
+  void dense_sensitivities(double xi) override {
+    if (carried_) check("GetSens", carried_->put(memory_.get(), xi, end_));
   }
 
   [[nodiscard]] double guard_tolerance() const noexcept override { return guard_tolerance_of(tolerances_); }
@@ -276,6 +290,7 @@ class SundialsOde final : public Integrator {
     check("SetInitStep", Library::set_first_step(memory_.get(), step));
     check("SetStopTime", Library::set_stop_time(memory_.get(), 1.0));
     // Unlisting all guards first makes the library forget which ones it had switched off.
+    if (carried_) check("SensInit", carried_->start(memory_.get(), rates_of_sensitivity));
     check("RootInit", Library::init_roots(memory_.get(), 0, nullptr));
     roots_.found.assign(guard_set_.size(), 0);
     if (guard_set_.size() == 0) return;
@@ -331,6 +346,15 @@ class SundialsOde final : public Integrator {
       if (!all_finite(view(dy))) return false;
       N_VScale(1.0, dy, ode.rates_.get());
       return true;
+    });
+  }
+
+  static int rates_of_sensitivity(int, realtype xi, N_Vector y, N_Vector, int number, N_Vector s, N_Vector ds,
+                                  void* self, N_Vector, N_Vector) noexcept {
+    auto& ode = *static_cast<SundialsOde*>(self);
+    return ode.pending_.guard([&] {
+      ode.carried_->rates(static_cast<std::size_t>(number), xi, view(y), ode.form_.guess(), view(s), view(ds));
+      return all_finite(view(ds));
     });
   }
 
@@ -492,6 +516,7 @@ class SundialsOde final : public Integrator {
   Matrix matrix_;
   LinearSolver linear_;
   NonlinearSolver nonlinear_;
+  std::optional<CvodeSensitivities> carried_;
   std::unique_ptr<void, Deleter> memory_;
 };
 
@@ -533,11 +558,11 @@ void SundialsOde<ArkodeLibrary>::create() {
 }  // namespace
 
 std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, HybridSystem& system, GuardSet& guard_set,
-                                              const Tolerances& tolerances) {
+                                              const Tolerances& tolerances, ForwardSensitivities* sensitivities) {
   if (method == OdeMethod::cvode_adams || method == OdeMethod::cvode_bdf) {
-    return std::make_unique<SundialsOde<CvodeLibrary>>(method, system, guard_set, tolerances);
+    return std::make_unique<SundialsOde<CvodeLibrary>>(method, system, guard_set, tolerances, sensitivities);
   }
-  return std::make_unique<SundialsOde<ArkodeLibrary>>(method, system, guard_set, tolerances);
+  return std::make_unique<SundialsOde<ArkodeLibrary>>(method, system, guard_set, tolerances, nullptr);
 }
 
 }  // namespace monograin

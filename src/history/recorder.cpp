@@ -7,11 +7,13 @@ namespace {
 
 constexpr std::size_t k_leading = 3;  // time, step, row
 
-/// The columns of a system's observables after some leading ones.
-std::vector<Column> with_observables(std::vector<Column> columns, const HybridSystem& system) {
+/// The columns of a system's observables after some leading ones, and those of derivatives after them.
+std::vector<Column> with_observables(std::vector<Column> columns, const HybridSystem& system,
+                                     const std::vector<Column>& derivatives) {
   for (const Observable& o : system.observables()) {
     columns.push_back({o.name, o.unit, std::vector<std::string>(o.words.begin(), o.words.end())});
   }
+  columns.insert(columns.end(), derivatives.begin(), derivatives.end());
   return columns;
 }
 
@@ -24,15 +26,20 @@ double index_of(std::string_view word, std::vector<std::string>& words) {
 
 }  // namespace
 
-Recorder::Recorder(HybridSystem& system)
+Recorder::Recorder(HybridSystem& system, const std::vector<Column>& derivatives)
     : system_(system),
-      history_(with_observables({{"time", "s", {}}, {"step", "", {}}, {"row", "", {}}}, system)),
+      derivatives_(derivatives),
+      history_(with_observables({{"time", "s", {}}, {"step", "", {}}, {"row", "", {}}}, system, derivatives)),
       row_(history_.columns().size()) {}
 
 void Recorder::observe(double time, int step, double xi, std::span<const double> y) {
   row_[0] = time;
   row_[1] = step;
-  system_.observe(xi, y, std::span(row_).subspan(k_leading));
+  system_.observe(xi, y, std::span(row_).subspan(k_leading, system_.observables().size()));
+}
+
+void Recorder::differentiate(std::span<const double> derivatives) {
+  std::ranges::copy(derivatives, row_.end() - static_cast<std::ptrdiff_t>(derivatives_.size()));
 }
 
 void Recorder::append(RowSide side) {
@@ -57,7 +64,7 @@ Table Recorder::take_events() const {
                                 {"class", "", or_empty_word(class_words_)},
                                 {"event", "", or_empty_word(event_words_)},
                                 {"step", "", {}}},
-                               system_));
+                               system_, derivatives_));
   std::vector<double> values;
   for (const Entry& entry : events_) {
     values = {entry.state[0], entry.contact_class, entry.name, entry.state[1]};

@@ -12,11 +12,13 @@ namespace monograin {
 
 class Recorder final : public HistorySink {
  public:
-  explicit Recorder(HybridSystem& system);
+  /// @param derivatives  columns that follow those of the observables, and that differentiate() fills
+  explicit Recorder(HybridSystem& system, const std::vector<Column>& derivatives = {});
 
   void reserve_rows(std::size_t count) { history_.reserve_rows(count); }
 
   void observe(double time, int step, double xi, std::span<const double> y) override;
+  void differentiate(std::span<const double> derivatives) override;
   void append(RowSide side) override;
   void event(const Event& event) override;
 
@@ -31,6 +33,7 @@ class Recorder final : public HistorySink {
   };
 
   HybridSystem& system_;
+  std::vector<Column> derivatives_;
   Table history_;
   std::vector<double> row_;
   std::vector<Entry> events_;

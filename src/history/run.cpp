@@ -63,6 +63,18 @@ std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
   return header;
 }
 
+RunRecord record_with(Recorder& recorder, Scene& scene, std::string_view integrator, const Tolerances& tolerances,
+                      const Output& output, ForwardSensitivities* sensitivities) {
+  const std::size_t rows =
+      output.times.empty() ? static_cast<std::size_t>(output.points) * scene.step_count() : output.times.size();
+  recorder.reserve_rows(rows + k_event_rows);
+  RunRecord record;
+  static_cast<DriveResult&>(record) = drive(scene, integrator, tolerances, output, recorder, sensitivities);
+  record.history = recorder.take_history();
+  record.events = recorder.take_events();
+  return record;
+}
+
 }  // namespace
 
 std::string_view version() noexcept { return MONOGRAIN_VERSION; }
@@ -81,26 +93,33 @@ std::string scenario_digest(const CheckedScenario& scenario) {
 
 RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output) {
   Recorder recorder(*scene.system);
-  const std::size_t rows =
-      output.times.empty() ? static_cast<std::size_t>(output.points) * scene.step_count() : output.times.size();
-  recorder.reserve_rows(rows + k_event_rows);
-  RunRecord record;
-  static_cast<DriveResult&>(record) = drive(scene, integrator, tolerances, output, recorder);
-  record.history = recorder.take_history();
-  record.events = recorder.take_events();
-  return record;
+  return record_with(recorder, scene, integrator, tolerances, output, nullptr);
+}
+
+RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output,
+                     ForwardSensitivities& sensitivities, const std::vector<Column>& columns) {
+  Recorder recorder(*scene.system, columns);
+  return record_with(recorder, scene, integrator, tolerances, output, &sensitivities);
 }
 
 Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped) {
   Run run;
   run.scenario = scenario;
   Stopwatch watch;
-  Scene scene = make_scene(scenario);
-  if (wrapped) scene.system = wrapped(std::move(scene.system));
+  const auto new_scene = [&] {
+    Scene scene = make_scene(scenario);
+    if (wrapped) scene.system = wrapped(std::move(scene.system));
+    return scene;
+  };
+  Scene scene = new_scene();
   run.integrator = choose_integrator(scenario.numerics.integrator, *scene.system);
   run.timings.setup = watch.lap();
-  run.record =
-      record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
+  const bool is_plain = scenario.sensitivities.empty();
+  const auto why_differences = is_plain ? std::nullopt : record_with_sensitivities(run, scene, new_scene);
+  if (is_plain || why_differences) {
+    run.record =
+        record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
+  }
   run.timings.integration = watch.lap();
   if (auto remark = remark_on_points(scenario)) run.record.warnings.push_back(std::move(*remark));
 
@@ -112,7 +131,7 @@ Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped) 
     run.record.warnings.push_back(std::move(*warning));
     run.record.creates_energy = true;
   }
-  if (!scenario.sensitivities.empty()) add_sensitivities(run);
+  if (why_differences) add_sensitivities(run, *why_differences);
   run.record.history.header = header_of(run);
   run.record.events.header = run.record.history.header;
   return run;

@@ -25,6 +25,12 @@ struct RunRecord : DriveResult {
 [[nodiscard]] RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances,
                                    const Output& output);
 
+/// Carries derivatives along, and records them.
+/// @param columns  of the derivatives, as many as a row of them has
+[[nodiscard]] RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances,
+                                   const Output& output, ForwardSensitivities& sensitivities,
+                                   const std::vector<Column>& columns);
+
 struct ClassSummary {
   std::string name;
   std::vector<std::string> walls;
@@ -44,9 +50,11 @@ using SystemWrapper = std::function<std::unique_ptr<HybridSystem>(std::unique_pt
 /// How the derivatives by a number were found.
 struct Sensitivity {
   std::string key;
-  double value = 0.0;  ///< [SI]
-  double step = 0.0;   ///< to either side [SI]
-  double error = 0.0;  ///< estimate, over the largest derivative of the same column; nan: there are none
+  double value = 0.0;       ///< [SI]
+  double step = 0.0;        ///< to either side [SI]
+  double error = 0.0;       ///< estimate, over the largest derivative of the same column; nan: there are none
+  bool is_forward = false;  ///< integrated with the run; else differences of two more runs
+  std::string why;          ///< this method
 };
 
 struct Run {

@@ -42,8 +42,13 @@ Json to_json(const Run& run) {
     classes.push_back({{"name", c.name}, {"multiplicity", c.walls.size()}, {"walls", c.walls}});
   }
   Json sensitivities = Json::array();
-  for (const auto& [key, value, step, error] : run.sensitivities) {
-    sensitivities.push_back({{"key", key}, {"value", value}, {"step", step}, {"error", error}});
+  for (const auto& [key, value, step, error, is_forward, why] : run.sensitivities) {
+    sensitivities.push_back({{"key", key},
+                             {"value", value},
+                             {"method", is_forward ? "forward" : "differences"},
+                             {"why", why},
+                             {"step", step},
+                             {"error", error}});
   }
   return {{"program", "monograin"},
           {"format", k_run_format},

@@ -25,6 +25,11 @@ constexpr double k_direct_noise = 1e-14;  // of states that are solved for
 constexpr double k_finest_rtol = 1e-11;   // of runs that are integrated
 constexpr double k_finest_atol = 1e-14;
 
+// To either side, over the number: balances bend and rounding of equations that are evaluated at one state.
+constexpr double k_share = 2e-5;
+// What an integrated derivative may be off, over the run's rtol and the largest one of its column.
+constexpr double k_forward_error = 30.0;
+
 constexpr std::size_t k_time = 0;
 constexpr std::size_t k_step = 1;
 constexpr std::size_t k_side = 2;
@@ -221,9 +226,63 @@ class Widened {
   return largest;
 }
 
+/// The columns that derivatives add to a history and its events, key by key.
+[[nodiscard]] std::vector<Column> forward_columns(const CheckedScenario& scenario, const HybridSystem& system) {
+  std::vector<Column> columns;
+  for (const SensitivityKey& key : scenario.sensitivities) {
+    columns.push_back(derivative_column("time", "s", key));
+    for (const Observable& observable : system.observables()) {
+      if (observable.words.empty()) columns.push_back(derivative_column(observable.name, observable.unit, key));
+    }
+  }
+  return columns;
+}
+
+/// @throws ScenarioError where the scenario does not take a number to either side
+[[nodiscard]] std::vector<Neighbours> neighbours_of(const CheckedScenario& scenario) {
+  std::vector<Neighbours> neighbours;
+  for (const SensitivityKey& key : scenario.sensitivities) {
+    const double step = k_share * std::abs(key.value);
+    const auto scene_with = [&](double number) {
+      return make_scene(scenario.variants->with({}, std::span(&key.key, 1), std::span(&number, 1)));
+    };
+    neighbours.push_back({scene_with(key.value - step), scene_with(key.value + step), key.value, step});
+  }
+  return neighbours;
+}
+
 }  // namespace
 
-void add_sensitivities(Run& run) {
+std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, const std::function<Scene()>& new_scene) {
+  const CheckedScenario& scenario = run.scenario;
+  if (!has_forward_sensitivities(run.integrator.used)) {
+    return fmt::format("integrator '{}' carries no derivatives along", run.integrator.used);
+  }
+  std::string why;
+  try {
+    ForwardSensitivities carried(*scene.system, neighbours_of(scenario));
+    RunRecord record = record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol},
+                                  scenario.output, carried, forward_columns(scenario, *scene.system));
+    if (record.status == RunStatus::complete) {
+      run.record = std::move(record);
+      for (const SensitivityKey& key : scenario.sensitivities) {
+        run.sensitivities.push_back({key.key, key.value, k_share * std::abs(key.value),
+                                     k_forward_error * scenario.numerics.rtol, true, "integrated with the run"});
+      }
+      return std::nullopt;
+    }
+    why = fmt::format("the run is not complete: {}", record.message);
+  } catch (const LostSensitivities& lost) {
+    why = lost.what();
+  } catch (const ScenarioError& error) {
+    why = error.faults().front().message;
+  }
+  run.record.warnings.push_back(fmt::format("derivatives are differences of more runs: {}", why));
+  scene = new_scene();
+  return why;
+}
+
+void add_sensitivities(Run& run, const std::string& why) {
   const CheckedScenario& scenario = run.scenario;
   const Table history = run.record.history;
   const Table events = run.record.events;
@@ -280,7 +339,7 @@ void add_sensitivities(Run& run) {
         return differences ? differences->at_event(row, column) : k_no_derivative;
       });
     }
-    run.sensitivities.push_back({key.key, key.value, step, differences ? error : k_no_derivative});
+    run.sensitivities.push_back({key.key, key.value, step, differences ? error : k_no_derivative, false, why});
   }
   run.record.history = std::move(of_history).table();
   run.record.events = std::move(of_events).table();

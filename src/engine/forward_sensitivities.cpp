@@ -1,0 +1,405 @@
+#include "engine/forward_sensitivities.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/explicit_form.hpp"
+#include "scenario/integrators.hpp"
+
+namespace monograin {
+namespace {
+
+// Step coordinates by which instants may differ and be one.
+constexpr double k_one_instant = 1e-12;
+// Guards that fire together have to stay together: how far apart those of a neighbour may be, over its distance.
+constexpr double k_together = 1e-4;
+// What a guard beyond zero is by rounding.
+constexpr double k_zero_guard = 1e-12;
+constexpr double k_located = 1e-15;
+constexpr int k_most_secant_steps = 30;
+
+/// What goes wrong beside the base ends the derivatives, not the run.
+template <class Action>
+auto beside(Action&& action) {
+  try {
+    return action();
+  } catch (const std::domain_error& error) {
+    throw LostSensitivities(fmt::format("a neighbouring run meets a limit: {}", error.what()));
+  } catch (const Stop& stop) {
+    throw LostSensitivities(fmt::format("a neighbouring run stops: {}", stop.message));
+  }
+}
+
+}  // namespace
+
+/// A neighbour of the base at its own place of the program.
+struct ForwardSensitivities::Side {
+  Scene scene;
+  double sign = 1.0;  ///< of its distance from the base
+  GuardSet guard_set;
+  std::vector<Ramp> held{};
+  StepPlan plan{};
+  double step_start = 0.0;  ///< [s]
+  double xi = 0.0;
+  double begin = 0.0;  ///< of the segment
+  std::vector<double> y{}, rates{}, guards{};
+  std::vector<double> begin_guards{};  ///< where the segment begins; nan where they have no values
+
+  Side(Scene made, double its_sign)
+      : scene(std::move(made)),
+        sign(its_sign),
+        guard_set(*scene.system),
+        y(scene.system->unknowns().size()),
+        rates(y.size()) {
+    for (const Channel& channel : scene.channels) held.push_back(channel.at_rest);
+  }
+  [[nodiscard]] HybridSystem& system() noexcept { return *scene.system; }
+  [[nodiscard]] double time() const noexcept { return step_start + xi * plan.duration; }
+
+  void begin_segment() {
+    begin = xi;
+    begin_guards.resize(guard_set.size());
+    try {
+      guard_set.values(xi, y, begin_guards);
+    } catch (const std::domain_error&) {
+      std::ranges::fill(begin_guards, std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  /// Goes along its rates by a distance of the order of that from the base.
+  void move(double length) {
+    if (length == 0.0) return;
+    system().rates(xi, y, rates);
+    shift(length);
+  }
+  void shift(double length) {
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] += length * rates[i];
+    xi += length;
+    system().complete(xi, y);
+  }
+};
+
+bool has_forward_sensitivities(std::string_view integrator) noexcept {
+  return integrator == integrators::k_cvode_bdf || integrator == integrators::k_cvode_adams;
+}
+
+ForwardSensitivities::ForwardSensitivities(HybridSystem& base, std::vector<Neighbours> numbers) : base_(base) {
+  const auto unknowns = base.unknowns();
+  size_ = static_cast<std::size_t>(
+      std::ranges::count_if(unknowns, [](const Unknown& u) { return u.kind != Unknown::Kind::algebraic; }));
+  const auto observables = base.observables();
+  for (std::size_t column = 0; column < observables.size(); ++column) {
+    if (observables[column].words.empty()) columns_.push_back(column);
+  }
+  for (Neighbours& of : numbers) {
+    Number& number = numbers_.emplace_back();
+    number.value = of.value;
+    number.step = of.step;
+    number.s.assign(size_, 0.0);
+    number.sides.reserve(2);
+    number.sides.emplace_back(std::move(of.lower), -1.0);
+    number.sides.emplace_back(std::move(of.upper), 1.0);
+    for (Side& side : number.sides) {
+      const bool is_alike = side.system().unknowns().size() == unknowns.size() &&
+                            side.system().observables().size() == observables.size();
+      if (!is_alike) throw LostSensitivities("a neighbouring scene has other unknowns");
+    }
+  }
+  for (auto& rates : rates_) rates.resize(unknowns.size());
+  for (auto& values : values_) values.resize(observables.size());
+  state_.resize(unknowns.size());
+  base_rates_.resize(unknowns.size());
+  slope_.resize(observables.size());
+}
+
+ForwardSensitivities::~ForwardSensitivities() = default;
+
+double ForwardSensitivities::magnitude(std::size_t number) const noexcept { return std::abs(numbers_[number].value); }
+
+void ForwardSensitivities::each_side(const std::function<void(Number&, Side&)>& action) {
+  beside([&] {
+    for (Number& number : numbers_) {
+      for (Side& side : number.sides) action(number, side);
+    }
+  });
+}
+
+void ForwardSensitivities::rates(std::size_t index, double xi, std::span<const double> y, std::span<const double> guess,
+                                 std::span<const double> s, std::span<double> ds) {
+  Number& number = numbers_[index];
+  for (std::size_t k = 0; k < 2; ++k) {
+    Side& side = number.sides[k];
+    const double distance = side.sign * number.step;
+    std::ranges::copy(guess, state_.begin());
+    for (std::size_t i = 0; i < size_; ++i) state_[i] = y[i] + distance * s[i];
+    const double own_xi = xi + distance * number.sigma;
+    side.system().complete(own_xi, state_);
+    side.system().rates(own_xi, state_, rates_[k]);
+    ++evaluations_;
+  }
+  for (std::size_t i = 0; i < size_; ++i) ds[i] = (rates_[1][i] - rates_[0][i]) / (2.0 * number.step);
+}
+
+/// Puts the neighbours of a number to the base at xi.
+void ForwardSensitivities::place(Number& number, double xi, std::span<const double> y) {
+  for (Side& side : number.sides) {
+    const double distance = side.sign * number.step;
+    std::ranges::copy(y, side.y.begin());
+    for (std::size_t i = 0; i < size_; ++i) side.y[i] += distance * number.s[i];
+    side.xi = xi + distance * number.sigma;
+    side.system().complete(side.xi, side.y);
+  }
+}
+
+/// Takes s and sigma from where the neighbours stand.
+void ForwardSensitivities::resume() {
+  for (Number& number : numbers_) {
+    Side& lower = number.sides[0];
+    Side& upper = number.sides[1];
+    for (std::size_t i = 0; i < size_; ++i) number.s[i] = (upper.y[i] - lower.y[i]) / (2.0 * number.step);
+    number.sigma = (upper.xi - lower.xi) / (2.0 * number.step);
+    for (Side& side : number.sides) side.begin_segment();
+  }
+}
+
+/// Expects a neighbour to have logged what the base has, and to watch what it watches.
+void ForwardSensitivities::expect_same_guards(Side& side, std::span<const Event> log,
+                                              std::span<const Event> of_side) const {
+  const bool has_same_events = std::ranges::equal(log, of_side, [](const Event& one, const Event& other) {
+    return one.name == other.name && one.contact_class == other.contact_class && one.other_class == other.other_class;
+  });
+  const bool has_same_guards =
+      std::ranges::equal(base_.guards(), side.system().guards(), [](const Guard& one, const Guard& other) {
+        return one.kind == other.kind && one.index == other.index && one.direction == other.direction;
+      });
+  if (!has_same_events || !has_same_guards) throw LostSensitivities("a neighbouring run passes other events");
+}
+
+/// Expects that no guard has crossed on a neighbour that has not on the base.
+void ForwardSensitivities::expect_no_other_guard(Side& side, std::span<const std::size_t> fired) const {
+  side.guards.resize(side.guard_set.size());
+  side.guard_set.values(side.xi, side.y, side.guards);
+  for (std::size_t g = 0; g < side.guards.size(); ++g) {
+    const int direction = side.guard_set.directions()[g];
+    const bool has_crossed =
+        direction * side.guards[g] > k_zero_guard && direction * side.begin_guards[g] < -k_zero_guard;
+    if (has_crossed && std::ranges::find(fired, g) == fired.end()) {
+      throw LostSensitivities(
+          fmt::format("a neighbouring run passes event '{}' earlier or later", side.guard_set.name(g)));
+    }
+  }
+}
+
+void ForwardSensitivities::start() {
+  each_side([](Number&, Side& side) { side.system().start(side.y); });
+  is_placed_ = true;
+}
+
+void ForwardSensitivities::begin_step(std::size_t step, const StepPlan& plan, std::span<const Event> log) {
+  each_side([&](Number&, Side& side) {
+    if (step > 0) {
+      side.step_start = side.time();
+      for (std::size_t c = 0; c < side.held.size(); ++c) {
+        side.held[c] = ramp_after(side.plan, side.system(), static_cast<int>(c), side.xi);
+      }
+    }
+    side.plan = plan_step(side.scene, step, side.held, side.guard_set, side.xi, side.y);
+    side.xi = 0.0;
+    std::vector<Event> of_side;
+    side.system().begin_step(side.plan.ramps, side.y, of_side);
+    expect_same_guards(side, log, of_side);
+    side.guard_set.begin_step(side.plan.conditions, 0.0, side.y);
+    if ((side.plan.duration > 0.0) != (plan.duration > 0.0)) {
+      throw LostSensitivities("a step takes no time in one of the neighbouring runs");
+    }
+  });
+  begin_ = 0.0;
+  is_placed_ = true;
+  resume();
+}
+
+void ForwardSensitivities::expect_held(bool is_held) {
+  each_side([is_held](Number&, Side& side) {
+    if (side.guard_set.held_at_begin().has_value() == is_held) return;
+    throw LostSensitivities("a condition that ends a step holds where it begins, in one of the neighbouring runs only");
+  });
+}
+
+void ForwardSensitivities::leave_singularity(double xi) {
+  each_side([](Number&, Side& side) { side.xi = side.system().leave_singularity(side.xi, side.y); });
+  begin_ = xi;
+  resume();
+  is_placed_ = false;
+}
+
+/// Moves a neighbour along its rates to where a guard that has fired is zero.
+void ForwardSensitivities::go_to_guard(Side& side, std::span<const std::size_t> fired) {
+  constexpr double k_short = 1e-7;
+  HybridSystem& system = side.system();
+  system.rates(side.xi, side.y, side.rates);
+  ++evaluations_;
+  if (!all_finite(side.rates)) throw LostSensitivities("the rates of a neighbouring run are infinite at an event");
+  const double xi = side.xi;
+  const std::vector<double> y = side.y;
+  side.guards.resize(side.guard_set.size());
+  const auto guard_at = [&](double length, std::size_t guard) {
+    side.xi = xi;
+    side.y = y;
+    side.shift(length);
+    side.guard_set.values(side.xi, side.y, side.guards);
+    return side.guards[guard];
+  };
+  double first = 0.0;
+  for (std::size_t j = fired.size(); j-- > 0;) {
+    double length = 0.0;
+    double value = guard_at(0.0, fired[j]);
+    const double slope = (value - guard_at(-k_short, fired[j])) / k_short;
+    for (int correction = 0; value != 0.0; ++correction) {
+      const double by = -value / slope;
+      if (!std::isfinite(by) || correction == k_most_secant_steps) {
+        throw LostSensitivities(
+            fmt::format("the instant of event '{}' has no derivative", side.guard_set.name(fired[j])));
+      }
+      if (std::abs(by) < k_located * (1 + correction * correction)) break;
+      length += by;
+      value = guard_at(length, fired[j]);
+    }
+    if (j + 1 == fired.size()) first = length;
+    if (std::abs(length - first) > k_together * std::max(std::abs(length), 1e-6)) {
+      throw LostSensitivities(fmt::format("events that happen together come apart in a neighbouring run: '{}' and '{}'",
+                                          side.guard_set.name(fired[j]), side.guard_set.name(fired.back())));
+    }
+    if (j == 0) static_cast<void>(guard_at(length, fired[j]));
+  }
+  if (side.xi > 1.0 + k_one_instant || side.xi < side.begin - k_one_instant) {
+    throw LostSensitivities(
+        fmt::format("a neighbouring run does not pass event '{}' there", side.guard_set.name(fired.front())));
+  }
+}
+
+void ForwardSensitivities::locate(std::span<const std::size_t> fired, double xi, std::span<const double> y) {
+  beside([&] {
+    for (Number& number : numbers_) {
+      place(number, xi, y);
+      for (Side& side : number.sides) {
+        go_to_guard(side, fired);
+        expect_no_other_guard(side, fired);
+      }
+    }
+  });
+  is_placed_ = true;
+}
+
+void ForwardSensitivities::fire(std::span<const std::size_t> of_system, std::span<const Event> log) {
+  each_side([&](Number&, Side& side) {
+    std::vector<Event> of_side;
+    if (side.system().fire(of_system, side.xi, side.y, of_side)) {
+      throw LostSensitivities("a neighbouring run ends at an event");
+    }
+    expect_same_guards(side, log, of_side);
+  });
+}
+
+void ForwardSensitivities::solve() {
+  each_side([](Number&, Side& side) { side.system().solve(side.xi, side.y); });
+}
+
+void ForwardSensitivities::end_event(std::span<const std::size_t> fired, double xi, bool is_met) {
+  each_side([&](Number&, Side& side) {
+    const bool is_by_jump =
+        std::ranges::none_of(fired, [&](std::size_t g) { return g >= side.guard_set.system_guards(); });
+    if (is_by_jump && side.plan.ending_events.empty() && side.guard_set.is_met(side.xi, side.y) != is_met) {
+      throw LostSensitivities("a neighbouring run does not end a step at an event");
+    }
+    if (is_met) side.guard_set.note_met(fired, side.xi, side.y);
+    side.guard_set.renew();
+  });
+  begin_ = xi;
+  resume();
+}
+
+void ForwardSensitivities::end_step(std::span<const double> y, bool is_solved) {
+  beside([&] {
+    for (Number& number : numbers_) {
+      if (!is_placed_) place(number, 1.0, y);
+      for (Side& side : number.sides) {
+        if (side.plan.duration > 0.0) side.move(1.0 - side.xi);
+        side.xi = 1.0;
+        if (is_solved && side.system().is_solvable()) side.system().solve(1.0, side.y);
+        expect_no_other_guard(side, {});
+        side.guard_set.note_met({}, 1.0, side.y);
+      }
+    }
+  });
+  is_placed_ = true;
+  resume();
+}
+
+void ForwardSensitivities::observe(Side& side) {
+  side.system().observe(side.xi, side.y, values_[side.sign > 0.0 ? 1 : 0]);
+}
+
+/// @param beyond  how much farther than the neighbours the row stands, over the step of the number
+void ForwardSensitivities::add_to_row(Number& number, double of_time, double beyond) {
+  for (Side& side : number.sides) observe(side);
+  row_.push_back(of_time);
+  for (const std::size_t c : columns_) {
+    double value = (values_[1][c] - values_[0][c]) / (2.0 * number.step);
+    if (beyond != 0.0) value += beyond * slope_[c];
+    row_.push_back(value);
+  }
+}
+
+std::span<const double> ForwardSensitivities::row_here() {
+  row_.clear();
+  beside([&] {
+    for (Number& number : numbers_) {
+      add_to_row(number, (number.sides[1].time() - number.sides[0].time()) / (2.0 * number.step), 0.0);
+    }
+  });
+  return row_;
+}
+
+/// Slopes of the observables along the base's curve.
+void ForwardSensitivities::slopes(double xi, std::span<const double> y, std::span<double> slope) {
+  constexpr double k_longest = 1e-5;
+  constexpr double k_share = 1e-4;
+  base_.rates(xi, y, base_rates_);
+  const auto observe_at = [&](double length, std::span<double> values) {
+    for (std::size_t i = 0; i < y.size(); ++i) state_[i] = y[i] + length * base_rates_[i];
+    base_.complete(xi + length, state_);
+    base_.observe(xi + length, state_, values);
+  };
+  const double length = shift_within_domain(std::min(k_longest, k_share * (xi - begin_)), [&](double by) {
+    observe_at(-by, values_[0]);
+    observe_at(by, values_[1]);
+  });
+  for (std::size_t c = 0; c < slope.size(); ++c) slope[c] = (values_[1][c] - values_[0][c]) / (2.0 * length);
+}
+
+std::span<const double> ForwardSensitivities::row_at(double xi, std::span<const double> y, double start,
+                                                     double duration) {
+  row_.clear();
+  const double time = start + xi * duration;
+  beside([&] {
+    bool has_slopes = false;
+    for (Number& number : numbers_) {
+      std::array<double, 2> own_xi{};
+      for (std::size_t k = 0; k < 2; ++k) {
+        own_xi[k] = (time - number.sides[k].step_start) / number.sides[k].plan.duration;
+      }
+      const double beyond = (own_xi[1] - own_xi[0]) / (2.0 * number.step) - number.sigma;
+      if (beyond != 0.0 && !has_slopes) slopes(xi, y, slope_);
+      has_slopes = has_slopes || beyond != 0.0;
+      place(number, xi, y);
+      add_to_row(number, 0.0, beyond);
+    }
+  });
+  is_placed_ = false;
+  return row_;
+}
+
+}  // namespace monograin
