@@ -34,6 +34,15 @@ auto beside(Action&& action) {
   }
 }
 
+/// Guards of the system among those that have fired.
+std::vector<Guard> guards_of(const HybridSystem& system, std::span<const std::size_t> fired) {
+  std::vector<Guard> guards;
+  for (const std::size_t g : fired) {
+    if (g < system.guards().size()) guards.push_back(system.guards()[g]);
+  }
+  return guards;
+}
+
 }  // namespace
 
 /// A neighbour of the base at its own place of the program.
@@ -144,12 +153,15 @@ void ForwardSensitivities::rates(std::size_t index, double xi, std::span<const d
 }
 
 /// Puts the neighbours of a number to the base at xi.
-void ForwardSensitivities::place(Number& number, double xi, std::span<const double> y) {
+/// @param beyond  moves them along the base's rates by so much more, over the step of the number
+void ForwardSensitivities::place(Number& number, double xi, std::span<const double> y, double beyond) {
   for (Side& side : number.sides) {
     const double distance = side.sign * number.step;
     std::ranges::copy(y, side.y.begin());
-    for (std::size_t i = 0; i < size_; ++i) side.y[i] += distance * number.s[i];
-    side.xi = xi + distance * number.sigma;
+    for (std::size_t i = 0; i < size_; ++i) {
+      side.y[i] += distance * (beyond == 0.0 ? number.s[i] : number.s[i] + beyond * base_rates_[i]);
+    }
+    side.xi = xi + distance * (number.sigma + beyond);
     side.system().complete(side.xi, side.y);
   }
 }
@@ -281,6 +293,11 @@ void ForwardSensitivities::go_to_guard(Side& side, std::span<const std::size_t> 
 }
 
 void ForwardSensitivities::locate(std::span<const std::size_t> fired, double xi, std::span<const double> y) {
+  for (const Guard& guard : guards_of(base_, fired)) {
+    if (!guard.is_branch_end) continue;
+    throw LostSensitivities(
+        fmt::format("rates, and derivatives with them, grow without bound towards event '{}'", guard.name));
+  }
   beside([&] {
     for (Number& number : numbers_) {
       place(number, xi, y);
@@ -342,13 +359,13 @@ void ForwardSensitivities::observe(Side& side) {
   side.system().observe(side.xi, side.y, values_[side.sign > 0.0 ? 1 : 0]);
 }
 
-/// @param beyond  how much farther than the neighbours the row stands, over the step of the number
-void ForwardSensitivities::add_to_row(Number& number, double of_time, double beyond) {
+/// @param beyond_slopes  how much farther than the neighbours the row stands, over the step of the number: by slopes
+void ForwardSensitivities::add_to_row(Number& number, double of_time, double beyond_slopes) {
   for (Side& side : number.sides) observe(side);
   row_.push_back(of_time);
   for (const std::size_t c : columns_) {
     double value = (values_[1][c] - values_[0][c]) / (2.0 * number.step);
-    if (beyond != 0.0) value += beyond * slope_[c];
+    if (beyond_slopes != 0.0) value += beyond_slopes * slope_[c];
     row_.push_back(value);
   }
 }
@@ -357,45 +374,50 @@ std::span<const double> ForwardSensitivities::row_here() {
   row_.clear();
   beside([&] {
     for (Number& number : numbers_) {
-      add_to_row(number, (number.sides[1].time() - number.sides[0].time()) / (2.0 * number.step), 0.0);
+      add_to_row(number, (number.sides[1].time() - number.sides[0].time()) / (2.0 * number.step));
     }
   });
   return row_;
 }
 
-/// Slopes of the observables along the base's curve.
-void ForwardSensitivities::slopes(double xi, std::span<const double> y, std::span<double> slope) {
+/// Slopes of the observables along the base's rates, by differences of fourth order.
+void ForwardSensitivities::find_slopes(double xi, std::span<const double> y) {
   constexpr double k_longest = 1e-5;
-  constexpr double k_share = 1e-4;
-  base_.rates(xi, y, base_rates_);
-  const auto observe_at = [&](double length, std::span<double> values) {
-    for (std::size_t i = 0; i < y.size(); ++i) state_[i] = y[i] + length * base_rates_[i];
-    base_.complete(xi + length, state_);
-    base_.observe(xi + length, state_, values);
+  constexpr double k_share = 1e-3;  // of the segment up to there, at whose beginning curves may be singular
+  const auto difference = [&](double length) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double by = k == 0 ? -length : length;
+      for (std::size_t i = 0; i < y.size(); ++i) state_[i] = y[i] + by * base_rates_[i];
+      base_.complete(xi + by, state_);
+      base_.observe(xi + by, state_, values_[k]);
+    }
   };
-  const double length = shift_within_domain(std::min(k_longest, k_share * (xi - begin_)), [&](double by) {
-    observe_at(-by, values_[0]);
-    observe_at(by, values_[1]);
-  });
-  for (std::size_t c = 0; c < slope.size(); ++c) slope[c] = (values_[1][c] - values_[0][c]) / (2.0 * length);
+  const double length = shift_within_domain(std::min(k_longest, k_share * (xi - begin_)), difference);
+  for (std::size_t c = 0; c < slope_.size(); ++c) slope_[c] = -(values_[1][c] - values_[0][c]) / (6.0 * length);
+  difference(0.5 * length);
+  for (std::size_t c = 0; c < slope_.size(); ++c) slope_[c] += 4.0 * (values_[1][c] - values_[0][c]) / (3.0 * length);
 }
 
 std::span<const double> ForwardSensitivities::row_at(double xi, std::span<const double> y, double start,
                                                      double duration) {
+  // Up to this share of the segment the neighbours move to the instant of the row; farther its curves are too bent.
+  constexpr double k_short = 1e-5;
   row_.clear();
   const double time = start + xi * duration;
   beside([&] {
     bool has_slopes = false;
+    base_.rates(xi, y, base_rates_);
     for (Number& number : numbers_) {
       std::array<double, 2> own_xi{};
       for (std::size_t k = 0; k < 2; ++k) {
         own_xi[k] = (time - number.sides[k].step_start) / number.sides[k].plan.duration;
       }
       const double beyond = (own_xi[1] - own_xi[0]) / (2.0 * number.step) - number.sigma;
-      if (beyond != 0.0 && !has_slopes) slopes(xi, y, slope_);
-      has_slopes = has_slopes || beyond != 0.0;
-      place(number, xi, y);
-      add_to_row(number, 0.0, beyond);
+      const bool is_near = std::abs(beyond) * number.step <= k_short * (xi - begin_);
+      if (!is_near && !has_slopes) find_slopes(xi, y);
+      has_slopes = has_slopes || !is_near;
+      place(number, xi, y, is_near ? beyond : 0.0);
+      add_to_row(number, 0.0, is_near ? 0.0 : beyond);
     }
   });
   is_placed_ = false;

@@ -113,14 +113,14 @@ class ForwardSensitivities {
   };
 
   void each_side(const std::function<void(Number&, Side&)>& action);
-  void place(Number& number, double xi, std::span<const double> y);
+  void place(Number& number, double xi, std::span<const double> y, double beyond = 0.0);
   void resume();
   void go_to_guard(Side& side, std::span<const std::size_t> fired);
   void expect_same_guards(Side& side, std::span<const Event> log, std::span<const Event> of_side) const;
   void expect_no_other_guard(Side& side, std::span<const std::size_t> fired) const;
-  void slopes(double xi, std::span<const double> y, std::span<double> slope);
+  void find_slopes(double xi, std::span<const double> y);
   void observe(Side& side);
-  void add_to_row(Number& number, double of_time, double beyond);
+  void add_to_row(Number& number, double of_time, double beyond_slopes = 0.0);
 
   HybridSystem& base_;
   std::size_t size_ = 0;  ///< integrated unknowns

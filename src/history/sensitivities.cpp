@@ -238,6 +238,23 @@ class Widened {
   return columns;
 }
 
+/// What rounding leaves in derivatives, over the largest one of the same column, in the column that has most of it.
+[[nodiscard]] double rounding_of(const Table& history, const SensitivityKey& key, double step) {
+  double result = 0.0;
+  for (std::size_t column = 0; column < history.columns().size(); ++column) {
+    const Column& of = history.columns()[column];
+    const auto derivative = history.find(derivative_column(of.name, of.unit, key).name);
+    if (!derivative) continue;
+    const auto largest = [&](std::size_t c) {
+      return largest_of(history.row_count(), [&](std::size_t row) { return history.at(row, c); });
+    };
+    const double size = largest(*derivative);
+    const double rounding = k_direct_noise * largest(column) / step;
+    if (size > 10.0 * rounding) result = std::max(result, rounding / size);
+  }
+  return result;
+}
+
 /// @throws ScenarioError where the scenario does not take a number to either side
 [[nodiscard]] std::vector<Neighbours> neighbours_of(const CheckedScenario& scenario) {
   std::vector<Neighbours> neighbours;
@@ -266,8 +283,9 @@ std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, con
     if (record.status == RunStatus::complete) {
       run.record = std::move(record);
       for (const SensitivityKey& key : scenario.sensitivities) {
-        run.sensitivities.push_back({key.key, key.value, k_share * std::abs(key.value),
-                                     k_forward_error * scenario.numerics.rtol, true, "integrated with the run"});
+        const double step = k_share * std::abs(key.value);
+        const double error = k_forward_error * scenario.numerics.rtol + rounding_of(run.record.history, key, step);
+        run.sensitivities.push_back({key.key, key.value, step, error, true, "integrated with the run"});
       }
       return std::nullopt;
     }
