@@ -44,15 +44,15 @@ void CvodeSensitivities::restore() { copy(begin_, s_); }
 int CvodeSensitivities::start(void* memory, CVSensRhs1Fn function) {
   if (!of_.is_active()) return initialized_ == memory ? CVodeSensToggleOff(memory) : CV_SUCCESS;
   std::vector<N_Vector> s = handles(s_);
-  if (initialized_ == memory) return CVodeSensReInit(memory, CV_STAGGERED, s.data());
+  if (initialized_ == memory) return CVodeSensReInit(memory, CV_SIMULTANEOUS, s.data());
   const int count = static_cast<int>(s.size());
-  int flag = CVodeSensInit1(memory, count, CV_STAGGERED, function, s.data());
+  int flag = CVodeSensInit1(memory, count, CV_SIMULTANEOUS, function, s.data());
   if (flag == CV_SUCCESS) flag = CVodeSetSensParams(memory, nullptr, magnitudes_.data(), nullptr);
   if (flag == CV_SUCCESS) flag = CVodeSensEEtolerances(memory);
   if (flag == CV_SUCCESS) flag = CVodeSetSensErrCon(memory, SUNTRUE);
   if (flag == CV_SUCCESS && has_fixed_point_) {
-    nonlinear_.reset(SUNNonlinSol_FixedPointSens(count, s_.front().get(), 0, context_));
-    flag = CVodeSetNonlinearSolverSensStg(memory, nonlinear_.get());
+    nonlinear_.reset(SUNNonlinSol_FixedPointSens(count + 1, s_.front().get(), 0, context_));
+    flag = CVodeSetNonlinearSolverSensSim(memory, nonlinear_.get());
   }
   initialized_ = memory;
   return flag;

@@ -13,8 +13,8 @@
 
 namespace monograin {
 
-/// They have their share in the control of errors, each over the magnitude of its number, and are corrected after the
-/// state of a step has been accepted (the staggered method).
+/// They have their share in the control of errors, each over the magnitude of its number, and are corrected together
+/// with the state of a step (the simultaneous method): the staggered one takes 1.2 times as many evaluations.
 class CvodeSensitivities {
  public:
   /// @param like  a vector of the integrated unknowns
