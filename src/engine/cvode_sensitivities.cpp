@@ -11,6 +11,10 @@ using sundials_boundary::view;
 
 namespace {
 
+// Tolerances of s over those of a step: its errors are no larger then than those of the curves, and steps are about as
+// long as without it.
+constexpr double k_coarser = 10.0;
+
 /// The handles as the library's functions want them.
 std::vector<N_Vector> handles(const std::vector<NVector>& vectors) {
   std::vector<N_Vector> result;
@@ -24,11 +28,12 @@ void copy(const std::vector<NVector>& from, const std::vector<NVector>& to) {
 
 }  // namespace
 
-CvodeSensitivities::CvodeSensitivities(ForwardSensitivities& of, N_Vector like, bool has_fixed_point,
+CvodeSensitivities::CvodeSensitivities(ForwardSensitivities& of, double rtol, N_Vector atol, bool has_fixed_point,
                                        SUNContext context)
-    : of_(of), has_fixed_point_(has_fixed_point), context_(context) {
+    : of_(of), has_fixed_point_(has_fixed_point), context_(context), rtol_(k_coarser * rtol) {
   for (std::size_t k = 0; k < of.count(); ++k) {
-    for (auto* vectors : {&s_, &begin_, &between_}) vectors->emplace_back(N_VClone(like));
+    for (auto* vectors : {&s_, &begin_, &between_}) vectors->emplace_back(N_VClone(atol));
+    N_VScale(k_coarser / of.magnitude(k), atol, atol_.emplace_back(N_VClone(atol)).get());
     magnitudes_.push_back(of.magnitude(k));
   }
 }
@@ -48,7 +53,7 @@ int CvodeSensitivities::start(void* memory, CVSensRhs1Fn function) {
   const int count = static_cast<int>(s.size());
   int flag = CVodeSensInit1(memory, count, CV_SIMULTANEOUS, function, s.data());
   if (flag == CV_SUCCESS) flag = CVodeSetSensParams(memory, nullptr, magnitudes_.data(), nullptr);
-  if (flag == CV_SUCCESS) flag = CVodeSensEEtolerances(memory);
+  if (flag == CV_SUCCESS) flag = CVodeSensSVtolerances(memory, rtol_, handles(atol_).data());
   if (flag == CV_SUCCESS) flag = CVodeSetSensErrCon(memory, SUNTRUE);
   if (flag == CV_SUCCESS && has_fixed_point_) {
     nonlinear_.reset(SUNNonlinSol_FixedPointSens(count + 1, s_.front().get(), 0, context_));

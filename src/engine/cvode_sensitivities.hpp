@@ -17,8 +17,8 @@ namespace monograin {
 /// with the state of a step (the simultaneous method): the staggered one takes 1.2 times as many evaluations.
 class CvodeSensitivities {
  public:
-  /// @param like  a vector of the integrated unknowns
-  CvodeSensitivities(ForwardSensitivities& of, N_Vector like, bool has_fixed_point, SUNContext context);
+  /// @param tolerances  of a step, in which s has a part
+  CvodeSensitivities(ForwardSensitivities& of, double rtol, N_Vector atol, bool has_fixed_point, SUNContext context);
 
   /// Takes s from where the drive stands.
   void take_state();
@@ -44,7 +44,8 @@ class CvodeSensitivities {
   ForwardSensitivities& of_;
   bool has_fixed_point_;
   SUNContext context_;
-  std::vector<sundials_boundary::NVector> s_, begin_, between_;
+  double rtol_;
+  std::vector<sundials_boundary::NVector> s_, begin_, between_, atol_;
   std::vector<double> magnitudes_;
   sundials_boundary::NonlinearSolver nonlinear_;
   void* initialized_ = nullptr;  ///< the memory that knows of them

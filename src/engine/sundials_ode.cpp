@@ -161,7 +161,7 @@ class SundialsOde final : public Integrator {
       linear_ = make_dense_solver(y_.get(), matrix_.get(), context_);
     }
     if (sensitivities != nullptr)
-      carried_.emplace(*sensitivities, y_.get(), method_ == OdeMethod::cvode_adams, context_);
+      carried_.emplace(*sensitivities, of_step_.rtol, atol_.get(), method_ == OdeMethod::cvode_adams, context_);
     set_up();
   }
 

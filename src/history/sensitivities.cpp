@@ -295,12 +295,14 @@ std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, con
   } catch (const ScenarioError& error) {
     why = error.faults().front().message;
   }
-  run.record.warnings.push_back(fmt::format("derivatives are differences of more runs: {}", why));
   scene = new_scene();
   return why;
 }
 
 void add_sensitivities(Run& run, const std::string& why) {
+  if (has_forward_sensitivities(run.integrator.used)) {
+    run.record.warnings.push_back(fmt::format("derivatives are differences of more runs: {}", why));
+  }
   const CheckedScenario& scenario = run.scenario;
   const Table history = run.record.history;
   const Table events = run.record.events;

@@ -105,6 +105,18 @@ TEST(Sensitivities, HaveTheErrorThatTheySay) {
   EXPECT_GT(error, 1e-4 * run.sensitivities[1].error);
 }
 
+const std::string k_bdf = "numerics.integrator=cvode-bdf";
+
+/// The die with other steps, and differentiated by another number.
+std::string with_steps(const std::string& steps) {
+  const std::string text = k_die;
+  const std::size_t begin = text.find("steps = [") + 8;
+  return text.substr(0, begin) + steps + text.substr(text.find("\n[output]"));
+}
+std::string with_key(const std::string& text, const std::string& key) {
+  return text.substr(0, text.find("keys =")) + "keys = [\"" + key + "\"]\n";
+}
+
 constexpr double k_step = 1e-3 * 50e6;
 constexpr std::array<double, 4> k_weights{1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0};
 
@@ -147,8 +159,10 @@ TEST(Sensitivities, MeetDifferencesOfHigherOrderThroughYieldAndReload) {
 
 TEST(Sensitivities, AreThoseOfTheIntegratedForms) {
   const HistoryRun direct = run_of(k_die);
-  for (const char* integrator : {"cvode-bdf", "ida", "odeint-dopri5"}) {
+  for (const char* integrator : {"cvode-bdf", "cvode-adams", "ida", "odeint-dopri5"}) {
     const HistoryRun integrated = run_of(k_die, {"numerics.integrator=" + std::string(integrator)});
+    EXPECT_EQ(integrated.sensitivities[0].is_forward, std::string(integrator).starts_with("cvode"));
+    EXPECT_LT(integrated.sensitivities[0].error, 2e-6);
     for (const char* name : {"time", "apparent_radius", "lateral.force", "work"}) {
       const std::string heading = "d(" + std::string(name) + ")/d(material.yield_stress)";
       const std::vector<double> expected = column(direct, heading);
@@ -159,6 +173,92 @@ TEST(Sensitivities, AreThoseOfTheIntegratedForms) {
       }
     }
   }
+}
+
+/// Expects the derivatives that are integrated to be the differences of direct, over the largest of each column.
+void expect_forward_as_direct(const std::string& text, const std::string& key, const std::vector<std::string>& names) {
+  const HistoryRun direct = run_of(text);
+  const HistoryRun forward = run_of(text, {k_bdf});
+  ASSERT_TRUE(forward.sensitivities[0].is_forward) << forward.sensitivities[0].why;
+  for (const std::string& name : names) {
+    const std::string heading = "d(" + name + ")/d(" + key + ")";
+    const std::vector<double> expected = column(direct, heading);
+    const std::vector<double> actual = column(forward, heading);
+    ASSERT_EQ(actual.size(), expected.size());
+    ASSERT_GT(largest(expected), 0.0) << name;
+    for (std::size_t row = 0; row < actual.size(); ++row) {
+      EXPECT_NEAR(actual[row], expected[row], 1e-6 * largest(expected)) << name << ", row " << row;
+    }
+    const std::vector<double> of_events = direct.record.events.column(heading);
+    for (std::size_t row = 0; row < of_events.size(); ++row) {
+      EXPECT_NEAR(forward.record.events.column(heading)[row], of_events[row], 1e-6 * largest(of_events)) << name;
+    }
+  }
+}
+
+TEST(Sensitivities, IntegratedAreThoseOfDirectUnderForceAndConditions) {
+  const std::string text = with_steps(R"([
+  { force = "2 kN", duration = "1 s", until = { force = "1 kN" } },
+  { displacement = "0 mm", duration = "1 s" },
+  { displacement = "0.3 R0", rate = "4 mm/s" },
+  { rate = "2 mm/s", detach = true },
+])");
+  for (const char* key : {"material.yield_stress", "material.poisson_ratio"}) {
+    expect_forward_as_direct(with_key(text, key), key,
+                             {"time", "axial.force", "apparent_radius", "work", "dissipation"});
+  }
+}
+
+TEST(Sensitivities, IntegratedFollowAProgramThatTheNumberChanges) {
+  const std::string text = with_steps(R"([
+  { displacement = "0.2 R0", rate = "2 mm/s" },
+  { displacement = "0.1 R0", rate = "1 mm/s" },
+])");
+  for (const char* key : {"loading.steps[0].rate", "loading.steps[0].displacement", "particle.radius"}) {
+    expect_forward_as_direct(with_key(text, key), key, {"time", "axial.force", "work"});
+  }
+}
+
+TEST(Sensitivities, IntegratedTakeNoMoreThanTwoMoreRuns) {
+  std::string text = k_die;
+  const HistoryRun forward = run_of(text, {k_bdf});
+  text.erase(text.find("[sensitivities]"));
+  const HistoryRun alone = run_of(text, {k_bdf});
+  EXPECT_LT(forward.record.statistics.rhs_evaluations, 3 * alone.record.statistics.rhs_evaluations);
+}
+
+TEST(Sensitivities, IntegratedHaveTheErrorThatTheySay) {
+  const HistoryRun run = run_of(k_hertz, {k_bdf});
+  const std::vector<double> work = column(run, "work");
+  const std::vector<double> derivative = column(run, "d(work)/d(material.poisson_ratio)");
+  const double exact = 0.6 / 0.91;
+  double error = 0.0;
+  for (std::size_t row = 0; row < work.size(); ++row) {
+    error = std::max(error, std::abs(derivative[row] / (exact * work.back()) - work[row] / work.back()));
+  }
+  ASSERT_TRUE(run.sensitivities[1].is_forward);
+  EXPECT_LT(error, run.sensitivities[1].error);
+  EXPECT_GT(error, 1e-4 * run.sensitivities[1].error);
+}
+
+TEST(Sensitivities, AreDifferencesWithAWarningWhereTheyCannotBeIntegrated) {
+  std::string adhesive = with_key(with_steps(R"([
+  { displacement = "0.01 R0", duration = "1 s" },
+  { rate = "2 mm/s", detach = true },
+])"),
+                                  "material.surface_energy");
+  adhesive.replace(adhesive.find("[loading]"), 0, "surface_energy = \"100 J/m^2\"\n");
+  const HistoryRun pulled_off = run_of(adhesive, {k_bdf});
+  ASSERT_LT(event_row(pulled_off, "pull-off"), pulled_off.record.events.row_count());
+  EXPECT_FALSE(pulled_off.sensitivities[0].is_forward);
+  EXPECT_NE(pulled_off.sensitivities[0].why.find("event 'pull-off'"), std::string::npos);
+  ASSERT_EQ(pulled_off.record.warnings.size(), 1U);
+  EXPECT_NE(pulled_off.record.warnings[0].find("derivatives are differences"), std::string::npos);
+  EXPECT_GT(largest(column(pulled_off, "d(work)/d(material.surface_energy)")), 0.0);
+
+  const HistoryRun at_range = run_of(k_hertz, {k_bdf, "material.poisson_ratio=0.5"});
+  EXPECT_FALSE(at_range.sensitivities[0].is_forward);
+  EXPECT_EQ(at_range.record.warnings.size(), 2U);
 }
 
 TEST(Sensitivities, FollowEvents) {
@@ -200,10 +300,13 @@ TEST(Sensitivities, EndWhereTheEventsAreOthers) {
   const double depth = of_event(yields, event_row(yields, "yield"), "axial.displacement");
   char to_there[64];
   std::snprintf(to_there, sizeof to_there, "loading.steps[0].displacement=%.17g", depth * (1.0 + 1e-7));
-  const HistoryRun run = run_of(text, {to_there});
-  const std::vector<double> derivative = column(run, "d(axial.force)/d(material.yield_stress)");
-  EXPECT_TRUE(std::isfinite(derivative.front()));
-  EXPECT_TRUE(std::isnan(derivative.back()));
+  for (const char* integrator : {"direct", "cvode-bdf"}) {
+    const HistoryRun run = run_of(text, {to_there, "numerics.integrator=" + std::string(integrator)});
+    const std::vector<double> derivative = column(run, "d(axial.force)/d(material.yield_stress)");
+    EXPECT_FALSE(run.sensitivities[0].is_forward);
+    EXPECT_TRUE(std::isfinite(derivative.front()));
+    EXPECT_TRUE(std::isnan(derivative.back()));
+  }
 }
 
 TEST(Sensitivities, AtTheEndOfARangeAreUndefinedWithAWarning) {
