@@ -17,7 +17,7 @@ namespace monograin {
 /// with the state of a step (the simultaneous method): the staggered one takes 1.2 times as many evaluations.
 class CvodeSensitivities {
  public:
-  /// @param tolerances  of a step, in which s has a part
+  /// @param rtol, atol  of the integrated unknowns in a step
   CvodeSensitivities(ForwardSensitivities& of, double rtol, N_Vector atol, bool has_fixed_point, SUNContext context);
 
   /// Takes s from where the drive stands.

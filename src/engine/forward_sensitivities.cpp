@@ -17,6 +17,8 @@ namespace {
 constexpr double k_one_instant = 1e-12;
 // Guards that fire together have to stay together: how far apart those of a neighbour may be, over its distance.
 constexpr double k_together = 1e-4;
+// How far a neighbour may be from the base, over the size of an unknown: bend then leaves 1e-6 of a derivative.
+constexpr double k_farthest = 1e-3;
 // What a guard beyond zero is by rounding.
 constexpr double k_zero_guard = 1e-12;
 constexpr double k_located = 1e-15;
@@ -161,8 +163,19 @@ void ForwardSensitivities::place(Number& number, double xi, std::span<const doub
     for (std::size_t i = 0; i < size_; ++i) {
       side.y[i] += distance * (beyond == 0.0 ? number.s[i] : number.s[i] + beyond * base_rates_[i]);
     }
+    expect_near(side, y);
     side.xi = xi + distance * (number.sigma + beyond);
     side.system().complete(side.xi, side.y);
+  }
+}
+
+/// Expects a neighbour to be so near that its difference shows a derivative.
+void ForwardSensitivities::expect_near(const Side& side, std::span<const double> y) const {
+  for (std::size_t i = 0; i < size_; ++i) {
+    const Unknown& unknown = base_.unknowns()[i];
+    if (std::abs(side.y[i] - y[i]) <= k_farthest * std::max(unknown.scale, std::abs(y[i]))) continue;
+    throw LostSensitivities(
+        fmt::format("the derivative of '{}' is so large that neighbouring runs part", unknown.name));
   }
 }
 

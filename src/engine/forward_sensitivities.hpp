@@ -114,6 +114,7 @@ class ForwardSensitivities {
 
   void each_side(const std::function<void(Number&, Side&)>& action);
   void place(Number& number, double xi, std::span<const double> y, double beyond = 0.0);
+  void expect_near(const Side& side, std::span<const double> y) const;
   void resume();
   void go_to_guard(Side& side, std::span<const std::size_t> fired);
   void expect_same_guards(Side& side, std::span<const Event> log, std::span<const Event> of_side) const;

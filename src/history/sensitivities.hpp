@@ -27,7 +27,7 @@ struct Run;
 /// d(time)/d(KEY) is not zero, and the derivative at fixed time is d(X)/d(KEY) - dX/dt d(time)/d(KEY), with the slope
 /// of the row's own side. Undefined (nan): from where the runs pass different events; an output row that an event
 /// passes from run to run.
-/// @param why  they are differences
+/// @param why  they are not integrated with the run
 void add_sensitivities(Run& run, const std::string& why);
 
 }  // namespace monograin
