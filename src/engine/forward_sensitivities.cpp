@@ -383,12 +383,36 @@ void ForwardSensitivities::add_to_row(Number& number, double of_time, double bey
   }
 }
 
+/// An observable that begins like a root at an event is known there no better than by the root of rounding.
+void ForwardSensitivities::add_rounding_to_row(Number& number) {
+  const std::size_t begin = row_.size();
+  row_.resize(begin + 1 + columns_.size(), 0.0);
+  Side& side = number.sides[1];
+  try {
+    side.system().rates(side.xi, side.y, side.rates);
+    if (!all_finite(side.rates)) return;
+    observe(side);
+    for (const double length : {-k_rounding_of_xi, k_rounding_of_xi}) {
+      for (std::size_t i = 0; i < state_.size(); ++i) state_[i] = side.y[i] + length * side.rates[i];
+      side.system().complete(side.xi + length, state_);
+      side.system().observe(side.xi + length, state_, values_[0]);
+      for (std::size_t c = 0; c < columns_.size(); ++c) {
+        double& rounding = row_[begin + 1 + c];
+        rounding = std::max(rounding, std::abs(values_[0][columns_[c]] - values_[1][columns_[c]]) / number.step);
+      }
+    }
+  } catch (const std::domain_error&) {
+    return;  // nothing is known of it where the equations end
+  }
+}
+
 std::span<const double> ForwardSensitivities::row_here() {
   row_.clear();
   beside([&] {
     for (Number& number : numbers_) {
       add_to_row(number, (number.sides[1].time() - number.sides[0].time()) / (2.0 * number.step));
     }
+    for (Number& number : numbers_) add_rounding_to_row(number);
   });
   return row_;
 }
@@ -433,6 +457,7 @@ std::span<const double> ForwardSensitivities::row_at(double xi, std::span<const 
       add_to_row(number, 0.0, is_near ? 0.0 : beyond);
     }
   });
+  row_.resize(2 * row_.size(), 0.0);
   is_placed_ = false;
   return row_;
 }

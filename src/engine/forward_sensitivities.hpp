@@ -94,7 +94,8 @@ class ForwardSensitivities {
   /// The step ends at xi = 1. @param is_solved  a remainder of the size of rounding was solved for
   void end_step(std::span<const double> y, bool is_solved);
 
-  // --- rows: for each number d(time)/dp, and that of every observable that has no words
+  // --- rows: for each number d(time)/dp, and that of every observable that has no words; after them what the rounding
+  // of the instant makes of each, 0 between events
 
   /// Following the corner or event at which the base stands.
   [[nodiscard]] std::span<const double> row_here();
@@ -121,6 +122,7 @@ class ForwardSensitivities {
   void expect_no_other_guard(Side& side, std::span<const std::size_t> fired) const;
   void find_slopes(double xi, std::span<const double> y);
   void observe(Side& side);
+  void add_rounding_to_row(Number& number);
   void add_to_row(Number& number, double of_time, double beyond_slopes = 0.0);
 
   HybridSystem& base_;

@@ -238,6 +238,36 @@ class Widened {
   return columns;
 }
 
+/// A table without the columns of rounding that stand last, as many as those of derivatives. What rounding shows in a
+/// column by more than what counts is undefined.
+/// @param largest  of each column of derivatives, between events
+[[nodiscard]] Table without_roundings(const Table& wide, const std::vector<double>& largest) {
+  constexpr double k_counts = 1e-6;
+  const std::size_t count = largest.size();
+  const std::size_t width = wide.columns().size() - count;
+  Table table({wide.columns().begin(), wide.columns().end() - static_cast<std::ptrdiff_t>(count)});
+  for (std::size_t row = 0; row < wide.row_count(); ++row) {
+    std::vector<double> values(wide.row(row).begin(), wide.row(row).end());
+    for (std::size_t k = 0; k < count; ++k) {
+      if (values[width + k] > k_counts * largest[k]) values[width - count + k] = k_no_derivative;
+    }
+    values.resize(width);
+    table.append(values);
+  }
+  return table;
+}
+
+/// The largest derivative in each of the columns that stand before those of rounding, between events.
+[[nodiscard]] std::vector<double> largest_between_events(const Table& wide, std::size_t count) {
+  std::vector<double> largest;
+  const std::size_t first = wide.columns().size() - 2 * count;
+  for (std::size_t column = first; column < first + count; ++column) {
+    largest.push_back(largest_of(
+        wide.row_count(), [&](std::size_t row) { return wide.at(row, k_side) == 0.0 ? wide.at(row, column) : 0.0; }));
+  }
+  return largest;
+}
+
 /// What rounding leaves in derivatives, over the largest one of the same column, in the column that has most of it.
 [[nodiscard]] double rounding_of(const Table& history, const SensitivityKey& key, double step) {
   double result = 0.0;
@@ -278,9 +308,15 @@ std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, con
   std::string why;
   try {
     ForwardSensitivities carried(*scene.system, neighbours_of(scenario));
+    std::vector<Column> columns = forward_columns(scenario, *scene.system);
+    const std::vector<Column> of_rounding = columns;
+    columns.insert(columns.end(), of_rounding.begin(), of_rounding.end());
     RunRecord record = record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol},
-                                  scenario.output, carried, forward_columns(scenario, *scene.system));
+                                  scenario.output, carried, columns);
     if (record.status == RunStatus::complete) {
+      const std::vector<double> largest = largest_between_events(record.history, columns.size() / 2);
+      record.history = without_roundings(record.history, largest);
+      record.events = without_roundings(record.events, largest);
       run.record = std::move(record);
       for (const SensitivityKey& key : scenario.sensitivities) {
         const double step = k_share * std::abs(key.value);
