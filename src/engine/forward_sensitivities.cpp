@@ -388,6 +388,7 @@ void ForwardSensitivities::add_rounding_to_row(Number& number) {
   const std::size_t begin = row_.size();
   row_.resize(begin + 1 + columns_.size(), 0.0);
   Side& side = number.sides[1];
+  if (side.xi == 0.0 || side.xi == 1.0) return;  // an end of a step is no root
   try {
     side.system().rates(side.xi, side.y, side.rates);
     if (!all_finite(side.rates)) return;

@@ -219,6 +219,25 @@ TEST(Sensitivities, IntegratedFollowAProgramThatTheNumberChanges) {
   }
 }
 
+TEST(Sensitivities, IntegratedAreUndefinedWhereRoundingOfAnInstantShows) {
+  std::string text = with_steps(R"([
+  { displacement = "0.2 R0", duration = "1 s" },
+  { displacement = "0.1 R0", duration = "1 s" },
+  { displacement = "0.25 R0", duration = "1 s" },
+])");
+  text.replace(text.find("mdr"), 3, "cel");
+  const HistoryRun run = run_of(text, {k_bdf});
+  ASSERT_TRUE(run.sensitivities[0].is_forward) << run.sensitivities[0].why;
+  const std::size_t made = event_row(run, "contact-made");
+  ASSERT_LT(made, run.record.events.row_count());
+  EXPECT_TRUE(std::isnan(of_event(run, made, "d(axial.contact_radius)/d(material.yield_stress)")));
+  EXPECT_NEAR(of_event(run, made, "d(time)/d(material.yield_stress)"), -7.0076634e-9, 1e-6 * 7e-9);
+  for (std::size_t row = 0; row < run.record.history.row_count(); ++row) {
+    if (run.record.history.at(row, 2) != 0.0) continue;
+    EXPECT_TRUE(std::isfinite(column(run, "d(axial.contact_radius)/d(material.yield_stress)")[row])) << row;
+  }
+}
+
 TEST(Sensitivities, IntegratedTakeNoMoreThanTwoMoreRuns) {
   std::string text = k_die;
   const HistoryRun forward = run_of(text, {k_bdf});
