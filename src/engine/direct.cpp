@@ -214,6 +214,13 @@ class Direct final : public EventLocator {
     look(xi, end_state_, end_values_);
   }
 
+  void solve_at_node(std::size_t j) {
+    guess_ahead(j);
+    ++statistics_.rhs_evaluations;
+    system_.solve(node(j), trial_);
+    for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
+  }
+
   /// Solves for the state at the nodes of the piece, finds its event and integrates over it; false where the piece is
   /// too long for that.
   /// @param factor  how many times as long the next piece, or this one, should be; left alone where nothing says
@@ -223,11 +230,8 @@ class Direct final : public EventLocator {
     if (begin_ == segment_begin_) look_early();
     for (std::size_t j = 0; j < nodes_->count; ++j) {
       const double xi = node(j);
-      guess_ahead(j);
-      ++statistics_.rhs_evaluations;
-      system_.solve(xi, trial_);
+      solve_at_node(j);
       if (piece_length() > k_smallest_looked_into && !guard_set_.is_monotone()) look_inside(xi, trial_);
-      for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
       if (has_branches_ && piece_length() > least_progress(begin_)) {
         if (const double share = share_of_reach(trial_); share > 1.0) {
           factor = std::clamp(k_safety / share, k_most_shrinkage, 0.5);
@@ -321,12 +325,7 @@ class Direct final : public EventLocator {
   /// it there.
   void forget_what_follows() {
     piece_end_ = end_;
-    for (std::size_t j = 0; j < nodes_->count; ++j) {
-      guess_ahead(j);
-      ++statistics_.rhs_evaluations;
-      system_.solve(node(j), trial_);
-      for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
-    }
+    for (std::size_t j = 0; j < nodes_->count; ++j) solve_at_node(j);
     fit_gains();
     move_end(end_);
   }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -298,6 +299,42 @@ class Widened {
   return neighbours;
 }
 
+/// Estimated error of the derivatives in a column, over the largest of them: bend, and rounding of either run.
+/// @param value  the derivative in a row
+/// @param share  the step over the number
+/// @param noise  of what runs compute, over the largest of the column
+[[nodiscard]] double error_of(const Differences& differences, const Table& history, std::size_t column,
+                              const std::function<double(std::size_t row)>& value, double share, double step,
+                              double noise) {
+  const std::size_t rows = history.row_count();
+  const double size = largest_of(rows, value);
+  const double rounding = noise * largest_of(rows, [&](std::size_t row) { return history.at(row, column); }) / step;
+  if (size <= 10.0 * rounding) return 0.0;  // the column does not depend on the number
+  const double bend = largest_of(rows, [&](std::size_t row) { return differences.bend(row, column); });
+  return (share * bend / 6.0 + rounding) / size;
+}
+
+/// Runs with numbers to either side.
+struct Pair {
+  Variant lower;
+  Variant upper;
+};
+
+/// None where the scenario does not take these numbers: a warning says so.
+[[nodiscard]] std::unique_ptr<Pair> runs_beside(const SensitivityKey& key, double step,
+                                                const std::function<RunRecord(double number)>& run_with,
+                                                std::vector<std::string>& warnings) {
+  try {
+    return std::unique_ptr<Pair>(new Pair{Variant(run_with(key.value - step)), Variant(run_with(key.value + step))});
+  } catch (const ScenarioError& error) {
+    warnings.push_back(
+        fmt::format("no derivatives by {}: they are differences over {:.3g} to either side of {:.6g}, which the "
+                    "scenario does not take: {}",
+                    key.key, step, key.value, error.faults().front().message));
+    return nullptr;
+  }
+}
+
 }  // namespace
 
 std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, const std::function<Scene()>& new_scene) {
@@ -348,29 +385,18 @@ void add_sensitivities(Run& run, const std::string& why) {
   const Tolerances tolerances{std::min(scenario.numerics.rtol, k_finest_rtol),
                               std::min(scenario.numerics.atol, k_finest_atol)};
   const Output output{.points = 0, .times = instants_of(base, history.row_count())};
-  const auto run_with = [&](const SensitivityKey& key, double number) {
-    Scene scene = make_scene(scenario.variants->with({}, std::span(&key.key, 1), std::span(&number, 1)));
-    return record_run(scene, run.integrator.used, tolerances, output);
-  };
   Widened of_history(history);
   Widened of_events(events);
   for (const SensitivityKey& key : scenario.sensitivities) {
     const double share = std::cbrt(noise);
     const double step = share * std::abs(key.value);
-    std::optional<Variant> lower;
-    std::optional<Variant> upper;
-    try {
-      lower.emplace(run_with(key, key.value - step));
-      upper.emplace(run_with(key, key.value + step));
-    } catch (const ScenarioError& error) {
-      run.record.warnings.push_back(
-          fmt::format("no derivatives by {}: they are differences over {:.3g} to either side of {:.6g}, which the "
-                      "scenario does not "
-                      "take: {}",
-                      key.key, step, key.value, error.faults().front().message));
-    }
+    const auto run_with = [&](double number) {
+      Scene scene = make_scene(scenario.variants->with({}, std::span(&key.key, 1), std::span(&number, 1)));
+      return record_run(scene, run.integrator.used, tolerances, output);
+    };
+    const auto beside = runs_beside(key, step, run_with, run.record.warnings);
     std::optional<Differences> differences;
-    if (upper) differences.emplace(history, base, events, *lower, *upper, 2.0 * step);
+    if (beside) differences.emplace(history, base, events, beside->lower, beside->upper, 2.0 * step);
     double error = 0.0;
     for (std::size_t column = 0; column < history.columns().size(); ++column) {
       const auto& [name, unit, words] = history.columns()[column];
@@ -379,14 +405,7 @@ void add_sensitivities(Run& run, const std::string& why) {
         return differences ? differences->at_row(row, column) : k_no_derivative;
       };
       of_history.add(derivative_column(name, unit, key), value);
-      if (!differences) continue;
-      const double size = largest_of(history.row_count(), value);
-      const double rounding =
-          noise * largest_of(history.row_count(), [&](std::size_t row) { return history.at(row, column); }) / step;
-      if (size <= 10.0 * rounding) continue;  // the column does not depend on the number
-      const double bend =
-          largest_of(history.row_count(), [&](std::size_t row) { return differences->bend(row, column); });
-      error = std::max(error, (share * bend / 6.0 + rounding) / size);
+      if (differences) error = std::max(error, error_of(*differences, history, column, value, share, step, noise));
     }
     for (std::size_t column = 0; column < events.columns().size(); ++column) {
       const auto& [name, unit, words] = events.columns()[column];

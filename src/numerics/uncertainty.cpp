@@ -21,6 +21,52 @@ double mean_curvature(const LeastSquaresProblem& problem, std::span<const double
   return curvature / static_cast<double>(n);
 }
 
+/// Columns of a Jacobian over their norms, and the inverse of their normal matrix. Directions in which the residuals do
+/// not change are left out.
+struct NormalInverse {
+  Eigen::VectorXd norms;
+  Eigen::MatrixXd inverse;
+  double condition = 0.0;
+  std::vector<bool> is_determined;
+
+  /// @param noise  of the residuals, over their size
+  NormalInverse(const Eigen::MatrixXd& columns, double noise)
+      : norms(columns.colwise().norm()),
+        inverse(Eigen::MatrixXd::Zero(columns.cols(), columns.cols())),
+        is_determined(static_cast<std::size_t>(columns.cols()), true) {
+    const Eigen::MatrixXd scaled = columns * norms.cwiseInverse().asDiagonal();
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const Eigen::VectorXd& singular = svd.singularValues();
+    // Below this a singular value is the error of the differences.
+    const double least_singular = 10.0 * std::cbrt(noise) * std::cbrt(noise) * singular[0];
+    for (Eigen::Index s = 0; s < singular.size(); ++s) {
+      const auto direction = svd.matrixV().col(s);
+      if (singular[s] > least_singular) {
+        condition = singular[0] / singular[s];
+        inverse += direction * direction.transpose() / (singular[s] * singular[s]);
+      } else {
+        leave_out(direction);
+      }
+    }
+  }
+
+ private:
+  void leave_out(const Eigen::Ref<const Eigen::VectorXd>& direction) {
+    for (Eigen::Index j = 0; j < direction.size(); ++j) {
+      if (std::abs(direction[j]) > k_share_of_null_vector) is_determined[static_cast<std::size_t>(j)] = false;
+    }
+  }
+};
+
+/// Whether residuals depend on a parameter: an influence that is no more than the error of its difference is none.
+bool has_influence(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
+                   const Eigen::MatrixXd& jacobian, std::size_t parameter) {
+  constexpr double k_margin = 10.0;
+  const double error = k_margin * problem.noise * std::sqrt(static_cast<double>(jacobian.rows())) /
+                       difference_step(problem, solution.parameters, parameter);
+  return jacobian.col(static_cast<Eigen::Index>(parameter)).norm() > error;
+}
+
 }  // namespace
 
 double Uncertainty::standard_error(std::size_t parameter) const {
@@ -75,58 +121,28 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
     result.rise = std::pow(result.standard_deviation, 2) * mean_curvature(problem, solution.residuals, n);
   }
 
-  std::vector<std::size_t> interior;
+  std::vector<Eigen::Index> interior;
   for (std::size_t k = 0; k < p; ++k) {
-    // An influence that is no more than the error of its difference is none.
-    constexpr double k_margin = 10.0;
-    const double error = k_margin * problem.noise * std::sqrt(static_cast<double>(jacobian.rows())) /
-                         difference_step(problem, solution.parameters, k);
-    if (jacobian.col(static_cast<Eigen::Index>(k)).norm() <= error) {
-      result.is_determined[k] = false;
-    } else if (solution.bounds[k] == Bound::none) {
-      interior.push_back(k);
-    }
+    result.is_determined[k] = has_influence(problem, solution, jacobian, k);
+    if (result.is_determined[k] && solution.bounds[k] == Bound::none) interior.push_back(static_cast<Eigen::Index>(k));
   }
-  const auto size = static_cast<Eigen::Index>(interior.size());
-  if (size == 0) return result;
+  if (interior.empty()) return result;
 
-  Eigen::MatrixXd scaled(jacobian.rows(), size);
-  Eigen::VectorXd norms(size);
-  for (Eigen::Index j = 0; j < size; ++j) {
-    const auto column = jacobian.col(static_cast<Eigen::Index>(interior[static_cast<std::size_t>(j)]));
-    norms[j] = column.norm();
-    scaled.col(j) = column / norms[j];
-  }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  // Below this a singular value is the error of the differences.
-  const double least_singular = 10.0 * std::cbrt(problem.noise) * std::cbrt(problem.noise) * svd.singularValues()[0];
-  for (const double value : svd.singularValues()) {
-    if (value > least_singular) result.condition = svd.singularValues()[0] / value;
-  }
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(size, size);
-  for (Eigen::Index s = 0; s < svd.singularValues().size(); ++s) {
-    const double value = svd.singularValues()[s];
-    const auto direction = svd.matrixV().col(s);
-    if (value > least_singular) {
-      inverse += direction * direction.transpose() / (value * value);
-      continue;
-    }
-    for (Eigen::Index j = 0; j < size; ++j) {
-      if (std::abs(direction[j]) > k_share_of_null_vector) {
-        result.is_determined[interior[static_cast<std::size_t>(j)]] = false;
-      }
-    }
+  const NormalInverse normal(jacobian(Eigen::all, interior), problem.noise);
+  result.condition = normal.condition;
+  for (std::size_t j = 0; j < interior.size(); ++j) {
+    if (!normal.is_determined[j]) result.is_determined[static_cast<std::size_t>(interior[j])] = false;
   }
   if (!has_size) return result;
 
   const double variance = result.standard_deviation * result.standard_deviation;
-  for (Eigen::Index i = 0; i < size; ++i) {
-    for (Eigen::Index j = 0; j < size; ++j) {
-      const std::size_t first = interior[static_cast<std::size_t>(i)];
-      const std::size_t second = interior[static_cast<std::size_t>(j)];
-      if (!result.is_determined[first] || !result.is_determined[second]) continue;
-      result.covariance(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(second)) =
-          variance * inverse(i, j) / (norms[i] * norms[j]);
+  for (std::size_t i = 0; i < interior.size(); ++i) {
+    for (std::size_t j = 0; j < interior.size(); ++j) {
+      if (!normal.is_determined[i] || !normal.is_determined[j]) continue;
+      const auto row = static_cast<Eigen::Index>(i);
+      const auto column = static_cast<Eigen::Index>(j);
+      result.covariance(interior[i], interior[j]) =
+          variance * normal.inverse(row, column) / (normal.norms[row] * normal.norms[column]);
     }
   }
   return result;

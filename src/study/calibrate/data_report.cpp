@@ -116,6 +116,36 @@ std::string meaning_of(const MeasuredQuantity& quantity) {
   return fmt::format("{}, 1 {} = {:g} {}", quantity.observable, quantity.unit, quantity.unit_factor, quantity.si);
 }
 
+/// All branches of loading, or all of unloading; nan stands between them, so that they are not joined.
+figure::ChartSeries branches_of(const DataReport& report, bool is_loading) {
+  using Style = figure::ChartSeries::Style;
+  figure::ChartSeries series{.legend = is_loading ? "loading" : "unloading",
+                             .style = is_loading ? Style::solid : Style::dashed,
+                             .colour = 0,
+                             .x = {},
+                             .y = {}};
+  for (const DataBranch& branch : report.branches) {
+    if (branch.is_loading != is_loading) continue;
+    for (std::size_t row = branch.begin; row <= branch.end; ++row) {
+      series.x.push_back(report.x.values[row]);
+      series.y.push_back(report.y.values[row]);
+    }
+    series.x.push_back(k_nan);
+    series.y.push_back(k_nan);
+  }
+  return series;
+}
+
+figure::ChartSeries turning_points_of(const DataReport& report) {
+  figure::ChartSeries series{
+      .legend = "turning points", .style = figure::ChartSeries::Style::points, .colour = 0, .x = {}, .y = {}};
+  for (std::size_t k = 1; k < report.branches.size(); ++k) {
+    series.x.push_back(report.x.values[report.branches[k].begin]);
+    series.y.push_back(report.y.values[report.branches[k].begin]);
+  }
+  return series;
+}
+
 }  // namespace
 
 DataReport report_of_file(const fs::path& file, const DataChoice& choice) {
@@ -253,39 +283,19 @@ std::string data_text(const DataReport& report) {
 }
 
 figure::Chart data_chart(const std::vector<DataReport>& reports) {
-  using Style = figure::ChartSeries::Style;
   figure::ChartPanel panel{.x = {.label = label_of(reports.front().x)}, .y = {.label = label_of(reports.front().y)}};
   const bool has_several = reports.size() > 1;  // then each has a colour of its own
   for (std::size_t c = 0; c < reports.size(); ++c) {
-    const DataReport& report = reports[c];
     const std::string suffix =
-        has_several ? ": " + figure::verbatim_text(fs::path(report.file).stem().string()) : std::string();
-    figure::ChartSeries turns{
-        .legend = "turning points" + suffix, .style = Style::points, .colour = has_several ? c : 2, .x = {}, .y = {}};
-    for (const bool is_loading : {true, false}) {
-      figure::ChartSeries series{.legend = (is_loading ? "loading" : "unloading") + suffix,
-                                 .style = is_loading ? Style::solid : Style::dashed,
-                                 .colour = has_several  ? c
-                                           : is_loading ? 0U
-                                                        : 1U,
-                                 .x = {},
-                                 .y = {}};
-      for (const DataBranch& branch : report.branches) {
-        if (branch.is_loading != is_loading) continue;
-        for (std::size_t row = branch.begin; row <= branch.end; ++row) {
-          series.x.push_back(report.x.values[row]);
-          series.y.push_back(report.y.values[row]);
-        }
-        series.x.push_back(k_nan);  // the next way is not joined to this one
-        series.y.push_back(k_nan);
-      }
-      if (!series.x.empty()) panel.series.push_back(std::move(series));
+        has_several ? ": " + figure::verbatim_text(fs::path(reports[c].file).stem().string()) : std::string();
+    std::array<figure::ChartSeries, 3> series{branches_of(reports[c], true), branches_of(reports[c], false),
+                                              turning_points_of(reports[c])};
+    for (std::size_t k = 0; k < series.size(); ++k) {
+      if (series[k].x.empty()) continue;
+      series[k].legend += suffix;
+      series[k].colour = has_several ? c : k;
+      panel.series.push_back(std::move(series[k]));
     }
-    for (std::size_t k = 1; k < report.branches.size(); ++k) {
-      turns.x.push_back(report.x.values[report.branches[k].begin]);
-      turns.y.push_back(report.y.values[report.branches[k].begin]);
-    }
-    if (!turns.x.empty()) panel.series.push_back(std::move(turns));
   }
   return {{std::move(panel)}, {}};
 }

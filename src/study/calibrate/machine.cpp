@@ -47,53 +47,94 @@ void keep_order(std::span<const double> x, std::vector<double>& particle) {
   }
 }
 
+/// Seeks the displacements of the particle that the machine shows as x: by secants, then between brackets.
+class SeriesSearch {
+ public:
+  SeriesSearch(const Machine& machine, std::span<const double> x, double tolerance)
+      : machine_(machine),
+        x_(x),
+        tolerance_(tolerance),
+        slopes_(x.size(), 1.0),
+        brackets_(x.size()),
+        errors_(x.size()) {
+    for (const double value : x) largest_ = std::max(largest_, std::abs(value));
+  }
+
+  /// Takes the forces of a trial. Returns whether all displacements are found, and puts forces in the middle of jumps.
+  bool take(std::span<const double> particle, std::span<double> forces, bool has_brackets) {
+    bool is_done = true;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      errors_[i] = particle[i] + machine_.addition(forces[i]) - x_[i];
+      brackets_[i].add({particle[i], errors_[i], forces[i]});
+      is_done = is_done && (!is_off(i) || (has_brackets && brackets_[i].is_within(tolerance_)));
+    }
+    if (!is_done) return false;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      if (is_off(i)) forces[i] = brackets_[i].force();
+    }
+    return true;
+  }
+
+  void go_on(std::vector<double>& particle, std::span<const double> forces, bool has_brackets) {
+    if (before_.empty()) {
+      slopes_from_neighbours(particle, forces);
+    } else {
+      slopes_from_trials(particle);
+    }
+    before_ = particle;
+    errors_before_ = errors_;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      const bool is_halved = has_brackets && is_off(i) && brackets_[i].is_valid();
+      particle[i] = is_halved ? brackets_[i].middle() : particle[i] - errors_[i] / slopes_[i];
+    }
+    keep_order(x_, particle);
+  }
+
+ private:
+  [[nodiscard]] bool is_off(std::size_t i) const { return std::abs(errors_[i]) > tolerance_; }
+  [[nodiscard]] bool is_long(double step) const { return std::abs(step) > k_least_step * largest_; }
+  void set_slope(std::size_t i, double slope) {
+    if (slope >= k_least_slope) slopes_[i] = slope;
+  }
+
+  void slopes_from_neighbours(std::span<const double> particle, std::span<const double> forces) {
+    for (std::size_t i = 1; i < x_.size(); ++i) {
+      const double step = particle[i] - particle[i - 1];
+      if (is_long(step)) {
+        set_slope(i, 1.0 + (machine_.addition(forces[i]) - machine_.addition(forces[i - 1])) / step);
+      } else {
+        slopes_[i] = slopes_[i - 1];
+      }
+    }
+  }
+  void slopes_from_trials(std::span<const double> particle) {
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      const double step = particle[i] - before_[i];
+      if (is_long(step)) set_slope(i, (errors_[i] - errors_before_[i]) / step);
+    }
+  }
+
+  const Machine& machine_;
+  std::span<const double> x_;
+  double tolerance_;
+  double largest_ = 0.0;
+  std::vector<double> slopes_;
+  std::vector<Bracket> brackets_;
+  std::vector<double> errors_;  ///< of the displacements shown
+  std::vector<double> before_, errors_before_;
+};
+
 }  // namespace
 
 bool put_in_series(const Machine& machine, std::span<const double> x, const ForcesOf& forces_of, double tolerance,
                    std::vector<double>& particle, std::span<double> forces) {
-  const std::size_t n = x.size();
-  double largest = 0.0;
-  for (const double value : x) largest = std::max(largest, std::abs(value));
-  std::vector<double> slopes(n, 1.0);
-  std::vector<Bracket> brackets(n);
-  std::vector<double> before;
-  std::vector<double> errors_before;
-  std::vector<double> errors(n);  // of the displacements shown
+  SeriesSearch search(machine, x, tolerance);
   keep_order(x, particle);
   for (int run = 0; run < k_most_runs; ++run) {
     if (!forces_of(particle, forces)) return false;
     const bool has_brackets = run >= k_secant_runs;
-    bool is_done = true;
-    for (std::size_t i = 0; i < n; ++i) {
-      errors[i] = particle[i] + machine.addition(forces[i]) - x[i];
-      brackets[i].add({particle[i], errors[i], forces[i]});
-      is_done = is_done && (std::abs(errors[i]) <= tolerance || (has_brackets && brackets[i].is_within(tolerance)));
-    }
-    if (is_done) {
-      for (std::size_t i = 0; i < n; ++i) {
-        if (std::abs(errors[i]) > tolerance) forces[i] = brackets[i].force();
-      }
-      return true;
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      // Neighbours give the first slopes, the last two runs those that follow.
-      const bool is_first = before.empty();
-      const double step = is_first ? (i > 0 ? particle[i] - particle[i - 1] : 0.0) : particle[i] - before[i];
-      if (std::abs(step) <= k_least_step * largest) {
-        if (is_first && i > 0) slopes[i] = slopes[i - 1];
-        continue;
-      }
-      const double slope = is_first ? 1.0 + (machine.addition(forces[i]) - machine.addition(forces[i - 1])) / step
-                                    : (errors[i] - errors_before[i]) / step;
-      if (slope >= k_least_slope) slopes[i] = slope;
-    }
-    before = particle;
-    errors_before = errors;
-    for (std::size_t i = 0; i < n; ++i) {
-      const bool is_halved = has_brackets && std::abs(errors[i]) > tolerance && brackets[i].is_valid();
-      particle[i] = is_halved ? brackets[i].middle() : particle[i] - errors[i] / slopes[i];
-    }
-    keep_order(x, particle);
+    if (search.take(particle, forces, has_brackets)) return true;
+    search.go_on(particle, forces, has_brackets);
   }
   return false;
 }

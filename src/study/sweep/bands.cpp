@@ -200,6 +200,37 @@ struct Abscissae {
   return panel;
 }
 
+/// Values of one step in all runs, by y and abscissa.
+using StepValues = std::vector<std::vector<std::vector<double>>>;
+
+/// Adds the values of a run between its rows, and counts the run where it comes by an abscissa.
+void add_run(const RunCurves& run, const Stretch& stretch, StepBands& bands, StepValues& values) {
+  const auto found = crossings(run.x, stretch, bands.x);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!found[i]) continue;
+    ++bands.runs[i];
+    for (std::size_t k = 0; k < run.y.size(); ++k) {
+      const double value = std::lerp(run.y[k][found[i]->row], run.y[k][found[i]->row + 1], found[i]->share);
+      if (std::isfinite(value)) values[k][i].push_back(value);
+    }
+  }
+}
+
+/// nan where too few runs have a value.
+void find_percentiles(StepBands& bands, StepValues& values, std::span<const double> percentiles, std::size_t runs) {
+  bands.percentiles.assign(values.size(), std::vector(percentiles.size(), std::vector(bands.x.size(), k_nan)));
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    for (std::size_t i = 0; i < bands.x.size(); ++i) {
+      std::vector<double>& of_runs = values[k][i];
+      if (static_cast<double>(of_runs.size()) < k_least_share * static_cast<double>(runs)) continue;
+      std::ranges::sort(of_runs);
+      for (std::size_t p = 0; p < percentiles.size(); ++p) {
+        bands.percentiles[k][p][i] = quantile(of_runs, 0.01 * percentiles[p]);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
@@ -210,44 +241,17 @@ HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
   if (ranges.empty()) {
     throw std::runtime_error(fmt::format("{}: no run has a history; the reasons are in results.csv", folder.string()));
   }
-  std::map<std::size_t, std::size_t> place;
   for (const auto& [step, range] : ranges) {
-    place.emplace(step, bands.steps.size());
-    StepBands made{.step = step, .x = abscissae_of(range, request.points), .runs = {}, .percentiles = {}};
-    made.runs.assign(made.x.size(), 0);
-    bands.steps.push_back(std::move(made));
-  }
-  // The values of the runs, for each step, y and abscissa.
-  std::vector<std::vector<std::vector<std::vector<double>>>> values(
-      bands.steps.size(),
-      std::vector(request.y.size(), std::vector<std::vector<double>>(static_cast<std::size_t>(request.points))));
-  for (const RunCurves& run : runs) {
-    for (const auto& [step, stretch] : run.stretches) {
-      StepBands& own = bands.steps[place.at(step)];
-      const auto found = crossings(run.x, stretch, own.x);
-      for (std::size_t i = 0; i < found.size(); ++i) {
-        if (!found[i]) continue;
-        ++own.runs[i];
-        for (std::size_t k = 0; k < run.y.size(); ++k) {
-          const double value = std::lerp(run.y[k][found[i]->row], run.y[k][found[i]->row + 1], found[i]->share);
-          if (std::isfinite(value)) values[place.at(step)][k][i].push_back(value);
-        }
+    StepBands& own = bands.steps.emplace_back(
+        StepBands{.step = step, .x = abscissae_of(range, request.points), .runs = {}, .percentiles = {}});
+    own.runs.assign(own.x.size(), 0);
+    StepValues values(request.y.size(), std::vector<std::vector<double>>(own.x.size()));
+    for (const RunCurves& run : runs) {
+      if (const auto stretch = run.stretches.find(step); stretch != run.stretches.end()) {
+        add_run(run, stretch->second, own, values);
       }
     }
-  }
-  for (std::size_t s = 0; s < bands.steps.size(); ++s) {
-    StepBands& own = bands.steps[s];
-    own.percentiles.assign(request.y.size(), std::vector(request.percentiles.size(), std::vector(own.x.size(), k_nan)));
-    for (std::size_t k = 0; k < request.y.size(); ++k) {
-      for (std::size_t i = 0; i < own.x.size(); ++i) {
-        std::vector<double>& of_runs = values[s][k][i];
-        std::ranges::sort(of_runs);
-        if (static_cast<double>(of_runs.size()) < k_least_share * static_cast<double>(runs.size())) continue;
-        for (std::size_t p = 0; p < request.percentiles.size(); ++p) {
-          own.percentiles[k][p][i] = quantile(of_runs, 0.01 * request.percentiles[p]);
-        }
-      }
-    }
+    find_percentiles(own, values, request.percentiles, runs.size());
   }
   return bands;
 }

@@ -274,77 +274,98 @@ CheckedScenario with_walls_out_of_reach(CheckedScenario simple) {
   return simple;
 }
 
-}  // namespace
-
-BenchList read_bench_list(const fs::path& file) {
+/// What the tables of a list of scenes may hold.
+struct BenchKeys {
   using Kind = KeySpec::Kind;
-  static const std::vector<KeySpec> root_keys{
+  KeySpec scenario{.name = "scenario",
+                   .meaning = "scenario file, of a scene also a folder of them, sought from this file's folder",
+                   .is_required = true,
+                   .example = "\"../die.toml\""};
+  KeySpec set{.name = "set",
+              .meaning = "overrides of the scenario",
+              .kind = Kind::texts,
+              .example = "[\"material.yield_stress=20 MPa\"]"};
+  std::vector<KeySpec> root{
       {.name = "scene", .meaning = "scenes to measure", .kind = Kind::tables, .is_required = true},
       {.name = "saving", .meaning = "scenes that are spared something", .kind = Kind::tables}};
-  static const KeySpec scenario_key{
-      .name = "scenario",
-      .meaning = "scenario file, of a scene also a folder of them, sought from this file's folder",
-      .is_required = true,
-      .example = "\"../die.toml\""};
-  static const KeySpec set_key{.name = "set",
-                               .meaning = "overrides of the scenario",
-                               .kind = Kind::texts,
-                               .example = "[\"material.yield_stress=20 MPa\"]"};
-  static const std::vector<KeySpec> scene_keys{
+  std::vector<KeySpec> scene{
       {.name = "name", .meaning = "name of the scene [that of the file]", .example = "\"die\""},
       {.name = "title", .meaning = "what it is [the scenario's title]", .example = "\"Die compaction\""},
-      scenario_key,
-      set_key};
-  static const std::vector<KeySpec> saving_keys{
+      scenario,
+      set};
+  std::vector<KeySpec> saving{
       {.name = "what", .meaning = "what is not computed", .is_required = true, .example = "\"no adhesion\""},
       {.name = "name", .meaning = "name of both scenes", .is_required = true, .example = "\"simple\""},
-      scenario_key,
-      set_key,
+      scenario,
+      set,
       {.name = "without",
        .meaning = "the scene that computes it",
        .kind = Kind::table,
        .is_required = true,
        .example = "without = { scenario = \"../die.toml\" }"}};
-  static const std::vector<KeySpec> without_keys{scenario_key, set_key};
+  std::vector<KeySpec> without{scenario, set};
+};
+
+/// Reads the scenarios that a list names, and collects their faults.
+struct ScenariosOfList {
+  fs::path folder;  ///< of the list
+  FaultList& faults;
+
+  [[nodiscard]] std::optional<CheckedScenario> read(const fs::path& file, const Section& section) const {
+    try {
+      return read_scenario(file, section.texts("set"));
+    } catch (const ScenarioError& error) {
+      for (const Fault& fault : error.faults()) faults.add(fault.where, fault.message);
+      return std::nullopt;
+    }
+  }
+
+  [[nodiscard]] std::optional<CheckedScenario> of(const Section& section) const {
+    if (section.text("scenario").empty()) return std::nullopt;
+    return read(folder / section.text("scenario"), section);
+  }
+
+  /// A scene, or those of a folder, by the names that the list gives them.
+  [[nodiscard]] std::vector<CheckedScenario> of_scene(const Section& section) const {
+    if (section.text("scenario").empty()) return {};
+    const fs::path named = folder / section.text("scenario");
+    const bool is_folder = fs::is_directory(named);
+    if (is_folder && !section.text("name").empty())
+      faults.add(section.key_place("name"), "a folder of scenarios has no name of its own; remove it");
+    std::vector<CheckedScenario> scenes;
+    for (const fs::path& file : is_folder ? scenario_files(named) : std::vector{named}) {
+      auto scene = read(file, section);
+      if (!scene) continue;
+      if (!section.text("name").empty()) scene->name = section.text("name");
+      if (!section.text("title").empty()) scene->title = section.text("title");
+      scenes.push_back(std::move(*scene));
+    }
+    return scenes;
+  }
+};
+
+}  // namespace
+
+BenchList read_bench_list(const fs::path& file) {
   const auto [text, problem] = read_text_file(file, k_largest_text);
   if (!problem.empty()) throw_fault({file.string()}, problem);
   const toml::table tree = parse_document(text, file.string());
   FaultList faults;
   Reading reading{faults};
+  const BenchKeys keys;
   const SourceLocation top{file.string()};
-  const Section root(reading, {&tree, top, "the file"}, root_keys);
-  const auto read = [&](const fs::path& scenario, const Section& section) -> std::optional<CheckedScenario> {
-    try {
-      return read_scenario(scenario, section.texts("set"));
-    } catch (const ScenarioError& error) {
-      for (const Fault& fault : error.faults()) faults.add(fault.where, fault.message);
-      return std::nullopt;
-    }
-  };
-  const auto scenario_of = [&](const Section& section) -> std::optional<CheckedScenario> {
-    if (section.text("scenario").empty()) return std::nullopt;
-    return read(file.parent_path() / section.text("scenario"), section);
-  };
+  const Section root(reading, {&tree, top, "the file"}, keys.root);
+  const ScenariosOfList scenarios{file.parent_path(), faults};
   BenchList list;
   for (const auto& table : root.tables("scene", "[[scene]]")) {
-    const Section section(reading, table, scene_keys);
-    if (section.text("scenario").empty()) continue;
-    const fs::path named = file.parent_path() / section.text("scenario");
-    const bool is_folder = fs::is_directory(named);
-    if (is_folder && !section.text("name").empty())
-      faults.add(section.key_place("name"), "a folder of scenarios has no name of its own; remove it");
-    for (const fs::path& of_scene : is_folder ? scenario_files(named) : std::vector{named}) {
-      const auto scenario = read(of_scene, section);
-      if (!scenario) continue;
-      list.scenes.push_back(*scenario);
-      if (!section.text("name").empty()) list.scenes.back().name = section.text("name");
-      if (!section.text("title").empty()) list.scenes.back().title = section.text("title");
+    for (CheckedScenario& scene : scenarios.of_scene(Section(reading, table, keys.scene))) {
+      list.scenes.push_back(std::move(scene));
     }
   }
   for (const auto& table : root.tables("saving", "[[saving]]")) {
-    const Section section(reading, table, saving_keys);
-    const auto spared = scenario_of(section);
-    const auto without = scenario_of(Section(reading, section.table("without", "without"), without_keys));
+    const Section section(reading, table, keys.saving);
+    const auto spared = scenarios.of(section);
+    const auto without = scenarios.of(Section(reading, section.table("without", "without"), keys.without));
     if (spared && without) list.savings.push_back({section.text("what"), section.text("name"), *spared, *without});
   }
   faults.throw_if_any();
