@@ -51,6 +51,14 @@ struct OutputPoint {
   double time = 0.0;
 };
 
+/// An output row that is not recorded yet.
+struct HeldRow {
+  double time = 0.0;
+  double xi = 0.0;
+  std::vector<double> state;
+  std::vector<double> derivatives;
+};
+
 /// About how many output points a step has.
 [[nodiscard]] std::size_t rows_of_step(const Scene& scene, const Output& output) {
   if (output.times.empty()) return static_cast<std::size_t>(output.points);
@@ -325,9 +333,33 @@ class Drive {
     return guard_set_.is_met(xi_, y_);
   }
 
-  /// Integrates to the first guard that fires, or to the end of the step.
+  /// Integrates to the first guard that fires, or to the end of the step. Where a branch of solutions ends, derivatives
+  /// need a second go, which knows how the end moves with the numbers.
   /// @return where the integrator's last step began; nothing where no guard has fired
   std::optional<double> integrate_segment(Work& work) {
+    if (sensitivities_ == nullptr || is_rehearsing_ || !sensitivities_->may_end_branch()) return go_to_event(work);
+    const double xi = xi_;
+    const std::vector<double> state = y_;
+    const std::size_t next_output = next_output_;
+    holds_rows_ = true;
+    auto last = go_to_event(work);
+    holds_rows_ = false;
+    if (last && sensitivities_->aim(integrator_->fired(), xi_, y_)) {
+      xi_ = xi;
+      y_ = state;
+      next_output_ = next_output;
+      held_rows_.clear();
+      return go_to_event(work);
+    }
+    for (const HeldRow& row : std::exchange(held_rows_, {})) {
+      sink_.observe(row.time, step_label(), row.xi, row.state);
+      sink_.differentiate(row.derivatives);
+      sink_.append(RowSide::output);
+    }
+    return last;
+  }
+
+  std::optional<double> go_to_event(Work& work) {
     integrator_->begin(xi_, y_);
     while (true) {
       const double last = xi_;
@@ -396,7 +428,7 @@ class Drive {
     if (are_marks(of_system)) {
       std::vector<Event> log;
       static_cast<void>(system_.fire(of_system, xi_, y_, log));
-      follow([&](ForwardSensitivities& s) { s.fire(of_system, log); });
+      follow([&](ForwardSensitivities& s) { s.pass_mark(of_system, xi_, log); });
       if (!log.empty()) {
         open_instant(xi_);
         close_instant(time(xi_), xi_, log);
@@ -551,11 +583,17 @@ class Drive {
   /// A row at a place of the integrator's last step.
   void emit_output(double instant, double xi) {
     integrator_->dense_output(xi, output_state_);
-    sink_.observe(instant, step_label(), xi, output_state_);
+    std::span<const double> derivatives;
     follow([&](ForwardSensitivities& s) {
       integrator_->dense_sensitivities(xi);
-      sink_.differentiate(s.row_at(xi, output_state_, step_start_, plan_.duration));
+      derivatives = s.row_at(xi, output_state_, step_start_, plan_.duration);
     });
+    if (holds_rows_) {
+      held_rows_.push_back({instant, xi, output_state_, {derivatives.begin(), derivatives.end()}});
+      return;
+    }
+    sink_.observe(instant, step_label(), xi, output_state_);
+    sink_.differentiate(derivatives);
     sink_.append(RowSide::output);
   }
 
@@ -623,6 +661,8 @@ class Drive {
   double xi_ = 0.0;          ///< present step coordinate
   std::vector<OutputPoint> outputs_;
   std::size_t next_output_ = 0;
+  std::vector<HeldRow> held_rows_;  ///< of a segment that may have to be integrated again
+  bool holds_rows_ = false;
   bool is_rehearsing_ = false;  ///< nothing is recorded
   bool stops_in_step_ = false;  ///< the run, as its rehearsal has shown
   long event_count_ = 0;

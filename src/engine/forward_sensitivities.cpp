@@ -36,13 +36,10 @@ auto beside(Action&& action) {
   }
 }
 
-/// Guards of the system among those that have fired.
-std::vector<Guard> guards_of(const HybridSystem& system, std::span<const std::size_t> fired) {
-  std::vector<Guard> guards;
-  for (const std::size_t g : fired) {
-    if (g < system.guards().size()) guards.push_back(system.guards()[g]);
-  }
-  return guards;
+/// Whether a branch of solutions ends at what has fired.
+bool is_branch_end(const HybridSystem& system, std::span<const std::size_t> fired) {
+  return std::ranges::any_of(
+      fired, [&](std::size_t g) { return g < system.guards().size() && system.guards()[g].is_branch_end; });
 }
 
 }  // namespace
@@ -57,6 +54,7 @@ struct ForwardSensitivities::Side {
   double step_start = 0.0;  ///< [s]
   double xi = 0.0;
   double begin = 0.0;  ///< of the segment
+  std::vector<double> begin_y{};
   std::vector<double> y{}, rates{}, guards{};
   std::vector<double> begin_guards{};  ///< where the segment begins; nan where they have no values
 
@@ -73,12 +71,17 @@ struct ForwardSensitivities::Side {
 
   void begin_segment() {
     begin = xi;
+    begin_y = y;
     begin_guards.resize(guard_set.size());
     try {
       guard_set.values(xi, y, begin_guards);
     } catch (const std::domain_error&) {
       std::ranges::fill(begin_guards, std::numeric_limits<double>::quiet_NaN());
     }
+  }
+  void go_back() {
+    xi = begin;
+    y = begin_y;
   }
   /// Goes along its rates by a distance of the order of that from the base.
   void move(double length) {
@@ -146,12 +149,14 @@ void ForwardSensitivities::rates(std::size_t index, double xi, std::span<const d
     const double distance = side.sign * number.step;
     std::ranges::copy(guess, state_.begin());
     for (std::size_t i = 0; i < size_; ++i) state_[i] = y[i] + distance * s[i];
-    const double own_xi = xi + distance * number.sigma;
+    const double own_xi = xi + distance * sigma_at(number, xi);
     side.system().complete(own_xi, state_);
     side.system().rates(own_xi, state_, rates_[k]);
     ++evaluations_;
   }
-  for (std::size_t i = 0; i < size_; ++i) ds[i] = (rates_[1][i] - rates_[0][i]) / (2.0 * number.step);
+  for (std::size_t i = 0; i < size_; ++i) {
+    ds[i] = (rates_[1][i] - rates_[0][i]) / (2.0 * number.step) + 0.5 * number.stretch * (rates_[1][i] + rates_[0][i]);
+  }
 }
 
 /// Puts the neighbours of a number to the base at xi.
@@ -164,7 +169,7 @@ void ForwardSensitivities::place(Number& number, double xi, std::span<const doub
       side.y[i] += distance * (beyond == 0.0 ? number.s[i] : number.s[i] + beyond * base_rates_[i]);
     }
     expect_near(side, y);
-    side.xi = xi + distance * (number.sigma + beyond);
+    side.xi = xi + distance * (sigma_at(number, xi) + beyond);
     side.system().complete(side.xi, side.y);
   }
 }
@@ -186,6 +191,7 @@ void ForwardSensitivities::resume() {
     Side& upper = number.sides[1];
     for (std::size_t i = 0; i < size_; ++i) number.s[i] = (upper.y[i] - lower.y[i]) / (2.0 * number.step);
     number.sigma = (upper.xi - lower.xi) / (2.0 * number.step);
+    number.stretch = 0.0;
     for (Side& side : number.sides) side.begin_segment();
   }
 }
@@ -305,17 +311,35 @@ void ForwardSensitivities::go_to_guard(Side& side, std::span<const std::size_t> 
   }
 }
 
-void ForwardSensitivities::locate(std::span<const std::size_t> fired, double xi, std::span<const double> y) {
-  for (const Guard& guard : guards_of(base_, fired)) {
-    if (!guard.is_branch_end) continue;
-    throw LostSensitivities(
-        fmt::format("rates, and derivatives with them, grow without bound towards event '{}'", guard.name));
+bool ForwardSensitivities::may_end_branch() const {
+  return is_active_ && std::ranges::any_of(base_.guards(), &Guard::is_branch_end);
+}
+
+bool ForwardSensitivities::aim(std::span<const std::size_t> fired, double xi, std::span<const double> y) {
+  if (!is_branch_end(base_, fired)) return false;
+  std::vector<double> sigma_ahead;
+  beside([&] {
+    for (Number& number : numbers_) {
+      place(number, xi, y);
+      for (Side& side : number.sides) go_to_guard(side, fired);
+      sigma_ahead.push_back((number.sides[1].xi - number.sides[0].xi) / (2.0 * number.step));
+      for (Side& side : number.sides) side.go_back();
+    }
+  });
+  resume();
+  for (std::size_t k = 0; k < numbers_.size(); ++k) {
+    numbers_[k].stretch = (sigma_ahead[k] - numbers_[k].sigma) / (xi - begin_);
   }
+  return true;
+}
+
+void ForwardSensitivities::locate(std::span<const std::size_t> fired, double xi, std::span<const double> y) {
+  const bool has_end = is_branch_end(base_, fired);
   beside([&] {
     for (Number& number : numbers_) {
       place(number, xi, y);
       for (Side& side : number.sides) {
-        go_to_guard(side, fired);
+        if (!has_end) go_to_guard(side, fired);  // a neighbour is at the end of its branch by aim()
         expect_no_other_guard(side, fired);
       }
     }
@@ -331,6 +355,12 @@ void ForwardSensitivities::fire(std::span<const std::size_t> of_system, std::spa
     }
     expect_same_guards(side, log, of_side);
   });
+}
+
+void ForwardSensitivities::pass_mark(std::span<const std::size_t> of_system, double xi, std::span<const Event> log) {
+  fire(of_system, log);
+  begin_ = xi;
+  resume();
 }
 
 void ForwardSensitivities::solve() {
@@ -450,7 +480,7 @@ std::span<const double> ForwardSensitivities::row_at(double xi, std::span<const 
       for (std::size_t k = 0; k < 2; ++k) {
         own_xi[k] = (time - number.sides[k].step_start) / number.sides[k].plan.duration;
       }
-      const double beyond = (own_xi[1] - own_xi[0]) / (2.0 * number.step) - number.sigma;
+      const double beyond = (own_xi[1] - own_xi[0]) / (2.0 * number.step) - sigma_at(number, xi);
       const bool is_near = std::abs(beyond) * number.step <= k_short * (xi - begin_);
       if (!is_near && !has_slopes) find_slopes(xi, y);
       has_slopes = has_slopes || !is_near;

@@ -8,7 +8,8 @@
 ///
 /// Instants. From an event on, s compares states that are equally far from each run's own event: the neighbours stand
 /// at xi - h sigma and xi + h sigma, where sigma = d(xi of the event)/dp. Rates that begin like a root at an event then
-/// have derivatives that begin like it, too.
+/// have derivatives that begin like it, too. Where a branch of solutions ends, at pull-off, rates end like a root as
+/// well: such a segment is tried first, and then sigma goes linearly from that of its beginning to that of its end.
 ///
 /// Sources: I. A. Hiskens and M. A. Pai, Trajectory sensitivity analysis of hybrid systems, IEEE Trans. Circuits
 /// Syst. I 47 (2000) 204-220; A. C. Hindmarsh et al., SUNDIALS: suite of nonlinear and differential/algebraic equation
@@ -83,10 +84,18 @@ class ForwardSensitivities {
   void expect_held(bool is_held);
   /// The base has been taken past a singularity, to xi.
   void leave_singularity(double xi);
+  /// Whether the segment that begins may lead to the end of a branch of solutions.
+  [[nodiscard]] bool may_end_branch() const;
+  /// What has fired at xi, when the segment was tried. If a branch ends there, derivatives are as at its beginning
+  /// again, and the neighbours will come to their own ends together with the base.
+  /// @return whether a branch ends there
+  [[nodiscard]] bool aim(std::span<const std::size_t> fired, double xi, std::span<const double> y);
   /// Integration has come to xi, where these guards have fired. The neighbours go to where theirs do.
   void locate(std::span<const std::size_t> fired, double xi, std::span<const double> y);
   /// The base has fired guards of the system. @param log  what it has logged
   void fire(std::span<const std::size_t> of_system, std::span<const Event> log);
+  /// These have fired, which change nothing.
+  void pass_mark(std::span<const std::size_t> of_system, double xi, std::span<const Event> log);
   /// What jumps has been solved for.
   void solve();
   /// The event is over. @param is_met  a condition has ended the step
@@ -108,11 +117,16 @@ class ForwardSensitivities {
   struct Number {
     double value = 0.0;
     double step = 0.0;
-    double sigma = 0.0;  ///< d(xi)/dp at which the neighbours stand
+    double sigma = 0.0;    ///< d(xi)/dp at which the neighbours stand where the segment begins
+    double stretch = 0.0;  ///< how it grows with xi
     std::vector<double> s;
     std::vector<Side> sides;  ///< lower, upper
   };
 
+  /// d(xi)/dp at which the neighbours stand.
+  [[nodiscard]] double sigma_at(const Number& number, double xi) const noexcept {
+    return number.sigma + number.stretch * (xi - begin_);
+  }
   void each_side(const std::function<void(Number&, Side&)>& action);
   void place(Number& number, double xi, std::span<const double> y, double beyond = 0.0);
   void expect_near(const Side& side, std::span<const double> y) const;

@@ -34,6 +34,22 @@ std::unique_ptr<ToySystem> jumping_toy(double p) {
   return toy;
 }
 
+/// y0' = sqrt(0.5 p - xi) from 0 to xi = 0.5 p, where it ends, and rests from there: y0 = 2/3 (0.5 p)^(3/2) then.
+std::unique_ptr<ToySystem> ending_toy(double p) {
+  auto toy = std::make_unique<ToySystem>();
+  ToySystem* const self = toy.get();
+  toy->rates_function = [self, p](double xi, ToySystem::View, std::span<double> dy) {
+    dy[0] = self->mode == 0 ? std::sqrt(std::max(0.5 * p - xi, 0.0)) : 0.0;
+  };
+  toy->flow = [](double, ToySystem::View from, double, std::span<double> y) { y[0] = from[0]; };
+  toy->watched = {{.name = "end",
+                   .direction = 1,
+                   .value = [self, p](double xi, ToySystem::View) { return self->mode == 0 ? xi - 0.5 * p : -1.0; },
+                   .transition = [self](std::span<double>) { self->mode = 1; },
+                   .is_branch_end = true}};
+  return toy;
+}
+
 /// y0' = p from 0, with a guard that each number sets for itself.
 MadeToy rising_toy(std::vector<std::function<double(double p, double y)>> guards) {
   return [guards](double p) {
@@ -119,6 +135,21 @@ TEST(ForwardSensitivities, PassAJumpAsTheClosedFormDoes) {
     }
     EXPECT_EQ(at_event, 2);
   }
+}
+
+TEST(ForwardSensitivities, PassTheEndOfABranchAsTheClosedFormDoes) {
+  const double p = 0.97;  // no output point at the end
+  bool has_passed = false;
+  for (const Row& row : driven(ending_toy, p, "cvode-bdf").rows) {
+    const bool is_here = std::abs(row.time - 0.5 * p) < 1e-7;
+    has_passed = has_passed || is_here;
+    // The second root is that of fixed time before the end.
+    const double expected = 0.5 * (std::sqrt(0.5 * p) - (has_passed ? 0.0 : std::sqrt(0.5 * p - row.time)));
+    ASSERT_EQ(row.derivatives.size(), 4U);
+    EXPECT_NEAR(row.derivatives[0], is_here ? 0.5 : 0.0, 1e-8) << row.time;
+    EXPECT_NEAR(row.derivatives[1], expected, 1e-7) << row.time;
+  }
+  EXPECT_TRUE(has_passed);
 }
 
 TEST(ForwardSensitivities, CostNoMoreThanTwoMoreRuns) {

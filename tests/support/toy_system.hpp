@@ -27,6 +27,7 @@ class ToySystem final : public HybridSystem {
     bool ends_domain = false;
     bool is_silent = false;
     bool is_mark = false;
+    bool is_branch_end = false;
   };
 
   State initial{0.0};
@@ -60,8 +61,13 @@ class ToySystem final : public HybridSystem {
       observables_.push_back({std::string(k_names[k]), "m", {}});
     }
     for (std::size_t g = 0; g < watched.size(); ++g) {
-      guards_.push_back(
-          {static_cast<int>(g), 0, watched[g].direction, watched[g].name, watched[g].is_silent, watched[g].is_mark});
+      guards_.push_back({.kind = static_cast<int>(g),
+                         .index = 0,
+                         .direction = watched[g].direction,
+                         .name = watched[g].name,
+                         .is_silent = watched[g].is_silent,
+                         .is_mark = watched[g].is_mark,
+                         .is_branch_end = watched[g].is_branch_end});
     }
   }
 
