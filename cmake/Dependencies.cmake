@@ -17,7 +17,7 @@ macro(monograin_find package debian_package)
   endif()
 endmacro()
 
-monograin_find(SUNDIALS libsundials-dev COMPONENTS arkode cvodes ida)
+monograin_find(SUNDIALS libsundials-dev COMPONENTS arkode cvodes idas)
 monograin_find(Eigen3 libeigen3-dev)
 monograin_find(Boost libboost-dev)
 monograin_find(GSL libgsl-dev)

@@ -1,7 +1,7 @@
 // The implicit form integrated by IDA.
 
 #include <fmt/format.h>
-#include <ida/ida.h>
+#include <idas/idas.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include <algorithm>

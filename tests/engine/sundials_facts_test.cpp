@@ -15,7 +15,7 @@
 
 #include <cvodes/cvodes.h>
 #include <gtest/gtest.h>
-#include <ida/ida.h>
+#include <idas/idas.h>
 #include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
