@@ -97,7 +97,8 @@ struct ForwardSensitivities::Side {
 };
 
 bool has_forward_sensitivities(std::string_view integrator) noexcept {
-  return integrator == integrators::k_cvode_bdf || integrator == integrators::k_cvode_adams;
+  return integrator == integrators::k_cvode_bdf || integrator == integrators::k_cvode_adams ||
+         integrator == integrators::k_ida;
 }
 
 ForwardSensitivities::ForwardSensitivities(HybridSystem& base, std::vector<Neighbours> numbers) : base_(base) {
@@ -112,7 +113,7 @@ ForwardSensitivities::ForwardSensitivities(HybridSystem& base, std::vector<Neigh
     Number& number = numbers_.emplace_back();
     number.value = of.value;
     number.step = of.step;
-    number.s.assign(size_, 0.0);
+    number.s.assign(unknowns.size(), 0.0);
     number.sides.reserve(2);
     number.sides.emplace_back(std::move(of.lower), -1.0);
     number.sides.emplace_back(std::move(of.upper), 1.0);
@@ -122,7 +123,9 @@ ForwardSensitivities::ForwardSensitivities(HybridSystem& base, std::vector<Neigh
       if (!is_alike) throw LostSensitivities("a neighbouring scene has other unknowns");
     }
   }
-  for (auto& rates : rates_) rates.resize(unknowns.size());
+  for (auto* vectors : {&rates_, &states_}) {
+    for (auto& values : *vectors) values.resize(unknowns.size());
+  }
   for (auto& values : values_) values.resize(observables.size());
   state_.resize(unknowns.size());
   base_rates_.resize(unknowns.size());
@@ -159,6 +162,42 @@ void ForwardSensitivities::rates(std::size_t index, double xi, std::span<const d
   }
 }
 
+void ForwardSensitivities::residual(std::size_t index, double xi, std::span<const double> y, std::span<const double> dy,
+                                    std::span<const double> s, std::span<const double> ds, std::span<double> res) {
+  Number& number = numbers_[index];
+  for (std::size_t k = 0; k < 2; ++k) {
+    Side& side = number.sides[k];
+    const double distance = side.sign * number.step;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      state_[i] = y[i] + distance * s[i];
+      side.rates[i] = dy[i] + distance * ds[i];
+    }
+    side.system().residual(xi + distance * number.sigma, state_, side.rates, rates_[k]);
+    ++evaluations_;
+  }
+  for (std::size_t i = 0; i < res.size(); ++i) res[i] = (rates_[1][i] - rates_[0][i]) / (2.0 * number.step);
+}
+
+void ForwardSensitivities::complete(std::size_t index, double xi, std::span<const double> y, std::span<double> s,
+                                    std::span<double> ds) {
+  Number& number = numbers_[index];
+  for (std::size_t k = 0; k < 2; ++k) {
+    Side& side = number.sides[k];
+    const double distance = side.sign * number.step;
+    const double own_xi = xi + distance * number.sigma;
+    for (std::size_t i = 0; i < y.size(); ++i) states_[k][i] = y[i] + distance * s[i];
+    side.system().complete(own_xi, states_[k]);
+    side.system().all_rates(own_xi, states_[k], rates_[k]);
+    ++evaluations_;
+  }
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    if (base_.unknowns()[i].kind != Unknown::Kind::quadrature) {
+      s[i] = (states_[1][i] - states_[0][i]) / (2.0 * number.step);
+    }
+    ds[i] = (rates_[1][i] - rates_[0][i]) / (2.0 * number.step);
+  }
+}
+
 /// Puts the neighbours of a number to the base at xi.
 /// @param beyond  moves them along the base's rates by so much more, over the step of the number
 void ForwardSensitivities::place(Number& number, double xi, std::span<const double> y, double beyond) {
@@ -189,7 +228,7 @@ void ForwardSensitivities::resume() {
   for (Number& number : numbers_) {
     Side& lower = number.sides[0];
     Side& upper = number.sides[1];
-    for (std::size_t i = 0; i < size_; ++i) number.s[i] = (upper.y[i] - lower.y[i]) / (2.0 * number.step);
+    for (std::size_t i = 0; i < number.s.size(); ++i) number.s[i] = (upper.y[i] - lower.y[i]) / (2.0 * number.step);
     number.sigma = (upper.xi - lower.xi) / (2.0 * number.step);
     number.stretch = 0.0;
     for (Side& side : number.sides) side.begin_segment();

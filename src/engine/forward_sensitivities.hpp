@@ -2,9 +2,10 @@
 ///
 /// Beside the scene that is integrated, the base, stand two neighbours for each number p: the scenes of p - h and p +
 /// h. They are not integrated. Their states are y - h s and y + h s, and s = dy/dp obeys ds/dxi = (df/dy) s + df/dp,
-/// taken as the difference of the neighbours' rates over 2 h (Hindmarsh et al., 2005). At an event each neighbour goes
-/// on to where its own guard is zero and takes its own transition there, so that what the law remembers differs as it
-/// should; the neighbours' states after it give s anew (the jump of Hiskens and Pai, 2000).
+/// taken as the difference of the neighbours' rates over 2 h (Hindmarsh et al., 2005); of the implicit form, as that of
+/// their residuals. At an event each neighbour goes on to where its own guard is zero and takes its own transition
+/// there, so that what the law remembers differs as it should; the neighbours' states after it give s anew (the jump of
+/// Hiskens and Pai, 2000).
 ///
 /// Instants. From an event on, s compares states that are equally far from each run's own event: the neighbours stand
 /// at xi - h sigma and xi + h sigma, where sigma = d(xi of the event)/dp. Rates that begin like a root at an event then
@@ -63,7 +64,11 @@ class ForwardSensitivities {
 
   /// Magnitude of a number.
   [[nodiscard]] double magnitude(std::size_t number) const noexcept;
-  /// s of the integrated unknowns, where the integration stands.
+  /// How far the neighbours of a number are from it.
+  [[nodiscard]] double step(std::size_t number) const noexcept { return numbers_[number].step; }
+  /// Typical magnitude of an unknown.
+  [[nodiscard]] double scale(std::size_t unknown) const noexcept { return base_.unknowns()[unknown].scale; }
+  /// s of all unknowns, where the integration stands: at the beginning of a segment, later only of integrated ones.
   [[nodiscard]] std::span<double> state(std::size_t number) noexcept { return numbers_[number].s; }
   /// False while the base is integrated alone.
   [[nodiscard]] bool is_active() const noexcept { return is_active_; }
@@ -73,6 +78,15 @@ class ForwardSensitivities {
   /// @throws std::domain_error where the equations of a neighbour end
   void rates(std::size_t number, double xi, std::span<const double> y, std::span<const double> guess,
              std::span<const double> s, std::span<double> ds);
+
+  /// What the implicit form leaves of s and ds, one number for each unknown.
+  /// @throws std::domain_error where the equations of a neighbour end
+  void residual(std::size_t number, double xi, std::span<const double> y, std::span<const double> dy,
+                std::span<const double> s, std::span<const double> ds, std::span<double> res);
+  /// Takes s of all unknowns but quadratures from completed neighbours, and ds from their rates.
+  /// @param y  complete
+  /// @throws std::domain_error where the equations of a neighbour end
+  void complete(std::size_t number, double xi, std::span<const double> y, std::span<double> s, std::span<double> ds);
 
   // --- what a drive says, in the order in which it comes by it; each may throw LostSensitivities
 
@@ -147,8 +161,9 @@ class ForwardSensitivities {
   bool is_placed_ = true;  ///< the neighbours stand where the base does
   double begin_ = 0.0;     ///< of the segment
   long evaluations_ = 0;
-  std::array<std::vector<double>, 2> rates_;
+  std::array<std::vector<double>, 2> rates_;  ///< or residuals
   std::array<std::vector<double>, 2> values_;
+  std::array<std::vector<double>, 2> states_;
   std::vector<double> state_, base_rates_, slope_, guards_, row_;
 };
 

@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "engine/sundials.hpp"
+#include "engine/sundials_sensitivities.hpp"
 
 namespace monograin {
 namespace {
@@ -32,12 +35,10 @@ constexpr double k_left_by_rounding = 3e-14;
 // it never rises to a higher order: a difference of unknowns that go far sees nothing of their errors while steps are
 // alike, and all of them in a longer one.
 constexpr int k_most_failing_steps = 10;
-// A corrector's tolerance over the sums in a residual: above their rounding.
-constexpr double k_above_rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 class Ida final : public Integrator {
  public:
-  Ida(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances)
+  Ida(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances, ForwardSensitivities* sensitivities)
       : system_(system), guard_set_(guard_set), tolerances_(tolerances), quadratures_(system.unknowns()) {
     const auto unknowns = system.unknowns();
     const auto size = static_cast<sunindextype>(unknowns.size());
@@ -52,6 +53,9 @@ class Ida final : public Integrator {
       const double absolute = unknowns[k].is_dependent ? k_slave_tolerance : of_step(tolerances).atol;
       view(least_atol_.get())[k] = std::max(absolute * unknowns[k].scale, k_above_rounding * unknowns[k].sum_scale);
       view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
+    }
+    if (sensitivities != nullptr) {
+      carried_.emplace(*sensitivities, of_step(tolerances).rtol, least_atol_.get(), false, context_);
     }
     memory_.reset(IDACreate(context_));
     check("IDASetErrHandlerFn", IDASetErrHandlerFn(memory_.get(), ignore_message, nullptr));
@@ -77,6 +81,7 @@ class Ida final : public Integrator {
     system_.all_rates(xi, y, view(dy_.get()));
     N_VScale(1.0, least_atol_.get(), atol_.get());
     raise_tolerances();
+    if (carried_) carried_->take_state(xi, y);
     start(xi, 0.0);
     last_length_ = 0.0;
     failing_steps_ = 0;
@@ -95,10 +100,12 @@ class Ida final : public Integrator {
     const double begin = end_;
     N_VScale(1.0, y_.get(), begin_state_.get());
     N_VScale(1.0, dy_.get(), begin_rates_.get());
+    if (carried_) carried_->keep();
     raise_tolerances();
     const auto restart = [&](double step) {
       N_VScale(1.0, begin_state_.get(), y_.get());
       N_VScale(1.0, begin_rates_.get(), dy_.get());
+      if (carried_) carried_->restore();
       start(begin, step);
     };
     const auto step_once = [&] {
@@ -139,6 +146,7 @@ class Ida final : public Integrator {
     } else if (flag == IDA_TSTOP_RETURN) {
       end_ = 1.0;
     }
+    if (carried_) check("IDAGetSensDky", carried_->get(memory_.get(), end_));
     return {.xi = end_, .hit_guard = flag == IDA_ROOT_RETURN};
   }
 
@@ -149,6 +157,10 @@ class Ida final : public Integrator {
     std::ranges::copy(view(errors_.get()), y.begin());
     quadratures_.add_to(y);
     system_.complete(xi, y);
+  }
+
+  void dense_sensitivities(double xi) override {
+    if (carried_) check("IDAGetSensDky", carried_->put(memory_.get(), xi, end_));
   }
 
   [[nodiscard]] double guard_tolerance() const noexcept override { return 1e-2 * tolerances_.rtol; }
@@ -215,6 +227,7 @@ class Ida final : public Integrator {
     for (std::size_t k = 0; k < state.size(); ++k) {
       if (system_.unknowns()[k].kind != Unknown::Kind::quadrature) state[k] = complete_[k];
     }
+    if (carried_) carried_->correct_begin(xi, complete_);
   }
 
   /// Begins at xi with the state in y_ and dy_. @param step  the first to be tried; 0: the library's choice
@@ -225,6 +238,7 @@ class Ida final : public Integrator {
     check("IDAReInit", IDAReInit(memory_.get(), xi, y_.get(), dy_.get()));
     check("IDASetInitStep", IDASetInitStep(memory_.get(), step));
     check("IDASetStopTime", IDASetStopTime(memory_.get(), 1.0));
+    if (carried_) check("IDASensInit", carried_->start(memory_.get(), residual_of_sensitivities));
     check("IDARootInit", IDARootInit(memory_.get(), 0, nullptr));
     roots_.found.assign(guard_set_.size(), 0);
     if (guard_set_.size() == 0) return;
@@ -252,9 +266,38 @@ class Ida final : public Integrator {
 
   static int residual(realtype xi, N_Vector y, N_Vector dy, N_Vector res, void* self) noexcept {
     auto& ida = *static_cast<Ida*>(self);
-    return ida.pending_.guard([&] {
-      ida.system_.residual(xi, view(y), view(dy), view(res));
+    // The staggered method asks for that of a corrected state, which a new Jacobian alone may want. Where it has no
+    // value, the library would begin its next trial without having taken back this one (6.4.1).
+    ida.is_left_out_ = ida.carried_ && ida.is_corrected(xi);
+    return ida.is_left_out_ ? 0 : ida.evaluate(xi, y, dy, res);
+  }
+
+  int evaluate(double xi, N_Vector y, N_Vector dy, N_Vector res) noexcept {
+    return pending_.guard([&] {
+      system_.residual(xi, view(y), view(dy), view(res));
       return all_finite(view(res));
+    });
+  }
+
+  /// Whether the state at the end of a trial has been corrected since its residual was last asked for.
+  bool is_corrected(double xi) noexcept {
+    long corrections = 0;
+    IDAGetNumNonlinSolvIters(memory_.get(), &corrections);
+    const bool is_asked_again = xi == residual_xi_ && xi > end_;
+    residual_xi_ = xi;
+    return std::exchange(corrections_, corrections) < corrections && is_asked_again;
+  }
+
+  static int residual_of_sensitivities(int count, realtype xi, N_Vector y, N_Vector dy, N_Vector, N_Vector* s,
+                                       N_Vector* ds, N_Vector* res, void* self, N_Vector, N_Vector, N_Vector) noexcept {
+    auto& ida = *static_cast<Ida*>(self);
+    return ida.pending_.guard([&] {
+      for (int k = 0; k < count; ++k) {
+        ida.carried_->of().residual(static_cast<std::size_t>(k), xi, view(y), view(dy), view(s[k]), view(ds[k]),
+                                    view(res[k]));
+        if (!all_finite(view(res[k]))) return false;
+      }
+      return true;
     });
   }
 
@@ -268,6 +311,10 @@ class Ida final : public Integrator {
     if (IDAGetCurrentStep(ida.memory_.get(), &step) != IDA_SUCCESS ||
         IDAGetErrWeights(ida.memory_.get(), ida.weights_.get()) != IDA_SUCCESS) {
       return -1;
+    }
+    if (ida.is_left_out_) {
+      ++ida.for_jacobian_;
+      if (const int flag = ida.evaluate(xi, y, dy, res); flag != 0) return flag;
     }
     const auto values = view(y);
     const auto rates = view(dy);
@@ -338,19 +385,24 @@ class Ida final : public Integrator {
   double last_length_ = 0.0;  ///< of a step of this segment
   int failing_steps_ = 0;     ///< in a row, of order 1
   Statistics past_;
-  long for_jacobian_ = 0;  ///< residuals
+  long for_jacobian_ = 0;     ///< residuals
+  double residual_xi_ = 0.0;  ///< where one was last asked for
+  long corrections_ = 0;      ///< of states, up to then
+  bool is_left_out_ = false;  ///< the last one that was asked for
 
   sundials::Context context_;  // first in, last out
   NVector y_, dy_, begin_state_, begin_rates_, id_, least_atol_, atol_, weights_, errors_;
   Matrix matrix_;
   LinearSolver linear_;
+  std::optional<SundialsSensitivities<IdasCalls>> carried_;
   IdaMemory memory_;
 };
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_ida(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances) {
-  return std::make_unique<Ida>(system, guard_set, tolerances);
+std::unique_ptr<Integrator> make_ida(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances,
+                                     ForwardSensitivities* sensitivities) {
+  return std::make_unique<Ida>(system, guard_set, tolerances, sensitivities);
 }
 
 }  // namespace monograin

@@ -113,7 +113,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem&
   const double rtol = std::max(asked.rtol / gain, std::min(asked.rtol, k_least_rtol));
   // No smaller than it takes to let the relative one count: equations without rates have round-off.
   const Tolerances tolerances{rtol, std::min(asked.atol, std::max(asked.atol / gain, 0.1 * rtol))};
-  if (name == integrators::k_ida) return make_ida(system, guard_set, tolerances);
+  if (name == integrators::k_ida) return make_ida(system, guard_set, tolerances, sensitivities);
   if (name == switching_name()) return make_switching(system, guard_set, tolerances);
   for (const auto& [word, method, suits_stiff] : k_of_explicit_form) {
     if (word != name) continue;

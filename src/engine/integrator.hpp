@@ -164,6 +164,7 @@ enum class GslMethod { rk8pd, msadams, msbdf };
 [[nodiscard]] std::unique_ptr<Integrator> make_switching(HybridSystem& system, GuardSet& guard_set,
                                                          const Tolerances& tolerances);
 [[nodiscard]] std::unique_ptr<Integrator> make_ida(HybridSystem& system, GuardSet& guard_set,
-                                                   const Tolerances& tolerances);
+                                                   const Tolerances& tolerances,
+                                                   ForwardSensitivities* sensitivities = nullptr);
 
 }  // namespace monograin

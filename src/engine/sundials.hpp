@@ -9,6 +9,7 @@
 
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -61,6 +62,9 @@ inline void ignore_message(int, const char*, const char*, char*, void*) {}
 /// Error tests and corrections that one step may fail. After a first step the next may be 1e4 times as long; where
 /// rates are singular at the beginning, the libraries' 7 and 10 do not always lead back from there.
 inline constexpr int k_most_failures = 50;
+
+/// A corrector's tolerance over the sums in a residual: above their rounding.
+inline constexpr double k_above_rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 /// What a step is made shorter by that has met the end of the equations.
 inline constexpr double k_retreat = 0.1;

@@ -12,9 +12,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "engine/cvode_sensitivities.hpp"
 #include "engine/forward_sensitivities.hpp"
 #include "engine/sundials.hpp"
+#include "engine/sundials_sensitivities.hpp"
 
 namespace monograin {
 namespace {
@@ -169,7 +169,7 @@ class SundialsOde final : public Integrator {
     form_.begin(y, view(y_.get()));
     segment_begin_ = xi;
     first_state_.assign(y.begin(), y.end());
-    if (carried_) carried_->take_state();
+    if (carried_) carried_->take_state(xi, y);
     start(xi, 0.0);
     last_length_ = 0.0;
     ++past_.segments;
@@ -289,8 +289,8 @@ class SundialsOde final : public Integrator {
     check("ReInit", Library::reinit(memory_.get(), method_, right_hand_side, xi, y_.get()));
     check("SetInitStep", Library::set_first_step(memory_.get(), step));
     check("SetStopTime", Library::set_stop_time(memory_.get(), 1.0));
-    // Unlisting all guards first makes the library forget which ones it had switched off.
     if (carried_) check("SensInit", carried_->start(memory_.get(), rates_of_sensitivity));
+    // Unlisting all guards first makes the library forget which ones it had switched off.
     check("RootInit", Library::init_roots(memory_.get(), 0, nullptr));
     roots_.found.assign(guard_set_.size(), 0);
     if (guard_set_.size() == 0) return;
@@ -353,7 +353,7 @@ class SundialsOde final : public Integrator {
                                   void* self, N_Vector, N_Vector) noexcept {
     auto& ode = *static_cast<SundialsOde*>(self);
     return ode.pending_.guard([&] {
-      ode.carried_->rates(static_cast<std::size_t>(number), xi, view(y), ode.form_.guess(), view(s), view(ds));
+      ode.carried_->of().rates(static_cast<std::size_t>(number), xi, view(y), ode.form_.guess(), view(s), view(ds));
       return all_finite(view(ds));
     });
   }
@@ -516,7 +516,7 @@ class SundialsOde final : public Integrator {
   Matrix matrix_;
   LinearSolver linear_;
   NonlinearSolver nonlinear_;
-  std::optional<CvodeSensitivities> carried_;
+  std::optional<SundialsSensitivities<CvodesCalls>> carried_;
   std::unique_ptr<void, Deleter> memory_;
 };
 

@@ -16,6 +16,7 @@
 
 #include "history/run.hpp"
 #include "scenario/faults.hpp"
+#include "scenario/integrators.hpp"
 
 namespace monograin {
 namespace {
@@ -28,8 +29,10 @@ constexpr double k_finest_atol = 1e-14;
 
 // To either side, over the number: balances bend and rounding of equations that are evaluated at one state.
 constexpr double k_share = 2e-5;
-// What an integrated derivative may be off, over the run's rtol and the largest one of its column.
+// What an integrated derivative may be off, over the run's rtol and the largest one of its column. More with ida, whose
+// steps have a larger share of what is tolerated.
 constexpr double k_forward_error = 30.0;
+constexpr double k_forward_error_of_ida = 100.0;
 
 constexpr std::size_t k_time = 0;
 constexpr std::size_t k_step = 1;
@@ -355,9 +358,10 @@ std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, con
       record.history = without_roundings(record.history, largest);
       record.events = without_roundings(record.events, largest);
       run.record = std::move(record);
+      const double over_rtol = run.integrator.used == integrators::k_ida ? k_forward_error_of_ida : k_forward_error;
       for (const SensitivityKey& key : scenario.sensitivities) {
         const double step = k_share * std::abs(key.value);
-        const double error = k_forward_error * scenario.numerics.rtol + rounding_of(run.record.history, key, step);
+        const double error = over_rtol * scenario.numerics.rtol + rounding_of(run.record.history, key, step);
         run.sensitivities.push_back({key.key, key.value, step, error, true, "integrated with the run"});
       }
       return std::nullopt;

@@ -1,0 +1,127 @@
+#include "engine/sundials_sensitivities.hpp"
+
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include <algorithm>
+
+namespace monograin {
+
+using sundials_boundary::NVector;
+using sundials_boundary::view;
+
+namespace {
+
+// Tolerances of s over those of a step: its errors are no larger then than those of the curves, and steps are about as
+// long as without it.
+constexpr double k_coarser = 10.0;
+
+/// The handles as the library's functions want them.
+std::vector<N_Vector> handles(const std::vector<NVector>& vectors) {
+  std::vector<N_Vector> result;
+  for (const NVector& vector : vectors) result.push_back(vector.get());
+  return result;
+}
+
+void copy(const std::vector<NVector>& from, const std::vector<NVector>& to) {
+  for (std::size_t k = 0; k < from.size(); ++k) N_VScale(1.0, from[k].get(), to[k].get());
+}
+
+}  // namespace
+
+template <class Library>
+SundialsSensitivities<Library>::SundialsSensitivities(ForwardSensitivities& of, double rtol, N_Vector atol,
+                                                      bool has_fixed_point, SUNContext context)
+    : of_(of), has_fixed_point_(has_fixed_point), context_(context), rtol_(k_coarser * rtol) {
+  for (std::size_t k = 0; k < of.count(); ++k) {
+    for (auto* vectors : {&s_, &begin_, &between_, &ds_, &begin_rates_}) {
+      N_VConst(0.0, vectors->emplace_back(N_VClone(atol)).get());
+    }
+    N_VScale(k_coarser / of.magnitude(k), atol, atol_.emplace_back(N_VClone(atol)).get());
+    magnitudes_.push_back(of.magnitude(k));
+    if (Library::is_implicit) raise_tolerances(k);
+  }
+}
+
+/// The rounding of both residuals stands in their difference: no corrector takes it away.
+template <class Library>
+void SundialsSensitivities<Library>::raise_tolerances(std::size_t number) {
+  const auto atol = view(atol_[number].get());
+  for (std::size_t i = 0; i < atol.size(); ++i) {
+    atol[i] = std::max(atol[i], sundials_boundary::k_above_rounding * of_.scale(i) / of_.step(number));
+  }
+}
+
+template <class Library>
+void SundialsSensitivities<Library>::take_state(double xi, std::span<const double> y) {
+  for (std::size_t k = 0; k < s_.size(); ++k) {
+    const auto begin = view(begin_[k].get());
+    std::ranges::copy(of_.state(k).first(begin.size()), begin.begin());
+  }
+  correct_begin(xi, y);
+  restore();
+}
+
+template <class Library>
+void SundialsSensitivities<Library>::keep() {
+  copy(s_, begin_);
+  copy(ds_, begin_rates_);
+}
+
+template <class Library>
+void SundialsSensitivities<Library>::restore() {
+  copy(begin_, s_);
+  copy(begin_rates_, ds_);
+}
+
+template <class Library>
+void SundialsSensitivities<Library>::correct_begin(double xi, std::span<const double> y) {
+  if constexpr (Library::is_implicit) {
+    if (!of_.is_active()) return;
+    for (std::size_t k = 0; k < s_.size(); ++k) {
+      of_.complete(k, xi, y, view(begin_[k].get()), view(begin_rates_[k].get()));
+    }
+  }
+}
+
+template <class Library>
+int SundialsSensitivities<Library>::start(void* memory, typename Library::Function function) {
+  if (!of_.is_active()) return initialized_ == memory ? Library::switch_off(memory) : 0;
+  std::vector<N_Vector> s = handles(s_);
+  std::vector<N_Vector> ds = handles(ds_);
+  if (initialized_ == memory) return Library::reinit(memory, s.data(), ds.data());
+  const int count = static_cast<int>(s.size());
+  int flag = Library::init(memory, count, function, s.data(), ds.data());
+  if (flag == 0) flag = Library::set_parameters(memory, nullptr, magnitudes_.data(), nullptr);
+  if (flag == 0) flag = Library::set_tolerances(memory, rtol_, handles(atol_).data());
+  if (flag == 0) flag = Library::set_error_control(memory, SUNTRUE);
+  if (flag == 0 && has_fixed_point_) {
+    nonlinear_.reset(SUNNonlinSol_FixedPointSens(count + 1, s_.front().get(), 0, context_));
+    flag = Library::set_corrector(memory, nonlinear_.get());
+  }
+  initialized_ = memory;
+  return flag;
+}
+
+template <class Library>
+int SundialsSensitivities<Library>::get(void* memory, double end) {
+  if (!of_.is_active()) return 0;
+  int flag = Library::derivative(memory, end, 0, handles(s_).data());
+  if (Library::is_implicit && flag == 0) flag = Library::derivative(memory, end, 1, handles(ds_).data());
+  return flag;
+}
+
+template <class Library>
+int SundialsSensitivities<Library>::put(void* memory, double xi, double end) {
+  int flag = 0;
+  if (xi != end) {
+    flag = Library::derivative(memory, xi, 0, handles(between_).data());
+  }
+  const auto& vectors = xi == end ? s_ : between_;
+  for (std::size_t k = 0; k < vectors.size(); ++k) std::ranges::copy(view(vectors[k].get()), of_.state(k).begin());
+  return flag;
+}
+
+template class SundialsSensitivities<CvodesCalls>;
+template class SundialsSensitivities<IdasCalls>;
+
+}  // namespace monograin
