@@ -157,9 +157,7 @@ void ForwardSensitivities::rates(std::size_t index, double xi, std::span<const d
     side.system().rates(own_xi, state_, rates_[k]);
     ++evaluations_;
   }
-  for (std::size_t i = 0; i < size_; ++i) {
-    ds[i] = (rates_[1][i] - rates_[0][i]) / (2.0 * number.step) + 0.5 * number.stretch * (rates_[1][i] + rates_[0][i]);
-  }
+  for (std::size_t i = 0; i < size_; ++i) ds[i] = slope_of(number, i);
 }
 
 void ForwardSensitivities::residual(std::size_t index, double xi, std::span<const double> y, std::span<const double> dy,
@@ -170,9 +168,9 @@ void ForwardSensitivities::residual(std::size_t index, double xi, std::span<cons
     const double distance = side.sign * number.step;
     for (std::size_t i = 0; i < y.size(); ++i) {
       state_[i] = y[i] + distance * s[i];
-      side.rates[i] = dy[i] + distance * ds[i];
+      side.rates[i] = (dy[i] + distance * ds[i]) / (1.0 + distance * number.stretch);
     }
-    side.system().residual(xi + distance * number.sigma, state_, side.rates, rates_[k]);
+    side.system().residual(xi + distance * sigma_at(number, xi), state_, side.rates, rates_[k]);
     ++evaluations_;
   }
   for (std::size_t i = 0; i < res.size(); ++i) res[i] = (rates_[1][i] - rates_[0][i]) / (2.0 * number.step);
@@ -184,7 +182,7 @@ void ForwardSensitivities::complete(std::size_t index, double xi, std::span<cons
   for (std::size_t k = 0; k < 2; ++k) {
     Side& side = number.sides[k];
     const double distance = side.sign * number.step;
-    const double own_xi = xi + distance * number.sigma;
+    const double own_xi = xi + distance * sigma_at(number, xi);
     for (std::size_t i = 0; i < y.size(); ++i) states_[k][i] = y[i] + distance * s[i];
     side.system().complete(own_xi, states_[k]);
     side.system().all_rates(own_xi, states_[k], rates_[k]);
@@ -194,8 +192,15 @@ void ForwardSensitivities::complete(std::size_t index, double xi, std::span<cons
     if (base_.unknowns()[i].kind != Unknown::Kind::quadrature) {
       s[i] = (states_[1][i] - states_[0][i]) / (2.0 * number.step);
     }
-    ds[i] = (rates_[1][i] - rates_[0][i]) / (2.0 * number.step);
+    ds[i] = slope_of(number, i);
   }
+}
+
+/// ds/dxi of an unknown, from the neighbours' rates by their own xi.
+double ForwardSensitivities::slope_of(const Number& number, std::size_t unknown) const noexcept {
+  const double lower = rates_[0][unknown];
+  const double upper = rates_[1][unknown];
+  return (upper - lower) / (2.0 * number.step) + 0.5 * number.stretch * (upper + lower);
 }
 
 /// Puts the neighbours of a number to the base at xi.

@@ -141,6 +141,7 @@ class ForwardSensitivities {
   [[nodiscard]] double sigma_at(const Number& number, double xi) const noexcept {
     return number.sigma + number.stretch * (xi - begin_);
   }
+  [[nodiscard]] double slope_of(const Number& number, std::size_t unknown) const noexcept;
   void each_side(const std::function<void(Number&, Side&)>& action);
   void place(Number& number, double xi, std::span<const double> y, double beyond = 0.0);
   void expect_near(const Side& side, std::span<const double> y) const;
