@@ -54,89 +54,37 @@ Contacts::Contacts(const Formulation& model, std::span<const ContactClass> class
       law_(model.terms),
       modulus_(monograin::composite_modulus(1.0, poisson_ratio_)) {
   const std::size_t n = classes.size();
-  std::vector<Eigen::Vector3d> walls;
+  for (const ContactClass& c : classes) weights_.push_back(c.multiplicity());
+  const std::vector<Wall> walls = walls_of(classes);
+  const Eigen::MatrixXd influence = influence_of(model.influence, poisson_ratio_, walls, classes);
+  coupling_ = coupling_of(influence, walls, classes);
+  neighbours_ = neighbours_of(poisson_ratio_, walls, n);
+  rivalry_ = rivalry_of(influence, modulus_, walls, n);
+  has_modes_of_walls_ = is_any_lifted(influence);
   std::vector<std::size_t> class_of;
-  Eigen::Matrix3Xd mean_normals = Eigen::Matrix3Xd::Zero(3, at(n));
-  for (std::size_t j = 0; j < n; ++j) {
-    weights_.push_back(classes[j].multiplicity());
-    for (const Eigen::Vector3d& normal : classes[j].normals) {
-      walls.push_back(normal);
-      class_of.push_back(j);
-      mean_normals.col(at(j)) += normal / weights_[j];
-    }
-  }
-
-  const std::size_t wall_count = walls.size();
-  Eigen::MatrixXd influence = Eigen::MatrixXd::Zero(at(wall_count), at(wall_count));
-  neighbours_.resize(n);
-  for (std::size_t i = 0; i < wall_count; ++i) {
-    const bool is_first = i == 0 || class_of[i] != class_of[i - 1];
-    for (std::size_t k = 0; k < wall_count; ++k) {
-      if (i == k) {
-        if (model.influence == Influence::sphere) influence(at(i), at(i)) = sphere_self_influence(poisson_ratio_);
-        continue;
-      }
-      const double angle = angle_between(walls[i], walls[k]);
-      if (angle < k_least_wall_angle) {
-        throw std::invalid_argument("walls of '" + classes[class_of[i]].name + "' and '" + classes[class_of[k]].name +
-                                    "' are " + std::to_string(angle) + " rad apart, less than " +
-                                    std::to_string(k_least_wall_angle));
-      }
-      influence(at(i), at(k)) = model.influence == Influence::sphere ? sphere_influence(poisson_ratio_, angle)
-                                                                     : half_space_influence(poisson_ratio_, angle);
-      if (influence(at(i), at(k)) < 0.0) has_modes_of_walls_ = true;
-      if (!is_first) continue;
-      std::vector<Neighbour>& neighbours = neighbours_[class_of[i]];
-      const auto alike = std::ranges::find_if(neighbours, [&](const Neighbour& other) {
-        return other.contact_class == class_of[k] && std::abs(other.angle - angle) < k_same_surroundings;
-      });
-      if (alike != neighbours.end())
-        ++alike->count;
-      else
-        neighbours.push_back({class_of[k], angle, radius_quotient(poisson_ratio_, angle), 1});
-    }
-  }
-
-  Eigen::MatrixXd belongs = Eigen::MatrixXd::Zero(at(wall_count), at(n));
-  for (std::size_t i = 0; i < wall_count; ++i) belongs(at(i), at(class_of[i])) = 1.0;
-  const Eigen::MatrixXd by_wall = influence * belongs;
-  const Eigen::Map<const Eigen::VectorXd> weights(weights_.data(), at(n));
-  coupling_ = weights.cwiseInverse().asDiagonal() * (belongs.transpose() * by_wall);
-  for (std::size_t i = 0; i < wall_count; ++i) {
-    const double difference = (by_wall.row(at(i)) - coupling_.row(at(class_of[i]))).cwiseAbs().maxCoeff();
-    if (difference > k_same_surroundings * (1.0 + coupling_.cwiseAbs().maxCoeff())) {
-      throw std::invalid_argument("the walls of '" + classes[class_of[i]].name +
-                                  "' do not share a history: forces around them differ by " +
-                                  std::to_string(difference) + " in their effect");
-    }
-  }
-
-  rivalry_.assign(n, std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < wall_count; ++i) {
-    const double lifting = -influence.row(at(i)).cwiseMin(0.0).sum();
-    const double radius = 1.0 / (2.0 * modulus_ * lifting);
-    if (radius < 1.0) rivalry_[class_of[i]] = std::min(rivalry_[class_of[i]], radius * radius);
-  }
-
-  directions_ = centre == Centre::free ? basis_of(mean_normals, k_same_surroundings) : Eigen::Matrix3Xd(3, 0);
-  arms_ = mean_normals.transpose() * directions_;
-
+  for (const Wall& wall : walls) class_of.push_back(wall.contact_class);
   // With positive couplings the critical mode is positive (Perron), hence one of the classes.
   modes_ = Modes(influence, class_of, !has_modes_of_walls_);
 
+  const Eigen::Matrix3Xd mean_normals = mean_normals_of(classes);
+  directions_ = centre == Centre::free ? basis_of(mean_normals, k_same_surroundings) : Eigen::Matrix3Xd(3, 0);
+  arms_ = mean_normals.transpose() * directions_;
+  reserve_working_memory();
+}
+
+/// Nothing is allocated after this.
+void Contacts::reserve_working_memory() {
+  const std::size_t n = class_count();
   stride_ = n + 1 + free_count();
-  now_.resize(n);
-  forces_.resize(n);
-  stiffness_.resize(n);
-  seen_.resize(n);
-  free_displacements_.resize(n);
-  for (auto* marks : {&may_bear_, &sorted_, &is_redundant_, &holds_}) marks->resize(n);
-  forget();
   matrix_.resize(n * stride_);
+  now_.resize(n);
+  for (auto* values : {&forces_, &stiffness_, &seen_, &free_displacements_}) values->resize(n);
+  for (auto* marks : {&may_bear_, &sorted_, &is_redundant_, &holds_}) marks->resize(n);
   for (auto* targets : {&targets_, &first_targets_, &last_targets_, &way_start_, &way_end_}) targets->resize(n);
   for (auto* state : {&trial_, &state_, &unit_rates_, &carried_, &at_once_, &by_halves_, &early_, &late_})
     state->resize(unknown_count());
   unit_ramps_.resize(n);
+  forget();
 }
 
 Contacts::Target Contacts::target(bool is_force, double value) const {
@@ -646,9 +594,9 @@ double Contacts::deformed_radius(RadiusRule rule, std::size_t index, std::span<c
   if (a == 0.0 || rule == RadiusRule::none) return a;
   double sum = a + forces_[index] * local_radius_influence(poisson_ratio_, a);
   const RadiusInfluence influence(rule, poisson_ratio_, a);
-  for (const Neighbour& neighbour : neighbours_[index]) {
-    const double force = forces_[neighbour.contact_class];
-    if (force > 0.0) sum += neighbour.count * force * influence(neighbour.angle, neighbour.quotient);
+  for (const Neighbours& alike : neighbours_[index]) {
+    const double force = forces_[alike.contact_class];
+    if (force > 0.0) sum += alike.count * force * influence(alike.angle, alike.quotient);
   }
   return sum;
 }

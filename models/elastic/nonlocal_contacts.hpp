@@ -29,6 +29,7 @@
 #include "elastic/nonlocal_coupling.hpp"
 #include "elastic/nonlocal_law.hpp"
 #include "elastic/nonlocal_modes.hpp"
+#include "elastic/nonlocal_walls.hpp"
 #include "system/walls.hpp"
 
 namespace monograin::nonlocal {
@@ -43,9 +44,6 @@ struct Formulation {
 /// Whether the centre stays where it is, or moves until the forces balance. In directions in which every class balances
 /// itself it stays in any case.
 enum class Centre { fixed, free };
-
-/// Least angle between two walls: eq. 18 is that of a point force, and grows without bound towards it.
-constexpr double k_least_wall_angle = 0.05;
 
 /// One contact of a class. Everything but displacement, approach and square is 0 without contact.
 struct ContactState {
@@ -153,7 +151,6 @@ class Contacts {
   static constexpr double k_resolved = 4.0 * std::numeric_limits<double>::epsilon();
   /// Contacts shallower than this, over where the walls go, say nothing of which will bear the centre.
   static constexpr double k_unloaded = 1e-6;
-  static constexpr double k_same_surroundings = 1e-9;
   static constexpr double k_touching = 1e-10;  ///< gap of walls that begin to bear
   [[nodiscard]] static Eigen::Index at(std::size_t index) noexcept { return static_cast<Eigen::Index>(index); }
 
@@ -163,6 +160,7 @@ class Contacts {
     double signed_square = 0.0;  ///< under that force
   };
 
+  void reserve_working_memory();
   [[nodiscard]] Target target(bool is_force, double value) const;
   void set_targets(std::span<const Ramp> ramps, double xi);
   void find_start(std::span<const Target> ends, std::span<const double> y, std::span<Target> starts);
@@ -222,14 +220,7 @@ class Contacts {
   Eigen::Matrix3Xd directions_;
   Eigen::MatrixXd arms_;  ///< mean normals along the free directions
 
-  /// What a wall has to do with the first wall of another class.
-  struct Neighbour {
-    std::size_t contact_class;
-    double angle;
-    double quotient;  ///< radius_quotient() of it
-    int count;        ///< of walls alike in both
-  };
-  std::vector<std::vector<Neighbour>> neighbours_;  ///< of the first wall of each class
+  std::vector<std::vector<Neighbours>> neighbours_;  ///< of the first wall of each class
 
   Modes modes_;  ///< of the classes, or of all walls where a coupling is negative
   bool has_modes_of_walls_ = false;

@@ -1,0 +1,64 @@
+/// Walls around an elastic sphere, the force on each of which moves the surface under all others, and the classes that
+/// they form.
+///
+/// Lengths are over R, forces over E R^2. A class is a set of walls that share a history by symmetry.
+/// Source: Agarwal and Gonzalez (2018), eqs. 17 and 18.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "elastic/nonlocal_coupling.hpp"
+#include "system/walls.hpp"
+
+namespace monograin::nonlocal {
+
+/// Least angle between two walls: eq. 18 is that of a point force, and grows without bound towards it.
+constexpr double k_least_wall_angle = 0.05;
+/// Differences of directions and couplings up to here are round-off.
+constexpr double k_same_surroundings = 1e-9;
+
+struct Wall {
+  Eigen::Vector3d normal;
+  std::size_t contact_class;
+};
+
+/// Walls that the first wall of a class sees alike: of one class, and at one angle.
+struct Neighbours {
+  std::size_t contact_class;
+  double angle;
+  double quotient;  ///< radius_quotient() of it
+  int count;
+};
+
+/// Walls of all classes, class by class.
+[[nodiscard]] std::vector<Wall> walls_of(std::span<const ContactClass> classes);
+
+/// Mean normal of each class, one per column.
+[[nodiscard]] Eigen::Matrix3Xd mean_normals_of(std::span<const ContactClass> classes);
+
+/// Approach of each wall (row) per unit force on each wall (column).
+/// @param classes  of the walls; their names stand in messages
+/// @throws std::invalid_argument for walls that are the same or closer than k_least_wall_angle
+[[nodiscard]] Eigen::MatrixXd influence_of(Influence influence, double poisson_ratio, std::span<const Wall> walls,
+                                           std::span<const ContactClass> classes);
+
+/// True if the force on a wall pushes the surface away from another wall.
+[[nodiscard]] bool is_any_lifted(const Eigen::MatrixXd& influence) noexcept;
+
+/// G: approach of a wall of the row's class per unit force on every wall of the column's class.
+/// @throws std::invalid_argument for a class of which not every wall sees the same forces around it
+[[nodiscard]] Eigen::MatrixXd coupling_of(const Eigen::MatrixXd& influence, std::span<const Wall> walls,
+                                          std::span<const ContactClass> classes);
+
+/// Neighbours of the first wall of each class.
+[[nodiscard]] std::vector<std::vector<Neighbours>> neighbours_of(double poisson_ratio, std::span<const Wall> walls,
+                                                                 std::size_t class_count);
+
+/// Signed square s of each class from where walls push each other off; infinite where they do not.
+[[nodiscard]] std::vector<double> rivalry_of(const Eigen::MatrixXd& influence, double composite_modulus,
+                                             std::span<const Wall> walls, std::size_t class_count);
+
+}  // namespace monograin::nonlocal
