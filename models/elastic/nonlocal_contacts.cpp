@@ -13,26 +13,13 @@
 namespace monograin::nonlocal {
 namespace {
 
-constexpr int k_newton_limit = 100;    // contraction by half reaches rounding in 52
-constexpr double k_contraction = 0.5;  // of Newton's corrections; less is a guess too far away
-constexpr int k_first_touch_steps = 20;
-constexpr double k_stagnation = 1e-9;   // rounding grows with 1/margin near the limit
-constexpr double k_balance = 1e-9;      // net force over the sum of forces
 constexpr double k_least_hold = 1e-12;  // of the centre in a direction, over the greatest
-constexpr double k_least_step = 1e-13;  // of the way to a state that is not found at once
-constexpr int k_most_steps = 1000;      // on that way, tried ones included
-constexpr int k_most_roundings = 20;    // times that its end is found with forces of rounding left over
 // Of where walls begin to push each other off, and of how deep contacts are: what the branch is followed by at once.
 constexpr double k_share_of_rivalry = 0.25;
 constexpr double k_share_of_depth = 0.5;
 
 // How fast an error of the balance is drawn back where a force shrinks, over how fast that does.
 constexpr double k_hurry = 2.0;
-
-// Margin, and contact radius over R, of a path of states that ends at the limit of applicability, or where the contacts
-// open: as near as a search comes to either.
-constexpr double k_no_margin = 5e-4;
-constexpr double k_no_contact = 5e-7;
 
 double require_poisson_ratio(double nu) {
   if (nu >= 0.0 && nu <= 0.5) return nu;
@@ -85,34 +72,6 @@ void Contacts::reserve_working_memory() {
     state->resize(unknown_count());
   unit_ramps_.resize(n);
   forget();
-}
-
-Contacts::Target Contacts::target(bool is_force, double value) const {
-  if (!std::isfinite(value)) throw std::domain_error("a wall is prescribed a value that is not finite");
-  return {is_force, value, is_force ? law_.signed_square_under(value / modulus_) : 0.0};
-}
-
-/// The targets of an instant of a step of the program.
-void Contacts::set_targets(std::span<const Ramp> ramps, double xi) {
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    targets_[j] = target(ramps[j].control == Control::force, std::lerp(ramps[j].start, ramps[j].end, xi));
-  }
-}
-
-/// Of what the ends prescribe, where a state is.
-void Contacts::find_start(std::span<const Target> ends, std::span<const double> y, std::span<Target> starts) {
-  evaluate(y);
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    const bool is_force = ends[j].is_force;
-    starts[j] = {is_force, is_force ? forces_[j] : now_[j].approach - lift(j, y), y[j]};
-  }
-}
-
-/// On the straight way from the one to the other.
-void Contacts::set_targets_between(std::span<const Target> starts, std::span<const Target> ends, double share) {
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    targets_[j] = share == 1.0 ? ends[j] : target(ends[j].is_force, std::lerp(starts[j].value, ends[j].value, share));
-  }
 }
 
 /// Contacts, forces and stiffnesses of a state.
@@ -169,13 +128,10 @@ bool Contacts::eliminate() noexcept {
   return true;
 }
 
-/// At first touch all stiffnesses vanish together; equal ones give the motion of equal contacts. For move_centre()
-/// only.
-void Contacts::regularise_first_touch(double stiffness, const auto& is_touching) {
-  if (std::any_of(stiffness_.begin(), stiffness_.end(), [](double value) { return value != 0.0; })) return;
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    if (is_touching(j)) stiffness_[j] = stiffness;
-  }
+/// True where all stiffnesses vanish together, as at first touch. For move_centre() equal ones then stand in for them,
+/// which give the motion of equal contacts.
+bool Contacts::bears_nothing() const noexcept {
+  return std::ranges::all_of(stiffness_, [](double stiffness) { return stiffness == 0.0; });
 }
 
 /// The way of the centre on which a net force vanishes to first order. Directions that no contact holds stay.
@@ -233,217 +189,6 @@ Eigen::Matrix3d Contacts::directions_of_nothing() const {
   return projector;
 }
 
-/// Newton's method towards the targets, with a part of the imbalance left. Gives up where its corrections do not
-/// contract, or M is not positive definite: the other branches are beyond such a state.
-bool Contacts::newton(std::span<double> y, double imbalance, bool do_hold_centre) {
-  const std::size_t n = class_count();
-  const bool is_free = free_count() > 0 && !do_hold_centre;
-  // From first touch a free centre has to find out which contacts bear it, in as many steps as that takes.
-  // On the way in steps nobody asks for balance, and the contacts are those of the state before.
-  const bool is_to_balance = imbalance == 0.0;
-  double farthest = 0.0;
-  double stiffness = 1.0;  // of what only touches: that of contacts under the greatest force
-  double deepest = 0.0;
-  for (const Target& goal : targets_) {
-    if (is_to_balance && !goal.is_force) farthest = std::max(farthest, std::abs(goal.value));
-    if (!goal.is_force || !(goal.signed_square > deepest)) continue;
-    deepest = goal.signed_square;
-    stiffness = goal.value / deepest;
-  }
-  bool is_first_touch = is_free;
-  for (std::size_t j = 0; j < n; ++j) {
-    // How deep a contact is under a force does not say what bears that.
-    if (!targets_[j].is_force && y[j] > k_unloaded * farthest) is_first_touch = false;
-  }
-  // Later, a wall that nothing opposes takes it along: the force s^(3/2) that the first step gives that wall is undone
-  // by steps of 2/3, 2/9 ... of it.
-  int free_steps = is_first_touch ? k_first_touch_steps : is_free && is_to_balance ? 2 : 1;
-  double last = 0.0;
-  forget();
-  for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
-    for (std::size_t j = 0; j < n; ++j) {
-      const Target& goal = targets_[j];
-      if (goal.is_force) {
-        y[j] = goal.signed_square;
-        forces_[j] = goal.value;
-        stiffness_[j] = 0.0;
-        now_[j].approach_slope = 1.0;
-        continue;
-      }
-      if (!(y[j] < law_.end())) return false;
-      now_[j] = law_.at(y[j]);
-      forces_[j] = modulus_ * now_[j].force;
-      stiffness_[j] = 2.0 * modulus_ * now_[j].contact_radius;
-    }
-    for (std::size_t j = 0; j < n; ++j) {
-      entry(j, n) = targets_[j].is_force ? 0.0 : targets_[j].value + lift(j, y) - now_[j].approach;
-    }
-    const bool may_lend = iteration == 0 && is_free && is_to_balance && !is_first_touch;
-    if (may_lend && lend_stiffness(k_touching * farthest, y)) free_steps = k_first_touch_steps;
-    if (!eliminate()) return false;
-    double correction = 0.0;
-    if (is_free) {
-      const auto is_touching = [&](std::size_t j) {
-        return !targets_[j].is_force && targets_[j].value + arm_of(j).dot(place_of(y)) >= -deepest;
-      };
-      regularise_first_touch(stiffness, is_touching);
-      const auto net = [&] {
-        Eigen::Vector3d sum = -imbalance * imbalance_;
-        for (std::size_t k = 0; k < free_count(); ++k) {
-          sum[at(k)] += net_force(k);
-          for (std::size_t j = 0; j < n; ++j)
-            sum[at(k)] += weights_[j] * arms_(at(j), at(k)) * stiffness_[j] * entry(j, n);
-        }
-        return sum;
-      };
-      double borne = 0.0;
-      for (std::size_t j = 0; j < n; ++j) borne += weights_[j] * forces_[j];
-      const Eigen::Vector3d unbalanced = net();
-      const double left = (directions_of_nothing() * unbalanced).norm();
-      move_centre(unbalanced, y.subspan(n));
-      // Where the first contacts do not hold it, others that touch may, as stiff as at first.
-      if (is_first_touch && iteration < free_steps && left > k_balance * borne) {
-        const Eigen::Vector3d rest = net();
-        for (std::size_t j = 0; j < n; ++j) {
-          if (stiffness_[j] == 0.0 && is_touching(j)) stiffness_[j] = stiffness;
-        }
-        move_centre(rest, y.subspan(n));
-      }
-    }
-    double scale = 0.0;
-    for (std::size_t j = 0; j < n; ++j) {
-      if (targets_[j].is_force) continue;
-      const double step = entry(j, n) / now_[j].approach_slope;
-      y[j] += step;
-      correction = std::max(correction, std::abs(step));
-      scale = std::max(scale, std::abs(y[j]));
-    }
-    // What is left is at most a further contraction of this correction.
-    const double contraction = iteration > 0 ? std::min(correction / last, 1.0) : 1.0;
-    if (correction * contraction <= k_resolved * scale) return true;
-    // Contacts that are shallow against the way of the centre are what rounding of that leaves.
-    if (iteration >= free_steps && contraction > k_contraction) {
-      double length = 0.0;
-      for (std::size_t j = 0; j < n; ++j) {
-        if (!targets_[j].is_force) length = std::max({length, std::abs(targets_[j].value), std::abs(lift(j, y))});
-      }
-      return correction <= std::max(k_stagnation * scale, k_resolved * length);
-    }
-    last = correction;
-  }
-  return false;
-}
-
-/// Whether a state found by Newton's method is off the branch in modes that the method does not see: those of single
-/// walls, and of contacts under force control.
-bool Contacts::has_left_branch(std::span<const double> y) {
-  const bool has_unseen_modes = has_modes_of_walls_ || std::any_of(targets_.begin(), targets_.end(),
-                                                                   [](const Target& goal) { return goal.is_force; });
-  return has_unseen_modes && !(least_pivot(y) > 0.0);
-}
-
-bool Contacts::is_balanced(std::span<const double> y) {
-  if (free_count() == 0) return true;
-  evaluate(y);
-  double sum = 0.0;
-  for (std::size_t j = 0; j < class_count(); ++j) sum += weights_[j] * forces_[j];
-  for (std::size_t k = 0; k < free_count(); ++k) {
-    if (std::abs(net_force(k)) > k_balance * sum) return false;
-  }
-  forget();
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    if (targets_[j].is_force) stiffness_[j] = 0.0;
-  }
-  return unborne_force() == 0.0;
-}
-
-/// Contacts of a centre that only goes along are no deeper than rounding: what the resolved displacement makes of their
-/// forces need not balance.
-bool Contacts::is_balanced_but_for_rounding(std::span<const double> y) {
-  evaluate(y);
-  double widest = 0.0;
-  for (std::size_t j = 0; j < class_count(); ++j) widest = std::max(widest, std::abs(y[j]));
-  const double rounding = k_resolved * widest;
-  double unresolved = 0.0;
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    unresolved += weights_[j] * (modulus_ * law_.at(rounding).force + stiffness_[j] * rounding);
-  }
-  for (std::size_t k = 0; k < free_count(); ++k) {
-    if (std::abs(net_force(k)) > unresolved) return false;
-  }
-  return true;
-}
-
-void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y, bool is_own_mode) {
-  set_targets(ramps, xi);
-  // Of the places to which others may take a centre along, Newton's method knows no nearest one.
-  if (is_own_mode && find_holding(y) && take_centre_to_targets(y)) return;
-  std::copy(y.begin(), y.end(), trial_.begin());
-  for (std::size_t j = 0; j < class_count(); ++j) {
-    if (targets_[j].is_force) trial_[j] = targets_[j].signed_square;
-  }
-  if (newton(trial_, 0.0) && !has_left_branch(trial_) && is_balanced(trial_)) {
-    std::copy(trial_.begin(), trial_.end(), y.begin());
-  } else if (!let_all_go(y)) {
-    try {
-      approach_in_steps(y);
-    } catch (const std::domain_error&) {
-      std::copy(last_targets_.begin(), last_targets_.end(), targets_.begin());
-      if (!sink_to_balance(y)) throw;
-    }
-  }
-}
-
-/// From a state, which is the solution for some displacements, forces and imbalance, along a straight line to the
-/// targets. Newton's method contracts from one point to the next, if they are near, only on the branch of the first.
-void Contacts::approach_in_steps(std::span<double> y) {
-  const double pivot = least_pivot(y);
-  if (!(pivot > 0.0)) {
-    throw DomainError({Limit::applicability, -1, "pivot", pivot});
-  }
-  std::copy(y.begin(), y.end(), state_.begin());
-  std::copy(targets_.begin(), targets_.end(), last_targets_.begin());
-  find_start(last_targets_, y, first_targets_);
-  for (std::size_t k = 0; k < free_count(); ++k) imbalance_[at(k)] = net_force(k);
-
-  double done = 0.0;
-  double step = 0.5;
-  int roundings = 0;
-  for (int steps = 1; done < 1.0; ++steps) {
-    const double next = std::min(1.0, done + step);
-    set_targets_between(first_targets_, last_targets_, next);
-    std::copy(state_.begin(), state_.end(), trial_.begin());
-    // Only the end has to be in balance.
-    const bool is_on_branch = newton(trial_, 1.0 - next) && !has_left_branch(trial_);
-    if (is_on_branch && (next < 1.0 || is_balanced(trial_))) {
-      std::copy(trial_.begin(), trial_.end(), state_.begin());
-      done = next;
-      step *= 2.0;
-      continue;
-    }
-    step *= 0.5;
-    // Short steps that succeed now and then do not arrive either.
-    const bool may_go_on = step > k_least_step && steps < k_most_steps;
-    if (is_on_branch && is_balanced_but_for_rounding(trial_) && (++roundings == k_most_roundings || !may_go_on)) {
-      std::copy(trial_.begin(), trial_.end(), state_.begin());
-      break;
-    }
-    if (may_go_on) continue;
-    if (is_on_branch || !may_balance(last_targets_, state_)) throw DomainError(Limit::centre_driven_away);
-    evaluate(state_);
-    const auto widest = std::max_element(
-        now_.begin(), now_.end(), [](const auto& a, const auto& b) { return a.contact_radius < b.contact_radius; });
-    if (margin(state_) < k_no_margin) throw DomainError({Limit::applicability, -1, "margin", margin(state_)});
-    if (widest->contact_radius < k_no_contact) throw DomainError(Limit::centre_not_held);
-    throw DomainError(Limit::no_solution,
-                      "no equilibrium on the branch of the unloaded state beyond " + std::to_string(100.0 * done) +
-                          " % of the path to the prescribed displacements and forces, where the largest contact "
-                          "radius over R is " +
-                          std::to_string(widest->contact_radius));
-  }
-  std::copy(state_.begin(), state_.end(), y.begin());
-}
-
 void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch,
                      double pull, std::span<const char> touches) {
   const std::size_t n = class_count();
@@ -467,8 +212,10 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
     throw DomainError({Limit::applicability, -1, "margin", margin(y)});
   }
   if (free_count() > 0) {
-    regularise_first_touch(
-        1.0, [&](std::size_t j) { return !is_force(j) && y[j] == 0.0 && entry(j, n) >= 0.0 && !is_redundant_[j]; });
+    const bool is_first_touch = bears_nothing();
+    for (std::size_t j = 0; is_first_touch && j < n; ++j) {
+      if (!is_force(j) && y[j] == 0.0 && entry(j, n) >= 0.0 && !is_redundant_[j]) stiffness_[j] = 1.0;
+    }
     const auto force_rate = [&](std::size_t j) { return is_force(j) ? slope(j) : stiffness_[j] * entry(j, n); };
     Eigen::Vector3d net = Eigen::Vector3d::Zero();
     double pressing = 0.0;

@@ -152,12 +152,33 @@ class Contacts {
   /// Contacts shallower than this, over where the walls go, say nothing of which will bear the centre.
   static constexpr double k_unloaded = 1e-6;
   static constexpr double k_touching = 1e-10;  ///< gap of walls that begin to bear
+  static constexpr double k_balance = 1e-9;    ///< net force over the sum of forces
   [[nodiscard]] static Eigen::Index at(std::size_t index) noexcept { return static_cast<Eigen::Index>(index); }
 
   struct Target {
     bool is_force = false;
     double value = 0.0;          ///< displacement or force
     double signed_square = 0.0;  ///< under that force
+  };
+
+  /// What Newton's method is to find, and what is known of that beforehand.
+  struct Search {
+    double imbalance = 0.0;  ///< share of imbalance_ that is left; where it is none, forces have to balance
+    bool moves_centre = false;
+    bool is_first_touch = false;   ///< a free centre has yet to find out which contacts bear it
+    double farthest = 0.0;         ///< prescribed displacement, where forces have to balance
+    double deepest = 0.0;          ///< signed square under the greatest force
+    double touch_stiffness = 1.0;  ///< that of contacts under the greatest force
+    int free_steps = 1;            ///< corrections at first that need not contract
+
+    /// On a path in steps nobody asks for balance, and the contacts are those of the state before.
+    [[nodiscard]] bool is_to_balance() const noexcept { return imbalance == 0.0; }
+  };
+
+  /// One of the corrections of Newton's method.
+  struct Correction {
+    double largest = 0.0;  ///< change of a signed square
+    double scale = 0.0;    ///< largest signed square after it
   };
 
   void reserve_working_memory();
@@ -170,12 +191,20 @@ class Contacts {
   [[nodiscard]] double lift(std::size_t index, std::span<const double> y) const noexcept;
   [[nodiscard]] double net_force(std::size_t direction) const noexcept;
   [[nodiscard]] bool eliminate() noexcept;
-  void regularise_first_touch(double stiffness, const auto& is_touching);
+  [[nodiscard]] bool bears_nothing() const noexcept;
   [[nodiscard]] Eigen::Vector3d way_to_balance(const Eigen::Vector3d& net_force);
   void move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
   [[nodiscard]] Eigen::Matrix3d directions_of_nothing() const;
   [[nodiscard]] double unborne_force() const;
   bool lend_stiffness(double gap, std::span<const double> y);
+  [[nodiscard]] Search begin_search(std::span<const double> y, double imbalance, bool moves_centre) const;
+  [[nodiscard]] bool evaluate_trial(std::span<double> y);
+  void set_misfits(std::span<const double> y);
+  [[nodiscard]] Eigen::Vector3d corrected_net_force(double imbalance);
+  void stiffen_touching(const Search& search, std::span<const double> y);
+  void balance_centre(const Search& search, bool may_find_more, std::span<double> y);
+  [[nodiscard]] Correction correct_squares(std::span<double> y);
+  [[nodiscard]] bool is_rounding(const Correction& correction, std::span<const double> y) const;
   [[nodiscard]] bool newton(std::span<double> y, double imbalance, bool do_hold_centre = false);
   void find_redundant_walls();
   [[nodiscard]] bool has_redundant_walls() const;
