@@ -21,6 +21,10 @@ constexpr double k_share_of_depth = 0.5;
 // How fast an error of the balance is drawn back where a force shrinks, over how fast that does.
 constexpr double k_hurry = 2.0;
 
+bool takes_force(const Ramp& ramp) noexcept { return ramp.control == Control::force; }
+
+double slope_of(const Ramp& ramp) noexcept { return ramp.end - ramp.start; }
+
 double require_poisson_ratio(double nu) {
   if (nu >= 0.0 && nu <= 0.5) return nu;
   throw std::invalid_argument("Poisson's ratio must be in [0, 0.5], but is " + std::to_string(nu));
@@ -194,77 +198,112 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
   const std::size_t n = class_count();
   if (let_go_on(ramps, y, dy, touch, touches)) return;
   evaluate(y);
-  const auto is_force = [&](std::size_t j) { return ramps[j].control == Control::force; };
-  const auto slope = [&](std::size_t j) { return ramps[j].end - ramps[j].start; };
   forget();
   // What bystanders bear is error: two of them would hold the centre in their corner.
   if (free_count() > 0) sort_near(ramps, y, 2.0 * touch);
   for (std::size_t j = 0; j < n; ++j) {
-    if (is_force(j) || (free_count() > 0 && is_redundant_[j])) stiffness_[j] = 0.0;
+    if (takes_force(ramps[j]) || (free_count() > 0 && is_redundant_[j])) stiffness_[j] = 0.0;
   }
-  for (std::size_t j = 0; j < n; ++j) {
-    entry(j, n) = is_force(j) ? 0.0 : slope(j);
-    for (std::size_t h = 0; h < n; ++h) {
-      if (is_force(h)) entry(j, n) += coupling_(at(j), at(h)) * slope(h);
-    }
-  }
+  set_approach_rates_of_walls(ramps);
   if (!eliminate()) {
     throw DomainError({Limit::applicability, -1, "margin", margin(y)});
   }
-  if (free_count() > 0) {
-    const bool is_first_touch = bears_nothing();
-    for (std::size_t j = 0; is_first_touch && j < n; ++j) {
-      if (!is_force(j) && y[j] == 0.0 && entry(j, n) >= 0.0 && !is_redundant_[j]) stiffness_[j] = 1.0;
-    }
-    const auto force_rate = [&](std::size_t j) { return is_force(j) ? slope(j) : stiffness_[j] * entry(j, n); };
-    Eigen::Vector3d net = Eigen::Vector3d::Zero();
-    double pressing = 0.0;
-    double near = touch;
-    const Eigen::Matrix3d unheld = unheld_directions();
-    // Contacts that bear a centre against a force end with it, if no error of that balance is left.
-    bool is_forced = false;
-    // Where one shrinks, an error of the balance would outlast it, and open the contact that bears it.
-    double hurry = pull;
-    for (std::size_t j = 0; j < n; ++j) {
-      is_forced = is_forced || (is_force(j) && y[j] > touch);
-      if (is_force(j) && forces_[j] > 0.0) hurry = std::max(hurry, -k_hurry * slope(j) / forces_[j]);
-    }
-    Eigen::Vector3d error = Eigen::Vector3d::Zero();
-    for (std::size_t j = 0; j < n; ++j) {
-      if (is_forced && !is_redundant_[j]) error += weights_[j] * forces_[j] * arm_of(j);
-      net += weights_[j] * force_rate(j) * arm_of(j);
-      // What walls under displacements leave is rounding of all that they would change; where none is to change, that
-      // of the forces.
-      pressing += weights_[j] * (std::abs(force_rate(j)) + pull * forces_[j]);
-      // Forces that contacts bear already, or that do not shrink, do not say how near those are that may bear the
-      // others.
-      const bool is_borne = is_force(j) && (unheld * arm_of(j)).norm() <= k_same_surroundings;
-      near = std::max(near, is_force(j) && slope(j) < 0.0 && !is_borne ? y[j] : k_unloaded * y[j]);
-    }
-    const auto centre = dy.subspan(n);
-    std::ranges::fill(centre, 0.0);
-    move_centre(net + hurry * error, centre);
-    // So much of an error says nothing of what drives the centre where no contact holds it.
-    const double left = (directions_of_nothing() * (net + pull * error)).norm();
-    if (has_redundant_walls()) take_along(ramps, y, touch, touches, dy);
-    // Walls that just touch hold the centre at once, if they can bear; and those that are as near as a force is deep,
-    // as errors take them off just before it ends.
-    if (left > k_balance * pressing && !may_be_held(ramps, y, near)) throw DomainError(Limit::centre_driven_away);
-  }
+  if (free_count() > 0) let_centre_follow(ramps, y, dy, touch, pull, touches);
   for (std::size_t j = 0; j < n; ++j) {
     dy[j] = entry(j, n) / now_[j].approach_slope;
-    if (is_force(j)) {
+    if (takes_force(ramps[j])) {
       const double by_square = 2.0 * modulus_ * now_[j].contact_radius * now_[j].approach_slope;
-      dy[j] = slope(j) == 0.0 ? 0.0 : slope(j) / by_square;
+      dy[j] = slope_of(ramps[j]) == 0.0 ? 0.0 : slope_of(ramps[j]) / by_square;
     }
   }
+}
+
+/// Right-hand sides of the rates: what walls and prescribed forces do to approaches while nothing gives way.
+void Contacts::set_approach_rates_of_walls(std::span<const Ramp> ramps) {
+  const std::size_t n = class_count();
+  for (std::size_t j = 0; j < n; ++j) {
+    entry(j, n) = takes_force(ramps[j]) ? 0.0 : slope_of(ramps[j]);
+    for (std::size_t h = 0; h < n; ++h) {
+      if (takes_force(ramps[h])) entry(j, n) += coupling_(at(j), at(h)) * slope_of(ramps[h]);
+    }
+  }
+}
+
+/// Adds the rates of a free centre: forces stay in balance, and where none hold it, walls that touch take it along.
+/// @throws std::domain_error where nothing holds it against prescribed forces
+void Contacts::let_centre_follow(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy,
+                                 double touch, double pull, std::span<const char> touches) {
+  const std::size_t n = class_count();
+  const bool is_first_touch = bears_nothing();
+  for (std::size_t j = 0; is_first_touch && j < n; ++j) {
+    const bool is_touching = !takes_force(ramps[j]) && y[j] == 0.0 && entry(j, n) >= 0.0;
+    if (is_touching && !is_redundant_[j]) stiffness_[j] = 1.0;
+  }
+  const Eigen::Vector3d error = error_against_forces(ramps, y, touch);
+  Eigen::Vector3d net = Eigen::Vector3d::Zero();
+  double pressing = 0.0;
+  for (std::size_t j = 0; j < n; ++j) {
+    const double force_rate = takes_force(ramps[j]) ? slope_of(ramps[j]) : stiffness_[j] * entry(j, n);
+    net += weights_[j] * force_rate * arm_of(j);
+    // What walls under displacements leave is rounding of all that they would change; where none is to change, that
+    // of the forces.
+    pressing += weights_[j] * (std::abs(force_rate) + pull * forces_[j]);
+  }
+  const auto centre = dy.subspan(n);
+  std::ranges::fill(centre, 0.0);
+  move_centre(net + error_decay(ramps, pull) * error, centre);
+  // So much of an error says nothing of what drives the centre where no contact holds it.
+  const double left = (directions_of_nothing() * (net + pull * error)).norm();
+  if (has_redundant_walls()) take_along(ramps, y, touch, touches, dy);
+  if (left > k_balance * pressing && !may_be_held(ramps, y, reach_of_support(ramps, y, touch))) {
+    throw DomainError(Limit::centre_driven_away);
+  }
+}
+
+/// Net force on the centre that is error. Contacts that bear a centre against a force end with it, if none of that is
+/// left; elsewhere it is let stand, and 0 comes back.
+Eigen::Vector3d Contacts::error_against_forces(std::span<const Ramp> ramps, std::span<const double> y,
+                                               double touch) const {
+  Eigen::Vector3d error = Eigen::Vector3d::Zero();
+  bool is_forced = false;
+  for (std::size_t j = 0; j < class_count(); ++j) is_forced = is_forced || (takes_force(ramps[j]) && y[j] > touch);
+  for (std::size_t j = 0; is_forced && j < class_count(); ++j) {
+    if (!is_redundant_[j]) error += weights_[j] * forces_[j] * arm_of(j);
+  }
+  return error;
+}
+
+/// How fast that error is drawn back. Where a force shrinks, an error of the balance would outlast it, and open the
+/// contact that bears it.
+double Contacts::error_decay(std::span<const Ramp> ramps, double least) const noexcept {
+  double decay = least;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    const bool is_borne = takes_force(ramps[j]) && forces_[j] > 0.0;
+    if (is_borne) decay = std::max(decay, -k_hurry * slope_of(ramps[j]) / forces_[j]);
+  }
+  return decay;
+}
+
+/// Gap up to which walls may bear what no contact does. Those that just touch hold the centre at once; those that are
+/// as near as a force is deep are taken off by errors just before it ends.
+double Contacts::reach_of_support(std::span<const Ramp> ramps, std::span<const double> y, double touch) const {
+  const Eigen::Matrix3d unheld = unheld_directions();
+  double near = touch;
+  for (std::size_t j = 0; j < class_count(); ++j) {
+    // Forces that contacts bear already, or that do not shrink, do not say how near those are that may bear the
+    // others.
+    const bool is_shrinking = takes_force(ramps[j]) && slope_of(ramps[j]) < 0.0;
+    const bool says_so = is_shrinking && (unheld * arm_of(j)).norm() > k_same_surroundings;
+    near = std::max(near, says_so ? y[j] : k_unloaded * y[j]);
+  }
+  return near;
 }
 
 void Contacts::residual(std::span<const Ramp> ramps, double xi, std::span<const double> y, std::span<double> residual) {
   const std::size_t n = class_count();
   evaluate(y);
   for (std::size_t j = 0; j < n; ++j) {
-    const Target goal = target(ramps[j].control == Control::force, std::lerp(ramps[j].start, ramps[j].end, xi));
+    const Target goal = target(takes_force(ramps[j]), std::lerp(ramps[j].start, ramps[j].end, xi));
     residual[j] = goal.is_force ? y[j] - goal.signed_square : now_[j].approach - goal.value - lift(j, y);
   }
   for (std::size_t k = 0; k < free_count(); ++k) residual[n + k] = net_force(k);
@@ -281,7 +320,7 @@ void Contacts::jacobian(std::span<const Ramp> ramps, std::span<const double> y, 
     for (std::size_t i = 0; i < n; ++i) {
       if (ramps[i].control == Control::displacement) jacobian(at(i), at(j)) = -coupling_(at(i), at(j)) * force_slope;
     }
-    if (ramps[j].control == Control::force) {
+    if (takes_force(ramps[j])) {
       jacobian(at(j), at(j)) = 1.0;
     } else {
       jacobian(at(j), at(j)) += now_[j].approach_slope;

@@ -228,6 +228,13 @@ class Contacts {
   [[nodiscard]] bool is_balanced_but_for_rounding(std::span<const double> y);
   [[nodiscard]] bool let_go_on(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy,
                                double touch, std::span<const char> touches);
+  void set_approach_rates_of_walls(std::span<const Ramp> ramps);
+  void let_centre_follow(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch,
+                         double pull, std::span<const char> touches);
+  [[nodiscard]] Eigen::Vector3d error_against_forces(std::span<const Ramp> ramps, std::span<const double> y,
+                                                     double touch) const;
+  [[nodiscard]] double error_decay(std::span<const Ramp> ramps, double least) const noexcept;
+  [[nodiscard]] double reach_of_support(std::span<const Ramp> ramps, std::span<const double> y, double touch) const;
   [[nodiscard]] double free_approach(std::size_t index, const Eigen::Vector3d& centre,
                                      double rounding = k_resolved) const;
   [[nodiscard]] bool release_centre(const Eigen::Matrix3d& projector, Eigen::Vector3d& centre) const;
