@@ -1,23 +1,15 @@
 #include "elastic/nonlocal_system.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
-#include "contacts/centre/centre_lines.hpp"
-#include "contacts/columns.hpp"
 #include "system/difficulty.hpp"
 #include "system/undefined.hpp"
 
 namespace monograin::nonlocal {
 namespace {
-
-using std::numbers::pi;
-
-constexpr std::array<std::string_view, 2> k_regime_words{"open", "elastic"};
 
 // Guards. The index is that of a class, of a pair, or -1.
 enum Kind : int {
@@ -37,117 +29,24 @@ enum Kind : int {
 constexpr double k_least_margin = 1e-5;
 // The margin below which an integrator may find no more steps.
 constexpr double k_hard_margin = 1e-3;
-// Walls this near to opposite never meet on the surface.
-constexpr double k_opposite = 1e-9;
-// Angles that are the same but for rounding.
-constexpr double k_same_angle = 1e-9;
 // How far ahead the side of a wall is read that just touches; ten times further where it still does.
 constexpr double k_ahead = 1e-9;
 // How far from the end of a force that bears a free centre no integrator need go on.
 constexpr double k_end_of_force = 1e-8;
-// Distance over the program's reach that a surface moves by rounding alone: less is neither touch nor gap.
-constexpr double k_touch = 1e-13;
-// The same over the deepest contact where forces balance: s goes like their rounding to the power 2/3.
-constexpr double k_touch_of_free_centre = 1e-9;
-// Over that distance, how near a wall is that begins to take a free centre along: at the whole of it the centre would
-// go before the wall is there.
+// Over the distance that is neither touch nor gap, how near a wall is that begins to take a free centre along: at the
+// whole of it the centre would go before the wall is there.
 constexpr double k_begins = 1e-3;
-// Guards of contacts at such a distance, at least: a wall that stands is well off what integrators take for zero.
-constexpr double k_guard_at_touch = 1e-12;
-// Over that distance, how far off walls may be that have just been lost at such a gap: by an error of where that was.
+// Over the distance that is neither touch nor gap, how far off walls may be that have just been lost at such a gap: by
+// an error of where that was.
 constexpr double k_just_lost = 2.0;
-// With all terms, approach and force follow from what a contact lacks to the particle's width, of which its own width
-// keeps fewer and fewer digits: from here on less than eleven of the approach.
-constexpr double k_widest_of_all_terms = 1.0 - 1e-6;
-// Contacts nowhere deeper than that, over R0, are rounding of lengths.
-constexpr double k_least_depth = 1e-12;
-// Contacts shallower than this, over the deepest, hold a free centre too softly for an integrator.
-constexpr double k_idle = 1e-6;
-constexpr double k_force_power = 1.5;
 constexpr double k_nowhere = std::numeric_limits<double>::infinity();
 // How fast an integrated state is drawn back to the equations, over a step of the program: an error that it has
 // gathered would grow with 1/margin towards the limit of applicability.
 constexpr double k_pull = 20.0;
 
-/// Signed square of a force-controlled class from its unknown, the power 3/2 of it.
-double square_of(double power) { return std::pow(std::max(power, 0.0), 1.0 / k_force_power); }
-
 }  // namespace
 
-System::System(const Settings& settings, std::vector<ContactClass> classes)
-    : settings_(settings),
-      classes_(std::move(classes)),
-      contacts_(settings.model, classes_, settings.centre),
-      work_place_(contacts_.unknown_count()) {
-  const std::size_t count = classes_.size();
-  const double length = settings_.initial_radius;
-  double reach = settings_.largest_displacement / length;
-  if (settings_.largest_force > 0.0) {
-    const double force = settings_.largest_force / (settings_.youngs_modulus * length * length);
-    const double bearable = std::min(force / contacts_.composite_modulus(), contacts_.law().greatest_force());
-    reach = std::max(reach, contacts_.law().signed_square_under(bearable));
-  }
-  is_shallow_ = reach > 0.0 && reach <= k_least_depth;
-  for (const ContactClass& c : classes_) reach = std::max(reach, c.gap / length);
-  if (!(reach > 0.0)) reach = 1.0;
-  // A program may ask for any displacement: a wall comes to the centre, a contact is as wide as the particle before.
-  const double depth = std::min(reach, 1.0);
-  touch_ = settings.centre == Centre::free ? k_touch_of_free_centre * depth : k_touch * reach;
-  guard_unit_ = std::min(depth, touch_ / k_guard_at_touch);
-  idle_ = k_idle * depth;
-  if (settings.model.terms == Terms::all) {
-    widest_ = k_widest_of_all_terms;
-    greatest_approach_ = contacts_.law().at(widest_ * widest_).approach;
-  }
-  for (const ContactClass& c : classes_) {
-    unknowns_.push_back(
-        {c.name, Unknown::Kind::differential, c.takes_force ? std::pow(depth, k_force_power) : depth, true});
-  }
-  for (std::size_t k = 0; k < contacts_.free_count(); ++k) {
-    unknowns_.push_back({.name = contacts::k_centre_unknowns[k],
-                         .kind = Unknown::Kind::differential,
-                         .scale = depth,
-                         .is_implicitly_algebraic = true,
-                         .may_rest = true});
-  }
-  unknowns_.push_back({"work", Unknown::Kind::quadrature, depth * depth * std::sqrt(depth), false});
-
-  ramps_.resize(count);
-  drawn_ramps_.resize(count);
-  regimes_.resize(count);
-  state_.resize(contacts_.unknown_count());
-  rates_.resize(contacts_.unknown_count());
-  all_rates_.resize(unknowns_.size());
-  now_.resize(count);
-  edge_angles_.resize(count);
-  is_closed_.resize(count);
-  touches_.resize(count);
-  for (const ContactClass& c : classes_) {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const Eigen::Vector3d& normal : c.normals) mean += normal / c.multiplicity();
-    arms_.emplace_back(contacts_.free_directions().transpose() * mean);
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = i; j < count; ++j) {
-      for (std::size_t m = 0; m < classes_[i].normals.size(); ++m) {
-        for (std::size_t n = i == j ? m + 1 : 0; n < classes_[j].normals.size(); ++n) {
-          const double angle = angle_between(classes_[i].normals[m], classes_[j].normals[n]);
-          const bool is_known = std::ranges::any_of(pairs_, [&](const Pair& pair) {
-            return pair.first == i && pair.second == j && std::abs(pair.angle - angle) < k_same_angle;
-          });
-          if (!is_known && angle < pi - k_opposite) pairs_.push_back({i, j, angle});
-        }
-      }
-    }
-  }
-
-  observables_ = {{"work", "J", {}}, {"stored_energy", "J", {}}, {"margin", "-", {}}};
-  for (const ContactClass& c : classes_) {
-    contacts::add_contact_columns(c.name, k_regime_words, observables_);
-    observables_.push_back({c.name + ".contact_radius_deformed", "m", {}});
-  }
-  if (settings_.centre == Centre::free) contacts::add_centre_columns(observables_);
-}
+double System::square_of(double power) { return std::pow(std::max(power, 0.0), 1.0 / k_force_power); }
 
 void System::start(std::span<double> y) {
   std::ranges::fill(y, 0.0);

@@ -74,6 +74,14 @@ class System final : public HybridSystem {
     bool has_impinged = false;
   };
 
+  [[nodiscard]] static std::vector<Pair> pairs_of(std::span<const ContactClass> classes);
+  [[nodiscard]] double greatest_depth() const;
+  double set_scales();
+  void list_unknowns(double depth);
+  void list_observables();
+  void reserve_work_space();
+  /// Signed square of a force-controlled class from its unknown.
+  [[nodiscard]] static double square_of(double power);
   [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return ramps_[i].control == Control::force; }
   [[nodiscard]] double prescribed(std::size_t i, double xi) const noexcept;
   [[noreturn]] void throw_pull(std::size_t i) const;
@@ -100,6 +108,8 @@ class System final : public HybridSystem {
 
   /// The margin from which on the source's formulation is seen to stiffen.
   static constexpr double k_stiff_margin = 0.25;
+  /// The power of s that is the unknown of a force-controlled class.
+  static constexpr double k_force_power = 1.5;
 
   Settings settings_;
   std::vector<ContactClass> classes_;
