@@ -360,6 +360,15 @@ void System::arm_guards() {
   guards_.clear();
   const bool is_at_rest = std::ranges::all_of(ramps_, [](const Ramp& ramp) { return ramp.start == ramp.end; });
   if (is_at_rest) return;
+  arm_contacts();
+  if (contacts_.free_count() > 0) arm_carriers();
+  arm_impingement();
+  if (contacts_.free_count() > 0) arm_ends_of_forces();
+  arm_limits();
+}
+
+/// Contacts are made and lost at walls under displacement control.
+void System::arm_contacts() {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_loaded(i)) continue;
     if (regimes_[i] == Regime::open)
@@ -372,8 +381,11 @@ void System::arm_guards() {
                          .name = "contact-lost",
                          .is_branch_end = true});
   }
-  // Guards that say from where, and until where, an open wall may take a free centre along.
-  for (std::size_t i = 0; contacts_.free_count() > 0 && i < classes_.size(); ++i) {
+}
+
+/// From where, and until where, an open wall may take a free centre along.
+void System::arm_carriers() {
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_loaded(i) || regimes_[i] != Regime::open) continue;
     guards_.push_back({.kind = touches_[i] ? k_left : k_touched,
                        .index = static_cast<int>(i),
@@ -381,11 +393,19 @@ void System::arm_guards() {
                        .name = touches_[i] ? "wall-left" : "wall-touched",
                        .is_silent = true});
   }
+}
+
+/// Contacts meet on the surface, each pair once.
+void System::arm_impingement() {
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const bool both = regimes_[pairs_[p].first] == Regime::elastic && regimes_[pairs_[p].second] == Regime::elastic;
     if (both && !pairs_[p].has_impinged) add_guard(k_impingement, p, -1, "impingement");
   }
-  for (std::size_t i = 0; contacts_.free_count() > 0 && i < classes_.size(); ++i) {
+}
+
+/// Next to the end of a force that bears a free centre an integrator stops.
+void System::arm_ends_of_forces() {
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (!is_loaded(i) || end_of_force(i) == k_nowhere) continue;
     guards_.push_back({.kind = k_force_ends,
                        .index = static_cast<int>(i),
@@ -394,7 +414,11 @@ void System::arm_guards() {
                        .is_silent = true,
                        .is_exact = true});
   }
-  // The formulation stiffens before it comes to its limit.
+}
+
+/// Where the formulation stiffens, and ends.
+void System::arm_limits() {
+  // It stiffens before it comes to its limit.
   const bool will_stiffen = !has_stiffened_ && contacts_.least_pivot(state_, k_stiff_margin) > 0.0;
   if (!has_stiffened_) guards_.push_back({k_stiffening, -1, -1, "stiffening"});
   const bool needs_radius = settings_.radius_rule != RadiusRule::none || settings_.model.terms == Terms::all;

@@ -104,6 +104,11 @@ class System final : public HybridSystem {
   void resolve_mode(double xi, std::vector<Event>& log);
   void mark_touching();
   void arm_guards();
+  void arm_contacts();
+  void arm_carriers();
+  void arm_impingement();
+  void arm_ends_of_forces();
+  void arm_limits();
   void add_guard(int kind, std::size_t index, int direction, std::string_view name);
 
   /// The margin from which on the source's formulation is seen to stiffen.
