@@ -80,59 +80,104 @@ double round_off_of(const Particle& p, const CentreStiffness& softest) {
   return std::sqrt(2.0 * softening * softest.direction.norm() * p.force_rounding());
 }
 
-/// Newton on the balance of forces at a given radius; the force grows with the overlap, so damping is all it needs.
-void find_balance(Particle& p, double xi, std::span<double> y) {
-  const int count = p.centre().count();
-  p.evaluate_forces(xi, y);
-  const bool is_only_one = !weakest_contact(p);
-  double path = std::numeric_limits<double>::infinity();
-  double step_size = std::numeric_limits<double>::infinity();
-  bool has_gone_back = false;
-  for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
-    const double error = p.centre().force().norm();
-    if (error == 0.0) return;
-    // Below round-off there is nothing to damp: a contact that only touches would stay where it is.
-    const double noise = p.force_rounding();
-    CentreVector step = p.centre().step();
+/// Newton's method on the balance of forces at a given radius; the force grows with the overlap, so damping is all it
+/// needs.
+class BalanceSearch {
+ public:
+  BalanceSearch(Particle& p, double xi, std::span<double> y) : p_(p), xi_(xi), y_(y), count_(p.centre().count()) {
+    p_.evaluate_forces(xi, y);
+    is_only_one_ = !weakest_contact(p);
+  }
+
+  /// @throws std::domain_error where no balance is found
+  void run() {
+    for (int iteration = 0; iteration < k_newton_limit && !is_stuck(); ++iteration) {
+      error_ = p_.centre().force().norm();
+      if (error_ == 0.0) return;
+      noise_ = p_.force_rounding();
+      const CentreVector step = newton_step();
+      if (has_arrived(step.norm())) return;
+      step_size_ = step.norm();
+      go_along(shortened(step));
+    }
+    require_balance();
+  }
+
+ private:
+  /// No part of the last step brought the centre nearer to balance.
+  [[nodiscard]] bool is_stuck() const noexcept { return path_ < 2.0 * k_round_off; }
+
+  [[nodiscard]] CentreVector newton_step() const {
+    const CentreVector step = p_.centre().step();
     // Contacts below the resolution are so soft that their tangents lead out of all bounds.
-    if (step.norm() > k_out_of_bounds) step = p.centre().tangent_step();
-    if (step.norm() == 0.0) {
-      if (error <= noise) return;
+    return step.norm() > k_out_of_bounds ? p_.centre().tangent_step() : step;
+  }
+
+  /// True if a step of that length is round-off.
+  /// @throws std::domain_error for no step where forces are not balanced
+  [[nodiscard]] bool has_arrived(double length) {
+    if (length == 0.0) {
+      if (error_ <= noise_) return true;
       throw DomainError(Limit::centre_not_held);
     }
-    if (step.norm() >= 0.5 * step_size) {
-      if (step.norm() < k_rounding_step) return;
-      // Soft contacts that are met from afar may be led back to where they only touch by as much, once.
-      if (error <= noise && std::exchange(has_gone_back, true)) return;
-    }
-    step_size = step.norm();
-    // Where the last step had to be cut short, as next to a fold, there is no need to begin far beyond that again.
-    if (k_most_growth * path < step_size) step *= k_most_growth * path / step_size;
-    const CentreVector before = centre_of(y, count);
-    p.centre().keep_stiffness();
+    if (!(length >= 0.5 * step_size_)) return false;
+    if (length < k_rounding_step) return true;
+    // Soft contacts that are met from afar may be led back to where they only touch by as much, once.
+    return error_ <= noise_ && std::exchange(has_gone_back_, true);
+  }
+
+  /// Where the last step had to be cut short, as next to a fold, there is no need to begin far beyond that again.
+  [[nodiscard]] CentreVector shortened(const CentreVector& step) const {
+    if (!(k_most_growth * path_ < step_size_)) return step;
+    return step * (k_most_growth * path_ / step_size_);
+  }
+
+  /// Line search: halves the step until it leads nearer to balance. A trial may lead out of a branch; a state that is
+  /// nearer lies in it, or there is none.
+  void go_along(CentreVector step) {
+    const CentreVector before = centre_of(y_, count_);
+    p_.centre().keep_stiffness();
     for (int halving = 0; halving < k_most_halvings; ++halving) {
-      set_centre(y, count, before + step);
+      set_centre(y_, count_, before + step);
       try {
-        p.evaluate_forces(xi, y);
-        if (p.centre().force().norm() < std::max(error, noise) || step.norm() < k_round_off) break;
-        // Stiff contacts may bear more on a path along which soft ones balance: the step that is left says more. Where
-        // an edge peels there are other equilibria, to which that might lead.
-        if (is_only_one && p.centre().step_of_kept().norm() < 0.5 * step_size) break;
+        p_.evaluate_forces(xi_, y_);
+        if (is_nearer(step.norm())) break;
       } catch (const std::domain_error&) {
-        // A trial may lead out of a branch; a state that is nearer lies in it, or there is none.
         if (step.norm() < k_round_off || halving + 1 == k_most_halvings) throw;
       }
       step *= 0.5;
     }
-    path = step.norm();
-    if (path < 2.0 * k_round_off) break;
+    path_ = step.norm();
   }
-  // Where edges peel, the search may also end beyond a fold, where the force is least.
-  const double rounding = p.force_rounding() + k_no_force * p.magnitude_of_forces();
-  if (is_only_one ? path < 2.0 * k_round_off : p.centre().force().norm() <= rounding) return;
-  if (std::abs(centre_stiffness(p).value) < k_at_fold) throw DomainError(Limit::centre_fold);
-  throw DomainError(Limit::no_solution, "the balance of forces on the free centre was not found");
-}
+
+  /// True if a trial at the end of a step of that length is accepted.
+  [[nodiscard]] bool is_nearer(double length) const {
+    // Below round-off there is nothing to damp: a contact that only touches would stay where it is.
+    if (p_.centre().force().norm() < std::max(error_, noise_) || length < k_round_off) return true;
+    // Stiff contacts may bear more on a path along which soft ones balance: the step that is left says more. Where an
+    // edge peels there are other equilibria, to which that might lead.
+    return is_only_one_ && p_.centre().step_of_kept().norm() < 0.5 * step_size_;
+  }
+
+  /// Where edges peel, the search may also end beyond a fold, where the force is least.
+  void require_balance() {
+    const double rounding = p_.force_rounding() + k_no_force * p_.magnitude_of_forces();
+    if (is_only_one_ ? is_stuck() : p_.centre().force().norm() <= rounding) return;
+    if (std::abs(centre_stiffness(p_).value) < k_at_fold) throw DomainError(Limit::centre_fold);
+    throw DomainError(Limit::no_solution, "the balance of forces on the free centre was not found");
+  }
+
+  Particle& p_;
+  double xi_;
+  std::span<double> y_;
+  int count_;
+  bool is_only_one_ = false;                                    ///< no edge peels: there are no other equilibria
+  double error_ = 0.0;                                          ///< net force where the present step begins
+  double noise_ = 0.0;                                          ///< round-off of it
+  double step_size_ = std::numeric_limits<double>::infinity();  ///< of the last step as Newton's method had it
+  double path_ = std::numeric_limits<double>::infinity();       ///< what was gone of it
+  bool has_gone_back_ = false;
+};
 
 }  // namespace
 
@@ -184,7 +229,7 @@ void check_softening(const Particle& p) {
 }
 
 void move_centre(Particle& p, double xi, std::span<double> y) {
-  find_balance(p, xi, y);
+  BalanceSearch(p, xi, y).run();
   check_softening(p);
   p.accept_volume(xi, y);
 }
