@@ -234,68 +234,118 @@ void move_centre(Particle& p, double xi, std::span<double> y) {
   p.accept_volume(xi, y);
 }
 
-bool leave_saddle(Particle& p, double xi, std::span<double> y, bool is_balanced) {
-  const int count = p.centre().count();
-  p.evaluated(xi, y);
-  const auto is_sought = [&] { return centre_stiffness(p).value >= 0.0 && !contact_beyond_pull_off(p); };
-  if (is_balanced && is_sought()) return true;
-  const std::optional<std::size_t> beyond = contact_beyond_pull_off(p);
-  // The direction counts every contact at what it would hold: an idle one is no stiffer at first than round-off, but
-  // would be pressed on the path.
-  const CentreVector weakest = (beyond ? p.centre().direction(*beyond) : centre_stiffness(p).direction).normalized();
-  const CentreVector saddle = centre_of(y, count);
-  const auto go = [&](double distance) {
-    set_centre(y, count, saddle + distance * weakest);
-    p.evaluate(xi, y);
-  };
-  // Stiffness of the centre there, along that direction.
-  const auto stiffness_at = [&](double distance) {
+namespace {
+
+/// True for the equilibrium that is sought: contacts short of pull-off hold the centre.
+bool holds_centre(Particle& p) { return centre_stiffness(p).value >= 0.0 && !contact_beyond_pull_off(p); }
+
+/// Line through a state that does not hold the centre, along which its contacts begin to hold it.
+class SaddleExit {
+ public:
+  /// @param y            the state, which is evaluated
+  /// @param is_balanced  whether it is an equilibrium, and not merely where a search has got stuck
+  SaddleExit(Particle& p, double xi, std::span<double> y, bool is_balanced)
+      : p_(p),
+        xi_(xi),
+        y_(y),
+        is_balanced_(is_balanced),
+        saddle_(centre_of(y, p.centre().count())),
+        beyond_(contact_beyond_pull_off(p)),
+        direction_((beyond_ ? p.centre().direction(*beyond_) : centre_stiffness(p).direction).normalized()) {}
+
+  /// Finds the nearest place on a side where the contacts hold the centre.
+  /// @return its distance from the saddle; none if it is farther than a saddle may be
+  /// @throws std::domain_error where no branch leads there
+  [[nodiscard]] std::optional<double> held_distance(double side) {
+    double last = 0.0;
+    double distance = side * k_nearest_saddle;
+    double before = stiffness_at(last);
+    double now = stiffness_at(distance);
+    while (now <= 0.0 && std::abs(distance) < k_farthest_saddle) {
+      const double next = k_longer * distance;
+      const double after = stiffness_at(next);
+      // Where the centre is held on a short part of the path only, that may lie between.
+      if (now > before && now > after) {
+        now = search_maximum(last, next, distance, [this](double trial) { return stiffness_at(trial); });
+        if (!stiffest_) stiffest_ = distance;
+      }
+      if (now > 0.0) break;
+      last = std::exchange(distance, next);
+      before = std::exchange(now, after);
+    }
+    if (now <= 0.0) return std::nullopt;
+    return distance;
+  }
+
+  /// Searches for the equilibrium from about as far beyond the place where contacts begin to hold the centre; where a
+  /// search has got stuck, or a contact is beyond pull-off, also from farther.
+  /// @return whether it is found, and y is there
+  [[nodiscard]] bool finds_equilibrium_beyond(double held) {
+    constexpr std::array<double, 5> k_multiples{2.0, 1.0, 4.0, 8.0, 16.0};
+    for (const double multiple : std::span(k_multiples).first(is_balanced_ && !beyond_ ? 2 : k_multiples.size())) {
+      try {
+        go(multiple * held);
+        move_centre(p_, xi_, y_);
+        p_.evaluate(xi_, y_);
+        if (holds_centre(p_)) return true;
+      } catch (const std::domain_error&) {
+        continue;  // the search leads astray from there
+      }
+    }
+    return false;
+  }
+
+  /// Goes to an equilibrium that does not hold the centre: any one short of pull-off shows that contacts hold it no
+  /// more.
+  /// @throws std::domain_error where there is none short of pull-off
+  void return_to_balance() {
+    const bool is_elsewhere = beyond_ && stiffest_;
+    go(is_elsewhere ? *stiffest_ : 0.0);
+    if (is_elsewhere) move_centre(p_, xi_, y_);
+    p_.evaluate(xi_, y_);
+    if (contact_beyond_pull_off(p_)) throw DomainError(Limit::centre_fold);
+  }
+
+ private:
+  void go(double distance) {
+    set_centre(y_, p_.centre().count(), saddle_ + distance * direction_);
+    p_.evaluate(xi_, y_);
+  }
+
+  /// Stiffness of the centre along the line.
+  [[nodiscard]] double stiffness_at(double distance) {
     go(distance);
-    return contact_beyond_pull_off(p) ? -std::numeric_limits<double>::infinity()
-                                      : weakest.dot(p.centre().stiffness() * weakest);
-  };
-  std::optional<double> stiffest;
+    return contact_beyond_pull_off(p_) ? -std::numeric_limits<double>::infinity()
+                                       : direction_.dot(p_.centre().stiffness() * direction_);
+  }
+
+  Particle& p_;
+  double xi_;
+  std::span<double> y_;
+  bool is_balanced_;
+  CentreVector saddle_;
+  std::optional<std::size_t> beyond_;  ///< contact that has been led beyond pull-off
+  /// The softest one. It counts every contact at what it would hold: an idle one is no stiffer at first than round-off,
+  /// but would be pressed on the path.
+  CentreVector direction_;
+  std::optional<double> stiffest_;  ///< distance of the first maximum of the stiffness
+};
+
+}  // namespace
+
+bool leave_saddle(Particle& p, double xi, std::span<double> y, bool is_balanced) {
+  p.evaluated(xi, y);
+  if (is_balanced && holds_centre(p)) return true;
+  SaddleExit line(p, xi, y, is_balanced);
   for (const double side : {1.0, -1.0}) {
     try {
-      double last = 0.0;
-      double distance = side * k_nearest_saddle;
-      double before = stiffness_at(last);
-      double now = stiffness_at(distance);
-      while (now <= 0.0 && std::abs(distance) < k_farthest_saddle) {
-        const double next = k_longer * distance;
-        const double after = stiffness_at(next);
-        // Where the centre is held on a short part of the path only, that may lie between.
-        if (now > before && now > after) {
-          now = search_maximum(last, next, distance, stiffness_at);
-          if (!stiffest) stiffest = distance;
-        }
-        if (now > 0.0) break;
-        last = std::exchange(distance, next);
-        before = std::exchange(now, after);
-      }
-      if (now <= 0.0) continue;
-      // From where a search has got stuck, or from beyond pull-off, it may also be farther.
-      constexpr std::array<double, 5> k_multiples{2.0, 1.0, 4.0, 8.0, 16.0};
-      for (const double multiple : std::span(k_multiples).first(is_balanced && !beyond ? 2 : k_multiples.size())) {
-        try {
-          go(multiple * distance);
-          move_centre(p, xi, y);
-          p.evaluate(xi, y);
-          if (is_sought()) return true;
-        } catch (const std::domain_error&) {
-          continue;  // the search leads astray from there
-        }
-      }
+      const std::optional<double> held = line.held_distance(side);
+      if (held && line.finds_equilibrium_beyond(*held)) return true;
     } catch (const std::domain_error&) {
       continue;  // no branch leads there
     }
   }
-  if (!is_balanced) return false;
-  // Any balance short of pull-off shows that they hold it no more.
-  go(beyond && stiffest ? *stiffest : 0.0);
-  if (beyond && stiffest) move_centre(p, xi, y);
-  p.evaluate(xi, y);
-  if (contact_beyond_pull_off(p)) throw DomainError(Limit::centre_fold);
+  if (is_balanced) line.return_to_balance();
   return false;
 }
 
