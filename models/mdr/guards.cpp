@@ -117,78 +117,98 @@ void GuardSet::arm_growth(const Particle& p, const Motion& now) {
   }
 }
 
+GuardSet::Course GuardSet::course_of(const Particle& p, std::size_t i, const Motion& now) {
+  const double rate = overlap_rate(p, i, now);
+  const bool is_free = !p.is_loaded(i) && p.centre().acts(i);
+  const bool may_turn = p.mode.is_growing || is_free;
+  return {.is_free = is_free,
+          .may_turn = may_turn,
+          .may_come_in = rate > 0.0 || may_turn,
+          .may_go_out = rate < 0.0 || may_turn};
+}
+
+/// Lists a guard, unless a linear overlap or a prescribed force does not reach it by the end of the step.
+void GuardSet::add_if_reached(const Particle& p, std::size_t i, const Course& course, int kind, int direction,
+                              std::string_view name) {
+  const bool is_linear = !course.may_turn && !p.is_loaded(i);  // overlap linear in xi, radius held
+  const bool is_by_force = p.is_loaded(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost);
+  const double last_overlap = p.drive(i).end() + p.at().r;
+  const bool is_known = is_linear || is_by_force;
+  if (is_known && direction * contact_guard(p, kind, i, 1.0, last_overlap) < -1e-9) return;
+  list_.push_back({kind, static_cast<int>(i), direction, name});
+}
+
 void GuardSet::arm_contact(const Particle& p, std::size_t i, const Motion& now) {
   const ContactBranch& branch = p.branch(i);
-  const int index = static_cast<int>(i);
-  const bool is_free = !p.is_loaded(i) && p.centre().acts(i);
-  const bool may_turn = p.mode.is_growing || is_free;        // in mid-step
-  const bool is_predictable = !may_turn && !p.is_loaded(i);  // overlap linear in xi, radius held
-  const double last_overlap = p.drive(i).end() + p.at().r;
-
-  const auto add = [&](int kind, int direction, std::string_view name) {
-    // A guard that a linear overlap, or a prescribed force, does not reach by the end of the step is not armed.
-    const bool is_by_force = p.is_loaded(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost);
-    if ((is_predictable || is_by_force) && direction * contact_guard(p, kind, i, 1.0, last_overlap) < -1e-9) return;
-    list_.push_back({kind, index, direction, name});
-  };
-  const double rate = overlap_rate(p, i, now);
-  const bool may_come_in = rate > 0.0 || may_turn;
-  const bool may_go_out = rate < 0.0 || may_turn;
-  if (!branch.touches()) {
-    const bool is_dent = branch.regime == Regime::separated;
-    if (may_come_in) add(is_dent ? k_dent_touched : k_made, 1, is_dent ? "dent-touched" : "contact-made");
-    return;
+  const Course course = course_of(p, i, now);
+  if (!branch.touches()) return arm_touch(p, i, course);
+  if (branch.regime == Regime::elastic && course.may_come_in && branch.may_yield(p.law())) {
+    add_if_reached(p, i, course, k_yield, 1, "yield");
   }
-  if (branch.regime == Regime::elastic && may_come_in && branch.may_yield(p.law())) add(k_yield, 1, "yield");
   if (has_greatest_force(p, i)) {
-    list_.push_back(
-        {.kind = k_greatest_force, .index = index, .direction = -1, .name = "limit", .is_branch_end = true});
+    list_.push_back({.kind = k_greatest_force,
+                     .index = static_cast<int>(i),
+                     .direction = -1,
+                     .name = "limit",
+                     .is_branch_end = true});
   }
-  if (branch.is_on_primary_branch) {
-    const bool is_shifted = p.law().is_shifted();
-    const bool may_retreat = is_free || (may_turn && (p.is_loaded(i) || (wall_rate(p, i, now) < 0.0 && !is_shifted)));
-    if (may_retreat) list_.push_back({k_retreat, index, -1, "retreat"});
-    if (is_free && branch.regime == Regime::elastic) list_.push_back({k_lost, index, -1, "contact-lost"});
-    return;
-  }
-  if (may_come_in) add(k_reload, 1, "reload");
+  if (branch.is_on_primary_branch) return arm_primary_branch(p, i, now, course);
+  if (course.may_come_in) add_if_reached(p, i, course, k_reload, 1, "reload");
   if (p.law().adheres()) {
-    arm_edge(p, i, may_come_in, may_go_out, may_turn);
-    arm_tension(p, i, now, may_go_out, may_turn);
-  } else if (may_go_out) {
-    add(k_lost, -1, "contact-lost");
+    arm_edge(p, i, course);
+    arm_tension(p, i, now, course);
+  } else if (course.may_go_out) {
+    add_if_reached(p, i, course, k_lost, -1, "contact-lost");
   }
 }
 
-void GuardSet::arm_edge(const Particle& p, std::size_t i, bool may_come_in, bool may_go_out, bool may_turn) {
+/// An open contact touches the fresh surface or its dent.
+void GuardSet::arm_touch(const Particle& p, std::size_t i, const Course& course) {
+  if (!course.may_come_in) return;
+  const bool is_dent = p.branch(i).regime == Regime::separated;
+  add_if_reached(p, i, course, is_dent ? k_dent_touched : k_made, 1, is_dent ? "dent-touched" : "contact-made");
+}
+
+/// On the primary loading branch a contact turns back, or an elastic one is lost with the centre.
+void GuardSet::arm_primary_branch(const Particle& p, std::size_t i, const Motion& now, const Course& course) {
+  const int index = static_cast<int>(i);
+  const bool is_shifted = p.law().is_shifted();
+  const bool wall_retreats = p.is_loaded(i) || (wall_rate(p, i, now) < 0.0 && !is_shifted);
+  const bool may_retreat = course.is_free || (course.may_turn && wall_retreats);
+  if (may_retreat) list_.push_back({k_retreat, index, -1, "retreat"});
+  const bool is_elastic = p.branch(i).regime == Regime::elastic;
+  if (course.is_free && is_elastic) list_.push_back({k_lost, index, -1, "contact-lost"});
+}
+
+void GuardSet::arm_edge(const Particle& p, std::size_t i, const Course& course) {
   const ContactBranch& branch = p.branch(i);
   const int index = static_cast<int>(i);
   switch (branch.edge.motion) {
     case Edge::following:
-      if (may_turn) list_.push_back({k_turn, index, -1, "stick"});
+      if (course.may_turn) list_.push_back({k_turn, index, -1, "stick"});
       break;
     case Edge::sticking: {
       // An edge that sticks since the largest overlap follows again when that is passed.
       const double at_largest = edge_guard(p, k_follow, i, 0.0, branch.largest_overlap(p.law(), p.at().r));
-      if (may_come_in && (may_turn || at_largest > 1e-9)) list_.push_back({k_follow, index, 1, "follow"});
-      if (may_go_out) list_.push_back({k_peel, index, -1, "peel"});
+      if (course.may_come_in && (course.may_turn || at_largest > 1e-9)) list_.push_back({k_follow, index, 1, "follow"});
+      if (course.may_go_out) list_.push_back({k_peel, index, -1, "peel"});
       break;
     }
     case Edge::peeling:
-      if (may_go_out) {
+      if (course.may_go_out) {
         list_.push_back(
             {.kind = k_pull_off, .index = index, .direction = -1, .name = "pull-off", .is_branch_end = true});
       }
-      if (may_turn) list_.push_back({k_turn, index, 1, "stick"});
+      if (course.may_turn) list_.push_back({k_turn, index, 1, "stick"});
       break;
   }
 }
 
 /// Lists the guards of the extrema of a tensile force, in turns: after a least force comes a greatest. A prescribed
 /// force has none within a step, nor has an edge that sticks where only the own wall moves.
-void GuardSet::arm_tension(const Particle& p, std::size_t i, const Motion& now, bool may_go_out, bool may_turn) {
-  const bool peels_alone = p.branch(i).edge.peels() && may_go_out;
-  if (p.branch(i).edge.follows() || p.is_loaded(i) || !(may_turn || peels_alone)) return;
+void GuardSet::arm_tension(const Particle& p, std::size_t i, const Motion& now, const Course& course) {
+  const bool peels_alone = p.branch(i).edge.peels() && course.may_go_out;
+  if (p.branch(i).edge.follows() || p.is_loaded(i) || !(course.may_turn || peels_alone)) return;
   const auto add = [&](int kind, int direction) {
     list_.push_back({.kind = kind,
                      .index = static_cast<int>(i),
@@ -199,7 +219,7 @@ void GuardSet::arm_tension(const Particle& p, std::size_t i, const Motion& now, 
   const bool is_tensile = p.contact(i).contact.force < 0.0;
   const double rate = force_rate(p, i, now);
   if (!is_tensile || rate < -0.5 * k_steady_force) return add(k_greatest_tension, 1);
-  if (!may_turn) return;
+  if (!course.may_turn) return;
   if (rate > 0.5 * k_steady_force) return add(k_least_tension, -1);
   // A force at rest is at no extremum where it begins to move.
   add(k_tension_falls, 1);

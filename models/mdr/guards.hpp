@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "mdr/contact_caps.hpp"
@@ -76,9 +77,22 @@ class GuardSet {
               std::span<double> values) const;
 
  private:
+  /// How the overlap of a contact may change until the step ends.
+  struct Course {
+    bool is_free = false;      ///< a free centre moves the particle against the wall's prescribed displacement
+    bool may_turn = false;     ///< in mid-step
+    bool may_come_in = false;  ///< grow
+    bool may_go_out = false;   ///< shrink
+  };
+
+  [[nodiscard]] static Course course_of(const Particle& p, std::size_t i, const Motion& now);
+  void add_if_reached(const Particle& p, std::size_t i, const Course& course, int kind, int direction,
+                      std::string_view name);
   void arm_contact(const Particle& p, std::size_t i, const Motion& now);
-  void arm_edge(const Particle& p, std::size_t i, bool may_come_in, bool may_go_out, bool may_turn);
-  void arm_tension(const Particle& p, std::size_t i, const Motion& now, bool may_go_out, bool may_turn);
+  void arm_touch(const Particle& p, std::size_t i, const Course& course);
+  void arm_primary_branch(const Particle& p, std::size_t i, const Motion& now, const Course& course);
+  void arm_edge(const Particle& p, std::size_t i, const Course& course);
+  void arm_tension(const Particle& p, std::size_t i, const Motion& now, const Course& course);
   void arm_growth(const Particle& p, const Motion& now);
 
   std::vector<Guard> list_;
