@@ -1,7 +1,6 @@
 // The way of a material point's state back to the yield surface.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -97,79 +96,151 @@ MaterialPoint::Flow MaterialPoint::flow_to_surface(const Response& now) const {
 /// A cap much narrower in one direction is a valley of f. A correction that has passed its floor without having
 /// come inside goes back there, and on along the floor, where the slope across stays zero: straight down from slope to
 /// slope it would take many corrections.
-bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) {
-  const double guess = y[k_phi];
-  const double guessed_deviatoric = y[k_deviatoric];
-  const bool has_caps = is_compressible(settings_.parameters.model);
-  double elastic_strain = 0.0;
-  double elastic_strain_of_guess = 0.0;
-  double shortest = 0.0;
-  int small_corrections = 0;
-  int corrections_of_rounding = 0;
-  int halvings = 0;
-  double phi = 0.0;  // of the last correction
-  double deviatoric = 0.0;
-  Flow last;  // where it began; f, as much of it as it takes away
-  std::optional<std::array<double, 2>> floor;
-  try {
-    for (int i = 0; i < k_most_corrections; ++i) {
-      Response here;
-      Flow now;
-      try {
-        here = response(xi, y);
-        now = flow_to_surface(here);
-      } catch (const std::domain_error&) {
-        // Next to where moduli become infinite a correction may lead beyond: half of it, or less, does not.
-        if (phi == 0.0 || ++halvings > k_most_halvings) throw;
-        for (double* part : {&phi, &deviatoric, &last.yield.f}) *part *= 0.5;
-        y[k_phi] -= phi;
-        y[k_deviatoric] -= deviatoric;
-        continue;
+class MaterialPoint::ReturnMapping {
+ public:
+  /// @param y  in: the guess; out: where it leads
+  ReturnMapping(const MaterialPoint& point, double xi, std::span<double> y, Way way)
+      : point_(point),
+        xi_(xi),
+        y_(y),
+        is_along_flow_(way == Way::flow),
+        has_caps_(is_compressible(point.settings_.parameters.model)),
+        guess_{y[k_phi], y[k_deviatoric]} {}
+
+  /// @return whether it leads to f = 0, and not too far from the guess
+  [[nodiscard]] bool succeeds() {
+    try {
+      for (int i = 0; i < k_most_corrections; ++i) {
+        if (!evaluate()) continue;
+        if (i == 0) measure_guess();
+        if (has_passed_floor()) {
+          go_back_to_floor();
+          continue;
+        }
+        if (!correct()) return false;
+        if (has_converged()) return is_near_guess();
       }
-      elastic_strain = 1.0 / stiffness_over_strength(here.at);
-      if (i == 0) {
-        elastic_strain_of_guess = elastic_strain;
-        shortest = std::abs(now.yield.f) / std::hypot(now.f_by_phi, now.f_by_deviatoric);
-      }
-      const double slope = now.f_by_phi * phi + now.f_by_deviatoric * deviatoric;
-      if (has_caps && last.yield.f > 0.0 && now.yield.f > 0.0 && slope > 0.0) {
-        const double back = slope / (last.yield.f + slope);
-        y[k_phi] -= back * phi;
-        y[k_deviatoric] -= back * deviatoric;
-        floor = {last.f_by_deviatoric - now.f_by_deviatoric, now.f_by_phi - last.f_by_phi};
-        phi = deviatoric = 0.0;
-        last = {};
-        continue;
-      }
-      last = now;
-      const bool is_along_flow = way == Way::flow;
-      const double by_phi = floor ? (*floor)[0] : is_along_flow ? now.phi : now.f_by_phi;
-      const double by_deviatoric = floor ? (*floor)[1] : is_along_flow ? now.deviatoric : now.f_by_deviatoric;
-      const double step = -now.yield.f / (now.f_by_phi * by_phi + now.f_by_deviatoric * by_deviatoric);
-      phi = step * by_phi;
-      deviatoric = step * by_deviatoric;
-      if (!std::isfinite(step)) return false;
-      y[k_phi] += phi;
-      y[k_deviatoric] += deviatoric;
-      const double last_correction = std::min(k_last_correction, std::sqrt(k_strain_rounding * elastic_strain));
-      if (std::hypot(phi, deviatoric) >= last_correction) {
-        // Under prescribed stresses f may grow so little with phi that its rounding is a larger strain than that.
-        const Yield& at = now.yield;
-        const double rounding = k_rounding * (std::abs(at.f_p * here.p) + std::abs(at.f_s * here.s));
-        if (!(std::abs(at.f) <= rounding) || ++corrections_of_rounding < k_most_corrections_of_rounding) continue;
-      }
-      const bool is_found = !has_caps || std::abs(now.yield.f) < k_last_excess;
-      if (!is_found && ++small_corrections < k_most_small_corrections) continue;
-      const double distance = std::hypot(y[k_phi] - guess, y[k_deviatoric] - guessed_deviatoric);
-      if (is_solvable()) return true;
-      if (is_along_flow && distance > std::max(k_last_correction, k_most_detour * shortest)) return false;
-      return distance <= std::max(elastic_strain_of_guess, k_nearby);
+    } catch (const std::domain_error&) {
+      // Far corrections that lead to where the law has no surface at all have found nothing, either.
+      if (std::abs(y_[k_phi] - guess_.phi) <= elastic_strain_) throw;
     }
-  } catch (const std::domain_error&) {
-    // Far corrections that lead to where the law has no surface at all have found nothing, either.
-    if (std::abs(y[k_phi] - guess) <= elastic_strain) throw;
+    return false;
   }
-  return false;
+
+ private:
+  /// Plastic strains, or a direction or a step in them.
+  struct Strains {
+    double phi = 0.0;
+    double deviatoric = 0.0;
+
+    [[nodiscard]] double length() const { return std::hypot(phi, deviatoric); }
+  };
+
+  void move(const Strains& step, double share) {
+    y_[k_phi] += share * step.phi;
+    y_[k_deviatoric] += share * step.deviatoric;
+  }
+
+  [[nodiscard]] double slope_along(const Strains& step) const {
+    return now_.f_by_phi * step.phi + now_.f_by_deviatoric * step.deviatoric;
+  }
+
+  /// Evaluates stresses and flow. Next to where moduli become infinite a correction may lead beyond: half of it, or
+  /// less, does not.
+  /// @return false where half of the last correction has been taken back instead
+  [[nodiscard]] bool evaluate() {
+    try {
+      here_ = point_.response(xi_, y_);
+      now_ = point_.flow_to_surface(here_);
+    } catch (const std::domain_error&) {
+      if (correction_.phi == 0.0 || ++halvings_ > k_most_halvings) throw;
+      for (double* part : {&correction_.phi, &correction_.deviatoric, &last_.yield.f}) *part *= 0.5;
+      move(correction_, -1.0);
+      return false;
+    }
+    elastic_strain_ = 1.0 / stiffness_over_strength(here_.at);
+    return true;
+  }
+
+  /// How far from the guess it may lead.
+  void measure_guess() {
+    elastic_strain_of_guess_ = elastic_strain_;
+    shortest_ = std::abs(now_.yield.f) / std::hypot(now_.f_by_phi, now_.f_by_deviatoric);
+  }
+
+  [[nodiscard]] bool has_passed_floor() const {
+    return has_caps_ && last_.yield.f > 0.0 && now_.yield.f > 0.0 && slope_along(correction_) > 0.0;
+  }
+
+  /// Takes the last correction back to where f was least along it, and turns to the direction of the floor.
+  void go_back_to_floor() {
+    const double slope = slope_along(correction_);
+    move(correction_, -(slope / (last_.yield.f + slope)));
+    floor_ = {last_.f_by_deviatoric - now_.f_by_deviatoric, now_.f_by_phi - last_.f_by_phi};
+    correction_ = {};
+    last_ = {};
+  }
+
+  [[nodiscard]] Strains direction() const {
+    if (floor_) return *floor_;
+    if (is_along_flow_) return {now_.phi, now_.deviatoric};
+    return {now_.f_by_phi, now_.f_by_deviatoric};
+  }
+
+  /// @return false where f does not change in the direction
+  [[nodiscard]] bool correct() {
+    last_ = now_;
+    const Strains along = direction();
+    const double step = -now_.yield.f / slope_along(along);
+    correction_ = {step * along.phi, step * along.deviatoric};
+    if (!std::isfinite(step)) return false;
+    move(correction_, 1.0);
+    return true;
+  }
+
+  /// True if the next correction would be round-off.
+  [[nodiscard]] bool has_converged() {
+    const double last_correction = std::min(k_last_correction, std::sqrt(k_strain_rounding * elastic_strain_));
+    const bool is_small = !(correction_.length() >= last_correction);
+    if (!is_small && (!is_rounding() || ++corrections_of_rounding_ < k_most_corrections_of_rounding)) return false;
+    const bool is_on_surface = !has_caps_ || std::abs(now_.yield.f) < k_last_excess;
+    return is_on_surface || ++small_corrections_ >= k_most_small_corrections;
+  }
+
+  /// Under prescribed stresses f may grow so little with phi that its rounding is a larger strain than the last one.
+  [[nodiscard]] bool is_rounding() const {
+    const Yield& at = now_.yield;
+    return std::abs(at.f) <= k_rounding * (std::abs(at.f_p * here_.p) + std::abs(at.f_s * here_.s));
+  }
+
+  [[nodiscard]] bool is_near_guess() const {
+    if (point_.is_solvable()) return true;
+    const double distance = std::hypot(y_[k_phi] - guess_.phi, y_[k_deviatoric] - guess_.deviatoric);
+    if (is_along_flow_ && distance > std::max(k_last_correction, k_most_detour * shortest_)) return false;
+    return distance <= std::max(elastic_strain_of_guess_, k_nearby);
+  }
+
+  const MaterialPoint& point_;
+  double xi_;
+  std::span<double> y_;
+  bool is_along_flow_;
+  bool has_caps_;
+  Strains guess_;
+  double elastic_strain_ = 0.0;
+  double elastic_strain_of_guess_ = 0.0;
+  double shortest_ = 0.0;  ///< distance of the guess from f = 0, to first order
+  Response here_;
+  Flow now_;
+  Strains correction_;            ///< the last one
+  Flow last_;                     ///< where it began; f, as much of it as it takes away
+  std::optional<Strains> floor_;  ///< direction along the floor of a valley
+  int small_corrections_ = 0;
+  int corrections_of_rounding_ = 0;
+  int halvings_ = 0;
+};
+
+bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) const {
+  return ReturnMapping(*this, xi, y, way).succeeds();
 }
 
 }  // namespace monograin::compressible
