@@ -36,42 +36,79 @@ ProgramBounds draw_material_point(Dice& dice, DrawnMaterial& drawn) {
   return {.deepest = 0.4, .force = 3.0, .tension = 0.5};
 }
 
+namespace {
+
+/// Draws what the steps of a program prescribe, one after the other.
+class ProgramDraw {
+ public:
+  ProgramDraw(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds)
+      : dice_(dice),
+        drawn_(drawn),
+        bounds_(bounds),
+        is_path_(drawn.configuration == "strain-path"),
+        is_triaxial_(drawn.configuration == "triaxial"),
+        size_(dice.one_of({1e-6, 1e-2, 0.1, 1.0, 1.0})) {}
+
+  /// Axial strain, some of them next to the one before, or stress.
+  void draw_axial(DrawnStep& step) {
+    step.control = !is_path_ && dice_.happens(0.3) ? Control::stress : Control::strain;
+    step.target = step.control == Control::stress ? stress() : strain();
+    if (step.control == Control::stress) return;
+    if (dice_.happens(0.3)) step.target = strain_ + dice_.one_of({1e-13, 1e-8, 1e-4}) * dice_.uniform(-1.0, 1.0);
+    strain_ = step.target;
+  }
+
+  /// Lateral strain or stress, where the configuration has one.
+  void draw_lateral(DrawnStep& step) {
+    if (is_path_) {
+      // Also straight along an axis of the stress: no deviator, or no pressure.
+      const double of_axial = dice_.one_of({0.0, 1.0, -0.5, dice_.uniform(-1.0, 1.0)});
+      if (dice_.happens(0.8)) step.lateral = {Control::strain, of_axial * step.target};
+    } else if (is_triaxial_ && dice_.happens(0.5)) {
+      step.lateral = {Control::stress, stress()};
+    }
+  }
+
+  /// An event or a quantity that ends the step before its time.
+  void draw_condition(DrawnStep& step) {
+    const std::string_view key =
+        dice_.one_of<std::string_view>({"stress_axial", "stress_lateral", "relative_density", "event"});
+    if (key == "event") {
+      step.until_event = draw_event(dice_, drawn_.events);
+      return;
+    }
+    step.until = key;
+    step.until_value = key == "relative_density" ? dice_.uniform(0.2, 0.999) : stress();
+  }
+
+ private:
+  double strain() { return bounds_.deepest * size_ * dice_.uniform(-1.0, 0.3); }
+
+  double stress() {
+    return dice_.happens(0.2) ? bounds_.tension * dice_.uniform(0.0, 1.0)
+                              : -bounds_.force * size_ * dice_.uniform(0.0, 1.0);
+  }
+
+  Dice& dice_;
+  const DrawnMaterial& drawn_;
+  const ProgramBounds& bounds_;
+  bool is_path_;
+  bool is_triaxial_;
+  double size_;          ///< of targets, over the bounds
+  double strain_ = 0.0;  ///< axial one prescribed last
+};
+
+}  // namespace
+
 std::vector<DrawnStep> draw_material_point_program(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds,
                                                    std::size_t count) {
   const double usual = dice.happens(0.6) ? 1.0 : dice.log_uniform(1e-12, 1e12);
-  const bool is_path = drawn.configuration == "strain-path";
-  const bool is_triaxial = drawn.configuration == "triaxial";
-  const double size = dice.one_of({1e-6, 1e-2, 0.1, 1.0, 1.0});
-  const auto draw_strain = [&] { return bounds.deepest * size * dice.uniform(-1.0, 0.3); };
-  const auto draw_stress = [&] {
-    return dice.happens(0.2) ? bounds.tension * dice.uniform(0.0, 1.0) : -bounds.force * size * dice.uniform(0.0, 1.0);
-  };
-  double present = 0.0;
+  ProgramDraw program(dice, drawn, bounds);
   return draw_steps(dice, usual, count, [&](DrawnStep& step, std::size_t /*index*/) {
-    step.control = !is_path && dice.happens(0.3) ? Control::stress : Control::strain;
-    step.target = step.control == Control::stress ? draw_stress() : draw_strain();
-    if (step.control == Control::strain) {
-      if (dice.happens(0.3)) step.target = present + dice.one_of({1e-13, 1e-8, 1e-4}) * dice.uniform(-1.0, 1.0);
-      present = step.target;
-    }
-    if (is_path) {
-      // Also straight along an axis of the stress: no deviator, or no pressure.
-      const double of_axial = dice.one_of({0.0, 1.0, -0.5, dice.uniform(-1.0, 1.0)});
-      if (dice.happens(0.8)) step.lateral = {Control::strain, of_axial * step.target};
-    } else if (is_triaxial && dice.happens(0.5)) {
-      step.lateral = {Control::stress, draw_stress()};
-    }
+    program.draw_axial(step);
+    program.draw_lateral(step);
     if (!step.lateral && dice.happens(0.3)) give_rate(step);
-    if (dice.happens(0.15)) {
-      const std::string_view key =
-          dice.one_of<std::string_view>({"stress_axial", "stress_lateral", "relative_density", "event"});
-      if (key == "event") {
-        step.until_event = draw_event(dice, drawn.events);
-      } else {
-        step.until = key;
-        step.until_value = key == "relative_density" ? dice.uniform(0.2, 0.999) : draw_stress();
-      }
-    }
+    if (dice.happens(0.15)) program.draw_condition(step);
   });
 }
 
