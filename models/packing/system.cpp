@@ -403,60 +403,80 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
 
 // --- events
 
-void System::add_guard(int kind, std::string_view name, double place) {
-  guards_.push_back({kind, 0, direction(), name, name.empty()});
+/// Lists a place, if it is ahead on the path to the ramp's end.
+void System::arm_place(int kind, std::string_view name, double place) {
+  const int d = direction();
+  if (!(d > 0 ? place <= ramp_.end : place >= ramp_.end)) return;
+  guards_.push_back({kind, 0, d, name, name.empty()});
   places_.push_back(place);
 }
 
-/// Lists what is ahead on the way to the ramp's end.
 void System::arm_guards(double xi) {
   guards_.clear();
   places_.clear();
   const int d = direction();
-  if (d == 0) return;
-  const double value = prescribed(xi);
-  const auto is_ahead = [&](double place) { return d > 0 ? place <= ramp_.end : place >= ramp_.end; };
-  const auto watch_place = [&](int kind, std::string_view name, double place) {
-    if (is_ahead(place)) add_guard(kind, name, place);
-  };
-  const double jamming = prescribed_at_jamming();
+  if (d > 0) {
+    arm_jamming();
+    // A loose packing comes to strains that a jammed one has, but not to its states.
+    if (is_jammed_) arm_compaction(xi);
+  } else if (d < 0) {
+    arm_loosening();
+  }
+}
+
+/// Places up to which a packing is not integrated: it jams, its branch begins, and its closed start ends.
+void System::arm_jamming() {
   switch (mode_) {
     case Mode::unjammed:
       // Under stress it jams at once, where a step begins.
-      if (d > 0 && ramp_.control != Control::stress) watch_place(k_jams, "jamming", jamming);
+      if (ramp_.control != Control::stress) arm_place(k_jams, "jamming", prescribed_at_jamming());
       break;
     case Mode::held:
-      if (d > 0) watch_place(k_grips, "", branch_.least);
+      arm_place(k_grips, "", branch_.least);
       break;
     case Mode::starting:
-      if (d > 0)
-        watch_place(k_starts, "", prescribed_at(start_end_));
-      else if (ramp_.control == Control::stress)
-        watch_place(k_grips, "", branch_.least);
+      arm_place(k_starts, "", prescribed_at(start_end_));
+      break;
+    case Mode::jammed:
+      break;
+  }
+}
+
+/// Those places on the path back.
+void System::arm_loosening() {
+  const double jamming = prescribed_at_jamming();
+  switch (mode_) {
+    case Mode::unjammed:
+    case Mode::held:
+      break;
+    case Mode::starting:
+      if (ramp_.control == Control::stress)
+        arm_place(k_grips, "", branch_.least);
       else
-        watch_place(k_jams, "jamming", jamming);
+        arm_place(k_jams, "jamming", jamming);
       break;
     case Mode::jammed: {
-      if (d > 0) break;
       // Where the strain falls at first, it passes that at jamming before.
       const double start = prescribed_at(start_end_);
       const bool comes_loose = ramp_.control == Control::strain && start <= jamming;
-      watch_place(comes_loose ? k_jams : k_starts, comes_loose ? "jamming" : "", start);
+      arm_place(comes_loose ? k_jams : k_starts, comes_loose ? "jamming" : "", start);
       break;
     }
   }
-  // A loose packing comes to strains that a jammed one has, but not to its states.
-  if (d < 0 || !is_jammed_) return;
+}
+
+/// A jammed packing softens, yields as a whole, and is full or comes to the end of its branch.
+void System::arm_compaction(double xi) {
   const double end = branch_.end;
-  if (!is_softer_ && softening_ <= end) watch_place(k_softens, "plastic-softening", prescribed_at(softening_));
+  if (!is_softer_ && softening_ <= end) arm_place(k_softens, "plastic-softening", prescribed_at(softening_));
   const double plastic = full_plasticity(law_);
   if (!is_fully_plastic_ && plastic <= std::min(1.0, end)) {
-    watch_place(k_plastic, "fully-plastic", prescribed_at(plastic));
+    arm_place(k_plastic, "fully-plastic", prescribed_at(plastic));
   }
-  if (branch_.end == 1.0) {
-    if (value < branch_.greatest) watch_place(k_full, "full", branch_.greatest);
+  if (end == 1.0) {
+    if (prescribed(xi) < branch_.greatest) arm_place(k_full, "full", branch_.greatest);
   } else {
-    watch_place(k_limit, "limit", last_place());
+    arm_place(k_limit, "limit", last_place());
   }
 }
 

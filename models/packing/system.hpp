@@ -102,10 +102,13 @@ class System final : public HybridSystem {
   void resolve_mode(double xi, std::vector<Event>& log);
   [[nodiscard]] Mode mode_of_jammed(double value) const;
   void set_mode(Mode mode, double xi, std::span<double> y);
+  void arm_place(int kind, std::string_view name, double place);
   void arm_guards(double xi);
+  void arm_jamming();
+  void arm_loosening();
+  void arm_compaction(double xi);
   void pass_places(double xi, std::vector<Event>& log);
   void end_branch_at_jamming() noexcept;
-  void add_guard(int kind, std::string_view name, double place);
 
   Law law_;
   double initial_ = 0.0;
