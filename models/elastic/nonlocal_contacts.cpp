@@ -51,7 +51,7 @@ Contacts::Contacts(const Formulation& model, std::span<const ContactClass> class
   coupling_ = coupling_of(influence, walls, classes);
   neighbours_ = neighbours_of(poisson_ratio_, walls, n);
   rivalry_ = rivalry_of(influence, modulus_, walls, n);
-  has_modes_of_walls_ = is_any_lifted(influence);
+  has_modes_of_walls_ = has_negative_coupling(influence);
   std::vector<std::size_t> class_of;
   for (const Wall& wall : walls) class_of.push_back(wall.contact_class);
   // With positive couplings the critical mode is positive (Perron), hence one of the classes.
@@ -260,8 +260,8 @@ void Contacts::let_centre_follow(std::span<const Ramp> ramps, std::span<const do
   }
 }
 
-/// Net force on the centre that is error. Contacts that bear a centre against a force end with it, if none of that is
-/// left; elsewhere it is let stand, and 0 comes back.
+/// Net force on the centre that is error, where contacts bear it against a prescribed force: they end with that force
+/// only if no error is left. 0 elsewhere.
 Eigen::Vector3d Contacts::error_against_forces(std::span<const Ramp> ramps, std::span<const double> y,
                                                double touch) const {
   Eigen::Vector3d error = Eigen::Vector3d::Zero();
@@ -284,8 +284,8 @@ double Contacts::error_decay(std::span<const Ramp> ramps, double least) const no
   return decay;
 }
 
-/// Gap up to which walls may bear what no contact does. Those that just touch hold the centre at once; those that are
-/// as near as a force is deep are taken off by errors just before it ends.
+/// Gap up to which walls may bear what no contact does. Walls that just touch hold the centre at once, if they can
+/// bear. Where a force ends, so do walls that are as near as its contact is deep: errors take them off just before.
 double Contacts::reach_of_support(std::span<const Ramp> ramps, std::span<const double> y, double touch) const {
   const Eigen::Matrix3d unheld = unheld_directions();
   double near = touch;

@@ -82,7 +82,7 @@ Eigen::MatrixXd influence_of(Influence influence, double poisson_ratio, std::spa
   return result;
 }
 
-bool is_any_lifted(const Eigen::MatrixXd& influence) noexcept {
+bool has_negative_coupling(const Eigen::MatrixXd& influence) noexcept {
   for (Eigen::Index i = 0; i < influence.rows(); ++i) {
     for (Eigen::Index k = 0; k < influence.cols(); ++k) {
       if (i != k && influence(i, k) < 0.0) return true;

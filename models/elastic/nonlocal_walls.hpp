@@ -45,8 +45,8 @@ struct Neighbours {
 [[nodiscard]] Eigen::MatrixXd influence_of(Influence influence, double poisson_ratio, std::span<const Wall> walls,
                                            std::span<const ContactClass> classes);
 
-/// True if the force on a wall pushes the surface away from another wall.
-[[nodiscard]] bool is_any_lifted(const Eigen::MatrixXd& influence) noexcept;
+/// True if the force on a wall moves the surface away from another wall.
+[[nodiscard]] bool has_negative_coupling(const Eigen::MatrixXd& influence) noexcept;
 
 /// G: approach of a wall of the row's class per unit force on every wall of the column's class.
 /// @throws std::invalid_argument for a class of which not every wall sees the same forces around it
