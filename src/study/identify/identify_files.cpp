@@ -114,7 +114,7 @@ figure::ChartPanel error_panel(const ExperimentPlan& plan, const std::vector<Nam
       .x = {.label = sets.front().name == "planned" ? "planned, and with each candidate" : "candidate",
             .lowest = 0.5,
             .highest = static_cast<double>(sets.size()) + 0.5},
-      .y = {.label = "standard error / value [%]", .lowest = 0.0},
+      .y = {.label = "Standard error / value [%]", .lowest = 0.0},
       .note = figure::verbatim_text(plan.free[k].key.path)};
   double highest = 0.0;
   for (std::size_t s = 0; s < sets.size(); ++s) {

@@ -66,8 +66,8 @@ using Style = figure::ChartSeries::Style;
 
 /// First-order indices beside total ones, each with its interval; a colour for each factor.
 [[nodiscard]] figure::ChartPanel index_panel(const Sweep& sweep, const ResultSensitivity& found) {
-  figure::ChartPanel panel{.x = {.label = "index", .lowest = 0.5, .highest = 2.5, .names = {"first order", "total"}},
-                           .y = {.label = "share of the variance"},
+  figure::ChartPanel panel{.x = {.label = "Index", .lowest = 0.5, .highest = 2.5, .names = {"first order", "total"}},
+                           .y = {.label = "Share of the variance"},
                            .note = figure::short_text(found.result)};
   const std::size_t count = sweep.factors.size();
   for (std::size_t k = 0; k < count; ++k) {
@@ -88,8 +88,8 @@ using Style = figure::ChartSeries::Style;
 }
 
 [[nodiscard]] figure::ChartPanel effect_panel(const Sweep& sweep, const ResultSensitivity& found) {
-  figure::ChartPanel panel{.x = {.label = "mean size of the effects", .lowest = 0.0},
-                           .y = {.label = "their standard deviation", .lowest = 0.0},
+  figure::ChartPanel panel{.x = {.label = "Mean size of the effects", .lowest = 0.0},
+                           .y = {.label = "Their standard deviation", .lowest = 0.0},
                            .note = figure::short_text(found.result)};
   for (std::size_t k = 0; k < sweep.factors.size(); ++k) {
     const auto& [size, lower, upper] = found.morris.mean_size[k];
