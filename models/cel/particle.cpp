@@ -14,7 +14,6 @@ namespace monograin::cel {
 namespace {
 
 namespace k = constants;
-using Tensor = CoreShape::Tensor;
 
 /// Sine of half the angle, and last term of the series, of the self influence: part of the law's definition.
 constexpr double k_self_half_sine = 0.2;
@@ -77,18 +76,17 @@ std::vector<Eigen::Matrix3d> spreads_of(std::span<const ContactClass> classes) {
 Particle::Particle(const Material& material, double poisson_ratio, std::span<const ContactClass> classes,
                    bool centre_is_free)
     : material_(material),
-      shape_(spreads_of(classes)),
+      spreads_(spreads_of(classes)),
+      shapes_(core_shapes(spreads_)),
       lines_(classes, centre_is_free),
-      layout_(classes.size(), static_cast<std::size_t>(lines_.dimension()), shape_.dimension()),
+      layout_(classes.size(), static_cast<std::size_t>(lines_.dimension()), shapes_.size()),
       classes_(classes.size()) {
-  const std::vector<Eigen::Matrix3d> spreads = spreads_of(classes);
   Influences influences(poisson_ratio);
   const double self = nonlocal::sphere_self_influence(poisson_ratio, k_self_half_sine, k_last_term);
   for (std::size_t i = 0; i < size(); ++i) {
     const Eigen::Vector3d& normal = classes[i].normals.front();
     counts_.push_back(classes[i].multiplicity());
-    directions_.push_back(shape_.of(normal * normal.transpose()));
-    spreads_.push_back(shape_.product_with(shape_.of(spreads[i])));
+    walls_.emplace_back(normal * normal.transpose());
     for (std::size_t j = 0; j < size(); ++j) {
       Coupling& sum = coupling_.emplace_back();
       for (std::size_t wall = 0; wall < classes[j].normals.size(); ++wall) {
@@ -116,9 +114,9 @@ Particle::Particle(const Material& material, double poisson_ratio, std::span<con
 }
 
 Core Particle::core_of(std::span<const double> y) const noexcept {
-  Core core{.C = shape_.unit()};
+  Core core{.C = Eigen::Matrix3d::Identity()};
   if (!layout_.has_core()) return core;
-  for (std::size_t j = 0; j < shape_.dimension(); ++j) core.C[j] += y[layout_.core() + j];
+  for (std::size_t j = 0; j < shapes_.size(); ++j) core.C += y[layout_.core() + j] * shapes_[j];
   core.e = y[layout_.size() - 1];
   return core;
 }
@@ -152,10 +150,11 @@ void Particle::evaluate_elastically(std::span<const double> y) {
 /// Dents, coverage and forces.
 void Particle::evaluate_contacts(std::span<const double> y) {
   Om_ = 0.0;
+  Eigen::Matrix3d flown = Eigen::Matrix3d::Zero();  // C - 1
+  for (std::size_t j = 0; j + 1 < layout_.core_size(); ++j) flown += y[layout_.core() + j] * shapes_[j];
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
-    double excess = 0.0;  // l^2 - 1, without the rounding of 1
-    for (std::size_t j = 0; j + 1 < layout_.core_size(); ++j) excess += directions_[i][j] * y[layout_.core() + j];
+    const double excess = contraction(walls_[i], flown);  // l^2 - 1, without the rounding of 1
     const double square = 1.0 + excess;
     const double zeta = y[layout_.dent(i)];
     if (!(square > 0.0) || !(zeta > 0.0)) throw std::domain_error("the core or a dent of the particle has no size");
@@ -182,24 +181,23 @@ void Particle::evaluate_contacts(std::span<const double> y) {
 
 /// Load of the core, and how it flows under it.
 void Particle::evaluate_core(const Core& core) {
-  T_ = {};
+  T_.setZero();
   flow_ = {};
   per_S_ = 1.0 / (material_.Y * (k::s0 + k::s1 * core.e));
   s_ = per_s_ = Q_ = 0.0;
   if (!layout_.has_core()) return;
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
-    load_[i] = shape_.deviator(shape_.apply(spreads_[i], core.C), -c.advance.c_l * c.per_l);
-    shape_.add(load_[i], c.contact.F, T_);
+    load_[i] = -c.advance.c_l * c.per_l * deviator(symmetric(core.C * spreads_[i]));
+    T_ += c.contact.F * load_[i];
   }
-  const double load = 0.5 * std::sqrt(1.5 * shape_.dot(T_, T_));
+  const double load = 0.5 * std::sqrt(1.5 * T_.squaredNorm());
   if (!(load > k_no_load * material_.Y)) return;
   s_ = load;
   per_s_ = 1.0 / s_;
   Q_ = raised<k::n2>(s_ * per_S_);
   const double pace = static_cast<double>(k::n2) / k::n1 * Q_ * per_s_;
-  const Tensor direction = shape_.product(T_, core.C);
-  shape_.add(direction, -2.0 * pace * 0.375 * per_s_, flow_.C);
+  flow_.C = -2.0 * pace * 0.375 * per_s_ * symmetric(T_ * core.C);
   flow_.e = 0.5 * pace;
 }
 
@@ -214,7 +212,7 @@ void Particle::evaluate_yield(std::span<const double> y) {
     c.f = -1.0;
     if (!(c.contact.F > 0.0)) continue;
     if (s_ > 0.0) {
-      c.tau = 0.75 * per_s_ * shape_.dot(directions_[i], T_);
+      c.tau = 0.75 * per_s_ * contraction(walls_[i], T_);
       const double z = std::clamp(-2.0 * c.tau, 0.0, 1.0);
       c.b = z * z * (3.0 - 2.0 * z);
       if (c.b > 0.0) c.wk = 1.0 - k::beta * raised<k::n3>(use) * c.b * std::exp(-c.contact.alpha / k::ab);
@@ -309,7 +307,7 @@ void Particle::differentiate() {
     const ClassState& c = classes_[i];
     const double per_square = c.per_l * c.per_l;
     const double grown = c.dent.zeta * c.dent.zeta - material_.a_Y * material_.a_Y;
-    l_by_flow_[i] = 0.5 * c.per_l * shape_.dot(directions_[i], flow_.C);
+    l_by_flow_[i] = 0.5 * c.per_l * contraction(walls_[i], flow_.C);
     Om_by_zeta_[i] = counts_[i] * c.dent.zeta * per_square;
     Om_by_flow_ -= counts_[i] * grown * per_square * c.per_l * l_by_flow_[i];
     F_by_[i] = row_of(i, c.contact.F_by);
@@ -323,7 +321,7 @@ void Particle::differentiate() {
 }
 
 void Particle::differentiate_core() {
-  T_by_flow_ = {};
+  T_by_flow_.setZero();
   s_by_flow_ = 0.0;
   std::ranges::fill(s_by_F_, 0.0);
   if (!(s_ > 0.0)) return;
@@ -331,11 +329,10 @@ void Particle::differentiate_core() {
     const ClassState& c = classes_[i];
     const double w = -c.advance.c_l * c.per_l;
     const double w_l = -(w + c.advance.c_ll) * c.per_l;
-    s_by_F_[i] = 0.375 * per_s_ * shape_.dot(T_, load_[i]);
-    shape_.add(load_[i], c.contact.F * w_l / w * l_by_flow_[i], T_by_flow_);
-    shape_.add(shape_.deviator(shape_.apply(spreads_[i], flow_.C), w), c.contact.F, T_by_flow_);
+    s_by_F_[i] = 0.375 * per_s_ * contraction(T_, load_[i]);
+    T_by_flow_ += c.contact.F * (w_l / w * l_by_flow_[i] * load_[i] + w * deviator(symmetric(flow_.C * spreads_[i])));
   }
-  s_by_flow_ = 0.375 * per_s_ * shape_.dot(T_, T_by_flow_);
+  s_by_flow_ = 0.375 * per_s_ * contraction(T_, T_by_flow_);
 }
 
 /// Writes the derivatives of (K).
@@ -386,8 +383,8 @@ void Particle::differentiate_yield(std::size_t i, std::span<double> row) {
     const double of_s = of_use * per_S_ - of_tau * c.tau * per_s_;
     const double per_tau = 0.75 * of_tau * per_s_;
     for (std::size_t j = 0; j < n; ++j)
-      add(j, F_by_[j], of_s * s_by_F_[j] + per_tau * shape_.dot(directions_[i], load_[j]), row);
-    row[2 * n + 1] += of_s * s_by_flow_ + per_tau * shape_.dot(directions_[i], T_by_flow_) -
+      add(j, F_by_[j], of_s * s_by_F_[j] + per_tau * contraction(walls_[i], load_[j]), row);
+    row[2 * n + 1] += of_s * s_by_flow_ + per_tau * contraction(walls_[i], T_by_flow_) -
                       of_use * use * per_S_ * material_.Y * k::s1 * flow_.e;
   }
   fold_coverage(row);
@@ -562,9 +559,7 @@ double Particle::rates(std::span<double> dy, std::span<const double> drift) {
   const double sign = eliminate(before_, drift);
   Lam_ = flow_rate(solution_);
   for (std::size_t j = 0; j < layout_.core(); ++j) dy[j] = solution_[j] + drift_[j];
-  const double Lam = flow_rate(dy);
-  for (std::size_t j = 0; j + 1 < layout_.core_size(); ++j) dy[layout_.core() + j] = Lam * flow_.C[j];
-  if (layout_.has_core()) dy[layout_.size() - 1] = Lam * flow_.e;
+  let_core_flow(dy);
   return sign * slowness();
 }
 
@@ -612,6 +607,13 @@ double Particle::flow_rate(std::span<const double> dy) const noexcept {
     if (classes_[i].flows) Lam += classes_[i].pace * dy[layout_.dent(i)];
   }
   return Lam;
+}
+
+void Particle::let_core_flow(std::span<double> dy) const noexcept {
+  if (!layout_.has_core()) return;
+  const double Lam = flow_rate(dy);
+  for (std::size_t j = 0; j < shapes_.size(); ++j) dy[layout_.core() + j] = Lam * contraction(shapes_[j], flow_.C);
+  dy[layout_.size() - 1] = Lam * flow_.e;
 }
 
 }  // namespace monograin::cel

@@ -36,7 +36,7 @@ class Layout {
   [[nodiscard]] std::size_t coordinate(std::size_t i) const noexcept { return i; }
   [[nodiscard]] std::size_t dent(std::size_t i) const noexcept { return classes_ + i; }
   [[nodiscard]] std::size_t centre(std::size_t k) const noexcept { return 2 * classes_ + k; }
-  /// C - 1 by its components, then e.
+  /// C - 1 by its components (core_shape.hpp), then e.
   [[nodiscard]] std::size_t core() const noexcept { return 2 * classes_ + directions_; }
   [[nodiscard]] std::size_t size() const noexcept { return core() + core_size_; }
 
@@ -50,7 +50,8 @@ class Layout {
 
 /// Shape of the core and its accumulated equivalent strain; or their changes.
 struct Core {
-  CoreShape::Tensor C{};  ///< metric, of determinant 1; the support distance along n is sqrt(n.C n)
+  /// Metric, of determinant 1; the support distance along n is sqrt(n.C n).
+  Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
   double e = 0.0;
 };
 
@@ -126,6 +127,8 @@ class Particle {
   [[nodiscard]] const Core& core_flow() const noexcept { return flow_; }
   /// Lam from rates of the dents.
   [[nodiscard]] double flow_rate(std::span<const double> dy) const noexcept;
+  /// Writes the rates of the core that belong to the rates of the dents, by its flow rule.
+  void let_core_flow(std::span<double> dy) const noexcept;
 
  private:
   struct Coupling {
@@ -164,13 +167,13 @@ class Particle {
   }
 
   Material material_;
-  CoreShape shape_;
+  std::vector<Eigen::Matrix3d> spreads_;  ///< sum of n n over the walls of each class
+  std::vector<Eigen::Matrix3d> shapes_;   ///< of the core
   contacts::CentreLines lines_;
   Layout layout_;
-  std::vector<double> counts_;                 ///< of walls
-  std::vector<CoreShape::Tensor> directions_;  ///< n n of the first wall of each class
-  std::vector<CoreShape::Map> spreads_;        ///< a core's product with the sum of n n over the walls of a class
-  std::vector<Coupling> coupling_;             ///< row by row
+  std::vector<double> counts_;          ///< of walls
+  std::vector<Eigen::Matrix3d> walls_;  ///< n n of the first wall of each class
+  std::vector<Coupling> coupling_;      ///< row by row
   std::vector<ClassState> classes_;
   Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();  ///< where the centre is at ease
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
@@ -181,8 +184,8 @@ class Particle {
   double Om_ = 0.0, m_by_Om_ = 0.0, shade_ = 1.0;
   double s_ = 0.0, per_s_ = 0.0, per_S_ = 1.0, Q_ = 0.0;
   double stored_ = 0.0;
-  CoreShape::Tensor T_{};                ///< deviator of the load
-  std::vector<CoreShape::Tensor> load_;  ///< that of a class by its force
+  Eigen::Matrix3d T_;                  ///< deviator of the load
+  std::vector<Eigen::Matrix3d> load_;  ///< that of a class by its force
   Core flow_;
 
   // Its derivatives. A row is by the coordinates of all classes, by their dents, by the coverage and by the flow.
@@ -191,7 +194,7 @@ class Particle {
   std::vector<Row> F_by_;
   std::vector<double> s_by_F_;
   double s_by_flow_ = 0.0;  ///< at given forces
-  CoreShape::Tensor T_by_flow_{};
+  Eigen::Matrix3d T_by_flow_;
   std::vector<double> rows_;  ///< of (K), of the yield functions, and of one equation (E)
 
   // The linear equations for rates or corrections of the unknowns up to the core that move.

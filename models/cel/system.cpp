@@ -211,11 +211,9 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
     for (std::size_t i = 0; i < classes_.size(); ++i) {
       if (!particle_.at(i).flows) res[layout.dent(i)] = dy[layout.dent(i)];
     }
-    const double Lam = particle_.flow_rate(dy);
-    const Core& flow = particle_.core_flow();
-    for (std::size_t j = 0; j + 1 < layout.core_size(); ++j)
-      res[layout.core() + j] = dy[layout.core() + j] - Lam * flow.C[j];
-    if (layout.has_core()) res[layout.size() - 1] = dy[layout.size() - 1] - Lam * flow.e;
+    std::ranges::copy(dy, state_.begin());
+    particle_.let_core_flow(state_);
+    for (std::size_t j = layout.core(); j < layout.size(); ++j) res[j] = dy[j] - state_[j];
     evaluate_rates(xi, y);
   }
   res[work_place_] = dy[work_place_] - particle_.power();

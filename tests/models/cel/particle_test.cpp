@@ -54,19 +54,6 @@ std::vector<Matrix3d> spreads_of(std::span<const ContactClass> classes) {
   return spreads;
 }
 
-/// A tensor from its components.
-Matrix3d tensor_of(const CoreShape& shape, const CoreShape::Tensor& components) {
-  Matrix3d tensor;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const Matrix3d unit =
-          0.5 * (Vector3d::Unit(i) * Vector3d::Unit(j).transpose() + Vector3d::Unit(j) * Vector3d::Unit(i).transpose());
-      tensor(i, j) = shape.dot(shape.of(unit), components);
-    }
-  }
-  return tensor;
-}
-
 /// A core of unit determinant that walls could have made: a polynomial of what they load it by.
 Matrix3d random_core(Generator& generator, std::span<const ContactClass> classes) {
   Matrix3d C = Matrix3d::Identity();
@@ -87,7 +74,6 @@ struct RandomCase {
   std::vector<ContactClass> classes;
   bool centre_is_free;
   Particle particle;
-  CoreShape shape;
   std::vector<double> y;
 
   RandomCase(Generator& generator, std::vector<ContactClass> walls, bool is_free)
@@ -96,7 +82,6 @@ struct RandomCase {
         classes(std::move(walls)),
         centre_is_free(is_free),
         particle(material, poisson_ratio, classes, is_free),
-        shape(spreads_of(classes)),
         y(particle.layout().size()) {
     const Layout& layout = particle.layout();
     for (std::size_t i = 0; i < classes.size(); ++i) {
@@ -107,20 +92,18 @@ struct RandomCase {
       y[layout.coordinate(i)] = contact_under(material, dent, 1.0, 1.0, uniform(generator, 0.3, 1.0) * H).u;
     }
     for (std::size_t d = 0; d < layout.directions(); ++d) y[layout.centre(d)] = uniform(generator, -0.02, 0.02);
-    set_core(y, particle, shape, random_core(generator, classes), uniform(generator, 0.0, 0.4));
+    set_core(y, particle, classes, random_core(generator, classes), uniform(generator, 0.0, 0.4));
   }
 
-  static void set_core(std::vector<double>& state, const Particle& of, const CoreShape& among, const Matrix3d& C,
-                       double e) {
-    const CoreShape::Tensor components = among.of(C - Matrix3d::Identity());
-    const std::size_t first = of.layout().core();
-    for (std::size_t j = 0; j < among.dimension(); ++j) state[first + j] = components[j];
-    state[first + among.dimension()] = e;
+  static void set_core(std::vector<double>& state, const Particle& of, std::span<const ContactClass> among,
+                       const Matrix3d& C, double e) {
+    std::size_t at = of.layout().core();
+    for (const Matrix3d& shape : core_shapes(spreads_of(among)))
+      state[at++] = contraction(shape, C - Matrix3d::Identity());
+    state[at] = e;
   }
 
-  [[nodiscard]] Matrix3d core_at(std::span<const double> state) const {
-    return tensor_of(shape, particle.core_of(state).C);
-  }
+  [[nodiscard]] Matrix3d core_at(std::span<const double> state) const { return particle.core_of(state).C; }
 
   /// Ramps of all walls, and which dents grow.
   void drive(Generator& generator) {
@@ -229,7 +212,7 @@ TEST(CelParticleRates, LetTheCoreFlowAsTheDentsThatDriveItGrow) {
   for_random_cases([&](RandomCase& now, Generator&) {
     const std::vector<double> dy = now.rates();
     const double Lam = now.particle.flow_rate(dy);
-    const Matrix3d flow = tensor_of(now.shape, now.particle.core_flow().C);
+    const Matrix3d flow = now.particle.core_flow().C;
     const double strain = now.particle.core_flow().e;
     EXPECT_LE((now.core_at(dy) - Matrix3d::Identity() - Lam * flow).norm(), 1e-12 * (1.0 + std::abs(Lam)));
     EXPECT_NEAR(now.particle.core_of(dy).e, Lam * strain, 1e-12 * (1.0 + std::abs(Lam)));
@@ -353,7 +336,7 @@ TEST(CelParticle, IsTheSameInAnyOrderOfItsWalls) {
       y[other.layout().coordinate(i)] = now.y[now.particle.layout().coordinate(order[i])];
       y[other.layout().dent(i)] = now.y[now.particle.layout().dent(order[i])];
     }
-    RandomCase::set_core(y, other, CoreShape(spreads_of(classes)), now.core_at(now.y), now.particle.core_of(now.y).e);
+    RandomCase::set_core(y, other, classes, now.core_at(now.y), now.particle.core_of(now.y).e);
     const Said shuffled = said_by(other, y);
     Said sorted = shuffled;
     for (std::size_t i = 0; i < n; ++i) {
@@ -377,9 +360,8 @@ TEST(CelParticle, IsTheSameInAnyOrientation) {
       for (Vector3d& normal : c.normals) normal = turn * normal;
     }
     turned.particle = Particle(now.material, now.poisson_ratio, turned.classes, now.centre_is_free);
-    turned.shape = CoreShape(spreads_of(turned.classes));
     const Matrix3d R = turn.toRotationMatrix();
-    RandomCase::set_core(turned.y, turned.particle, turned.shape, R * now.core_at(now.y) * R.transpose(),
+    RandomCase::set_core(turned.y, turned.particle, turned.classes, R * now.core_at(now.y) * R.transpose(),
                          now.particle.core_of(now.y).e);
     expect_same(said_by(turned.particle, turned.y), expected, 1e-12);
   });
@@ -399,7 +381,7 @@ TEST(CelParticle, DoesNotFeelAWallThatNeverTouched) {
     }
     y[other.layout().coordinate(4)] = -0.1;
     y[other.layout().dent(4)] = now.material.a_Y;
-    RandomCase::set_core(y, other, CoreShape(spreads_of(classes)), now.core_at(now.y), now.particle.core_of(now.y).e);
+    RandomCase::set_core(y, other, classes, now.core_at(now.y), now.particle.core_of(now.y).e);
     expect_same(said_by(other, y), expected, 1e-14);
   });
 }
