@@ -15,40 +15,6 @@ namespace k = constants;
 
 constexpr double X = 3.0 * pi / 4.0;
 
-/// The contact of a dent at no force, and its elastic displacement u_H at the limit force.
-struct AtLimit {
-  Contact contact;
-  double u_H;
-  Slopes log_H, log_u_H;  ///< logarithmic derivatives
-};
-AtLimit at_limit(const Material& material, const Dent& dent, double l, double m) noexcept {
-  const double root = std::sqrt(m);
-  const double wide = dent.zeta / l;
-  const double rest = 1.0 - dent.q;
-  const double per_zeta = 1.0 / dent.zeta;
-  const double per_l = 1.0 / l;
-  const double per_m = 1.0 / m;
-  const double p_log = dent.p_zeta / dent.p;
-  AtLimit at{.contact = {},
-             .u_H = 0.0,
-             .log_H = {.zeta = p_log + 2.0 * per_zeta, .l = -2.0 * per_l, .m = per_m},
-             .log_u_H = {.zeta = p_log + per_zeta + dent.q_zeta / rest, .l = -per_l, .m = 0.75 * per_m}};
-  Contact& contact = at.contact;
-  contact.alpha = root * wide * wide;
-  contact.alpha_by = {
-      .zeta = 2.0 * contact.alpha * per_zeta, .l = -2.0 * contact.alpha * per_l, .m = 0.5 * contact.alpha * per_m};
-  contact.H = pi * material.Y * dent.p * root * contact.alpha;
-  contact.H_by = {.zeta = contact.H * at.log_H.zeta, .l = contact.H * at.log_H.l, .m = contact.H * at.log_H.m};
-  at.u_H = contact.H / (2.0 * material.Es * std::sqrt(contact.alpha) * rest);
-  return at;
-}
-
-/// Area over pi: the stiffness is that of a flat punch, 2 E* times its radius.
-double area_of(const Material& material, double stiffness) noexcept {
-  const double radius = stiffness / (2.0 * material.Es);
-  return radius * radius;
-}
-
 }  // namespace
 
 Material::Material(double yield_stress, double poisson_ratio) noexcept
@@ -100,41 +66,42 @@ Dent dent_of(const Material& material, double zeta) noexcept {
   return dent;
 }
 
-Contact contact_at(const Material& material, const Dent& dent, double l, double m, double u) noexcept {
-  const auto [limit, u_H, log_H, log_u_H] = at_limit(material, dent, l, m);
-  Contact at = limit;
-  at.u = u;
-  at.u_by.coordinate = 1.0;
-  if (!(u > 0.0)) return at;
-  const double power = 1.0 / (1.0 - dent.q);
-  const double distance = power * std::log(u / u_H);
-  at.F_over_H = std::exp(distance);
-  at.F = at.H * at.F_over_H;
-  at.F_by = {.coordinate = power * at.F / u,
-             .zeta = at.F * (log_H.zeta + power * (distance * dent.q_zeta - log_u_H.zeta)),
-             .l = at.F * (log_H.l - power * log_u_H.l),
-             .m = at.F * (log_H.m - power * log_u_H.m)};
-  at.area = area_of(material, at.F_by.coordinate);
-  at.stored = at.F * u * (1.0 - dent.q) / (2.0 - dent.q);
-  return at;
-}
-
-Contact contact_under(const Material& material, const Dent& dent, double l, double m, double F) noexcept {
-  const auto [limit, u_H, log_H, log_u_H] = at_limit(material, dent, l, m);
-  Contact at = limit;
-  at.F = std::max(0.0, F);
-  at.F_by.coordinate = 1.0;
-  if (!(F > 0.0)) return at;
-  at.F_over_H = F / at.H;
+Contact contact_by(const Material& material, const Dent& dent, double l, double m, double coordinate,
+                   bool is_force) noexcept {
   const double rest = 1.0 - dent.q;
-  const double distance = std::log(at.F_over_H);
-  at.u = u_H * std::exp(rest * distance);
-  at.u_by = {.coordinate = rest * at.u / F,
-             .zeta = at.u * (log_u_H.zeta - rest * log_H.zeta - distance * dent.q_zeta),
-             .l = at.u * (log_u_H.l - rest * log_H.l),
-             .m = at.u * (log_u_H.m - rest * log_H.m)};
-  at.area = area_of(material, 1.0 / at.u_by.coordinate);
-  at.stored = F * at.u * rest / (2.0 - dent.q);
+  const double root = std::sqrt(m);
+  const double wide = dent.zeta / l;
+  Contact at;
+  at.alpha = root * wide * wide;
+  at.H = pi * material.Y * dent.p * root * at.alpha;
+  const double u_H = at.H / (2.0 * material.Es * std::sqrt(at.alpha) * rest);
+  const Slopes log_alpha{.zeta = 2.0 / dent.zeta, .l = -2.0 / l, .m = 0.5 / m};
+  const Slopes log_H = log_alpha + Slopes{.zeta = dent.p_zeta / dent.p, .m = 0.5 / m};
+  const Slopes log_u_H = log_H - 0.5 * log_alpha + Slopes{.zeta = dent.q_zeta / rest};
+  at.alpha_by = at.alpha * log_alpha;
+  at.H_by = at.H * log_H;
+  (is_force ? at.F_by : at.u_by).coordinate = 1.0;
+  if (!(coordinate > 0.0)) {
+    if (!is_force) at.u = coordinate;
+    return at;
+  }
+  const double distance = is_force ? std::log(coordinate / at.H) : std::log(coordinate / u_H) / rest;  // ln(F/H)
+  at.F_over_H = is_force ? coordinate / at.H : std::exp(distance);
+  at.F = is_force ? coordinate : at.H * at.F_over_H;
+  at.u = is_force ? u_H * std::exp(rest * distance) : coordinate;
+  at.stored = at.F * at.u * rest / (2.0 - dent.q);
+  // The stiffness is that of a flat punch, 2 E* times its radius.
+  const double stiffness = at.F / (rest * at.u);
+  const double radius = stiffness / (2.0 * material.Es);
+  at.area = radius * radius;
+  const Slopes log_u = log_u_H - rest * log_H - Slopes{.zeta = distance * dent.q_zeta};  // at a given force
+  if (is_force) {
+    at.u_by = at.u * log_u;
+    at.u_by.coordinate = 1.0 / stiffness;
+  } else {
+    at.F_by = (-at.F / rest) * log_u;
+    at.F_by.coordinate = stiffness;
+  }
   return at;
 }
 

@@ -38,6 +38,14 @@ struct Slopes {
   double zeta = 0.0;
   double l = 0.0;
   double m = 0.0;
+
+  friend Slopes operator*(double factor, const Slopes& by) noexcept {
+    return {factor * by.coordinate, factor * by.zeta, factor * by.l, factor * by.m};
+  }
+  friend Slopes operator+(const Slopes& a, const Slopes& b) noexcept {
+    return {a.coordinate + b.coordinate, a.zeta + b.zeta, a.l + b.l, a.m + b.m};
+  }
+  friend Slopes operator-(const Slopes& a, const Slopes& b) noexcept { return a + -1.0 * b; }
 };
 
 /// A contact at an instant. An open one has u <= 0, minus its gap, and no force.
@@ -52,10 +60,17 @@ struct Contact {
   Slopes u_by, F_by, H_by, alpha_by;
 };
 
-/// F = H (u/u_H)^(1/(1-q)) at an elastic displacement u.
-[[nodiscard]] Contact contact_at(const Material& material, const Dent& dent, double l, double m, double u) noexcept;
-/// The inverse: u under a force F >= 0.
-[[nodiscard]] Contact contact_under(const Material& material, const Dent& dent, double l, double m, double F) noexcept;
+/// F = H (u/u_H)^(1/(1-q)), by an elastic displacement u or, its inverse, by a force.
+[[nodiscard]] Contact contact_by(const Material& material, const Dent& dent, double l, double m, double coordinate,
+                                 bool is_force) noexcept;
+[[nodiscard]] inline Contact contact_at(const Material& material, const Dent& dent, double l, double m,
+                                        double u) noexcept {
+  return contact_by(material, dent, l, m, u, false);
+}
+[[nodiscard]] inline Contact contact_under(const Material& material, const Dent& dent, double l, double m,
+                                           double F) noexcept {
+  return contact_by(material, dent, l, m, F, true);
+}
 
 /// Advance of a wall that the core makes room for, and its first two derivatives by the support distance of the core.
 struct Advance {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <numeric>
 
 #include "cel/constants.hpp"
 #include "elastic/nonlocal_coupling.hpp"
@@ -35,7 +35,7 @@ constexpr double k_solved = 1e-10;  ///< residual over the largest displacement 
 constexpr double k_stalled = 1e-14;
 constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
-constexpr Eigen::Index axis(std::size_t direction) noexcept { return static_cast<Eigen::Index>(direction); }
+constexpr Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
 
 template <int n>
 constexpr double raised(double x) noexcept {
@@ -43,23 +43,6 @@ constexpr double raised(double x) noexcept {
   for (int i = 0; i < n; ++i) result *= x;
   return result;
 }
-
-/// Influences at the angles between walls, each found once.
-class Influences {
- public:
-  explicit Influences(double poisson_ratio) noexcept : poisson_ratio_(poisson_ratio) {}
-  double at(double angle) {
-    constexpr double k_same_angle = 1e-12;
-    const auto known = std::ranges::find_if(
-        found_, [angle](const auto& pair) { return std::abs(pair.first - angle) <= k_same_angle; });
-    if (known != found_.end()) return known->second;
-    return found_.emplace_back(angle, nonlocal::sphere_influence(poisson_ratio_, angle)).second;
-  }
-
- private:
-  double poisson_ratio_;
-  std::vector<std::pair<double, double>> found_;
-};
 
 std::vector<Eigen::Matrix3d> spreads_of(std::span<const ContactClass> classes) {
   std::vector<Eigen::Matrix3d> spreads;
@@ -81,18 +64,22 @@ Particle::Particle(const Material& material, double poisson_ratio, std::span<con
       lines_(classes, centre_is_free),
       layout_(classes.size(), static_cast<std::size_t>(lines_.dimension()), shapes_.size()),
       classes_(classes.size()) {
-  Influences influences(poisson_ratio);
+  const Eigen::Index n = index(size());
+  flow_components_.setZero(layout_.has_core() ? index(shapes_.size()) : 0);
+  along_.setZero(n, flow_components_.size());
   const double self = nonlocal::sphere_self_influence(poisson_ratio, k_self_half_sine, k_last_term);
   for (std::size_t i = 0; i < size(); ++i) {
     const Eigen::Vector3d& normal = classes[i].normals.front();
     counts_.push_back(classes[i].multiplicity());
     walls_.emplace_back(normal * normal.transpose());
+    for (Eigen::Index j = 0; j < along_.cols(); ++j)
+      along_(index(i), j) = contraction(walls_[i], shapes_[static_cast<std::size_t>(j)]);
     for (std::size_t j = 0; j < size(); ++j) {
       Coupling& sum = coupling_.emplace_back();
-      for (std::size_t wall = 0; wall < classes[j].normals.size(); ++wall) {
-        const Eigen::Vector3d& other = classes[j].normals[wall];
-        const bool is_self = i == j && wall == 0;
-        const double g = is_self ? self : influences.at(nonlocal::angle_between(normal, other));
+      for (const Eigen::Vector3d& other : classes[j].normals) {
+        const double g = &other == &normal
+                             ? self
+                             : nonlocal::sphere_influence(poisson_ratio, nonlocal::angle_between(normal, other));
         const double along = std::min(1.0, raised<2>(normal.dot(other)));
         sum.same += g * along * along;
         sum.mixed += g * along * (1.0 - along);
@@ -100,17 +87,13 @@ Particle::Particle(const Material& material, double poisson_ratio, std::span<con
       }
     }
   }
-  for (auto* values : {&l_by_flow_, &Om_by_zeta_, &s_by_F_}) values->resize(size());
-  load_.resize(size());
+  for (auto* values : {&l_by_flow_, &Om_by_zeta_}) values->resize(size());
   shares_.resize(lines_.size());
   choose_balance();
-  F_by_.resize(size());
-  rows_.resize((2 * size() + 1) * (2 * size() + 2));
-  const std::size_t unknowns = layout_.core();
-  active_.reserve(unknowns);
-  matrix_.resize(unknowns * (unknowns + k_right_sides));
-  order_.resize(unknowns);
-  for (auto* values : {&solution_, &drift_, &rest_of_equations_, &before_}) values->resize(unknowns);
+  residual_by_.resize(layout_.core() * row_width());
+  active_.reserve(layout_.core());
+  evaluated_.resize(layout_.size());
+  for (auto* values : {&solution_, &drift_, &rest_of_equations_, &before_}) values->resize(layout_.core());
 }
 
 Core Particle::core_of(std::span<const double> y) const noexcept {
@@ -121,40 +104,29 @@ Core Particle::core_of(std::span<const double> y) const noexcept {
   return core;
 }
 
-double Particle::carried(std::size_t i, std::span<const double> y) const noexcept {
-  double sum = 0.0;
-  for (std::size_t d = 0; d < layout_.directions(); ++d) sum += lines_.arm(i)[axis(d)] * y[layout_.centre(d)];
-  return sum;
-}
-
-void Particle::rest_centre(std::span<const double> y) noexcept {
-  for (std::size_t d = 0; d < layout_.directions(); ++d) rest_[axis(d)] = y[layout_.centre(d)];
-}
-
 // --- the equations at a state
 
-bool Particle::any_flows() const noexcept { return std::ranges::any_of(classes_, &ClassState::flows); }
-
-void Particle::evaluate(std::span<const double> y) {
-  evaluate_elastically(y);
-  evaluate_yield(y);
-}
-
-/// Evaluates only the equations of elastic motion.
-void Particle::evaluate_elastically(std::span<const double> y) {
-  for (std::size_t d = 0; d < layout_.directions(); ++d) centre_[axis(d)] = y[layout_.centre(d)];
+bool Particle::evaluate(std::span<const double> y) {
+  if (is_known_ && std::ranges::equal(y.first(layout_.size()), evaluated_)) return false;
+  forget();
+  centre_ = layout_.centre_of(y);
+  core_ = core_of(y);
   evaluate_contacts(y);
   evaluate_coupling();
+  evaluate_core();
+  evaluate_yield();
+  std::ranges::copy(y.first(layout_.size()), evaluated_.begin());
+  is_known_ = true;
+  return true;
 }
 
 /// Dents, coverage and forces.
 void Particle::evaluate_contacts(std::span<const double> y) {
+  const Eigen::Map<const Eigen::VectorXd> flown(y.data() + layout_.core(), along_.cols());
   Om_ = 0.0;
-  Eigen::Matrix3d flown = Eigen::Matrix3d::Zero();  // C - 1
-  for (std::size_t j = 0; j + 1 < layout_.core_size(); ++j) flown += y[layout_.core() + j] * shapes_[j];
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
-    const double excess = contraction(walls_[i], flown);  // l^2 - 1, without the rounding of 1
+    const double excess = along_.row(index(i)).dot(flown);  // l^2 - 1, without the rounding of 1
     const double square = 1.0 + excess;
     const double zeta = y[layout_.dent(i)];
     if (!(square > 0.0) || !(zeta > 0.0)) throw std::domain_error("the core or a dent of the particle has no size");
@@ -174,36 +146,49 @@ void Particle::evaluate_contacts(std::span<const double> y) {
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
     c.coordinate = y[layout_.coordinate(i)];
-    c.contact = c.takes_force ? contact_under(material_, c.dent, c.l, m, c.coordinate)
-                              : contact_at(material_, c.dent, c.l, m, c.coordinate);
+    c.contact = contact_by(material_, c.dent, c.l, m, c.coordinate, c.takes_force);
+  }
+}
+
+/// Influences, right sides of (K), and the stored energy.
+void Particle::evaluate_coupling() {
+  stored_ = 0.0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    ClassState& c = classes_[i];
+    double lift = 0.0;  // sum of G F
+    for (std::size_t j = 0; j < size(); ++j) {
+      Coupling& g = coupling_[i * size() + j];
+      g.dented = c.root_Gam * classes_[j].root_Gam * (g.same + g.mixed * shade_);
+      g.G = g.mixed + g.across * shade_ + g.dented;
+      lift += g.G * classes_[j].contact.F;
+    }
+    c.kinematic = c.dent.h + c.advance.c + c.contact.u - lift;
+    stored_ += counts_[i] * (c.contact.stored - 0.5 * c.contact.F * lift);
   }
 }
 
 /// Load of the core, and how it flows under it.
-void Particle::evaluate_core(const Core& core) {
-  T_.setZero();
+void Particle::evaluate_core() {
   flow_ = {};
-  per_S_ = 1.0 / (material_.Y * (k::s0 + k::s1 * core.e));
+  flow_components_.setZero();
+  per_S_ = 1.0 / (material_.Y * (k::s0 + k::s1 * core_.e));
   s_ = per_s_ = Q_ = 0.0;
   if (!layout_.has_core()) return;
-  for (std::size_t i = 0; i < size(); ++i) {
-    const ClassState& c = classes_[i];
-    load_[i] = -c.advance.c_l * c.per_l * deviator(symmetric(core.C * spreads_[i]));
-    T_ += c.contact.F * load_[i];
-  }
+  pushes_.setZero();
+  for (std::size_t i = 0; i < size(); ++i) pushes_ += classes_[i].contact.F * classes_[i].w() * spreads_[i];
+  T_ = deviator(symmetric(core_.C * pushes_));
   const double load = 0.5 * std::sqrt(1.5 * T_.squaredNorm());
   if (!(load > k_no_load * material_.Y)) return;
   s_ = load;
   per_s_ = 1.0 / s_;
   Q_ = raised<k::n2>(s_ * per_S_);
   const double pace = static_cast<double>(k::n2) / k::n1 * Q_ * per_s_;
-  flow_.C = -2.0 * pace * 0.375 * per_s_ * symmetric(T_ * core.C);
-  flow_.e = 0.5 * pace;
+  flow_ = {.C = -2.0 * pace * 0.375 * per_s_ * symmetric(T_ * core_.C), .e = 0.5 * pace};
+  for (std::size_t j = 0; j < shapes_.size(); ++j) flow_components_[index(j)] = contraction(shapes_[j], flow_.C);
 }
 
 /// Which contacts drive the core and which it carries, how weak those are, and the yield functions.
-void Particle::evaluate_yield(std::span<const double> y) {
-  evaluate_core(core_of(y));
+void Particle::evaluate_yield() {
   const double use = s_ * per_S_;
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
@@ -223,24 +208,6 @@ void Particle::evaluate_yield(std::span<const double> y) {
   }
 }
 
-/// Right sides of (K), and the stored energy.
-void Particle::evaluate_coupling() {
-  stored_ = 0.0;
-  for (std::size_t i = 0; i < size(); ++i) {
-    ClassState& c = classes_[i];
-    double lift = 0.0;  // sum of G F
-    for (std::size_t j = 0; j < size(); ++j) {
-      const ClassState& other = classes_[j];
-      if (other.contact.F == 0.0) continue;
-      const Coupling& g = coupling_[i * size() + j];
-      const double root = c.root_Gam * other.root_Gam;
-      lift += (g.mixed + g.across * shade_ + root * (g.same + g.mixed * shade_)) * other.contact.F;
-    }
-    c.kinematic = c.dent.h + c.advance.c + c.contact.u - lift;
-    stored_ += counts_[i] * (c.contact.stored - 0.5 * c.contact.F * lift);
-  }
-}
-
 void Particle::residual(double xi, std::span<double> residual) const {
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
@@ -252,10 +219,11 @@ void Particle::residual(double xi, std::span<double> residual) const {
   for (std::size_t line = 0; layout_.directions() > 0 && line < lines_.size(); ++line) {
     double push = 0.0;
     for (std::size_t i = 0; i < size(); ++i) push += push_on(line, i) * classes_[i].contact.F;
-    for (std::size_t d = 0; d < layout_.directions(); ++d) residual[layout_.centre(d)] += shares_[line][axis(d)] * push;
+    for (std::size_t d = 0; d < layout_.directions(); ++d)
+      residual[layout_.centre(d)] += shares_[line][index(d)] * push;
   }
   for (std::size_t d = 0; d < layout_.directions(); ++d)
-    residual[layout_.centre(d)] += k_weak_spring * balance_.col(axis(d)).dot(centre_ - rest_);
+    residual[layout_.centre(d)] += k_weak_spring * balance_.col(index(d)).dot(centre_ - rest_);
 }
 
 /// Force along a line of pushes per force of a class.
@@ -281,24 +249,19 @@ void Particle::choose_balance() {
 
 // --- their derivatives
 
-Particle::Row Particle::row_of(std::size_t i, const Slopes& by) const noexcept {
-  return {by.coordinate, by.zeta, by.m * m_by_Om_, by.l * l_by_flow_[i]};
-}
-
-inline void Particle::add(std::size_t i, const Row& by, double factor, std::span<double> row) const noexcept {
-  const std::size_t n = size();
-  row[i] += factor * by.coordinate;
-  row[n + i] += factor * by.zeta;
-  row[2 * n] += factor * by.Om;
-  row[2 * n + 1] += factor * by.flow;
+/// Adds the derivatives of a quantity of a contact, times a factor.
+inline void Particle::add(std::size_t i, const Slopes& by, double factor, std::span<double> row) const noexcept {
+  row[layout_.coordinate(i)] += factor * by.coordinate;
+  row[layout_.dent(i)] += factor * by.zeta;
+  row[by_Om()] += factor * by.m * m_by_Om_;
+  row[by_flow()] += factor * by.l * l_by_flow_[i];
 }
 
 /// Writes the coverage as what it depends on.
 void Particle::fold_coverage(std::span<double> row) const noexcept {
-  const std::size_t n = size();
-  const double by_Om = row[2 * n];
-  for (std::size_t j = 0; j < n; ++j) row[n + j] += by_Om * Om_by_zeta_[j];
-  row[2 * n + 1] += by_Om * Om_by_flow_;
+  const double by = row[by_Om()];
+  for (std::size_t j = 0; j < size(); ++j) row[layout_.dent(j)] += by * Om_by_zeta_[j];
+  row[by_flow()] += by * Om_by_flow_;
 }
 
 void Particle::differentiate() {
@@ -307,68 +270,73 @@ void Particle::differentiate() {
     const ClassState& c = classes_[i];
     const double per_square = c.per_l * c.per_l;
     const double grown = c.dent.zeta * c.dent.zeta - material_.a_Y * material_.a_Y;
-    l_by_flow_[i] = 0.5 * c.per_l * contraction(walls_[i], flow_.C);
+    l_by_flow_[i] = 0.5 * c.per_l * along_.row(index(i)).dot(flow_components_);
     Om_by_zeta_[i] = counts_[i] * c.dent.zeta * per_square;
     Om_by_flow_ -= counts_[i] * grown * per_square * c.per_l * l_by_flow_[i];
-    F_by_[i] = row_of(i, c.contact.F_by);
   }
-  for (std::size_t i = 0; i < size(); ++i) differentiate_kinematics(i, row_at(i));
-  if (!any_flows()) return;
-  differentiate_core();
+  std::ranges::fill(residual_by_, 0.0);
+  if (any_flows()) differentiate_load();
   for (std::size_t i = 0; i < size(); ++i) {
-    if (classes_[i].flows) differentiate_yield(i, row_at(size() + i));
+    differentiate_kinematics(i);
+    if (classes_[i].flows) differentiate_yield(i);
   }
+  for (std::size_t d = 0; d < layout_.directions(); ++d) differentiate_balance(d);
 }
 
-void Particle::differentiate_core() {
-  T_by_flow_.setZero();
-  s_by_flow_ = 0.0;
-  std::ranges::fill(s_by_F_, 0.0);
-  if (!(s_ > 0.0)) return;
-  for (std::size_t i = 0; i < size(); ++i) {
-    const ClassState& c = classes_[i];
-    const double w = -c.advance.c_l * c.per_l;
-    const double w_l = -(w + c.advance.c_ll) * c.per_l;
-    s_by_F_[i] = 0.375 * per_s_ * contraction(T_, load_[i]);
-    T_by_flow_ += c.contact.F * (w_l / w * l_by_flow_[i] * load_[i] + w * deviator(symmetric(flow_.C * spreads_[i])));
-  }
-  s_by_flow_ = 0.375 * per_s_ * contraction(T_, T_by_flow_);
-}
-
-/// Writes the derivatives of (K).
-void Particle::differentiate_kinematics(std::size_t i, std::span<double> row) {
-  const std::size_t n = size();
+/// Derivatives of (K).
+void Particle::differentiate_kinematics(std::size_t i) {
+  const std::span<double> row = row_at(layout_.coordinate(i));
   const ClassState& c = classes_[i];
   const double shade_by_Om = -4.0 * k::kap * raised<3>(Om_) * shade_ * shade_;
-  std::ranges::fill(row, 0.0);
-  for (std::size_t j = 0; j < n; ++j) {
+  for (std::size_t j = 0; j < size(); ++j) {
     const ClassState& other = classes_[j];
     const double F = other.contact.F;
     if (F == 0.0) continue;
-    const Coupling& g = coupling_[i * n + j];
-    const double root = c.root_Gam * other.root_Gam;
-    const double of_root = root * (g.same + g.mixed * shade_);
-    add(j, F_by_[j], -(g.mixed + g.across * shade_ + of_root), row);
-    row[n + i] -= of_root * F * c.half_Gam_log;
-    row[n + j] -= of_root * F * other.half_Gam_log;
-    row[2 * n] -= (g.across + root * g.mixed) * shade_by_Om * F;
+    const Coupling& g = coupling_[i * size() + j];
+    add(j, other.contact.F_by, -g.G, row);
+    row[layout_.dent(i)] -= g.dented * F * c.half_Gam_log;
+    row[layout_.dent(j)] -= g.dented * F * other.half_Gam_log;
+    row[by_Om()] -= (g.across + c.root_Gam * other.root_Gam * g.mixed) * shade_by_Om * F;
   }
-  add(i, row_of(i, c.contact.u_by), 1.0, row);
-  row[n + i] += c.dent.h_zeta;
-  row[2 * n + 1] += c.advance.c_l * l_by_flow_[i];
+  add(i, c.contact.u_by, 1.0, row);
+  row[layout_.dent(i)] += c.dent.h_zeta;
+  row[by_flow()] += c.advance.c_l * l_by_flow_[i];
   fold_coverage(row);
+  for (std::size_t d = 0; d < layout_.directions(); ++d) row[layout_.centre(d)] = -lines_.arm(i)[index(d)];
 }
 
-/// Writes the derivatives of the yield function: dX = n1 X (dF/F - dH/H - dwk/wk), dQ = n2 (s/S)^(n2-1) d(s/S).
-void Particle::differentiate_yield(std::size_t i, std::span<double> row) {
-  const std::size_t n = size();
+/// Derivatives of a component of (E).
+void Particle::differentiate_balance(std::size_t direction) {
+  const std::span<double> row = row_at(layout_.centre(direction));
+  for (std::size_t i = 0; i < size(); ++i)
+    add(i, classes_[i].contact.F_by, shares_[lines_.line_of(i)][index(direction)] * counts_[i] * lines_.along(i), row);
+  fold_coverage(row);
+  for (std::size_t d = 0; d < layout_.directions(); ++d)
+    row[layout_.centre(d)] = k_weak_spring * balance_(index(d), index(direction));
+}
+
+/// Derivative of the core's load by its flow.
+void Particle::differentiate_load() {
+  T_by_flow_.setZero();
+  if (!(s_ > 0.0)) return;
+  Eigen::Matrix3d pushes_by_flow = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < size(); ++i) {
+    const ClassState& c = classes_[i];
+    const double w_l = -(c.w() + c.advance.c_ll) * c.per_l;
+    pushes_by_flow += c.contact.F * w_l * l_by_flow_[i] * spreads_[i];
+  }
+  T_by_flow_ = deviator(symmetric(flow_.C * pushes_ + core_.C * pushes_by_flow));
+}
+
+/// Derivatives of -f: dX = n1 X (dF/F - dH/H - dwk/wk), dQ = n2 (s/S)^(n2-1) d(s/S).
+void Particle::differentiate_yield(std::size_t i) {
+  const std::span<double> row = row_at(layout_.dent(i));
   const ClassState& c = classes_[i];
-  std::ranges::fill(row, 0.0);
   if (!(c.X + Q_ > 0.0) || !(c.contact.F > 0.0)) return;
   const double use = s_ * per_S_;
   const double of_X = (1.0 + c.f) * c.X / (c.X + Q_);
-  add(i, F_by_[i], of_X / c.contact.F, row);
-  add(i, row_of(i, c.contact.H_by), -of_X / c.contact.H, row);
+  add(i, c.contact.F_by, -of_X / c.contact.F, row);
+  add(i, c.contact.H_by, of_X / c.contact.H, row);
   if (s_ > 0.0) {
     double of_use = (1.0 + c.f) / (c.X + Q_) * (static_cast<double>(k::n2) / k::n1) * raised<k::n2 - 1>(use);
     double of_tau = 0.0;
@@ -377,186 +345,165 @@ void Particle::differentiate_yield(std::size_t i, std::span<double> row) {
       of_use += of_weakness * k::n3 / use;
       const double z = std::min(-2.0 * c.tau, 1.0);
       of_tau = of_weakness / c.b * -12.0 * z * (1.0 - z);
-      add(i, row_of(i, c.contact.alpha_by), -of_weakness / k::ab, row);
+      add(i, c.contact.alpha_by, of_weakness / k::ab, row);
     }
-    // By the load s, by its share tau under this wall, and by the strength S.
+    // By the load, of which s is the size and tau the share under this wall, and by the strength S.
     const double of_s = of_use * per_S_ - of_tau * c.tau * per_s_;
-    const double per_tau = 0.75 * of_tau * per_s_;
-    for (std::size_t j = 0; j < n; ++j)
-      add(j, F_by_[j], of_s * s_by_F_[j] + per_tau * contraction(walls_[i], load_[j]), row);
-    row[2 * n + 1] += of_s * s_by_flow_ + per_tau * contraction(walls_[i], T_by_flow_) -
-                      of_use * use * per_S_ * material_.Y * k::s1 * flow_.e;
+    Eigen::Matrix3d by_T = 0.375 * of_s * per_s_ * T_;
+    if (of_tau != 0.0) by_T += 0.75 * of_tau * per_s_ * deviator(walls_[i]);
+    const Eigen::Matrix3d by_pushes = core_.C * by_T;
+    for (std::size_t j = 0; j < size(); ++j)
+      add(j, classes_[j].contact.F_by, -classes_[j].w() * contraction(by_pushes, spreads_[j]), row);
+    row[by_flow()] -= contraction(by_T, T_by_flow_) - of_use * use * per_S_ * material_.Y * k::s1 * flow_.e;
   }
   fold_coverage(row);
 }
 
 // --- solving them
 
-/// The linear equations of the unknowns up to the core that move: coordinates, the centre, and dents that grow.
+/// The linear equations of the unknowns up to the core that move: coordinates, dents that grow, and the centre.
 /// @param takes_core_along  whether the core flows as the dents do; otherwise it stays
 void Particle::assemble(bool takes_core_along) {
   differentiate();
-  const std::size_t n = size();
   active_.clear();
-  for (std::size_t i = 0; i < n; ++i) active_.push_back(layout_.coordinate(i));
-  for (std::size_t d = 0; d < layout_.directions(); ++d) active_.push_back(layout_.centre(d));
-  for (std::size_t i = 0; i < n; ++i) {
-    if (classes_[i].flows) active_.push_back(layout_.dent(i));
+  for (std::size_t place = 0; place < layout_.core(); ++place) {
+    if (!layout_.is_dent(place) || classes_[place - size()].flows) active_.push_back(place);
   }
-  const std::size_t dents = n + layout_.directions();
-  const auto row_begin = [&](std::size_t at) {
-    return order_[at] = matrix_.data() + at * (active_.size() + k_right_sides);
-  };
-  const auto put = [&](std::size_t at, std::span<const double> by, double sign) {
-    double* const row = row_begin(at);
-    for (std::size_t j = 0; j < n; ++j) row[j] = sign * by[j];
-    std::fill(row + n, row + dents, 0.0);
-    for (std::size_t k = dents; k < active_.size(); ++k) {
-      const double pace = takes_core_along ? classes_[active_[k] - n].pace : 0.0;
-      row[k] = sign * (by[active_[k]] + pace * by[2 * n + 1]);
-    }
-    return row;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    if (classes_[i].takes_force) {
-      double* const row = row_begin(i);
-      std::fill(row, row + active_.size(), 0.0);
-      row[i] = 1.0;
-    } else {
-      double* const row = put(i, row_at(i), 1.0);
-      for (std::size_t d = 0; d < layout_.directions(); ++d) row[n + d] = -lines_.arm(i)[axis(d)];
+  const Eigen::Index n = index(active_.size());
+  matrix_.resize(n, n + 2);
+  for (Eigen::Index column = 0; column < n; ++column) {
+    const std::size_t place = active_[static_cast<std::size_t>(column)];
+    const double pace = takes_core_along && layout_.is_dent(place) ? classes_[place - size()].pace : 0.0;
+    for (Eigen::Index row = 0; row < n; ++row) {
+      const std::span<const double> by = row_at(active_[static_cast<std::size_t>(row)]);
+      matrix_(row, column) = by[place] + pace * by[by_flow()];
     }
   }
-  for (std::size_t d = 0; d < layout_.directions(); ++d) {
-    const auto by = row_at(2 * n);
-    std::ranges::fill(by, 0.0);
-    for (std::size_t i = 0; i < n; ++i)
-      add(i, F_by_[i], shares_[lines_.line_of(i)][axis(d)] * counts_[i] * lines_.along(i), by);
-    fold_coverage(by);
-    double* const row = put(n + d, by, 1.0);
-    for (std::size_t k = 0; k < layout_.directions(); ++k) row[n + k] = k_weak_spring * balance_(axis(k), axis(d));
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (!classes_[i].takes_force) continue;
+    matrix_.row(index(i)).setZero();
+    matrix_(index(i), index(i)) = 1.0;
   }
-  for (std::size_t k = dents; k < active_.size(); ++k) put(k, row_at(active_[k]), -1.0);
 }
 
 /// Gauss's elimination of the linear equations, rows by their largest entries.
 /// @param right  their right side, by the places in a state
-/// @param drift  another one; empty: none
+/// @param drift  another one
 /// @return the sign of the determinant, which is positive at the unloaded particle
 double Particle::eliminate(std::span<const double> right, std::span<const double> drift) {
-  const std::size_t n = active_.size();
-  const std::size_t width = n + k_right_sides;
-  for (std::size_t at = 0; at < n; ++at) {
-    double* const row = order_[at];
-    row[n] = right[active_[at]];
-    row[n + 1] = drift.empty() ? 0.0 : drift[active_[at]];
-    double largest = 0.0;
-    for (std::size_t c = 0; c < n; ++c) largest = std::max(largest, std::abs(row[c]));
-    if (!(largest > 0.0)) throw DomainError(Limit::applicability);
-    const double scale = 1.0 / largest;
-    for (std::size_t c = 0; c < width; ++c) row[c] *= scale;
-  }
+  const Eigen::Index n = matrix_.rows();
   double sign = 1.0;
-  for (std::size_t at = 0; at < n; ++at) {
-    std::size_t best = at;
-    for (std::size_t other = at + 1; other < n; ++other) {
-      if (std::abs(order_[other][at]) > std::abs(order_[best][at])) best = other;
-    }
-    if (best != at) {
-      std::swap(order_[best], order_[at]);
+  for (Eigen::Index at = 0; at < n; ++at) {
+    const std::size_t place = active_[static_cast<std::size_t>(at)];
+    matrix_(at, n) = right[place];
+    matrix_(at, n + 1) = drift[place];
+    const double largest = matrix_.row(at).head(n).cwiseAbs().maxCoeff();
+    if (!(largest > 0.0)) throw DomainError(Limit::applicability);
+    matrix_.row(at) *= 1.0 / largest;
+  }
+  for (Eigen::Index at = 0; at < n; ++at) {
+    Eigen::Index below = 0;
+    matrix_.col(at).tail(n - at).cwiseAbs().maxCoeff(&below);
+    if (below > 0) {
+      matrix_.row(at).swap(matrix_.row(at + below));
       sign = -sign;
     }
-    const double* const row = order_[at];
-    if (row[at] == 0.0) throw DomainError(Limit::applicability);
-    if (row[at] < 0.0) sign = -sign;
-    const double per_pivot = 1.0 / row[at];
-    for (std::size_t other = at + 1; other < n; ++other) {
-      double* const rest = order_[other];
-      if (rest[at] == 0.0) continue;
-      const double factor = rest[at] * per_pivot;
-      for (std::size_t c = at + 1; c < width; ++c) rest[c] -= factor * row[c];
+    const double pivot = matrix_(at, at);
+    if (pivot == 0.0) throw DomainError(Limit::applicability);
+    if (pivot < 0.0) sign = -sign;
+    for (Eigen::Index other = at + 1; other < n; ++other) {
+      const double factor = matrix_(other, at) / pivot;
+      if (factor != 0.0) matrix_.row(other).tail(n + 1 - at) -= factor * matrix_.row(at).tail(n + 1 - at);
     }
   }
-  for (auto [values, column] : {std::pair{&solution_, n}, {&drift_, n + 1}}) {
-    std::ranges::fill(*values, 0.0);
-    for (std::size_t at = n; at-- > 0;) {
-      const double* const row = order_[at];
-      double sum = row[column];
-      for (std::size_t c = at + 1; c < n; ++c) sum -= row[c] * (*values)[active_[c]];
-      (*values)[active_[at]] = sum / row[at];
-    }
+  for (Eigen::Index at = n; at-- > 0;) {
+    for (Eigen::Index other = at + 1; other < n; ++other)
+      matrix_.row(at).tail<2>() -= matrix_(at, other) * matrix_.row(other).tail<2>();
+    matrix_.row(at).tail<2>() *= 1.0 / matrix_(at, at);
+  }
+  std::ranges::fill(solution_, 0.0);
+  std::ranges::fill(drift_, 0.0);
+  for (Eigen::Index at = 0; at < n; ++at) {
+    const std::size_t place = active_[static_cast<std::size_t>(at)];
+    solution_[place] = matrix_(at, n);
+    drift_[place] = matrix_(at, n + 1);
   }
   return sign;
 }
 
+/// Largest residual of the state that was evaluated, as a displacement: a yield function is known as well as the
+/// elastic displacement is, over itself.
+double Particle::error(double xi) {
+  residual(xi, rest_of_equations_);
+  double largest = 0.0;
+  for (std::size_t place = 0; place < layout_.core(); ++place) {
+    const double unit = layout_.is_dent(place) ? std::min(1.0, classes_[place - size()].contact.u) : 1.0;
+    largest = std::max(largest, unit * std::abs(rest_of_equations_[place]));
+  }
+  return largest;
+}
+
+void Particle::prescribe(double xi, std::span<double> y) const noexcept {
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (classes_[i].takes_force) y[layout_.coordinate(i)] = classes_[i].drive.value(xi);
+  }
+}
+
 void Particle::solve(double xi, std::span<double> y) {
-  const std::span<double> rest = rest_of_equations_;
-  const bool is_elastic = !any_flows();
-  double largest = is_elastic ? 0.0 : material_.Y;
+  prescribe(xi, y);
+  double largest = any_flows() ? material_.Y : 0.0;
   for (const ClassState& c : classes_) largest = std::max(largest, std::abs(c.drive.value(xi)));
-  const auto evaluate_state = [&] { is_elastic ? evaluate_elastically(y) : evaluate(y); };
-  // As displacements: a yield function is known as well as the elastic displacement is, over itself.
-  const auto error_of_state = [&] {
-    residual(xi, rest);
-    double error = 0.0;
-    for (std::size_t j = 0; j < rest.size(); ++j) {
-      const bool is_yield = j >= size() && j < 2 * size();
-      error = std::max(error, std::abs(rest[j]) * (is_yield ? std::min(1.0, classes_[j - size()].contact.u) : 1.0));
-    }
-    return error;
+  const auto error_at = [&] {
+    evaluate(y);
+    return error(xi);
   };
-  evaluate_state();
+  evaluate(y);
   choose_balance();
-  double error = error_of_state();
+  double now = error(xi);
   // Where the weak spring decides, the balance of forces says more of the centre than the largest residual does.
   const bool is_free = layout_.directions() > 0;
   int polished = 0;
-  for (int i = 0; i < k_most_corrections && (is_free || error > k_rounding * largest); ++i) {
-    const bool is_polishing = error <= k_stalled * largest;
+  for (int i = 0; i < k_most_corrections && (is_free || now > k_rounding * largest); ++i) {
+    const bool is_polishing = now <= k_stalled * largest;
     assemble(false);
-    eliminate(rest);
+    eliminate(rest_of_equations_, rest_of_equations_);
     double correction = 0.0;
-    for (const std::size_t at : active_) {
-      if (at < size() || at >= 2 * size()) correction = std::max(correction, std::abs(solution_[at]));
-    }
-    double share = 1.0;
-    for (std::size_t j = 0; j < size(); ++j) {
-      const double growth = std::abs(solution_[layout_.dent(j)]);
-      if (growth * share > k_most_growth) share = k_most_growth / growth;
+    double growth = 0.0;
+    for (const std::size_t place : active_) {
+      double& most = layout_.is_dent(place) ? growth : correction;
+      most = std::max(most, std::abs(solution_[place]));
     }
     std::copy_n(y.begin(), before_.size(), before_.begin());
+    double share = std::min(1.0, k_most_growth / growth);
     double next = 0.0;
-    int halvings = 0;
-    for (; halvings < k_most_halvings; ++halvings, share *= 0.5) {
-      for (const std::size_t at : active_) y[at] = before_[at] - share * solution_[at];
-      for (std::size_t j = 0; j < size(); ++j) {
-        double& dent = y[layout_.dent(j)];
-        dent = std::max(dent, k_least_dent * material_.a_Y);
+    for (int halvings = 0; halvings < k_most_halvings; ++halvings, share *= 0.5) {
+      for (const std::size_t place : active_) {
+        y[place] = before_[place] - share * solution_[place];
+        if (layout_.is_dent(place)) y[place] = std::max(y[place], k_least_dent * material_.a_Y);
       }
-      evaluate_state();
-      next = error_of_state();
-      if (next < error || is_polishing) break;
+      next = error_at();
+      if (next < now || is_polishing) break;
     }
-    if (!(next < error) && (!is_polishing || !is_free)) {
+    if (!(next < now) && (!is_polishing || !is_free)) {
       std::ranges::copy(before_, y.begin());
-      evaluate_state();
-      error = error_of_state();
+      now = error_at();
       break;
     }
-    error = next;
+    now = next;
     if (is_polishing && (correction <= k_rounding * largest || ++polished == k_most_polishings)) break;
   }
   const bool takes_force = std::ranges::any_of(classes_, &ClassState::takes_force);
   if (takes_force && (centre_ - rest_).cwiseAbs().maxCoeff() > k_farthest) throw DomainError(Limit::centre_driven_away);
-  if (!(error <= k_solved * std::max(largest, material_.Y))) throw DomainError(Limit::applicability);
-  if (is_elastic) evaluate_yield(y);
+  if (!(now <= k_solved * std::max(largest, material_.Y))) throw DomainError(Limit::applicability);
 }
 
-double Particle::rates(std::span<double> dy, std::span<const double> drift) {
+double Particle::rates(std::span<double> dy, double xi, double pull) {
   assemble(true);
   std::ranges::fill(before_, 0.0);
   for (std::size_t i = 0; i < size(); ++i) before_[layout_.coordinate(i)] = classes_[i].drive.rate();
-  const double sign = eliminate(before_, drift);
+  residual(xi, rest_of_equations_);
+  for (double& rest : rest_of_equations_) rest *= -pull;
+  const double sign = eliminate(before_, rest_of_equations_);
   Lam_ = flow_rate(solution_);
   for (std::size_t j = 0; j < layout_.core(); ++j) dy[j] = solution_[j] + drift_[j];
   let_core_flow(dy);
@@ -577,25 +524,24 @@ double Particle::slowness() const noexcept {
   return speed > 0.0 ? speed / (speed + fastest) : 1.0;
 }
 
-/// Rate of what a row of derivatives is of.
-double Particle::rate_of(std::size_t at) const noexcept {
-  const auto row = row_at(at);
-  double sum = row.back() * Lam_;
-  for (std::size_t j = 0; j < 2 * size(); ++j) sum += row[j] * solution_[j];
-  return sum;
+/// Rate of a residual.
+double Particle::rate_of(std::size_t place) const noexcept {
+  const std::span<const double> row = row_at(place);
+  return std::inner_product(solution_.begin(), solution_.end(), row.begin(), Lam_ * row[by_flow()]);
 }
 
 double Particle::yield_rate(std::size_t i) {
-  differentiate_core();
-  differentiate_yield(i, row_at(size() + i));
-  return rate_of(size() + i);
+  std::ranges::fill(row_at(layout_.dent(i)), 0.0);
+  differentiate_load();
+  differentiate_yield(i);
+  return -rate_of(layout_.dent(i));
 }
 
 double Particle::power() const {
   double sum = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
-    const double speed = c.takes_force ? rate_of(i) - carried(i, solution_) : c.drive.rate();
+    const double speed = c.takes_force ? rate_of(layout_.coordinate(i)) : c.drive.rate();
     sum += counts_[i] * c.contact.F * speed;
   }
   return sum;
@@ -612,7 +558,7 @@ double Particle::flow_rate(std::span<const double> dy) const noexcept {
 void Particle::let_core_flow(std::span<double> dy) const noexcept {
   if (!layout_.has_core()) return;
   const double Lam = flow_rate(dy);
-  for (std::size_t j = 0; j < shapes_.size(); ++j) dy[layout_.core() + j] = Lam * contraction(shapes_[j], flow_.C);
+  for (std::size_t j = 0; j < shapes_.size(); ++j) dy[layout_.core() + j] = Lam * flow_components_[index(j)];
   dy[layout_.size() - 1] = Lam * flow_.e;
 }
 

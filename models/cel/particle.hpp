@@ -16,6 +16,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -30,19 +31,25 @@ namespace monograin::cel {
 /// Places of the unknowns in a state: own coordinate and dent of every class, centre, core.
 class Layout {
  public:
-  /// @param shapes  dimension of the core's shape; 1: it keeps its shape, and is no unknown
+  /// @param shapes  of the core; 1: it keeps its shape, and is no unknown
   Layout(std::size_t classes, std::size_t directions, std::size_t shapes) noexcept
       : classes_(classes), directions_(directions), core_size_(shapes > 1 ? shapes + 1 : 0) {}
   [[nodiscard]] std::size_t coordinate(std::size_t i) const noexcept { return i; }
   [[nodiscard]] std::size_t dent(std::size_t i) const noexcept { return classes_ + i; }
+  [[nodiscard]] bool is_dent(std::size_t place) const noexcept { return place >= classes_ && place < 2 * classes_; }
   [[nodiscard]] std::size_t centre(std::size_t k) const noexcept { return 2 * classes_ + k; }
   /// C - 1 by its components (core_shape.hpp), then e.
   [[nodiscard]] std::size_t core() const noexcept { return 2 * classes_ + directions_; }
   [[nodiscard]] std::size_t size() const noexcept { return core() + core_size_; }
 
   [[nodiscard]] std::size_t directions() const noexcept { return directions_; }
-  [[nodiscard]] std::size_t core_size() const noexcept { return core_size_; }
   [[nodiscard]] bool has_core() const noexcept { return core_size_ > 0; }
+  /// Displacement of the centre along its free directions.
+  [[nodiscard]] Eigen::Vector3d centre_of(std::span<const double> y) const noexcept {
+    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(centre(0)), directions_, x.begin());
+    return x;
+  }
 
  private:
   std::size_t classes_, directions_, core_size_;
@@ -76,6 +83,9 @@ struct ClassState {
   double b = 0.0;     ///< 1: carried by the flow of the core; 0: drives it
   double wk = 1.0;    ///< strength of a carried contact over its own
   double pace = 0.0;  ///< Lam per rate of the dent, where it grows
+
+  /// Load of the core per force: the advance of the wall is where that does work.
+  [[nodiscard]] double w() const noexcept { return -advance.c_l * per_l; }
 };
 
 class Particle {
@@ -90,17 +100,23 @@ class Particle {
   [[nodiscard]] std::size_t size() const noexcept { return classes_.size(); }
   [[nodiscard]] ClassState& at(std::size_t i) noexcept { return classes_[i]; }
   [[nodiscard]] const ClassState& at(std::size_t i) const noexcept { return classes_[i]; }
-  [[nodiscard]] bool any_flows() const noexcept;
+  [[nodiscard]] std::span<const ClassState> classes() const noexcept { return classes_; }
+  [[nodiscard]] bool any_flows() const noexcept { return std::ranges::any_of(classes_, &ClassState::flows); }
   [[nodiscard]] const contacts::CentreLines& lines() const noexcept { return lines_; }
   [[nodiscard]] Core core_of(std::span<const double> y) const noexcept;
   /// n.x, what the centre adds to the overlap of a class.
-  [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const noexcept;
+  [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const noexcept {
+    return lines_.arm(i).dot(layout_.centre_of(y));
+  }
   /// Takes the centre to rest where it is: the weak spring that settles directions without stiffness is at ease there.
-  void rest_centre(std::span<const double> y) noexcept;
+  void rest_centre(std::span<const double> y) noexcept { rest_ = layout_.centre_of(y); }
 
-  /// Evaluates all equations at a state.
+  /// To be said where it changes whether own coordinates are forces.
+  void forget() noexcept { is_known_ = false; }
+  /// Evaluates all equations at a state. @return false if it was the last one, of which all is known
   /// @throws std::domain_error where the core or a dent has no size
-  void evaluate(std::span<const double> y);
+  bool evaluate(std::span<const double> y);
+  [[nodiscard]] std::span<const double> evaluated() const noexcept { return evaluated_; }
   [[nodiscard]] double coverage() const noexcept { return Om_; }
   [[nodiscard]] double stored_energy() const noexcept { return stored_; }
   /// Energy of the weak spring, which no particle has.
@@ -108,15 +124,16 @@ class Particle {
   /// Residuals of (K), or of the prescribed force; of the yield functions of contacts that flow; of (E): in the order
   /// of the unknowns up to the core.
   void residual(double xi, std::span<double> residual) const;
+  /// Writes the forces that are prescribed.
+  void prescribe(double xi, std::span<double> y) const noexcept;
   /// Corrects a state by Newton's method for given core and dents of contacts that do not flow.
   /// @throws std::domain_error where there is no solution near the state
   void solve(double xi, std::span<double> y);
   /// Rates of all unknowns with the step coordinate at the state that was evaluated.
-  /// @param drift  rates of the residuals besides, which draw a state back that is off; empty: none. Nothing else of
-  ///   what is asked below has them.
+  /// @param pull  how fast a state that is off is drawn back besides. Nothing else of what is asked below has that.
   /// @return the margin to where the path turns back: how fast walls go over how fast their contacts follow; negative
   /// beyond, where the determinant of the equations has changed its sign
-  double rates(std::span<double> dy, std::span<const double> drift = {});
+  double rates(std::span<double> dy, double xi = 0.0, double pull = 0.0);
   /// Rate of a dent, by the last rates().
   [[nodiscard]] double dent_rate(std::size_t i) const noexcept { return solution_[layout_.dent(i)]; }
   /// Rate of the yield function of a class, by the last rates().
@@ -131,40 +148,40 @@ class Particle {
   void let_core_flow(std::span<double> dy) const noexcept;
 
  private:
+  /// What the force on the walls of one class does to a wall of another.
   struct Coupling {
-    double same = 0.0, mixed = 0.0, across = 0.0;  ///< sums of g c^4, g c^2 (1 - c^2), g (1 - c^2)^2; c = cos(theta)
-  };
-  /// Derivatives by the own coordinate and dent, by the coverage, and by the flow of the core at a given coverage.
-  struct Row {
-    double coordinate = 0.0, zeta = 0.0, Om = 0.0, flow = 0.0;
+    double same = 0.0, mixed = 0.0, across = 0.0;  ///< sums of g c2^2, g c2 (1 - c2), g (1 - c2)^2
+    double G = 0.0, dented = 0.0;                  ///< influence, and its part that grows with the dents
   };
 
-  void evaluate_elastically(std::span<const double> y);
   void evaluate_contacts(std::span<const double> y);
   void evaluate_coupling();
-  void evaluate_core(const Core& core);
-  void evaluate_yield(std::span<const double> y);
+  void evaluate_core();
+  void evaluate_yield();
   void differentiate();
-  void differentiate_kinematics(std::size_t i, std::span<double> row);
-  void differentiate_core();
-  void differentiate_yield(std::size_t i, std::span<double> row);
-  [[nodiscard]] Row row_of(std::size_t i, const Slopes& by) const noexcept;
-  void add(std::size_t i, const Row& by, double factor, std::span<double> row) const noexcept;
+  void differentiate_load();
+  void differentiate_kinematics(std::size_t i);
+  void differentiate_yield(std::size_t i);
+  void differentiate_balance(std::size_t direction);
+  void add(std::size_t i, const Slopes& by, double factor, std::span<double> row) const noexcept;
   void fold_coverage(std::span<double> row) const noexcept;
+  // A row of derivatives is by the unknowns up to the core, by the coverage and by the flow of the core.
+  [[nodiscard]] std::size_t by_Om() const noexcept { return layout_.core(); }
+  [[nodiscard]] std::size_t by_flow() const noexcept { return layout_.core() + 1; }
+  [[nodiscard]] std::size_t row_width() const noexcept { return layout_.core() + 2; }
+  [[nodiscard]] std::span<const double> row_at(std::size_t place) const noexcept {
+    return std::span(residual_by_).subspan(place * row_width(), row_width());
+  }
+  [[nodiscard]] std::span<double> row_at(std::size_t place) noexcept {
+    return std::span(residual_by_).subspan(place * row_width(), row_width());
+  }
   [[nodiscard]] double push_on(std::size_t line, std::size_t i) const noexcept;
   void choose_balance();
   void assemble(bool takes_core_along);
-  double eliminate(std::span<const double> right, std::span<const double> drift = {});
+  double eliminate(std::span<const double> right, std::span<const double> drift);
+  [[nodiscard]] double error(double xi);
   [[nodiscard]] double slowness() const noexcept;
-  [[nodiscard]] double rate_of(std::size_t at) const noexcept;
-  [[nodiscard]] std::span<const double> row_at(std::size_t row) const noexcept {
-    const std::size_t width = 2 * size() + 2;
-    return std::span(rows_).subspan(row * width, width);
-  }
-  [[nodiscard]] std::span<double> row_at(std::size_t row) noexcept {
-    const std::size_t width = 2 * size() + 2;
-    return std::span(rows_).subspan(row * width, width);
-  }
+  [[nodiscard]] double rate_of(std::size_t place) const noexcept;
 
   Material material_;
   std::vector<Eigen::Matrix3d> spreads_;  ///< sum of n n over the walls of each class
@@ -173,6 +190,7 @@ class Particle {
   Layout layout_;
   std::vector<double> counts_;          ///< of walls
   std::vector<Eigen::Matrix3d> walls_;  ///< n n of the first wall of each class
+  Eigen::MatrixXd along_;               ///< its components among the shapes of the core
   std::vector<Coupling> coupling_;      ///< row by row
   std::vector<ClassState> classes_;
   Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();  ///< where the centre is at ease
@@ -181,30 +199,28 @@ class Particle {
   std::vector<Eigen::Vector3d> shares_;                    ///< of the pushes along a line, in these
 
   // At the state that was evaluated.
+  std::vector<double> evaluated_;
+  bool is_known_ = false;
   double Om_ = 0.0, m_by_Om_ = 0.0, shade_ = 1.0;
+  Core core_;
+  Eigen::Matrix3d pushes_;  ///< sum of F w n n over all walls
+  Eigen::Matrix3d T_;       ///< deviator of the load of the core
   double s_ = 0.0, per_s_ = 0.0, per_S_ = 1.0, Q_ = 0.0;
   double stored_ = 0.0;
-  Eigen::Matrix3d T_;                  ///< deviator of the load
-  std::vector<Eigen::Matrix3d> load_;  ///< that of a class by its force
   Core flow_;
+  Eigen::VectorXd flow_components_;  ///< among the shapes of the core
 
-  // Its derivatives. A row is by the coordinates of all classes, by their dents, by the coverage and by the flow.
+  // Its derivatives.
   std::vector<double> l_by_flow_, Om_by_zeta_;
   double Om_by_flow_ = 0.0;
-  std::vector<Row> F_by_;
-  std::vector<double> s_by_F_;
-  double s_by_flow_ = 0.0;  ///< at given forces
-  Eigen::Matrix3d T_by_flow_;
-  std::vector<double> rows_;  ///< of (K), of the yield functions, and of one equation (E)
+  Eigen::Matrix3d T_by_flow_;        ///< at given forces
+  std::vector<double> residual_by_;  ///< row by row
 
   // The linear equations for rates or corrections of the unknowns up to the core that move.
-  std::vector<std::size_t> active_;  ///< their places in a state
-  static constexpr std::size_t k_right_sides = 2;
-  std::vector<double> matrix_;    ///< row by row, with the right sides behind
-  std::vector<double*> order_;    ///< rows in the order of elimination
-  std::vector<double> solution_;  ///< of all unknowns up to the core
-  std::vector<double> drift_;     ///< by the other right side
-  double Lam_ = 0.0;              ///< by the last rates
+  std::vector<std::size_t> active_;                                                ///< their places in a state
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix_;  ///< with two right sides behind
+  std::vector<double> solution_, drift_;  ///< by the one and by the other, of all unknowns up to the core
+  double Lam_ = 0.0;                      ///< by the last rates
   std::vector<double> rest_of_equations_, before_;
 };
 

@@ -6,8 +6,6 @@
 #include <limits>
 #include <numbers>
 
-#include "contacts/columns.hpp"
-
 namespace monograin::cel {
 namespace {
 
@@ -46,18 +44,12 @@ constexpr double k_least_modulus_over_yield = 6.25;
 constexpr double k_deepest = 0.5;
 
 /// Whether a program goes on in the direction in which it has gone. A step that is cut in two does, but for rounding.
-bool goes_on(std::span<const double> before, std::span<const double> after) {
+bool goes_on(const Eigen::ArrayX2d& before, const Eigen::ArrayX2d& after) {
   constexpr double k_alike_directions = 1e-9;
-  const auto largest = [](std::span<const double> of) {
-    return std::abs(*std::ranges::max_element(of, {}, [](double rate) { return std::abs(rate); }));
-  };
-  const double a = largest(before);
-  const double b = largest(after);
+  const double a = before.abs().maxCoeff();
+  const double b = after.abs().maxCoeff();
   if (a == 0.0 || b == 0.0) return a == b;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    if (std::abs(before[i] / a - after[i] / b) > k_alike_directions) return false;
-  }
-  return true;
+  return (before / a - after / b).abs().maxCoeff() <= k_alike_directions;
 }
 
 }  // namespace
@@ -66,14 +58,12 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
     : settings_(settings),
       classes_(std::move(classes)),
       particle_(Material(settings.yield_stress / settings.youngs_modulus, settings.poisson_ratio),
-                settings.poisson_ratio, classes_, settings.centre_is_free) {
-  depth_ = settings_.reach.displacement / settings_.initial_radius;
-  if (settings_.reach.force > 0.0) {
-    const double force = settings_.reach.force / force_unit();
-    depth_ = std::max(depth_, std::pow(0.75 * force / particle_.material().Es, 2.0 / 3.0));
-  }
-  if (!(depth_ > 0.0)) depth_ = 1.0;
-  depth_ = std::min(depth_, 1.0);
+                settings.poisson_ratio, classes_, settings.centre_is_free),
+      columns_(true, true, k_regime_words, classes_, settings.centre_is_free,
+               std::array<Observable, 2>{{{"core_strain", "-", {}}, {"coverage", "-", {}}}}) {
+  const double elastic = std::pow(0.75 * settings_.reach.force / (force_unit() * particle_.material().Es), 2.0 / 3.0);
+  depth_ = std::max(settings_.reach.displacement / settings_.initial_radius, elastic);
+  depth_ = depth_ > 0.0 ? std::min(depth_, 1.0) : 1.0;
 
   const auto differential = Unknown::Kind::differential;
   for (const ContactClass& c : classes_)
@@ -91,19 +81,9 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   // The work of elastic contacts, or that of contacts that flow, whichever is less.
   const double work = depth_ * depth_ * std::min(std::sqrt(depth_), particle_.material().Y);
   unknowns_.push_back({.name = "work", .kind = Unknown::Kind::quadrature, .scale = work});
-  at_.resize(unknowns_.size());
   rates_.resize(unknowns_.size());
   trial_.resize(unknowns_.size());
   state_.resize(unknowns_.size());
-  drift_.resize(particle_.layout().core());
-
-  observables_ = {{"work", "J", {}},
-                  {"stored_energy", "J", {}},
-                  {"dissipation", "J", {}},
-                  {"core_strain", "-", {}},
-                  {"coverage", "-", {}}};
-  for (const ContactClass& c : classes_) contacts::add_contact_columns(c.name, k_regime_words, observables_);
-  if (settings_.centre_is_free) contacts::add_centre_columns(observables_);
 }
 
 double System::force_unit() const noexcept {
@@ -113,10 +93,7 @@ double System::force_unit() const noexcept {
 bool System::is_solvable_here() const noexcept { return is_solvable() || !particle_.any_flows(); }
 
 bool System::is_at_rest() const noexcept {
-  for (std::size_t i = 0; i < particle_.size(); ++i) {
-    if (particle_.at(i).drive.rate() != 0.0) return false;
-  }
-  return true;
+  return std::ranges::all_of(particle_.classes(), [](const ClassState& c) { return c.drive.rate() == 0.0; });
 }
 
 void System::start(std::span<double> y) {
@@ -136,34 +113,27 @@ void System::start(std::span<double> y) {
 
 // --- the state at an instant
 
-void System::evaluate(double xi, std::span<const double> y) {
-  if (is_known_ && xi == at_xi_ && std::ranges::equal(y, at_)) return;
-  is_known_ = knows_rates_ = false;
-  particle_.evaluate(y);
-  std::ranges::copy(y, at_.begin());
-  at_xi_ = xi;
-  is_known_ = true;
+void System::evaluate(std::span<const double> y) {
+  if (particle_.evaluate(y)) forget_rates();
 }
 
 /// Rates of all unknowns, in rates_. @return the margin to where the equations turn back
 double System::evaluate_rates(double xi, std::span<const double> y) {
-  evaluate(xi, y);
-  if (knows_rates_) return margin_;
-  particle_.residual(xi, drift_);
+  evaluate(y);
+  if (xi == rates_at_) return margin_;
   const double pull = xi > flow_begin_ ? std::max(k_pull, k_first_pull / (xi - flow_begin_ + k_nearest_flow)) : k_pull;
-  for (double& residual : drift_) residual *= -pull;
-  margin_ = particle_.rates(rates_, drift_);
-  knows_rates_ = true;
+  margin_ = particle_.rates(rates_, xi, pull);
+  rates_at_ = xi;
   return margin_;
 }
 
 void System::complete(double xi, std::span<double> y) {
-  prescribe(xi, y);
+  particle_.prescribe(xi, y);
   if (!is_solvable_here()) return;
   // Dents and core are as they were, without the round-off of integrators, and the last solution is a better guess than
   // where the unknowns rest.
   std::ranges::copy(y, trial_.begin());
-  std::copy_n(at_.begin(), work_place_, y.begin());
+  std::ranges::copy(particle_.evaluated(), y.begin());
   try {
     solve(xi, y);
   } catch (const std::domain_error&) {
@@ -172,21 +142,9 @@ void System::complete(double xi, std::span<double> y) {
   }
 }
 
-/// Writes the forces that are prescribed.
-void System::prescribe(double xi, std::span<double> y) const {
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    const ClassState& c = particle_.at(i);
-    if (c.takes_force) y[particle_.layout().coordinate(i)] = c.drive.value(xi);
-  }
-}
-
 void System::solve(double xi, std::span<double> y) {
-  is_known_ = knows_rates_ = false;
-  prescribe(xi, y);
+  forget_rates();
   particle_.solve(xi, y);
-  std::ranges::copy(y, at_.begin());
-  at_xi_ = xi;
-  is_known_ = true;
 }
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
@@ -206,7 +164,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
     evaluate_rates(xi, state_);
   } else {
     const Layout& layout = particle_.layout();
-    evaluate(xi, y);
+    evaluate(y);
     particle_.residual(xi, res);
     for (std::size_t i = 0; i < classes_.size(); ++i) {
       if (!particle_.at(i).flows) res[layout.dent(i)] = dy[layout.dent(i)];
@@ -220,9 +178,9 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
 }
 
 /// Elastically all work is stored, but for what has been dissipated before.
-std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
+std::optional<double> System::closed_quadrature(double /*xi*/, std::span<const double> y) {
   if (particle_.any_flows()) return std::nullopt;
-  evaluate(xi, y);
+  evaluate(y);
   return particle_.stored_energy() + particle_.spring_energy();
 }
 
@@ -240,6 +198,7 @@ void System::give_way(std::size_t i, std::span<double> y) {
   c.takes_force = c.gives_way = true;
   c.drive = contacts::WallDrive({0.0, 0.0, Control::force}, 1.0);
   y[particle_.layout().coordinate(i)] = 0.0;
+  particle_.forget();
 }
 
 /// Takes up the ramp of a step; the state is evaluated.
@@ -261,22 +220,19 @@ void System::take_up(std::size_t i, const Ramp& ramp, std::span<double> y) {
 }
 
 /// Rates of what the program prescribes: displacements of all walls, then forces.
-std::vector<double> System::velocities() const {
-  std::vector<double> rates(2 * classes_.size());
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    const ClassState& c = particle_.at(i);
-    rates[c.takes_force ? classes_.size() + i : i] = c.drive.rate();
-  }
+Eigen::ArrayX2d System::velocities() const {
+  Eigen::ArrayX2d rates = Eigen::ArrayX2d::Zero(static_cast<Eigen::Index>(classes_.size()), 2);
+  Eigen::Index i = 0;
+  for (const ClassState& c : particle_.classes()) rates(i++, c.takes_force ? 1 : 0) = c.drive.rate();
   return rates;
 }
 
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
-  is_known_ = false;
-  evaluate(0.0, y);
-  const std::vector<double> before = velocities();
+  evaluate(y);
+  const Eigen::ArrayX2d before = velocities();
   for (std::size_t i = 0; i < ramps.size(); ++i) take_up(i, ramps[i], y);
+  particle_.forget();
   if (!goes_on(before, velocities())) particle_.rest_centre(y);
-  prescribe(0.0, y);
   solve(0.0, y);
   decide_mode(0.0, y, log, {});
   // Contacts that begin to flow are off their yield function by what counts as being at it.
@@ -347,7 +303,7 @@ void System::decide_touch(std::size_t i, double xi, std::span<const double> y, s
 /// the order of the walls nor their symmetry decides.
 void System::decide_flow(double xi, std::span<const double> y, std::span<char> may_flow) {
   for (std::size_t i = 0; i < particle_.size(); ++i) particle_.at(i).flows = false;
-  is_known_ = false;
+  forget_rates();
   for (bool has_changed = true; has_changed;) {
     evaluate_rates(xi, y);
     double worst = 0.0;
@@ -366,7 +322,7 @@ void System::decide_flow(double xi, std::span<const double> y, std::span<char> m
         c.flows = has_changed = true;
       }
     }
-    knows_rates_ = knows_rates_ && !has_changed;
+    if (has_changed) forget_rates();
   }
 }
 
@@ -374,10 +330,12 @@ void System::decide_flow(double xi, std::span<const double> y, std::span<char> m
 void System::decide_mode(double xi, std::span<const double> y, std::vector<Event>& log,
                          std::span<const std::size_t> fired) {
   evaluate_rates(xi, y);
+  const auto has_fired = [&](int kind, std::size_t i) {
+    return std::ranges::any_of(
+        fired, [&](std::size_t g) { return guards_[g].kind == kind && guards_[g].index == static_cast<int>(i); });
+  };
   for (std::size_t i = 0; i < classes_.size(); ++i) {
-    const bool is_decided = std::ranges::any_of(
-        fired, [&](std::size_t g) { return guards_[g].kind <= k_lost && guards_[g].index == static_cast<int>(i); });
-    if (!is_decided) decide_touch(i, xi, y, log);
+    if (!has_fired(k_made, i) && !has_fired(k_lost, i)) decide_touch(i, xi, y, log);
   }
   if (is_at_rest()) return;
   std::vector<char> flowed(classes_.size());
@@ -385,8 +343,7 @@ void System::decide_mode(double xi, std::span<const double> y, std::vector<Event
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     flowed[i] = particle_.at(i).flows;
     // A dent that has just come to rest does not grow at this instant.
-    may_flow[i] = std::ranges::none_of(
-        fired, [&](std::size_t g) { return guards_[g].kind == k_reversal && guards_[g].index == static_cast<int>(i); });
+    may_flow[i] = !has_fired(k_reversal, i);
   }
   decide_flow(xi, y, may_flow);
   flow_begin_ = xi;
@@ -462,7 +419,7 @@ DomainEnd System::end_at(const Guard& guard, double xi, std::span<const double> 
 
 std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                       std::vector<Event>& log) {
-  evaluate(xi, y);
+  evaluate(y);
   for (const std::size_t g : fired) {
     const Guard& guard = guards_[g];
     if (guard.kind >= k_fold) {
@@ -493,50 +450,44 @@ double System::displacement(std::size_t i, double xi, std::span<const double> y)
   return c.takes_force ? c.kinematic - particle_.carried(i, y) : c.drive.value(xi);
 }
 
-AtWall System::wall(std::size_t i, double xi, std::span<const double> y) {
-  evaluate(xi, y);
-  const Contact& contact = particle_.at(i).contact;
+/// What is seen of a contact at the state that was evaluated.
+contacts::VisibleContact System::visible(std::size_t i, double xi, std::span<const double> y) const {
+  const ClassState& c = particle_.at(i);
   const double length = settings_.initial_radius;
-  const double force = contact.F * force_unit();
-  const double radius = std::sqrt(contact.area) * length;
-  return {.force = force,
-          .displacement = displacement(i, xi, y) * length,
-          .pressure = radius > 0.0 ? force / (pi * radius * radius) : 0.0,
-          .contact_radius = radius,
-          .apparent_radius = length};
+  const double d = displacement(i, xi, y);
+  const int closed = c.flows ? k_plastic : c.dent.zeta > particle_.material().a_Y ? k_unloaded : k_elastic;
+  return {.displacement = d * length,
+          .overlap = (d + particle_.carried(i, y)) * length,
+          .force = c.contact.F * force_unit(),
+          .contact_radius = std::sqrt(c.contact.area) * length,
+          .pressure = c.contact.area > 0.0 ? c.contact.F / (pi * c.contact.area) * settings_.youngs_modulus : 0.0,
+          .regime = static_cast<double>(c.touches ? closed : k_open)};
 }
 
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
-  evaluate(xi, y);
+  evaluate(y);
   const double length = settings_.initial_radius;
   const double energy_unit = force_unit() * length;
-  const double work = y[work_place_] * energy_unit;
-  const double stored = particle_.stored_energy() * energy_unit;
-  const std::array<double, 5> of_particle{work, stored, work - stored, particle_.core_of(y).e, particle_.coverage()};
-  auto out = std::ranges::copy(of_particle, values.begin()).out;
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    const AtWall at = wall(i, xi, y);
-    const ClassState& c = particle_.at(i);
-    const double overlap = at.displacement + particle_.carried(i, y) * length;
-    deepest_ = std::max(deepest_, overlap / length);
-    const int closed = c.flows ? k_plastic : c.dent.zeta > particle_.material().a_Y ? k_unloaded : k_elastic;
-    const contacts::VisibleContact shown{.displacement = at.displacement,
-                                         .overlap = overlap,
-                                         .force = at.force,
-                                         .contact_radius = at.contact_radius,
-                                         .pressure = at.pressure,
-                                         .regime = static_cast<double>(c.touches ? closed : k_open)};
-    for (const contacts::ContactColumn& column : contacts::k_contact_columns) *out++ = shown.*column.value;
+  contacts::Energies energies{.work = y[work_place_] * energy_unit, .stored = particle_.stored_energy() * energy_unit};
+  energies.dissipation = energies.work - energies.stored;
+  columns_.write(
+      energies, classes_.size(),
+      [&](std::size_t i) {
+        const contacts::VisibleContact shown = visible(i, xi, y);
+        deepest_ = std::max(deepest_, shown.overlap / length);
+        return shown;
+      },
+      values, std::array{particle_.core_of(y).e, particle_.coverage()});
+  if (settings_.centre_is_free) {
+    const Eigen::Vector3d centre = particle_.layout().centre_of(y);
+    contacts::write_centre_columns(particle_.lines().in_space(centre) * length, values);
   }
-  if (!settings_.centre_is_free) return;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (std::size_t d = 0; d < particle_.layout().directions(); ++d)
-    centre[static_cast<Eigen::Index>(d)] = y[particle_.layout().centre(d)];
-  contacts::write_centre_columns(particle_.lines().in_space(centre) * length, values);
 }
 
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
-  return quantity_of(wall(static_cast<std::size_t>(contact_class), xi, y), quantity);
+  evaluate(y);
+  const auto i = static_cast<std::size_t>(contact_class);
+  return quantity_of(contacts::wall_of(visible(i, xi, y), settings_.initial_radius), quantity);
 }
 
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "cel/particle.hpp"
+#include "contacts/columns.hpp"
 #include "system/hybrid_system.hpp"
+#include "system/undefined.hpp"
 
 namespace monograin::cel {
 
@@ -50,7 +52,7 @@ class System final : public HybridSystem {
   void guard_values(double xi, std::span<const double> y, std::span<double> values) override;
   std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                 std::vector<Event>& log) override;
-  [[nodiscard]] std::span<const Observable> observables() const noexcept override { return observables_; }
+  [[nodiscard]] std::span<const Observable> observables() const noexcept override { return columns_.observables(); }
   void observe(double xi, std::span<const double> y, std::span<double> values) override;
   [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
@@ -65,15 +67,15 @@ class System final : public HybridSystem {
 
   [[nodiscard]] double force_unit() const noexcept;
   [[nodiscard]] bool is_at_rest() const noexcept;
-  void prescribe(double xi, std::span<double> y) const;
-  void evaluate(double xi, std::span<const double> y);
+  void forget_rates() noexcept { rates_at_ = k_nan; }
+  void evaluate(std::span<const double> y);
   double evaluate_rates(double xi, std::span<const double> y);
   [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const;
-  [[nodiscard]] AtWall wall(std::size_t i, double xi, std::span<const double> y);
+  [[nodiscard]] contacts::VisibleContact visible(std::size_t i, double xi, std::span<const double> y) const;
   void give_way(std::size_t i, std::span<double> y);
   void take_up(std::size_t i, const Ramp& ramp, std::span<double> y);
   void hold(std::size_t i, double displacement);
-  [[nodiscard]] std::vector<double> velocities() const;
+  [[nodiscard]] Eigen::ArrayX2d velocities() const;
   [[nodiscard]] double slack(std::size_t i) const noexcept;
   [[nodiscard]] double displacement_ahead(std::size_t i, double xi, std::span<const double> y);
   void decide_touch(std::size_t i, double xi, std::span<const double> y, std::vector<Event>& log);
@@ -88,7 +90,7 @@ class System final : public HybridSystem {
   std::vector<ContactClass> classes_;
   Particle particle_;
   std::vector<Unknown> unknowns_;
-  std::vector<Observable> observables_;
+  contacts::Columns columns_;
   std::size_t work_place_ = 0;
   double depth_ = 1.0;  ///< how far walls go, over R0
 
@@ -96,14 +98,12 @@ class System final : public HybridSystem {
   double deepest_ = 0.0;  ///< overlap over R0, as far as observed
   std::vector<Guard> guards_;
 
-  // State, and its rates, of the last evaluation.
-  std::vector<double> at_;
-  double at_xi_ = 0.0;
-  bool is_known_ = false, knows_rates_ = false;
+  // Rates at the state that was evaluated.
+  double rates_at_ = k_nan;  ///< step coordinate; nan: not known
   double margin_ = 1.0;
   std::vector<double> rates_;
-  double flow_begin_ = 0.0;                    ///< step coordinate at which the contacts that flow were decided
-  std::vector<double> drift_, trial_, state_;  ///< work space
+  double flow_begin_ = 0.0;            ///< step coordinate at which the contacts that flow were decided
+  std::vector<double> trial_, state_;  ///< work space
 };
 
 }  // namespace monograin::cel

@@ -31,6 +31,15 @@ struct VisibleContact {
   double regime = 0.0;  ///< an index into the law's words
 };
 
+/// What a wall shows of its contact.
+[[nodiscard]] inline AtWall wall_of(const VisibleContact& shown, double apparent_radius) noexcept {
+  return {.force = shown.force,
+          .displacement = shown.displacement,
+          .pressure = shown.pressure,
+          .contact_radius = shown.contact_radius,
+          .apparent_radius = apparent_radius};
+}
+
 /// A column of a contact: its name after that of the class, its unit, and its number.
 struct ContactColumn {
   std::string_view name;
@@ -68,14 +77,15 @@ inline void write_centre_columns(const Eigen::Vector3d& displacement, std::span<
   std::ranges::copy(displacement, values.last(3).begin());
 }
 
-/// Columns of a particle whose contacts share nothing else: its energies, then those of every class.
+/// Columns of a particle: its energies, others of its own, then those of every class.
 class Columns {
  public:
   Columns(bool has_stored_energy, bool has_contact_area, std::span<const std::string_view> regimes,
-          std::span<const ContactClass> classes, bool has_centre = false)
+          std::span<const ContactClass> classes, bool has_centre = false, std::span<const Observable> others = {})
       : energies_(std::span(k_energies).first(has_stored_energy ? k_energies.size() : 1)),
         has_contact_area_(has_contact_area) {
     for (const OfParticle& column : energies_) observables_.push_back({std::string(column.name), "J", {}});
+    observables_.insert(observables_.end(), others.begin(), others.end());
     for (const ContactClass& c : classes) add_contact_columns(c.name, regimes, observables_, has_contact_area);
     if (has_centre) add_centre_columns(observables_);
   }
@@ -85,9 +95,11 @@ class Columns {
   /// Writes one row.
   /// @param contact_of  VisibleContact of a class by its index
   template <class ContactOf>
-  void write(const Energies& energies, std::size_t classes, ContactOf&& contact_of, std::span<double> values) const {
+  void write(const Energies& energies, std::size_t classes, ContactOf&& contact_of, std::span<double> values,
+             std::span<const double> others = {}) const {
     auto out = values.begin();
     for (const OfParticle& column : energies_) *out++ = energies.*column.value;
+    out = std::ranges::copy(others, out).out;
     for (std::size_t i = 0; i < classes; ++i) {
       const VisibleContact contact = contact_of(i);
       for (const ContactColumn& column : k_contact_columns) {

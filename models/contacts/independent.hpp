@@ -271,12 +271,7 @@ class IndependentContacts final : public HybridSystem {
     if (is_of_area && !k_has_contact_area) throw std::logic_error("no such quantity at a wall of this model");
     const auto i = static_cast<std::size_t>(contact_class);
     const VisibleContact shown = visible(i, xi, displacement(leading(i), xi, y), carried(i, y));
-    return quantity_of({.force = shown.force,
-                        .displacement = shown.displacement,
-                        .pressure = shown.pressure,
-                        .contact_radius = shown.contact_radius,
-                        .apparent_radius = length_},
-                       quantity);
+    return quantity_of(wall_of(shown, length_), quantity);
   }
   /// A ramp of displacement begins where a force has taken the wall, without an integrator's error.
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override {
