@@ -32,6 +32,7 @@ std::vector<Eigen::Matrix3d> core_shapes(std::span<const Eigen::Matrix3d> spread
         has_grown = extend(basis, symmetric(basis[a] * basis[b])) || has_grown;
     }
   }
+  if (basis.size() == 1) basis.clear();
   return basis;
 }
 

@@ -20,8 +20,8 @@ namespace monograin::cel {
   return a - a.trace() / 3.0 * Eigen::Matrix3d::Identity();
 }
 
-/// An orthonormal basis of these tensors. The first is the unit tensor over sqrt(3): all others are deviators, and
-/// there are none where the walls load the core by pressures only.
+/// An orthonormal basis of these tensors. The first is the unit tensor over sqrt(3), so that all others are deviators.
+/// Without others, where the walls load the core by pressures only, it keeps its shape: empty.
 /// @param spreads  sum of n n over the walls of each class
 [[nodiscard]] std::vector<Eigen::Matrix3d> core_shapes(std::span<const Eigen::Matrix3d> spreads);
 

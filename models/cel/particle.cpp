@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "cel/constants.hpp"
@@ -18,6 +19,7 @@ namespace k = constants;
 /// Sine of half the angle, and last term of the series, of the self influence: part of the law's definition.
 constexpr double k_self_half_sine = 0.2;
 constexpr int k_last_term = 4000;
+constexpr double k_same_angle = 1e-12;
 /// Load of the core over Y R0^2 below which it has no direction.
 constexpr double k_no_load = 1e-14;
 
@@ -59,27 +61,32 @@ std::vector<Eigen::Matrix3d> spreads_of(std::span<const ContactClass> classes) {
 Particle::Particle(const Material& material, double poisson_ratio, std::span<const ContactClass> classes,
                    bool centre_is_free)
     : material_(material),
-      spreads_(spreads_of(classes)),
-      shapes_(core_shapes(spreads_)),
+      shapes_(core_shapes(spreads_of(classes))),
       lines_(classes, centre_is_free),
       layout_(classes.size(), static_cast<std::size_t>(lines_.dimension()), shapes_.size()),
       classes_(classes.size()) {
-  const Eigen::Index n = index(size());
-  flow_components_.setZero(layout_.has_core() ? index(shapes_.size()) : 0);
-  along_.setZero(n, flow_components_.size());
+  const std::vector<Eigen::Matrix3d> spreads = spreads_of(classes);
+  flow_components_.setZero(index(shapes_.size()));
+  along_.resize(index(size()), index(shapes_.size()));
+  // Influences at the angles between walls, each found once.
+  std::map<double, double> influences;
+  const auto influence_at = [&](double angle) {
+    const auto [at, is_new] = influences.try_emplace(std::round(angle / k_same_angle));
+    if (is_new) at->second = nonlocal::sphere_influence(poisson_ratio, angle);
+    return at->second;
+  };
   const double self = nonlocal::sphere_self_influence(poisson_ratio, k_self_half_sine, k_last_term);
   for (std::size_t i = 0; i < size(); ++i) {
     const Eigen::Vector3d& normal = classes[i].normals.front();
-    counts_.push_back(classes[i].multiplicity());
-    walls_.emplace_back(normal * normal.transpose());
-    for (Eigen::Index j = 0; j < along_.cols(); ++j)
-      along_(index(i), j) = contraction(walls_[i], shapes_[static_cast<std::size_t>(j)]);
+    ClassState& c = classes_[i];
+    c.count = classes[i].multiplicity();
+    c.wall = normal * normal.transpose();
+    c.spread = spreads[i];
+    for (std::size_t j = 0; j < shapes_.size(); ++j) along_(index(i), index(j)) = contraction(c.wall, shapes_[j]);
     for (std::size_t j = 0; j < size(); ++j) {
       Coupling& sum = coupling_.emplace_back();
       for (const Eigen::Vector3d& other : classes[j].normals) {
-        const double g = &other == &normal
-                             ? self
-                             : nonlocal::sphere_influence(poisson_ratio, nonlocal::angle_between(normal, other));
+        const double g = &other == &normal ? self : influence_at(nonlocal::angle_between(normal, other));
         const double along = std::min(1.0, raised<2>(normal.dot(other)));
         sum.same += g * along * along;
         sum.mixed += g * along * (1.0 - along);
@@ -87,20 +94,18 @@ Particle::Particle(const Material& material, double poisson_ratio, std::span<con
       }
     }
   }
-  for (auto* values : {&l_by_flow_, &Om_by_zeta_}) values->resize(size());
+  Om_by_zeta_.resize(size());
   shares_.resize(lines_.size());
   choose_balance();
   residual_by_.resize(layout_.core() * row_width());
-  active_.reserve(layout_.core());
   evaluated_.resize(layout_.size());
   for (auto* values : {&solution_, &drift_, &rest_of_equations_, &before_}) values->resize(layout_.core());
 }
 
 Core Particle::core_of(std::span<const double> y) const noexcept {
   Core core{.C = Eigen::Matrix3d::Identity()};
-  if (!layout_.has_core()) return core;
   for (std::size_t j = 0; j < shapes_.size(); ++j) core.C += y[layout_.core() + j] * shapes_[j];
-  core.e = y[layout_.size() - 1];
+  if (layout_.has_core()) core.e = y[layout_.size() - 1];
   return core;
 }
 
@@ -138,7 +143,7 @@ void Particle::evaluate_contacts(std::span<const double> y) {
       c.half_Gam_log = 0.5 * c.dent.Gam_zeta / c.dent.Gam;
     }
     c.advance = advance_of(excess / (1.0 + c.l));
-    Om_ += 0.5 * counts_[i] * (zeta * zeta - material_.a_Y * material_.a_Y) * c.per_l * c.per_l;
+    Om_ += 0.5 * c.count * (zeta * zeta - material_.a_Y * material_.a_Y) * c.per_l * c.per_l;
   }
   shade_ = 1.0 / (1.0 + k::kap * raised<4>(Om_));
   const double m = 1.0 - k::m2 * Om_ * Om_ + k::m4 * raised<4>(Om_);
@@ -150,7 +155,7 @@ void Particle::evaluate_contacts(std::span<const double> y) {
   }
 }
 
-/// Influences, right sides of (K), and the stored energy.
+/// Influences, displacements by (K), and the stored energy.
 void Particle::evaluate_coupling() {
   stored_ = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
@@ -162,8 +167,8 @@ void Particle::evaluate_coupling() {
       g.G = g.mixed + g.across * shade_ + g.dented;
       lift += g.G * classes_[j].contact.F;
     }
-    c.kinematic = c.dent.h + c.advance.c + c.contact.u - lift;
-    stored_ += counts_[i] * (c.contact.stored - 0.5 * c.contact.F * lift);
+    c.displacement = c.dent.h + c.advance.c + c.contact.u - lift - lines_.arm(i).dot(centre_);
+    stored_ += c.count * (c.contact.stored - 0.5 * c.contact.F * lift);
   }
 }
 
@@ -175,7 +180,7 @@ void Particle::evaluate_core() {
   s_ = per_s_ = Q_ = 0.0;
   if (!layout_.has_core()) return;
   pushes_.setZero();
-  for (std::size_t i = 0; i < size(); ++i) pushes_ += classes_[i].contact.F * classes_[i].w() * spreads_[i];
+  for (const ClassState& c : classes_) pushes_ += c.contact.F * c.w() * c.spread;
   T_ = deviator(symmetric(core_.C * pushes_));
   const double load = 0.5 * std::sqrt(1.5 * T_.squaredNorm());
   if (!(load > k_no_load * material_.Y)) return;
@@ -190,20 +195,19 @@ void Particle::evaluate_core() {
 /// Which contacts drive the core and which it carries, how weak those are, and the yield functions.
 void Particle::evaluate_yield() {
   const double use = s_ * per_S_;
-  for (std::size_t i = 0; i < size(); ++i) {
-    ClassState& c = classes_[i];
+  for (ClassState& c : classes_) {
     c.X = c.b = c.tau = c.pace = 0.0;
     c.wk = 1.0;
     c.f = -1.0;
     if (!(c.contact.F > 0.0)) continue;
     if (s_ > 0.0) {
-      c.tau = 0.75 * per_s_ * contraction(walls_[i], T_);
+      c.tau = 0.75 * per_s_ * contraction(c.wall, T_);
       const double z = std::clamp(-2.0 * c.tau, 0.0, 1.0);
       c.b = z * z * (3.0 - 2.0 * z);
       if (c.b > 0.0) c.wk = 1.0 - k::beta * raised<k::n3>(use) * c.b * std::exp(-c.contact.alpha / k::ab);
     }
     c.X = raised<k::n1>(c.contact.F_over_H / c.wk);
-    if (c.X > 0.0) c.pace = counts_[i] * c.contact.F * (1.0 - c.b) / c.X * c.dent.h_zeta;
+    if (c.X > 0.0) c.pace = c.count * c.contact.F * (1.0 - c.b) / c.X * c.dent.h_zeta;
     if (c.X + Q_ > 0.0) c.f = std::pow(c.X + Q_, 1.0 / k::n1) - 1.0;
   }
 }
@@ -211,24 +215,22 @@ void Particle::evaluate_yield() {
 void Particle::residual(double xi, std::span<double> residual) const {
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
-    residual[layout_.coordinate(i)] =
-        c.takes_force ? c.coordinate - c.drive.value(xi) : c.kinematic - lines_.arm(i).dot(centre_) - c.drive.value(xi);
+    residual[layout_.coordinate(i)] = (c.takes_force ? c.coordinate : c.displacement) - c.drive.value(xi);
     residual[layout_.dent(i)] = c.flows ? -c.f : 0.0;
   }
-  for (std::size_t d = 0; d < layout_.directions(); ++d) residual[layout_.centre(d)] = 0.0;
-  for (std::size_t line = 0; layout_.directions() > 0 && line < lines_.size(); ++line) {
+  if (layout_.directions() == 0) return;
+  Eigen::Vector3d net = k_weak_spring * balance_.transpose() * (centre_ - rest_);
+  for (std::size_t line = 0; line < lines_.size(); ++line) {
     double push = 0.0;
     for (std::size_t i = 0; i < size(); ++i) push += push_on(line, i) * classes_[i].contact.F;
-    for (std::size_t d = 0; d < layout_.directions(); ++d)
-      residual[layout_.centre(d)] += shares_[line][index(d)] * push;
+    net += push * shares_[line];
   }
-  for (std::size_t d = 0; d < layout_.directions(); ++d)
-    residual[layout_.centre(d)] += k_weak_spring * balance_.col(index(d)).dot(centre_ - rest_);
+  std::copy_n(net.begin(), layout_.directions(), &residual[layout_.centre(0)]);
 }
 
 /// Force along a line of pushes per force of a class.
 double Particle::push_on(std::size_t line, std::size_t i) const noexcept {
-  return lines_.line_of(i) == line ? counts_[i] * lines_.along(i) : 0.0;
+  return lines_.line_of(i) == line ? classes_[i].count * lines_.along(i) : 0.0;
 }
 
 /// Takes the balance of forces along the line of the largest ones, then across it: their round-off would be more there
@@ -254,7 +256,7 @@ inline void Particle::add(std::size_t i, const Slopes& by, double factor, std::s
   row[layout_.coordinate(i)] += factor * by.coordinate;
   row[layout_.dent(i)] += factor * by.zeta;
   row[by_Om()] += factor * by.m * m_by_Om_;
-  row[by_flow()] += factor * by.l * l_by_flow_[i];
+  row[by_flow()] += factor * by.l * classes_[i].l_by_flow;
 }
 
 /// Writes the coverage as what it depends on.
@@ -267,12 +269,12 @@ void Particle::fold_coverage(std::span<double> row) const noexcept {
 void Particle::differentiate() {
   Om_by_flow_ = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
-    const ClassState& c = classes_[i];
+    ClassState& c = classes_[i];
     const double per_square = c.per_l * c.per_l;
     const double grown = c.dent.zeta * c.dent.zeta - material_.a_Y * material_.a_Y;
-    l_by_flow_[i] = 0.5 * c.per_l * along_.row(index(i)).dot(flow_components_);
-    Om_by_zeta_[i] = counts_[i] * c.dent.zeta * per_square;
-    Om_by_flow_ -= counts_[i] * grown * per_square * c.per_l * l_by_flow_[i];
+    c.l_by_flow = 0.5 * c.per_l * along_.row(index(i)).dot(flow_components_);
+    Om_by_zeta_[i] = c.count * c.dent.zeta * per_square;
+    Om_by_flow_ -= c.count * grown * per_square * c.per_l * c.l_by_flow;
   }
   std::ranges::fill(residual_by_, 0.0);
   if (any_flows()) differentiate_load();
@@ -300,7 +302,7 @@ void Particle::differentiate_kinematics(std::size_t i) {
   }
   add(i, c.contact.u_by, 1.0, row);
   row[layout_.dent(i)] += c.dent.h_zeta;
-  row[by_flow()] += c.advance.c_l * l_by_flow_[i];
+  row[by_flow()] += c.advance.c_l * c.l_by_flow;
   fold_coverage(row);
   for (std::size_t d = 0; d < layout_.directions(); ++d) row[layout_.centre(d)] = -lines_.arm(i)[index(d)];
 }
@@ -309,7 +311,8 @@ void Particle::differentiate_kinematics(std::size_t i) {
 void Particle::differentiate_balance(std::size_t direction) {
   const std::span<double> row = row_at(layout_.centre(direction));
   for (std::size_t i = 0; i < size(); ++i)
-    add(i, classes_[i].contact.F_by, shares_[lines_.line_of(i)][index(direction)] * counts_[i] * lines_.along(i), row);
+    add(i, classes_[i].contact.F_by, shares_[lines_.line_of(i)][index(direction)] * classes_[i].count * lines_.along(i),
+        row);
   fold_coverage(row);
   for (std::size_t d = 0; d < layout_.directions(); ++d)
     row[layout_.centre(d)] = k_weak_spring * balance_(index(d), index(direction));
@@ -320,10 +323,9 @@ void Particle::differentiate_load() {
   T_by_flow_.setZero();
   if (!(s_ > 0.0)) return;
   Eigen::Matrix3d pushes_by_flow = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < size(); ++i) {
-    const ClassState& c = classes_[i];
+  for (const ClassState& c : classes_) {
     const double w_l = -(c.w() + c.advance.c_ll) * c.per_l;
-    pushes_by_flow += c.contact.F * w_l * l_by_flow_[i] * spreads_[i];
+    pushes_by_flow += c.contact.F * w_l * c.l_by_flow * c.spread;
   }
   T_by_flow_ = deviator(symmetric(flow_.C * pushes_ + core_.C * pushes_by_flow));
 }
@@ -350,10 +352,10 @@ void Particle::differentiate_yield(std::size_t i) {
     // By the load, of which s is the size and tau the share under this wall, and by the strength S.
     const double of_s = of_use * per_S_ - of_tau * c.tau * per_s_;
     Eigen::Matrix3d by_T = 0.375 * of_s * per_s_ * T_;
-    if (of_tau != 0.0) by_T += 0.75 * of_tau * per_s_ * deviator(walls_[i]);
+    if (of_tau != 0.0) by_T += 0.75 * of_tau * per_s_ * deviator(c.wall);
     const Eigen::Matrix3d by_pushes = core_.C * by_T;
     for (std::size_t j = 0; j < size(); ++j)
-      add(j, classes_[j].contact.F_by, -classes_[j].w() * contraction(by_pushes, spreads_[j]), row);
+      add(j, classes_[j].contact.F_by, -classes_[j].w() * contraction(by_pushes, classes_[j].spread), row);
     row[by_flow()] -= contraction(by_T, T_by_flow_) - of_use * use * per_S_ * material_.Y * k::s1 * flow_.e;
   }
   fold_coverage(row);
@@ -542,7 +544,7 @@ double Particle::power() const {
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes_[i];
     const double speed = c.takes_force ? rate_of(layout_.coordinate(i)) : c.drive.rate();
-    sum += counts_[i] * c.contact.F * speed;
+    sum += c.count * c.contact.F * speed;
   }
   return sum;
 }

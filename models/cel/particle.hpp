@@ -31,9 +31,9 @@ namespace monograin::cel {
 /// Places of the unknowns in a state: own coordinate and dent of every class, centre, core.
 class Layout {
  public:
-  /// @param shapes  of the core; 1: it keeps its shape, and is no unknown
+  /// @param shapes  that the core can take; 0: it keeps its own, and is no unknown
   Layout(std::size_t classes, std::size_t directions, std::size_t shapes) noexcept
-      : classes_(classes), directions_(directions), core_size_(shapes > 1 ? shapes + 1 : 0) {}
+      : classes_(classes), directions_(directions), core_size_(shapes > 0 ? shapes + 1 : 0) {}
   [[nodiscard]] std::size_t coordinate(std::size_t i) const noexcept { return i; }
   [[nodiscard]] std::size_t dent(std::size_t i) const noexcept { return classes_ + i; }
   [[nodiscard]] bool is_dent(std::size_t place) const noexcept { return place >= classes_ && place < 2 * classes_; }
@@ -64,6 +64,10 @@ struct Core {
 
 /// One class of walls, or a contact of it.
 struct ClassState {
+  double count = 0.0;      ///< of walls
+  Eigen::Matrix3d wall;    ///< n n of the first one
+  Eigen::Matrix3d spread;  ///< sum of n n over all
+
   contacts::WallDrive drive{};
   bool takes_force = false;  ///< its own coordinate is the force, not u
   bool gives_way = false;    ///< bears no force: its wall stands until the surface comes to it, and then goes with it
@@ -75,9 +79,9 @@ struct ClassState {
   double root_Gam = 1.0, half_Gam_log = 0.0;  ///< square root of its Gam, and the logarithmic derivative of that
   Contact contact{};
   Advance advance{};
-  double l = 1.0, per_l = 1.0;
-  double kinematic = 0.0;  ///< right side of (K)
-  double f = -1.0;         ///< yield function
+  double l = 1.0, per_l = 1.0, l_by_flow = 0.0;
+  double displacement = 0.0;  ///< of the wall, by (K)
+  double f = -1.0;            ///< yield function
   double X = 0.0;
   double tau = 0.0;   ///< share of the wall in the load of the core
   double b = 0.0;     ///< 1: carried by the flow of the core; 0: drives it
@@ -184,15 +188,12 @@ class Particle {
   [[nodiscard]] double rate_of(std::size_t place) const noexcept;
 
   Material material_;
-  std::vector<Eigen::Matrix3d> spreads_;  ///< sum of n n over the walls of each class
-  std::vector<Eigen::Matrix3d> shapes_;   ///< of the core
+  std::vector<Eigen::Matrix3d> shapes_;  ///< that the core can take; none where it keeps its own
   contacts::CentreLines lines_;
   Layout layout_;
-  std::vector<double> counts_;          ///< of walls
-  std::vector<Eigen::Matrix3d> walls_;  ///< n n of the first wall of each class
-  Eigen::MatrixXd along_;               ///< its components among the shapes of the core
-  std::vector<Coupling> coupling_;      ///< row by row
+  std::vector<Coupling> coupling_;  ///< row by row
   std::vector<ClassState> classes_;
+  Eigen::MatrixXd along_;                           ///< components of their walls among the shapes of the core
   Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();  ///< where the centre is at ease
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d balance_ = Eigen::Matrix3d::Identity();  ///< directions of the equations (E)
@@ -211,7 +212,7 @@ class Particle {
   Eigen::VectorXd flow_components_;  ///< among the shapes of the core
 
   // Its derivatives.
-  std::vector<double> l_by_flow_, Om_by_zeta_;
+  std::vector<double> Om_by_zeta_;
   double Om_by_flow_ = 0.0;
   Eigen::Matrix3d T_by_flow_;        ///< at given forces
   std::vector<double> residual_by_;  ///< row by row

@@ -211,7 +211,7 @@ void System::take_up(std::size_t i, const Ramp& ramp, std::span<double> y) {
     if (c.takes_force || c.contact.u >= -slack(i))
       give_way(i, y);
     else
-      hold(i, c.kinematic - particle_.carried(i, y));
+      hold(i, c.displacement);
     return;
   }
   if (takes_force != c.takes_force) coordinate = takes_force ? c.contact.F : c.contact.u;
@@ -247,7 +247,7 @@ std::optional<DomainEnd> System::limit_here(double xi, std::span<const double> y
   if (guards_.empty()) return std::nullopt;
   const double margin = evaluate_rates(xi, y);
   for (const Guard& guard : guards_) {
-    if (guard.kind >= k_fold && limit_value(guard, margin) <= 0.0) return end_at(guard, xi, y);
+    if (guard.kind >= k_fold && limit_value(guard, margin) <= 0.0) return end_at(guard, xi);
   }
   return std::nullopt;
 }
@@ -409,11 +409,11 @@ double System::limit_value(const Guard& guard, double margin) const noexcept {
   return k_most_coverage - particle_.coverage();
 }
 
-DomainEnd System::end_at(const Guard& guard, double xi, std::span<const double> y) const {
+DomainEnd System::end_at(const Guard& guard, double xi) const {
   const Event event{guard.name, guard.index};
   if (guard.kind == k_coverage) return {event, {Limit::surface_covered, -1, "coverage", particle_.coverage()}};
   double largest = 0.0;
-  for (std::size_t i = 0; i < classes_.size(); ++i) largest = std::max(largest, displacement(i, xi, y));
+  for (const ClassState& c : particle_.classes()) largest = std::max(largest, displacement(c, xi));
   return {event, {Limit::applicability, -1, "largest displacement/R0", largest}};
 }
 
@@ -424,7 +424,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     const Guard& guard = guards_[g];
     if (guard.kind >= k_fold) {
       log.push_back({guard.name, guard.index});
-      return end_at(guard, xi, y);
+      return end_at(guard, xi);
     }
     const auto i = static_cast<std::size_t>(guard.index);
     if (guard.kind > k_lost) continue;
@@ -445,16 +445,15 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
 // --- what others ask
 
 /// Displacement of a wall over R0, at the state that was evaluated.
-double System::displacement(std::size_t i, double xi, std::span<const double> y) const {
-  const ClassState& c = particle_.at(i);
-  return c.takes_force ? c.kinematic - particle_.carried(i, y) : c.drive.value(xi);
+double System::displacement(const ClassState& c, double xi) {
+  return c.takes_force ? c.displacement : c.drive.value(xi);
 }
 
 /// What is seen of a contact at the state that was evaluated.
 contacts::VisibleContact System::visible(std::size_t i, double xi, std::span<const double> y) const {
   const ClassState& c = particle_.at(i);
   const double length = settings_.initial_radius;
-  const double d = displacement(i, xi, y);
+  const double d = displacement(c, xi);
   const int closed = c.flows ? k_plastic : c.dent.zeta > particle_.material().a_Y ? k_unloaded : k_elastic;
   return {.displacement = d * length,
           .overlap = (d + particle_.carried(i, y)) * length,

@@ -70,7 +70,7 @@ class System final : public HybridSystem {
   void forget_rates() noexcept { rates_at_ = k_nan; }
   void evaluate(std::span<const double> y);
   double evaluate_rates(double xi, std::span<const double> y);
-  [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const;
+  [[nodiscard]] static double displacement(const ClassState& c, double xi);
   [[nodiscard]] contacts::VisibleContact visible(std::size_t i, double xi, std::span<const double> y) const;
   void give_way(std::size_t i, std::span<double> y);
   void take_up(std::size_t i, const Ramp& ramp, std::span<double> y);
@@ -84,7 +84,7 @@ class System final : public HybridSystem {
   void arm_guards();
   [[nodiscard]] double limit_value(const Guard& guard, double margin) const noexcept;
   [[nodiscard]] std::optional<DomainEnd> limit_here(double xi, std::span<const double> y);
-  [[nodiscard]] DomainEnd end_at(const Guard& guard, double xi, std::span<const double> y) const;
+  [[nodiscard]] DomainEnd end_at(const Guard& guard, double xi) const;
 
   Settings settings_;
   std::vector<ContactClass> classes_;

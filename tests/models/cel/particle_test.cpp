@@ -164,8 +164,8 @@ TEST(CelParticleRates, MoveTheWallsAsTheirProgramDoes) {
   for_random_cases([](RandomCase& now, Generator&) {
     const std::vector<double> dy = now.rates();
     for (std::size_t i = 0; i < now.classes.size(); ++i) {
-      const double slope = now.slope_along(
-          dy, [i](const Particle& p, std::span<const double> y) { return p.at(i).kinematic - p.carried(i, y); });
+      const double slope =
+          now.slope_along(dy, [i](const Particle& p, std::span<const double>) { return p.at(i).displacement; });
       EXPECT_NEAR(slope, now.particle.at(i).drive.rate(), 1e-12 * now.pace(dy)) << "wall " << i;
     }
   });
@@ -295,14 +295,14 @@ TEST(CelParticleRates, UnderPrescribedForcesAreThoseOfTheirDisplacements) {
 
 /// Values of the equations at a state, class by class.
 struct Said {
-  std::vector<double> kinematic, f, force, driving;
+  std::vector<double> overlap, f, force, driving;
   double coverage, stored;
 };
 Said said_by(Particle& particle, std::span<const double> y) {
   particle.evaluate(y);
   Said said{{}, {}, {}, {}, particle.coverage(), particle.stored_energy()};
   for (std::size_t i = 0; i < particle.size(); ++i) {
-    said.kinematic.push_back(particle.at(i).kinematic);
+    said.overlap.push_back(particle.at(i).displacement + particle.carried(i, y));
     said.f.push_back(particle.at(i).f);
     said.force.push_back(particle.at(i).contact.F);
     said.driving.push_back(1.0 - particle.at(i).b);
@@ -312,7 +312,7 @@ Said said_by(Particle& particle, std::span<const double> y) {
 
 void expect_same(const Said& actual, const Said& expected, double tolerance) {
   for (std::size_t i = 0; i < expected.force.size(); ++i) {
-    EXPECT_NEAR(actual.kinematic[i], expected.kinematic[i], tolerance) << i;
+    EXPECT_NEAR(actual.overlap[i], expected.overlap[i], tolerance) << i;
     EXPECT_NEAR(actual.f[i], expected.f[i], 10.0 * tolerance) << i;
     EXPECT_NEAR(actual.force[i], expected.force[i], tolerance) << i;
     EXPECT_NEAR(actual.driving[i], expected.driving[i], 100.0 * tolerance) << i;
@@ -340,7 +340,7 @@ TEST(CelParticle, IsTheSameInAnyOrderOfItsWalls) {
     const Said shuffled = said_by(other, y);
     Said sorted = shuffled;
     for (std::size_t i = 0; i < n; ++i) {
-      sorted.kinematic[order[i]] = shuffled.kinematic[i];
+      sorted.overlap[order[i]] = shuffled.overlap[i];
       sorted.f[order[i]] = shuffled.f[i];
       sorted.force[order[i]] = shuffled.force[i];
       sorted.driving[order[i]] = shuffled.driving[i];
@@ -397,7 +397,7 @@ TEST(CelParticle, IsSolvedFromStatesNearby) {
     for (std::size_t i = 0; i < now.classes.size(); ++i) {
       ClassState& c = now.particle.at(i);
       c.flows = false;
-      c.drive = contacts::WallDrive({c.kinematic, c.kinematic, Control::displacement}, 1.0);
+      c.drive = contacts::WallDrive({c.displacement, c.displacement, Control::displacement}, 1.0);
     }
     std::vector<double> y = now.y;
     for (std::size_t i = 0; i < now.classes.size(); ++i) y[i] *= uniform(generator, 0.9, 1.1);
