@@ -162,6 +162,7 @@ void Particle::evaluate_coupling() {
     ClassState& c = classes_[i];
     double lift = 0.0;  // sum of G F
     for (std::size_t j = 0; j < size(); ++j) {
+      if (classes_[j].contact.F == 0.0) continue;
       Coupling& g = coupling_[i * size() + j];
       g.dented = c.root_Gam * classes_[j].root_Gam * (g.same + g.mixed * shade_);
       g.G = g.mixed + g.across * shade_ + g.dented;
@@ -268,6 +269,7 @@ void Particle::fold_coverage(std::span<double> row) const noexcept {
 
 void Particle::differentiate() {
   Om_by_flow_ = 0.0;
+  pushes_by_flow_.setZero();
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
     const double per_square = c.per_l * c.per_l;
@@ -275,9 +277,9 @@ void Particle::differentiate() {
     c.l_by_flow = 0.5 * c.per_l * along_.row(index(i)).dot(flow_components_);
     Om_by_zeta_[i] = c.count * c.dent.zeta * per_square;
     Om_by_flow_ -= c.count * grown * per_square * c.per_l * c.l_by_flow;
+    const double w_l = -(c.w() + c.advance.c_ll) * c.per_l;
+    pushes_by_flow_ += c.contact.F * w_l * c.l_by_flow * c.spread;
   }
-  std::ranges::fill(residual_by_, 0.0);
-  if (any_flows()) differentiate_load();
   for (std::size_t i = 0; i < size(); ++i) {
     differentiate_kinematics(i);
     if (classes_[i].flows) differentiate_yield(i);
@@ -287,7 +289,7 @@ void Particle::differentiate() {
 
 /// Derivatives of (K).
 void Particle::differentiate_kinematics(std::size_t i) {
-  const std::span<double> row = row_at(layout_.coordinate(i));
+  const std::span<double> row = new_row(layout_.coordinate(i));
   const ClassState& c = classes_[i];
   const double shade_by_Om = -4.0 * k::kap * raised<3>(Om_) * shade_ * shade_;
   for (std::size_t j = 0; j < size(); ++j) {
@@ -309,7 +311,7 @@ void Particle::differentiate_kinematics(std::size_t i) {
 
 /// Derivatives of a component of (E).
 void Particle::differentiate_balance(std::size_t direction) {
-  const std::span<double> row = row_at(layout_.centre(direction));
+  const std::span<double> row = new_row(layout_.centre(direction));
   for (std::size_t i = 0; i < size(); ++i)
     add(i, classes_[i].contact.F_by, shares_[lines_.line_of(i)][index(direction)] * classes_[i].count * lines_.along(i),
         row);
@@ -318,21 +320,9 @@ void Particle::differentiate_balance(std::size_t direction) {
     row[layout_.centre(d)] = k_weak_spring * balance_(index(d), index(direction));
 }
 
-/// Derivative of the core's load by its flow.
-void Particle::differentiate_load() {
-  T_by_flow_.setZero();
-  if (!(s_ > 0.0)) return;
-  Eigen::Matrix3d pushes_by_flow = Eigen::Matrix3d::Zero();
-  for (const ClassState& c : classes_) {
-    const double w_l = -(c.w() + c.advance.c_ll) * c.per_l;
-    pushes_by_flow += c.contact.F * w_l * c.l_by_flow * c.spread;
-  }
-  T_by_flow_ = deviator(symmetric(flow_.C * pushes_ + core_.C * pushes_by_flow));
-}
-
 /// Derivatives of -f: dX = n1 X (dF/F - dH/H - dwk/wk), dQ = n2 (s/S)^(n2-1) d(s/S).
 void Particle::differentiate_yield(std::size_t i) {
-  const std::span<double> row = row_at(layout_.dent(i));
+  const std::span<double> row = new_row(layout_.dent(i));
   const ClassState& c = classes_[i];
   if (!(c.X + Q_ > 0.0) || !(c.contact.F > 0.0)) return;
   const double use = s_ * per_S_;
@@ -356,20 +346,23 @@ void Particle::differentiate_yield(std::size_t i) {
     const Eigen::Matrix3d by_pushes = core_.C * by_T;
     for (std::size_t j = 0; j < size(); ++j)
       add(j, classes_[j].contact.F_by, -classes_[j].w() * contraction(by_pushes, classes_[j].spread), row);
-    row[by_flow()] -= contraction(by_T, T_by_flow_) - of_use * use * per_S_ * material_.Y * k::s1 * flow_.e;
+    row[by_flow()] -= contraction(by_T, flow_.C * pushes_) + contraction(by_pushes, pushes_by_flow_) -
+                      of_use * use * per_S_ * material_.Y * k::s1 * flow_.e;
   }
   fold_coverage(row);
 }
 
 // --- solving them
 
-/// The linear equations of the unknowns up to the core that move: coordinates, dents that grow, and the centre.
+/// The linear equations of the unknowns up to the core that move: coordinates, the centre, and dents that grow.
 /// @param takes_core_along  whether the core flows as the dents do; otherwise it stays
 void Particle::assemble(bool takes_core_along) {
   differentiate();
   active_.clear();
-  for (std::size_t place = 0; place < layout_.core(); ++place) {
-    if (!layout_.is_dent(place) || classes_[place - size()].flows) active_.push_back(place);
+  for (std::size_t i = 0; i < size(); ++i) active_.push_back(layout_.coordinate(i));
+  for (std::size_t d = 0; d < layout_.directions(); ++d) active_.push_back(layout_.centre(d));
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (classes_[i].flows) active_.push_back(layout_.dent(i));
   }
   const Eigen::Index n = index(active_.size());
   matrix_.resize(n, n + 2);
@@ -533,8 +526,6 @@ double Particle::rate_of(std::size_t place) const noexcept {
 }
 
 double Particle::yield_rate(std::size_t i) {
-  std::ranges::fill(row_at(layout_.dent(i)), 0.0);
-  differentiate_load();
   differentiate_yield(i);
   return -rate_of(layout_.dent(i));
 }

@@ -163,7 +163,6 @@ class Particle {
   void evaluate_core();
   void evaluate_yield();
   void differentiate();
-  void differentiate_load();
   void differentiate_kinematics(std::size_t i);
   void differentiate_yield(std::size_t i);
   void differentiate_balance(std::size_t direction);
@@ -176,8 +175,10 @@ class Particle {
   [[nodiscard]] std::span<const double> row_at(std::size_t place) const noexcept {
     return std::span(residual_by_).subspan(place * row_width(), row_width());
   }
-  [[nodiscard]] std::span<double> row_at(std::size_t place) noexcept {
-    return std::span(residual_by_).subspan(place * row_width(), row_width());
+  [[nodiscard]] std::span<double> new_row(std::size_t place) noexcept {
+    const auto row = std::span(residual_by_).subspan(place * row_width(), row_width());
+    std::ranges::fill(row, 0.0);
+    return row;
   }
   [[nodiscard]] double push_on(std::size_t line, std::size_t i) const noexcept;
   void choose_balance();
@@ -214,7 +215,7 @@ class Particle {
   // Its derivatives.
   std::vector<double> Om_by_zeta_;
   double Om_by_flow_ = 0.0;
-  Eigen::Matrix3d T_by_flow_;        ///< at given forces
+  Eigen::Matrix3d pushes_by_flow_;   ///< at given forces
   std::vector<double> residual_by_;  ///< row by row
 
   // The linear equations for rates or corrections of the unknowns up to the core that move.
