@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "contacts/side_ahead.hpp"
+
 namespace monograin::cel {
 namespace {
 
@@ -255,23 +257,15 @@ std::optional<DomainEnd> System::limit_here(double xi, std::span<const double> y
 // --- modes
 
 /// Elastic displacement of a contact a little later, as soon as it is on a side; none if it never is.
-double System::displacement_ahead(std::size_t i, double xi, std::span<const double> y) {
-  constexpr double k_first = 1e-9;
-  const std::size_t place = particle_.layout().coordinate(i);
+double System::displacement_ahead(std::size_t i, double xi, std::span<const double> y) const {
   Particle ahead = particle_;
-  for (double distance = k_first; xi < 1.0; distance *= 10.0) {
-    const double later = std::min(1.0, xi + distance);
+  const auto at = [&](double later) {
     std::vector<double> state(y.begin(), y.end());
     for (std::size_t j = 0; j < work_place_; ++j) state[j] += (later - xi) * rates_[j];
-    try {
-      ahead.solve(later, state);
-    } catch (const std::domain_error&) {
-      return 0.0;  // the run will stop on its way there
-    }
-    if (std::abs(state[place]) > k_touch * depth_) return state[place];
-    if (later == 1.0) break;
-  }
-  return 0.0;
+    ahead.solve(later, state);
+    return state[particle_.layout().coordinate(i)];
+  };
+  return contacts::side_ahead(xi, k_touch * depth_, at).value_or(0.0);
 }
 
 /// Elastic displacement that does not put a contact on a side.

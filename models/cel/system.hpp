@@ -77,7 +77,7 @@ class System final : public HybridSystem {
   void hold(std::size_t i, double displacement);
   [[nodiscard]] Eigen::ArrayX2d velocities() const;
   [[nodiscard]] double slack(std::size_t i) const noexcept;
-  [[nodiscard]] double displacement_ahead(std::size_t i, double xi, std::span<const double> y);
+  [[nodiscard]] double displacement_ahead(std::size_t i, double xi, std::span<const double> y) const;
   void decide_touch(std::size_t i, double xi, std::span<const double> y, std::vector<Event>& log);
   void decide_mode(double xi, std::span<const double> y, std::vector<Event>& log, std::span<const std::size_t> fired);
   void decide_flow(double xi, std::span<const double> y, std::span<char> may_flow);

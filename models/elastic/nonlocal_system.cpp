@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "contacts/side_ahead.hpp"
 #include "system/difficulty.hpp"
 #include "system/undefined.hpp"
 
@@ -29,7 +30,7 @@ enum Kind : int {
 constexpr double k_least_margin = 1e-5;
 // The margin below which an integrator may find no more steps.
 constexpr double k_hard_margin = 1e-3;
-// How far ahead the side of a wall is read that just touches; ten times further where it still does.
+// How far ahead is a little later.
 constexpr double k_ahead = 1e-9;
 // How far from the end of a force that bears a free centre no integrator need go on.
 constexpr double k_end_of_force = 1e-8;
@@ -308,17 +309,10 @@ std::optional<double> System::closed_quadrature(double xi, std::span<const doubl
 /// any more before that.
 std::optional<double> System::square_ahead(std::size_t i, double xi) {
   std::vector<double> ahead = state_;
-  for (double distance = k_ahead; xi < 1.0; distance *= 10.0) {
-    const double later = std::min(1.0, xi + distance);
-    try {
-      contacts_.solve(ramps_, later, ahead);
-    } catch (const std::domain_error&) {
-      return std::nullopt;  // the run will stop on its way there
-    }
-    if (std::abs(ahead[i]) > touch_) return ahead[i];
-    if (later == 1.0) return 0.0;
-  }
-  return 0.0;
+  return contacts::side_ahead(xi, touch_, [&](double later) {
+    contacts_.solve(ramps_, later, ahead);
+    return ahead[i];
+  });
 }
 
 /// Regimes from the state that evaluate() found. Walls that just touch belong to the side to which they go. At a fixed
