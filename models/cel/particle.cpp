@@ -113,16 +113,26 @@ Core Particle::core_of(std::span<const double> y) const noexcept {
 
 bool Particle::evaluate(std::span<const double> y) {
   if (is_known_ && std::ranges::equal(y.first(layout_.size()), evaluated_)) return false;
+  evaluate_elastically(y);
+  evaluate_flow(y);
+  return true;
+}
+
+/// Evaluates only the equations of elastic motion.
+void Particle::evaluate_elastically(std::span<const double> y) {
   forget();
   centre_ = layout_.centre_of(y);
-  core_ = core_of(y);
   evaluate_contacts(y);
   evaluate_coupling();
+}
+
+/// Evaluates the others.
+void Particle::evaluate_flow(std::span<const double> y) {
+  core_ = core_of(y);
   evaluate_core();
   evaluate_yield();
   std::ranges::copy(y.first(layout_.size()), evaluated_.begin());
   is_known_ = true;
-  return true;
 }
 
 /// Dents, coverage and forces.
@@ -364,15 +374,13 @@ void Particle::assemble(bool takes_core_along) {
   for (std::size_t i = 0; i < size(); ++i) {
     if (classes_[i].flows) active_.push_back(layout_.dent(i));
   }
-  const Eigen::Index n = index(active_.size());
-  matrix_.resize(n, n + 2);
-  for (Eigen::Index column = 0; column < n; ++column) {
-    const std::size_t place = active_[static_cast<std::size_t>(column)];
-    const double pace = takes_core_along && layout_.is_dent(place) ? classes_[place - size()].pace : 0.0;
-    for (Eigen::Index row = 0; row < n; ++row) {
-      const std::span<const double> by = row_at(active_[static_cast<std::size_t>(row)]);
-      matrix_(row, column) = by[place] + pace * by[by_flow()];
-    }
+  const std::size_t n = active_.size();
+  matrix_.resize(index(n), index(n) + 2);
+  for (std::size_t row = 0; row < n; ++row) {
+    const std::span<const double> by = row_at(active_[row]);
+    for (std::size_t column = 0; column < n; ++column) matrix_(index(row), index(column)) = by[active_[column]];
+    for (std::size_t column = size() + layout_.directions(); takes_core_along && column < n; ++column)
+      matrix_(index(row), index(column)) += classes_[active_[column] - size()].pace * by[by_flow()];
   }
   for (std::size_t i = 0; i < size(); ++i) {
     if (!classes_[i].takes_force) continue;
@@ -446,10 +454,14 @@ void Particle::prescribe(double xi, std::span<double> y) const noexcept {
 
 void Particle::solve(double xi, std::span<double> y) {
   prescribe(xi, y);
-  double largest = any_flows() ? material_.Y : 0.0;
+  const bool is_elastic = !any_flows();
+  double largest = is_elastic ? 0.0 : material_.Y;
   for (const ClassState& c : classes_) largest = std::max(largest, std::abs(c.drive.value(xi)));
   const auto error_at = [&] {
-    evaluate(y);
+    if (is_elastic)
+      evaluate_elastically(y);
+    else
+      evaluate(y);
     return error(xi);
   };
   evaluate(y);
@@ -490,6 +502,7 @@ void Particle::solve(double xi, std::span<double> y) {
   const bool takes_force = std::ranges::any_of(classes_, &ClassState::takes_force);
   if (takes_force && (centre_ - rest_).cwiseAbs().maxCoeff() > k_farthest) throw DomainError(Limit::centre_driven_away);
   if (!(now <= k_solved * std::max(largest, material_.Y))) throw DomainError(Limit::applicability);
+  if (!is_known_) evaluate_flow(y);
 }
 
 double Particle::rates(std::span<double> dy, double xi, double pull) {

@@ -158,6 +158,8 @@ class Particle {
     double G = 0.0, dented = 0.0;                  ///< influence, and its part that grows with the dents
   };
 
+  void evaluate_elastically(std::span<const double> y);
+  void evaluate_flow(std::span<const double> y);
   void evaluate_contacts(std::span<const double> y);
   void evaluate_coupling();
   void evaluate_core();
