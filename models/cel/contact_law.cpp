@@ -61,8 +61,8 @@ Dent dent_of(const Material& material, double zeta) noexcept {
   dent.q = std::exp(-k::q1 * dent.h) / 3.0;
   dent.q_zeta = -k::q1 * dent.q * dent.h_zeta;
   const double fresh = std::exp(-dent.h / k::hg);
-  dent.Gam = 1.0 + k::gam * (1.0 - fresh);
-  dent.Gam_zeta = k::gam / k::hg * fresh * dent.h_zeta;
+  dent.root_Gam = std::sqrt(1.0 + k::gam * (1.0 - fresh));
+  dent.root_Gam_zeta = 0.5 * k::gam / k::hg * fresh * dent.h_zeta / dent.root_Gam;
   return dent;
 }
 

@@ -24,10 +24,10 @@ struct Material {
 /// Properties of a contact that follow from its dent alone, each with its derivative by zeta.
 struct Dent {
   double zeta = 0.0;
-  double h = 0.0, h_zeta = 0.0;      ///< plastic indentation, 0 on a fresh surface
-  double p = 0.0, p_zeta = 0.0;      ///< mean pressure at the limit over Y
-  double q = 0.0, q_zeta = 0.0;      ///< exponent of the elastic law, 1/3 on a fresh surface
-  double Gam = 1.0, Gam_zeta = 0.0;  ///< compliance by the elastic sphere over that of the fresh one
+  double h = 0.0, h_zeta = 0.0;                ///< plastic indentation, 0 on a fresh surface
+  double p = 0.0, p_zeta = 0.0;                ///< mean pressure at the limit over Y
+  double q = 0.0, q_zeta = 0.0;                ///< exponent of the elastic law, 1/3 on a fresh surface
+  double root_Gam = 1.0, root_Gam_zeta = 0.0;  ///< root of the compliance by the sphere over that of a fresh contact
 };
 [[nodiscard]] Dent dent_of(const Material& material, double zeta) noexcept;
 

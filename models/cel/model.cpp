@@ -58,10 +58,6 @@ constexpr std::array<string_view, 7> k_domain{
 
 constexpr std::array<string_view, 1> k_skipped{"adhesion and hardening: not part of the model"};
 
-Material material_of(const ModelInput& input) {
-  return {input.material("yield_stress") / input.material("youngs_modulus"), input.material("poisson_ratio")};
-}
-
 std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> classes, const Reach& reach) {
   return std::make_unique<System>(Settings{.initial_radius = input.radius,
                                            .youngs_modulus = input.material("youngs_modulus"),
@@ -73,8 +69,8 @@ std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactC
 }
 
 std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstStep& /*step*/) {
-  const Material material = material_of(input);
   const double modulus = input.material("youngs_modulus");
+  const Material material(input.material("yield_stress") / modulus, input.material("poisson_ratio"));
   const Dent fresh = dent_of(material, material.a_Y);
   const Contact at_yield = contact_at(material, fresh, 1.0, 1.0, material.a_Y * material.a_Y);
   auto list = material_parameters(input, {{"youngs_modulus", "Pa"}, {"poisson_ratio", "-"}, {"yield_stress", "Pa"}});

@@ -147,11 +147,7 @@ void Particle::evaluate_contacts(std::span<const double> y) {
     if (!(square > 0.0) || !(zeta > 0.0)) throw std::domain_error("the core or a dent of the particle has no size");
     c.l = std::sqrt(square);
     c.per_l = 1.0 / c.l;
-    if (zeta != c.dent.zeta) {
-      c.dent = dent_of(material_, zeta);
-      c.root_Gam = std::sqrt(c.dent.Gam);
-      c.half_Gam_log = 0.5 * c.dent.Gam_zeta / c.dent.Gam;
-    }
+    if (zeta != c.dent.zeta) c.dent = dent_of(material_, zeta);
     c.advance = advance_of(excess / (1.0 + c.l));
     Om_ += 0.5 * c.count * (zeta * zeta - material_.a_Y * material_.a_Y) * c.per_l * c.per_l;
   }
@@ -174,8 +170,7 @@ void Particle::evaluate_coupling() {
     for (std::size_t j = 0; j < size(); ++j) {
       if (classes_[j].contact.F == 0.0) continue;
       Coupling& g = coupling_[i * size() + j];
-      g.dented = c.root_Gam * classes_[j].root_Gam * (g.same + g.mixed * shade_);
-      g.G = g.mixed + g.across * shade_ + g.dented;
+      g.G = g.mixed + g.across * shade_ + c.dent.root_Gam * classes_[j].dent.root_Gam * (g.same + g.mixed * shade_);
       lift += g.G * classes_[j].contact.F;
     }
     c.displacement = c.dent.h + c.advance.c + c.contact.u - lift - lines_.arm(i).dot(centre_);
@@ -308,9 +303,10 @@ void Particle::differentiate_kinematics(std::size_t i) {
     if (F == 0.0) continue;
     const Coupling& g = coupling_[i * size() + j];
     add(j, other.contact.F_by, -g.G, row);
-    row[layout_.dent(i)] -= g.dented * F * c.half_Gam_log;
-    row[layout_.dent(j)] -= g.dented * F * other.half_Gam_log;
-    row[by_Om()] -= (g.across + c.root_Gam * other.root_Gam * g.mixed) * shade_by_Om * F;
+    const double lift = (g.same + g.mixed * shade_) * F;
+    row[layout_.dent(i)] -= c.dent.root_Gam_zeta * other.dent.root_Gam * lift;
+    row[layout_.dent(j)] -= c.dent.root_Gam * other.dent.root_Gam_zeta * lift;
+    row[by_Om()] -= (g.across + c.dent.root_Gam * other.dent.root_Gam * g.mixed) * shade_by_Om * F;
   }
   add(i, c.contact.u_by, 1.0, row);
   row[layout_.dent(i)] += c.dent.h_zeta;

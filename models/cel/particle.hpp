@@ -72,11 +72,11 @@ struct ClassState {
   bool takes_force = false;  ///< its own coordinate is the force, not u
   bool gives_way = false;    ///< bears no force: its wall stands until the surface comes to it, and then goes with it
   bool touches = false;
-  bool flows = false;  ///< dent grows
+  bool flows = false;    ///< dent grows
+  bool may_flow = true;  ///< nothing keeps it from that
 
   double coordinate = 0.0;
   Dent dent{};
-  double root_Gam = 1.0, half_Gam_log = 0.0;  ///< square root of its Gam, and the logarithmic derivative of that
   Contact contact{};
   Advance advance{};
   double l = 1.0, per_l = 1.0, l_by_flow = 0.0;
@@ -104,6 +104,7 @@ class Particle {
   [[nodiscard]] std::size_t size() const noexcept { return classes_.size(); }
   [[nodiscard]] ClassState& at(std::size_t i) noexcept { return classes_[i]; }
   [[nodiscard]] const ClassState& at(std::size_t i) const noexcept { return classes_[i]; }
+  [[nodiscard]] std::span<ClassState> classes() noexcept { return classes_; }
   [[nodiscard]] std::span<const ClassState> classes() const noexcept { return classes_; }
   [[nodiscard]] bool any_flows() const noexcept { return std::ranges::any_of(classes_, &ClassState::flows); }
   [[nodiscard]] const contacts::CentreLines& lines() const noexcept { return lines_; }
@@ -155,7 +156,7 @@ class Particle {
   /// What the force on the walls of one class does to a wall of another.
   struct Coupling {
     double same = 0.0, mixed = 0.0, across = 0.0;  ///< sums of g c2^2, g c2 (1 - c2), g (1 - c2)^2
-    double G = 0.0, dented = 0.0;                  ///< influence, and its part that grows with the dents
+    double G = 0.0;                                ///< influence
   };
 
   void evaluate_elastically(std::span<const double> y);

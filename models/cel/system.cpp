@@ -295,8 +295,8 @@ void System::decide_touch(std::size_t i, double xi, std::span<const double> y, s
 /// The largest set of contacts that can flow together: all at yield that motion without them would take beyond, but for
 /// those whose dents would shrink. Those that are most against it leave first, together and for good, so that neither
 /// the order of the walls nor their symmetry decides.
-void System::decide_flow(double xi, std::span<const double> y, std::span<char> may_flow) {
-  for (std::size_t i = 0; i < particle_.size(); ++i) particle_.at(i).flows = false;
+void System::decide_flow(double xi, std::span<const double> y) {
+  for (ClassState& c : particle_.classes()) c.flows = false;
   forget_rates();
   for (bool has_changed = true; has_changed;) {
     evaluate_rates(xi, y);
@@ -308,11 +308,8 @@ void System::decide_flow(double xi, std::span<const double> y, std::span<char> m
     for (std::size_t i = 0; i < particle_.size(); ++i) {
       ClassState& c = particle_.at(i);
       if (worst < 0.0) {
-        const bool leaves = c.flows && particle_.dent_rate(i) <= worst * (1.0 - k_alike);
-        c.flows = c.flows && !leaves;
-        may_flow[i] = may_flow[i] != 0 && !leaves;
-      } else if (!c.flows && may_flow[i] != 0 && c.touches && c.f > -k_at_yield &&
-                 particle_.yield_rate(i) > k_least_rate) {
+        if (c.flows && particle_.dent_rate(i) <= worst * (1.0 - k_alike)) c.flows = c.may_flow = false;
+      } else if (!c.flows && c.may_flow && c.touches && c.f > -k_at_yield && particle_.yield_rate(i) > k_least_rate) {
         c.flows = has_changed = true;
       }
     }
@@ -332,14 +329,11 @@ void System::decide_mode(double xi, std::span<const double> y, std::vector<Event
     if (!has_fired(k_made, i) && !has_fired(k_lost, i)) decide_touch(i, xi, y, log);
   }
   if (is_at_rest()) return;
-  std::vector<char> flowed(classes_.size());
-  std::vector<char> may_flow(classes_.size());
-  for (std::size_t i = 0; i < classes_.size(); ++i) {
-    flowed[i] = particle_.at(i).flows;
-    // A dent that has just come to rest does not grow at this instant.
-    may_flow[i] = !has_fired(k_reversal, i);
-  }
-  decide_flow(xi, y, may_flow);
+  std::vector<char> flowed;
+  for (const ClassState& c : particle_.classes()) flowed.push_back(c.flows);
+  // A dent that has just come to rest does not grow at this instant.
+  for (std::size_t i = 0; i < classes_.size(); ++i) particle_.at(i).may_flow = !has_fired(k_reversal, i);
+  decide_flow(xi, y);
   flow_begin_ = xi;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const bool flows = particle_.at(i).flows;

@@ -80,7 +80,7 @@ class System final : public HybridSystem {
   [[nodiscard]] double displacement_ahead(std::size_t i, double xi, std::span<const double> y) const;
   void decide_touch(std::size_t i, double xi, std::span<const double> y, std::vector<Event>& log);
   void decide_mode(double xi, std::span<const double> y, std::vector<Event>& log, std::span<const std::size_t> fired);
-  void decide_flow(double xi, std::span<const double> y, std::span<char> may_flow);
+  void decide_flow(double xi, std::span<const double> y);
   void arm_guards();
   [[nodiscard]] double limit_value(const Guard& guard, double margin) const noexcept;
   [[nodiscard]] std::optional<DomainEnd> limit_here(double xi, std::span<const double> y);

@@ -148,7 +148,7 @@ TEST(CelDent, OfAFreshSurfaceIsNone) {
     EXPECT_NEAR(dent.h, 0.0, 1e-16 * material.a_Y * material.a_Y);
     EXPECT_LE(relative_error(dent.p, k::pY), 4 * k_epsilon);
     EXPECT_LE(relative_error(dent.q, 1.0 / 3.0), 4 * k_epsilon);
-    EXPECT_LE(relative_error(dent.Gam, 1.0), 4 * k_epsilon);
+    EXPECT_LE(relative_error(dent.root_Gam, 1.0), 4 * k_epsilon);
     // The indentation grows at once: by the term of the fourth power, and by rounding in the other one.
     const double rounding = 1e-14 * material.a_Y;
     EXPECT_LE(std::abs(dent.h_zeta - 2.0 * k::k1 * std::pow(material.a_Y, 3)), rounding);
@@ -199,7 +199,7 @@ TEST(CelDent, GrowsInAllThatItSays) {
       const Dent dent = dent_of(material, zeta);
       EXPECT_GT(dent.h, before.h) << zeta;
       EXPECT_LE(dent.q, before.q) << zeta;
-      EXPECT_GE(dent.Gam, before.Gam) << zeta;
+      EXPECT_GE(dent.root_Gam, before.root_Gam) << zeta;
       EXPECT_GT(dent.h_zeta, 0.0) << zeta;
       EXPECT_LE(dent.p, k::pinf) << zeta;
       EXPECT_GE(dent.p, k::pY) << zeta;
@@ -230,7 +230,7 @@ TEST(CelDent, HasTheDerivativesOfItsQuantities) {
       expect(&Dent::h, &Dent::h_zeta, "h");
       expect(&Dent::p, &Dent::p_zeta, "p");
       expect(&Dent::q, &Dent::q_zeta, "q");
-      expect(&Dent::Gam, &Dent::Gam_zeta, "Gam");
+      expect(&Dent::root_Gam, &Dent::root_Gam_zeta, "root of Gam");
     }
   }
 }
