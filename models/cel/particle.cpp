@@ -448,18 +448,35 @@ void Particle::prescribe(double xi, std::span<double> y) const noexcept {
   }
 }
 
-void Particle::solve(double xi, std::span<double> y) {
-  prescribe(xi, y);
-  const bool is_elastic = !any_flows();
-  double largest = is_elastic ? 0.0 : material_.Y;
-  for (const ClassState& c : classes_) largest = std::max(largest, std::abs(c.drive.value(xi)));
-  const auto error_at = [&] {
-    if (is_elastic)
-      evaluate_elastically(y);
-    else
+/// A correction by Newton's method, halved until the error is less than a bound. @return the error then
+double Particle::correct(double xi, std::span<double> y, double bound) {
+  assemble(false);
+  eliminate(rest_of_equations_, rest_of_equations_);
+  std::copy_n(y.begin(), before_.size(), before_.begin());
+  double growth = 0.0;
+  for (std::size_t i = 0; i < size(); ++i) growth = std::max(growth, std::abs(solution_[layout_.dent(i)]));
+  double share = std::min(1.0, k_most_growth / growth);
+  double now = 0.0;
+  for (int halvings = 0; halvings < k_most_halvings; ++halvings, share *= 0.5) {
+    for (const std::size_t place : active_) {
+      y[place] = before_[place] - share * solution_[place];
+      if (layout_.is_dent(place)) y[place] = std::max(y[place], k_least_dent * material_.a_Y);
+    }
+    if (any_flows())
       evaluate(y);
-    return error(xi);
-  };
+    else
+      evaluate_elastically(y);
+    now = error(xi);
+    if (now < bound) break;
+  }
+  return now;
+}
+
+void Particle::solve(double xi, std::span<double> y) {
+  constexpr double k_infinity = std::numeric_limits<double>::infinity();
+  prescribe(xi, y);
+  double largest = any_flows() ? material_.Y : 0.0;
+  for (const ClassState& c : classes_) largest = std::max(largest, std::abs(c.drive.value(xi)));
   evaluate(y);
   choose_balance();
   double now = error(xi);
@@ -468,31 +485,18 @@ void Particle::solve(double xi, std::span<double> y) {
   int polished = 0;
   for (int i = 0; i < k_most_corrections && (is_free || now > k_rounding * largest); ++i) {
     const bool is_polishing = now <= k_stalled * largest;
-    assemble(false);
-    eliminate(rest_of_equations_, rest_of_equations_);
-    double correction = 0.0;
-    double growth = 0.0;
-    for (const std::size_t place : active_) {
-      double& most = layout_.is_dent(place) ? growth : correction;
-      most = std::max(most, std::abs(solution_[place]));
-    }
-    std::copy_n(y.begin(), before_.size(), before_.begin());
-    double share = std::min(1.0, k_most_growth / growth);
-    double next = 0.0;
-    for (int halvings = 0; halvings < k_most_halvings; ++halvings, share *= 0.5) {
-      for (const std::size_t place : active_) {
-        y[place] = before_[place] - share * solution_[place];
-        if (layout_.is_dent(place)) y[place] = std::max(y[place], k_least_dent * material_.a_Y);
-      }
-      next = error_at();
-      if (next < now || is_polishing) break;
-    }
+    const double next = correct(xi, y, is_polishing ? k_infinity : now);
     if (!(next < now) && (!is_polishing || !is_free)) {
       std::ranges::copy(before_, y.begin());
-      now = error_at();
+      evaluate(y);
+      now = error(xi);
       break;
     }
     now = next;
+    double correction = 0.0;
+    for (std::size_t j = 0; j < solution_.size(); ++j) {
+      if (!layout_.is_dent(j)) correction = std::max(correction, std::abs(solution_[j]));
+    }
     if (is_polishing && (correction <= k_rounding * largest || ++polished == k_most_polishings)) break;
   }
   const bool takes_force = std::ranges::any_of(classes_, &ClassState::takes_force);

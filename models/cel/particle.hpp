@@ -188,6 +188,7 @@ class Particle {
   void assemble(bool takes_core_along);
   double eliminate(std::span<const double> right, std::span<const double> drift);
   [[nodiscard]] double error(double xi);
+  double correct(double xi, std::span<double> y, double bound);
   [[nodiscard]] double slowness() const noexcept;
   [[nodiscard]] double rate_of(std::size_t place) const noexcept;
 

@@ -277,14 +277,9 @@ double System::slack(std::size_t i) const noexcept {
 /// Whether a contact bears from here on, by its elastic displacement or, next to none, by where that goes.
 void System::decide_touch(std::size_t i, double xi, std::span<const double> y, std::vector<Event>& log) {
   ClassState& c = particle_.at(i);
-  bool touches = c.touches;
-  if (c.takes_force) {
-    touches = c.contact.F > 0.0 || c.drive.rate() > 0.0;
-  } else if (std::abs(c.contact.u) > slack(i)) {
-    touches = c.contact.u > 0.0;
-  } else {
-    touches = displacement_ahead(i, xi, y) > 0.0;
-  }
+  const bool touches = c.takes_force                      ? c.contact.F > 0.0 || c.drive.rate() > 0.0
+                       : std::abs(c.contact.u) > slack(i) ? c.contact.u > 0.0
+                                                          : displacement_ahead(i, xi, y) > 0.0;
   if (touches == c.touches) return;
   c.touches = touches;
   // Walls that touch the fresh particle are in contact from the start, without an event.
