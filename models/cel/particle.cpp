@@ -126,7 +126,7 @@ void Particle::evaluate_elastically(std::span<const double> y) {
   evaluate_coupling();
 }
 
-/// Evaluates the others.
+/// Evaluates the core and the yield functions besides.
 void Particle::evaluate_flow(std::span<const double> y) {
   core_ = core_of(y);
   evaluate_core();

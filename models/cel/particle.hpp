@@ -73,7 +73,7 @@ struct ClassState {
   bool gives_way = false;    ///< bears no force: its wall stands until the surface comes to it, and then goes with it
   bool touches = false;
   bool flows = false;    ///< dent grows
-  bool may_flow = true;  ///< nothing keeps it from that
+  bool may_flow = true;  ///< not ruled out by the last decision
 
   double coordinate = 0.0;
   Dent dent{};
@@ -88,7 +88,7 @@ struct ClassState {
   double wk = 1.0;    ///< strength of a carried contact over its own
   double pace = 0.0;  ///< Lam per rate of the dent, where it grows
 
-  /// Load of the core per force: the advance of the wall is where that does work.
+  /// -c'(l)/l: a force loads the core as far as it does work on the advance.
   [[nodiscard]] double w() const noexcept { return -advance.c_l * per_l; }
 };
 

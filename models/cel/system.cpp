@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "contacts/side_ahead.hpp"
@@ -432,7 +431,7 @@ double System::displacement(const ClassState& c, double xi) {
   return c.takes_force ? c.displacement : c.drive.value(xi);
 }
 
-/// What is seen of a contact at the state that was evaluated.
+/// Numbers of a contact in a row, at the state that was evaluated.
 contacts::VisibleContact System::visible(std::size_t i, double xi, std::span<const double> y) const {
   const ClassState& c = particle_.at(i);
   const double length = settings_.initial_radius;

@@ -9,7 +9,7 @@
 namespace monograin::contacts {
 
 /// Coordinate of a contact a little later, as soon as it says open or closed; 0 if it never does, nothing if there is
-/// no state any more before that, where the run will stop on its way.
+/// no state any more before that, so that the run will stop.
 /// @param xi     step coordinate from which on the contact is watched
 /// @param touch  least magnitude that puts the contact on a side
 /// @param at     step coordinate -> coordinate of the contact; throws std::domain_error where there is no state

@@ -30,7 +30,7 @@ enum Kind : int {
 constexpr double k_least_margin = 1e-5;
 // The margin below which an integrator may find no more steps.
 constexpr double k_hard_margin = 1e-3;
-// How far ahead is a little later.
+// How far ahead of an instant its mode is read.
 constexpr double k_ahead = 1e-9;
 // How far from the end of a force that bears a free centre no integrator need go on.
 constexpr double k_end_of_force = 1e-8;
