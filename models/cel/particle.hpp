@@ -121,7 +121,6 @@ class Particle {
   /// Evaluates all equations at a state. @return false if it was the last one, of which all is known
   /// @throws std::domain_error where the core or a dent has no size
   bool evaluate(std::span<const double> y);
-  [[nodiscard]] std::span<const double> evaluated() const noexcept { return evaluated_; }
   [[nodiscard]] double coverage() const noexcept { return Om_; }
   [[nodiscard]] double stored_energy() const noexcept { return stored_; }
   /// Energy of the weak spring, which no particle has.

@@ -83,6 +83,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
   const double work = depth_ * depth_ * std::min(std::sqrt(depth_), particle_.material().Y);
   unknowns_.push_back({.name = "work", .kind = Unknown::Kind::quadrature, .scale = work});
   rates_.resize(unknowns_.size());
+  last_.resize(unknowns_.size());
   trial_.resize(unknowns_.size());
   state_.resize(unknowns_.size());
 }
@@ -108,6 +109,7 @@ void System::start(std::span<double> y) {
     c.flows = c.gives_way = c.touches = false;
     hold(i, -gap);
   }
+  particle_.forget();
   has_begun_ = false;
   deepest_ = 0.0;
 }
@@ -115,7 +117,9 @@ void System::start(std::span<double> y) {
 // --- the state at an instant
 
 void System::evaluate(std::span<const double> y) {
-  if (particle_.evaluate(y)) forget_rates();
+  if (!particle_.evaluate(y)) return;
+  forget_rates();
+  std::ranges::copy(y, last_.begin());
 }
 
 /// Rates of all unknowns, in rates_. @return the margin to where the equations turn back
@@ -134,7 +138,7 @@ void System::complete(double xi, std::span<double> y) {
   // Dents and core are as they were, without the round-off of integrators, and the last solution is a better guess than
   // where the unknowns rest.
   std::ranges::copy(y, trial_.begin());
-  std::ranges::copy(particle_.evaluated(), y.begin());
+  std::copy_n(last_.begin(), work_place_, y.begin());
   try {
     solve(xi, y);
   } catch (const std::domain_error&) {
@@ -146,6 +150,7 @@ void System::complete(double xi, std::span<double> y) {
 void System::solve(double xi, std::span<double> y) {
   forget_rates();
   particle_.solve(xi, y);
+  std::ranges::copy(y, last_.begin());
 }
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
