@@ -117,9 +117,7 @@ void System::start(std::span<double> y) {
 // --- the state at an instant
 
 void System::evaluate(std::span<const double> y) {
-  if (!particle_.evaluate(y)) return;
-  forget_rates();
-  std::ranges::copy(y, last_.begin());
+  if (particle_.evaluate(y)) forget_rates();
 }
 
 /// Rates of all unknowns, in rates_. @return the margin to where the equations turn back

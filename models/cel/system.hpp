@@ -102,7 +102,7 @@ class System final : public HybridSystem {
   double rates_at_ = k_nan;  ///< step coordinate; nan: not known
   double margin_ = 1.0;
   std::vector<double> rates_;
-  std::vector<double> last_;           ///< state that was evaluated, or solved for
+  std::vector<double> last_;           ///< state that was solved for
   double flow_begin_ = 0.0;            ///< step coordinate at which the contacts that flow were decided
   std::vector<double> trial_, state_;  ///< work space
 };
