@@ -90,9 +90,15 @@ class Ida final : public Integrator {
     // the balance is singular (first touch), the first step shows whether they were.
     if (!system_.is_semi_explicit()) return;
     pending_.forget();
+    // Sensitivities are consistent as they are; IDACalcIC would lose memory of theirs where a residual has no value.
+    if (carried_) check("IDASensToggleOff", carried_->pause(memory_.get()));
     const int flag = IDACalcIC(memory_.get(), IDA_YA_YDP_INIT, 1.0);
     pending_.rethrow();
-    if (flag < 0) start(xi, 0.0);
+    if (flag < 0) {
+      start(xi, 0.0);
+    } else if (carried_) {
+      check("IDASensReInit", carried_->start(memory_.get(), residual_of_sensitivities));
+    }
   }
 
   Advance advance() override {
