@@ -87,18 +87,13 @@ class Ida final : public Integrator {
     failing_steps_ = 0;
     ++past_.segments;
     // The system's own rates are consistent; IDACalcIC brings the rest within the tolerance. Where it cannot, because
-    // the balance is singular (first touch), the first step shows whether they were.
-    if (!system_.is_semi_explicit()) return;
+    // the balance is singular (first touch), the first step shows whether they were. It loses vectors of sensitivities
+    // where a residual has no value: they begin at the system's own state.
+    if (!system_.is_semi_explicit() || carried_) return;
     pending_.forget();
-    // Sensitivities are consistent as they are; IDACalcIC would lose memory of theirs where a residual has no value.
-    if (carried_) check("IDASensToggleOff", carried_->pause(memory_.get()));
     const int flag = IDACalcIC(memory_.get(), IDA_YA_YDP_INIT, 1.0);
     pending_.rethrow();
-    if (flag < 0) {
-      start(xi, 0.0);
-    } else if (carried_) {
-      check("IDASensReInit", carried_->start(memory_.get(), residual_of_sensitivities));
-    }
+    if (flag < 0) start(xi, 0.0);
   }
 
   Advance advance() override {

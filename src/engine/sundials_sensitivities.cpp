@@ -84,13 +84,8 @@ void SundialsSensitivities<Library>::correct_begin(double xi, std::span<const do
 }
 
 template <class Library>
-int SundialsSensitivities<Library>::pause(void* memory) {
-  return initialized_ == memory ? Library::switch_off(memory) : 0;
-}
-
-template <class Library>
 int SundialsSensitivities<Library>::start(void* memory, typename Library::Function function) {
-  if (!of_.is_active()) return pause(memory);
+  if (!of_.is_active()) return initialized_ == memory ? Library::switch_off(memory) : 0;
   std::vector<N_Vector> s = handles(s_);
   std::vector<N_Vector> ds = handles(ds_);
   if (initialized_ == memory) return Library::reinit(memory, s.data(), ds.data());

@@ -69,8 +69,6 @@ class SundialsSensitivities {
 
   /// Begins at the present s. @param function  gives their rates or residuals, with the integrator's user data
   int start(void* memory, typename Library::Function function);
-  /// Has the library leave them alone until they begin again.
-  int pause(void* memory);
   /// s at the end of the last step.
   int get(void* memory, double end);
   /// Hands s anywhere in the last step to the drive.
