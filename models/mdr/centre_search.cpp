@@ -31,6 +31,8 @@ constexpr int k_most_sections = 40;
 constexpr double k_rounding_step = 1e-12;
 // Stiffness over the greatest one that is round-off.
 constexpr double k_no_stiffness = 1e-12;
+// Contacts whose stiffness falls alike at a fold, over the sum of what falls: it is known to the root of round-off.
+constexpr double k_alike = 1e-6;
 
 /// Searches between two points for one where a function is above zero, towards where it is largest, by golden sections.
 /// @param best  in: a point between them where it is larger than at both; out: the best one found
@@ -65,19 +67,36 @@ std::optional<std::size_t> contact_beyond_pull_off(const Particle& p) {
   return std::nullopt;
 }
 
+/// How much the stiffness of a contact whose edge peels falls, over the displacement of the centre along a direction:
+/// of its share in the stiffness along that direction, positive where that displacement opens the contact.
+double softening_along(const Particle& p, std::size_t i, const CentreVector& direction) {
+  const double along = p.centre().direction(i).dot(direction);
+  const Frame at = p.branch(i).frame(p.law(), p.at().r, p.contact(i).overlap);
+  return -p.count(i) * along * along * along *
+         peeling_softening(at, p.law().material.composite_modulus, p.law().surface_energy,
+                           p.contact(i).contact.contact_radius);
+}
+
+/// An edge that peels under a wall that the centre does not lead along.
+bool peels(const Particle& p, std::size_t i) { return p.branch(i).edge.peels() && !p.is_loaded(i); }
+
 /// Round-off of the centre's stiffness next to a fold, where it goes with the root of the distance: beyond the fold
 /// there is no state, or one in which the contacts hold the centre no more.
 double round_off_of(const Particle& p, const CentreStiffness& softest) {
   double softening = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!p.branch(i).edge.peels() || p.is_loaded(i)) continue;
-    const double along = std::abs(p.centre().direction(i).dot(softest.direction));
-    const Frame at = p.branch(i).frame(p.law(), p.at().r, p.contact(i).overlap);
-    const double of_one = peeling_softening(at, p.law().material.composite_modulus, p.law().surface_energy,
-                                            p.contact(i).contact.contact_radius);
-    softening += p.count(i) * std::abs(of_one) * along * along * along;
+    if (peels(p, i)) softening += std::abs(softening_along(p, i, softest.direction));
   }
   return std::sqrt(2.0 * softening * softest.direction.norm() * p.force_rounding());
+}
+
+/// Which of two contacts that nothing else tells apart is the first, by their normals: the order of walls in a file
+/// says nothing.
+bool comes_first(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
+  for (Eigen::Index k = 0; k < one.size(); ++k) {
+    if (std::abs(one[k] - other[k]) > k_alike) return one[k] < other[k];
+  }
+  return false;
 }
 
 /// Newton's method on the balance of forces at a given radius; the force grows with the overlap, so damping is all it
@@ -86,7 +105,7 @@ class BalanceSearch {
  public:
   BalanceSearch(Particle& p, double xi, std::span<double> y) : p_(p), xi_(xi), y_(y), count_(p.centre().count()) {
     p_.evaluate_forces(xi, y);
-    is_only_one_ = !weakest_contact(p);
+    is_only_one_ = !may_peel_off(p);
   }
 
   /// @throws std::domain_error where no balance is found
@@ -181,11 +200,37 @@ class BalanceSearch {
 
 }  // namespace
 
-std::optional<std::size_t> weakest_contact(const Particle& p) noexcept {
+bool may_peel_off(const Particle& p) noexcept {
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (peels(p, i) && p.centre().acts(i)) return true;
+  }
+  return false;
+}
+
+std::optional<std::size_t> weakest_contact(Particle& p) {
+  if (!may_peel_off(p)) return std::nullopt;
+  const CentreVector softest = centre_stiffness(p).direction;
+  std::vector<double> softenings(p.size(), 0.0);
+  double sum = 0.0;
+  double size = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!peels(p, i) || !p.centre().acts(i)) continue;
+    softenings[i] = softening_along(p, i, softest);
+    sum += softenings[i];
+    size += std::abs(softenings[i]);
+  }
+  // The centre may leave to either side where contacts on both are alike.
+  const double side = std::abs(sum) > k_alike * size ? std::copysign(1.0, sum) : 0.0;
+  const auto gives_way_before = [&](std::size_t i, std::size_t j) {
+    const double softer = side * (softenings[i] - softenings[j]);
+    if (std::abs(softer) > k_alike * size) return softer > 0.0;
+    if (p.drive(i).rate() != p.drive(j).rate()) return p.drive(i).rate() < p.drive(j).rate();
+    return comes_first(p.centre().in_space(p.centre().direction(i)), p.centre().in_space(p.centre().direction(j)));
+  };
   std::optional<std::size_t> weakest;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!p.branch(i).edge.peels() || p.is_loaded(i) || !p.centre().acts(i)) continue;
-    if (!weakest || p.drive(i).rate() < p.drive(*weakest).rate()) weakest = i;
+    if (!peels(p, i) || !p.centre().acts(i)) continue;
+    if (!weakest || gives_way_before(i, *weakest)) weakest = i;
   }
   return weakest;
 }
@@ -221,7 +266,7 @@ double centre_stiffness_guard(Particle& p) {
 
 void check_softening(const Particle& p) {
   const auto softens = [](const Instant& now) { return now.contact.by_overlap < 0.0; };
-  if (!p.centre().is_free() || weakest_contact(p) || std::ranges::none_of(p.at().contacts, softens)) return;
+  if (!p.centre().is_free() || may_peel_off(p) || std::ranges::none_of(p.at().contacts, softens)) return;
   const CentreVector stiffnesses = Eigen::SelfAdjointEigenSolver<CentreMatrix>(p.centre().stiffness()).eigenvalues();
   if (stiffnesses.minCoeff() < -k_no_stiffness * stiffnesses.cwiseAbs().maxCoeff()) {
     throw DomainError(Limit::centre_softening);

@@ -11,9 +11,12 @@ namespace monograin::mdr {
 /// a force that is least, and not zero, and rates of the centre change sign through infinity.
 inline constexpr double k_at_fold = 1e-2;
 
-/// The contact that gives way where several of them cannot hold a free centre between them any more: of those that peel
-/// the one whose wall withdraws fastest.
-[[nodiscard]] std::optional<std::size_t> weakest_contact(const Particle& p) noexcept;
+/// True if an edge peels whose stiffness holds a free centre: that stiffness may come to an end.
+[[nodiscard]] bool may_peel_off(const Particle& p) noexcept;
+/// The contact that gives way where several of them cannot hold a free centre between them any more. The centre leaves
+/// along its softest direction, to the side where it becomes softer still. Of the contacts whose edges peel, that one
+/// gives way whose stiffness falls most on that path; where several are alike, the one whose wall withdraws fastest.
+[[nodiscard]] std::optional<std::size_t> weakest_contact(Particle& p);
 /// True if a plastic contact is softened past its peak so far that it may no longer constrain a free centre.
 [[nodiscard]] bool is_any_softened(const Particle& p) noexcept;
 /// Tangent stiffness of the centre in its softest direction, over what it would be if no edge peeled and no contact

@@ -28,16 +28,15 @@ void move_centre_and_walls(Particle& p, double xi, std::span<double> y) {
 
 void complete(Particle& p, double xi, std::span<double> y) {
   if (!p.mode.is_growing) y[k_radius] = p.mode.held_radius;
-  const bool may_peel_off = p.centre().is_free() && weakest_contact(p);
   bool is_balanced = true;
   try {
     move_centre_and_walls(p, xi, y);
   } catch (const std::domain_error&) {
     // A guess beyond pull-off leads to there, where the force that is left is least.
     is_balanced = false;
-    if (!may_peel_off || !leave_saddle(p, xi, y, is_balanced)) throw;
+    if (!may_peel_off(p) || !leave_saddle(p, xi, y, is_balanced)) throw;
   }
-  if (!may_peel_off) return;
+  if (!may_peel_off(p)) return;
   if (is_balanced) leave_saddle(p, xi, y, is_balanced);
   p.record_walls(xi, y);
 }

@@ -81,7 +81,7 @@ void GuardSet::arm(Particle& p, const ContactCaps& caps, double xi, std::span<co
   const Motion now = p.motion(p.mode.is_growing);
   for (std::size_t i = 0; i < p.size(); ++i) arm_contact(p, i, now);
   const auto is_plastic = [](const ContactBranch& branch) { return branch.regime == Regime::fully_plastic; };
-  if (p.centre().is_free() && weakest_contact(p)) {
+  if (may_peel_off(p)) {
     list_.push_back({.kind = k_unstable, .index = -1, .direction = -1, .name = "pull-off", .is_branch_end = true});
   } else if (p.centre().is_free() && std::ranges::any_of(p.branches(), is_plastic)) {
     list_.push_back({.kind = k_softened, .index = -1, .direction = -1, .name = "limit", .is_branch_end = true});

@@ -168,7 +168,6 @@ bool ModeSearch::is_moot(const Guard& guard, const Motion& now) const {
 /// @return whether the growth has to be decided anew
 bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const Motion& now, std::vector<Event>& log) {
   const auto i = static_cast<std::size_t>(std::max(0, guard.index));
-  const auto weakest = weakest_contact(p_);
   switch (guard.kind) {
     case k_yield:
       p_.set_branch(i, p_.branch(i).yielded(p_.law(), p_.at().r));
@@ -196,8 +195,8 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
       return true;
     case k_turn:
       // Through infinity: what holds the centre gives way, and no edge has turned.
-      if (weakest && centre_stiffness(p_).value < k_at_fold)
-        separate(*weakest, y, log);
+      if (may_peel_off(p_) && centre_stiffness(p_).value < k_at_fold)
+        separate(*weakest_contact(p_), y, log);
       else
         stick(i, log);
       has_turned_[i] = true;
@@ -219,7 +218,7 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
       return true;
     default:  // k_unstable
       // Unless another contact has pulled off at this instant.
-      if (weakest) separate(*weakest, y, log);
+      if (const auto weakest = weakest_contact(p_)) separate(*weakest, y, log);
       return true;
   }
   log.push_back({guard.name, guard.index});
@@ -319,9 +318,8 @@ bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log
   if (!has_changed) {
     // Several edges that peel at once may not hold the centre from the start: past already, the guard of that would
     // not be met.
-    const auto weakest = weakest_contact(p_);
-    if (!weakest || centre_stiffness_guard(p_) >= 0.0) return false;
-    separate(*weakest, y, log);
+    if (!may_peel_off(p_) || centre_stiffness_guard(p_) >= 0.0) return false;
+    separate(*weakest_contact(p_), y, log);
   }
   // No guard is met by a wall that a force presses on from the start.
   for (const std::size_t i : just_loaded) balance_touch(p_, i, true, made_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -438,6 +439,47 @@ TEST(MdrAdhesiveInvariance, MergingOfWallsDoesNotMatter) {
       EXPECT_LE(difference(single.outputs(column), merged.outputs(column)), 1e-12) << column;
     }
   }
+}
+
+/// Pull-offs, one after another.
+Words torn_off(const TestRun& result) {
+  Words events = result.events();
+  std::erase_if(events, [](const std::string& event) { return !event.ends_with(":pull-off"); });
+  return events;
+}
+
+TEST(MdrAdhesiveInvariance, OrderOfWallsThatLetGoOfAFreeParticleDoesNotMatter) {
+  std::mt19937 draw(7);
+  std::normal_distribution<double> component;
+  const auto direction = [&] {
+    Eigen::Vector3d vector;
+    for (double& x : vector) x = component(draw);
+    return Eigen::Vector3d(vector.normalized());
+  };
+  std::size_t pull_offs = 0;
+  for (int scene = 0; scene < 4; ++scene) {
+    // In every other scene one wall faces another squarely, as in a press.
+    std::vector<WallSpec> walls;
+    for (const char* name : {"a", "b", "c"}) {
+      const Eigen::Vector3d normal = direction();
+      const bool is_square = scene % 2 == 1 && walls.empty();
+      walls.push_back(wall(name, normal, path({0.05, 0.0})));
+      walls.push_back(wall(name + std::string("-opposite"),
+                           is_square ? -normal : (direction() - 2.0 * normal).normalized(), path({0.05, 0.0})));
+    }
+    CheckedScenario scenario = between(adhering(mdr_scenario(Configuration::walls, 40.0, 0.2, {}), 1e-5), walls);
+    scenario.output.points = 1;
+    scenario.loading.centre_is_free = true;
+    const TestRun expected = run(scenario);
+    ASSERT_EQ(expected.record.status, RunStatus::complete) << scene;
+    pull_offs += torn_off(expected).size();
+    for (int k = 0; k < 5; ++k) {
+      std::ranges::rotate(scenario.loading.walls, scenario.loading.walls.begin() + 1);
+      if (k == 2) std::ranges::reverse(scenario.loading.walls);
+      EXPECT_EQ(torn_off(run(scenario)), torn_off(expected)) << "scene " << scene << ", order " << k;
+    }
+  }
+  EXPECT_GE(pull_offs, 4U);
 }
 
 TEST(MdrAdhesionLimit, OfVanishingSurfaceEnergyIsARunWithoutAdhesion) {
