@@ -246,9 +246,7 @@ void check_support(Particle& p) {
   const CentreMatrix unconstrained = unconstrained_directions(p);
   const double left =
       std::max((unconstrained * prescribed_push(p, 0.0)).norm(), (unconstrained * prescribed_push(p, 1.0)).norm());
-  if (left > k_no_force * largest) {
-    throw DomainError(Limit::centre_driven_away);
-  }
+  if (left > std::max(k_no_force * largest, p.force_rounding())) throw DomainError(Limit::centre_driven_away);
 }
 
 void balance_touch(Particle& p, std::size_t i, bool is_made, std::vector<Event>& log) {
