@@ -1,18 +1,14 @@
 #include "monograin/prepared.hpp"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <atomic>
 #include <limits>
 #include <stdexcept>
-#include <thread>
 
 #include "api/checked.hpp"
 #include "history/run.hpp"
+#include "numerics/parallel.hpp"
 #include "scenario/faults.hpp"
 #include "scenario/words.hpp"
 #include "study/formula/expression.hpp"
@@ -38,21 +34,6 @@ double value_of(const Expression& formula, std::string_view text, const Table& h
   }
   throw std::invalid_argument(
       fmt::format("'{}' has a value for each row; expected one for a run, for example max({})", text, text));
-}
-
-/// Calls work(i) for i below count on several threads, and stop() in between on this one.
-void for_each_index(std::size_t count, const MapOptions& options, const std::function<void(std::size_t)>& work) {
-  const int threads = options.threads > 0 ? options.threads : oneapi::tbb::info::default_concurrency();
-  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
-                                          static_cast<std::size_t>(threads));
-  const auto caller = std::this_thread::get_id();
-  std::atomic<bool> ends = false;
-  oneapi::tbb::task_arena(threads).execute([&] {
-    oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-      if (options.stop && std::this_thread::get_id() == caller && options.stop()) ends = true;
-      if (!ends) work(i);
-    });
-  });
 }
 
 }  // namespace
@@ -102,7 +83,10 @@ MapResult PreparedScenario::map(std::span<const double> samples, std::span<const
   const std::size_t count = samples.size() / width;
   MapResult result{std::vector<double>(count * formulas.size(), k_undefined), std::vector<std::string>(count),
                    std::vector<std::string>(count)};
-  for_each_index(count, options, [&](std::size_t i) {
+  std::atomic<bool> ends = false;
+  for_each_index(count, thread_count(options.threads), [&](std::size_t i, std::size_t thread) {
+    if (options.stop && thread == 0 && options.stop()) ends = true;
+    if (ends) return;
     try {
       const Run run = content_->run(samples.subspan(i * width, width));
       for (std::size_t k = 0; k < expressions.size(); ++k) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <libalglib/dataanalysis.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "numerics/parallel.hpp"
 #include "stress/dice.hpp"
 
 namespace monograin {
@@ -64,8 +64,8 @@ class Candidates {
     std::vector<Part> parts;
     cut(std::move(all), count, parts);
     std::vector<std::vector<Members>> clusters(parts.size());
-    oneapi::tbb::parallel_for(std::size_t{0}, parts.size(),
-                              [&](std::size_t i) { clusters[i] = ward(parts[i].members, parts[i].cluster_count); });
+    for_each_index(parts.size(), thread_count(0),
+                   [&](std::size_t i, std::size_t) { clusters[i] = ward(parts[i].members, parts[i].cluster_count); });
     std::vector<Members> result;
     for (std::vector<Members>& part : clusters) std::ranges::move(part, std::back_inserter(result));
     return result;

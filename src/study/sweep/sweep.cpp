@@ -3,11 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -24,6 +19,7 @@
 
 #include "history/run.hpp"
 #include "history/staged_folder.hpp"
+#include "numerics/parallel.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 #include "study/sweep/sweep_journal.hpp"
@@ -302,19 +298,15 @@ void run_all(const Sweep& sweep, const SweepOptions& options, const std::vector<
              SweepJournal& journal) {
   const fs::path histories = sweep.keeps_histories ? options.folder / "histories" : fs::path();
   if (!histories.empty()) fs::create_directories(histories);
-  const int threads = options.threads > 0 ? options.threads : oneapi::tbb::info::default_concurrency();
-  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
-                                          static_cast<std::size_t>(threads));
-  oneapi::tbb::enumerable_thread_specific<Headings> headings;
+  const std::size_t threads = thread_count(options.threads);
+  std::vector<Headings> headings(threads);
   std::mutex mutex;
   std::size_t done = 0;
-  oneapi::tbb::task_arena(threads).execute([&] {
-    oneapi::tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
-      const Outcome outcome = run_one(sweep, runs[i], histories, headings.local());
-      const std::scoped_lock lock(mutex);
-      journal.append(outcome.row, outcome.columns);
-      if (options.progress) options.progress(++done, runs.size());
-    });
+  for_each_index(runs.size(), threads, [&](std::size_t i, std::size_t thread) {
+    const Outcome outcome = run_one(sweep, runs[i], histories, headings[thread]);
+    const std::scoped_lock lock(mutex);
+    journal.append(outcome.row, outcome.columns);
+    if (options.progress) options.progress(++done, runs.size());
   });
 }
 

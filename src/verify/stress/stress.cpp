@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -18,6 +14,7 @@
 #include <string_view>
 
 #include "history/staged_folder.hpp"
+#include "numerics/parallel.hpp"
 #include "scenario/text_file.hpp"
 #include "verify/stress/check/checks.hpp"
 #include "verify/stress/draw/generator.hpp"
@@ -101,11 +98,8 @@ class StressTest {
   }
 
   StressReport run() {
-    const int threads = options_.threads > 0 ? options_.threads : oneapi::tbb::info::default_concurrency();
-    const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
-                                            static_cast<std::size_t>(threads));
-    oneapi::tbb::task_arena(threads).execute(
-        [&] { oneapi::tbb::parallel_for(0, threads, [&](int) { draw_until_done(); }); });
+    const std::size_t threads = thread_count(options_.threads);
+    for_each_index(threads, threads, [&](std::size_t, std::size_t) { draw_until_done(); });
     std::ranges::sort(report_.failures, {}, [](const StressFailure& f) { return std::pair(f.index, f.check); });
     for (StressFailure& failure : report_.failures) {
       failure.file = fmt::format("{}-{}.toml", failure.index, failure.check);

@@ -1,0 +1,38 @@
+#include "numerics/parallel.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace monograin {
+
+std::size_t thread_count(int wanted) noexcept {
+  return wanted > 0 ? static_cast<std::size_t>(wanted) : std::max(1U, std::thread::hardware_concurrency());
+}
+
+void for_each_index(std::size_t count, std::size_t threads,
+                    const std::function<void(std::size_t i, std::size_t thread)>& work) {
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr first_exception;
+  std::mutex mutex;
+  const auto take = [&](std::size_t thread) {
+    try {
+      for (std::size_t i = next++; i < count; i = next++) work(i, thread);
+    } catch (...) {
+      const std::scoped_lock lock(mutex);
+      if (!first_exception) first_exception = std::current_exception();
+      next = count;
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t thread = 1; thread < std::min(threads, count); ++thread) others.emplace_back(take, thread);
+    take(0);
+  }
+  if (first_exception) std::rethrow_exception(first_exception);
+}
+
+}  // namespace monograin
