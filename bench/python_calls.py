@@ -49,6 +49,8 @@ def main():
     for threads in sorted({1, os.cpu_count() or 1}):
         name = f"prepared.map, threads={threads}, a run"
         measure(name, lambda k: prepared.map(samples, COLUMNS, threads=threads), 3, len(samples))
+    ends = ["end(axial.force)", "end(apparent_radius)"]
+    measure("prepared.map of the end, 1 thread", lambda k: prepared.map(samples, ends, threads=1), 5, len(samples))
     with tempfile.TemporaryDirectory() as folder:
         command = [os.environ["MONOGRAIN_PROGRAM"], "run", "--quiet", mg.scenario_folder() / "die.toml", "-o", "out"]
         measure("monograin run, a process each", lambda k: subprocess.run(command, cwd=folder, check=True), 100)

@@ -451,9 +451,12 @@ contacts::VisibleContact System::visible(std::size_t i, double xi, std::span<con
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
   evaluate(y);
   const double length = settings_.initial_radius;
-  const double energy_unit = force_unit() * length;
-  contacts::Energies energies{.work = y[work_place_] * energy_unit, .stored = particle_.stored_energy() * energy_unit};
-  energies.dissipation = energies.work - energies.stored;
+  contacts::Energies energies = contacts::k_no_energies;
+  if (has_energies()) {
+    const double energy_unit = force_unit() * length;
+    energies = {.work = y[work_place_] * energy_unit, .stored = particle_.stored_energy() * energy_unit};
+    energies.dissipation = energies.work - energies.stored;
+  }
   columns_.write(
       energies, classes_.size(),
       [&](std::size_t i) {

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,6 +21,10 @@ struct Energies {
   double stored = 0.0;
   double dissipation = 0.0;
 };
+/// Those of a system that leaves its energies out.
+inline constexpr Energies k_no_energies{std::numeric_limits<double>::quiet_NaN(),
+                                        std::numeric_limits<double>::quiet_NaN(),
+                                        std::numeric_limits<double>::quiet_NaN()};
 
 /// Numbers of one contact in a row of the history, SI.
 struct VisibleContact {
@@ -113,9 +118,9 @@ class Columns {
     std::string_view name;
     double Energies::*value;
   };
-  static constexpr std::array k_energies{OfParticle{"work", &Energies::work},
-                                         OfParticle{"stored_energy", &Energies::stored},
-                                         OfParticle{"dissipation", &Energies::dissipation}};
+  static constexpr std::array k_energies{OfParticle{k_energy_observables[0], &Energies::work},
+                                         OfParticle{k_energy_observables[1], &Energies::stored},
+                                         OfParticle{k_energy_observables[2], &Energies::dissipation}};
 
   std::span<const OfParticle> energies_;
   bool has_contact_area_;

@@ -245,22 +245,11 @@ class IndependentContacts final : public HybridSystem {
   }
 
   void observe(double xi, std::span<const double> y, std::span<double> values) override {
-    const double energy_unit = force_unit_ * length_;
-    Energies energies{.work = y[work_slot_] * energy_unit};
     for (std::size_t i = 0; i < contacts_.size(); ++i) displacements_[i] = displacement(i, xi, y);
     if constexpr (requires(Law & law) { law.note(1.0); })
       std::ranges::for_each(displacements_, [&](double d) { law_.note(d); });
-    if constexpr (k_can_store_energy) {
-      if (has_stored_energy()) {
-        energies.stored = energy_unit * sum([&](std::size_t i) {
-                            const double d = displacements_[i];
-                            return contacts_[i].bears(law_, d) ? law_.stored(contacts_[i].branch(), d) : 0.0;
-                          });
-      }
-      energies.dissipation = energies.work - energies.stored;
-    }
     columns_.write(
-        energies, contacts_.size(),
+        has_energies() ? energies(y[work_slot_]) : k_no_energies, contacts_.size(),
         [&](std::size_t i) { return visible(i, xi, displacements_[leading(i)], carried(i, y)); }, values);
     if (centre_) write_centre_columns(centre_->in_space(y) * length_, values);
   }
@@ -327,6 +316,21 @@ class IndependentContacts final : public HybridSystem {
   /// The contact itself, or the leader that it follows.
   [[nodiscard]] std::size_t leading(std::size_t i) const noexcept { return is_follower(i) ? leader_ : i; }
   [[nodiscard]] double stress_unit() const noexcept { return force_unit_ / (length_ * length_); }
+  /// @param work  over the force unit and R0
+  [[nodiscard]] Energies energies(double work) {
+    const double energy_unit = force_unit_ * length_;
+    Energies result{.work = work * energy_unit};
+    if constexpr (k_can_store_energy) {
+      if (has_stored_energy()) {
+        result.stored = energy_unit * sum([&](std::size_t i) {
+                          const double d = displacements_[i];
+                          return contacts_[i].bears(law_, d) ? law_.stored(contacts_[i].branch(), d) : 0.0;
+                        });
+      }
+      result.dissipation = result.work - result.stored;
+    }
+    return result;
+  }
   [[nodiscard]] bool has_stored_energy() const {
     if constexpr (requires(const Law& law) { law.has_stored_energy(); }) return law_.has_stored_energy();
     return k_can_store_energy;

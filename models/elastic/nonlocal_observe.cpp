@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "elastic/nonlocal_system.hpp"
@@ -14,13 +15,12 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   evaluate_closely(xi, y);
   const double length = settings_.initial_radius;
   const double force_unit = settings_.youngs_modulus * length * length;
-  const double energy_unit = force_unit * length;
-  const double energy = contacts_.energy(state_);
+  const double energy_unit = has_energies() ? force_unit * length : std::numeric_limits<double>::quiet_NaN();
   const double margin = contacts_.margin(state_);
   least_margin_ = std::min(least_margin_, margin);
   auto out = values.begin();
   *out++ = y[work_place_] * energy_unit;
-  *out++ = energy * energy_unit;
+  *out++ = contacts_.energy(state_) * energy_unit;
   *out++ = margin;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const ContactState c = now_[i];

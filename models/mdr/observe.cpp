@@ -45,9 +45,6 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   const Evaluation& at = now_.particle.evaluated(xi, y);
   const double length = setup_->length_unit();
   const double force_unit = setup_->force_unit();
-  const double energy_unit = force_unit * length;
-  const double work = y[k_work] + at.force_work;
-  const double stored = now_.particle.energy(PlasticPart::recoverable);
   if (setup_->grows()) {
     values[0] = (1.0 + at.r) * length;
     values[1] = 4.0 * pi / 3.0 * length * length * length * at.volume.volume_ratio();
@@ -63,8 +60,14 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
             .pressure = area > 0.0 ? c.force / area * setup_->stress_unit : 0.0,
             .regime = regime_word(now_.particle.branch(i))};
   };
-  columns_.write({work * energy_unit, stored * energy_unit, (work - stored) * energy_unit}, now_.particle.size(),
-                 row_of, values);
+  contacts::Energies energies = contacts::k_no_energies;
+  if (has_energies()) {
+    const double energy_unit = force_unit * length;
+    const double work = y[k_work] + at.force_work;
+    const double stored = now_.particle.energy(PlasticPart::recoverable);
+    energies = {work * energy_unit, stored * energy_unit, (work - stored) * energy_unit};
+  }
+  columns_.write(energies, now_.particle.size(), row_of, values);
   if (!setup_->settings.centre_is_free) return;
   const FreeCentre& centre = now_.particle.centre();
   contacts::write_centre_columns(centre.in_space(centre_of(y, centre.count())) * length, values);

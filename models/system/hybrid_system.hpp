@@ -17,6 +17,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -137,9 +138,17 @@ struct SurfacePoint {
   double relaxed_height = 0.0;  ///< of the surface without load, from its middle [m]; NaN where it is not known
 };
 
+/// Observables that need the work, or what is stored of it.
+inline constexpr std::array<std::string_view, 3> k_energy_observables{"work", "stored_energy", "dissipation"};
+
 class HybridSystem {
  public:
   virtual ~HybridSystem() = default;
+
+  /// Says that nobody reads the energies of this run: observe() gives NaN for them, and `direct` does not compute the
+  /// work.
+  void leave_out_energies() noexcept { has_energies_ = false; }
+  [[nodiscard]] bool has_energies() const noexcept { return has_energies_; }
 
   [[nodiscard]] virtual std::span<const Unknown> unknowns() const noexcept = 0;
 
@@ -250,6 +259,9 @@ class HybridSystem {
   virtual void branch_reach(std::span<const double> /*y*/, std::span<double> reach) const {
     std::ranges::fill(reach, std::numeric_limits<double>::infinity());
   }
+
+ private:
+  bool has_energies_ = true;
 };
 
 }  // namespace monograin

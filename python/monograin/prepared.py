@@ -63,6 +63,9 @@ class Prepared:
     ) -> Union[NDArray[np.float64], tuple[NDArray[np.float64], NDArray[np.str_]]]:
         """Runs the scenario once for each row of samples, on several threads.
 
+        Numbers agree with those of ``run`` to round-off. What the formulas do not read is not computed: the energies,
+        and, where every name stands alone in ``end``, all rows before the last.
+
         Args:
             samples: array of shape (n, keys) in SI units; of one key also (n,).
             columns: formulas of the history's columns that give one number each, such as ``"max(axial.force)"`` or

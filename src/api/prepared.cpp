@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <limits>
 #include <stdexcept>
@@ -36,13 +37,30 @@ double value_of(const Expression& formula, std::string_view text, const Table& h
       fmt::format("'{}' has a value for each row; expected one for a run, for example max({})", text, text));
 }
 
+/// Parts of a history that make no difference to the values of these formulas.
+LeftOut not_needed_by(std::span<const Expression> formulas) {
+  const auto is_energy = [](std::string_view name) {
+    const std::string_view column = name.substr(0, name.find('['));
+    return std::ranges::find(k_energy_observables, column) != k_energy_observables.end();
+  };
+  return {.energies = std::ranges::none_of(
+              formulas, [&](const Expression& formula) { return std::ranges::any_of(formula.names(), is_energy); }),
+          .rows = std::ranges::all_of(formulas, &Expression::needs_last_row_only)};
+}
+
 }  // namespace
 
 struct PreparedScenario::Content {
   std::vector<std::string> keys;
   ScenarioTemplate scenario;
 
-  [[nodiscard]] Run run(std::span<const double> values) const { return run_scenario(scenario.with({}, keys, values)); }
+  [[nodiscard]] CheckedScenario with(std::span<const double> values) const { return scenario.with({}, keys, values); }
+
+  /// A run for some of its numbers. Columns of derivatives need the whole run.
+  [[nodiscard]] RunRecord record(std::span<const double> values, const LeftOut& left_out) const {
+    const CheckedScenario changed = with(values);
+    return changed.sensitivities.empty() ? record_run(changed, left_out) : run_scenario(changed).record;
+  }
 };
 
 PreparedScenario::PreparedScenario(const Scenario& scenario, std::vector<std::string> keys) {
@@ -63,7 +81,7 @@ RunResult PreparedScenario::run(std::span<const double> values) const {
     throw std::invalid_argument(
         fmt::format("{} values for {} keys; expected one for each", values.size(), keys().size()));
   }
-  return RunResult(std::make_shared<const Run>(content_->run(values)));
+  return RunResult(std::make_shared<const Run>(run_scenario(content_->with(values))));
 }
 
 MapResult PreparedScenario::map(std::span<const double> samples, std::span<const std::string> formulas,
@@ -80,6 +98,7 @@ MapResult PreparedScenario::map(std::span<const double> samples, std::span<const
       throw std::invalid_argument(fmt::format("'{}': {}", text, error.what()));
     }
   }
+  const LeftOut left_out = not_needed_by(expressions);
   const std::size_t count = samples.size() / width;
   MapResult result{std::vector<double>(count * formulas.size(), k_undefined), std::vector<std::string>(count),
                    std::vector<std::string>(count)};
@@ -88,12 +107,12 @@ MapResult PreparedScenario::map(std::span<const double> samples, std::span<const
     if (options.stop && thread == 0 && options.stop()) ends = true;
     if (ends) return;
     try {
-      const Run run = content_->run(samples.subspan(i * width, width));
+      const RunRecord record = content_->record(samples.subspan(i * width, width), left_out);
       for (std::size_t k = 0; k < expressions.size(); ++k) {
-        result.values[i * formulas.size() + k] = value_of(expressions[k], formulas[k], run.record.history);
+        result.values[i * formulas.size() + k] = value_of(expressions[k], formulas[k], record.history);
       }
-      result.status[i] = to_string(run.record.status);
-      result.message[i] = run.record.message;
+      result.status[i] = to_string(record.status);
+      result.message[i] = record.message;
     } catch (const ScenarioError& error) {
       result.status[i] = "refused";
       result.message[i] = error.faults().front().message;

@@ -112,7 +112,8 @@ class Direct final : public EventLocator {
         work_accuracy_(std::max(k_rounding_of_work, rtol * std::max(rtol, k_share_of_work))) {
     const auto unknowns = system.unknowns();
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
-    if (found != unknowns.end()) quadrature_ = static_cast<std::size_t>(found - unknowns.begin());
+    if (found != unknowns.end() && system.has_energies())
+      quadrature_ = static_cast<std::size_t>(found - unknowns.begin());
     has_slaves_ = system.has_dependent_unknowns();
     may_rest_ = std::ranges::any_of(unknowns, &Unknown::may_rest);
     trial_.resize(unknowns.size());

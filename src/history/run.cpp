@@ -96,6 +96,15 @@ RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances
   return record_with(recorder, scene, integrator, tolerances, output, nullptr);
 }
 
+RunRecord record_run(const CheckedScenario& scenario, const LeftOut& left_out) {
+  Scene scene = make_scene(scenario);
+  if (left_out.energies) scene.system->leave_out_energies();
+  Output output = scenario.output;
+  if (left_out.rows) output.points = 1;
+  const IntegratorChoice integrator = choose_integrator(scenario.numerics.integrator, *scene.system);
+  return record_run(scene, integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, output);
+}
+
 RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output,
                      ForwardSensitivities& sensitivities, const std::vector<Column>& columns) {
   Recorder recorder(*scene.system, columns);

@@ -25,6 +25,16 @@ struct RunRecord : DriveResult {
 [[nodiscard]] RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances,
                                    const Output& output);
 
+/// Parts of a history that a study does not read.
+struct LeftOut {
+  bool energies = false;  ///< their columns hold NaN
+  bool rows = false;      ///< those at output points within a step; not where the scenario lists its output times
+};
+
+/// Runs a scenario by itself: without the header, the warnings and the timings of run_scenario(), and without
+/// sensitivities.
+[[nodiscard]] RunRecord record_run(const CheckedScenario& scenario, const LeftOut& left_out = {});
+
 /// Carries derivatives along, and records them.
 /// @param columns  of the derivatives, as many as a row of them has
 [[nodiscard]] RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances,

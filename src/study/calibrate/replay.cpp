@@ -52,7 +52,12 @@ class ColumnSink final : public HistorySink {
       : system_(*scene.system),
         observed_(system_.observables().size()),
         places_{place_of(scene, columns.driven), place_of(scene, columns.watched)},
-        rows_(rows) {}
+        rows_(rows) {
+    const auto is_energy = [](std::string_view column) {
+      return std::ranges::find(k_energy_observables, column) != k_energy_observables.end();
+    };
+    if (!is_energy(columns.driven) && !is_energy(columns.watched)) scene.system->leave_out_energies();
+  }
 
   void observe(double /*time*/, int /*step*/, double xi, std::span<const double> y) override {
     system_.observe(xi, y, observed_);

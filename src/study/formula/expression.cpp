@@ -301,4 +301,22 @@ std::vector<double> Expression::evaluate(const Lookup& lookup) const {
   return std::move(stack.back());
 }
 
+std::vector<std::string_view> Expression::names() const {
+  std::vector<std::string_view> result;
+  for (const Instruction& step : program_) {
+    if (step.operation == Operation::name) result.emplace_back(step.name);
+  }
+  return result;
+}
+
+bool Expression::needs_last_row_only() const noexcept {
+  for (std::size_t k = 0; k < program_.size(); ++k) {
+    if (program_[k].operation != Operation::name) continue;
+    const bool is_end =
+        k + 1 < program_.size() && program_[k + 1].operation == Operation::function && program_[k + 1].name == "end";
+    if (!is_end) return false;
+  }
+  return true;
+}
+
 }  // namespace monograin

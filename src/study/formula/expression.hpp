@@ -46,6 +46,11 @@ class Expression {
   /// @throws ExpressionError naming an unknown name, or where the lengths of columns differ
   [[nodiscard]] std::vector<double> evaluate(const Lookup& lookup) const;
 
+  /// Every name in it, as often as it stands there.
+  [[nodiscard]] std::vector<std::string_view> names() const;
+  /// True if all names stand alone in end(): earlier rows make no difference.
+  [[nodiscard]] bool needs_last_row_only() const noexcept;
+
  private:
   friend class ExpressionParser;
 

@@ -114,13 +114,6 @@ void summarise(const Table& history, Headings& headings, Outcome& outcome) {
 
 void keep_history(const Table& history, const fs::path& file) { write_text_file(file, csv_text(history)); }
 
-/// Runs without what only a run's own folder needs.
-[[nodiscard]] RunRecord record_of(const CheckedScenario& scenario) {
-  Scene scene = make_scene(scenario);
-  const IntegratorChoice integrator = choose_integrator(scenario.numerics.integrator, *scene.system);
-  return record_run(scene, integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
-}
-
 /// @param histories  folder for the run's history; empty: it is not kept
 [[nodiscard]] Outcome run_one(const Sweep& sweep, std::size_t index, const fs::path& histories, Headings& headings) {
   Outcome outcome;
@@ -128,7 +121,7 @@ void keep_history(const Table& history, const fs::path& file) { write_text_file(
   std::optional<RunRecord> record;
   try {
     const CheckedScenario scenario = scenario_of(sweep, index);
-    record = histories.empty() ? record_of(scenario) : run_scenario(scenario).record;
+    record = histories.empty() ? record_run(scenario) : run_scenario(scenario).record;
   } catch (const ScenarioError& error) {
     outcome.row.status = "refused";
     outcome.row.reason = plain(messages_of(error));

@@ -65,6 +65,21 @@ TEST(Expression, MakesOneNumberOfAColumn) {
   EXPECT_TRUE(std::isnan(value_of("end(gap)").front())) << "the last row counts, defined or not";
 }
 
+TEST(Expression, NamesTheColumnsThatItReads) {
+  EXPECT_EQ(Expression("max(axial.force) / end(`contact radius`) + 2 * axial.force").names(),
+            (std::vector<std::string_view>{"axial.force", "contact radius", "axial.force"}));
+  EXPECT_TRUE(Expression("sqrt(2) + 1").names().empty());
+}
+
+TEST(Expression, KnowsWhetherRowsBeforeTheLastMatter) {
+  for (const char* formula : {"end(work)", "end(a) / end(b) - 3", "1 + 1", "sqrt(end(a))"}) {
+    EXPECT_TRUE(Expression(formula).needs_last_row_only()) << formula;
+  }
+  for (const char* formula : {"work", "max(work)", "last(work)", "end(a + b)", "end(a) + max(b)", "end(2 * a)"}) {
+    EXPECT_FALSE(Expression(formula).needs_last_row_only()) << formula;
+  }
+}
+
 TEST(Expression, KnowsLawsThatAreNoFormula) {
   using nonlocal::radius_influence;
   using nonlocal::RadiusRule;
