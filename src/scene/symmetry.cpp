@@ -10,7 +10,8 @@
 namespace monograin {
 namespace {
 
-constexpr double k_same = 1e-9;  // two normals, or two of their scalar products, are the same
+constexpr double k_same = 1e-9;     // two normals, or two of their scalar products, are the same
+constexpr double k_in_span = 1e-6;  // component of a normal outside a span that counts as none
 
 bool same_step(const Step& a, const Step& b) {
   return a.kind == b.kind && a.target == b.target && a.duration == b.duration && a.rate == b.rate && a.until == b.until;
@@ -42,7 +43,7 @@ class Matcher {
 
   [[nodiscard]] bool maps(Eigen::Index from, Eigen::Index to) {
     if (colour(from) != colour(to)) return false;
-    choose_basis(from);
+    if (basis_.empty() || basis_.front() != from) choose_basis(from);
     images_.assign(1, to);
     return extend();
   }
@@ -50,15 +51,18 @@ class Matcher {
  private:
   [[nodiscard]] std::size_t colour(Eigen::Index i) const { return colours_[static_cast<std::size_t>(i)]; }
 
-  /// Walls whose normals are a basis of all of them, beginning with a given one: their images fix the map.
+  /// Chooses walls whose normals are a basis of all normals, beginning with a given wall: their images fix the map.
   void choose_basis(Eigen::Index first) {
     basis_.assign(1, first);
+    Eigen::Matrix3d outside = Eigen::Matrix3d::Identity();  // projector on what the basis does not span
+    outside -= normals_.col(first) * normals_.col(first).transpose();
     for (Eigen::Index i = 0; i < normals_.cols() && basis_.size() < 3; ++i) {
+      const Eigen::Vector3d rest = outside * normals_.col(i);
+      if (rest.norm() <= k_in_span) continue;
       basis_.push_back(i);
-      Eigen::ColPivHouseholderQR<Eigen::Matrix3Xd> qr(normals_(Eigen::all, basis_));
-      qr.setThreshold(1e-6);
-      if (qr.rank() < static_cast<Eigen::Index>(basis_.size())) basis_.pop_back();
+      outside -= rest.normalized() * rest.normalized().transpose();
     }
+    coordinates_ = Eigen::ColPivHouseholderQR<Eigen::Matrix3Xd>(normals_(Eigen::all, basis_)).solve(normals_);
   }
 
   /// Finds images for the rest of the basis that keep all scalar products, then tests the whole map.
@@ -80,14 +84,14 @@ class Matcher {
   }
 
   [[nodiscard]] bool is_symmetry() const {
-    const Eigen::Matrix3Xd basis = normals_(Eigen::all, basis_);
-    const Eigen::Matrix3Xd images = normals_(Eigen::all, images_);
-    const Eigen::MatrixXd coordinates = Eigen::ColPivHouseholderQR<Eigen::Matrix3Xd>(basis).solve(normals_);
-    const Eigen::Matrix3Xd mapped = images * coordinates;
-    for (Eigen::Index i = 0; i < mapped.cols(); ++i) {
+    for (Eigen::Index i = 0; i < normals_.cols(); ++i) {
+      Eigen::Vector3d mapped = Eigen::Vector3d::Zero();
+      for (std::size_t k = 0; k < images_.size(); ++k) {
+        mapped += coordinates_(static_cast<Eigen::Index>(k), i) * normals_.col(images_[k]);
+      }
       bool lands_on_wall = false;
       for (Eigen::Index j = 0; j < normals_.cols() && !lands_on_wall; ++j) {
-        lands_on_wall = colour(i) == colour(j) && (mapped.col(i) - normals_.col(j)).norm() < k_same;
+        lands_on_wall = colour(i) == colour(j) && (mapped - normals_.col(j)).norm() < k_same;
       }
       if (!lands_on_wall) return false;
     }
@@ -98,6 +102,7 @@ class Matcher {
   Eigen::Matrix3Xd normals_;
   Eigen::MatrixXd products_;
   std::vector<Eigen::Index> basis_;
+  Eigen::MatrixXd coordinates_;  ///< of all normals in the basis
   std::vector<Eigen::Index> images_;
 };
 
