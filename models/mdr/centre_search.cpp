@@ -17,8 +17,7 @@ namespace {
 constexpr double k_round_off = std::numeric_limits<double>::epsilon();
 constexpr int k_newton_limit = 60;
 constexpr int k_most_halvings = 40;
-// Longest Newton step (over R0) with the contacts' own stiffnesses; those below the resolution are so soft that steps
-// become longer.
+// Longest Newton step (over R0) with the contacts' own stiffnesses; contacts below the resolution give longer ones.
 constexpr double k_out_of_bounds = 1.0;
 // Length of a step, over the accepted part of the last one, at most.
 constexpr double k_most_growth = 64.0;
@@ -153,8 +152,7 @@ class BalanceSearch {
     return step * (k_most_growth * path_ / step_size_);
   }
 
-  /// Line search: halves the step until it leads nearer to balance. Trials that leave the branch of a contact are
-  /// halved too.
+  /// Line search: halves the step until it leads nearer to balance and stays on the branches of all contacts.
   /// @throws std::domain_error if even the shortest trial leaves a branch
   void go_along(CentreVector step) {
     const CentreVector before = centre_of(y_, count_);

@@ -7,9 +7,8 @@
 
 namespace monograin::mdr {
 
-/// Tangent stiffness of a free centre (CentreStiffness::value) below which it counts as at a fold. A search for the
-/// balance may end there at a minimum of the net force that is not zero, and rates of the centre change sign through
-/// infinity.
+/// Tangent stiffness of a free centre (CentreStiffness::value) below which the centre is at a fold. A search for the
+/// balance may end there at a nonzero minimum of the net force, and rates of the centre change sign through infinity.
 inline constexpr double k_at_fold = 1e-2;
 
 /// True if the edge of a contact that acts on a free centre peels under displacement control: the stiffness with which

@@ -64,9 +64,8 @@ struct ContactBranch {
   /// Overlap at which the contact opens, or at which its open wall begins to touch.
   [[nodiscard]] double touching_overlap(const ContactLaw& law, double r) const;
 
-  /// Elastic indenter that the contact leaves when it unloads. The overlap counts only for a fully plastic contact,
-  /// whose largest overlap it is. Cached for one radius and largest overlap: most of the cost of an unloading force is
-  /// here.
+  /// Elastic indenter that the contact leaves when it unloads. The overlap counts only for a fully plastic contact, as
+  /// its largest one. Cached for one radius and largest overlap: it is most of the cost of an unloading force.
   [[nodiscard]] const UnloadingShape& shape(const ContactLaw& law, double r, double overlap) const;
   /// One-dimensional space of an elastic contact, or of one below its largest overlap.
   [[nodiscard]] Frame frame(const ContactLaw& law, double r, double overlap) const;
@@ -75,8 +74,7 @@ struct ContactBranch {
 
   /// Force and its derivatives on this branch.
   [[nodiscard]] Contact contact(const ContactLaw& law, double r, double overlap) const;
-  /// The contact, or a contact of overlap k_resolution if it is less deep than that: its stiffness does not vanish at
-  /// first touch.
+  /// The contact, or one of overlap k_resolution if it is less deep: the stiffness does not vanish at first touch.
   /// @param now  contact(law, r, overlap)
   [[nodiscard]] Contact stiff_contact(const ContactLaw& law, double r, double overlap, const Contact& now) const;
   /// False if the overlap is negative or below its round-off: the history then shows no contact. The contact radius, a

@@ -170,8 +170,7 @@ void GuardSet::arm_touch(const Particle& p, std::size_t i, const Course& course)
   add_if_reached(p, i, course, is_dent ? k_dent_touched : k_made, 1, is_dent ? "dent-touched" : "contact-made");
 }
 
-/// Lists the guards of a contact on the primary loading branch: it may turn back, or an elastic one may lose a free
-/// centre.
+/// Lists the guards of a contact on the primary loading branch: it may turn back, or a free centre may leave it.
 void GuardSet::arm_primary_branch(const Particle& p, std::size_t i, const Motion& now, const Course& course) {
   const int index = static_cast<int>(i);
   const bool is_shifted = p.law().is_shifted();

@@ -138,7 +138,7 @@ bool ModeSearch::is_moot(const Guard& guard, const Motion& now) const {
   const auto i = static_cast<std::size_t>(std::max(0, guard.index));
   const ContactBranch& branch = p_.branch(i);
   const auto has_another_edge = [&] {
-    // Another guard has changed this edge at this instant, or its contact is back at its largest overlap, where edges
+    // Another guard has changed this edge at this instant, or the contact is back at its largest overlap, where edges
     // only follow.
     return !branch.touches() || branch.is_on_primary_branch || edges_before_[i] != branch.edge.motion;
   };
@@ -206,8 +206,7 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
       has_turned_[i] = true;
       return true;
     case k_peel:
-      // Next to stiff contacts the rate of a contact that turns with them loses digits: below k_at_rest it is no
-      // motion.
+      // Next to stiff contacts the rate of a contact that turns with them loses digits; this one is no motion.
       if (edge_rate(p_, i, now) >= -k_at_rest || std::abs(overlap_rate(p_, i, now)) <= k_at_rest) {
         // An edge that has just turned sticks at the verge of peeling and leaves it with the square of its
         // displacement. Round-off has fired the guard and would fire it again; setting the edge back prevents that.
@@ -590,8 +589,7 @@ bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, con
       start_peeling(i, y, log);
       return true;
     case Edge::peeling:
-      // Beyond pull-off an edge is stable under displacement control at most: a force, even if constant, makes it run
-      // away.
+      // Beyond pull-off, where only displacement control could hold an edge, a constant force too makes it run away.
       if (is_past(k_pull_off, -1.0) && (moves_out || p_.is_loaded(i))) {
         separate(i, y, log);
         return true;

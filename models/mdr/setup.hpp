@@ -73,8 +73,7 @@ struct Setup {
   [[nodiscard]] double largest_overlap_expected() const;
   /// Typical growth of the radius up to a displacement of the walls, both over R0.
   [[nodiscard]] double growth_scale(double displacement) const noexcept;
-  /// Typical work of one wall up to a displacement over R0: that of an elastic or a fully plastic contact, whichever is
-  /// less.
+  /// Typical work of one wall up to a displacement over R0: the smaller one of an elastic and a fully plastic contact.
   [[nodiscard]] double work_scale(double displacement) const noexcept;
 };
 

@@ -30,8 +30,7 @@ struct IdleWall {
 };
 
 /// Matrix that scales a displacement of the centre to the size of the overlaps it causes in contacts of these normals.
-/// Between nearly opposite walls the displacement is far longer than the overlaps. Unconstrained directions become
-/// zero.
+/// Between nearly opposite walls a displacement is far longer than overlaps. Unconstrained directions become zero.
 Eigen::Matrix3d measure_by_overlaps(std::span<const Eigen::Vector3d> normals, std::span<const double> weights) {
   Eigen::Matrix3d held = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < normals.size(); ++k) held += weights[k] * normals[k] * normals[k].transpose();
@@ -86,8 +85,7 @@ double distance_to_touch(const Particle& p, std::size_t i) {
   return std::abs(contact_guard(p, kind, i, 0.0, p.contact(i).overlap));
 }
 
-/// True if contacts that touch, or are within k_together of touching, can balance a push of contact i on the free
-/// centre.
+/// True if contacts that touch, or are within k_together of it, can balance a push of contact i on the free centre.
 bool may_be_supported(const Particle& p, std::size_t i) {
   std::vector<CentreVector> others;
   for (std::size_t j = 0; j < p.size(); ++j) {
@@ -178,8 +176,7 @@ bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std
   const double least = k_no_force * largest_prescribed_force(p);
   const CentreVector push = along * prescribed_push(p, 1.0);
   if (push.norm() <= least) return false;
-  // Holds only where the forces begin, at the start of a step. After any force, walls may have caught up with the
-  // centre.
+  // Holds only where forces begin, at the start of a step: after any force, walls may have caught up with the centre.
   if (xi > 0.0 || (along * prescribed_push(p, xi)).norm() > p.force_rounding()) return false;
   std::vector<CentreVector> normals;
   for (const IdleWall& wall : walls) normals.emplace_back(along * p.centre().direction(wall.contact));
