@@ -1,4 +1,4 @@
-/// A model whose contacts each depend on their own wall alone, from its law.
+/// Makes a model from the law of contacts that each depend on their own wall alone.
 #pragma once
 
 #include <array>
