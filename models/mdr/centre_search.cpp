@@ -375,8 +375,8 @@ class SaddleExit {
   bool is_balanced_;
   CentreVector saddle_;
   std::optional<std::size_t> beyond_;  ///< contact that has been led beyond pull-off
-  /// Normal of the contact beyond pull-off, or else the softest direction. That counts idle contacts with their least
-  /// stiffness: their own is round-off, but the line would press them.
+  /// Normal of the contact beyond pull-off, or else the softest direction. The softest direction counts idle contacts
+  /// with their least stiffness: their own is round-off, but the line would press them.
   CentreVector direction_;
   std::optional<double> stiffest_;  ///< distance of the first maximum of the stiffness along the line
 };

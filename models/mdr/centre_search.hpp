@@ -38,8 +38,8 @@ void check_softening(const Particle& p);
 void move_centre(Particle& p, double xi, std::span<double> y);
 
 /// Leaves a state that does not hold the centre for the equilibrium that does. Next to a fold there are two equilibria,
-/// a stable one and a saddle, and others beyond pull-off; Newton's method from afar may find the wrong one. Between the
-/// two lies a state where the stiffness of the centre vanishes, about half-way from the saddle to the stable one.
+/// a stable one and a saddle, and others beyond pull-off; Newton's method from afar may find the wrong one. About
+/// half-way from the saddle to the stable equilibrium, the stiffness of the centre vanishes.
 /// @param is_balanced  true: y is an equilibrium; false: a search for the balance got stuck there
 /// @return true if y is now the equilibrium that holds the centre
 /// @throws std::domain_error if y was balanced and no equilibrium short of pull-off is found

@@ -42,8 +42,8 @@ enum GuardKind : int {
 inline constexpr double k_touch = 1e-13;
 /// Rate of a contact's force, in the unit of force_rate(), that is round-off.
 inline constexpr double k_steady_force = 1e-9;
-/// Rate of a wall or an edge, of order one elsewhere, below which it is at rest: a contact or an edge that has just
-/// turned shows a rate that is an error of integration.
+/// Rate, of order one elsewhere, below which a wall or an edge is at rest: just after it has turned, its rate is an
+/// error of integration.
 inline constexpr double k_at_rest = 1e-8;
 /// With a free centre, contacts along its directions open and close together; their guards agree to the integration
 /// error only.
@@ -51,11 +51,11 @@ inline constexpr double k_together = 1e-6;
 /// Growth ends where the free surface falls below this share of the particle's surface.
 inline constexpr double k_least_slope = 1e-3;
 /// Stiffness of a free centre at which a fold counts as reached. At the fold the equilibrium ceases to exist: a guard
-/// that vanished there could not be located, because no state lies beyond. The remaining distance goes with the square
-/// of this.
+/// that vanished there could not be located, because no state lies beyond. The remaining distance to the fold goes with
+/// the square of this stiffness.
 inline constexpr double k_least_centre_stiffness = 1e-5;
-/// Stiffness of a plastic contact under force, over that of a shallow one, at which it counts as bearing the largest
-/// force that it can. Below this stiffness, the overlap would magnify errors of the radius a hundredfold and more.
+/// Stiffness of a plastic contact under force, over that of a shallow one, at which the contact counts as bearing its
+/// largest force. Below this stiffness, the overlap would magnify errors of the radius a hundredfold and more.
 inline constexpr double k_last_stiffness = 1e-2;
 /// A wall this near to the centre of the particle (over R0) has reached it.
 inline constexpr double k_least_distance = 1e-3;
@@ -71,7 +71,7 @@ inline constexpr double k_least_distance = 1e-3;
 /// overlap with the square of its displacement; subtracting this keeps round-off from firing the guard.
 [[nodiscard]] double edge_rounding(const Particle& p, std::size_t i);
 
-/// The guards that are alive until the next transition or the end of the step.
+/// Set of the guards that are alive until the next transition or the end of the step.
 class GuardSet {
  public:
   void arm(Particle& p, const ContactCaps& caps, double xi, std::span<const double> y);

@@ -39,8 +39,8 @@ const PullOff& pull_off_of(const Particle& p, std::size_t i) {
   return branch.pull_off(p.law(), branch.frame(p.law(), p.at().r, p.contact(i).overlap).indenter);
 }
 
-/// Tests whether the model predicts the pull-off of a contact that begins to unload (F.7): its indenter is convex and
-/// does not yield in tension.
+/// Tests whether the model predicts the pull-off of a contact that begins to unload (F.7): the model's indenter is
+/// convex and does not yield in tension.
 /// @return the warning if it does not
 std::optional<Diagnostic> check_adhesion(const Particle& p, std::size_t i) {
   const Material& material = p.law().material;
@@ -157,7 +157,7 @@ bool ModeSearch::is_moot(const Guard& guard, const Motion& now) const {
     case k_follow:
       return has_another_edge() || edge_rate(p_, i, now) <= k_at_rest;
     case k_reload: {
-      // On a branch as short as the tolerance of the guard, the guard fires far from the end of the branch.
+      // On a branch as short as the guard's tolerance, the guard fires far from the end of the branch: no reload there.
       if (branch.regime != Regime::unloading) return false;
       const double overlap = p_.contact(i).overlap;
       const double passed = p_.is_loaded(i) ? k_passed_by_force : k_passed;
@@ -421,8 +421,8 @@ bool ModeSearch::follow_jump(std::size_t i, double xi, std::span<double> y, std:
   if (p_.is_loaded(i)) return false;
   const double r = y[k_radius];
   const double jump = p_.contact(i).overlap - spring_.overlaps[i];
-  // An earlier round may have closed, yielded or reloaded this contact, and a later one may open it again. Each round
-  // therefore begins with the branch before the jump.
+  // An earlier round may have closed, yielded or reloaded this contact, and a later round may lead it back. Such a
+  // contact therefore begins each round on its branch before the jump.
   const ContactBranch& before = spring_.branches[i];
   const ContactBranch last = p_.branch(i);
   const bool has_entered = last.is_on_primary_branch && (!before.is_on_primary_branch || last.regime != before.regime);

@@ -43,7 +43,7 @@ class ModeSearch {
  private:
   /// How a contact is about to move.
   struct Tendency {
-    bool is_carried = false;  ///< growth, whose rate is still zero, is about to press it
+    bool is_carried = false;  ///< growth presses the contact, or is about to while its rate is still zero
     bool moves_in = false;
     bool retreats = false;    ///< from its largest overlap
     bool advances = false;    ///< towards its largest overlap, or beyond
@@ -87,7 +87,7 @@ class ModeSearch {
   [[nodiscard]] std::size_t most_rounds() const noexcept { return 4 * p_.size() + 8; }
 
   Particle p_;
-  std::vector<bool> has_turned_;   ///< started to unload at this instant
+  std::vector<bool> has_turned_;   ///< started to unload at this instant, or its edge came to rest
   std::vector<bool> has_resumed_;  ///< started to unload at this instant, then loaded on beyond its largest overlap
   std::vector<bool> is_left_;      ///< lost at this instant, because forces press the centre away from its wall
   std::vector<Edge> edges_before_;

@@ -33,7 +33,7 @@ struct Instant {
 /// contacts.
 struct Evaluation {
   double r = 0.0;
-  double longest = 1.0;  ///< largest length whose difference gives an overlap: R0, or the path of the centre
+  double longest = 1.0;  ///< largest of the lengths whose differences are overlaps: R0, path of the centre
   std::vector<Instant> contacts;
   VolumeBalance volume;
   FreeCentre centre;
@@ -99,7 +99,7 @@ class Particle {
     return mdr::takes_part(setup_->settings.radius_rule, branches_[i].regime);
   }
   [[nodiscard]] bool peels_anywhere() const noexcept;
-  /// Says whether a contact bears. One that no others balance does not: the search for the balance leaves it a
+  /// Sets whether a contact bears. A contact that no others balance does not: the search for the balance leaves it a
   /// different force at every instant, which does no work.
   void set_bears(std::size_t i, bool bears);
 
@@ -128,7 +128,10 @@ class Particle {
   [[nodiscard]] double energy(std::size_t i, PlasticPart part) const;
   [[nodiscard]] double energy(PlasticPart part);
 
+  /// Rates at the state that was evaluated last.
+  /// @param growing  false: the radius is held
   [[nodiscard]] Motion motion(bool growing) const;
+  /// Rates while the radius grows.
   /// @throws std::domain_error where the free surface is used up
   [[nodiscard]] Motion growing_motion() const;
 
@@ -136,7 +139,7 @@ class Particle {
 
   /// By how much the centre has moved towards a wall.
   [[nodiscard]] double carried_by_centre(std::size_t i, std::span<const double> y) const noexcept;
-  /// Moves the walls under force to their displacements under it, at a given radius.
+  /// Moves the force-controlled walls in y to their displacements under the prescribed forces, at the radius in y.
   void move_walls(double xi, std::span<double> y) const;
   /// Writes the unknowns of walls whose force is prescribed in other steps only.
   void record_walls(double xi, std::span<double> y) const noexcept;
@@ -150,8 +153,8 @@ class Particle {
   /// Largest overlap of an idle contact: the round-off of lengths, or the overlap to which the round-off of the other
   /// forces presses it. Other contacts may bear much more, and be much stiffer.
   [[nodiscard]] double resolution() const;
-  /// True for an idle contact: the wall touches a particle with a free centre and carries no load. Its overlap and the
-  /// rate of that are round-off; it leaves no dent, and is lost when the gap exceeds the resolution.
+  /// True for an idle contact: the wall touches a particle with a free centre and carries no load. Its overlap and its
+  /// rate are round-off; it leaves no dent, and is lost when the gap exceeds the resolution.
   [[nodiscard]] bool is_idle(std::size_t i) const { return centre().acts(i) && is_idle_touch(i); }
 
  private:

@@ -26,8 +26,8 @@ namespace monograin::mdr {
 void check_support(Particle& p);
 
 /// Closes or opens the contacts that close or open together with contact i, because on a free centre only other
-/// contacts balance it. When it closes, the nearest walls close until they support it, if they can. When it opens,
-/// contacts open that the remaining ones do not support. Does nothing where contacts adhere.
+/// contacts balance it. When contact i closes, the nearest walls close until they support it, if they can. When contact
+/// i opens, those contacts open that the remaining ones do not support. Does nothing where contacts adhere.
 /// @param is_made  true: contact i has closed; false: it has opened
 void balance_touch(Particle& p, std::size_t i, bool is_made, std::vector<Event>& log);
 
