@@ -18,9 +18,9 @@ constexpr int k_most_corrections = 100;  // a double root at pull-off only halve
 /// Edge at the radius a on a profile; on the ellipse a = b sin(theta).
 struct ProfileEdge {
   double radius = 0.0;
-  double share = 0.0;   ///< of the half width: sin(theta)
-  double cosine = 0.0;  ///< of theta; 1 on the parabola
-  double rise = 0.0;    ///< of the profile, over half the indenter's height: 1 - cos(theta), or (a/b)^2/2
+  double share = 0.0;   ///< radius over the half width: sin(theta)
+  double cosine = 0.0;  ///< cosine of theta; 1 on the parabola
+  double rise = 0.0;    ///< profile's height over half the indenter's: 1 - cos(theta), or (a/b)^2/2
 };
 
 ProfileEdge edge_at(const Indenter& indenter, double a) noexcept {
@@ -89,7 +89,7 @@ ProfileEdge descend(const Indenter& indenter, double composite_modulus, double s
     const double by_rise = 0.5 * indenter.height - 0.5 * xi * stretch * edge.cosine / (edge.share * edge.share);
     if (!(by_rise > 0.0)) break;
     const double next = std::clamp(edge.rise - excess(edge, stretch) / by_rise, least, most);
-    // Near pull-off, a double root, round-off over a tiny slope would throw it back up.
+    // Near pull-off, where the root is double, round-off over a tiny slope would move the edge up again.
     if (!(edge.rise - next > 1e-15 * edge.rise)) break;
     edge = edge_at_rise(indenter, next);
   }

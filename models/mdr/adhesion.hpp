@@ -55,11 +55,11 @@ struct PeelState {
                                    double a) noexcept;
 
 /// Stable (outer) equilibrium of an edge under delta_1D; the critical state if delta_1D lies below that of pull-off.
-/// @param critical_radius  of displacement control
+/// @param critical_radius  critical_radius() of displacement control
 [[nodiscard]] PeelState peel_at_displacement(const Indenter& indenter, double composite_modulus, double surface_energy,
                                              double critical_radius, double displacement_1d);
 /// Stable (outer) equilibrium of an edge under a force; the critical state if the force lies below that of pull-off.
-/// @param critical_radius  of force control
+/// @param critical_radius  critical_radius() of force control
 [[nodiscard]] PeelState peel_at_force(const Indenter& indenter, double composite_modulus, double surface_energy,
                                       double critical_radius, double force);
 
@@ -86,7 +86,7 @@ struct Frame {
 /// Contact whose edge sticks at the radius a (eqs. 45, 46).
 [[nodiscard]] Contact sticking_contact(const Frame& frame, double composite_modulus, double a) noexcept;
 /// Contact whose edge peels (eqs. 46-48); below the critical delta_1D, with its edge at the critical radius.
-/// @param critical_radius  of displacement control
+/// @param critical_radius  critical_radius() of displacement control
 [[nodiscard]] Contact peeling_contact(const Frame& frame, double composite_modulus, double surface_energy,
                                       double critical_radius);
 /// d2F/d(delta)2 of a contact whose edge peels at the radius a: how fast its stiffness falls as the contact opens. Kept

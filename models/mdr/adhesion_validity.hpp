@@ -1,4 +1,4 @@
-/// Where the convex indenter of the model gives the right pull-off of a flattened, adhesive particle.
+/// Tests whether the convex indenter of the model gives the right pull-off of a flattened, adhesive particle.
 ///
 /// The surface of a strongly flattened particle is concave inside a ring of the radius r_peak, which the elliptic
 /// indenter is not; and no yielding in tension is accounted for at the edge. Both are harmless while the critical

@@ -76,7 +76,7 @@ struct AdhesiveEdge {
 
 /// Rate at which the springs at an edge are pressed (+) or stretched (-), from -1 to 1: the parts due to the overlap
 /// and to the growing indenter, over the sum of their magnitudes.
-/// @param change  of the frame with the apparent radius
+/// @param change  change of the frame with the apparent radius
 [[nodiscard]] double press_rate(const Frame& frame, const Frame::Change& change, double contact_radius,
                                 double overlap_rate, double growth) noexcept;
 

@@ -17,7 +17,7 @@
 
 namespace monograin::mdr {
 
-/// Which contacts make the apparent radius grow, and when.
+/// Rule that says which contacts make the apparent radius grow, and when.
 enum class RadiusRule {
   gated,    ///< all touching contacts; only while a contact at its largest overlap is driven inwards
   yielded,  ///< yielded contacts at their largest overlap; only while one of them is driven inwards
@@ -39,7 +39,7 @@ enum class RadiusRule {
   return false;
 }
 
-/// How one contact that takes part in the growth moves.
+/// Motion of one contact that takes part in the growth.
 struct GrowthDrive {
   double inward_rate = 0.0;  ///< rate of its wall, inwards positive
   double least_rate = 0.0;   ///< a smaller inward_rate is round-off
@@ -47,7 +47,7 @@ struct GrowthDrive {
   bool rises = false;  ///< a prescribed force grows
   bool is_on_primary_branch = false;
 };
-/// True if such a contact opens the gate for growth.
+/// True if a contact that moves in this way opens the gate for growth.
 [[nodiscard]] bool opens_gate(RadiusRule rule, const GrowthDrive& drive) noexcept;
 
 /// Part of one class of contacts in the volume balance.
@@ -83,7 +83,7 @@ struct VolumeBalance {
 class VolumeSum {
  public:
   /// @param virial_of_all  sum of force times distance from the centre over all contacts
-  /// @param virial         of those in Q
+  /// @param virial         that sum over the contacts in Q
   VolumeSum(double bulk_compliance, double virial_of_all, double virial) noexcept
       : w_(k_scale * bulk_compliance * virial) {
     sum_.under_root = 1.0 - 4.0 * w_;
@@ -138,7 +138,7 @@ class VolumeSum {
 /// where the caps do. The demand itself is no good root function: it starts at zero with every first touch, and near nu
 /// = 0.5 returns to zero so soon that a root finder would take the return for the start.
 /// @param demand           rate of the volume that growth has to take up
-/// @param time_scale       of VolumeBalance
+/// @param time_scale       VolumeBalance::time_scale
 /// @param withdraws        walls of contacts in Q move out only
 /// @param is_compressible  elastic volume vanishes last, with the square root of the overlap
 [[nodiscard]] double growth_drive(double demand, double time_scale, bool withdraws, bool is_compressible) noexcept;

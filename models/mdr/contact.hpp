@@ -14,7 +14,7 @@ namespace monograin::mdr {
 /// Indenter of an elastic contact: the source's unified ellipse (height 4R, width 2R) or Hertz's parabola.
 enum class ElasticProfile { ellipse, parabola };
 
-/// What the contact laws need to know of the particle's material.
+/// Material of the particle, as far as contact laws depend on it.
 struct Material {
   double composite_modulus = 0.0;  ///< E* = E/(1 - nu^2), > 0
   double poisson_ratio = 0.0;      ///< in (-1, 0.5]
@@ -98,7 +98,7 @@ struct UnloadingShape {
   double height = 0.0;            ///< A = 4 p_Y a_max / E*
   double rho = 0.0;               ///< share of the elastic recovery that moves the centre, in (0, 1)
   double recovery = 0.0;          ///< A (1 - rho)/2: the contact opens at m - recovery
-  // Logarithmic derivatives with respect to m and R at the other fixed, and those of rho.
+  // Logarithmic derivatives by m at fixed R and by R at fixed m; for rho the plain derivatives.
   double pressure_by_max = 0, pressure_by_radius = 0;              ///< p_x / p_Y
   double contact_radius_by_max = 0, contact_radius_by_radius = 0;  ///< a_x / a_max
   double rho_by_max = 0, rho_by_radius = 0;                        ///< rho_x

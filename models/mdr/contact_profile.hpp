@@ -45,7 +45,7 @@ struct ContactProfile {
 };
 
 /// Points of the pressure and the surface from the contact's middle to twice its radius, in the units of the profile.
-/// @param profile  of a contact that has a radius
+/// @param profile  profile of a contact whose radius is not zero
 [[nodiscard]] std::vector<SurfacePoint> surface_of(const ContactProfile& profile);
 
 }  // namespace monograin::mdr

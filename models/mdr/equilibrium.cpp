@@ -46,8 +46,8 @@ void grow(Particle& p, double xi, std::span<double> y) {
   double below = -std::numeric_limits<double>::infinity();
   double above = std::numeric_limits<double>::infinity();
   double step_size = std::numeric_limits<double>::infinity();
-  // Quadratic convergence makes the next step round-off below this. It is lost where forces go with a square root: for
-  // a contact that only touches a free centre, or an edge next to pull-off.
+  // Quadratic convergence makes the next step round-off below this. Convergence is slower where forces go with a square
+  // root: for a contact that only touches a free centre, or an edge next to pull-off.
   const double last_step =
       !p.centre().is_free() && !p.peels_anywhere() ? k_last_step : 2.0 * std::numeric_limits<double>::epsilon();
   for (int iteration = 0; iteration < k_most_steps; ++iteration) {

@@ -32,7 +32,7 @@ bool goes_one_way(const Particle& p, const Motion& now) {
 }  // namespace
 
 double contact_guard(const Particle& p, int kind, std::size_t i, double xi, double overlap) {
-  // Under force a contact lasts as long as the force presses; a program that returns exactly to zero does not leave it.
+  // Under force a contact lasts as long as the force presses; a program that returns exactly to zero does not open it.
   if (p.is_loaded(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost)) {
     const double scale = p.drive(i).size();
     return scale > 0.0 ? p.drive(i).value(xi) / scale + (kind == k_lost ? k_same_overlap : 0.0) : 0.0;

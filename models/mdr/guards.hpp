@@ -80,12 +80,12 @@ class GuardSet {
               std::span<double> values) const;
 
  private:
-  /// How the overlap of a contact may change until the step ends.
+  /// Possible changes of a contact's overlap until the step ends.
   struct Course {
     bool is_free = false;      ///< a free centre moves the particle against the wall's prescribed displacement
-    bool may_turn = false;     ///< change its direction in mid-step
-    bool may_come_in = false;  ///< grow
-    bool may_go_out = false;   ///< shrink
+    bool may_turn = false;     ///< the overlap may change its direction in mid-step
+    bool may_come_in = false;  ///< the overlap may grow
+    bool may_go_out = false;   ///< the overlap may shrink
   };
 
   [[nodiscard]] static Course course_of(const Particle& p, std::size_t i, const Motion& now);

@@ -17,12 +17,12 @@ namespace {
 // A reload guard that fires together with another event counts if no more than this share of the unloading branch is
 // left to its end.
 constexpr double k_passed = 1e-2;
-// That share under force control. The wall would go back by the missing force over the stiffness of a plastic contact,
-// which is smaller than that of the unloading branch by many orders.
+// Such a share under force control: the wall would go back by the missing force over the stiffness of a plastic
+// contact, which is smaller than the stiffness of the unloading branch by many orders.
 constexpr double k_passed_by_force = 1e-6;
 // Change of an overlap at one instant (over R0) beyond which the free centre has jumped to another equilibrium.
 constexpr double k_spring = 1e-9;
-// Where the demand for growth is balanced at an instant, its sign is evaluated this far after it (in step coordinates).
+// If the demand for growth is balanced at an instant, its sign is evaluated this far later (in step coordinates).
 constexpr double k_just_after = 1e-9;
 
 /// Erases the events of contact i from the log, from index `from` on.

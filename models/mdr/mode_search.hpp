@@ -41,13 +41,13 @@ class ModeSearch {
   [[nodiscard]] const std::optional<Diagnostic>& validity() const noexcept { return validity_; }
 
  private:
-  /// How a contact is about to move.
+  /// Motion that a contact is about to begin.
   struct Tendency {
     bool is_carried = false;  ///< growth presses the contact, or is about to while its rate is still zero
     bool moves_in = false;
-    bool retreats = false;    ///< from its largest overlap
+    bool retreats = false;    ///< leaves its largest overlap
     bool advances = false;    ///< towards its largest overlap, or beyond
-    bool is_pressed = false;  ///< by a prescribed force
+    bool is_pressed = false;  ///< a prescribed force presses it
     bool closes = false;
     bool opens = false;
   };

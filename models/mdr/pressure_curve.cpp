@@ -71,7 +71,7 @@ PressureCurve::PressureCurve(std::span<const double> overlaps_over_radius, std::
   check_samples(knots_, p);
   const boost::math::interpolators::pchip<std::vector<double>> curve{std::vector<double>(knots_),
                                                                      std::vector<double>(p)};
-  // Its cubics are written out, so that value, slope and moments take one search for the interval.
+  // The cubics of the curve are written out, so that value, slope and moments take one search for the interval.
   PressureMoments before;
   for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
     const double h = knots_[i + 1] - knots_[i];

@@ -76,7 +76,7 @@ class RelaxedProfile {
                                        Control control);
 
 /// Stable states from a_max down to pull-off, both included, at equal distances of the contact radius.
-/// @param count  of states, >= 2
+/// @param count  number of states, >= 2
 /// @throws std::invalid_argument for a count below 2; std::domain_error as critical_radius()
 [[nodiscard]] std::vector<PeelState> peel_curve(const RelaxedProfile& profile, double composite_modulus,
                                                 double surface_energy, Control control, std::size_t count);

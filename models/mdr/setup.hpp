@@ -3,8 +3,7 @@
 /// Unknowns: r = (R - R0)/R0, the work of the walls, the displacement of a free centre along the directions in which
 /// walls can move it, and the displacement of every wall whose force is prescribed at some time. Where a force is
 /// prescribed, the unknown is the work less force times displacement, -int delta_o dF: unlike int F d(delta_o), this
-/// has no singularity where a contact is made or snaps off. Lengths in R0; stresses in the yield stress (in E* where
-/// nothing yields).
+/// has no singularity where a contact is made or snaps off. Lengths in R0; stresses in Y (in E* if Y is infinite).
 #pragma once
 
 #include <algorithm>

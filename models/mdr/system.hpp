@@ -78,7 +78,7 @@ class System final : public HybridSystem {
   contacts::Columns columns_;
   std::vector<Observable> observables_;
   State now_;
-  // Work space, so that nothing is allocated while integrating.
+  // Work space, kept so that integrating allocates no memory.
   ModeSearch search_;
   std::vector<Guard> fired_;
   std::vector<double> trial_;
