@@ -16,7 +16,7 @@
 ///   next(b), pass(b)            boundary ahead on the primary loading branch; what changes there
 ///   turn(b, d), reload(b)       changes where unloading begins at d, and back there; without them unloading retraces
 ///                               loading
-///   refuses_unloading()         advice where the law ends when a contact begins to unload; none where it goes on
+///   refuses_unloading()         advice if the law ends when a contact begins to unload; none if it does not
 ///   k_passed_at_end             which boundaries count as passed by a step that ends at them
 ///   made_event(b)               name of the event of touching, if it is not "contact-made"
 ///   surface(b, d)               points of the surface; pressures over unit_force/R0^2
@@ -386,7 +386,7 @@ class IndependentContacts final : public HybridSystem {
 
   // --- columns
 
-  /// What a row shows of a contact, in SI.
+  /// Numbers of a contact in a row, in SI.
   /// @param d        displacement of the contact, or of the leader that it follows
   /// @param carried  by how much a free centre has moved towards the wall
   [[nodiscard]] VisibleContact visible(std::size_t i, double xi, double d, double carried) {
@@ -399,7 +399,7 @@ class IndependentContacts final : public HybridSystem {
     shown.pressure *= stress_unit();
     return shown;
   }
-  /// What a row shows of a contact that is no follower, in units of the law.
+  /// Numbers of a contact that is no follower in a row, in units of the law.
   [[nodiscard]] VisibleContact visible_contact(std::size_t i, double xi, double d) const {
     const Contact& c = contacts_[i];
     VisibleContact shown{.overlap = d, .regime = static_cast<double>(law_.regime(c.branch(), c.touches()))};

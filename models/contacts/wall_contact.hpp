@@ -332,7 +332,7 @@ class WallContact {
   Branch branch_{};
   bool touches_ = false;
   bool has_touched_ = false;
-  bool is_on_primary_branch_ = true;  ///< at its largest displacement
+  bool is_on_primary_branch_ = true;  ///< the contact is at its largest displacement
   double largest_ = 0.0;              ///< off the primary branch: displacement at which it was left
   double largest_force_ = 0.0;        ///< off the primary branch: force where it was left
   double resting_ = 0.0;              ///< displacement of the wall at which it was left open, without load

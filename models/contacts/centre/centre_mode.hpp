@@ -40,7 +40,8 @@ class CentreMode {
   /// By how much the centre has moved towards the walls of a class.
   [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const { return centre_.along(i, position(y)); }
   /// Displacement of a contact.
-  /// @param d  displacement with the centre at its initial position; under force control, at its present one
+  /// @param d  displacement with the centre at its initial position; for a touching wall under force control, at its
+  ///           present one
   [[nodiscard]] double displacement(const Law& law, const Contact& c, std::size_t i, double d,
                                     std::span<const double> y) const {
     const double opening = law.opening(c.branch());
@@ -166,7 +167,7 @@ class CentreMode {
   static constexpr double k_least_ahead = 1e-6;
   static constexpr double k_most_ahead = 1e-3;
   static constexpr double k_distance_ahead = 1e-9;  ///< over R0
-  /// Change of an overlap within that time (over R0) that is round-off.
+  /// Change of an overlap (over R0), from an instant to the one ahead, that is round-off.
   static constexpr double k_no_change = 1e-14;
   /// Gap or overlap (over R0) up to which wall and particle just meet; a contact is lost when its gap becomes larger.
   static constexpr double k_touch = 1e-12;
@@ -250,7 +251,7 @@ class CentreMode {
   }
 
   FreeCentre centre_;
-  std::size_t slot_ = 0;  ///< in y, of the first coordinate of the centre
+  std::size_t slot_ = 0;  ///< index in y of the first coordinate of the centre
   double reach_ = 1.0;
   Vector rest_ = Vector::Zero();  ///< position of the centre when the present mode began
   std::vector<Role> roles_;

@@ -20,8 +20,8 @@ constexpr double k_comparable = 1e-3;
 // Share of the prescribed forces that may stay unbalanced along directions in which no contact bears.
 constexpr double k_cancelled = 1e-9;
 constexpr int k_most_steps = 200;
-// The line search ends where the slope of the energy along the step, up or down, is no more than this share of its
-// magnitude at the start; so does a full step that leads up by no more.
+// The line search ends where the slope of the energy along the step has at most this share of its initial magnitude. It
+// takes the full step also if the energy still falls faster there.
 constexpr double k_descent = 0.9;
 constexpr int k_most_sections = 60;
 
@@ -256,8 +256,8 @@ double FreeCentre::across_held(std::size_t i) const {
   return (lines_.arm(i) - held_directions_ * (held_directions_.transpose() * lines_.arm(i))).norm();
 }
 
-/// Position of the centre with its loose directions, in which no contact bears: there it is where the mode began, or
-/// out of the path of walls that push it.
+/// Completes a balanced position along loose directions, in which no contact bears: there the centre stays where the
+/// mode began, or moves out of the path of walls that push it.
 /// @param balanced  position that balances the forces
 /// @param left_out  a wall that does not push
 FreeCentre::Vector FreeCentre::with_loose_directions(const CentreWalls& walls, std::span<const Role> roles,

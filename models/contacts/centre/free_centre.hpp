@@ -21,9 +21,9 @@ namespace monograin::contacts {
 
 /// Part that a class of walls plays for a free centre in a mode.
 enum class Role : std::uint8_t {
-  away,     ///< it is out of reach
-  bearing,  ///< its contact bears where it overlaps
-  idle      ///< it bears nothing; where it touches, it pushes the centre along
+  away,     ///< the class is out of reach
+  bearing,  ///< a contact of the class bears if it has an overlap
+  idle      ///< the class bears nothing; a wall that touches pushes the centre along
 };
 
 /// Walls around a free centre at one instant of the program.
@@ -118,7 +118,7 @@ class FreeCentre {
   double round_off_ = 0.0;      ///< net force that is round-off
   bool is_held_ = false;        ///< contacts of comparable stiffness bear in all directions
   double prescribed_ = 0.0;     ///< sum of the magnitudes of prescribed forces
-  // Work space, so that nothing is allocated while integrating.
+  // Work space, kept so that integrating allocates no memory.
   std::vector<double> overlaps_;
   std::vector<double> gone_in_;              ///< overlaps with the centre at its initial position
   std::vector<char> bears_;                  ///< whether a contact bears, as held_directions() has found last
