@@ -23,7 +23,7 @@ constexpr double k_same_angle = 1e-12;
 /// Load of the core over Y R0^2 below which it has no direction.
 constexpr double k_no_load = 1e-14;
 
-/// Displacement of a free centre (over R0) from the rest position of the weak spring beyond which nothing else holds
+/// Displacement of a free centre from the rest position of the weak spring (over R0) that shows that only this holds
 /// it.
 constexpr double k_farthest = 10.0;
 

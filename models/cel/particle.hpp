@@ -69,7 +69,7 @@ struct ClassState {
   Eigen::Matrix3d spread;  ///< sum of n n over all walls
 
   contacts::WallDrive drive{};
-  bool takes_force = false;  ///< its own coordinate is the force, not u
+  bool takes_force = false;  ///< the own coordinate is the force F, not u
   bool gives_way = false;    ///< the wall bears no force: it stands until the surface meets it, then moves with that
   bool touches = false;
   bool flows = false;    ///< the dent grows
@@ -219,7 +219,7 @@ class Particle {
   // Derivatives at that state.
   std::vector<double> Om_by_zeta_;
   double Om_by_flow_ = 0.0;
-  Eigen::Matrix3d pushes_by_flow_;   ///< at given forces
+  Eigen::Matrix3d pushes_by_flow_;   ///< derivative of pushes_ by the flow of the core, at given forces
   std::vector<double> residual_by_;  ///< row by row
 
   // The linear equations for rates or corrections of those unknowns up to the core that move.
