@@ -1,4 +1,4 @@
-/// How a model checks the histories of its own scenes in the stress test.
+/// Tools with which a model checks the histories of its own scenes in the stress test.
 #pragma once
 
 #include <algorithm>
