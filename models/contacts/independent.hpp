@@ -477,8 +477,7 @@ class IndependentContacts final : public HybridSystem {
   std::vector<double> trial_;     ///< work space
   bool has_begun_ = false;
   std::vector<Guard> guards_;
-  std::vector<double>
-      targets_;  ///< for each guard, the prescribed value (around a free centre, the length) at its zero
+  std::vector<double> targets_;  ///< for each guard, the prescribed value (or displacement, overlap) at its zero
 };
 
 }  // namespace monograin::contacts

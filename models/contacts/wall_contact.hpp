@@ -160,8 +160,7 @@ class WallContact {
   [[nodiscard]] bool passes(double prescribed) const noexcept {
     return k_passed_at_end == PassedAtEnd::all ? drive_.end() >= prescribed : drive_.goes_beyond(prescribed);
   }
-  /// True if the wall meets, or leaves, the particle within the step. A force that ends at zero leaves the wall in
-  /// touch.
+  /// True if the wall meets, or leaves, the particle within the step. A force that ends at zero leaves no gap.
   [[nodiscard]] bool passes_opening(const Law& law) const {
     if (is_force_controlled()) return drive_.end() < 0.0;
     const double distance = drive_.direction() * (drive_.end() - law.opening(branch_));

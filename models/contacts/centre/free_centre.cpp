@@ -20,8 +20,8 @@ constexpr double k_comparable = 1e-3;
 // Share of the prescribed forces that may stay unbalanced along directions in which no contact bears.
 constexpr double k_cancelled = 1e-9;
 constexpr int k_most_steps = 200;
-// The line search ends where the slope of the energy along the step has at most this share of its initial magnitude. It
-// takes the full step also if the energy still falls faster there.
+// The line search ends where the slope of the energy along the step has at most this share of its initial magnitude.
+// The full step is also taken if the energy still falls faster at its end.
 constexpr double k_descent = 0.9;
 constexpr int k_most_sections = 60;
 

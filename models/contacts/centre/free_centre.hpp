@@ -37,7 +37,7 @@ class CentreWalls {
   };
   /// Force that the program prescribes the walls of a class; none where it prescribes their displacement.
   [[nodiscard]] virtual std::optional<double> prescribed_force(std::size_t i) const = 0;
-  /// Overlap at which a contact would be with the centre at its initial position; negative for a gap.
+  /// Overlap that a contact would have with the centre at its initial position; negative for a gap.
   [[nodiscard]] virtual double overlap(std::size_t i) const = 0;
   /// Force of a contact at an overlap > 0.
   [[nodiscard]] virtual Force force(std::size_t i, double overlap) const = 0;
