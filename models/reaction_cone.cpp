@@ -32,8 +32,7 @@ bool in_reaction_cone(const Eigen::Vector3d& push, std::span<const Eigen::Vector
       for (std::size_t k = 0; k < bearing.size(); ++k) together.col(static_cast<Eigen::Index>(k)) = bearing[k];
       const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, k_most_bearing, 1> wanted =
           together.colPivHouseholderQr().solve(-unit);
-      // Moves the shares towards the least-squares solution until the first share becomes zero, and drops its
-      // direction.
+      // Moves the shares towards the least-squares solution until one becomes zero, whose direction is dropped.
       way = 1.0;
       std::size_t first = bearing.size();
       for (std::size_t k = 0; k < bearing.size(); ++k) {

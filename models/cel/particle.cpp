@@ -23,8 +23,7 @@ constexpr double k_same_angle = 1e-12;
 /// Load of the core over Y R0^2 below which it has no direction.
 constexpr double k_no_load = 1e-14;
 
-/// Displacement of a free centre from the rest position of the weak spring (over R0) that shows that only this holds
-/// it.
+/// Displacement of a free centre (over R0) from which on forces drive it away: only the weak spring holds it there.
 constexpr double k_farthest = 10.0;
 
 constexpr int k_most_corrections = 60;
@@ -266,7 +265,7 @@ inline void Particle::add(std::size_t i, const Slopes& by, double factor, std::s
   row[by_flow()] += factor * by.l * classes_[i].l_by_flow;
 }
 
-/// Replaces the derivative by the coverage by derivatives by the dents and the flow of the core.
+/// Turns the derivative by the coverage, by the chain rule, into derivatives by dents and flow of the core.
 void Particle::fold_coverage(std::span<double> row) const noexcept {
   const double by = row[by_Om()];
   for (std::size_t j = 0; j < size(); ++j) row[layout_.dent(j)] += by * Om_by_zeta_[j];

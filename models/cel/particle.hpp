@@ -70,7 +70,7 @@ struct ClassState {
 
   contacts::WallDrive drive{};
   bool takes_force = false;  ///< the own coordinate is the force F, not u
-  bool gives_way = false;    ///< the wall bears no force: it stands until the surface meets it, then moves with that
+  bool gives_way = false;    ///< the wall bears no force: it rests until the surface meets it, then moves along
   bool touches = false;
   bool flows = false;    ///< the dent grows
   bool may_flow = true;  ///< false: ruled out at the present instant

@@ -249,8 +249,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   if (const auto end = limit_here(0.0, y)) throw CannotBegin(*end);
 }
 
-/// Reason to stop if the state is at a limit or beyond: once a contact stops flowing, the elastic state may have no
-/// path.
+/// Reason to stop if the state is at a limit or beyond: after a contact stops flowing, the elastic path may not exist.
 std::optional<DomainEnd> System::limit_here(double xi, std::span<const double> y) {
   if (guards_.empty()) return std::nullopt;
   const double margin = evaluate_rates(xi, y);

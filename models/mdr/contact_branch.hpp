@@ -118,8 +118,7 @@ struct ContactBranch {
   [[nodiscard]] ContactBranch reloaded() const noexcept;
   /// Fully plastic branch of an elastic contact that yields at the radius 1 + r.
   [[nodiscard]] ContactBranch yielded(const ContactLaw& law, double r) const noexcept;
-  /// Branch after a wall has met the fresh particle or its dent. An elastic contact that was pressed before keeps its
-  /// largest overlap.
+  /// Branch after a wall has met the fresh particle or its dent. A contact that was pressed keeps its largest overlap.
   [[nodiscard]] ContactBranch made() const noexcept;
   /// Branch after a wall has left the particle or its dent, and stays where it is.
   [[nodiscard]] ContactBranch lost(double displacement) const noexcept;

@@ -138,8 +138,7 @@ bool ModeSearch::is_moot(const Guard& guard, const Motion& now) const {
   const auto i = static_cast<std::size_t>(std::max(0, guard.index));
   const ContactBranch& branch = p_.branch(i);
   const auto has_another_edge = [&] {
-    // Another guard has changed this edge at this instant, or the contact is back at its largest overlap, where edges
-    // only follow.
+    // Another guard has changed this edge at this instant, or the contact is back on its primary branch.
     return !branch.touches() || branch.is_on_primary_branch || edges_before_[i] != branch.edge.motion;
   };
   switch (guard.kind) {
