@@ -189,7 +189,7 @@ void GuardSet::arm_edge(const Particle& p, std::size_t i, const Course& course) 
       if (course.may_turn) list_.push_back({k_turn, index, -1, "stick"});
       break;
     case Edge::sticking: {
-      // An edge that has stuck since the largest overlap follows again with the reload, and needs no guard of its own.
+      // If the overlap cannot turn, an edge that has stuck since the largest overlap follows again with the reload.
       const double at_largest = edge_guard(p, k_follow, i, 0.0, branch.largest_overlap(p.law(), p.at().r));
       if (course.may_come_in && (course.may_turn || at_largest > 1e-9)) list_.push_back({k_follow, index, 1, "follow"});
       if (course.may_go_out) list_.push_back({k_peel, index, -1, "peel"});
