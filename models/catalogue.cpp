@@ -22,7 +22,7 @@ double radius_influence(std::span<const double> of) {
   return nonlocal::radius_influence(rule, of[0], of[1], of[2]);
 }
 
-/// A law, without a value beyond its domain.
+/// Value of a law; NaN beyond its domain.
 template <double (*law)(std::span<const double>)>
 double where_defined(std::span<const double> arguments) {
   try {

@@ -18,7 +18,7 @@ void add_model(const Model& model);
 /// The entry of that name, or nullptr.
 [[nodiscard]] const Model* find_model(std::string_view name) noexcept;
 
-/// A law of a single value that is no formula, which definitions of figures may use by its name.
+/// Law with a single value that no formula expresses. Definitions of figures may use it by its name.
 struct FormulaFunction {
   std::string_view name;
   std::size_t argument_count = 1;

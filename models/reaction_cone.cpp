@@ -7,9 +7,9 @@
 namespace monograin {
 namespace {
 
-constexpr double k_most = 1e6;       // of the push: more is needed by walls alone that align but for a millionth
-constexpr double k_no_help = 1e-13;  // nor does a direction help which only rounding leaves along what is left over
-// Three bear whatever is borne; there are others where directions depend on each other but for rounding.
+constexpr double k_most = 1e6;       // largest multiple over the push; walls aligned to a millionth would need more
+constexpr double k_no_help = 1e-13;  // component of a direction along the unbalanced remainder that is round-off
+// Three directions suffice for any push; more may be active while some depend on each other to within round-off.
 constexpr int k_most_bearing = 8;
 
 }  // namespace
@@ -32,7 +32,7 @@ bool in_reaction_cone(const Eigen::Vector3d& push, std::span<const Eigen::Vector
       for (std::size_t k = 0; k < bearing.size(); ++k) together.col(static_cast<Eigen::Index>(k)) = bearing[k];
       const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, k_most_bearing, 1> wanted =
           together.colPivHouseholderQr().solve(-unit);
-      // Towards what is wanted, up to where the first of them would have to pull, which goes.
+      // Moves the shares towards the least-squares solution until one becomes zero, whose direction is dropped.
       way = 1.0;
       std::size_t first = bearing.size();
       for (std::size_t k = 0; k < bearing.size(); ++k) {

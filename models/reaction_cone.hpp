@@ -1,4 +1,4 @@
-/// What walls that only press can balance.
+/// Reaction cone: the pushes that walls can balance which press and do not pull.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@ namespace monograin {
 /// active sets (Lawson and Hanson, 1974).
 /// @param push        not zero
 /// @param directions  unit vectors
-/// @param nothing     what may be left over, of the push
+/// @param nothing     tolerance: unbalanced remainder over the push
 [[nodiscard]] bool in_reaction_cone(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> directions,
                                     double nothing = 1e-6);
 

@@ -1,9 +1,9 @@
-/// One contact of an elastic-plastic particle by itself: what its dent says of it, and the elastic law on that dent.
+/// One contact of an elastic-plastic particle by itself: the properties of its dent, and the elastic law on that dent.
 ///
 /// Lengths are over R0, stresses over E, forces over E R0^2, areas over pi R0^2; Y stands for Y/E. The dent of a
-/// contact is its largest radius zeta, referred to a sphere of unit radius: zeta = a_Y on a fresh surface, and it only
-/// grows. Its surroundings are the support distance l of the core under the wall and the coverage factor m of the
-/// particle. Own law of this project (docs/theory/cel.md, sections 2 to 4).
+/// contact is its largest radius zeta, referred to a sphere of unit radius: zeta = a_Y on a fresh surface, and zeta
+/// only grows. The law also depends on the support distance l of the core under the wall and on the coverage factor m
+/// of the particle. Own law of this project (docs/theory/cel.md, sections 2 to 4).
 #pragma once
 
 namespace monograin::cel {
@@ -53,14 +53,16 @@ struct Contact {
   double u = 0.0;      ///< elastic displacement
   double F = 0.0;      ///< force
   double area = 0.0;   ///< contact area over pi
-  double alpha = 0.0;  ///< that at the limit force
+  double alpha = 0.0;  ///< contact area over pi at the limit force
   double H = 0.0;      ///< force at which the contact would flow by itself
   double F_over_H = 0.0;
   double stored = 0.0;  ///< elastic energy of the contact itself
   Slopes u_by, F_by, H_by, alpha_by;
 };
 
-/// F = H (u/u_H)^(1/(1-q)), by an elastic displacement u or, its inverse, by a force.
+/// Contact by the law F = H (u/u_H)^(1/(1-q)), at an elastic displacement u or, with the inverse law, under a force.
+/// @param coordinate  u, or F
+/// @param is_force    true: the coordinate is F
 [[nodiscard]] Contact contact_by(const Material& material, const Dent& dent, double l, double m, double coordinate,
                                  bool is_force) noexcept;
 [[nodiscard]] inline Contact contact_at(const Material& material, const Dent& dent, double l, double m,
@@ -72,11 +74,12 @@ struct Contact {
   return contact_by(material, dent, l, m, F, true);
 }
 
-/// Advance of a wall that the core makes room for, and its first two derivatives by the support distance of the core.
+/// Advance c of a wall into room that the core makes, and its first two derivatives by the support distance l.
 struct Advance {
   double c, c_l, c_ll;
 };
-/// @param growth  l - 1, which is small next to 1 while the core has hardly flowed
+/// Advance of a wall at a support distance l.
+/// @param growth  l - 1, given as such because it is small next to 1 while the core has hardly flowed
 [[nodiscard]] Advance advance_of(double growth) noexcept;
 
 }  // namespace monograin::cel

@@ -3,11 +3,12 @@
 namespace monograin::cel {
 namespace {
 
-/// Part of a tensor outside of the basis that is rounding of the normals.
+/// Part of a unit tensor outside of the basis that is round-off of the normals.
 constexpr double k_nothing_new = 1e-9;
 constexpr std::size_t k_most_shapes = 6;  ///< components of a symmetric tensor
 
-/// Adds the part of a tensor that the basis has not. @return whether there is one
+/// Adds to a basis the part of a tensor that lies outside of it.
+/// @return whether there is such a part
 bool extend(std::vector<Eigen::Matrix3d>& basis, const Eigen::Matrix3d& tensor) {
   if (basis.size() == k_most_shapes) return false;
   Eigen::Matrix3d rest = tensor.normalized();

@@ -1,8 +1,8 @@
 /// Shapes that the core of a particle can take among given walls.
 ///
-/// The core yields by stresses that the walls make of its own shape. So its shape stays among the symmetric tensors
-/// that arise from the walls' normals by sums and by products a b + b a: two of them for two walls or a die, three for
-/// walls along three axes, six in general.
+/// The core yields under stresses that depend on the walls and its own shape only. The shape therefore stays among the
+/// symmetric tensors that arise from the walls' normals by sums and by products a b + b a: two independent tensors for
+/// two walls or a die, three for walls along three axes, six in general.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,8 +20,9 @@ namespace monograin::cel {
   return a - a.trace() / 3.0 * Eigen::Matrix3d::Identity();
 }
 
-/// An orthonormal basis of these tensors. The first is the unit tensor over sqrt(3), so that all others are deviators.
-/// Without others, where the walls load the core by pressures only, it keeps its shape: empty.
+/// An orthonormal basis of the tensors among which the shape of the core stays. The first is the unit tensor over
+/// sqrt(3), so that all others are deviators. Empty if there are no others: walls that load the core by pressures only
+/// leave its shape as it is.
 /// @param spreads  sum of n n over the walls of each class
 [[nodiscard]] std::vector<Eigen::Matrix3d> core_shapes(std::span<const Eigen::Matrix3d> spreads);
 

@@ -81,8 +81,8 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
   return list;
 }
 
-/// How far a contact is pressed, at most, that meets a condition for the first time: elastic, or at 1.29 Y, the least
-/// mean pressure of a contact that flows.
+/// Upper estimate of displacement and force of a contact that first meets a condition: elastic, or at a mean pressure
+/// of Y, which is below that of every contact that flows (1.29 Y).
 Reach reach(const ModelInput& input, const Until& until) {
   constexpr double k_infinity = std::numeric_limits<double>::infinity();
   const double radius = input.radius;
@@ -105,7 +105,7 @@ ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) {
   return {.deepest = 0.3, .force = 2.0 / modulus_over_yield};
 }
 
-/// The core strains and the dents grow, or stay.
+/// Checks that the accumulated strain of the core never falls.
 void check(const CheckedRun& run, std::vector<Violation>& found) {
   check_growth(run, "core_strain", run.tolerance, found);
 }

@@ -23,17 +23,17 @@ constexpr double k_same_angle = 1e-12;
 /// Load of the core over Y R0^2 below which it has no direction.
 constexpr double k_no_load = 1e-14;
 
-/// Way of a free centre over R0 in one step of the program that is none: only the weak spring stops it.
+/// Displacement of a free centre (over R0) from which on forces drive it away: only the weak spring holds it there.
 constexpr double k_farthest = 10.0;
 
 constexpr int k_most_corrections = 60;
 constexpr int k_most_halvings = 40;
 constexpr int k_most_polishings = 4;
-constexpr double k_most_growth = 0.03;  ///< of a dent in one correction
-/// Dents over a_Y, below which no trial goes: one that begins to flow is a_Y but for rounding.
+constexpr double k_most_growth = 0.03;  ///< largest growth of a dent in one correction
+/// Smallest dent of a trial, over a_Y: a dent that begins to flow is a_Y to within round-off.
 constexpr double k_least_dent = 0.9;
-constexpr double k_solved = 1e-10;  ///< residual over the largest displacement that is a solution at all
-/// Residual over that from which on a correction that makes it larger is rounding.
+constexpr double k_solved = 1e-10;  ///< residual, over the largest displacement, up to which a state is a solution
+/// Residual, over the largest displacement, below which corrections only polish: round-off may make it larger.
 constexpr double k_stalled = 1e-14;
 constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
@@ -68,7 +68,7 @@ Particle::Particle(const Material& material, double poisson_ratio, std::span<con
   const std::vector<Eigen::Matrix3d> spreads = spreads_of(classes);
   flow_components_.setZero(index(shapes_.size()));
   along_.resize(index(size()), index(shapes_.size()));
-  // Influences at the angles between walls, each found once.
+  // Influences at the angles between walls, each computed once.
   std::map<double, double> influences;
   const auto influence_at = [&](double angle) {
     const auto [at, is_new] = influences.try_emplace(std::round(angle / k_same_angle));
@@ -118,7 +118,7 @@ bool Particle::evaluate(std::span<const double> y) {
   return true;
 }
 
-/// Evaluates only the equations of elastic motion.
+/// Evaluates the equations of elastic motion only.
 void Particle::evaluate_elastically(std::span<const double> y) {
   forget();
   centre_ = layout_.centre_of(y);
@@ -126,7 +126,7 @@ void Particle::evaluate_elastically(std::span<const double> y) {
   evaluate_coupling();
 }
 
-/// Evaluates the core and the yield functions besides.
+/// Evaluates the core and the yield functions, after evaluate_elastically().
 void Particle::evaluate_flow(std::span<const double> y) {
   core_ = core_of(y);
   evaluate_core();
@@ -135,13 +135,13 @@ void Particle::evaluate_flow(std::span<const double> y) {
   is_known_ = true;
 }
 
-/// Dents, coverage and forces.
+/// Evaluates dents, coverage and forces.
 void Particle::evaluate_contacts(std::span<const double> y) {
   const Eigen::Map<const Eigen::VectorXd> flown(y.data() + layout_.core(), along_.cols());
   Om_ = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes_[i];
-    const double excess = along_.row(index(i)).dot(flown);  // l^2 - 1, without the rounding of 1
+    const double excess = along_.row(index(i)).dot(flown);  // l^2 - 1, without the round-off of 1
     const double square = 1.0 + excess;
     const double zeta = y[layout_.dent(i)];
     if (!(square > 0.0) || !(zeta > 0.0)) throw std::domain_error("the core or a dent of the particle has no size");
@@ -161,7 +161,7 @@ void Particle::evaluate_contacts(std::span<const double> y) {
   }
 }
 
-/// Influences, displacements by (K), and the stored energy.
+/// Evaluates influences, displacements by (K), and the stored energy.
 void Particle::evaluate_coupling() {
   stored_ = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
@@ -178,7 +178,7 @@ void Particle::evaluate_coupling() {
   }
 }
 
-/// Load of the core, and how it flows under it.
+/// Evaluates the load of the core and its flow under that load.
 void Particle::evaluate_core() {
   flow_ = {};
   flow_components_.setZero();
@@ -198,7 +198,7 @@ void Particle::evaluate_core() {
   for (std::size_t j = 0; j < shapes_.size(); ++j) flow_components_[index(j)] = contraction(shapes_[j], flow_.C);
 }
 
-/// Which contacts drive the core and which it carries, how weak those are, and the yield functions.
+/// Evaluates how far each contact drives the core or is carried by it, how weak carried ones are, and yield functions.
 void Particle::evaluate_yield() {
   const double use = s_ * per_S_;
   for (ClassState& c : classes_) {
@@ -234,13 +234,13 @@ void Particle::residual(double xi, std::span<double> residual) const {
   std::copy_n(net.begin(), layout_.directions(), &residual[layout_.centre(0)]);
 }
 
-/// Force along a line of pushes per force of a class.
+/// Push of all walls of a class along a line, per force of one wall.
 double Particle::push_on(std::size_t line, std::size_t i) const noexcept {
   return lines_.line_of(i) == line ? classes_[i].count * lines_.along(i) : 0.0;
 }
 
-/// Takes the balance of forces along the line of the largest ones, then across it: their round-off would be more there
-/// than the weak spring.
+/// Chooses the directions of the equations (E): along the line of the largest forces, then across it, where the
+/// round-off of these forces would otherwise exceed the weak spring.
 void Particle::choose_balance() {
   if (layout_.directions() == 0) return;
   balance_ = lines_.stiffest_directions([this](std::size_t line) {
@@ -249,7 +249,7 @@ void Particle::choose_balance() {
       largest = std::max(largest, std::abs(push_on(line, i)) * classes_[i].contact.F);
     return largest;
   });
-  // The sign of the determinant says whether a state is stable.
+  // Keeps the orientation of the basis, because the sign of the equations' determinant says whether a state is stable.
   const Eigen::Index n = lines_.dimension();
   if (balance_.topLeftCorner(n, n).determinant() < 0.0) balance_.col(n - 1) *= -1.0;
   for (std::size_t line = 0; line < lines_.size(); ++line) shares_[line] = lines_.components(balance_, line);
@@ -257,7 +257,7 @@ void Particle::choose_balance() {
 
 // --- their derivatives
 
-/// Adds the derivatives of a quantity of a contact, times a factor.
+/// Adds the derivatives of a quantity of a contact, times a factor, to a row.
 inline void Particle::add(std::size_t i, const Slopes& by, double factor, std::span<double> row) const noexcept {
   row[layout_.coordinate(i)] += factor * by.coordinate;
   row[layout_.dent(i)] += factor * by.zeta;
@@ -265,7 +265,7 @@ inline void Particle::add(std::size_t i, const Slopes& by, double factor, std::s
   row[by_flow()] += factor * by.l * classes_[i].l_by_flow;
 }
 
-/// Writes the coverage as what it depends on.
+/// Turns the derivative by the coverage, by the chain rule, into derivatives by dents and flow of the core.
 void Particle::fold_coverage(std::span<double> row) const noexcept {
   const double by = row[by_Om()];
   for (std::size_t j = 0; j < size(); ++j) row[layout_.dent(j)] += by * Om_by_zeta_[j];
@@ -345,7 +345,7 @@ void Particle::differentiate_yield(std::size_t i) {
       of_tau = of_weakness / c.b * -12.0 * z * (1.0 - z);
       add(i, c.contact.alpha_by, of_weakness / k::ab, row);
     }
-    // By the load, of which s is the size and tau the share under this wall, and by the strength S.
+    // Derivatives by the load, whose size is s and whose share under this wall is tau, and by the strength S.
     const double of_s = of_use * per_S_ - of_tau * c.tau * per_s_;
     Eigen::Matrix3d by_T = 0.375 * of_s * per_s_ * T_;
     if (of_tau != 0.0) by_T += 0.75 * of_tau * per_s_ * deviator(c.wall);
@@ -360,8 +360,8 @@ void Particle::differentiate_yield(std::size_t i) {
 
 // --- solving them
 
-/// The linear equations of the unknowns up to the core that move: coordinates, the centre, and dents that grow.
-/// @param takes_core_along  whether the core flows as the dents do; otherwise it stays
+/// Sets up the linear equations of those unknowns up to the core that move: coordinates, centre, and dents that grow.
+/// @param takes_core_along  true: the core flows as the dents grow; false: it stays
 void Particle::assemble(bool takes_core_along) {
   differentiate();
   active_.clear();
@@ -385,9 +385,9 @@ void Particle::assemble(bool takes_core_along) {
   }
 }
 
-/// Gauss's elimination of the linear equations, rows by their largest entries.
-/// @param right  their right side, by the places in a state
-/// @param drift  another one
+/// Solves the linear equations by Gaussian elimination with row scaling and pivoting, into solution_ and drift_.
+/// @param right  right side, in the order of the unknowns
+/// @param drift  second right side
 /// @return the sign of the determinant, which is positive at the unloaded particle
 double Particle::eliminate(std::span<const double> right, std::span<const double> drift) {
   const Eigen::Index n = matrix_.rows();
@@ -430,8 +430,8 @@ double Particle::eliminate(std::span<const double> right, std::span<const double
   return sign;
 }
 
-/// Largest residual of the state that was evaluated, as a displacement: a yield function is known as well as the
-/// elastic displacement is, over itself.
+/// Largest residual of the state that was evaluated, as a displacement. A yield function counts times the elastic
+/// displacement, because it has the relative accuracy of that.
 double Particle::error(double xi) {
   residual(xi, rest_of_equations_);
   double largest = 0.0;
@@ -448,7 +448,8 @@ void Particle::prescribe(double xi, std::span<double> y) const noexcept {
   }
 }
 
-/// A correction by Newton's method, halved until the error is less than a bound. @return the error then
+/// Corrects a state by a Newton step, halved until the error is less than a bound.
+/// @return the error of the corrected state
 double Particle::correct(double xi, std::span<double> y, double bound) {
   assemble(false);
   eliminate(rest_of_equations_, rest_of_equations_);
@@ -480,7 +481,7 @@ void Particle::solve(double xi, std::span<double> y) {
   evaluate(y);
   choose_balance();
   double now = error(xi);
-  // Where the weak spring decides, the balance of forces says more of the centre than the largest residual does.
+  // A free centre is corrected further: where only the weak spring holds it, a tiny net force still moves it far.
   const bool is_free = layout_.directions() > 0;
   int polished = 0;
   for (int i = 0; i < k_most_corrections && (is_free || now > k_rounding * largest); ++i) {
@@ -518,7 +519,7 @@ double Particle::rates(std::span<double> dy, double xi, double pull) {
   return sign * slowness();
 }
 
-/// How fast walls go, as displacements, over how fast they and their contacts do: 0 where the equations turn back.
+/// Speed of the walls, over the sum of that and the speed of their contacts: 0 at a fold.
 double Particle::slowness() const noexcept {
   double speed = 0.0;
   double fastest = 0.0;
@@ -532,7 +533,7 @@ double Particle::slowness() const noexcept {
   return speed > 0.0 ? speed / (speed + fastest) : 1.0;
 }
 
-/// Rate of a residual.
+/// Rate of a residual, by the last rates().
 double Particle::rate_of(std::size_t place) const noexcept {
   const std::span<const double> row = row_at(place);
   return std::inner_product(solution_.begin(), solution_.end(), row.begin(), Lam_ * row[by_flow()]);

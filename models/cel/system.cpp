@@ -16,35 +16,37 @@ using std::numbers::pi;
 enum RegimeWord { k_open, k_elastic, k_plastic, k_unloaded };
 constexpr std::array<string_view, 4> k_regime_words{"open", "elastic", "plastic", "unloaded"};
 
-/// Elastic displacement over the program's depth that is rounding, and more than what counts as having arrived at a
-/// guard.
+/// Elastic displacement, over the program's depth, that is round-off; more than the tolerance of a located guard.
 constexpr double k_touch = 4e-13;
-/// That of a contact which may only carry a free centre along: no integrator is exact enough to say that it bears.
+/// Elastic displacement, over the program's depth, of a contact that may be idle and only carry a free centre along: no
+/// integrator is exact enough to show that such a contact bears.
 constexpr double k_idle_touch = 1e-8;
-/// Yield function of a contact that may flow, and the least rate at which it then would be passed.
+/// Distance of the yield function from zero up to which a contact may flow.
 constexpr double k_at_yield = 1e-9;
-/// Yield function that is no rounding of a contact which has just stopped flowing.
+/// Value of the yield function at which its guard fires; more than round-off of a contact that just stopped flowing.
 constexpr double k_beyond_yield = 1e-12;
+/// Least rate of the yield function at which a contact at yield begins to flow.
 constexpr double k_least_rate = 1e-13;
-/// Rates of dents that are alike but for rounding.
+/// Relative difference of the rates of dents that is round-off.
 constexpr double k_alike = 1e-6;
-/// Margin at which a run ends: next to it the stiffness is infinite.
+/// Margin to a fold (Particle::rates()) at which a run ends: the stiffness is infinite at the fold.
 constexpr double k_least_margin = 1e-5;
+/// Margin to a fold below which the equations are hard to integrate.
 constexpr double k_hard_margin = 1e-3;
-/// How fast an integrated state is drawn back to the equations, over a step of the program: its errors across them
-/// would stay, and add up. Next to the beginning of flow, where a contact may be as shallow, it is half over the
-/// distance from there: slower than the first step is long, for correctors that iterate. Steps as short as the last
-/// constant see it change smoothly.
+/// Rate, per step coordinate, at which an integrated state is drawn back to the equations: its errors would otherwise
+/// add up. Next to the beginning of flow, where contacts may be very shallow, the rate is k_first_pull over the
+/// distance from there: times the length of a first step it is below one, so that correctors converge. k_nearest_flow
+/// keeps the rate smooth for the shortest steps.
 constexpr double k_pull = 20.0;
 constexpr double k_first_pull = 0.5;
 constexpr double k_nearest_flow = 1e-9;
-/// Half the surface over pi R0^2 is 2; the law is fitted up to here.
+/// Largest coverage to which the law is fitted: half the contact area over pi R0^2, which is 2 for the whole surface.
 constexpr double k_most_coverage = 1.7;
 /// Fitted range of the law.
 constexpr double k_least_modulus_over_yield = 6.25;
 constexpr double k_deepest = 0.5;
 
-/// Whether a program goes on in the direction in which it has gone. A step that is cut in two does, but for rounding.
+/// True if a program goes on in the same direction, to within round-off, as where a step is cut in two.
 bool goes_on(const Eigen::ArrayX2d& before, const Eigen::ArrayX2d& after) {
   constexpr double k_alike_directions = 1e-9;
   const double a = before.abs().maxCoeff();
@@ -79,7 +81,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
                          .may_rest = true});
   while (unknowns_.size() < particle_.layout().size()) unknowns_.push_back({.name = "core", .kind = differential});
   work_place_ = unknowns_.size();
-  // The work of elastic contacts, or that of contacts that flow, whichever is less.
+  // Scale of the work: that of elastic contacts or of contacts that flow, whichever is less.
   const double work = depth_ * depth_ * std::min(std::sqrt(depth_), particle_.material().Y);
   unknowns_.push_back({.name = "work", .kind = Unknown::Kind::quadrature, .scale = work});
   rates_.resize(unknowns_.size());
@@ -120,7 +122,8 @@ void System::evaluate(std::span<const double> y) {
   if (particle_.evaluate(y)) forget_rates();
 }
 
-/// Rates of all unknowns, in rates_. @return the margin to where the equations turn back
+/// Evaluates the rates of all unknowns, into rates_.
+/// @return the margin to a fold
 double System::evaluate_rates(double xi, std::span<const double> y) {
   evaluate(y);
   if (xi == rates_at_) return margin_;
@@ -133,8 +136,8 @@ double System::evaluate_rates(double xi, std::span<const double> y) {
 void System::complete(double xi, std::span<double> y) {
   particle_.prescribe(xi, y);
   if (!is_solvable_here()) return;
-  // Dents and core are as they were, without the round-off of integrators, and the last solution is a better guess than
-  // where the unknowns rest.
+  // Begins with the last solution: its dents and core are without the round-off of integrators, and it is a better
+  // guess than y, in which the unknowns rest.
   std::ranges::copy(y, trial_.begin());
   std::copy_n(last_.begin(), work_place_, y.begin());
   try {
@@ -181,7 +184,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
   res[work_place_] = dy[work_place_] - particle_.power();
 }
 
-/// Elastically all work is stored, but for what has been dissipated before.
+/// In elastic motion the work equals the stored energy, up to a constant.
 std::optional<double> System::closed_quadrature(double /*xi*/, std::span<const double> y) {
   if (particle_.any_flows()) return std::nullopt;
   evaluate(y);
@@ -190,13 +193,13 @@ std::optional<double> System::closed_quadrature(double /*xi*/, std::span<const d
 
 // --- the program
 
-/// A wall that stands, at a displacement over R0.
+/// Lets a wall rest at a displacement over R0.
 void System::hold(std::size_t i, double displacement) {
   particle_.at(i).takes_force = false;
   particle_.at(i).drive = contacts::WallDrive({displacement, displacement, Control::displacement}, 1.0);
 }
 
-/// A wall that goes with the surface and bears no force.
+/// Lets a wall move with the surface and bear no force.
 void System::give_way(std::size_t i, std::span<double> y) {
   ClassState& c = particle_.at(i);
   c.takes_force = c.gives_way = true;
@@ -223,7 +226,7 @@ void System::take_up(std::size_t i, const Ramp& ramp, std::span<double> y) {
   c.drive = contacts::WallDrive(ramp, takes_force ? force_unit() : settings_.initial_radius);
 }
 
-/// Rates of what the program prescribes: displacements of all walls, then forces.
+/// Rates that the program prescribes: of displacements in the first column, of forces in the second.
 Eigen::ArrayX2d System::velocities() const {
   Eigen::ArrayX2d rates = Eigen::ArrayX2d::Zero(static_cast<Eigen::Index>(classes_.size()), 2);
   Eigen::Index i = 0;
@@ -239,14 +242,14 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   if (!goes_on(before, velocities())) particle_.rest_centre(y);
   solve(0.0, y);
   decide_mode(0.0, y, log, {});
-  // Contacts that begin to flow are off their yield function by what counts as being at it.
+  // Contacts that begin to flow may be up to k_at_yield off their yield function: this puts them on it.
   solve(0.0, y);
   has_begun_ = true;
   arm_guards();
   if (const auto end = limit_here(0.0, y)) throw CannotBegin(*end);
 }
 
-/// A limit that the state is at, or beyond: a contact that stops flowing may leave an elastic state that has no path.
+/// Reason to stop if the state is at a limit or beyond: after a contact stops flowing, the elastic path may not exist.
 std::optional<DomainEnd> System::limit_here(double xi, std::span<const double> y) {
   if (guards_.empty()) return std::nullopt;
   const double margin = evaluate_rates(xi, y);
@@ -258,7 +261,7 @@ std::optional<DomainEnd> System::limit_here(double xi, std::span<const double> y
 
 // --- modes
 
-/// Elastic displacement of a contact a little later, as soon as it is on a side; none if it never is.
+/// Elastic displacement of a contact at the first trial instant ahead at which it is clearly open or closed, or else 0.
 double System::displacement_ahead(std::size_t i, double xi, std::span<const double> y) const {
   Particle ahead = particle_;
   const auto at = [&](double later) {
@@ -270,13 +273,14 @@ double System::displacement_ahead(std::size_t i, double xi, std::span<const doub
   return contacts::side_ahead(xi, k_touch * depth_, at).value_or(0.0);
 }
 
-/// Elastic displacement that does not put a contact on a side.
+/// Elastic displacement (over R0) up to which a contact is neither clearly open nor clearly closed.
 double System::slack(std::size_t i) const noexcept {
   const bool may_carry = particle_.layout().directions() > 0 && particle_.at(i).touches;
   return (may_carry ? k_idle_touch : k_touch) * depth_;
 }
 
-/// Whether a contact bears from here on, by its elastic displacement or, next to none, by where that goes.
+/// Decides whether a contact touches from here on: by its elastic displacement or, if that is within slack(), by the
+/// displacement a little later.
 void System::decide_touch(std::size_t i, double xi, std::span<const double> y, std::vector<Event>& log) {
   ClassState& c = particle_.at(i);
   const bool touches = c.takes_force                      ? c.contact.F > 0.0 || c.drive.rate() > 0.0
@@ -289,9 +293,9 @@ void System::decide_touch(std::size_t i, double xi, std::span<const double> y, s
     log.push_back({touches ? "contact-made" : "contact-lost", static_cast<int>(i)});
 }
 
-/// The largest set of contacts that can flow together: all at yield that motion without them would take beyond, but for
-/// those whose dents would shrink. Those that are most against it leave first, together and for good, so that neither
-/// the order of the walls nor their symmetry decides.
+/// Finds the largest set of contacts that can flow together. Takes in all contacts at yield whose yield function would
+/// rise if they did not flow, and drops contacts whose dents would then shrink: first those that would shrink fastest,
+/// equal ones together, and for good, so that the order of the walls does not matter.
 void System::decide_flow(double xi, std::span<const double> y) {
   for (ClassState& c : particle_.classes()) c.flows = false;
   forget_rates();
@@ -314,6 +318,7 @@ void System::decide_flow(double xi, std::span<const double> y) {
   }
 }
 
+/// Decides which contacts touch and which flow from here on.
 /// @param fired  guards that have just fired
 void System::decide_mode(double xi, std::span<const double> y, std::vector<Event>& log,
                          std::span<const std::size_t> fired) {
@@ -388,7 +393,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
   }
 }
 
-/// How far the state is from a limit; not above zero at it.
+/// Distance of the state from a limit; zero or less where it is met.
 double System::limit_value(const Guard& guard, double margin) const noexcept {
   if (guard.kind == k_fold) return margin - k_least_margin;
   return k_most_coverage - particle_.coverage();
@@ -416,7 +421,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     ClassState& c = particle_.at(i);
     c.touches = guard.kind == k_made && !c.gives_way;
     if (!guard.is_silent) log.push_back({guard.name, guard.index});
-    // Walls that would have to pull, too.
+    // A wall that gives way moves with the surface that it has met; a force-controlled wall that would pull gives way.
     if (c.takes_force || c.gives_way) give_way(i, y);
   }
   solve(xi, y);
@@ -427,7 +432,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   return end;
 }
 
-// --- what others ask
+// --- observables
 
 /// Displacement of a wall over R0, at the state that was evaluated.
 double System::displacement(const ClassState& c, double xi) {
@@ -493,7 +498,7 @@ std::vector<Diagnostic> System::warnings() const {
 
 std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
   if (evaluate_rates(xi, y) < k_hard_margin) return Difficulty::near_applicability_limit;
-  // A wall that only carries a loose particle bears no more than the weak spring does.
+  // An idle wall, which only carries a loose particle along, bears no more than the weak spring does.
   constexpr double k_ways = 10.0;
   const double least = k_ways * Particle::k_weak_spring * depth_;
   for (std::size_t i = 0; i < classes_.size() && particle_.layout().directions() > 0; ++i) {

@@ -2,9 +2,9 @@
 ///
 /// Unknowns: the own coordinate of every class (elastic displacement, or force where that is prescribed), its dent, a
 /// free centre, the core, and the work of the walls. While a contact flows and the core can yield, the state depends on
-/// the way to it: explicit, rates from the derivatives of all equations; implicit, the equations themselves and the
-/// flow rule of the core. Otherwise the equations determine the state at any instant. Then nothing but the work is
-/// integrated, in any form: the unknowns rest, and complete() solves for them.
+/// its path: the explicit form has rates from the derivatives of all equations, the implicit form the equations
+/// themselves and the flow rule of the core. Otherwise the equations determine the state at any instant. Integrators
+/// then advance the work only, in any form: the other unknowns rest, and complete() solves for them.
 ///
 /// Own law of this project (docs/theory/cel.md).
 #pragma once
@@ -25,7 +25,7 @@ struct Settings {
   double poisson_ratio = 0.0;   ///< in [0, 0.5]
   double yield_stress = 0.0;    ///< Y [Pa], > 0
   bool centre_is_free = false;
-  Reach reach{};  ///< of the program: how large the unknowns become, which absolute tolerances are relative to
+  Reach reach{};  ///< largest displacement and force of the program, which give the scales of the unknowns
 };
 
 class System final : public HybridSystem {
@@ -92,17 +92,17 @@ class System final : public HybridSystem {
   std::vector<Unknown> unknowns_;
   contacts::Columns columns_;
   std::size_t work_place_ = 0;
-  double depth_ = 1.0;  ///< how far walls go, over R0
+  double depth_ = 1.0;  ///< largest displacement of the program, over R0
 
   bool has_begun_ = false;
-  double deepest_ = 0.0;  ///< overlap over R0, as far as observed
+  double deepest_ = 0.0;  ///< largest overlap in a row so far, over R0
   std::vector<Guard> guards_;
 
   // Rates at the state that was evaluated.
-  double rates_at_ = k_nan;  ///< step coordinate; nan: not known
+  double rates_at_ = k_nan;  ///< step coordinate; NaN: no rates are cached
   double margin_ = 1.0;
   std::vector<double> rates_;
-  std::vector<double> last_;           ///< state that was solved for
+  std::vector<double> last_;           ///< last state found by solve()
   double flow_begin_ = 0.0;            ///< step coordinate at which the contacts that flow were decided
   std::vector<double> trial_, state_;  ///< work space
 };

@@ -36,7 +36,7 @@ struct VisibleContact {
   double regime = 0.0;  ///< an index into the law's words
 };
 
-/// What a wall shows of its contact.
+/// Quantities of a wall, from what a row shows of its contact.
 [[nodiscard]] inline AtWall wall_of(const VisibleContact& shown, double apparent_radius) noexcept {
   return {.force = shown.force,
           .displacement = shown.displacement,
@@ -50,7 +50,7 @@ struct ContactColumn {
   std::string_view name;
   std::string_view unit;
   double VisibleContact::*value;
-  bool needs_area = false;  ///< only of models that know the contact area
+  bool needs_area = false;  ///< only models that know the contact area have this column
 };
 inline constexpr std::array k_contact_columns{
     ContactColumn{"displacement", "m", &VisibleContact::displacement},
@@ -76,8 +76,8 @@ inline void add_centre_columns(std::vector<Observable>& columns) {
   for (const char* axis : {"centre_x", "centre_y", "centre_z"}) columns.push_back({axis, "m", {}});
 }
 
-/// Writes them: the last of a row.
-/// @param displacement  of the centre, in space [m]
+/// Writes the columns of a free centre, which are the last three of a row.
+/// @param displacement  displacement of the centre, in space [m]
 inline void write_centre_columns(const Eigen::Vector3d& displacement, std::span<double> values) {
   std::ranges::copy(displacement, values.last(3).begin());
 }

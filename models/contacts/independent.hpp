@@ -1,8 +1,8 @@
-/// Contacts that each depend on their own wall alone, as a hybrid system: all that such laws share. A law says what one
-/// contact does. Displacements are over the particle's radius R0, forces over the law's unit.
+/// Contacts that each depend on their own wall alone, as a hybrid system: all that such laws share. A law describes one
+/// contact. Displacements are over the particle's radius R0, forces over the law's unit.
 ///
 /// A law has
-///   Branch, k_regimes           what a contact remembers of its branch (Branch{}: a fresh contact); words
+///   Branch, k_regimes           memory of a contact (Branch{}: a fresh contact); words of its regimes
 ///   unit_force(R0)              [N]
 ///   force(b, d), slope(b, d)    on a branch, also a little beyond its ends; dF/dd > 0 inside
 ///   displacement(b, F)          the inverse of force, for F > 0
@@ -10,19 +10,22 @@
 ///   regime(b, touches)          index of a word
 /// and may have
 ///   work(b, d)                  primitive of the force up to a constant; without it the work is integrated
-///   is_work_costly(b)           true if it costs tens of forces
+///   is_work_costly(b)           true if the work costs tens of evaluations of the force
 ///   stored(b, d)                energy that unloading gives back; has_stored_energy(): whether there is any
 ///   contact(b, d)               force and contact radius, where the law knows the contact area
 ///   next(b), pass(b)            boundary ahead on the primary loading branch; what changes there
-///   turn(b, d), reload(b)       begins to unload at d; is back there. Without them a contact goes back as it came
-///   refuses_unloading()         none, or what to do against the limit that a contact meets which begins to unload
-///   k_passed_at_end             which boundaries a step has passed that ends at them
+///   turn(b, d), reload(b)       changes where unloading begins at d, and back there; without them unloading retraces
+///                               loading
+///   refuses_unloading()         advice if the law ends when a contact begins to unload; none if it does not
+///   k_passed_at_end             which boundaries count as passed by a step that ends at them
 ///   made_event(b)               name of the event of touching, if it is not "contact-made"
 ///   surface(b, d)               points of the surface; pressures over unit_force/R0^2
-///   follows(walls)              true for contacts that follow the first one that does not, and do no work
-///   follower(b, touches, d)     what is seen of them beside that one
+///   follows(walls)              true for followers: contacts that do no work and follow the leader, the first contact
+///                               that is no follower
+///   follower(b, touches, d)     what a row shows of a follower, from branch and displacement of the leader
 ///   start(), note(d), warnings(walls)
-///                               forgets, notes a displacement in a row, tells; walls: how many have touched
+///                               resets the memory of a run, notes a displacement of a row, gives the run's warnings;
+///                               walls: how many have touched
 /// and, where an inverse in closed form is missing or loses digits,
 ///   coordinate_power(b), is_integrated(b), force_and_slope(b, d), displacement(b, F, near)
 ///                               see the coordinates in contacts/wall_contact.hpp
@@ -49,8 +52,8 @@ namespace monograin::contacts {
 
 struct Settings {
   double initial_radius = 1.0;  ///< R0 [m], > 0
-  /// Largest displacement [m] and force [N] the program asks of a wall: how large the unknowns become, which absolute
-  /// tolerances are relative to. 0: not said.
+  /// Largest displacement [m] and force [N] that the program prescribes a wall. They give the scales of the unknowns,
+  /// to which absolute tolerances are relative. 0: unknown.
   double largest_displacement = 0.0;
   double largest_force = 0.0;
   bool centre_is_free = false;  ///< the centre moves so that the forces balance
@@ -81,7 +84,7 @@ class IndependentContacts final : public HybridSystem {
     if (settings.centre_is_free) centre_.emplace(classes_, scales_.reach, unknowns_);
     trial_.resize(unknowns_.size());
   }
-  /// Makes the law, and the Settings, of a model's own settings.
+  /// Makes law and Settings from the settings of a model.
   template <class OfModel>
   requires std::constructible_from<Law, OfModel> IndependentContacts(const OfModel& settings,
                                                                      std::vector<ContactClass> classes)
@@ -125,7 +128,7 @@ class IndependentContacts final : public HybridSystem {
       const double stood = is_by_force ? contacts_[i].displacement_at(law_, y[slots_[i]]) : 0.0;
       const WallDrive drive(ramps[i], is_by_force ? force_unit_ : length_);
       at[i] = contacts_[i].take_up(law_, drive, stood, classes_[i].takes_force, carried(i, y));
-      // A step that cannot begin is shown where it would have, in its own coordinates.
+      // y takes the coordinates of this step even if the step cannot begin, so that the last row shows its start.
       if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate(law_, 0.0, at[i]);
     }
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -141,7 +144,7 @@ class IndependentContacts final : public HybridSystem {
   }
 
   void complete(double xi, std::span<double> y) override {
-    if (unknowns_.size() == 1) return;  // the work
+    if (unknowns_.size() == 1) return;  // the work is the only unknown
     if (centre_) centre_->move(law_, contacts_, xi, y);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (classes_[i].takes_force && !contacts_[i].is_integrated(law_))
@@ -149,7 +152,7 @@ class IndependentContacts final : public HybridSystem {
     }
   }
   void solve(double xi, std::span<double> y) override {
-    if (unknowns_.size() == 1) return;  // the work
+    if (unknowns_.size() == 1) return;  // the work is the only unknown
     if (centre_) centre_->move(law_, contacts_, xi, y);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate_near(law_, xi, y[slots_[i]]);
@@ -170,7 +173,7 @@ class IndependentContacts final : public HybridSystem {
   }
 
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override {
-    // The centre stands where the balance of forces puts it, so that a trial's own position does not enter the work.
+    // The balance of forces gives the position of the centre, so that a trial's own position does not enter the work.
     std::ranges::copy(y, trial_.begin());
     if (centre_) centre_->move(law_, contacts_, xi, trial_);
     for (std::size_t k = work_slot_ + 1; k < y.size(); ++k) res[k] = y[k] - trial_[k];
@@ -213,7 +216,7 @@ class IndependentContacts final : public HybridSystem {
         values[g] = centre_->guard_value(law_, contacts_, i, guards_[g].kind, targets_[g], xi, y, velocity);
         continue;
       }
-      // Ramps are as short as contacts are shallow.
+      // The ramp is the scale: it is as short as the contact is shallow.
       const WallDrive& ramp = drive(i);
       values[g] = (ramp.value(xi) - targets_[g]) / ramp.size();
     }
@@ -233,7 +236,7 @@ class IndependentContacts final : public HybridSystem {
         c.retreat(law_, displacement(i, xi, y), guards_[g].name, log, carried(i, y));
       else
         end = c.pass(law_, *c.next(law_), log);
-      // A dent may be shallower than the round-off of a ramp, and so may be what lies beyond a boundary.
+      // The next boundary may lie within the round-off of the ramp, as in a very shallow dent: it is passed at once.
       const bool is_pressed_on = guards_[g].kind == Centre::k_made || guards_[g].kind == Centre::k_boundary;
       if (!end && is_pressed_on && !follows_centre(i)) end = c.pass_reached(law_, xi, log);
       if (end) return end;
@@ -262,7 +265,8 @@ class IndependentContacts final : public HybridSystem {
     const VisibleContact shown = visible(i, xi, displacement(leading(i), xi, y), carried(i, y));
     return quantity_of(wall_of(shown, length_), quantity);
   }
-  /// A ramp of displacement begins where a force has taken the wall, without an integrator's error.
+  /// Present value of what a control prescribes, where a ramp begins. For an integrated displacement, gives the exact
+  /// one under the prescribed force, without the integrator's error.
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override {
     const auto i = static_cast<std::size_t>(contact_class);
     if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
@@ -287,7 +291,7 @@ class IndependentContacts final : public HybridSystem {
     return points;
   }
 
-  /// The whole program is below resolution, because every contact is as shallow when it is made.
+  /// Judges the whole program, not the present state: every contact is below resolution when it is made.
   [[nodiscard]] std::optional<Difficulty> difficulty(double /*xi*/, std::span<const double> /*y*/) override {
     constexpr double k_least_depth = 1e-12;
     return scales_.reach <= k_least_depth ? std::optional(Difficulty::below_resolution) : std::nullopt;
@@ -313,7 +317,7 @@ class IndependentContacts final : public HybridSystem {
 
   [[nodiscard]] const WallDrive& drive(std::size_t i) const noexcept { return contacts_[i].drive(); }
   [[nodiscard]] bool is_follower(std::size_t i) const noexcept { return k_has_followers && is_follower_[i]; }
-  /// The contact itself, or the leader that it follows.
+  /// Index of the contact itself; for a follower, of its leader.
   [[nodiscard]] std::size_t leading(std::size_t i) const noexcept { return is_follower(i) ? leader_ : i; }
   [[nodiscard]] double stress_unit() const noexcept { return force_unit_ / (length_ * length_); }
   /// @param work  over the force unit and R0
@@ -346,7 +350,7 @@ class IndependentContacts final : public HybridSystem {
     return total;
   }
 
-  /// Displacement of a contact: of its wall, and by how much a free centre has moved towards that.
+  /// Displacement of a contact: that of its wall, plus the displacement of a free centre towards this wall.
   [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const {
     const double d = contacts_[i].displacement(law_, xi, y[slots_[i]]);
     return centre_ ? centre_->displacement(law_, contacts_[i], i, d, y) : d;
@@ -360,10 +364,10 @@ class IndependentContacts final : public HybridSystem {
   [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const {
     return centre_ ? centre_->carried(i, y) : 0.0;
   }
-  /// True if touching is an event: a wall that touches the fresh particle is in contact from the start, without one.
+  /// True if touching is an event; it is none for a wall that touches the fresh particle from the start.
   [[nodiscard]] bool is_seen(std::size_t i) const noexcept { return has_begun_ || classes_[i].gap > 0.0; }
   /// Rate of the work of one wall.
-  /// @param now  of the contact's coordinate
+  /// @param now  slope of the contact's coordinate
   [[nodiscard]] double power(std::size_t i, double xi, std::span<const double> y, const typename Contact::Slope& now,
                              const FreeCentre::Vector& velocity) const {
     if (!centre_) return contacts_[i].power(law_, xi, now);
@@ -373,7 +377,7 @@ class IndependentContacts final : public HybridSystem {
     return centre_ ? centre_->velocity(law_, contacts_, xi, y) : FreeCentre::Vector::Zero();
   }
   /// Decides the mode around a free centre.
-  /// @param fired  guards that have just decided it for their contacts
+  /// @param fired  guards that have just fired, and so have decided about their contacts
   std::optional<DomainEnd> find_mode(double xi, std::span<const double> y, std::vector<Event>& log,
                                      std::span<const std::size_t> fired) {
     if (!centre_) return std::nullopt;
@@ -386,6 +390,7 @@ class IndependentContacts final : public HybridSystem {
 
   // --- columns
 
+  /// Numbers of a contact in a row, in SI.
   /// @param d        displacement of the contact, or of the leader that it follows
   /// @param carried  by how much a free centre has moved towards the wall
   [[nodiscard]] VisibleContact visible(std::size_t i, double xi, double d, double carried) {
@@ -398,7 +403,7 @@ class IndependentContacts final : public HybridSystem {
     shown.pressure *= stress_unit();
     return shown;
   }
-  /// In units of the law.
+  /// Numbers of a contact that is no follower in a row, in units of the law.
   [[nodiscard]] VisibleContact visible_contact(std::size_t i, double xi, double d) const {
     const Contact& c = contacts_[i];
     VisibleContact shown{.overlap = d, .regime = static_cast<double>(law_.regime(c.branch(), c.touches()))};
@@ -423,7 +428,7 @@ class IndependentContacts final : public HybridSystem {
     }
   }
 
-  /// The guards that may fire before the end of the step.
+  /// Lists the guards that may fire before the end of the step.
   void arm_guards(double xi) {
     guards_.clear();
     targets_.clear();
@@ -464,19 +469,19 @@ class IndependentContacts final : public HybridSystem {
   double force_unit_;  ///< [N]
   std::vector<ContactClass> classes_;
   std::vector<Contact> contacts_;
-  std::vector<std::size_t> slots_;     ///< in y, of the coordinate of each class that takes a force
-  std::vector<double> displacements_;  ///< of a row
-  std::vector<bool> is_follower_;      ///< a contact that follows the leader's displacement, and does not act back
+  std::vector<std::size_t> slots_;     ///< index in y of the coordinate of each class that takes a force
+  std::vector<double> displacements_;  ///< displacements of the contacts in a row
+  std::vector<bool> is_follower_;      ///< true: the contact follows the leader's displacement, and does not act back
   std::size_t leader_ = 0;
   Columns columns_;
   Scales scales_;
   std::vector<Unknown> unknowns_;
   std::size_t work_slot_ = 0;
-  std::optional<Centre> centre_;  ///< where it is free
+  std::optional<Centre> centre_;  ///< none: the centre is fixed
   std::vector<double> trial_;     ///< work space
   bool has_begun_ = false;
   std::vector<Guard> guards_;
-  std::vector<double> targets_;  ///< what the program prescribes where they are zero
+  std::vector<double> targets_;  ///< for each guard, the prescribed value (or displacement, overlap) at its zero
 };
 
 }  // namespace monograin::contacts

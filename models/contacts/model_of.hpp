@@ -1,4 +1,4 @@
-/// A model whose contacts each depend on their own wall alone, from its law.
+/// Makes a model from the law of contacts that each depend on their own wall alone.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ inline constexpr std::array k_events{
 
 /// Fills in what follows from the law: the equations, wall sets and events where none are named, and whether contacts
 /// have areas.
-/// @tparam law_of  the law of a scenario, as IndependentContacts asks for it
+/// @tparam law_of  function from a scenario to its law, as IndependentContacts needs it
 template <auto law_of>
 [[nodiscard]] Model model_of(Model model) {
   using Law = decltype(law_of(std::declval<const ModelInput&>()));

@@ -1,4 +1,4 @@
-/// How large the unknowns of contacts become, which absolute tolerances are relative to.
+/// Scales of the unknowns of contacts, to which absolute tolerances are relative.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ struct Scales {
   double reach = 1.0;  ///< largest displacement that is expected
   Magnitudes magnitudes{};
   double coordinate = 1.0;
-  double force_per_coordinate = 1.0;  ///< where a coordinate is in proportion to the force
+  double force_per_coordinate = 1.0;  ///< force over coordinate, for coordinates in proportion to the force
 };
 
 /// Displacement under a force along the present part of the primary branch, not beyond the end of the law.
@@ -29,13 +29,14 @@ template <class Law>
   try {
     return contact.displacement_under(law, force);
   } catch (const std::domain_error&) {
-    return end;  // the greatest force that the law has, but for round-off
+    return end;  // the force exceeds the greatest one of the law by round-off
   }
 }
 
-/// Takes how far a program goes, along the primary branch, or where that is not said the end of the law.
-/// @param displacement  largest one of the program, over R0; 0: not said
-/// @param force         likewise, over the law's unit
+/// Scales of contacts on the primary branch, which reaches as far as the program goes; to the end of the law if neither
+/// displacement nor force is known.
+/// @param displacement  largest displacement of the program, over R0; 0: not known
+/// @param force         largest force of the program, over the law's unit; 0: not known
 template <class Law>
 [[nodiscard]] Scales scales_of(Law& law, double displacement, double force) {
   constexpr double k_infinity = std::numeric_limits<double>::infinity();

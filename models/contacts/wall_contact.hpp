@@ -1,5 +1,5 @@
-/// One contact class by a law: what it remembers, where it is at an instant, and its transitions. The functions of a
-/// law are listed in contacts/independent.hpp; displacements are over R0, forces over the law's unit.
+/// One contact class under a law: its memory, its state at an instant, and its transitions. The functions of a law are
+/// listed in contacts/independent.hpp; displacements are over R0, forces over the law's unit.
 #pragma once
 
 #include <algorithm>
@@ -18,9 +18,9 @@ namespace monograin::contacts {
 /// End of a part of the primary loading branch.
 struct Boundary {
   double position = 0.0;              ///< displacement over R0; still belongs to the part before
-  std::string_view event{};           ///< empty: nothing is seen of it
+  std::string_view event{};           ///< empty: no event
   std::optional<LimitPoint> limit{};  ///< the law ends here
-  bool is_of_followers = false;       ///< the event is one of the contacts that follow this one
+  bool is_of_followers = false;       ///< the event belongs to the contacts that follow this one
 };
 
 /// Force and contact radius of a contact that bears.
@@ -29,7 +29,7 @@ struct BearingContact {
   double contact_radius = 0.0;  ///< over R0
 };
 
-/// Which boundaries a step has passed that ends at them. The next step passes the others, if it goes on.
+/// Which boundaries count as passed by a step that ends exactly at them. The next step passes others if it goes on.
 enum class PassedAtEnd { none, opening, all };
 
 template <class Law>
@@ -39,7 +39,7 @@ class WallContact {
 
   WallContact() = default;
   /// An open wall at a displacement.
-  /// @param force_per_coordinate  where the coordinate is in proportion to the force
+  /// @param force_per_coordinate  force over coordinate, where the two are in proportion
   /// @param followers             classes of the contacts that follow this one
   WallContact(int index, double at, double force_per_coordinate = 1.0, std::vector<int> followers = {})
       : index_(index),
@@ -57,7 +57,8 @@ class WallContact {
 
   // --- at an instant
 
-  /// @param near  a displacement to begin with, where the law looks for it; 0: none is known
+  /// Displacement under a prescribed force. An open wall stays; without load a contact is where it opens.
+  /// @param near  displacement with which a law that iterates begins; 0: none is known
   [[nodiscard]] double displacement_under(const Law& law, double force, double near = 0.0) const {
     if (!touches_) return resting_;
     if (!(force > 0.0)) return law.opening(branch_);
@@ -65,17 +66,17 @@ class WallContact {
     return law.displacement(branch_, force);
   }
 
-  // The coordinate u of a wall whose force is prescribed at some time is the displacement while that is prescribed, and
-  // otherwise in proportion to the force: linear in the step coordinate, it is exact in every form of the equations,
-  // and nothing is singular at first touch or where a contact opens with an infinite compliance. A law whose inverse is
-  // dear may name a power n instead, with which its force begins: then u is d^n, and integrated.
+  // Coordinate u of a wall whose force is prescribed at some time: the displacement while the displacement is
+  // prescribed, otherwise in proportion to the force. u is linear in the step coordinate, hence exact in every form of
+  // the equations, and not singular at first touch or where a contact opens with an infinite compliance. A law whose
+  // inverse is costly may name the power n with which its force begins; then u = d^n, and is integrated.
 
   /// n of the coordinate d^n; 0: the coordinate is in proportion to what is prescribed.
   [[nodiscard]] double coordinate_power(const Law& law) const {
     if constexpr (k_has_powers) return touches_ && is_force_controlled() ? law.coordinate_power(branch_) : 0.0;
     return 0.0;
   }
-  /// True if the coordinate is integrated, and not found at every instant.
+  /// True if integrators advance the coordinate; false if it follows from the prescribed value at every instant.
   [[nodiscard]] bool is_integrated(const Law& law) const {
     const bool has_power = coordinate_power(law) > 0.0;
     if constexpr (requires { law.is_integrated(branch_); }) return has_power && law.is_integrated(branch_);
@@ -90,19 +91,21 @@ class WallContact {
     if (!is_force_controlled()) return drive_.value(xi);
     return coordinate_power(law) > 0.0 ? displacement_at(law, u) : displacement_under(law, drive_.value(xi));
   }
-  /// @param near  a displacement to begin with
+  /// Coordinate at an instant of the step.
+  /// @param near  displacement with which a law that iterates begins
   [[nodiscard]] double coordinate(const Law& law, double xi, double near) const {
     const double n = coordinate_power(law);
     if (n > 0.0) return std::pow(displacement_under(law, drive_.value(xi), near), n);
     return drive_.value(xi) / prescribed_per_coordinate();
   }
-  /// Coordinate found from one that is near to it.
+  /// Coordinate at an instant of the step.
+  /// @param u  a coordinate nearby, with which a law that iterates begins
   [[nodiscard]] double coordinate_near(const Law& law, double xi, double u) const {
     return coordinate(law, xi, coordinate_power(law) > 0.0 ? displacement_at(law, u) : 0.0);
   }
 
-  /// Prescribed quantity at a coordinate, and its derivatives with the coordinate and the displacement; only the first
-  /// of these where the coordinate is in proportion to it.
+  /// Prescribed quantity at a coordinate, and its derivatives by the coordinate and the displacement. Where coordinate
+  /// and quantity are in proportion, only by_coordinate is set.
   struct Slope {
     double prescribed = 0.0;
     double by_coordinate = 0.0;
@@ -118,7 +121,7 @@ class WallContact {
   [[nodiscard]] double rate(const Slope& now) const noexcept {
     return now.by_coordinate > 0.0 ? drive_.rate() / now.by_coordinate : 0.0;
   }
-  /// Residual of the coordinate, in units of that, as integrators weigh it.
+  /// Residual of the coordinate, in units of the coordinate, as integrators weigh it.
   [[nodiscard]] double residual(const Law& law, double xi, double u, const Slope& now) const {
     return is_integrated(law) ? (now.prescribed - drive_.value(xi)) / now.by_coordinate
                               : u - coordinate_near(law, xi, u);
@@ -133,21 +136,21 @@ class WallContact {
     return slope > 0.0 ? drive_.rate() * prescribed / slope : 0.0;
   }
 
-  /// True if the contact bears a force that differs from none. A prescribed displacement is known but for
-  /// round-off: a wall that stands where it meets the particle, or parts from it, is not pressed by that.
+  /// True if the contact bears a force that is not round-off. A prescribed displacement has round-off, which must not
+  /// press a wall that stands exactly where it meets the particle or parts from it.
   [[nodiscard]] bool bears(const Law& law, double d) const {
     constexpr double k_round_off = 4.0 * std::numeric_limits<double>::epsilon();
     if (!touches_) return false;
     const double least = is_force_controlled() ? 0.0 : k_round_off * std::max(drive_.size(), largest_);
     return d - law.opening(branch_) > least;
   }
-  /// The boundary ahead of a contact that is pressed on: below its largest displacement, that.
+  /// The boundary ahead of a contact that is pressed further; off the primary branch, its largest displacement.
   [[nodiscard]] std::optional<Boundary> next(const Law& law) const {
     if (!is_on_primary_branch_) return Boundary{largest_, "reload"};
     if constexpr (requires { law.next(branch_); }) return law.next(branch_);
     return std::nullopt;
   }
-  /// Displacement or force that the program prescribes the contact at a boundary.
+  /// Value of the prescribed quantity, displacement or force, at a boundary.
   [[nodiscard]] double prescribed_at(const Law& law, const Boundary& boundary) const {
     if (!is_force_controlled()) return boundary.position;
     return is_on_primary_branch_ ? law.force(branch_, boundary.position) : largest_force_;
@@ -157,8 +160,7 @@ class WallContact {
   [[nodiscard]] bool passes(double prescribed) const noexcept {
     return k_passed_at_end == PassedAtEnd::all ? drive_.end() >= prescribed : drive_.goes_beyond(prescribed);
   }
-  /// True if the wall meets, or leaves, the particle before the step ends. A force that ends at nothing leaves the wall
-  /// at the surface.
+  /// True if the wall meets, or leaves, the particle within the step. A force that ends at zero leaves no gap.
   [[nodiscard]] bool passes_opening(const Law& law) const {
     if (is_force_controlled()) return drive_.end() < 0.0;
     const double distance = drive_.direction() * (drive_.end() - law.opening(branch_));
@@ -167,10 +169,10 @@ class WallContact {
 
   // --- transitions
 
-  /// Takes up the ramp of a step. What differs by the round-off of units, of forces and of laws is the same: a wall
-  /// that rests goes on from where it is, one that stands at its dent is not pressed in again, and a ramp between two
-  /// equal values goes nowhere.
-  /// @param d            displacement of the contact where the wall has been left, if the ramp is one of force
+  /// Takes up the ramp of a step. Values that differ by the round-off of units, of forces and of laws count as equal: a
+  /// wall at rest goes on from where it is, a wall at its dent is not pressed in again, and a ramp between two equal
+  /// values lets the wall rest.
+  /// @param d            displacement of the contact at the end of the last step; used if the ramp is one of force
   /// @param takes_force  false: no force has ever moved the wall
   /// @param carried      by how much a free centre has moved towards the wall
   /// @return displacement of the contact
@@ -185,8 +187,8 @@ class WallContact {
     if (!is_by_force) d = drive.start() + carried;
     double size = drive.size();
     if (touches_ && takes_force && d > law.opening(branch_)) {
-      // A force under which a wall stands has the round-off of its displacement, and a displacement to which a force
-      // has led that of the force.
+      // A force that holds a wall has the round-off of the wall's displacement; a displacement reached under a force
+      // has the round-off of the force.
       const double slope = law.slope(branch_, d);
       if (is_by_force)
         size += slope * std::abs(d);
@@ -194,14 +196,14 @@ class WallContact {
         size += law.force(branch_, d) / slope + std::abs(d);
     }
     if (std::abs(drive.rate()) <= k_round_off * size) drive.rest();
-    // An integrated displacement has an error, with which the force that it had would not bring the wall back to it.
+    // An integrated displacement has an error: the step begins at the exact displacement under its first force.
     const bool is_integrated_on = is_by_force && is_integrated(law);
     drive_ = drive;
     return is_integrated_on ? displacement_under(law, drive_.start(), d) : d;
   }
 
   /// Decides the branch at the start of a step, where the wall is at d.
-  /// @param is_seen  a contact that is made then is an event
+  /// @param is_seen  true: a contact that is made then is an event
   /// @param carried  by how much a free centre has moved towards the wall
   std::optional<DomainEnd> begin_step(Law& law, double d, bool is_seen, std::vector<Event>& log, double carried = 0.0) {
     const bool goes_in = drive_.direction() > 0;
@@ -224,6 +226,7 @@ class WallContact {
     lose(law, log, carried);
   }
   /// Begins to unload at d.
+  /// @throws DomainError for a law without unloading
   void turn(Law& law, double d, std::string_view event, std::vector<Event>& log) {
     if constexpr (requires { law.refuses_unloading(); }) {
       if (const auto remark = law.refuses_unloading())
@@ -244,7 +247,8 @@ class WallContact {
     resting_ = law.opening(branch_) - carried;
     log.push_back({"contact-lost", index_});
   }
-  /// Goes beyond a boundary.
+  /// Takes the contact beyond a boundary.
+  /// @return the reason to stop, if the law ends there
   std::optional<DomainEnd> pass(Law& law, const Boundary& boundary, std::vector<Event>& log) {
     const Event event{boundary.event, index_};
     if (!event.name.empty() && !boundary.is_of_followers) log.push_back(event);
@@ -264,7 +268,9 @@ class WallContact {
     }
     return std::nullopt;
   }
-  /// Goes beyond all boundaries that a rising wall has reached. At the end of the law it may stand, but not go on.
+  /// Takes the contact beyond all boundaries that a rising ramp has reached. A wall may stand at the end of the law,
+  /// but not go on.
+  /// @return the reason to stop, if the wall would go on beyond the end of the law
   std::optional<DomainEnd> pass_reached(Law& law, double xi, std::vector<Event>& log) {
     while (const auto ahead = next(law)) {
       const double at = prescribed_at(law, *ahead);
@@ -279,7 +285,7 @@ class WallContact {
     return "contact-made";
   }
 
-  /// A contact as far along its primary branch as a displacement or a force takes it, and not beyond the law's end.
+  /// Contact on the part of its primary branch to which a displacement or a force takes it, within the end of the law.
   [[nodiscard]] static WallContact pressed_to(Law& law, double displacement, double force) {
     WallContact c(0, 0.0);
     c.touches_ = true;
@@ -305,7 +311,7 @@ class WallContact {
     if constexpr (requires { law.slope_under(branch_, force); }) return law.slope_under(branch_, force);
     return law.slope(branch_, law.displacement(branch_, force));
   }
-  /// Odd in u, so that a trial step below zero stays smooth.
+  /// Slope for the coordinate u = d^n. Odd in u, so that a trial step below zero stays smooth.
   [[nodiscard]] Slope slope_of_power(const Law& law, double n, double u) const {
     constexpr double k_nearest = 1e-100;  // the force is linear in u up to this displacement
     const double d = std::pow(std::abs(u), 1.0 / n);
@@ -325,9 +331,9 @@ class WallContact {
   Branch branch_{};
   bool touches_ = false;
   bool has_touched_ = false;
-  bool is_on_primary_branch_ = true;  ///< at its largest displacement
+  bool is_on_primary_branch_ = true;  ///< the contact is at its largest displacement
   double largest_ = 0.0;              ///< off the primary branch: displacement at which it was left
-  double largest_force_ = 0.0;        ///< and the force there
+  double largest_force_ = 0.0;        ///< off the primary branch: force where it was left
   double resting_ = 0.0;              ///< displacement of the wall at which it was left open, without load
 };
 

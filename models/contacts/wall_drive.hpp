@@ -9,11 +9,11 @@
 namespace monograin::contacts {
 
 /// Linear ramp of a wall's displacement over R0, or of its force over the law's unit, during one step. All its values
-/// are exact: no error of an integrator is in them.
+/// are exact: no integrator computes them.
 class WallDrive {
  public:
   WallDrive() = default;
-  /// @param unit  of displacements or of forces, as the ramp controls
+  /// @param unit  unit of what the ramp controls, a displacement [m] or a force [N]
   WallDrive(const Ramp& ramp, double unit) : ramp_{ramp.start / unit, ramp.end / unit, ramp.control} {
     find_direction();
   }
@@ -23,26 +23,26 @@ class WallDrive {
   [[nodiscard]] double end() const noexcept { return ramp_.end; }
   /// Prescribed value at a step coordinate; exact at both ends, and to the last digit next to zero.
   [[nodiscard]] double value(double xi) const noexcept { return std::lerp(ramp_.start, ramp_.end, xi); }
-  /// Its rate with the step coordinate.
+  /// Rate of the prescribed value with the step coordinate.
   [[nodiscard]] double rate() const noexcept { return ramp_.end - ramp_.start; }
   /// 1 loading, -1 unloading, 0 holding.
   [[nodiscard]] int direction() const noexcept { return direction_; }
   /// Largest magnitude on the ramp.
   [[nodiscard]] double size() const noexcept { return std::max(std::abs(ramp_.start), std::abs(ramp_.end)); }
 
-  /// Begins elsewhere, within round-off.
+  /// Moves the start of the ramp, by no more than round-off.
   void start_at(double value) noexcept {
     ramp_.start = value;
     find_direction();
   }
-  /// Goes nowhere: the ramp is one of round-off. A displacement stays where it is, so that no force comes of it; a
-  /// force is the prescribed one.
+  /// Lets the wall rest, because the ramp is round-off. A displacement stays at its start, so that no force results
+  /// from round-off; a force keeps its prescribed values.
   void rest() noexcept {
     direction_ = 0;
     if (!is_force_controlled()) ramp_.end = ramp_.start;
   }
 
-  /// True if a rising ramp has reached a value at a step coordinate, but for round-off.
+  /// True if a rising ramp has reached a value at a step coordinate, to within round-off.
   [[nodiscard]] bool has_reached(double target, double xi) const noexcept {
     return value(xi) >= target - k_same_value * std::abs(target);
   }
@@ -52,7 +52,7 @@ class WallDrive {
   }
 
  private:
-  /// Values this near to each other, relative to themselves, are the same.
+  /// Relative difference up to which two values count as equal.
   static constexpr double k_same_value = 1e-12;
 
   void find_direction() noexcept { direction_ = rate() > 0.0 ? 1 : rate() < 0.0 ? -1 : 0; }

@@ -10,16 +10,17 @@ namespace {
 
 using std::numbers::pi;
 
-// The slope of an edge's equilibrium goes with the root of the distance from pull-off, and displacements are rounded.
+// Least slope of an edge's equilibrium, over A/b: the slope goes with the root of the distance from pull-off, and
+// displacements are rounded.
 constexpr double k_root_of_rounding = 5e-9;
 constexpr int k_most_corrections = 100;  // a double root at pull-off only halves the error each time
 
-/// An edge at the radius a = b sin(theta) of the ellipse, or a of the parabola.
+/// Edge at the radius a on a profile; on the ellipse a = b sin(theta).
 struct ProfileEdge {
   double radius = 0.0;
-  double share = 0.0;   ///< of the half width: sin(theta)
-  double cosine = 0.0;  ///< of theta; 1 on the parabola
-  double rise = 0.0;    ///< of the profile, over half the indenter's height: 1 - cos(theta), or (a/b)^2/2
+  double share = 0.0;   ///< radius over the half width: sin(theta)
+  double cosine = 0.0;  ///< cosine of theta; 1 on the parabola
+  double rise = 0.0;    ///< profile's height over half the indenter's: 1 - cos(theta), or (a/b)^2/2
 };
 
 ProfileEdge edge_at(const Indenter& indenter, double a) noexcept {
@@ -36,7 +37,7 @@ ProfileEdge edge_at_rise(const Indenter& indenter, double rise) noexcept {
   return {indenter.half_width * share, share, by_parabola ? 1.0 : 1.0 - rise, rise};
 }
 
-/// theta on the ellipse
+/// Angle theta of an edge on the ellipse.
 double angle_of(const ProfileEdge& edge) noexcept { return std::atan2(edge.share, edge.cosine); }
 
 double height_at(const Indenter& indenter, const ProfileEdge& edge) noexcept {
@@ -65,16 +66,17 @@ double slope(const Indenter& indenter, double stretch, double xi, const ProfileE
   return by_height - xi * stretch / (2.0 * edge.radius) * edge.cosine;
 }
 
-/// The same of displacements, no less than what rounding leaves of it at pull-off, where it is zero.
+/// Slope of an edge's equilibrium under displacement control (xi = 1). It is zero at pull-off, and no less here than
+/// its round-off.
 double slope_off_pull_off(const Indenter& indenter, double stretch, const ProfileEdge& edge) noexcept {
   const double least = k_root_of_rounding * indenter.height / indenter.half_width;
   return std::max(least, slope(indenter, stretch, 1.0, edge));
 }
 
-/// Newton's method from above on a convex increasing function of the rise, so that it comes down to the root without
-/// passing it.
-/// @param xi      1: of displacements, 3: of forces, over 2 E a
-/// @param excess  edge, stretch -> what is to be zero
+/// Newton's method for the edge at which an excess is zero. The excess is a convex increasing function of the rise, so
+/// the iteration from above comes down to the root without passing it.
+/// @param xi      1: the excess is one of displacement; 3: one of force, over 2 E a
+/// @param excess  (edge, stretch) -> excess
 template <class Excess>
 ProfileEdge descend(const Indenter& indenter, double composite_modulus, double surface_energy, double from,
                     double down_to, double xi, Excess&& excess) noexcept {
@@ -87,14 +89,14 @@ ProfileEdge descend(const Indenter& indenter, double composite_modulus, double s
     const double by_rise = 0.5 * indenter.height - 0.5 * xi * stretch * edge.cosine / (edge.share * edge.share);
     if (!(by_rise > 0.0)) break;
     const double next = std::clamp(edge.rise - excess(edge, stretch) / by_rise, least, most);
-    // Near pull-off, a double root, round-off over a tiny slope would throw it back up.
+    // Near pull-off, where the root is double, round-off over a tiny slope would move the edge up again.
     if (!(edge.rise - next > 1e-15 * edge.rise)) break;
     edge = edge_at_rise(indenter, next);
   }
   return edge;
 }
 
-/// How the relaxed profile at a fixed place changes with the indenter; on the ellipse times the cosine there.
+/// Change of the relaxed profile's height at a fixed radius with the indenter; on the ellipse times the cosine there.
 double height_change(const Indenter& indenter, const Frame::Change& change, const ProfileEdge& edge) noexcept {
   const double height = height_at(indenter, edge);
   if (indenter.is_parabola()) return height * (change.height - 2.0 * change.half_width);
@@ -104,7 +106,7 @@ double height_change(const Indenter& indenter, const Frame::Change& change, cons
 /// Integrals of the profile up to an edge.
 struct Below {
   double area = 0.0;      ///< int_0^a g dx
-  double by_width = 0.0;  ///< what it loses with the relative half width, the edge where it is
+  double by_width = 0.0;  ///< -d(area)/d(ln b) with the edge at a fixed radius
 };
 
 Below below(const Indenter& indenter, const ProfileEdge& edge) noexcept {
@@ -119,7 +121,8 @@ Below below(const Indenter& indenter, const ProfileEdge& edge) noexcept {
   return {unit * (0.5 * segment - 2.0 * phi(0.5 * theta)), 0.5 * unit * segment};
 }
 
-/// @param lift  displacement of all springs below the edge beyond that of the profile there
+/// Contact whose springs stand up to a given edge, with derivatives at a fixed edge.
+/// @param lift  delta_1D - g(a), displacement of the springs at the edge
 Contact contact_below(const Frame& frame, double composite_modulus, const ProfileEdge& edge, double lift) noexcept {
   const double a = edge.radius;
   const Below springs = below(frame.indenter, edge);
@@ -128,7 +131,7 @@ Contact contact_below(const Frame& frame, double composite_modulus, const Profil
            (change.displacement * a - change.height * springs.area + change.half_width * springs.by_width);
   };
   return {.contact_radius = a,
-          // What the springs bear without adhesion goes with the same integral.
+          // The force without adhesion is 2 E* times the same integral.
           .force = 2.0 * composite_modulus * (springs.by_width + a * lift),
           .by_overlap = 2.0 * composite_modulus * a * frame.by_overlap,
           .by_radius = changed(frame.by_radius),
@@ -160,7 +163,7 @@ double profile_height(const Indenter& indenter, double a) noexcept { return heig
 double profile_rounding(const Indenter& indenter, double a) noexcept {
   constexpr double round_off = 4.0 * std::numeric_limits<double>::epsilon();
   const ProfileEdge edge = edge_at(indenter, a);
-  // At its very end the slope is without bound, and the height has the root of the rounding.
+  // At the very end of the ellipse the slope is unbounded: there the height is uncertain by the root of the round-off.
   return 0.5 * indenter.height * edge.share * edge.share * round_off / std::max(edge.cosine, std::sqrt(round_off));
 }
 
@@ -266,8 +269,8 @@ Contact peeling_contact(const Frame& frame, double composite_modulus, double sur
     edge = peeling_edge(indenter, composite_modulus, surface_energy, critical_radius, frame.displacement);
   }
   const double stretch = critical_stretch(composite_modulus, surface_energy, edge.radius);
-  // An ellipse has no wider edge than that at its end: a trial may lead beyond the equilibrium there, and an edge that
-  // sticks leads back.
+  // The edge of an ellipse is widest at its end. Beyond the equilibrium there, where trials may lead, the contact has
+  // an edge that sticks, so that the trial leads back.
   const bool is_widest = !indenter.is_parabola() && edge.share >= 1.0;
   if (is_widest && frame.displacement > height_at(indenter, edge) - stretch) {
     return sticking_contact(frame, composite_modulus, edge.radius);
@@ -289,8 +292,8 @@ double peeling_softening(const Frame& frame, double composite_modulus, double su
   const ProfileEdge edge = edge_at(indenter, a);
   const double stretch = critical_stretch(composite_modulus, surface_energy, a);
   const double slope = slope_off_pull_off(indenter, stretch, edge);
-  // Of the stiffness 2 E (a - Dl cos/slope), by delta_1D: the radius goes with cos/slope, and the cosine, on the
-  // ellipse, with a rate that is finite at its end.
+  // Differentiates the stiffness 2 E (a - Dl cos/slope) by delta_1D. The radius changes by cos/slope; the cosine of the
+  // ellipse changes by a rate that is finite at the end of the ellipse.
   const double by_radius = edge.cosine / slope;
   const double of_cosine = indenter.is_parabola() ? 0.0 : -edge.share / (indenter.half_width * slope);
   const double of_stretch = 0.5 * stretch / a * by_radius;
@@ -311,7 +314,7 @@ double adhesive_energy(const Frame& frame, double composite_modulus, double surf
   const ProfileEdge edge = edge_at(indenter, a);
   const double w = frame.displacement - height_at(indenter, edge);
   const double curvature = indenter.tip_curvature();
-  // The springs as they would be without adhesion, and what the further displacement w of all of them adds.
+  // Energy of the springs without adhesion, plus what the further displacement w of all of them adds.
   const double free_energy =
       indenter.is_parabola()
           ? 8.0 / 15.0 * composite_modulus * curvature * curvature * a * a * a * a * a

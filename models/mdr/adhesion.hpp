@@ -19,51 +19,51 @@ struct Indenter {
   double half_width = 0.0;  ///< b
 
   [[nodiscard]] bool is_parabola() const noexcept { return profile == ElasticProfile::parabola; }
-  /// Of the parabola A x^2/(4 b^2), which is also the tip of the ellipse: its height over x^2.
+  /// Height over x^2 of the parabola A x^2/(4 b^2), which is also the tip of the ellipse.
   [[nodiscard]] double tip_curvature() const noexcept { return 0.25 * height / (half_width * half_width); }
 };
 
-/// Of an elastic contact: A = 4R, b = R.
+/// Indenter of an elastic contact: A = 4R, b = R.
 [[nodiscard]] Indenter elastic_indenter(ElasticProfile profile, double radius) noexcept;
-/// Of a yielded contact below its largest overlap: the ellipse of its unloading shape.
+/// Indenter of a yielded contact below its largest overlap: the ellipse of its unloading shape.
 [[nodiscard]] Indenter unloading_indenter(const UnloadingShape& shape) noexcept;
 
-/// g(a), for a in [0, b]. eqs. 23, 28.
+/// Height g(a) of the relaxed profile, for a in [0, b] (eqs. 23, 28).
 [[nodiscard]] double profile_height(const Indenter& indenter, double a) noexcept;
-/// By how much g(a) is uncertain by the rounding of a and b: the ellipse is steep near its end.
+/// Round-off of g(a) due to that of a and b; large near the end of the ellipse, which is steep.
 [[nodiscard]] double profile_rounding(const Indenter& indenter, double a) noexcept;
 /// Contact radius without adhesion under delta_1D, where g(a) = delta_1D; 0 for delta_1D <= 0, b from A/2 on.
 [[nodiscard]] double free_contact_radius(const Indenter& indenter, double displacement_1d) noexcept;
-/// Force without adhesion at that radius: 2 E* int_0^a (g(a) - g(x)) dx.
+/// Force without adhesion at the contact radius a: 2 E* int_0^a (g(a) - g(x)) dx.
 [[nodiscard]] double free_force(const Indenter& indenter, double composite_modulus, double a) noexcept;
 
 /// Stretch at which the springs at the edge tear, Dl(a) = sqrt(2 pi a dg/E*) (eq. 11).
 [[nodiscard]] double critical_stretch(double composite_modulus, double surface_energy, double a) noexcept;
 
-/// Contact radius at pull-off, which depends on what is prescribed while the contact is torn off: where g' = xi Dl'
-/// with xi = 1 under displacement, 3 under force control (eq. 15).
+/// Contact radius at pull-off, where g' = xi Dl', with xi = 1 under displacement and 3 under force control (eq. 15).
 [[nodiscard]] double critical_radius(const Indenter& indenter, double composite_modulus, double surface_energy,
                                      Control control);
 
-/// An edge in equilibrium at the radius a: delta_1D and force there.
+/// State of an edge in equilibrium at the radius a.
 struct PeelState {
   double contact_radius = 0.0;
   double displacement_1d = 0.0;  ///< g(a) - Dl(a)
   double force = 0.0;            ///< free_force(a) - 2 E* a Dl(a)
 };
+/// Equilibrium of an edge at the radius a, stable or not.
 [[nodiscard]] PeelState peel_state(const Indenter& indenter, double composite_modulus, double surface_energy,
                                    double a) noexcept;
 
-/// Outer edge in equilibrium under delta_1D; the critical one of displacement control where delta_1D lies below it.
-/// @param critical_radius  of displacement control
+/// Stable (outer) equilibrium of an edge under delta_1D; the critical state if delta_1D lies below that of pull-off.
+/// @param critical_radius  critical_radius() of displacement control
 [[nodiscard]] PeelState peel_at_displacement(const Indenter& indenter, double composite_modulus, double surface_energy,
                                              double critical_radius, double displacement_1d);
-/// Outer edge in equilibrium under a force; the critical one of force control where the force lies below it.
-/// @param critical_radius  of force control
+/// Stable (outer) equilibrium of an edge under a force; the critical state if the force lies below that of pull-off.
+/// @param critical_radius  critical_radius() of force control
 [[nodiscard]] PeelState peel_at_force(const Indenter& indenter, double composite_modulus, double surface_energy,
                                       double critical_radius, double force);
 
-/// How the one-dimensional space hangs on the contact: delta_1D and the indenter, with their partial derivatives.
+/// One-dimensional space of a contact: delta_1D and the indenter, with their partial derivatives.
 struct Frame {
   struct Change {
     double displacement = 0.0;  ///< d(delta_1D)
@@ -76,22 +76,25 @@ struct Frame {
   Change by_radius;           ///< at fixed overlap and largest overlap
   Change by_overlap_max;      ///< at fixed overlap and radius
 };
+/// One-dimensional space of an elastic contact.
 [[nodiscard]] Frame elastic_frame(ElasticProfile profile, double radius, double overlap) noexcept;
+/// One-dimensional space of a yielded contact below its largest overlap.
 [[nodiscard]] Frame unloading_frame(const UnloadingShape& shape, double overlap) noexcept;
-/// The overlap that belongs to a delta_1D on the unloading branch.
+/// Overlap on the unloading branch at a delta_1D.
 [[nodiscard]] double overlap_at(const UnloadingShape& shape, double displacement_1d) noexcept;
 
 /// Contact whose edge sticks at the radius a (eqs. 45, 46).
 [[nodiscard]] Contact sticking_contact(const Frame& frame, double composite_modulus, double a) noexcept;
-/// Contact whose edge peels (eqs. 46-48).
+/// Contact whose edge peels (eqs. 46-48); below the critical delta_1D, with its edge at the critical radius.
+/// @param critical_radius  critical_radius() of displacement control
 [[nodiscard]] Contact peeling_contact(const Frame& frame, double composite_modulus, double surface_energy,
                                       double critical_radius);
-/// How much the stiffness of a contact whose edge peels at the radius a falls as it goes back, d2F/d(delta)2; kept
-/// finite at pull-off, as the stiffness is.
+/// d2F/d(delta)2 of a contact whose edge peels at the radius a: how fast its stiffness falls as the contact opens. Kept
+/// finite at pull-off, like the stiffness.
 [[nodiscard]] double peeling_softening(const Frame& frame, double composite_modulus, double surface_energy,
                                        double a) noexcept;
-/// How the springs at the edge are pressed, d(delta_1D - g(a)) at fixed a, by the overlap and by the change of indenter
-/// that comes with R; both times the cosine of the edge on the ellipse, whose slope is unbounded at its end.
+/// Derivatives of the displacement of the springs at the edge, delta_1D - g(a) at fixed a, by the overlap and by R,
+/// with which the indenter changes. Both are times the edge's cosine on the ellipse, whose slope is unbounded.
 struct EdgePress {
   double by_overlap = 0.0;
   double by_radius = 0.0;

@@ -6,11 +6,11 @@
 namespace monograin::mdr {
 namespace {
 
-// The radius and the area of a stiffer particle differ from those of this one by less than 1e-6, while its overlap at
-// first yield drowns in rounding.
+// Largest E/Y of a run. Apparent radius and contact area of a stiffer particle differ by less than 1e-6, while its
+// overlap at first yield is lost in round-off.
 constexpr double k_stiffest_run = 1e6;
 
-// Options that are not named here have their defaults.
+// Options that this scenario does not name have their defaults.
 constexpr std::string_view k_flattening = R"(
 model = "mdr"
 [particle]

@@ -10,7 +10,7 @@ namespace monograin::mdr {
 
 extern const AdhesionMap k_adhesion_map;
 
-/// Indenter that is left on unloading a flattened contact; that of the elastic contact where it has not yielded.
+/// Indenter that a flattened contact leaves when it unloads; for a contact that has not yielded, the elastic one.
 [[nodiscard]] Indenter flattened_indenter(const FlattenedContact& contact);
 
 /// r_peak/R0 of a flattened contact by the fit F.1.

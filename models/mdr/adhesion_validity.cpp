@@ -37,7 +37,7 @@ double peak_depth_over_initial_radius(double displacement_over_radius, double yi
                                       double modulus_over_yield) noexcept {
   const double x = displacement_over_radius - yield_overlap_ratio - k_ring_onset;
   if (x <= 0.0 || x >= 2.0 * k_depth_middle) return 0.0;
-  // The parabola through both ends, which the printed difference is.
+  // The printed difference, written as the parabola through both its zeros.
   const double parabola = k_depth_factor * x * (2.0 * k_depth_middle - x) / (k_depth_middle * k_depth_middle);
   return parabola * std::pow(modulus_over_yield, -k_depth_exponent);
 }
@@ -59,7 +59,7 @@ SurfaceEnergyWindow adhesion_window(const Indenter& indenter, double composite_m
   const double b = indenter.half_width;
   const double xi = control == Control::force ? 3.0 : 1.0;
   const double slope = 0.5 * indenter.height / b;
-  // k = c dg of the critical radius; without its quadratic term for the parabola.
+  // The critical radius depends on k = c dg; for the parabola its equation has no quadratic term.
   const double c = 0.5 * xi * xi * pi / (composite_modulus * slope * slope);
 
   const double rest = indenter.is_parabola() ? b * b : (b - peak_radius) * (b + peak_radius);

@@ -1,4 +1,4 @@
-/// Where the convex indenter of the model gives the right pull-off of a flattened, adhesive particle.
+/// Tests whether the convex indenter of the model gives the right pull-off of a flattened, adhesive particle.
 ///
 /// The surface of a strongly flattened particle is concave inside a ring of the radius r_peak, which the elliptic
 /// indenter is not; and no yielding in tension is accounted for at the edge. Both are harmless while the critical
@@ -10,9 +10,8 @@
 
 namespace monograin::mdr {
 
-// The fits; NaN in gives NaN out.
-// Their arguments are the largest wall displacement over R0, 0 to 0.5 in the data, and delta_Y/R0, the overlap ratio at
-// first yield (infinity: never yields, all fits are 0).
+// The fits; NaN in gives NaN out. Arguments are the largest wall displacement over R0, 0 to 0.5 in the data, and
+// delta_Y/R0, the overlap ratio at first yield (infinity: never yields, all fits are 0).
 
 /// r_peak/R0 = 1.75 x^(3/4), x = (delta_o,max - delta_Y)/R0 - 0.135; 0 for x <= 0, where the profile is convex (F.1).
 [[nodiscard]] double peak_radius_over_initial_radius(double displacement_over_radius,
@@ -46,7 +45,7 @@ enum class AdhesionValidity {
   yielding_failure  ///< yielding at the edge is not small-scale: 2 a_c < 15 r_Ip
 };
 
-/// Test F.7. Where both conditions fail it is the peak that is named.
+/// Test F.7. If both conditions fail, the result is peak_failure.
 /// @param critical_radius    a_c >= 0
 /// @param peak_radius        r_peak >= 0; 0 never fails
 /// @param plastic_zone_size  r_Ip >= 0

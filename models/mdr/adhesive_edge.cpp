@@ -5,10 +5,11 @@
 namespace monograin::mdr {
 namespace {
 
-// Over its radius, a displacement of a sticking edge that is round-off.
+// Displacement of a sticking edge, over its radius, that is round-off.
 constexpr double k_edge_rounding = 1e-8;
 
-/// Stretch of the springs at a sticking edge, negative where they are stretched, over that which tears them.
+/// Displacement of the springs at a sticking edge, negative where they are stretched, over the stretch that tears them,
+/// plus an offset. An edge of zero radius has no springs: gives the displacement itself.
 double stretch_left(const AdhesiveEdge& edge, const Frame& frame, const Adhesion& adhesion, double offset) noexcept {
   const double w = frame.displacement - profile_height(frame.indenter, edge.radius);
   const double stretch = critical_stretch(adhesion.composite_modulus, adhesion.surface_energy, edge.radius);
@@ -31,7 +32,8 @@ std::optional<AdhesiveEdge> AdhesiveEdge::torn(const PeelState& critical) const 
 }
 
 AdhesiveEdge AdhesiveEdge::set_back(const Indenter& indenter, double displacement_1d) const noexcept {
-  // The profile becomes steeper outwards, and is steeper at the edge than this; an edge of no radius stays as it is.
+  // The profile is steeper at the edge than this chord, so the edge moves back by no less than the round-off. An edge
+  // of zero radius stays, because the comparison is false for it.
   const double steepness = (profile_height(indenter, radius) - profile_height(indenter, 0.5 * radius)) / (0.5 * radius);
   const double distance = displacement_1d / steepness;
   return distance < k_edge_rounding * radius ? AdhesiveEdge{motion, radius - distance} : *this;

@@ -34,9 +34,10 @@ struct PullOff {
     return control == Control::force ? by_force : by_displacement;
   }
 };
+/// States in which the edge of an indenter pulls off.
 [[nodiscard]] PullOff pull_off_of(const Indenter& indenter, const Adhesion& adhesion);
 
-/// State of an edge; the transitions return another one.
+/// State of an edge, as a value: transitions return another state.
 struct AdhesiveEdge {
   Edge motion = Edge::following;
   double radius = 0.0;  ///< contact radius while it sticks
@@ -45,25 +46,26 @@ struct AdhesiveEdge {
   [[nodiscard]] bool sticks() const noexcept { return motion == Edge::sticking; }
   [[nodiscard]] bool peels() const noexcept { return motion == Edge::peeling; }
 
-  /// Begins to peel, where the springs at a sticking edge tear; none within the critical radius, where it pulls off.
+  /// Peeling edge that remains when the springs at this sticking edge tear; none within the critical radius, where the
+  /// edge pulls off at once.
   [[nodiscard]] std::optional<AdhesiveEdge> torn(const PeelState& critical) const noexcept;
-  /// A sticking edge that is moved back by a displacement of its springs within round-off, so that its guard against
-  /// peeling is met later. It stays where it is if that were no round-off of its radius.
+  /// This sticking edge, moved back by a round-off displacement of its springs, so that the guard of peeling fires
+  /// later. Unchanged if the move would be more than round-off of the radius.
+  /// @param displacement_1d  the round-off
   [[nodiscard]] AdhesiveEdge set_back(const Indenter& indenter, double displacement_1d) const noexcept;
 };
 
 /// Contact whose edge peels.
-/// @param returns_beyond_pull_off  beyond pull-off under displacement control the edge sticks at the critical radius,
-/// so
-///                                 that trials of a free centre lead back
+/// @param returns_beyond_pull_off  true: beyond pull-off under displacement control the edge sticks at the critical
+///                                 radius, so that trials of a free centre lead back
 [[nodiscard]] Contact peeling_contact(const Frame& frame, const Adhesion& adhesion, const PullOff& pull_off,
                                       bool returns_beyond_pull_off);
 
-/// delta_1D of a sticking edge under a force. An edge of no radius bears nothing, and is where it touches.
+/// delta_1D of a sticking edge under a force; 0 for an edge of zero radius, which touches and bears nothing.
 [[nodiscard]] double sticking_displacement(const Indenter& indenter, double composite_modulus, double a,
                                            double force) noexcept;
 
-/// Guard of a sticking edge: >= 0 where no spring at it is stretched any more.
+/// Guard of a sticking edge: >= 0 where the springs at the edge are no longer stretched.
 [[nodiscard]] double follow_guard(const AdhesiveEdge& edge, const Frame& frame, const Adhesion& adhesion) noexcept;
 /// Guard of a sticking edge: <= 0 where the springs at it tear.
 [[nodiscard]] double peel_guard(const AdhesiveEdge& edge, const Frame& frame, const Adhesion& adhesion) noexcept;
@@ -72,13 +74,15 @@ struct AdhesiveEdge {
 /// Guard of a peeling edge under a prescribed force: <= 0 beyond pull-off.
 [[nodiscard]] double pull_off_guard(const PullOff& pull_off, double force) noexcept;
 
-/// Rate at which the springs at an edge are pressed (+) or stretched (-), over the sum of its magnitudes: what the
-/// overlap does, and what a growing indenter does.
-/// @param change  of the frame with the apparent radius
+/// Rate at which the springs at an edge are pressed (+) or stretched (-), from -1 to 1: the parts due to the overlap
+/// and to the growing indenter, over the sum of their magnitudes.
+/// @param change  change of the frame with the apparent radius
 [[nodiscard]] double press_rate(const Frame& frame, const Frame::Change& change, double contact_radius,
                                 double overlap_rate, double growth) noexcept;
 
-/// Tangent stiffness that a contact would have if its edge stuck; its magnitude for an edge that does not peel.
+/// Tangent stiffness that a contact with a peeling edge would have if the edge stuck; for other edges the magnitude of
+/// the contact's own stiffness.
+/// @param by_overlap  d(delta_1D)/d(delta)
 [[nodiscard]] double unpeeled_stiffness(const AdhesiveEdge& edge, const Contact& contact, double composite_modulus,
                                         double by_overlap) noexcept;
 

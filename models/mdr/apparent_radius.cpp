@@ -6,13 +6,13 @@
 namespace monograin::mdr {
 namespace {
 
-// By how much the squared sine of half the angle between opposite walls falls short of 1 for round-off.
+// Round-off of the squared sine of half the angle between opposite walls, which is 1.
 constexpr double k_opposite = 5e-13;
 
 }  // namespace
 
 bool opens_gate(RadiusRule rule, const GrowthDrive& drive) noexcept {
-  // A contact that keeps up with its wall displaces nothing.
+  // A contact whose wall keeps its distance from the centre displaces no volume.
   const bool is_idle = !drive.is_force_controlled && std::abs(drive.inward_rate) <= drive.least_rate;
   if (rule == RadiusRule::seed && !is_idle) return true;
   const bool is_driven = drive.is_force_controlled ? drive.rises : drive.inward_rate > drive.least_rate;
@@ -20,7 +20,7 @@ bool opens_gate(RadiusRule rule, const GrowthDrive& drive) noexcept {
 }
 
 double VolumeBalance::volume_ratio() const noexcept {
-  // There is no smaller volume; fixed steps end beyond it.
+  // The volume is smallest at w = 1/4; fixed steps may end beyond that.
   const double w = std::min(relative_compression, 0.25);
   return 1.0 - 2.0 * w / (1.0 + std::sqrt(1.0 - 4.0 * w));
 }
@@ -28,7 +28,7 @@ double VolumeBalance::volume_ratio() const noexcept {
 double growth_drive(double demand, double time_scale, bool withdraws, bool is_compressible) noexcept {
   if (time_scale > 0.0) return demand / time_scale;
   if (demand != 0.0) return std::copysign(1.0, demand);
-  // First touch, or the last one: of two things that vanish, the elastic volume vanishes last.
+  // At first and last touch both elastic volume and caps are zero. The elastic volume is larger just beside it.
   return is_compressible == withdraws ? 1.0 : -1.0;
 }
 
@@ -52,7 +52,7 @@ std::vector<CapPair> cap_pairs_of(std::span<const ContactClass> classes) {
 
 double cap_guard(const CapPair& pair, double first_overlap, double second_overlap, double r) noexcept {
   // A cap of overlap d covers an angle a on either side of its normal with sin(a/2)^2 = d/(2 R). Caps meet where their
-  // angles add up to that between the normals; half of each, because the cosines of small angles have no digits left.
+  // angles add up to that between the normals. Half angles are compared by their sines: cosines would lose digits.
   const double scale = 0.5 / (1.0 + r);
   const double first = std::clamp(first_overlap * scale, 0.0, 1.0);
   const double second = std::clamp(second_overlap * scale, 0.0, 1.0);

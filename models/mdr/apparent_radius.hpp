@@ -17,7 +17,7 @@
 
 namespace monograin::mdr {
 
-/// Which contacts make the apparent radius grow, and when.
+/// Rule that says which contacts make the apparent radius grow, and when.
 enum class RadiusRule {
   gated,    ///< all touching contacts; only while a contact at its largest overlap is driven inwards
   yielded,  ///< yielded contacts at their largest overlap; only while one of them is driven inwards
@@ -39,15 +39,15 @@ enum class RadiusRule {
   return false;
 }
 
-/// How one contact that takes part in the growth moves.
+/// Motion of one contact that takes part in the growth.
 struct GrowthDrive {
   double inward_rate = 0.0;  ///< rate of its wall, inwards positive
-  double least_rate = 0.0;   ///< below which that is round-off
+  double least_rate = 0.0;   ///< a smaller inward_rate is round-off
   bool is_force_controlled = false;
   bool rises = false;  ///< a prescribed force grows
   bool is_on_primary_branch = false;
 };
-/// True if such a contact opens the gate for growth.
+/// True if a contact that moves in this way opens the gate for growth.
 [[nodiscard]] bool opens_gate(RadiusRule rule, const GrowthDrive& drive) noexcept;
 
 /// Part of one class of contacts in the volume balance.
@@ -57,23 +57,23 @@ struct VolumeTerm {
   double displacement;  ///< wall displacement relative to the centre
   double overlap;
   double rate_by_time;    ///< rate of the displacement at fixed R
-  double rate_by_growth;  ///< its derivative by R, where the force is prescribed
+  double rate_by_growth;  ///< derivative of the displacement by R; 0 where the displacement is prescribed
 };
 
 /// The volume balance and its partial derivatives at an instant.
 struct VolumeBalance {
   double relative_compression = 0.0;  ///< w of all contacts: 1 - 4w > 0 while the volume is defined
-  double under_root = 1.0;            ///< 1 - 4w of those in Q
+  double under_root = 1.0;            ///< 1 - 4w of the contacts in Q
   double value = 0.0;                 ///< V_geo,Q - V_Q
-  double by_radius = 0.0;             ///< walls under force moving as that asks for
+  double by_radius = 0.0;             ///< walls under force move so that their force stays
   double by_radius_at_rest = 0.0;     ///< by_radius where every wall stands still
   double by_time = 0.0;
   double time_scale = 0.0;  ///< sum of the magnitudes in by_time
 
   /// Volume of the particle over that of the undeformed one.
   [[nodiscard]] double volume_ratio() const noexcept;
-  /// Share of the particle's surface that growth has for itself between walls that stand still, whatever prescribes
-  /// where they do: the model ends where it is used up, under every control.
+  /// Share of the particle's surface that is free for growth between walls at rest, under force or displacement
+  /// control. The model ends where it is used up.
   [[nodiscard]] double free_surface_at_rest(double r) const noexcept {
     return by_radius_at_rest / ((1.0 + r) * (1.0 + r));
   }
@@ -83,7 +83,7 @@ struct VolumeBalance {
 class VolumeSum {
  public:
   /// @param virial_of_all  sum of force times distance from the centre over all contacts
-  /// @param virial         of those in Q
+  /// @param virial         that sum over the contacts in Q
   VolumeSum(double bulk_compliance, double virial_of_all, double virial) noexcept
       : w_(k_scale * bulk_compliance * virial) {
     sum_.under_root = 1.0 - 4.0 * w_;
@@ -118,7 +118,7 @@ class VolumeSum {
   }
 
  private:
-  // Divisions by these would be a good part of what summing up takes.
+  // Factors instead of divisors, which would be a good part of the cost of summing up.
   static constexpr double k_per_solid_angle = 0.25 * std::numbers::inv_pi;
   static constexpr double k_scale = 3.0 * k_per_solid_angle;
   static constexpr double k_third = 1.0 / 3.0;
@@ -134,23 +134,23 @@ class VolumeSum {
   VolumeBalance sum_;
 };
 
-/// Demand for growth over the magnitudes it is the difference of: -1 where elastic volume loss rules, +1 where the caps
-/// do. The demand itself starts at zero with every first touch, and near nu = 0.5 comes back to zero within no time: as
-/// a root function it would be taken to leave where it has already returned.
-/// @param demand          rate of volume that wants to become growth
-/// @param time_scale      of VolumeBalance
-/// @param withdraws       contacts in Q are only left
+/// Demand for growth over the sum of the magnitudes whose difference it is: -1 where elastic volume loss rules, +1
+/// where the caps do. The demand itself is no good root function: it starts at zero with every first touch, and near nu
+/// = 0.5 returns to zero so soon that a root finder would take the return for the start.
+/// @param demand           rate of the volume that growth has to take up
+/// @param time_scale       VolumeBalance::time_scale
+/// @param withdraws        walls of contacts in Q move out only
 /// @param is_compressible  elastic volume vanishes last, with the square root of the overlap
 [[nodiscard]] double growth_drive(double demand, double time_scale, bool withdraws, bool is_compressible) noexcept;
 
-/// Two walls, maybe of one class, whose contact caps may meet.
+/// Two walls whose contact caps may meet; they may belong to one class.
 struct CapPair {
   int first = 0;           ///< contact class
   int second = 0;          ///< contact class
   double half_sine = 0.0;  ///< sine of half the smallest angle between two of their normals
   bool have_met = false;   ///< caps have met and not parted since
 };
-/// All pairs but those on opposite sides, which meet only where the particle is squeezed to nothing.
+/// All pairs of walls whose caps may meet. Caps on opposite sides meet only where the particle is squeezed to nothing.
 [[nodiscard]] std::vector<CapPair> cap_pairs_of(std::span<const ContactClass> classes);
 /// Guard: >= 0 where the caps of two contacts intersect.
 [[nodiscard]] double cap_guard(const CapPair& pair, double first_overlap, double second_overlap, double r) noexcept;

@@ -17,26 +17,27 @@ namespace {
 constexpr double k_round_off = std::numeric_limits<double>::epsilon();
 constexpr int k_newton_limit = 60;
 constexpr int k_most_halvings = 40;
-// How far, over R0, no contact is to lead the centre at once that is as soft as round-off.
+// Longest Newton step (over R0) with the contacts' own stiffnesses; contacts below the resolution give longer ones.
 constexpr double k_out_of_bounds = 1.0;
-// How many times as long as the last one a step is at most.
+// Length of a step, over the accepted part of the last one, at most.
 constexpr double k_most_growth = 64.0;
-// How far, over R0, an equilibrium that does not hold the centre is from where its contacts begin to; and by how much
-// farther each trial lies.
+// Trials for the state where contacts begin to hold the centre: nearest and farthest distance from the saddle (over
+// R0), and the ratio of one distance to the one before.
 constexpr double k_nearest_saddle = 1e-13;
 constexpr double k_farthest_saddle = 1e-2;
 constexpr double k_longer = 1.25;
 constexpr int k_most_sections = 40;
-// Steps that are round-off, where they do not become shorter.
+// A step below this (over R0) that is not much shorter than the last one is round-off: the search has converged.
 constexpr double k_rounding_step = 1e-12;
-// Stiffness over the greatest one that is round-off.
+// Eigenvalue of the stiffness, over the largest one, that is round-off.
 constexpr double k_no_stiffness = 1e-12;
-// Contacts whose stiffness falls alike at a fold, over the sum of what falls: it is known to the root of round-off.
+// Softenings at a fold are equal if they differ by less than this share of their sum: they are accurate to the root of
+// round-off.
 constexpr double k_alike = 1e-6;
 
-/// Searches between two points for one where a function is above zero, towards where it is largest, by golden sections.
-/// @param best  in: a point between them where it is larger than at both; out: the best one found
-/// @return the function value
+/// Searches between a and b for a point where the function is positive, by golden sections towards its maximum.
+/// @param best  in: a point between a and b with a larger value than both; out: the point with the largest value found
+/// @return the function value at best
 template <class Function>
 double search_maximum(double a, double b, double& best, Function&& function) {
   const double section = 2.0 - std::numbers::phi;
@@ -55,8 +56,8 @@ double search_maximum(double a, double b, double& best, Function&& function) {
   return largest;
 }
 
-/// A contact whose edge peels and that has been led beyond pull-off: before it comes there, its stiffness falls without
-/// bound, and the centre is held no more.
+/// First contact whose peeling edge is beyond pull-off, if any. Towards pull-off its stiffness falls without bound, so
+/// the centre is no longer held even before.
 std::optional<std::size_t> contact_beyond_pull_off(const Particle& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     const ContactBranch& branch = p.branch(i);
@@ -67,8 +68,8 @@ std::optional<std::size_t> contact_beyond_pull_off(const Particle& p) {
   return std::nullopt;
 }
 
-/// How much the stiffness of a contact whose edge peels falls, over the displacement of the centre along a direction:
-/// of its share in the stiffness along that direction, positive where that displacement opens the contact.
+/// Rate at which a peeling contact's share in the stiffness along a direction falls, as the centre moves along that
+/// direction. Positive if the displacement opens the contact.
 double softening_along(const Particle& p, std::size_t i, const CentreVector& direction) {
   const double along = p.centre().direction(i).dot(direction);
   const Frame at = p.branch(i).frame(p.law(), p.at().r, p.contact(i).overlap);
@@ -77,11 +78,11 @@ double softening_along(const Particle& p, std::size_t i, const CentreVector& dir
                            p.contact(i).contact.contact_radius);
 }
 
-/// An edge that peels under a wall that the centre does not lead along.
+/// True if the edge peels and its wall is under displacement control.
 bool peels(const Particle& p, std::size_t i) { return p.branch(i).edge.peels() && !p.is_loaded(i); }
 
-/// Round-off of the centre's stiffness next to a fold, where it goes with the root of the distance: beyond the fold
-/// there is no state, or one in which the contacts hold the centre no more.
+/// Round-off of the centre's stiffness next to a fold, where the stiffness goes with the root of the distance from it.
+/// Beyond the fold there is no state, or only one in which the contacts do not hold the centre.
 double round_off_of(const Particle& p, const CentreStiffness& softest) {
   double softening = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -90,8 +91,8 @@ double round_off_of(const Particle& p, const CentreStiffness& softest) {
   return std::sqrt(2.0 * softening * softest.direction.norm() * p.force_rounding());
 }
 
-/// Which of two contacts that nothing else tells apart is the first, by their normals: the order of walls in a file
-/// says nothing.
+/// Orders two contacts that are otherwise equal by their normals, so that the result does not depend on the order of
+/// the walls in a scenario.
 bool comes_first(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
   for (Eigen::Index k = 0; k < one.size(); ++k) {
     if (std::abs(one[k] - other[k]) > k_alike) return one[k] < other[k];
@@ -99,8 +100,8 @@ bool comes_first(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
   return false;
 }
 
-/// Newton's method on the balance of forces at a given radius; the force grows with the overlap, so damping is all it
-/// needs.
+/// Damped Newton's method for the balance of forces on the centre at a given radius. Damping suffices, because forces
+/// grow with the overlap.
 class BalanceSearch {
  public:
   BalanceSearch(Particle& p, double xi, std::span<double> y) : p_(p), xi_(xi), y_(y), count_(p.centre().count()) {
@@ -123,17 +124,17 @@ class BalanceSearch {
   }
 
  private:
-  /// No part of the last step brought the centre nearer to balance.
+  /// True if no part of the last step brought the centre nearer to balance.
   [[nodiscard]] bool is_stuck() const noexcept { return path_ < 2.0 * k_round_off; }
 
   [[nodiscard]] CentreVector newton_step() const {
     const CentreVector step = p_.centre().step();
-    // Contacts below the resolution are so soft that their tangents lead out of all bounds.
+    // Contacts below the resolution are so soft that the step has no bound; tangent stiffnesses have a least value.
     return step.norm() > k_out_of_bounds ? p_.centre().tangent_step() : step;
   }
 
-  /// True if a step of that length is round-off.
-  /// @throws std::domain_error for no step where forces are not balanced
+  /// True if a Newton step of that length is round-off, so that the search has converged.
+  /// @throws std::domain_error for a step of zero while forces do not balance: no contact holds the centre
   [[nodiscard]] bool has_arrived(double length) {
     if (length == 0.0) {
       if (error_ <= noise_) return true;
@@ -141,18 +142,18 @@ class BalanceSearch {
     }
     if (!(length >= 0.5 * step_size_)) return false;
     if (length < k_rounding_step) return true;
-    // Soft contacts that are met from afar may be led back to where they only touch by as much, once.
+    // Soft contacts reached from afar may need one more step of that length, back to where they only touch.
     return error_ <= noise_ && std::exchange(has_gone_back_, true);
   }
 
-  /// Where the last step had to be cut short, as next to a fold, there is no need to begin far beyond that again.
+  /// Limits a step if the last one had to be cut short, as next to a fold: the full step would be cut short again.
   [[nodiscard]] CentreVector shortened(const CentreVector& step) const {
     if (!(k_most_growth * path_ < step_size_)) return step;
     return step * (k_most_growth * path_ / step_size_);
   }
 
-  /// Line search: halves the step until it leads nearer to balance. A trial may lead out of a branch; a state that is
-  /// nearer lies in it, or there is none.
+  /// Line search: halves the step until it leads nearer to balance and stays on the branches of all contacts.
+  /// @throws std::domain_error if even the shortest trial leaves a branch
   void go_along(CentreVector step) {
     const CentreVector before = centre_of(y_, count_);
     p_.centre().keep_stiffness();
@@ -171,14 +172,16 @@ class BalanceSearch {
 
   /// True if a trial at the end of a step of that length is accepted.
   [[nodiscard]] bool is_nearer(double length) const {
-    // Below round-off there is nothing to damp: a contact that only touches would stay where it is.
+    // A net force below round-off needs no damping, which would keep an idle contact from moving.
     if (p_.centre().force().norm() < std::max(error_, noise_) || length < k_round_off) return true;
-    // Stiff contacts may bear more on a path along which soft ones balance: the step that is left says more. Where an
-    // edge peels there are other equilibria, to which that might lead.
+    // While soft contacts come to balance, stiff ones may raise the net force: the length of the step that remains is
+    // the better measure. With a peeling edge, it might lead to another equilibrium.
     return is_only_one_ && p_.centre().step_of_kept().norm() < 0.5 * step_size_;
   }
 
-  /// Where edges peel, the search may also end beyond a fold, where the force is least.
+  /// Checks the end of the search. A unique equilibrium is reached to round-off when the search is stuck. Where edges
+  /// peel, the search may also end beyond a fold, at a minimum of the net force.
+  /// @throws std::domain_error if forces do not balance
   void require_balance() {
     const double rounding = p_.force_rounding() + k_no_force * p_.magnitude_of_forces();
     if (is_only_one_ ? is_stuck() : p_.centre().force().norm() <= rounding) return;
@@ -190,11 +193,11 @@ class BalanceSearch {
   double xi_;
   std::span<double> y_;
   int count_;
-  bool is_only_one_ = false;                                    ///< no edge peels: there are no other equilibria
+  bool is_only_one_ = false;                                    ///< no edge peels: the equilibrium is unique
   double error_ = 0.0;                                          ///< net force where the present step begins
-  double noise_ = 0.0;                                          ///< round-off of it
-  double step_size_ = std::numeric_limits<double>::infinity();  ///< of the last step as Newton's method had it
-  double path_ = std::numeric_limits<double>::infinity();       ///< what was gone of it
+  double noise_ = 0.0;                                          ///< round-off of the net force
+  double step_size_ = std::numeric_limits<double>::infinity();  ///< length of the last full Newton step
+  double path_ = std::numeric_limits<double>::infinity();       ///< length of its accepted part
   bool has_gone_back_ = false;
 };
 
@@ -219,7 +222,7 @@ std::optional<std::size_t> weakest_contact(Particle& p) {
     sum += softenings[i];
     size += std::abs(softenings[i]);
   }
-  // The centre may leave to either side where contacts on both are alike.
+  // 0 if contacts on both sides soften alike: the centre may then leave to either side.
   const double side = std::abs(sum) > k_alike * size ? std::copysign(1.0, sum) : 0.0;
   const auto gives_way_before = [&](std::size_t i, std::size_t j) {
     const double softer = side * (softenings[i] - softenings[j]);
@@ -251,8 +254,8 @@ CentreStiffness centre_stiffness(Particle& p) {
     const Contact& now = p.contact(i).contact;
     const double count = p.count(i) * along * along;
     const double tangent = branch.tangent_stiffness(p.law(), now);
-    // Two contacts that are alike lose their stiffness together where they peel or soften, and with it the sum of what
-    // they are.
+    // The reference is the stiffness without peeling or softening. Equal contacts lose their stiffness together, which
+    // would not show relative to the sum of their present stiffnesses.
     const double at_first = branch.regime == Regime::fully_plastic ? p.law().plastic_stiffness() : tangent;
     return std::pair(count * tangent, count * std::max(branch.unpeeled_stiffness(p.law(), p.at().r, now), at_first));
   });
@@ -281,14 +284,14 @@ void move_centre(Particle& p, double xi, std::span<double> y) {
 
 namespace {
 
-/// True for the equilibrium that is sought: contacts short of pull-off hold the centre.
+/// True if the contacts hold the centre and none is beyond pull-off, as in the stable equilibrium.
 bool holds_centre(Particle& p) { return centre_stiffness(p).value >= 0.0 && !contact_beyond_pull_off(p); }
 
-/// Line through a state that does not hold the centre, along which its contacts begin to hold it.
+/// Search along a line through a state that does not hold the centre (a saddle), for states where its contacts do.
 class SaddleExit {
  public:
   /// @param y            the state, which is evaluated
-  /// @param is_balanced  whether it is an equilibrium, and not merely where a search has got stuck
+  /// @param is_balanced  true: the state is an equilibrium; false: a search for the balance got stuck there
   SaddleExit(Particle& p, double xi, std::span<double> y, bool is_balanced)
       : p_(p),
         xi_(xi),
@@ -298,9 +301,10 @@ class SaddleExit {
         beyond_(contact_beyond_pull_off(p)),
         direction_((beyond_ ? p.centre().direction(*beyond_) : centre_stiffness(p).direction).normalized()) {}
 
-  /// Finds the nearest place on a side where the contacts hold the centre.
-  /// @return its distance from the saddle; none if it is farther than a saddle may be
-  /// @throws std::domain_error where no branch leads there
+  /// Finds the nearest state on one side of the saddle where the contacts hold the centre.
+  /// @param side  1 or -1
+  /// @return its signed distance from the saddle (over R0); none within k_farthest_saddle
+  /// @throws std::domain_error if the branch of a contact ends before
   [[nodiscard]] std::optional<double> held_distance(double side) {
     double last = 0.0;
     double distance = side * k_nearest_saddle;
@@ -309,7 +313,7 @@ class SaddleExit {
     while (now <= 0.0 && std::abs(distance) < k_farthest_saddle) {
       const double next = k_longer * distance;
       const double after = stiffness_at(next);
-      // Where the centre is held on a short part of the path only, that may lie between.
+      // The stretch on which the centre is held may be short and lie between two trials.
       if (now > before && now > after) {
         now = search_maximum(last, next, distance, [this](double trial) { return stiffness_at(trial); });
         if (!stiffest_) stiffest_ = distance;
@@ -322,9 +326,10 @@ class SaddleExit {
     return distance;
   }
 
-  /// Searches for the equilibrium from about as far beyond the place where contacts begin to hold the centre; where a
-  /// search has got stuck, or a contact is beyond pull-off, also from farther.
-  /// @return whether it is found, and y is there
+  /// Searches for the stable equilibrium, which lies about as far beyond the state where contacts begin to hold the
+  /// centre. If a search got stuck or a contact is beyond pull-off, also begins from farther states.
+  /// @param held  distance of the state where contacts begin to hold the centre
+  /// @return true if y is at the stable equilibrium
   [[nodiscard]] bool finds_equilibrium_beyond(double held) {
     constexpr std::array<double, 5> k_multiples{2.0, 1.0, 4.0, 8.0, 16.0};
     for (const double multiple : std::span(k_multiples).first(is_balanced_ && !beyond_ ? 2 : k_multiples.size())) {
@@ -334,15 +339,15 @@ class SaddleExit {
         p_.evaluate(xi_, y_);
         if (holds_centre(p_)) return true;
       } catch (const std::domain_error&) {
-        continue;  // the search leads astray from there
+        continue;  // no balance is found from there
       }
     }
     return false;
   }
 
-  /// Goes to an equilibrium that does not hold the centre: any one short of pull-off shows that contacts hold it no
-  /// more.
-  /// @throws std::domain_error where there is none short of pull-off
+  /// Goes back to an equilibrium that does not hold the centre. Any one short of pull-off serves: the guard of the
+  /// centre's stiffness fires there.
+  /// @throws std::domain_error if the equilibrium is beyond pull-off
   void return_to_balance() {
     const bool is_elsewhere = beyond_ && stiffest_;
     go(is_elsewhere ? *stiffest_ : 0.0);
@@ -370,10 +375,10 @@ class SaddleExit {
   bool is_balanced_;
   CentreVector saddle_;
   std::optional<std::size_t> beyond_;  ///< contact that has been led beyond pull-off
-  /// The softest one. It counts every contact at what it would hold: an idle one is no stiffer at first than round-off,
-  /// but would be pressed on the path.
+  /// Normal of the contact beyond pull-off, or else the softest direction. The softest direction counts idle contacts
+  /// with their least stiffness: their own is round-off, but the line would press them.
   CentreVector direction_;
-  std::optional<double> stiffest_;  ///< distance of the first maximum of the stiffness
+  std::optional<double> stiffest_;  ///< distance of the first maximum of the stiffness along the line
 };
 
 }  // namespace
@@ -387,7 +392,7 @@ bool leave_saddle(Particle& p, double xi, std::span<double> y, bool is_balanced)
       const std::optional<double> held = line.held_distance(side);
       if (held && line.finds_equilibrium_beyond(*held)) return true;
     } catch (const std::domain_error&) {
-      continue;  // no branch leads there
+      continue;  // the branch of a contact ends on that side
     }
   }
   if (is_balanced) line.return_to_balance();

@@ -7,43 +7,47 @@
 
 namespace monograin::mdr {
 
-/// Stiffness of a free centre that is so small that it is at a fold: a search for the balance of forces ends there with
-/// a force that is least, and not zero, and rates of the centre change sign through infinity.
+/// Tangent stiffness of a free centre (CentreStiffness::value) below which the centre is at a fold. A search for the
+/// balance may end there at a nonzero minimum of the net force, and rates of the centre change sign through infinity.
 inline constexpr double k_at_fold = 1e-2;
 
-/// True if an edge peels whose stiffness holds a free centre: that stiffness may come to an end.
+/// True if the edge of a contact that acts on a free centre peels under displacement control: the stiffness with which
+/// it holds the centre may vanish.
 [[nodiscard]] bool may_peel_off(const Particle& p) noexcept;
-/// The contact that gives way where several of them cannot hold a free centre between them any more. The centre leaves
-/// along its softest direction, to the side where it becomes softer still. Of the contacts whose edges peel, that one
-/// gives way whose stiffness falls most on that path; where several are alike, the one whose wall withdraws fastest.
+/// The contact that gives way when the contacts together no longer hold a free centre; none if no edge peels. The
+/// centre leaves along its softest direction, to the side where it becomes softer still. The peeling contact whose
+/// stiffness falls most on that path gives way; among equal ones, the contact whose wall withdraws fastest.
 [[nodiscard]] std::optional<std::size_t> weakest_contact(Particle& p);
 /// True if a plastic contact is softened past its peak so far that it may no longer constrain a free centre.
 [[nodiscard]] bool is_any_softened(const Particle& p) noexcept;
 /// Tangent stiffness of the centre in its softest direction, over what it would be if no edge peeled and no contact
-/// were softened past its peak. Zero where the equilibrium turns back.
+/// were softened past its peak. Zero at a fold of the equilibrium.
 [[nodiscard]] CentreStiffness centre_stiffness(Particle& p);
-/// Distance of that stiffness from the fold.
+/// Guard of a fold: centre_stiffness() less the value at which the fold counts as reached; negative beyond.
 [[nodiscard]] double centre_stiffness_guard(Particle& p);
 
-/// Beyond its greatest force a plastic contact that gives way bears less: where several do, one of them may go in while
-/// the others unload, and the centre has other equilibria beside the one where all go in.
-/// @throws std::domain_error there
+/// Checks that contacts softened past their peak leave the equilibrium of a free centre unique. Such a contact bears
+/// less when it gives way: where there are several, one may go in while the others unload, and the centre has other
+/// equilibria beside the one where all go in. Does nothing while an edge peels.
+/// @throws std::domain_error if the stiffness of the centre is negative in some direction
 void check_softening(const Particle& p);
 
-/// Moves the centre to the balance of forces at a given radius. On the way there the volume need not be defined: where
-/// the radius has grown, walls that the centre gives way to would press it by as much.
-/// @throws std::domain_error where no balance is found
+/// Moves the centre to the balance of forces at a given radius. In trial states the volume need not be defined: before
+/// the centre gives way, overlaps include all that the radius has grown.
+/// @throws std::domain_error if no balance is found, it is not unique (check_softening()), or its volume is not defined
 void move_centre(Particle& p, double xi, std::span<double> y);
 
-/// Next to a fold there is, beside the equilibrium that holds the centre, another one that does not, to which a search
-/// from afar may lead, and others beyond pull-off. Between them the contacts hold the centre neither way; the
-/// equilibrium sought is about as far beyond that state.
-/// @param is_balanced  whether y is such an equilibrium, and not merely where a search has got stuck
-/// @return whether it has found the equilibrium sought
+/// Leaves a state that does not hold the centre for the equilibrium that does. Next to a fold there are two equilibria,
+/// a stable one and a saddle, and others beyond pull-off; Newton's method from afar may find the wrong one. About
+/// half-way from the saddle to the stable equilibrium, the stiffness of the centre vanishes.
+/// @param is_balanced  true: y is an equilibrium; false: a search for the balance got stuck there
+/// @return true if y is now the equilibrium that holds the centre
+/// @throws std::domain_error if y was balanced and no equilibrium short of pull-off is found
 bool leave_saddle(Particle& p, double xi, std::span<double> y, bool is_balanced);
 
-/// Moves the centre towards the balance of forces, as far as the present branches of the contacts lead.
-/// @return false where they do not lead anywhere
+/// Moves the centre by a Newton step towards the balance of forces, halved until the present branches of all contacts
+/// are defined at its end.
+/// @return false if no such step exists
 [[nodiscard]] bool approach_balance(Particle& p, double xi, std::span<double> y);
 
 }  // namespace monograin::mdr

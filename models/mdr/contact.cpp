@@ -16,12 +16,12 @@
 namespace monograin::mdr {
 namespace {
 
-// Share of a force that rounding may leave where an overlap is sought for it: the contact area is a difference.
+// Share of a force that round-off may leave unbalanced at the overlap found for it: the contact area is a difference.
 constexpr double k_force_rounding = 1e-10;
 
 using std::numbers::pi;
 
-// From which on phi(theta) has lost no digits as a difference.
+// Angle from which on theta - sin(theta) cos(theta) loses no digits.
 constexpr double k_large_angle = 0.5;
 
 // psi(theta) = sum_(k>=2) (-1)^k (3 - 4n + 3^(n-1)) theta^n / (4 n!), n = 2k + 1.
@@ -50,8 +50,8 @@ double elastic_versine(double radius, double overlap) {
   return y;
 }
 
-// First yield, in s = sqrt(d): the excess of the elastic mean pressure over the plastic one, both over Y, is smooth
-// there.
+// First yield is solved for s = sqrt(d): the excess of the elastic mean pressure over the plastic one, both over Y, is
+// a smooth function of s.
 
 double elastic_excess(double modulus_over_yield, double s, const PressureRatio& plastic) noexcept {
   return 4.0 / (3.0 * pi) * modulus_over_yield * s - plastic.value;
@@ -65,7 +65,7 @@ template <class Excess>
 double square_of_root(const Excess& excess, double lower, double upper) {
   const double at_lower = excess(lower);
   const double at_upper = excess(upper);
-  // Where the pressure is constant, the bounds are the root but for rounding.
+  // Where the plastic pressure is constant, the bounds equal the root to within round-off.
   if (!(at_lower < 0.0)) return lower * lower;
   if (!(at_upper > 0.0)) return upper * upper;
   std::uintmax_t iterations = 100;
@@ -75,11 +75,11 @@ double square_of_root(const Excess& excess, double lower, double upper) {
   return s * s;
 }
 
-/// Angle theta with cos(theta) = u, for u in [0, 1), and slightly beyond the old maximum (u < 0).
+/// Angle theta with cos(theta) = u, for u in [0, 1), and slightly beyond the largest overlap (u < 0).
 double unloading_angle(double u) noexcept { return u > 0.5 ? angle_from_versine(1.0 - u) : std::acos(u); }
 
-/// The indenter that is left by a contact, and the depth of the centre below its tip over a_max, zeta, with
-/// s = sqrt(1 + zeta^2) and k = 1/(2 (1 - nu)).
+/// Indenter that a contact leaves when it unloads. zeta is the depth of the particle's centre below its tip over a_max,
+/// s = sqrt(1 + zeta^2), k = 1/(2 (1 - nu)).
 struct IndenterLeft {
   UnloadingShape shape;
   double zeta, s, k;
@@ -131,7 +131,7 @@ double yield_overlap_ratio(double modulus_over_yield) {
 
 double yield_overlap_ratio(double modulus_over_yield, const PressureCurve& pressure_curve) {
   const auto excess = [&](double s) {
-    // Rounding of the square must not lead beyond the curve.
+    // Round-off of the square must not lead beyond the end of the curve.
     const double overlap = std::min(s * s, pressure_curve.end());
     return elastic_excess(modulus_over_yield, s, pressure_curve.at(overlap));
   };
@@ -216,7 +216,7 @@ Contact elastic_contact(ElasticProfile profile, double composite_modulus, double
 }
 
 PlasticPressure plastic_pressure(const Material& material, double overlap_over_radius) {
-  // A curve of samples begins with the contact.
+  // A sampled curve begins at zero overlap.
   if (material.pressure_curve && overlap_over_radius < 0.0) {
     return {.pressure = material.yield_stress * material.pressure_curve->at(0.0).value, .decrement = 0.0};
   }
@@ -230,7 +230,7 @@ double yield_area_constant(double yield_overlap_ratio, double radius) noexcept {
 }
 
 Contact plastic_contact(const Material& material, double radius, double overlap, double area_constant) {
-  // Without area the same formulas pull a trial back to where there is some.
+  // The formulas also hold without contact area: their negative force pulls a trial back to positive area.
   const double area = 2.0 * overlap * radius - overlap * overlap + area_constant;
   const auto [pressure, decrement] = plastic_pressure(material, overlap / radius);
   return {.contact_radius = std::sqrt(std::max(area, 0.0)),
@@ -272,7 +272,7 @@ double unloading_fraction(const UnloadingShape& shape, double overlap) noexcept 
 
 namespace {
 
-/// At u = 1 - share, of which theta is the angle and `sine` its sine.
+/// Contact on the unloading branch at u = cos(theta), given theta and its sine.
 Contact on_unloading_branch(const UnloadingShape& shape, double composite_modulus, double u, double theta,
                             double sine) {
   const double phi_theta = phi_at(theta, sine, u);
@@ -294,7 +294,7 @@ Contact on_unloading_branch(const UnloadingShape& shape, double composite_modulu
 }  // namespace
 
 Contact unloading_contact(const UnloadingShape& shape, double composite_modulus, double overlap) {
-  // Beyond that, where only trials are, the force stays what it is there.
+  // Trials more than one recovery above the largest overlap keep the force of that overlap.
   const double u = std::max(unloading_fraction(shape, overlap), -1.0);
   if (u >= 1.0) return {};
   return on_unloading_branch(shape, composite_modulus, u, unloading_angle(u), std::sqrt((1.0 - u) * (1.0 + u)));
@@ -325,7 +325,7 @@ double elastic_overlap(ElasticProfile profile, double composite_modulus, double 
 }
 
 double plastic_overlap(const Material& material, double radius, double force, double area_constant, double guess) {
-  // The overlap without any area; the force rises from there to its largest value not far below the radius.
+  // At `low` the contact has no area; the force rises from there to its largest value not far below the radius.
   double low = radius - std::sqrt(radius * radius + area_constant);
   double high = radius;
   double overlap = std::clamp(guess, low + 1e-3 * (radius - low), 0.999 * radius);
@@ -334,7 +334,7 @@ double plastic_overlap(const Material& material, double radius, double force, do
     const Contact contact = plastic_contact(material, radius, overlap, area_constant);
     const double missing = force - contact.force;
     const bool is_rising = contact.by_overlap > 0.0;
-    // Past its largest value the force falls, and the overlap sought is below.
+    // Past its largest value the force falls, and the overlap sought is smaller.
     (is_rising && missing > 0.0 ? low : high) = overlap;
     double next = overlap + missing / contact.by_overlap;
     const bool is_outside = !is_rising || !(next >= low && next <= high);
@@ -345,7 +345,7 @@ double plastic_overlap(const Material& material, double radius, double force, do
       last_step = size;
       continue;
     }
-    // Between the largest force and one above it the search closes in on the former.
+    // If the prescribed force exceeds the largest one, the search ends at the overlap of the largest one.
     if (is_outside && missing > k_force_rounding * force) break;
     return overlap;
   }

@@ -14,7 +14,7 @@ namespace monograin::mdr {
 /// Indenter of an elastic contact: the source's unified ellipse (height 4R, width 2R) or Hertz's parabola.
 enum class ElasticProfile { ellipse, parabola };
 
-/// What the contact laws need to know of the particle's material.
+/// Material of the particle, as far as contact laws depend on it.
 struct Material {
   double composite_modulus = 0.0;  ///< E* = E/(1 - nu^2), > 0
   double poisson_ratio = 0.0;      ///< in (-1, 0.5]
@@ -37,14 +37,15 @@ struct Material {
 /// @param modulus_over_yield  E*/Y, > 0
 /// @return d in (0, 1), or infinity where E*/Y is so low that there is no root below 1
 [[nodiscard]] double yield_overlap_ratio(double modulus_over_yield);
-/// The same with another p_Y/Y over d. Where that rises faster than the elastic pressure there may be several roots;
-/// the first between two samples at which one pressure is above the other counts.
+/// Overlap over apparent radius at first yield, with another p_Y/Y over d than the exponential. If that curve rises
+/// faster than the elastic pressure there may be several roots; the function gives the first that shows as a change of
+/// sign between two samples.
 /// @return d in (0, 1], or infinity where there is no root up to 1 and the end of the curve
 [[nodiscard]] double yield_overlap_ratio(double modulus_over_yield, const PressureCurve& pressure_curve);
 
 /// phi(theta) = theta - sin(theta) cos(theta), for theta in [0, pi/2], to full relative accuracy.
 [[nodiscard]] double phi(double theta) noexcept;
-/// The same where sine and cosine are known.
+/// phi(theta) for known sine and cosine of theta.
 [[nodiscard]] double phi_at(double theta, double sine, double cosine) noexcept;
 
 /// The angle with phi(theta) = value, for value in [0, 2.5], to full relative accuracy.
@@ -73,15 +74,16 @@ struct PlasticPressure {
   double pressure = 0.0;   ///< p_Y
   double decrement = 0.0;  ///< -R dp_Y/d(delta)
 };
-/// Below zero, where only trials are, a material's own curve goes on with its first pressure.
+/// Mean pressure of a fully plastic contact. At negative overlaps, which only trials have, a material's own curve goes
+/// on with its first pressure.
 /// @throws std::domain_error beyond the end of the material's own curve
 [[nodiscard]] PlasticPressure plastic_pressure(const Material& material, double overlap_over_radius);
 
 /// Area constant of a contact that yields at the apparent radius R, c = delta_Y^2 - delta_Y R (eqs. 42, 43; area/pi).
 [[nodiscard]] double yield_area_constant(double yield_overlap_ratio, double radius) noexcept;
 
-/// Fully plastic contact at its largest overlap (eqs. 16, 21, 28, 36): F = pi p_Y (2 delta R - delta^2 + c), in
-/// trials also below zero, where there is no area.
+/// Fully plastic contact at its largest overlap (eqs. 16, 21, 28, 36): F = pi p_Y (2 delta R - delta^2 + c). Trials may
+/// lead to overlaps without contact area, where F is negative.
 /// @param area_constant  c of yield_area_constant
 /// @throws std::domain_error beyond the end of the material's own curve
 [[nodiscard]] Contact plastic_contact(const Material& material, double radius, double overlap, double area_constant);
@@ -96,19 +98,20 @@ struct UnloadingShape {
   double height = 0.0;            ///< A = 4 p_Y a_max / E*
   double rho = 0.0;               ///< share of the elastic recovery that moves the centre, in (0, 1)
   double recovery = 0.0;          ///< A (1 - rho)/2: the contact opens at m - recovery
-  // Logarithmic derivatives with respect to m and R at the other fixed, and those of rho.
+  // Logarithmic derivatives by m at fixed R and by R at fixed m; for rho the plain derivatives.
   double pressure_by_max = 0, pressure_by_radius = 0;              ///< p_x / p_Y
   double contact_radius_by_max = 0, contact_radius_by_radius = 0;  ///< a_x / a_max
   double rho_by_max = 0, rho_by_radius = 0;                        ///< rho_x
 };
 
+/// Indenter that a fully plastic contact leaves when it unloads from the overlap m, with derivatives (eqs. 27-35).
 /// @throws std::domain_error where a_max^2 or the distance of the indenter's tip from the centre is not positive, and
 /// beyond the end of the material's own pressure curve
 [[nodiscard]] UnloadingShape unloading_shape(const Material& material, double radius, double overlap_max,
                                              double area_constant);
 
-/// The same from the contact radius and mean pressure at the largest overlap, by whatever law they came about; without
-/// the derivatives with respect to m and R.
+/// Unloading shape from the contact radius and mean pressure at the largest overlap, whichever law gives these. Its
+/// derivatives with respect to m and R are zero.
 /// @throws std::domain_error where the distance of the indenter's tip from the centre is not positive
 [[nodiscard]] UnloadingShape unloading_shape_of(double composite_modulus, double poisson_ratio, double radius,
                                                 double overlap_max, double contact_radius, double pressure);
@@ -121,32 +124,34 @@ struct UnloadingShape {
 /// up to one recovery above; beyond that the force is constant.
 [[nodiscard]] Contact unloading_contact(const UnloadingShape& shape, double composite_modulus, double overlap);
 
-/// The same from the distance to the overlap at which the contact opens, over the recovery: 0 there, 1 at the largest
-/// overlap. Has its digits also where the recovery is a small share of the overlap.
+/// Contact on the unloading branch, from the distance to the overlap at which the contact opens, over the recovery: 0
+/// there, 1 at the largest overlap. Keeps its digits where the recovery is a small share of the overlap.
 [[nodiscard]] Contact recompressed_contact(const UnloadingShape& shape, double composite_modulus, double share);
 
-// The overlap at which a contact bears a force >= 0, on each branch.
-
+/// Overlap at which an elastic contact bears a force; 0 for a force <= 0.
 /// @throws std::domain_error for a force above that of an overlap of twice the radius (ellipse)
 [[nodiscard]] double elastic_overlap(ElasticProfile profile, double composite_modulus, double radius, double force);
+/// Overlap at which a fully plastic contact bears a force >= 0, on the rising part of its curve.
 /// @param guess  an overlap nearby, to begin with
 /// @throws std::domain_error where no overlap below the radius, or up to the end of the material's own pressure curve,
 /// bears the force
 [[nodiscard]] double plastic_overlap(const Material& material, double radius, double force, double area_constant,
                                      double guess);
-/// The share as recompressed_contact() has it.
-/// @throws std::domain_error as unloading_overlap
+/// Share, as in recompressed_contact(), at which a contact on the unloading branch bears a force >= 0.
+/// @throws std::domain_error as unloading_overlap()
 [[nodiscard]] double recompressed_share(const UnloadingShape& shape, double force);
-/// Forces above that of the largest overlap continue the branch analytically, up to half a recovery above.
+/// Overlap at which a contact on the unloading branch bears a force >= 0. Forces above that of the largest overlap
+/// continue the branch analytically, up to half a recovery above.
 /// @throws std::domain_error beyond that
 [[nodiscard]] double unloading_overlap(const UnloadingShape& shape, double force);
 
 // Stored energies: recoverable work of the walls at fixed R and fixed largest overlap; dPi = F d(delta_o).
 
+/// Stored energy of an elastic contact; 0 where it is open.
 [[nodiscard]] double elastic_energy(ElasticProfile profile, double composite_modulus, double radius, double overlap);
-/// At its largest overlap: (1 - rho) (8/3) p_Y^2 a_max^3 / E*.
+/// Stored energy of a yielded contact at its largest overlap: (1 - rho) (8/3) p_Y^2 a_max^3 / E*.
 [[nodiscard]] double plastic_energy(const UnloadingShape& shape) noexcept;
-/// On the unloading branch and its continuation; 0 where the contact is open.
+/// Stored energy on the unloading branch and its continuation; 0 where the contact is open.
 [[nodiscard]] double unloading_energy(const UnloadingShape& shape, double overlap) noexcept;
 
 /// Primitive over the overlap of the force of plastic_contact at fixed R (up to a constant), for overlaps > 0.

@@ -10,8 +10,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// An elastic contact. Where trials may open it, its force is odd in the overlap, and goes on beyond the middle of the
-/// particle with the slope there.
+/// Elastic contact. If the law continues off its branches, the force is odd in the overlap, and beyond an overlap of R
+/// it rises with the slope there.
 Contact elastic_branch(const ContactLaw& law, double radius, double overlap) {
   const double depth = law.continues_off_branch ? std::min(std::abs(overlap), radius) : overlap;
   Contact contact = elastic_contact(law.elastic_profile, law.material.composite_modulus, radius, depth);
@@ -23,8 +23,9 @@ Contact elastic_branch(const ContactLaw& law, double radius, double overlap) {
   return contact;
 }
 
-/// A contact below its largest overlap. Where trials may lead far off its branch, which is short, it goes on there with
-/// the slope at the largest overlap, odd about the overlap at which it opens.
+/// Contact below its largest overlap. If the law continues off its branches, the force is odd about the overlap at
+/// which the contact opens, and more than two recoveries above that (one, below) it rises with the slope at the largest
+/// overlap: the branch is short, and trials may lead far off it.
 Contact unloading_branch(const ContactLaw& law, const UnloadingShape& shape, double overlap) {
   const double modulus = law.material.composite_modulus;
   if (!law.continues_off_branch) return unloading_contact(shape, modulus, overlap);
@@ -152,7 +153,8 @@ double ContactBranch::energy(const ContactLaw& law, double r, double overlap, do
                              PlasticPart part) const {
   const double modulus = law.material.composite_modulus;
   if (!edge.follows()) return adhesive_energy(frame(law, r, overlap), modulus, law.surface_energy, contact_radius);
-  // A contact closes without attraction: the surface energy is lost, but can be got back.
+  // A contact closes without attraction, so no work is done on the surface; opening it takes the surface energy, which
+  // lowers the recoverable energy.
   const double surface =
       part == PlasticPart::recoverable ? pi * contact_radius * contact_radius * law.surface_energy : 0.0;
   switch (regime) {

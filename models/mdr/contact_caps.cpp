@@ -5,7 +5,7 @@
 namespace monograin::mdr {
 namespace {
 
-// Caps that have met and are this far from it have parted.
+// Distance (of the guard from zero) from which on caps that have met have parted.
 constexpr double k_parted = 1e-6;
 
 /// Overlap of a contact's cap. An idle contact has none; a round-off overlap of 1e-12 R0 would give one 1e-6 R0 wide.

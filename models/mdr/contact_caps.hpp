@@ -12,7 +12,7 @@ namespace monograin::mdr {
 
 class ContactCaps {
  public:
-  /// None where the apparent radius does not grow.
+  /// Without pairs if the apparent radius cannot grow.
   explicit ContactCaps(const Setup& setup)
       : pairs_(setup.grows() ? cap_pairs_of(setup.classes) : std::vector<CapPair>{}),
         stops_(setup.settings.stops_at_cap_intersection) {}
@@ -24,12 +24,15 @@ class ContactCaps {
   }
   [[nodiscard]] std::span<const CapPair> pairs() const noexcept { return pairs_; }
   [[nodiscard]] bool both_touch(const Particle& p, std::size_t pair) const noexcept;
-  /// >= 0 where the caps of a pair intersect.
+  /// Guard: >= 0 where the caps of a pair intersect.
   [[nodiscard]] double guard(const Particle& p, std::size_t pair) const;
 
-  /// @return the reason to stop, if that was asked for
+  /// Records and logs that the caps of a pair have met.
+  /// @return the reason to stop, if the settings say so
   std::optional<DomainEnd> meet(std::size_t pair, double r, std::vector<Event>& log);
-  /// A contact may be made within the cap of another one, which no guard meets.
+  /// Records caps that intersect from the start of a mode, because a contact was made within the cap of another one: no
+  /// guard fires there. Caps that have parted may meet again.
+  /// @return the reason to stop, if the settings say so
   std::optional<DomainEnd> meet_at_once(const Particle& p, std::vector<Event>& log);
 
   /// Apparent radius over R0 at which caps met for the first time.

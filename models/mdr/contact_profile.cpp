@@ -18,7 +18,7 @@ using std::numbers::pi;
 constexpr double k_tip = 0.5;
 using TipRule = boost::math::quadrature::gauss<double, 20>;
 
-/// sqrt(a^2 - x^2) without cancellation
+/// sqrt(a^2 - x^2), without cancellation.
 double chord(double a, double x) noexcept { return std::sqrt((a - x) * (a + x)); }
 
 /// g(a) - g(x) for 0 <= x <= a, without cancellation near the edge.
@@ -39,7 +39,7 @@ double ellipse_outside(const Indenter& indenter, double a, double r, double angl
   // (A/2) (E(angle, r/b) - angle sqrt(1 - a^2/b^2)); by Carlson's integrals, because the modulus may be above 1.
   const double sine = a / r;
   const double amplitude = a / b;
-  // Not from the rounded quotients: near the edge their complements have no digits.
+  // Complements formed from the rounded quotients would have no digits near the edge.
   const double cosine_square = (r - a) * (r + a) / (r * r);
   const double delta_square = (b - a) * (b + a) / (b * b);
   const double second_kind =
@@ -48,7 +48,8 @@ double ellipse_outside(const Indenter& indenter, double a, double r, double angl
   return 0.5 * indenter.height * (second_kind - angle * std::sqrt(delta_square));
 }
 
-/// The same of the parabola, (A/(4 b^2)) ((a^2 - r^2/2) angle + (a/2) sqrt(r^2 - a^2)).
+/// int_0^a (g(a) - g(x))/sqrt(r^2 - x^2) dx of the parabola, for r > a:
+/// (A/(4 b^2)) ((a^2 - r^2/2) angle + (a/2) sqrt(r^2 - a^2)).
 double parabola_outside(const Indenter& indenter, double a, double r, double angle) {
   if (a <= k_tip * r)
     return TipRule::integrate([&](double t) { return below_edge(indenter, a, r * std::sin(t)); }, 0.0, angle);
@@ -104,8 +105,8 @@ double ContactProfile::relaxed_height(double r) const {
 }
 
 std::vector<SurfacePoint> surface_of(const ContactProfile& profile) {
-  constexpr int k_points = 128;    // within the contact, and as many around it
-  constexpr double k_reach = 2.0;  // as far as this many contact radii
+  constexpr int k_points = 128;    // points within the contact, and as many around it
+  constexpr double k_reach = 2.0;  // distance of the last point from the axis, over the contact radius
   std::vector<SurfacePoint> points;
   const double a = profile.contact_radius;
   const auto add = [&](double r) {
@@ -114,7 +115,7 @@ std::vector<SurfacePoint> surface_of(const ContactProfile& profile) {
                       .displacement = profile.surface_displacement(r),
                       .relaxed_height = profile.relaxed_height(r)});
   };
-  // Closer towards the edge from both sides, where the slopes are unbounded; not at the edge itself.
+  // Points crowd towards the edge from both sides, because slopes are unbounded there; none lies at the edge itself.
   for (int k = 0; k < k_points; ++k) add(a * std::sin(0.5 * pi * k / k_points));
   for (int k = 1; k <= k_points; ++k) {
     const double share = static_cast<double>(k) / k_points;

@@ -1,8 +1,8 @@
 /// Pressure and surface of one contact of the MDR model, in space and in its one-dimensional image, in closed form.
 ///
-/// One form serves all contacts whose image is an indenter: elastic ones, yielded ones at and below their largest
-/// overlap, each with or without adhesion. Every function is homogeneous: lengths in any one unit, stresses in any one
-/// unit. Source, unless said otherwise: Zunker and Kamrin (2024).
+/// One form serves all contacts whose image is an indenter: elastic contacts, yielded contacts at and below their
+/// largest overlap, each with or without adhesion. Every function is homogeneous: lengths in any one unit, stresses in
+/// any one unit. Source, unless said otherwise: Zunker and Kamrin (2024).
 #pragma once
 
 #include <vector>
@@ -23,7 +23,7 @@ struct ContactProfile {
   Indenter indenter;               ///< A > 0, b > 0
   double composite_modulus = 0.0;  ///< E* > 0
   double contact_radius = 0.0;     ///< a >= 0, for the ellipse at most b
-  double displacement_1d = 0.0;    ///< delta_1D; above g(a) would be a flat punch, below it the edge is pulled
+  double displacement_1d = 0.0;    ///< delta_1D; below g(a) the edge is pulled, above would be a flat punch
 
   /// Displacement of the image, w1D(x) = delta_1D - g(x) for |x| <= a; 0 outside (eq. 6).
   [[nodiscard]] double image_displacement(double x) const noexcept;
@@ -33,8 +33,8 @@ struct ContactProfile {
   /// Ellipse: E* A/(2 pi b) atan(sqrt((a^2 - r^2)/(b^2 - a^2))); parabola: E* A/(2 pi b^2) sqrt(a^2 - r^2). An edge
   /// that is pulled adds E* w1D(a)/(pi sqrt(a^2 - r^2)), which is unbounded.
   [[nodiscard]] double pressure(double r) const noexcept;
-  /// The same as a function of half the chord sqrt(a^2 - r^2) > 0, on which alone it depends: near a pulled edge the
-  /// digits of that are not in r.
+  /// Contact pressure as a function of half the chord, sqrt(a^2 - r^2) > 0, on which alone it depends: near a pulled
+  /// edge r lacks the digits of the chord.
   [[nodiscard]] double pressure_at_chord(double half_chord) const noexcept;
   /// Displacement of the surface towards the particle, w3D(r), inside and outside the contact (eq. 10, second).
   [[nodiscard]] double surface_displacement(double r) const;
@@ -45,7 +45,7 @@ struct ContactProfile {
 };
 
 /// Points of the pressure and the surface from the contact's middle to twice its radius, in the units of the profile.
-/// @param profile  of a contact that has a radius
+/// @param profile  profile of a contact whose radius is not zero
 [[nodiscard]] std::vector<SurfacePoint> surface_of(const ContactProfile& profile);
 
 }  // namespace monograin::mdr

@@ -13,9 +13,9 @@ namespace monograin::mdr {
 namespace {
 
 constexpr int k_most_steps = 60;
-// Step of the growing radius after which the next one is round-off, where all that depends on it is smooth.
+// Step of the growing radius after which Newton's next one is round-off, if the equations are smooth.
 constexpr double k_last_step = 1e-10;
-// Steps that are round-off, where they do not become shorter.
+// A step below this that is not much shorter than the last one is round-off: the search has converged.
 constexpr double k_least_step = 1e-12;
 
 }  // namespace
@@ -32,7 +32,7 @@ void complete(Particle& p, double xi, std::span<double> y) {
   try {
     move_centre_and_walls(p, xi, y);
   } catch (const std::domain_error&) {
-    // A guess beyond pull-off leads to there, where the force that is left is least.
+    // From a guess beyond pull-off the search gets stuck at a minimum of the net force.
     is_balanced = false;
     if (!may_peel_off(p) || !leave_saddle(p, xi, y, is_balanced)) throw;
   }
@@ -46,8 +46,8 @@ void grow(Particle& p, double xi, std::span<double> y) {
   double below = -std::numeric_limits<double>::infinity();
   double above = std::numeric_limits<double>::infinity();
   double step_size = std::numeric_limits<double>::infinity();
-  // Quadratic convergence: below this the next step is rounding, unless square roots still converge, of the force
-  // of what touches a free centre or of an edge next to pull-off.
+  // Quadratic convergence makes the next step round-off below this. Convergence is slower where forces go with a square
+  // root: for a contact that only touches a free centre, or an edge next to pull-off.
   const double last_step =
       !p.centre().is_free() && !p.peels_anywhere() ? k_last_step : 2.0 * std::numeric_limits<double>::epsilon();
   for (int iteration = 0; iteration < k_most_steps; ++iteration) {
@@ -65,8 +65,8 @@ void grow(Particle& p, double xi, std::span<double> y) {
     }
     if (!(slope > 0.0)) throw DomainError(Limit::free_surface_used_up);
     double step = std::clamp(-defect / slope, -0.1, 0.1);
-    // The balance rises with the radius, but has a kink where a wall under force pulls off: a step over that, and one
-    // back, may lead to and fro without end. What has been seen on either side bounds the next radius.
+    // The balance rises with the radius, but has a kink where a wall under force pulls off: Newton's method may step
+    // across it and back without end. The radii seen on either side bound the next one, and bisection breaks the cycle.
     if (!p.centre().is_free()) {
       (defect < 0.0 ? below : above) = y[k_radius];
       const double next = y[k_radius] + step;
@@ -80,7 +80,7 @@ void grow(Particle& p, double xi, std::span<double> y) {
     if (count > 0) set_centre(y, count, centre_of(y, count) + centre_step);
     const double size = std::max(std::abs(step), centre_step.norm());
     if (size < last_step) return;
-    // A centre that soft contacts hold goes to and fro by more than that.
+    // A centre that soft contacts hold moves by more than round-off even where forces balance.
     const bool is_balanced = std::abs(step) < k_least_step && p.centre().force().norm() <= p.force_rounding();
     if (size >= 0.5 * step_size && (size < k_least_step || is_balanced)) return;
     step_size = size;

@@ -39,7 +39,7 @@ CentreMatrix FreeCentre::unconstrained_directions() const {
 }
 
 CentreStiffness FreeCentre::softest_direction() const {
-  // The stiffness of one direction is not to be lost in the rounding of another's.
+  // In this basis the stiffness of a soft direction is not lost in the round-off of a stiff one.
   const CentreMatrix basis = stiffest_directions(&Load::unsoftened);
   CentreMatrix held = CentreMatrix::Zero();
   CentreMatrix unsoftened = CentreMatrix::Zero();

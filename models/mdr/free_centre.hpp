@@ -1,6 +1,6 @@
-/// Balance of the forces on the free centre of a particle: what contacts do to it, and how it moves for that.
+/// Balance of forces on the free centre of a particle: the loads of contacts, their sums, and how the centre responds.
 ///
-/// Contacts push it along the lines of contacts/centre/centre_lines.hpp. Lengths in R0.
+/// Contacts push the centre along the lines of contacts/centre/centre_lines.hpp. Lengths in R0.
 #pragma once
 
 #include <span>
@@ -20,7 +20,7 @@ struct CentreLoad {
   double force_by_time = 0.0;
   double force_by_radius = 0.0;
   double stiffness = 0.0;
-  double tangent_stiffness = 0.0;  ///< no less than that of a touch
+  double tangent_stiffness = 0.0;  ///< ContactBranch::tangent_stiffness(), which has a least value for idle contacts
 };
 
 /// Tangent stiffness of the centre in its softest direction, over what it would be if no edge peeled and no contact
@@ -61,21 +61,21 @@ class FreeCentre {
     line.stiffness += added.count * added.stiffness * along * along;
     line.tangent_stiffness += added.count * added.tangent_stiffness * along * along;
   }
-  /// Sums the loads of all lines up. Contacts that are first touched have no stiffness yet: along their lines their
-  /// tangents serve.
+  /// Sums up the loads of all lines. A line without stiffness, as at first touch, takes its tangent stiffness.
   void sum_up() noexcept;
   [[nodiscard]] const CentreVector& force() const noexcept { return force_; }
   [[nodiscard]] const CentreMatrix& stiffness() const noexcept { return stiffness_; }
 
-  // Displacements of the centre; none along directions in which no contact constrains it.
+  // Displacements of the centre; zero along directions in which no contact constrains it.
 
-  /// Cancels the net force, by the stiffnesses, or by the tangent ones.
+  /// Newton step of the centre: displacement that cancels the net force with the present stiffnesses.
   [[nodiscard]] CentreVector step() const { return step_along(&Load::stiffness, &Load::force); }
+  /// Displacement of the centre that cancels the net force with the tangent stiffnesses.
   [[nodiscard]] CentreVector tangent_step() const { return step_along(&Load::tangent_stiffness, &Load::force); }
-  /// Cancels it by the stiffnesses that keep_stiffness() saw.
+  /// Displacement of the centre that cancels the net force with the stiffnesses that keep_stiffness() has stored.
   [[nodiscard]] CentreVector step_of_kept() const { return step_along(&Load::kept_stiffness, &Load::force); }
   void keep_stiffness() noexcept;
-  /// Rates with the step coordinate and with the radius.
+  /// Derivatives of the centre's position by the step coordinate and by the radius.
   [[nodiscard]] CentreVector by_time() const { return step_along(&Load::tangent_stiffness, &Load::force_by_time); }
   [[nodiscard]] CentreVector by_radius() const { return step_along(&Load::tangent_stiffness, &Load::force_by_radius); }
 
@@ -89,9 +89,9 @@ class FreeCentre {
     }
     return unconstrained_directions();
   }
-  /// @param stiffness_of  contact class, component of its mean normal along its line -> its tangent stiffness along
-  /// that
-  ///                      line, and the one without peeling and softening
+  /// Softest direction of the centre, and its tangent stiffness over that without peeling and softening.
+  /// @param stiffness_of  (contact class, component of its mean normal along its line) -> its tangent stiffness along
+  ///                      that line, and the one without peeling and softening
   template <class StiffnessOf>
   [[nodiscard]] CentreStiffness softest(StiffnessOf&& stiffness_of) {
     for (Load& load : loads_) load.held = load.unsoftened = 0.0;
@@ -115,7 +115,7 @@ class FreeCentre {
     double held = 0.0;        ///< work space of unconstrained() and softest()
     double unsoftened = 0.0;  ///< work space of softest()
   };
-  /// Along the line of a class.
+  /// Load along the line of a class.
   [[nodiscard]] Load& load(std::size_t i) noexcept { return loads_[lines_.line_of(i)]; }
   [[nodiscard]] CentreMatrix stiffest_directions(double Load::*stiffness) const {
     return lines_.stiffest_directions([&](std::size_t line) { return loads_[line].*stiffness; });

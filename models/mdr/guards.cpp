@@ -8,10 +8,10 @@
 namespace monograin::mdr {
 namespace {
 
-// A program that returns exactly to the old maximum does not pass it, whichever way its overlap is rounded.
+// Round-off of an overlap: a program that returns exactly to the old maximum does not pass it.
 constexpr double k_same_overlap = 2e-15;
-// The volume's square root ends at 1 - 4w = 0; stop before an implicit code's difference quotients reach over that
-// edge.
+// The square root in the volume ends at 1 - 4w = 0. The guard fires this much before, so that difference quotients of
+// implicit integrators do not reach beyond.
 constexpr double k_least_volume = 1e-6;
 
 /// True if the overlaps, and with them forces, caps and volume, all grow or all shrink over the rest of the step.
@@ -20,7 +20,7 @@ bool goes_one_way(const Particle& p, const Motion& now) {
   bool goes_in = false;
   bool goes_out = false;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    // A deeper contact may lose in the lever with which its force acts on the volume what it gains in force.
+    // As a contact grows deeper, the lever of its force on the volume may fall by more than the force grows.
     if (p.is_loaded(i) || 2.0 * std::max(p.drive(i).start(), p.drive(i).end()) > 1.0 - p.at().r) return false;
     const double rate = overlap_rate(p, i, now);
     goes_in = goes_in || rate > 0.0;
@@ -32,7 +32,7 @@ bool goes_one_way(const Particle& p, const Motion& now) {
 }  // namespace
 
 double contact_guard(const Particle& p, int kind, std::size_t i, double xi, double overlap) {
-  // Under force a contact lasts as long as the force presses; a program that returns exactly to zero does not leave it.
+  // Under force a contact lasts as long as the force presses; a program that returns exactly to zero does not open it.
   if (p.is_loaded(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost)) {
     const double scale = p.drive(i).size();
     return scale > 0.0 ? p.drive(i).value(xi) / scale + (kind == k_lost ? k_same_overlap : 0.0) : 0.0;
@@ -41,7 +41,7 @@ double contact_guard(const Particle& p, int kind, std::size_t i, double xi, doub
   const ContactBranch& branch = p.branch(i);
   switch (kind) {
     case k_yield:
-      // An idle contact may be as deep as that by the round-off of others.
+      // The round-off of other forces may press an idle contact to its yield overlap.
       return branch.yield_guard(p.law(), r, overlap, p.is_idle(i) ? p.resolution() : 0.0);
     case k_reload:
       return overlap - branch.largest_overlap(p.law(), r) - k_same_overlap;
@@ -50,7 +50,8 @@ double contact_guard(const Particle& p, int kind, std::size_t i, double xi, doub
     case k_dent_touched:
       return branch.opening_guard(p.law(), r, overlap);
     default:
-      // A wall that a free centre leaves at a touch, and comes back to at once, would not be seen to have been left.
+      // With a free centre the guard is negative at a touch. Otherwise a wall that the centre leaves and meets again at
+      // once would not cross zero.
       return p.centre().is_free() ? overlap - k_same_overlap : overlap;
   }
 }
@@ -62,7 +63,7 @@ double edge_guard(const Particle& p, int kind, std::size_t i, double xi, double 
     const PullOff& limits = branch.pull_off(p.law(), now.indenter);
     return p.is_loaded(i) ? pull_off_guard(limits, p.drive(i).value(xi)) : pull_off_guard(limits, now);
   }
-  // Without springs a force leads it either way by its sign alone.
+  // An edge of zero radius has no springs: the sign of the prescribed force decides whether it follows or peels.
   if (branch.edge.radius == 0.0 && p.is_loaded(i)) {
     return contact_guard(p, kind == k_peel ? k_lost : k_made, i, xi, overlap);
   }
@@ -88,7 +89,7 @@ void GuardSet::arm(Particle& p, const ContactCaps& caps, double xi, std::span<co
   }
   arm_growth(p, now);
   for (std::size_t k = 0; k < caps.pairs().size(); ++k) {
-    // Caps that have just met change no mode; met a rounding error short of zero, they would meet again at once.
+    // Caps that have just met may be a round-off short of zero, and would meet again at once.
     if (!caps.pairs()[k].have_met && caps.both_touch(p, k) && caps.guard(p, k) < -k_touch) {
       list_.push_back({k_caps, static_cast<int>(k), 1, "caps-intersect"});
     }
@@ -108,11 +109,11 @@ void GuardSet::arm_growth(const Particle& p, const Motion& now) {
   if (p.mode.is_growing) {
     list_.push_back({k_growth_off, -1, -1, "growth-off"});
     list_.push_back({k_singular, -1, -1, "singular-growth"});
-    // Under displacement control the two are one.
+    // Without force-controlled walls this guard equals k_singular.
     if (p.setup().takes_forces) list_.push_back({k_covered, -1, -1, "singular-growth"});
   } else if (p.setup().grows() && gate_is_open(p, now)) {
     list_.push_back({k_growth_on, -1, 1, "growth-on"});
-    // The share of a contact in the demand for growth may change sign just before it is lost.
+    // The share of a contact in the demand for growth may change sign just before the contact is lost.
     for (Guard& guard : list_) guard.is_branch_end = guard.is_branch_end || guard.kind == k_lost;
   }
 }
@@ -127,7 +128,7 @@ GuardSet::Course GuardSet::course_of(const Particle& p, std::size_t i, const Mot
           .may_go_out = rate < 0.0 || may_turn};
 }
 
-/// Lists a guard, unless a linear overlap or a prescribed force does not reach it by the end of the step.
+/// Lists a guard, unless it depends on a linear overlap or a prescribed force that does not reach it in this step.
 void GuardSet::add_if_reached(const Particle& p, std::size_t i, const Course& course, int kind, int direction,
                               std::string_view name) {
   const bool is_linear = !course.may_turn && !p.is_loaded(i);  // overlap linear in xi, radius held
@@ -162,14 +163,14 @@ void GuardSet::arm_contact(const Particle& p, std::size_t i, const Motion& now) 
   }
 }
 
-/// An open contact touches the fresh surface or its dent.
+/// Lists the guard of an open contact, which may touch the fresh surface or its dent.
 void GuardSet::arm_touch(const Particle& p, std::size_t i, const Course& course) {
   if (!course.may_come_in) return;
   const bool is_dent = p.branch(i).regime == Regime::separated;
   add_if_reached(p, i, course, is_dent ? k_dent_touched : k_made, 1, is_dent ? "dent-touched" : "contact-made");
 }
 
-/// On the primary loading branch a contact turns back, or an elastic one is lost with the centre.
+/// Lists the guards of a contact on the primary loading branch: it may turn back, or a free centre may leave it.
 void GuardSet::arm_primary_branch(const Particle& p, std::size_t i, const Motion& now, const Course& course) {
   const int index = static_cast<int>(i);
   const bool is_shifted = p.law().is_shifted();
@@ -188,7 +189,7 @@ void GuardSet::arm_edge(const Particle& p, std::size_t i, const Course& course) 
       if (course.may_turn) list_.push_back({k_turn, index, -1, "stick"});
       break;
     case Edge::sticking: {
-      // An edge that sticks since the largest overlap follows again when that is passed.
+      // If the overlap cannot turn, an edge that has stuck since the largest overlap follows again with the reload.
       const double at_largest = edge_guard(p, k_follow, i, 0.0, branch.largest_overlap(p.law(), p.at().r));
       if (course.may_come_in && (course.may_turn || at_largest > 1e-9)) list_.push_back({k_follow, index, 1, "follow"});
       if (course.may_go_out) list_.push_back({k_peel, index, -1, "peel"});
@@ -204,8 +205,8 @@ void GuardSet::arm_edge(const Particle& p, std::size_t i, const Course& course) 
   }
 }
 
-/// Lists the guards of the extrema of a tensile force, in turns: after a least force comes a greatest. A prescribed
-/// force has none within a step, nor has an edge that sticks where only the own wall moves.
+/// Lists the guards of the next extremum of a tensile force: greatest and least force alternate. A prescribed force has
+/// no extremum within a step, nor has the force of a sticking edge where only its own wall moves.
 void GuardSet::arm_tension(const Particle& p, std::size_t i, const Motion& now, const Course& course) {
   const bool peels_alone = p.branch(i).edge.peels() && course.may_go_out;
   if (p.branch(i).edge.follows() || p.is_loaded(i) || !(course.may_turn || peels_alone)) return;
@@ -221,14 +222,14 @@ void GuardSet::arm_tension(const Particle& p, std::size_t i, const Motion& now, 
   if (!is_tensile || rate < -0.5 * k_steady_force) return add(k_greatest_tension, 1);
   if (!course.may_turn) return;
   if (rate > 0.5 * k_steady_force) return add(k_least_tension, -1);
-  // A force at rest is at no extremum where it begins to move.
+  // A force at rest passes no extremum when it begins to change: these two guards only show which one comes next.
   add(k_tension_falls, 1);
   add(k_tension_rises, -1);
 }
 
 namespace {
 
-/// Guard of the extremum of a force: a contact that no longer pulls has passed none.
+/// Guard of an extremum of a force; it does not fire because a contact no longer pulls.
 double tension_guard(const Particle& p, int kind, std::size_t i, const Motion& now) {
   const double rate = force_rate(p, i, now);
   const bool pulls = p.contact(i).contact.force < 0.0;
@@ -246,13 +247,14 @@ double tension_guard(const Particle& p, int kind, std::size_t i, const Motion& n
 
 double retreat_guard(Particle& p, std::size_t i, double xi, std::span<const double> y, const Motion& now) {
   if (p.mode.loads_on[i]) return rate_if_unloaded(p, i, xi, y);
-  // The rate of an idle contact beside a centre that moves has either sign.
+  // The rate of an idle contact next to a moving centre is round-off, of either sign.
   return p.is_idle(i) ? 1.0 : primary_branch_rate(p, i, now) + 2.0 * k_touch;
 }
 
 double lost_guard(const Particle& p, std::size_t i, double xi) {
   const double guard = contact_guard(p, k_lost, i, xi, p.contact(i).overlap);
-  // An idle contact is always near to being lost, and not lost together with others.
+  // An idle contact is always near to being lost. In units of the resolution, its guard is not near zero, so that it is
+  // not lost together with others.
   return p.branch(i).is_on_primary_branch || p.is_idle(i) ? guard / k_resolution : guard;
 }
 

@@ -40,35 +40,38 @@ enum GuardKind : int {
 
 /// A guard this near to zero, and moving on, counts as crossed when a mode is decided.
 inline constexpr double k_touch = 1e-13;
-/// Rate of a contact's force, over what the motion of the walls makes of a sticking edge, that is round-off.
+/// Rate of a contact's force, in the unit of force_rate(), that is round-off.
 inline constexpr double k_steady_force = 1e-9;
-/// An edge that has just turned is at rest, and near to where it turned from; integration errors there are no motion.
+/// Rate, of order one elsewhere, below which a wall or an edge is at rest: just after it has turned, its rate is an
+/// error of integration.
 inline constexpr double k_at_rest = 1e-8;
 /// With a free centre, contacts along its directions open and close together; their guards agree to the integration
 /// error only.
 inline constexpr double k_together = 1e-6;
-/// Growth ends where the free surface is used up to this share.
+/// Growth ends where the free surface falls below this share of the particle's surface.
 inline constexpr double k_least_slope = 1e-3;
 /// Stiffness of a free centre at which a fold counts as reached. At the fold the equilibrium ceases to exist: a guard
-/// that vanished there could not be located, because no state lies beyond. The remaining distance goes with the square
-/// of this.
+/// that vanished there could not be located, because no state lies beyond. The remaining distance to the fold goes with
+/// the square of this stiffness.
 inline constexpr double k_least_centre_stiffness = 1e-5;
-/// Stiffness of a plastic contact under force, over that of a shallow one, at which it counts as bearing the largest
-/// force that it can. At less its overlap would magnify errors of the radius a hundredfold and more.
+/// Stiffness of a plastic contact under force, over that of a shallow one, at which the contact counts as bearing its
+/// largest force. Below this stiffness, the overlap would magnify errors of the radius a hundredfold and more.
 inline constexpr double k_last_stiffness = 1e-2;
 /// A wall this near to the centre of the particle (over R0) has reached it.
 inline constexpr double k_least_distance = 1e-3;
 
-/// Guard of a contact without regard to its edge.
-/// @param overlap  of the contact, which need not be the one it has
+/// Guard of a contact that does not depend on its adhesive edge: touch, loss, yield or reload.
+/// @param overlap  at which the guard is evaluated, not necessarily the present overlap
 [[nodiscard]] double contact_guard(const Particle& p, int kind, std::size_t i, double xi, double overlap);
-/// Distance from the state in which the edge of an adhesive contact changes, over what tears it.
+/// Guard of the edge of an adhesive contact: its distance from following, peeling or pull-off, over the stretch that
+/// tears its springs (at pull-off, over the critical displacement or force).
+/// @param overlap  at which the guard is evaluated, not necessarily the present overlap
 [[nodiscard]] double edge_guard(const Particle& p, int kind, std::size_t i, double xi, double overlap);
-/// Overlap by which an edge that sticks may seem to be where it would follow. One that has just come to stick leaves
-/// with the square of its displacement, and round-off does not bring it back.
+/// Round-off of the overlap at which a sticking edge follows again. An edge that has just come to stick leaves that
+/// overlap with the square of its displacement; subtracting this keeps round-off from firing the guard.
 [[nodiscard]] double edge_rounding(const Particle& p, std::size_t i);
 
-/// The guards that are alive until the next transition or the end of the step.
+/// Set of the guards that are alive until the next transition or the end of the step.
 class GuardSet {
  public:
   void arm(Particle& p, const ContactCaps& caps, double xi, std::span<const double> y);
@@ -77,12 +80,12 @@ class GuardSet {
               std::span<double> values) const;
 
  private:
-  /// How the overlap of a contact may change until the step ends.
+  /// Possible changes of a contact's overlap until the step ends.
   struct Course {
     bool is_free = false;      ///< a free centre moves the particle against the wall's prescribed displacement
-    bool may_turn = false;     ///< in mid-step
-    bool may_come_in = false;  ///< grow
-    bool may_go_out = false;   ///< shrink
+    bool may_turn = false;     ///< the overlap may change its direction in mid-step
+    bool may_come_in = false;  ///< the overlap may grow
+    bool may_go_out = false;   ///< the overlap may shrink
   };
 
   [[nodiscard]] static Course course_of(const Particle& p, std::size_t i, const Motion& now);

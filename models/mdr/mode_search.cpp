@@ -14,17 +14,18 @@
 namespace monograin::mdr {
 namespace {
 
-// Share of an unloading branch that is left when it counts as loaded to its end together with another event.
+// A reload guard that fires together with another event counts if no more than this share of the unloading branch is
+// left to its end.
 constexpr double k_passed = 1e-2;
-// Under force a wall would go back by what is missing of its force, over the stiffness of a plastic contact, which is
-// less by many orders.
+// Such a share under force control: the wall would go back by the missing force over the stiffness of a plastic
+// contact, which is smaller than the stiffness of the unloading branch by many orders.
 constexpr double k_passed_by_force = 1e-6;
-// A free centre that has gone this far (over R0) within an instant has sprung.
+// Change of an overlap at one instant (over R0) beyond which the free centre has jumped to another equilibrium.
 constexpr double k_spring = 1e-9;
-// How long after an instant the sign of a demand for growth is asked for that is balanced there.
+// If the demand for growth is balanced at an instant, its sign is evaluated this far later (in step coordinates).
 constexpr double k_just_after = 1e-9;
 
-/// Takes the events of a contact out again, those from an index on.
+/// Erases the events of contact i from the log, from index `from` on.
 void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
   const auto first = log.begin() + static_cast<std::ptrdiff_t>(std::min(from, log.size()));
   const auto is_its = [i](const Event& event) { return event.contact_class == static_cast<int>(i); };
@@ -38,8 +39,9 @@ const PullOff& pull_off_of(const Particle& p, std::size_t i) {
   return branch.pull_off(p.law(), branch.frame(p.law(), p.at().r, p.contact(i).overlap).indenter);
 }
 
-/// Asks whether the model's convex indenter, which knows no yielding in tension, will do for a contact that begins to
-/// unload (F.7).
+/// Tests whether the model predicts the pull-off of a contact that begins to unload (F.7): the model's indenter is
+/// convex and does not yield in tension.
+/// @return the warning if it does not
 std::optional<Diagnostic> check_adhesion(const Particle& p, std::size_t i) {
   const Material& material = p.law().material;
   const Control control = p.is_loaded(i) ? Control::force : Control::displacement;
@@ -60,8 +62,8 @@ std::optional<Diagnostic> check_adhesion(const Particle& p, std::size_t i) {
   return std::nullopt;
 }
 
-/// Distance of an elastic contact from where it yields, over the overlap there, that counts as none. Contacts that
-/// balance each other on a free centre yield together, and their overlaps agree to the round-off of lengths only.
+/// Distance of an elastic contact from its yield overlap, over that overlap, at which the contact counts as yielding.
+/// Contacts that balance each other on a free centre yield together; their overlaps agree to the round-off of lengths.
 double nearness_of_yield(const Particle& p, std::size_t i) noexcept {
   if (!p.centre().acts(i)) return k_touch;
   return std::max(k_touch, std::min(k_together, k_resolution / p.law().material.yield_overlap_ratio));
@@ -128,33 +130,33 @@ std::optional<DomainEnd> ModeSearch::apply(std::span<const Guard> fired, double 
   return end;
 }
 
-/// True for a guard that has fired and that another transition at this instant, or round-off, leaves without meaning.
+/// True for a guard that has fired without a transition to apply: another transition at this instant has made it void,
+/// or round-off has fired it.
 bool ModeSearch::is_moot(const Guard& guard, const Motion& now) const {
   // The guard of intersecting caps carries the number of their pair, not of a contact class.
   if (guard.kind == k_caps) return false;
   const auto i = static_cast<std::size_t>(std::max(0, guard.index));
   const ContactBranch& branch = p_.branch(i);
   const auto has_another_edge = [&] {
-    // Another guard of the same edge has changed it at this instant, or its contact is back at its largest overlap,
-    // where edges only follow.
+    // Another guard has changed this edge at this instant, or the contact is back on its primary branch.
     return !branch.touches() || branch.is_on_primary_branch || edges_before_[i] != branch.edge.motion;
   };
   switch (guard.kind) {
     case k_made:
     case k_dent_touched:
-      return branch.touches();  // closed already, together with the contact it balances
+      return branch.touches();  // balance_touch() has closed it together with another contact
     case k_lost:
       return !branch.touches();
     case k_retreat:
     case k_yield:
-      return p_.is_idle(i);  // has nothing to unload from, nor to yield by
+      return p_.is_idle(i);  // carries no load that could fall or yield
     case k_peel:
     case k_turn:
       return has_another_edge();
     case k_follow:
       return has_another_edge() || edge_rate(p_, i, now) <= k_at_rest;
     case k_reload: {
-      // Nor is a branch at its end that is as short as what counts as zero.
+      // On a branch as short as the guard's tolerance, the guard fires far from the end of the branch: no reload there.
       if (branch.regime != Regime::unloading) return false;
       const double overlap = p_.contact(i).overlap;
       const double passed = p_.is_loaded(i) ? k_passed_by_force : k_passed;
@@ -165,6 +167,7 @@ bool ModeSearch::is_moot(const Guard& guard, const Motion& now) const {
   }
 }
 
+/// Applies the transition of a guard that changes contacts, and logs it.
 /// @return whether the growth has to be decided anew
 bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const Motion& now, std::vector<Event>& log) {
   const auto i = static_cast<std::size_t>(std::max(0, guard.index));
@@ -194,7 +197,7 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
       start_unloading(i, guard.name, log);
       return true;
     case k_turn:
-      // Through infinity: what holds the centre gives way, and no edge has turned.
+      // At a fold the rate passes through infinity: the centre loses its support, and the edge has not reversed.
       if (may_peel_off(p_) && centre_stiffness(p_).value < k_at_fold)
         separate(*weakest_contact(p_), y, log);
       else
@@ -202,10 +205,10 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
       has_turned_[i] = true;
       return true;
     case k_peel:
-      // Beside stiff contacts the rate of what turns with them has fewer digits.
+      // Next to stiff contacts the rate of a contact that turns with them loses digits; this one is no motion.
       if (edge_rate(p_, i, now) >= -k_at_rest || std::abs(overlap_rate(p_, i, now)) <= k_at_rest) {
-        // An edge that has just turned sticks where it would peel, and leaves with the square of its displacement:
-        // found to be past that by round-off, it would be found there again.
+        // An edge that has just turned sticks at the verge of peeling and leaves it with the square of its
+        // displacement. Round-off has fired the guard and would fire it again; setting the edge back prevents that.
         const Frame at = p_.branch(i).frame(p_.law(), p_.at().r, p_.contact(i).overlap);
         const double rounding = edge_rounding(p_, i) * at.by_overlap;
         p_.set_branch(i, p_.branch(i).with_edge(p_.branch(i).edge.set_back(at.indenter, rounding)));
@@ -217,7 +220,7 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
       if (p_.branch(i).edge.peels()) separate(i, y, log);
       return true;
     default:  // k_unstable
-      // Unless another contact has pulled off at this instant.
+      // No contact is left to separate if the peeling one has already pulled off at this instant.
       if (const auto weakest = weakest_contact(p_)) separate(*weakest, y, log);
       return true;
   }
@@ -247,8 +250,8 @@ std::optional<DomainEnd> ModeSearch::end_of(const Guard& guard, ContactCaps& cap
   }
 }
 
-/// True if the force of a contact that pulls goes through an extremum where the guard has fired. One that presses has
-/// come back from that with a rate.
+/// True if the force of a contact that pulls passes through an extremum where the guard has fired. The guard also fires
+/// when a contact that has pressed begins to pull; its force then has a finite rate, and is at no extremum.
 bool ModeSearch::is_extremum(const Guard& guard, const Motion& now) const {
   const auto i = static_cast<std::size_t>(guard.index);
   const ContactBranch& branch = p_.branch(i);
@@ -273,11 +276,11 @@ void ModeSearch::resolve(double xi, std::span<double> y, std::vector<Event>& log
   const std::size_t first_made = made_.size();
   for (std::size_t round = 0;; ++round) {
     if (round == most_rounds()) {
-      // Where it would run away in a mode that has been tried, the radius goes to and fro with a contact.
+      // Growth that would run away in one of the modes alternates with the branch of a contact.
       if (runs_away_) throw DomainError(Limit::free_surface_used_up);
       if (has_resumed_ == p_.mode.loads_on) throw DomainError(Limit::no_consistent_regimes);
-      // A contact that turns at its largest overlap, and once it has turned goes on beyond that, loads on as it does in
-      // the middle of a step, where its rate is round-off when it turns.
+      // Contacts that start to unload at their largest overlap, and would then load beyond it, alternate without end.
+      // Searches again from the first state and keeps them on the loading branch.
       std::ranges::copy(first_state, y.begin());
       p_.set_branches(first_branches);
       log.resize(first_logged);
@@ -294,14 +297,14 @@ void ModeSearch::resolve(double xi, std::span<double> y, std::vector<Event>& log
   accept(xi, y);
 }
 
-/// Corrects the mode where it is not consistent with the motion in it.
-/// @return false where it is
+/// Corrects the mode where it disagrees with the motion that it leads to.
+/// @return false if the mode is consistent
 bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log) {
   p_.mode.is_growing = growth_ ? *growth_ : wants_growth(xi, y);
   p_.evaluated(xi, y);
   const std::size_t events_before = log.size();
   if (lose_idle_contacts(p_, xi, y, is_left_, log)) {
-    // A contact that is lost has drawn the centre along in the search for the balance.
+    // The lost contacts have pulled the centre in the balance of forces, which is solved again without them.
     if (!has_jumped_) complete(p_, xi, y);
     growth_.reset();
     return true;
@@ -316,14 +319,14 @@ bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log
     if (was_open && p_.is_loaded(i) && p_.branch(i).touches()) just_loaded.push_back(i);
   }
   if (!has_changed) {
-    // Several edges that peel at once may not hold the centre from the start: past already, the guard of that would
-    // not be met.
+    // Several edges that peel at once may fail to hold the centre from the start: the guard of the centre's stiffness
+    // is then past zero and cannot fire.
     if (!may_peel_off(p_) || centre_stiffness_guard(p_) >= 0.0) return false;
     separate(*weakest_contact(p_), y, log);
   }
-  // No guard is met by a wall that a force presses on from the start.
+  // A wall that a force presses from the start fires no guard, so the walls that balance it close here.
   for (const std::size_t i : just_loaded) balance_touch(p_, i, true, made_);
-  // Where a contact has pulled off, the others have to balance anew.
+  // If a contact has pulled off, the others find a new balance.
   if (!has_jumped_ && p_.law().adheres()) balance_anew(xi, y, log);
   if (!has_jumped_ && !p_.law().adheres()) p_.move_walls(xi, y);
   // A contact that has just been made carries no force yet and leaves the growth guard's decision standing.
@@ -335,7 +338,7 @@ bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log
 void ModeSearch::accept(double xi, std::span<double> y) {
   const Evaluation& at = p_.evaluated(xi, y);
   p_.mode.frozen_balance = p_.mode.is_growing ? at.volume.value : 0.0;
-  // Past already, its guard would not be met.
+  // The guard of the free surface cannot fire if it is past zero already.
   if (p_.mode.is_growing && std::min(p_.motion(true).free_surface(y[k_radius]),
                                      at.volume.free_surface_at_rest(y[k_radius])) < k_least_slope) {
     throw DomainError(Limit::free_surface_used_up);
@@ -360,14 +363,14 @@ bool ModeSearch::wants_growth(double xi, std::span<double> y) {
   const Motion now = p_.motion(false);
   if (!gate_is_open(p_, now)) return false;
   double drive = growth_drive(p_, now);
-  // A contact under force moves without bound at the instant at which it is made.
+  // The rate of a force-controlled contact is infinite at the instant at which it is made.
   bool is_singular = false;
   for (std::size_t i = 0; i < p_.size(); ++i) {
     is_singular = is_singular || (p_.is_loaded(i) && p_.takes_part(i) && p_.drive(i).rate() > 0.0 &&
                                   !(p_.contact(i).contact.by_overlap > 0.0));
   }
   if (is_singular || std::abs(drive) <= k_touch) {
-    // Balanced to round-off, or undefined: the sign just after decides.
+    // The demand is zero to within round-off, or undefined: its sign just after this instant decides.
     p_.move_walls(xi + k_just_after, y);
     p_.evaluate(xi + k_just_after, y);
     drive = growth_drive(p_, p_.motion(false));
@@ -377,9 +380,10 @@ bool ModeSearch::wants_growth(double xi, std::span<double> y) {
   return drive > 0.0;
 }
 
-/// Moves centre and walls to where they belong in the present mode. Where a contact has pulled off, a free centre
-/// springs to another equilibrium, and the other contacts go there along their own branches: back from their largest
-/// overlap, on beyond it, their edges stretched or pressed.
+/// Moves centre and walls to equilibrium in the present mode. When a contact has pulled off, a free centre springs to
+/// another equilibrium. The other contacts follow along their own branches: back from their largest overlap, on beyond
+/// it, their edges stretched or pressed.
+/// @throws std::domain_error if the branches lead to no equilibrium
 void ModeSearch::balance_anew(double xi, std::span<double> y, std::vector<Event>& log) {
   if (!p_.centre().is_free() || !p_.law().adheres()) {
     complete(p_, xi, y);
@@ -394,7 +398,8 @@ void ModeSearch::balance_anew(double xi, std::span<double> y, std::vector<Event>
     try {
       complete(p_, xi, y);
     } catch (const std::domain_error&) {
-      // Its present branch does not lead a contact so far: as far as it does, and on from there.
+      // The branch of some contact ends before the equilibrium: goes as far as the branches lead, changes them there,
+      // and tries again.
       std::ranges::copy(trial, y.begin());
       if (!approach_balance(p_, xi, y)) throw;
       has_arrived = false;
@@ -409,14 +414,14 @@ void ModeSearch::balance_anew(double xi, std::span<double> y, std::vector<Event>
   throw DomainError(Limit::no_consistent_regimes);
 }
 
-/// Leads a contact along its branches to where a free centre has sprung.
+/// Leads a contact along its branches to the overlap that the jump of a free centre gives it.
 /// @return whether its branch has changed
 bool ModeSearch::follow_jump(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log) {
   if (p_.is_loaded(i)) return false;
   const double r = y[k_radius];
   const double jump = p_.contact(i).overlap - spring_.overlaps[i];
-  // A contact that was led in on the path there, to touch, to yield or to reload, may be led back again: each time it
-  // is found anew how far it has come from where it was.
+  // An earlier round may have closed, yielded or reloaded this contact, and a later round may lead it back. Such a
+  // contact therefore begins each round on its branch before the jump.
   const ContactBranch& before = spring_.branches[i];
   const ContactBranch last = p_.branch(i);
   const bool has_entered = last.is_on_primary_branch && (!before.is_on_primary_branch || last.regime != before.regime);
@@ -427,11 +432,11 @@ bool ModeSearch::follow_jump(std::size_t i, double xi, std::span<double> y, std:
     forget_events(i, spring_.made, made_);
   }
   if (std::abs(jump) <= k_spring) return has_entered;
-  // A contact that turns back turns where it came from.
+  // A contact that unloads in the jump turns at the overlap that it had before.
   const bool turns = jump < 0.0 && p_.branch(i).touches() && p_.branch(i).edge.follows();
   if (turns) p_.evaluate_contact(i, spring_.overlaps[i] - r, r);
   p_.assume_rate(i, jump);
-  // A dent may be touched and passed at once: in between it would have no force.
+  // One jump may take a contact through several transitions: it may touch its dent and pass its largest overlap.
   std::size_t changes = 0;
   while (resolve_contact(i, xi, y, Motion{}, log)) {
     if (++changes > most_rounds()) throw DomainError(Limit::no_consistent_regimes);
@@ -449,18 +454,18 @@ ModeSearch::Tendency ModeSearch::tendency(std::size_t i, double xi, const Motion
   const double of_wall = wall_rate(p_, i, now);
   const double of_overlap = overlap_rate(p_, i, now);
   Tendency result;
-  // At the very start of growth its rate is zero, and about to be positive.
+  // At the very start of growth the rate of the radius is zero, and about to become positive.
   result.is_carried = p_.mode.is_growing && !is_loaded && of_wall >= -k_touch;
   result.moves_in = of_overlap > k_touch || result.is_carried;
   const bool moves_out = of_overlap < -k_touch && !result.is_carried;
   const bool is_shifted = p_.law().is_shifted();
   result.retreats = !p_.mode.loads_on[i] && (is_shifted ? of_wall < -k_touch : moves_out);
   result.advances = is_shifted ? of_wall > k_touch : result.moves_in;
-  // A force that is about to vanish, and was found to do so together with another event, presses no more.
+  // A falling force that vanishes together with another event, within the tolerance of that, no longer presses.
   const bool is_vanishing =
       p_.drive(i).rate() < 0.0 && contact_guard(p_, k_made, i, xi, p_.contact(i).overlap) < k_together;
   result.is_pressed = is_loaded && p_.drive(i).value(xi) > 0.0 && !is_vanishing;
-  // A dent opens and closes where its own depth says so, which moves with the radius too.
+  // A dent opens and closes at its own depth, which changes with the radius too.
   const bool is_dent = branch.regime == Regime::unloading || branch.regime == Regime::separated;
   const double of_dent = is_dent && !is_loaded ? edge_rate(p_, i, now) : of_overlap;
   result.closes = of_dent > k_touch || result.is_carried;
@@ -468,6 +473,7 @@ ModeSearch::Tendency ModeSearch::tendency(std::size_t i, double xi, const Motion
   return result;
 }
 
+/// Corrects the branch of a contact whose guard is past zero and moving on.
 /// @return whether anything changed
 bool ModeSearch::resolve_contact(std::size_t i, double xi, std::span<double> y, const Motion& now,
                                  std::vector<Event>& log) {
@@ -506,7 +512,7 @@ bool ModeSearch::resolve_elastic(std::size_t i, double xi, const Tendency& tends
   const bool retreats = branch.is_on_primary_branch && tends.retreats;
   const bool is_idle = p_.is_idle(i);
   const bool is_past_opening = is_idle && tends.opens && contact_guard(p_, k_lost, i, xi, overlap) <= k_touch;
-  // Where its force is about to pull before a contact has borne any, there is no edge that could stick.
+  // A prescribed force that begins to pull before the contact has carried any load finds no edge that could stick.
   const bool is_unborne = !is_idle && retreats && p_.is_loaded(i) && !tends.is_pressed && overlap < k_resolution;
   if (is_past_opening || is_unborne) {
     p_.lose(i);
@@ -532,19 +538,18 @@ bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<doubl
   const double overlap = p_.contact(i).overlap;
   const double passed = tends.advances ? contact_guard(p_, k_reload, i, xi, overlap) : -1.0;
   if (passed >= -k_touch) {
-    // A contact that has turned at this instant stays where it is: from one evaluation to the next the sign of its rate
-    // changes.
+    // The rate of a contact that has turned at this instant is round-off, of either sign: the contact does not reload.
     if (!has_turned_[i] || primary_branch_rate(p_, i, now) > k_at_rest || passed > k_touch) {
       has_resumed_[i] = has_turned_[i];
       p_.set_branch(i, p_.branch(i).reloaded());
       log.push_back(event_of("reload", i));
       return true;
     }
-    // Passed by round-off, the guard would not be met.
+    // The reload guard cannot fire if the overlap is past the largest one by round-off.
     if (passed > 0.0) p_.set_branch(i, p_.branch(i).with_largest(p_.law(), p_.at().r, overlap));
   }
   if (p_.law().adheres()) return resolve_edge(i, xi, y, now, tends.is_carried, log);
-  // No force presses a wall on what is left of its contact: whether that ends does not wait for the radius to grow.
+  // A contact that no force presses during the whole step may end at once; it does not wait for growth to open it.
   const bool is_let_go = p_.is_loaded(i) && p_.drive(i).start() <= 0.0 && p_.drive(i).end() <= 0.0;
   if ((tends.opens || is_let_go) && contact_guard(p_, k_lost, i, xi, overlap) <= k_touch) {
     p_.lose(i);
@@ -554,7 +559,7 @@ bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<doubl
   return false;
 }
 
-/// Edge of an adhesive contact below its largest overlap.
+/// Corrects the edge of an adhesive contact below its largest overlap.
 /// @return whether anything changed
 bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_carried,
                               std::vector<Event>& log) {
@@ -565,7 +570,7 @@ bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, con
   const auto is_past = [&](GuardKind kind, double sign) {
     return sign * edge_guard(p_, kind, i, xi, overlap) >= -k_touch;
   };
-  // A contact that has turned at this instant is at rest: from one evaluation to the next the sign of its rate changes.
+  // The rate of a contact that has turned at this instant is round-off, of either sign: its edge is at rest.
   const bool is_at_rest = has_turned_[i] && std::abs(overlap_rate(p_, i, now)) <= k_at_rest;
   switch (p_.branch(i).edge.motion) {
     case Edge::following:
@@ -583,7 +588,7 @@ bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, con
       start_peeling(i, y, log);
       return true;
     case Edge::peeling:
-      // A force that is held where only a displacement could be has the edge run away.
+      // Beyond pull-off, where only displacement control could hold an edge, a constant force too makes it run away.
       if (is_past(k_pull_off, -1.0) && (moves_out || p_.is_loaded(i))) {
         separate(i, y, log);
         return true;
@@ -612,7 +617,8 @@ void ModeSearch::stick(std::size_t i, std::vector<Event>& log) {
   log.push_back(event_of("stick", i));
 }
 
-/// The springs at a sticking edge tear: it recedes in equilibrium, or, within the critical radius, at once.
+/// Tears the springs at a sticking edge: the edge then recedes in equilibrium, or pulls off at once if it lies within
+/// the critical radius.
 void ModeSearch::start_peeling(std::size_t i, std::span<double> y, std::vector<Event>& log) {
   const Control control = p_.is_loaded(i) ? Control::force : Control::displacement;
   const std::optional<AdhesiveEdge> peeling = p_.branch(i).edge.torn(pull_off_of(p_, i).under(control));
@@ -624,14 +630,14 @@ void ModeSearch::start_peeling(std::size_t i, std::span<double> y, std::vector<E
   log.push_back(event_of("peel", i));
 }
 
-/// Pull-off: the edge is no longer stable, and the contact opens at once.
+/// Opens a contact whose edge is no longer stable (pull-off).
 void ModeSearch::separate(std::size_t i, std::span<double> y, std::vector<Event>& log) {
   const AdhesiveEdge& edge = p_.branch(i).edge;
   const bool is_touch = edge.sticks() && edge.radius == 0.0;
   if (p_.is_loaded(i)) {
     const Instant& now = p_.contact(i);
-    // The wall keeps the work done on it so far. Where the contact holds negative energy, the load has at least to
-    // supply that in the snap.
+    // y counts the work less force times displacement, a term that an open contact no longer has: adds it to keep the
+    // work done so far. If the contact stores negative energy, the load has to supply at least that in the snap.
     const double supplied = std::max(0.0, -p_.energy(i, PlasticPart::recoverable));
     y[k_work] += p_.count(i) * (now.contact.force * now.position + supplied);
   }
@@ -639,7 +645,7 @@ void ModeSearch::separate(std::size_t i, std::span<double> y, std::vector<Event>
   p_.lose(i);
   log.push_back(event_of(is_touch ? "contact-lost" : "pull-off", i));
   if (!p_.centre().is_free()) return;
-  // A free centre springs back from there: what peeled on the other side is relieved.
+  // A free centre springs away from the opened contact, which relieves the edges that peel elsewhere.
   for (std::size_t j = 0; j < p_.size(); ++j) {
     if (p_.branch(j).edge.peels() && !p_.is_loaded(j)) stick(j, log);
   }

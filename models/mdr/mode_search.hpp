@@ -1,7 +1,7 @@
 /// Search for the mode of the MDR particle at an instant: branch of every contact and growth of the radius depend on
 /// each other, so the search assumes a mode, evaluates it, corrects it, and repeats until it is consistent.
 ///
-/// It works on a copy of the particle, which takes effect where the caller takes it over.
+/// The search works on a copy of the particle, which the caller adopts if the search succeeds.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@
 
 namespace monograin::mdr {
 
-/// A wall has reached the centre of the particle.
+/// Reason to stop when a wall has reached the centre of the particle.
 [[nodiscard]] DomainEnd centre_reached(int contact_class);
 
 class ModeSearch {
@@ -27,32 +27,32 @@ class ModeSearch {
   /// The particle in the mode that was found; after an exception, in the one that was tried last.
   [[nodiscard]] Particle& particle() noexcept { return p_; }
 
-  /// Applies what guards that have fired change, and what they decide about the growth.
+  /// Applies the transitions of guards that have fired, and keeps what a growth guard decides for resolve().
   /// @return the reason to stop, if the equations end here
   std::optional<DomainEnd> apply(std::span<const Guard> fired, double xi, std::span<double> y, ContactCaps& caps,
                                  std::vector<Event>& log);
-  /// Closes the nearest walls together with a contact that a force begins to press.
+  /// Closes the nearest walls together with contact i, which a force begins to press.
   void close_with(std::size_t i, std::vector<Event>& log);
-  /// Finds the mode, with centre and walls where they belong in it.
-  /// @throws std::domain_error where there is none
+  /// Finds the consistent mode, and moves centre and walls to equilibrium in it.
+  /// @throws std::domain_error if no mode is consistent, or the equations end here
   void resolve(double xi, std::span<double> y, std::vector<Event>& log);
 
   /// Warning about the first adhesive contact to unload in this search for which the model is not valid.
   [[nodiscard]] const std::optional<Diagnostic>& validity() const noexcept { return validity_; }
 
  private:
-  /// How a contact is about to move.
+  /// Motion that a contact is about to begin.
   struct Tendency {
-    bool is_carried = false;  ///< by the growth, at its very start
+    bool is_carried = false;  ///< growth presses the contact, or is about to while its rate is still zero
     bool moves_in = false;
-    bool retreats = false;    ///< from its largest overlap
-    bool advances = false;    ///< beyond it
-    bool is_pressed = false;  ///< by a prescribed force
+    bool retreats = false;    ///< leaves its largest overlap
+    bool advances = false;    ///< towards its largest overlap, or beyond
+    bool is_pressed = false;  ///< a prescribed force presses it
     bool closes = false;
     bool opens = false;
   };
 
-  /// Where a free centre springs from.
+  /// State from which a free centre springs to another equilibrium.
   struct Spring {
     std::vector<ContactBranch> branches;
     std::vector<double> overlaps;
@@ -83,21 +83,21 @@ class ModeSearch {
   void stick(std::size_t i, std::vector<Event>& log);
   void start_peeling(std::size_t i, std::span<double> y, std::vector<Event>& log);
   void separate(std::size_t i, std::span<double> y, std::vector<Event>& log);
-  /// After which a mode is taken to have none that agrees with it.
+  /// Number of corrections after which the search concludes that no mode is consistent.
   [[nodiscard]] std::size_t most_rounds() const noexcept { return 4 * p_.size() + 8; }
 
   Particle p_;
-  std::vector<bool> has_turned_;   ///< started to unload at this instant
-  std::vector<bool> has_resumed_;  ///< started to unload at this instant, and loaded on beyond its largest overlap
-  std::vector<bool> is_left_;      ///< left, at this instant, by a centre that forces press elsewhere
+  std::vector<bool> has_turned_;   ///< started to unload at this instant, or its edge came to rest
+  std::vector<bool> has_resumed_;  ///< started to unload at this instant, then loaded on beyond its largest overlap
+  std::vector<bool> is_left_;      ///< lost at this instant, because forces press the centre away from its wall
   std::vector<Edge> edges_before_;
   Spring spring_;
   std::vector<Event> made_;     ///< contacts made in the search, which are logged at its end
   std::optional<bool> growth_;  ///< what a growth guard has just decided; none: the sign of the demand decides
-  /// The force of a contact has jumped, and its wall has not given way yet: the balance is frozen as it is now, and
-  /// when the wall gives way the radius follows it, if need be back by a little.
+  /// A force-controlled contact has just yielded: its force has jumped, and its wall has not given way yet. The volume
+  /// balance is frozen in this state; when the wall gives way the radius follows, and may fall a little.
   bool has_jumped_ = false;
-  bool runs_away_ = false;  ///< the radius would, in a mode that has been tried
+  bool runs_away_ = false;  ///< the radius would run away in a mode tried in this search
   std::optional<Diagnostic> validity_;
 };
 

@@ -26,7 +26,7 @@ constexpr std::array k_material{
                 k_not_negative, 0.0},
 };
 
-/// The model's own curve, raised as by hardening.
+/// Table of the model's own pressure curve, raised as by hardening.
 std::string example_pressure_table() {
   std::vector<std::vector<double>> rows;
   for (int i = 0; i <= 60; ++i) {
@@ -138,7 +138,7 @@ ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) {
                   {"poisson_ratio", draw_poisson_ratio(dice, 0.5)},
                   {"yield_stress", 1.0 / modulus_over_yield}};
   double surface_energy = 0.0;
-  // From next to nothing to far beyond where the pull-off is predicted well.
+  // The range reaches from negligible adhesion to far beyond the validity of the pull-off.
   if (dice.happens(0.5)) surface_energy = dice.log_uniform(1e-12, 1e-1);
   if (surface_energy > 0.0) drawn.values["surface_energy"] = surface_energy;
   draw_choices(dice, k_options, drawn);
@@ -146,10 +146,10 @@ ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) {
   return {.force = 3.0 / modulus_over_yield, .tension = 5.0 * surface_energy};
 }
 
-/// How far the apparent radius may fall, over R0. A contact of the ellipse that yields could bear more at once, so that
-/// under a prescribed force n walls give way by some dx, and their caps of overlap d become smaller by pi d (2 - d) dx;
-/// a step of Newton's method on the volume balance, of slope 4 pi (1 - n d/2), says by how much the radius follows. A
-/// bound, because the walls give way by less where it does.
+/// Upper bound of the fall of the apparent radius at yield, over R0. A contact of the ellipse bears more as soon as it
+/// yields, so that n walls under a prescribed force give way by some dx, and their caps of overlap d become smaller by
+/// pi d (2 - d) dx. A step of Newton's method on the volume balance, of slope 4 pi (1 - n d/2), gives the fall of the
+/// radius; the walls give way by less as the radius falls.
 double most_fall_at_yield(const CheckedRun& run) {
   if (run.input.word("elastic_profile") == "parabola") return 0.0;
   const Material law = material_of(run.input);

@@ -6,18 +6,22 @@
 
 namespace monograin::mdr {
 
+/// The model `mdr`, as the workbench knows it.
 [[nodiscard]] Model model() noexcept;
 
-/// Settings that do not depend on what the particle does beyond its elastic limit.
+/// Settings that every MDR particle has, whether or not it yields: radius, elastic constants, free centre, largest
+/// displacement and force.
 [[nodiscard]] Settings common_settings(const ModelInput& input, const Reach& reach);
 
 /// The material of a scenario; its yield stress is infinite where the scenario has none.
 [[nodiscard]] Material material_of(const ModelInput& input);
 
+/// Parameters derived from the material of a scenario, and its state at first yield.
 [[nodiscard]] std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstStep& step);
 
-/// How far a contact is pressed that meets a condition for the first time, at most: the softer law goes farther in and
-/// bears less; up to a pressure or a contact radius that is the elastic one.
+/// Largest displacement and force of a contact that meets a condition for the first time, as estimated from the softer
+/// of the elastic and the plastic law, which goes farther in and bears less. For a pressure or a contact radius the
+/// displacement is that of the elastic law. Infinite where nothing is known.
 [[nodiscard]] Reach reach(const ModelInput& input, const Until& until);
 
 }  // namespace monograin::mdr

@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-// In the order of Regime, then what replaces them where the edge of an adhesive contact sticks or peels.
+// Words in the order of Regime, then those of an adhesive contact whose edge sticks or peels.
 constexpr std::array<std::string_view, 7> k_regime_words{"open",      "elastic",  "fully-plastic", "unloading",
                                                          "separated", "adhering", "peeling"};
 constexpr double k_adhering_word = 5.0;
@@ -77,7 +77,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
 const Contact& System::visible_contact(std::size_t i) const {
   static constexpr Contact none;
   const Instant& now = now_.particle.contact(i);
-  // The overlap is the displacement of the wall and the growth of the radius.
+  // The overlap is the sum of the displacement and the growth, which is no larger than |displacement| + |overlap|.
   const double magnitude = 2.0 * std::abs(now.displacement) + std::abs(now.overlap);
   const bool is_visible = now_.particle.branch(i).is_visible(setup_->law, now_.particle.at().r, now.overlap, magnitude);
   return is_visible ? now.contact : none;

@@ -13,8 +13,8 @@
 namespace monograin::mdr {
 namespace {
 
-// Over its contact radius there, a contact under force that is this near to pull-off has reached it: the square of
-// this is below the round-off of forces.
+// A contact under force has reached pull-off when its contact radius is this near to that at pull-off (relative to the
+// latter). Forces differ by the square of this, which is below their round-off.
 constexpr double k_at_pull_off = 1e-9;
 
 }  // namespace
@@ -200,7 +200,7 @@ void Particle::load_centre(std::size_t i) {
   if (!is_loaded(i)) {
     double by_radius = c.by_radius;
     if (branch.regime == Regime::unloading && branch.edge.follows() && c.by_overlap < stiffness) {
-      // Where a dent begins moves with the radius, however little presses it.
+      // The overlap at which a dent begins changes with the radius, even if the contact there bears next to nothing.
       const Contact pressed = branch.stiff_contact(law(), at_.r, contact(i).overlap, c);
       by_radius = stiffness * (pressed.by_radius / pressed.by_overlap);
     }
@@ -211,15 +211,15 @@ void Particle::load_centre(std::size_t i) {
   at_.centre.add(i, load);
 }
 
-/// How the displacement of a wall under force goes with xi and R; zero where it stays. Under force a contact moves
-/// without bound as it is made, and what that does to the others is over before any of them has moved by more than
-/// round-off.
+/// Sets the derivatives of a force-controlled wall's displacement by xi and R; both are zero for a wall that stays. The
+/// rate of a contact that is just being made has no bound: stiff_contact() limits it, which affects other contacts by
+/// less than round-off.
 void Particle::set_rates_under_force(std::size_t i) {
   Instant& now = at_.contacts[i];
   const ContactBranch& branch = branches_[i];
   const Contact c = branch.stiff_contact(law(), at_.r, now.overlap, now.contact);
   if (branch.edge.peels()) {
-    // Where it pulls off, a force holds it no longer: whatever the radius, the overlap is about that.
+    // At pull-off the force no longer determines the displacement: the overlap hardly changes with the radius.
     const Indenter indenter = branch.frame(law(), at_.r, now.overlap).indenter;
     const double critical = branch.pull_off(law(), indenter).by_force.contact_radius;
     if (c.contact_radius <= (1.0 + k_at_pull_off) * critical) {
@@ -240,8 +240,8 @@ double Particle::energy(std::size_t i, PlasticPart part) const {
 }
 
 double Particle::energy(PlasticPart part) {
-  // A row of the history asks for both parts, which differ where a contact is at its largest overlap, and by the
-  // surface energy where an edge follows.
+  // A row of the history needs both parts. They differ for plastic contacts at their largest overlap and, by the
+  // surface energy, where an edge follows; otherwise the first sum serves for both.
   const bool is_either = std::ranges::none_of(branches_, [this](const ContactBranch& branch) {
     return branch.edge.follows() && (branch.regime == Regime::fully_plastic || law().adheres());
   });
@@ -313,9 +313,9 @@ double Particle::magnitude_of_forces() const noexcept {
   return sum;
 }
 
-/// The forces' own round-off, and that of overlaps: contacts that only touch the centre are too soft to bear that
-/// without going to and fro. Walls under force bear theirs as exactly as they stand. Overlaps are rounded as what they
-/// are differences of: lengths of the order of R0, the path of the centre, or that of a wall towards it.
+/// Adds the round-off of forces to that of overlaps times stiffness, which idle contacts are too soft to balance. The
+/// round-off of an overlap is that of the lengths whose difference it is: R0, the path of the centre, or that of the
+/// wall towards it.
 double Particle::force_rounding() const {
   if (force_rounding_) return *force_rounding_;
   constexpr double round_off = std::numeric_limits<double>::epsilon();
@@ -345,20 +345,20 @@ bool Particle::is_idle_touch(std::size_t i) const {
   return may_be_idle && is_below_resolution(contact(i).overlap - branch.touching_overlap(law(), at_.r));
 }
 
-/// True for a force that is round-off beside the others and that nothing bears: a wall that only touches would be left
-/// for it, and come back.
+/// True for a prescribed force that is round-off beside the others and that no contact supports. Its load on the centre
+/// is left out: it would only push the centre off an idle wall, which then comes back.
 bool Particle::is_slight(std::size_t i) { return walls_[i].may_be_slight && !is_supported(*this, i, 1.0, supports_); }
 
 // --- rates of one contact
 
 namespace {
 
-/// Rate that a prescribed force asks for, less that which the growth takes away, over the sum of their magnitudes.
+/// Rate of a prescribed force less the force that growth takes away, over the sum of their magnitudes.
 double loaded_rate(const Particle& p, double loading, double by_radius, double growth) noexcept {
   const double taken = by_radius * growth;
   const double scale = std::abs(loading) + std::abs(taken);
   if (scale > 0.0) return (loading - taken) / scale;
-  // At the very start of growth its rate is zero, and about to be positive.
+  // At the very start of growth the rate of the radius is zero, and about to become positive.
   return p.mode.is_growing && by_radius > 0.0 ? -1.0 : 0.0;
 }
 
@@ -387,12 +387,12 @@ double primary_branch_rate(const Particle& p, std::size_t i, const Motion& motio
 double edge_rate(const Particle& p, std::size_t i, const Motion& motion) {
   const Instant& now = p.contact(i);
   double overlap_speed = inward_rate(p, i, motion) + motion.growth;
-  // A contact under force that is just being made moves with the force alone, and without bound: however small the
-  // force is, growth is nothing beside that.
+  // The rate of a force-controlled contact that is just being made has no bound: the sign of the force's rate decides,
+  // however small that is, and growth does not count.
   const bool is_being_made = p.is_loaded(i) && !(now.contact.by_overlap > 0.0);
   if (is_being_made) overlap_speed = p.drive(i).rate();
   if (is_being_made || motion.growth == 0.0) {
-    // Where a free centre keeps up with a wall, what is left of their speeds has any sign.
+    // If a free centre keeps up with the wall, the difference of their speeds is round-off, of either sign.
     const double rounding = p.is_loaded(i) ? 0.0 : k_touch * (std::abs(now.rate_by_time) + motion.centre.norm());
     return overlap_speed > rounding ? 1.0 : overlap_speed < -rounding ? -1.0 : 0.0;
   }
@@ -423,7 +423,7 @@ double rate_if_unloaded(Particle& p, std::size_t i, double xi, std::span<const d
 bool gate_is_open(const Particle& p, const Motion& motion) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (!p.takes_part(i)) continue;
-    // Beside stiff contacts the rate of what only touches has fewer digits.
+    // Next to stiff contacts the rate of an idle contact loses digits.
     const GrowthDrive drive{.inward_rate = inward_rate(p, i, motion),
                             .least_rate = (p.is_idle(i) ? k_at_rest : k_touch) * p.speed_scale(),
                             .is_force_controlled = p.is_loaded(i),

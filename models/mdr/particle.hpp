@@ -26,50 +26,50 @@ struct Instant {
   double overlap = 0.0;
   Contact contact;
   double rate_by_time = 0.0;    ///< rate of the displacement with xi, at fixed R and centre
-  double rate_by_growth = 0.0;  ///< its derivative by R, where the force is prescribed
+  double rate_by_growth = 0.0;  ///< derivative of the displacement by R; 0 where the displacement is prescribed
 };
 
 /// All contacts at a state, and what they sum up to. Depends on the state, the program and the branches of the
 /// contacts.
 struct Evaluation {
   double r = 0.0;
-  double longest = 1.0;  ///< longest length that an overlap is a difference of
+  double longest = 1.0;  ///< largest of the lengths whose differences are overlaps: R0, path of the centre
   std::vector<Instant> contacts;
   VolumeBalance volume;
   FreeCentre centre;
   CentreVector volume_by_centre = CentreVector::Zero();  ///< derivative of the volume balance
   double power = 0.0;       ///< d(work)/dxi, less d(force times displacement) where the force is prescribed
-  double force_work = 0.0;  ///< force times displacement of those contacts
-  /// Stored energy where no part of it is open to question, once it has been asked for.
+  double force_work = 0.0;  ///< force times displacement of contacts whose force is prescribed
+  /// Cached stored energy; only where both values of PlasticPart give the same.
   std::optional<double> energy{};
 };
 
-/// Rates with the step coordinate.
+/// Rates of radius and centre with the step coordinate.
 struct Motion {
-  double demand = 0.0;  ///< rate of volume that wants to become growth
+  double demand = 0.0;  ///< rate of the volume (over 4 pi R0^3) that growth has to take up
   double slope = 0.0;   ///< D_eff/(4 pi): growth rate = demand/slope
   double growth = 0.0;  ///< dr/dxi
   CentreVector centre = CentreVector::Zero();
 
-  /// Share of the particle's surface that growth has for itself while the program moves the walls.
+  /// Share of the particle's surface that is free for growth while the walls move as the program prescribes.
   [[nodiscard]] double free_surface(double r) const noexcept { return slope / ((1.0 + r) * (1.0 + r)); }
 };
 
 /// Equations that apply between two transitions.
 struct Mode {
   bool is_growing = false;
-  double held_radius = 0.0;                           ///< r while it is held
-  double frozen_balance = 0.0;                        ///< C while it grows
+  double held_radius = 0.0;                           ///< r while the radius is held
+  double frozen_balance = 0.0;                        ///< C, the volume balance while the radius grows
   CentreVector held_centre = CentreVector::Zero();    ///< position of a free centre where the mode began
-  CentreMatrix unconstrained = CentreMatrix::Zero();  ///< projector on the directions in which nothing holds it
-  /// Contacts that start to unload at their largest overlap, and would load on at once: taken to load on.
+  CentreMatrix unconstrained = CentreMatrix::Zero();  ///< projector on the directions in which no contact holds it
+  /// Contacts that would start to unload at their largest overlap and at once load on: they stay on the loading branch.
   std::vector<bool> loads_on;
 };
 
 class Particle {
  public:
   explicit Particle(std::shared_ptr<const Setup> setup);
-  /// Brings mode and branches back to what they are before the first step.
+  /// Resets mode and branches to their state before the first step.
   void start();
 
   [[nodiscard]] const Setup& setup() const noexcept { return *setup_; }
@@ -92,69 +92,75 @@ class Particle {
   [[nodiscard]] const ContactBranch& branch(std::size_t i) const noexcept { return branches_[i]; }
   [[nodiscard]] const std::vector<ContactBranch>& branches() const noexcept { return branches_; }
   void set_branch(std::size_t i, const ContactBranch& branch);
-  /// A wall leaves the particle or its dent, and stays where it is.
+  /// Opens a contact: its wall leaves the particle or its dent, and stays where it is.
   void lose(std::size_t i) { set_branch(i, branches_[i].lost(at_.contacts[i].displacement)); }
   void set_branches(const std::vector<ContactBranch>& branches);
   [[nodiscard]] bool takes_part(std::size_t i) const noexcept {
     return mdr::takes_part(setup_->settings.radius_rule, branches_[i].regime);
   }
   [[nodiscard]] bool peels_anywhere() const noexcept;
-  /// A contact that no others balance bears nothing: what the search for the balance leaves of its force is another one
-  /// at every instant, and does no work.
+  /// Sets whether a contact bears. A contact that no others balance does not: the search for the balance leaves it a
+  /// different force at every instant, which does no work.
   void set_bears(std::size_t i, bool bears);
 
   Mode mode{};
 
   // Evaluation at a state.
 
+  /// Evaluates all contacts at a state, and their sums.
   /// @throws std::domain_error where the volume of the particle is not defined
   const Evaluation& evaluate(double xi, std::span<const double> y);
-  /// Without asking whether the volume of the particle is defined.
+  /// evaluate() without the check that the volume of the particle is defined. Does not count as the cached evaluation.
   const Evaluation& evaluate_forces(double xi, std::span<const double> y);
-  /// Takes what evaluate_forces() found at a state for evaluate().
+  /// Makes the result of evaluate_forces() for this state the cached evaluation.
+  /// @throws std::domain_error where the volume of the particle is not defined
   void accept_volume(double xi, std::span<const double> y);
-  /// evaluate(), unless the last one was for that state.
+  /// The cached evaluation if it is for this state, or else evaluate().
   const Evaluation& evaluated(double xi, std::span<const double> y);
   [[nodiscard]] const Evaluation& at() const noexcept { return at_; }
   [[nodiscard]] const Instant& contact(std::size_t i) const noexcept { return at_.contacts[i]; }
-  /// Force times displacement of the contacts under force, and nothing else of the evaluation.
+  /// Sum of force times displacement of the contacts whose force is prescribed. Outdates the cached evaluation.
   [[nodiscard]] double force_work(std::span<const double> y);
-  /// Evaluates one contact elsewhere, and nothing else.
+  /// Evaluates one contact at another displacement and radius, without the sums. Outdates the cached evaluation.
   void evaluate_contact(std::size_t i, double displacement, double r);
-  /// Takes a wall to move at a rate, at fixed R: that of a jump whose other end is known.
+  /// Sets the rate of a wall at fixed R, for a jump whose end is known. Outdates the cached evaluation.
   void assume_rate(std::size_t i, double rate) noexcept;
   [[nodiscard]] double energy(std::size_t i, PlasticPart part) const;
   [[nodiscard]] double energy(PlasticPart part);
 
+  /// Rates at the state that was evaluated last.
+  /// @param growing  false: the radius is held
   [[nodiscard]] Motion motion(bool growing) const;
+  /// Rates while the radius grows.
   /// @throws std::domain_error where the free surface is used up
   [[nodiscard]] Motion growing_motion() const;
 
   // Walls at a state.
 
-  /// Displacement towards a wall by which the centre has come.
+  /// By how much the centre has moved towards a wall.
   [[nodiscard]] double carried_by_centre(std::size_t i, std::span<const double> y) const noexcept;
-  /// Moves the walls under force to their displacements under it, at a given radius.
+  /// Moves the force-controlled walls in y to their displacements under the prescribed forces, at the radius in y.
   void move_walls(double xi, std::span<double> y) const;
-  /// Writes the unknowns of walls that are under force at other times only.
+  /// Writes the unknowns of walls whose force is prescribed in other steps only.
   void record_walls(double xi, std::span<double> y) const noexcept;
 
   // Round-off of a free centre.
 
+  /// Sum of the magnitudes of all wall forces.
   [[nodiscard]] double magnitude_of_forces() const noexcept;
   /// Largest net force on the centre that is round-off of forces that balance.
   [[nodiscard]] double force_rounding() const;
-  /// Overlap of a contact that only touches a free centre: round-off of lengths, and what the round-off of other forces
-  /// presses it in by, which may bear much more and be much stiffer.
+  /// Largest overlap of an idle contact: the round-off of lengths, or the overlap to which the round-off of the other
+  /// forces presses it. Other contacts may bear much more, and be much stiffer.
   [[nodiscard]] double resolution() const;
-  /// True for an idle contact: the wall touches a particle with a free centre and carries no load. Its overlap and the
-  /// rate of that are round-off; it leaves no dent, and is lost when the gap exceeds the resolution.
+  /// True for an idle contact: the wall touches a particle with a free centre and carries no load. Its overlap and its
+  /// rate are round-off; it leaves no dent, and is lost when the gap exceeds the resolution.
   [[nodiscard]] bool is_idle(std::size_t i) const { return centre().acts(i) && is_idle_touch(i); }
 
  private:
   struct Wall {
     contacts::WallDrive drive;
-    bool may_be_slight = false;  ///< its force within the step is round-off beside the others
+    bool may_be_slight = false;  ///< its prescribed force is round-off beside the others during the whole step
     bool bears = true;           ///< false: its contact is balanced by no others, and does no work
   };
 
@@ -163,7 +169,7 @@ class Particle {
   void load_centre(std::size_t i);
   void set_rates_under_force(std::size_t i);
   [[nodiscard]] bool is_slight(std::size_t i);
-  /// Outdates all that was found before drives, branches or walls changed.
+  /// Outdates cached results when drives, branches or walls change.
   void note_change() noexcept {
     ++revision_;
     force_rounding_.reset();
@@ -180,15 +186,15 @@ class Particle {
   double at_xi_ = k_nan;
   std::vector<double> at_y_;
   std::uint64_t at_revision_ = 0;
-  mutable std::optional<double> force_rounding_{};  ///< of contacts and branches as they are, once asked for
+  mutable std::optional<double> force_rounding_{};  ///< cached, for the present contacts and branches
 };
 
 // --- rates of one contact
 
 /// d(delta_o)/dxi of a wall, towards the centre positive.
 [[nodiscard]] double inward_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
-/// Rate of a wall inwards, of order one. Under force only the sign means something: what the force asks for over the
-/// sum of that and what the growth takes away.
+/// Inward rate of a wall over speed_scale(), of order one. Under force control only its sign has a meaning: it is the
+/// rate of the prescribed force less the force that growth takes away, over the sum of their magnitudes.
 [[nodiscard]] double wall_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
 /// Rate of the overlap, in the units of wall_rate().
 [[nodiscard]] double overlap_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
@@ -197,23 +203,23 @@ class Particle {
 [[nodiscard]] double primary_branch_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
 /// Rate at which the springs at the edge of a contact are pressed (+) or stretched (-), of order one.
 [[nodiscard]] double edge_rate(const Particle& p, std::size_t i, const Motion& motion);
-/// Rate of a contact's force, over what the walls' motion makes of the force of an edge that sticks.
+/// Rate of a contact's force, over its rate if the edge stuck and the overlap grew with speed_scale().
 [[nodiscard]] double force_rate(const Particle& p, std::size_t i, const Motion& motion);
-/// Rate of the largest overlap if this contact began to unload here, times the ratio of stiffnesses. A contact that
-/// would load again as soon as it unloads alternates between the two without end: it stays on its loading branch until
-/// this rate is negative.
+/// Rate of the largest overlap if this contact began to unload here, times the ratio of stiffnesses. If this rate is
+/// positive, the contact would load again as soon as it unloads, and alternate without end: it stays on its loading
+/// branch until the rate is negative.
 [[nodiscard]] double rate_if_unloaded(Particle& p, std::size_t i, double xi, std::span<const double> y);
 
 // --- growth
 
 /// True if the rule lets the radius grow under this motion of the contacts.
 [[nodiscard]] bool gate_is_open(const Particle& p, const Motion& motion);
-/// Demand for growth over the magnitudes it is the difference of.
+/// Demand for growth over the sum of the magnitudes whose difference it is, of order one.
 [[nodiscard]] double growth_drive(const Particle& p, const Motion& motion) noexcept;
 
-/// True for a plastic contact under a prescribed force: at a given radius it bears no more than a largest one.
+/// True for a plastic contact under a prescribed force: at a given radius there is a largest force that it bears.
 [[nodiscard]] bool has_greatest_force(const Particle& p, std::size_t i) noexcept;
-/// Stiffness of a contact over that of a plastic one at no overlap.
+/// Stiffness of a contact over ContactLaw::plastic_stiffness(), that of a shallow plastic contact.
 [[nodiscard]] double stiffness_left(const Particle& p, std::size_t i) noexcept;
 
 }  // namespace monograin::mdr

@@ -27,7 +27,7 @@ void check_samples(std::span<const double> x, std::span<const double> p) {
   require(x.size() == p.size(), "a pressure curve needs as many pressures as overlaps");
   require(x.size() >= k_least_samples, "a pressure curve needs at least 4 samples");
   require(x.front() == 0.0, "a pressure curve begins at zero overlap");
-  // The comparisons are false for NaN.
+  // The comparisons are false for NaN, so samples that are NaN are refused.
   for (std::size_t i = 1; i < x.size(); ++i) require(x[i] > x[i - 1], "overlaps of a pressure curve ascend");
   require(std::isfinite(x.back()), "overlaps of a pressure curve are finite");
   for (const double pressure : p) require(pressure > 0.0, "pressures of a pressure curve are positive");
@@ -38,12 +38,13 @@ PressureMoments decaying_moments(double x) noexcept {
   const double decay = std::exp(-x);
   double second = 2.0 - decay * (2.0 + x * (2.0 + x));
   if (x < 2.0) {
-    // The closed form cancels; a series of positive terms instead, the last one below 1e-17 of the sum at x = 2.
+    // The closed form cancels here. The series has positive terms only; its last one is below 1e-17 of the sum at x
+    // = 2.
     double sum = 1.0;
     for (int n = 24; n > 3; --n) sum = 1.0 + x / n * sum;
     second = decay * x * x * x / 3.0 * sum;
   }
-  // Downwards, where the recursion only adds positive terms.
+  // Downwards the recursion only adds positive terms.
   const double first = 0.5 * (second + decay * x * x);
   return {.zeroth = first + decay * x, .first = first, .second = second};
 }
@@ -70,7 +71,7 @@ PressureCurve::PressureCurve(std::span<const double> overlaps_over_radius, std::
   check_samples(knots_, p);
   const boost::math::interpolators::pchip<std::vector<double>> curve{std::vector<double>(knots_),
                                                                      std::vector<double>(p)};
-  // Its cubics written out: value, slope and moments then take one search for the interval.
+  // The cubics of the curve are written out, so that value, slope and moments take one search for the interval.
   PressureMoments before;
   for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
     const double h = knots_[i + 1] - knots_[i];

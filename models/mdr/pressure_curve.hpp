@@ -1,5 +1,5 @@
-/// Mean pressure of a fully plastic contact over the yield stress, p_Y/Y, as a function of x = delta/R: the one
-/// ingredient of the MDR model that is fitted to computed contacts, and so the one that another material replaces.
+/// Mean pressure of a fully plastic contact over the yield stress, p_Y/Y, as a function of x = delta/R: the only
+/// ingredient of the MDR model that is fitted to computed contacts, and hence the one that another material replaces.
 /// Source: Zunker and Kamrin (2024), eq. 28.
 #pragma once
 
@@ -25,23 +25,25 @@ struct PressureMoments {
 /// The source's fit for perfectly plastic particles: 1 + 1.75 exp(-4.4 x) (eq. 28, constants as printed).
 [[nodiscard]] PressureRatio exponential_pressure(double overlap_over_radius) noexcept;
 
-/// Its moments, for x > 0, to full relative accuracy.
+/// Moments of exponential_pressure(), for x > 0, to full relative accuracy.
 [[nodiscard]] PressureMoments exponential_moments(double overlap_over_radius) noexcept;
 
-/// A curve through samples: piecewise cubic, once continuously differentiable, and between any two neighbouring samples
-/// monotone (Fritsch and Butland), so that it has no waves that the samples do not have.
+/// Curve of p_Y/Y through samples: piecewise cubic, once continuously differentiable, and monotone between neighbouring
+/// samples (Fritsch and Butland), so that it has no waves beyond those of the samples.
 class PressureCurve {
  public:
   /// @param overlaps_over_radius  x of the samples: at least 4, ascending, the first 0
   /// @param pressures_over_yield  p_Y/Y there: as many, > 0
-  /// @throws std::invalid_argument where they are not so, or not finite
+  /// @throws std::invalid_argument for samples that break these rules or are not finite
   PressureCurve(std::span<const double> overlaps_over_radius, std::span<const double> pressures_over_yield);
 
-  /// Does not allocate.
+  /// p_Y/Y and its slope. Does not allocate.
   /// @param overlap_over_radius  x, in [0, end()]
-  /// @throws std::domain_error naming the end beyond it: nothing is known there, and a cubic continued is no knowledge
+  /// @throws std::domain_error beyond the last sample, where the curve is unknown; the message names end()
   [[nodiscard]] PressureRatio at(double overlap_over_radius) const;
-  /// Likewise.
+  /// Moments of p_Y/Y from 0 to x. Does not allocate.
+  /// @param overlap_over_radius  x, in [0, end()]
+  /// @throws std::domain_error as at()
   [[nodiscard]] PressureMoments moments(double overlap_over_radius) const;
 
   /// x of the last sample.
@@ -53,7 +55,7 @@ class PressureCurve {
   /// Between a knot and the next, with t = x - knot: p_Y/Y = constant + linear t + quadratic t^2 + cubic t^3.
   struct Piece {
     double constant, linear, quadratic, cubic;
-    PressureMoments before;  ///< at the knot
+    PressureMoments before;  ///< moments from 0 to the knot
   };
 
   [[nodiscard]] std::size_t piece_at(double overlap_over_radius) const;

@@ -16,9 +16,8 @@ namespace {
 
 using std::numbers::pi;
 
-// Samples whose polynomial gives the slope at the middle one: enough for slopes of a higher order than that of cubic
-// pieces. A rational interpolant of all samples would do as well, had it no rounding errors: in r^2 the samples crowd
-// at the axis, and their weights with them.
+// Number of samples whose polynomial gives a slope: enough for slopes of a higher order than that of cubic pieces. A
+// rational interpolant of all samples suffers from round-off: in r^2 the samples, and their weights, crowd at the axis.
 constexpr std::size_t k_stencil = 5;
 
 // Four nodes are exact to degree 7; a cubic of x^2 - t^2 has degree 6.
@@ -38,10 +37,10 @@ void check(std::span<const double> radii, std::span<const double> heights) {
     throw std::invalid_argument("the radii of a profile have to ascend");
 }
 
-/// Slope at a point, of the polynomial through it and its neighbours.
+/// Slope at sample i of the polynomial through it and its neighbours.
 double slope_at(std::span<const double> x, std::span<const double> y, std::size_t i) {
   const std::size_t first = std::min(std::max(i, k_stencil / 2) - k_stencil / 2, x.size() - k_stencil);
-  // Of the highest order for its points, it is their polynomial.
+  // A barycentric rational interpolant of the highest order is the polynomial through its points.
   return boost::math::barycentric_rational<double>(x.data() + first, y.data() + first, k_stencil, k_stencil - 1)
       .prime(x[i]);
 }
@@ -53,7 +52,7 @@ double weight_of(Control control) noexcept { return control == Control::force ? 
 RelaxedProfile::RelaxedProfile(std::span<const double> radii, std::span<const double> heights) {
   check(radii, heights);
   radii_.assign(radii.begin(), radii.end());
-  // Scaled, so that the weights of the slopes neither overflow nor underflow in any unit.
+  // Squares are scaled, so that the weights of the slopes neither overflow nor underflow in any unit.
   const double size = largest_radius() * largest_radius();
   std::vector<double> squares(radii_.size());
   std::vector<double> above_axis(radii_.size());
@@ -78,11 +77,11 @@ template <class Integrand>
 double RelaxedProfile::integral(double x, Integrand&& integrand) const {
   if (!(x >= 0.0 && x <= largest_radius())) throw std::domain_error("radius outside the samples of the profile");
   double sum = 0.0;
-  double outer = x;  // t where the piece begins
+  double outer = x;  // t at the inner sample of the piece
   for (std::size_t i = 0; i < pieces_.size() && radii_[i] < x; ++i) {
     const double end = std::min(x, radii_[i + 1]);
     const double inner = std::sqrt((x - end) * (x + end));
-    // Distances from the piece's beginning as (outer - t)(outer + t): those of x^2 - t^2 would cancel.
+    // The distance from the piece's beginning is (outer - t)(outer + t); formed from x^2 - t^2 it would cancel.
     sum += PieceRule::integrate(
         [&](double t) { return integrand(pieces_[i], (outer - t) * (outer + t), (x - t) * (x + t)); }, inner, outer);
     outer = inner;
@@ -105,7 +104,7 @@ double RelaxedProfile::image_slope(double x) const {
 }
 
 double RelaxedProfile::image_area(double x) const {
-  // Exchanging the integrals of S, int_0^x G(x^2 - t^2) dt: no derivative is needed.
+  // With its integrals exchanged, S is int_0^x G(x^2 - t^2) dt, which needs no derivative.
   return integral(x, [](const Piece& c, double d, double) { return c[0] + d * (c[1] + d * (c[2] + d * c[3])); });
 }
 
@@ -122,7 +121,7 @@ PeelState peel_state(const RelaxedProfile& profile, double composite_modulus, do
 
 double critical_radius(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
                        Control control) {
-  // Times sqrt(a), which keeps it finite at the axis: positive where the edge is stable.
+  // (g1D' - xi Dl') sqrt(a), where the root keeps it finite at the axis: positive where the edge is stable.
   const double stretch_slope = weight_of(control) * std::sqrt(0.5 * pi * surface_energy / composite_modulus);
   const auto stability = [&](double a) { return std::sqrt(a) * profile.image_slope(a) - stretch_slope; };
 

@@ -17,9 +17,9 @@ namespace monograin::mdr {
 
 /// One-dimensional image of a profile given by samples.
 ///
-/// The samples are interpolated in r^2, of which a profile that is smooth at the axis is a smooth function: cubic
-/// pieces with slopes of the polynomials through five neighbours. Even polynomials of degree 6 are reproduced; other
-/// smooth profiles to fourth order in the distance of the samples. The transform is exact for the pieces.
+/// The samples are interpolated in s = r^2, because a profile that is smooth at the axis is a smooth function of s. The
+/// pieces are cubics in s, their slopes those of polynomials through five neighbours. Even polynomials of degree 6 are
+/// reproduced, other smooth profiles to fourth order in the distance of samples. The transform is exact for the pieces.
 class RelaxedProfile {
  public:
   /// @param radii    r_i, from 0 on, ascending, at least five; the last one is the largest contact radius a_max
@@ -27,22 +27,22 @@ class RelaxedProfile {
   /// @throws std::invalid_argument that says what is wrong with the samples
   RelaxedProfile(std::span<const double> radii, std::span<const double> heights);
 
-  /// a_max
+  /// Radius a_max of the last sample.
   [[nodiscard]] double largest_radius() const noexcept { return radii_.back(); }
   /// Radii of the samples.
   [[nodiscard]] std::span<const double> radii() const noexcept { return radii_; }
 
-  // Each for x in [0, a_max]; std::domain_error outside.
+  // The image, for x in [0, a_max]; std::domain_error outside.
 
-  /// g1D(x), counted from the axis (eq. 4).
+  /// Image g1D(x) of the profile, counted from the axis (eq. 4), for x in [0, a_max].
   [[nodiscard]] double image(double x) const;
-  /// g1D'(x)
+  /// Slope g1D'(x) of the image, for x in [0, a_max].
   [[nodiscard]] double image_slope(double x) const;
-  /// S(x) = int_0^x g1D
+  /// Area below the image, S(x) = int_0^x g1D, for x in [0, a_max].
   [[nodiscard]] double image_area(double x) const;
 
  private:
-  /// Over r^2 from that of one sample to that of the next: a cubic of the distance from the former.
+  /// Coefficients of the profile between two samples: a cubic in r^2 less r^2 of the inner sample.
   using Piece = std::array<double, 4>;
 
   /// int_0^x f(G, s) dt with s = x^2 - t^2
@@ -58,26 +58,26 @@ class RelaxedProfile {
 /// @throws std::domain_error for a outside [0, a_max]
 [[nodiscard]] double free_force(const RelaxedProfile& profile, double composite_modulus, double a);
 
-/// Edge in equilibrium at the radius a (eq. 14). Errors of free_force.
+/// State of an edge in equilibrium at the radius a (eq. 14). Throws as free_force() does.
 [[nodiscard]] PeelState peel_state(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
                                    double a);
 
 /// Contact radius at pull-off: the outermost root of g1D' = xi Dl' (eq. 15), 0 where there is none.
 ///
-/// Found to the resolution of the samples: of two roots between neighbouring ones neither is seen.
-/// @param surface_energy  dg >= 0; with 0 it is where the image has its outermost minimum
+/// The search has the resolution of the samples: it misses two roots between neighbouring samples.
+/// @param surface_energy  dg >= 0; 0 gives the radius of the outermost minimum of the image
 /// @param control         xi = 1 under displacement, 3 under force control
 /// @throws std::domain_error where the edge is unstable from a_max on: the profile has to be known further out
 [[nodiscard]] double critical_radius(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
                                      Control control);
 
-/// State at pull-off. Under force control its force is the least one of all states, -F_c. Errors of critical_radius.
+/// State at pull-off. Under force control its force is the least of all states, -F_c. Throws as critical_radius() does.
 [[nodiscard]] PeelState pull_off_state(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
                                        Control control);
 
 /// Stable states from a_max down to pull-off, both included, at equal distances of the contact radius.
-/// @param count  of states, >= 2
-/// @throws std::invalid_argument for a count below 2; errors of critical_radius
+/// @param count  number of states, >= 2
+/// @throws std::invalid_argument for a count below 2; std::domain_error as critical_radius()
 [[nodiscard]] std::vector<PeelState> peel_curve(const RelaxedProfile& profile, double composite_modulus,
                                                 double surface_energy, Control control, std::size_t count);
 

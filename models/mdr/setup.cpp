@@ -61,7 +61,7 @@ std::vector<Unknown> Setup::unknowns() const {
   return list;
 }
 
-/// A program may ask for any displacement, but a contact ends where its wall has reached the centre.
+/// A program may prescribe any displacement, but a contact ends where its wall has reached the centre.
 double Setup::largest_overlap_expected() const {
   double reach = std::min(1.0, settings.largest_displacement / settings.initial_radius);
   const double force = settings.largest_force / (stress_unit * settings.initial_radius * settings.initial_radius);
@@ -73,8 +73,8 @@ double Setup::largest_overlap_expected() const {
   return reach > 0.0 ? reach : 1.0;
 }
 
-/// Displaced volume makes the radius grow with the square of the displacement; by the rule `seed` so does elastic
-/// volume that comes back, which of small displacements is more.
+/// Displaced volume makes the radius grow with the square of the displacement. By the rule `seed`, elastic volume that
+/// is recovered makes it grow too, by more than that at small displacements.
 double Setup::growth_scale(double displacement) const noexcept {
   const double displaced = displacement * displacement;
   if (settings.radius_rule != RadiusRule::seed) return displaced;

@@ -1,10 +1,9 @@
 /// Constants of a run of the MDR particle: settings, law and units, contact classes, and the unknowns in y.
 ///
-/// Unknowns: r = (R - R0)/R0, the work of the walls, with a free centre its displacement along the directions in which
-/// the walls can move it, and the displacement of every wall whose force is prescribed at some time. Where a force is
-/// prescribed, the work is counted less force times displacement, -int delta_o dF: unlike int F d(delta_o) it has no
-/// singularity where a contact is made or snaps off. Lengths in R0; stresses in the yield stress (in E* where nothing
-/// yields).
+/// Unknowns: r = (R - R0)/R0, the work of the walls, the displacement of a free centre along the directions in which
+/// walls can move it, and the displacement of every wall whose force is prescribed at some time. Where a force is
+/// prescribed, the unknown is the work less force times displacement, -int delta_o dF: unlike int F d(delta_o), this
+/// has no singularity where a contact is made or snaps off. Lengths in R0; stresses in Y (in E* if Y is infinite).
 #pragma once
 
 #include <algorithm>
@@ -33,8 +32,8 @@ struct Settings {
   std::shared_ptr<const PressureCurve> pressure_curve{};  ///< p_Y/Y over delta/R; null: the source's exponential
   bool stops_at_cap_intersection = false;
   bool centre_is_free = false;  ///< the centre moves so that the wall forces balance
-  /// Largest displacement [m] and force [N] the program asks of a wall: how large the unknowns become, which absolute
-  /// tolerances are relative to. 0: not said.
+  /// Largest displacement [m] and force [N] that the program prescribes a wall. They give the scales of the unknowns,
+  /// to which absolute tolerances are relative. 0: unknown.
   double largest_displacement = 0.0;
   double largest_force = 0.0;
 };
@@ -57,9 +56,9 @@ struct Setup {
   double stress_unit = 1.0;  ///< [Pa]
   std::vector<ContactClass> classes;
   std::vector<double> counts;           ///< walls of each class
-  bool takes_forces = false;            ///< whether any class ever does
+  bool takes_forces = false;            ///< whether any class is ever under force control
   FreeCentre centre;                    ///< without loads
-  std::vector<std::size_t> wall_index;  ///< in y, of the displacement of each class that takes a force; else 0
+  std::vector<std::size_t> wall_index;  ///< index in y of the displacement of each class that takes a force; else 0
 
   [[nodiscard]] double length_unit() const noexcept { return settings.initial_radius; }
   [[nodiscard]] double force_unit() const noexcept { return stress_unit * length_unit() * length_unit(); }
@@ -69,11 +68,11 @@ struct Setup {
     return centre_index(centre.count()) +
            static_cast<std::size_t>(std::ranges::count_if(classes, &ContactClass::takes_force));
   }
-  /// Largest displacement that the program makes of any wall, over R0; 1 where it does not say.
+  /// Largest displacement that the program leads to at any wall, over R0 and at most 1; 1 where it is not known.
   [[nodiscard]] double largest_overlap_expected() const;
-  /// Growth of the radius up to a displacement.
+  /// Typical growth of the radius up to a displacement of the walls, both over R0.
   [[nodiscard]] double growth_scale(double displacement) const noexcept;
-  /// Work of one wall up to a displacement, whichever is less of an elastic and a fully plastic contact.
+  /// Typical work of one wall up to a displacement over R0: the smaller one of an elastic and a fully plastic contact.
   [[nodiscard]] double work_scale(double displacement) const noexcept;
 };
 

@@ -15,22 +15,22 @@
 namespace monograin::mdr {
 namespace {
 
-// Share of a push that its balance may leave.
+// Unbalanced share of the push at which overlaps_under_push() has converged.
 constexpr double k_balanced = 1e-10;
-// Share of the path on which a push takes a free centre that counts as away from a wall.
+// Gap, over the displacement of the centre under a push, from which on the centre has left a wall.
 constexpr double k_moved_away = 1e-6;
 constexpr int k_most_steps_of_search = 200;
-// Stiffness, over that of the stiffest direction, of one that no contact constrains.
+// Stiffness, over that of the stiffest direction, below which a direction counts as unconstrained.
 constexpr double k_no_stiffness_ratio = 1e-12;
 
-/// A wall that can only push a free centre out of its path.
+/// Wall of an idle contact: it can push a free centre, but not pull it.
 struct IdleWall {
   std::size_t contact = 0;
-  double rate = 0.0;  ///< of its overlap, where none of them pushes
+  double rate = 0.0;  ///< rate of its overlap if no idle wall pushes the centre
 };
 
-/// Measures the displacement of the centre by the overlaps of contacts of these normals: between walls that are nearly
-/// opposite it is far longer than they are. Blind to directions in which no contact constrains the centre.
+/// Matrix that scales a displacement of the centre to the size of the overlaps it causes in contacts of these normals.
+/// Between nearly opposite walls a displacement is far longer than overlaps. Unconstrained directions become zero.
 Eigen::Matrix3d measure_by_overlaps(std::span<const Eigen::Vector3d> normals, std::span<const double> weights) {
   Eigen::Matrix3d held = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < normals.size(); ++k) held += weights[k] * normals[k] * normals[k].transpose();
@@ -41,8 +41,9 @@ Eigen::Matrix3d measure_by_overlaps(std::span<const Eigen::Vector3d> normals, st
   return lengths.asDiagonal() * directions.eigenvectors().transpose();
 }
 
-/// Overlaps to which contacts of these normals, whose forces go with their overlaps to the 3/2, come under a push, over
-/// the displacement of the centre, up to a factor: Newton on the least of a convex energy.
+/// Overlaps that a push on the centre causes in contacts of these normals, over the displacement of the centre as
+/// measure_by_overlaps() scales it; negative for gaps. Each force is the weight times overlap^(3/2). Newton's method
+/// minimises the convex energy.
 std::vector<double> overlaps_under_push(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> normals,
                                         std::vector<double> weights) {
   for (const double most = std::ranges::max(weights); double& weight : weights) weight /= most;
@@ -66,7 +67,7 @@ std::vector<double> overlaps_under_push(const Eigen::Vector3d& push, std::span<c
       stiffness += 1.5 * weights[k] * root * measured[k] * measured[k].transpose();
     }
     if (slope.norm() < k_balanced) break;
-    // Where nothing is pressed as yet there is no stiffness.
+    // Without overlaps there is no stiffness; adding the size of the slope keeps the step finite.
     stiffness.diagonal().array() += slope.norm();
     Eigen::Vector3d step = -stiffness.ldlt().solve(slope);
     const double before = energy(path);
@@ -78,13 +79,13 @@ std::vector<double> overlaps_under_push(const Eigen::Vector3d& push, std::span<c
   return overlaps;
 }
 
-/// Distance of a wall from touching the fresh particle or its dent.
+/// Distance of a wall from touching the fresh particle or its dent, in the unit of its guard.
 double distance_to_touch(const Particle& p, std::size_t i) {
   const int kind = p.branch(i).regime == Regime::separated ? k_dent_touched : k_made;
   return std::abs(contact_guard(p, kind, i, 0.0, p.contact(i).overlap));
 }
 
-/// True if contacts that touch, or are about to, can balance a push of one on the free centre.
+/// True if contacts that touch, or are within k_together of it, can balance a push of contact i on the free centre.
 bool may_be_supported(const Particle& p, std::size_t i) {
   std::vector<CentreVector> others;
   for (std::size_t j = 0; j < p.size(); ++j) {
@@ -95,8 +96,8 @@ bool may_be_supported(const Particle& p, std::size_t i) {
   return in_reaction_cone(p.centre().direction(i), others);
 }
 
-/// The contact that closes or opens together with another one: the nearest of those that do so within the integration
-/// error, and to open has nothing that balances it.
+/// The contact that closes or opens together with contact i: among those within the integration error (k_together) of
+/// doing so, the nearest. A contact that the others support does not open.
 std::optional<std::size_t> nearest_partner(const Particle& p, std::size_t i, bool is_made) {
   std::optional<std::size_t> next;
   double nearest = k_together;
@@ -111,8 +112,8 @@ std::optional<std::size_t> nearest_partner(const Particle& p, std::size_t i, boo
   return next;
 }
 
-/// True if forces press a free centre against idle contacts: those that bear already cannot balance them by themselves,
-/// now or at the end of the step.
+/// True if prescribed forces press a free centre against idle contacts: the loaded contacts alone cannot balance these
+/// forces now, or cannot at the end of the step.
 bool idle_contacts_have_to_bear(const Particle& p, double xi) {
   std::vector<CentreVector> bearing;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -127,10 +128,10 @@ bool idle_contacts_have_to_bear(const Particle& p, double xi) {
   return !is_borne(prescribed_push(p, xi)) || !is_borne(prescribed_push(p, 1.0));
 }
 
-/// Adds to a velocity of the centre the least by which none of the walls goes into the particle. One that the least for
-/// those before it lets in keeps up with the centre in the end.
-/// @param along  projector on the directions in which nothing else holds the centre
-/// @return false, and the velocity as it was, if there is none
+/// Adds to a velocity of the centre the smallest one that keeps all walls out of the particle. Takes the walls in turn:
+/// a wall that enters with the velocity found so far becomes a constraint, and the walls before it are solved again.
+/// @param along  projector on the directions in which the centre can still move
+/// @return false, with the velocity unchanged, if there is no such velocity
 bool push_out(const Particle& p, std::span<const IdleWall> walls, const CentreMatrix& along, CentreVector& velocity) {
   CentreVector now = velocity;
   for (std::size_t k = 0; k < walls.size(); ++k) {
@@ -147,8 +148,8 @@ bool push_out(const Particle& p, std::span<const IdleWall> walls, const CentreMa
   return true;
 }
 
-/// Velocity of the centre that idle walls add to what it has without them, if they leave it a way out; and the rates of
-/// their overlaps without it.
+/// Velocity that idle walls add to the centre, on top of its velocity without them; none if they block the centre. Sets
+/// the rate of each wall's overlap without that addition.
 std::optional<CentreVector> velocity_of(Particle& p, std::span<IdleWall> walls, double xi, std::span<const double> y) {
   const std::vector<ContactBranch> before = p.branches();
   for (const IdleWall& wall : walls) p.lose(wall.contact);
@@ -162,10 +163,10 @@ std::optional<CentreVector> velocity_of(Particle& p, std::span<IdleWall> walls, 
   return is_free ? std::optional(velocity) : std::nullopt;
 }
 
-/// Loses the idle contacts that the centre leaves where forces begin to press it: contacts give way
-/// with the force to the 2/3, beside which walls stand still at first. Which of them will bear cannot be decided one by
-/// one, nor where those to be left still pull in the search for the balance.
-/// @return whether there are any
+/// Loses the idle contacts that the centre leaves when prescribed forces begin to press it. Contacts give way with the
+/// force to the 2/3, infinitely fast at first, so the motion of walls is negligible. One energy minimum decides for all
+/// contacts together; in the usual search for the balance, contacts about to be lost would still pull.
+/// @return whether any contact was lost
 bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std::vector<bool>& is_left,
                     std::vector<Event>& log) {
   const std::vector<ContactBranch> before = p.branches();
@@ -175,7 +176,7 @@ bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std
   const double least = k_no_force * largest_prescribed_force(p);
   const CentreVector push = along * prescribed_push(p, 1.0);
   if (push.norm() <= least) return false;
-  // Forces begin with a step: once contacts have given way to one, however small, walls may have caught up.
+  // Holds only where forces begin, at the start of a step: after any force, walls may have caught up with the centre.
   if (xi > 0.0 || (along * prescribed_push(p, xi)).norm() > p.force_rounding()) return false;
   std::vector<CentreVector> normals;
   for (const IdleWall& wall : walls) normals.emplace_back(along * p.centre().direction(wall.contact));
@@ -251,7 +252,7 @@ void check_support(Particle& p) {
 
 void balance_touch(Particle& p, std::size_t i, bool is_made, std::vector<Event>& log) {
   if (!p.centre().acts(i) || p.law().adheres()) return;
-  // Walls that cannot balance it have not met the particle with it, however near they are.
+  // Walls that cannot balance contact i do not close with it, however near they are.
   if (is_made && !may_be_supported(p, i)) return;
   while (!is_made || !is_supported(p, i)) {
     const std::optional<std::size_t> next = nearest_partner(p, i, is_made);
@@ -286,7 +287,7 @@ bool lose_idle_contacts(Particle& p, double xi, std::span<const double> y, std::
     velocity = velocity_of(p, walls, xi, y);
   }
   if (!velocity) return false;
-  // Beside stiff contacts these rates have fewer digits; what leaves more slowly is lost when it has gone.
+  // Next to stiff contacts these rates lose digits. A contact that opens more slowly is lost later, by its guard.
   const double least = -k_at_rest * (1.0 + velocity->norm());
   bool has_left = false;
   for (const IdleWall& wall : walls) {

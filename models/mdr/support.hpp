@@ -5,33 +5,37 @@
 
 namespace monograin::mdr {
 
-/// True if the other touching contacts can balance a push of one of them on the free centre, or a pull where the side
-/// is -1; those whose edges do not follow pull, too.
+/// True if the other touching contacts can balance the push of contact i on the free centre. Contacts whose edges stick
+/// or peel can pull as well.
+/// @param side  -1: a pull of contact i instead
 [[nodiscard]] bool is_supported(const Particle& p, std::size_t i, double side = 1.0);
-/// is_supported() where nothing is to be allocated.
+/// True if the other touching contacts can balance the push of contact i, as the other overload says; does not allocate
+/// once the work space is large enough.
 /// @param others  work space
 [[nodiscard]] bool is_supported(const Particle& p, std::size_t i, double side, std::vector<CentreVector>& others);
-/// Projector on the directions in which no touching contact constrains the centre.
+/// Projector on the directions in which no touching contact under displacement control constrains the centre.
 [[nodiscard]] CentreMatrix unconstrained_directions(Particle& p);
-/// Sum of the prescribed forces on a free centre.
+/// Sum of the prescribed forces of touching walls on a free centre, at the step coordinate xi.
 [[nodiscard]] CentreVector prescribed_push(const Particle& p, double xi) noexcept;
-/// Largest prescribed force of a class within the step.
+/// Largest prescribed force of a touching class within the step, summed over its walls.
 [[nodiscard]] double largest_prescribed_force(const Particle& p) noexcept;
 
-/// A wall that pushes a particle which nothing supports from the other side has no equilibrium, unless others adhere;
-/// nor have forces that do not balance where no wall stands against them.
-/// @throws std::domain_error there
+/// Checks that the prescribed forces do not drive a free centre away.
+/// @throws std::domain_error if these forces leave a net push, at the start or the end of the step, along a direction
+/// in which no touching wall under displacement control constrains the centre
 void check_support(Particle& p);
 
-/// Where the centre is free, a contact along its directions is balanced by others only: the nearest ones close with it
-/// until they balance it, if they can, and those open with it that the rest does not balance.
+/// Closes or opens the contacts that close or open together with contact i, because on a free centre only other
+/// contacts balance it. When contact i closes, the nearest walls close until they support it, if they can. When contact
+/// i opens, those contacts open that the remaining ones do not support. Does nothing where contacts adhere.
+/// @param is_made  true: contact i has closed; false: it has opened
 void balance_touch(Particle& p, std::size_t i, bool is_made, std::vector<Event>& log);
 
-/// Loses the idle contacts that the others drive the centre away from faster than they follow: an idle contact can push
-/// the centre, but not pull it. Where walls close in on it from opposite sides there is no way out, and they are about
-/// to bear, as are those that a force presses it against: then only those are asked that no other contact opposes.
+/// Loses the idle contacts that the centre leaves faster than their walls follow: an idle contact can push the centre,
+/// but not pull it. If walls close in on the centre from opposite sides, or a force presses the centre against them,
+/// their contacts are about to carry load; then only idle contacts that no other contact opposes may be lost.
 /// @param is_left  set for contacts that stay open at this instant
-/// @return whether there are any
+/// @return whether any contact was lost
 [[nodiscard]] bool lose_idle_contacts(Particle& p, double xi, std::span<const double> y, std::vector<bool>& is_left,
                                       std::vector<Event>& log);
 

@@ -12,7 +12,7 @@
 namespace monograin::mdr {
 namespace {
 
-// Stiffness of a free centre below which a fold is so near that errors are magnified.
+// Stiffness of a free centre (CentreStiffness::value) below which a nearby fold magnifies errors.
 constexpr double k_soft_centre = 0.1;
 
 }  // namespace
@@ -27,8 +27,8 @@ void System::start(std::span<double> y) {
   for (std::size_t i = 0; i < now_.particle.size(); ++i) {
     const ContactClass& c = setup_->classes[i];
     ramps.push_back({-c.gap, -c.gap, Control::displacement});
-    // A free centre is held by whatever it touches; otherwise resting walls stay open until the particle grows against
-    // them.
+    // Walls that touch a particle with a free centre hold it from the start. Walls at rest around a fixed centre stay
+    // open until the particle grows against them.
     const ContactBranch& branch = now_.particle.branch(i);
     if (c.gap == 0.0 && now_.particle.centre().acts(i)) now_.particle.set_branch(i, branch.made());
     if (c.takes_force) y[setup_->wall_index[i]] = branch.resting;
@@ -36,8 +36,8 @@ void System::start(std::span<double> y) {
   now_.particle.set_drives(ramps);
 }
 
-/// Runs a search on a copy of the particle, and takes the mode over that it finds. Where it finds none, particle and
-/// state stay as they were: what it tried last is no state of the particle.
+/// Runs a search on a copy of the particle, and adopts the mode that the search finds. If it finds none, particle and y
+/// stay as they were: the mode tried last is no state of the particle.
 template <class Search>
 void System::decide_mode(std::span<double> y, Search&& search) {
   before_search_.assign(y.begin(), y.end());
@@ -70,7 +70,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   if (now_.particle.centre().is_free()) now_.particle.evaluate(0.0, y);
   decide_mode(y, [&] {
     for (std::size_t i = 0; i < now_.particle.size(); ++i) {
-      // The nearest walls close with it, as no guard is met by one that touches already.
+      // A contact that touches already fires no guard when a force begins to press it: the nearest walls close here.
       const contacts::WallDrive& drive = now_.particle.drive(i);
       const bool begins_to_press = now_.particle.is_loaded(i) && drive.start() == 0.0 && drive.end() > 0.0;
       if (begins_to_press && search_.particle().branch(i).touches()) search_.close_with(i, log);
@@ -97,7 +97,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   return are_marks ? std::nullopt : now_.caps.meet_at_once(now_.particle, log);
 }
 
-/// Asks for a wall that stands at the limit already, and goes on from there, which no guard meets.
+/// Reason to stop if a wall already stands at the centre and goes on from there, which fires no guard.
 std::optional<DomainEnd> System::reach_centre_at_once(double xi, std::span<const double> y) {
   const Evaluation& at = now_.particle.evaluated(xi, y);
   for (std::size_t i = 0; i < now_.particle.size(); ++i) {
@@ -109,7 +109,7 @@ std::optional<DomainEnd> System::reach_centre_at_once(double xi, std::span<const
 }
 
 std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
-  // Asked for the whole program: every contact is below the resolution when it is made.
+  // Judges the deepest contact of the whole program: every contact is below the resolution when it is made.
   if (!(setup_->largest_overlap_expected() > k_resolution)) return Difficulty::below_resolution;
   if (!may_peel_off(now_.particle)) return std::nullopt;
   now_.particle.evaluate(xi, y);
@@ -137,8 +137,8 @@ void System::all_rates(double xi, std::span<const double> y, std::span<double> d
 }
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
-  // Centre and walls under force stand where the radius puts them, so that their singular rows do not couple to the
-  // others. In directions in which nothing constrains it, the centre stays where it was.
+  // Centre and walls under force are evaluated in equilibrium for the radius in y, so that their singular rows do not
+  // couple to the others. Along unconstrained directions the centre stays where it was when the mode began.
   const Mode& mode = now_.particle.mode;
   const int count = now_.particle.centre().count();
   std::ranges::copy(y, trial_.begin());
@@ -149,7 +149,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
   }
   move_centre_and_walls(now_.particle, xi, trial_);
   const Evaluation& at = now_.particle.evaluate(xi, trial_);
-  // Beyond where growth would run away there is no balance to be found; the rates end there, too.
+  // Throws where growth would run away, as rates() does: no balance exists beyond.
   if (mode.is_growing) static_cast<void>(now_.particle.growing_motion());
   res[k_radius] = mode.is_growing ? at.volume.value - mode.frozen_balance : y[k_radius] - mode.held_radius;
   res[k_work] = dy[k_work] - at.power;

@@ -1,7 +1,7 @@
 /// The MDR particle between rigid walls as a hybrid system.
 ///
-/// Setup says which unknowns there are, Particle evaluates them, GuardSet and ModeSearch decide the modes; here these
-/// are put behind the interface of hybrid systems. While the radius grows, the explicit form is the rate that keeps the
+/// Setup says which unknowns there are, Particle evaluates them, GuardSet and ModeSearch decide the modes; System puts
+/// these behind the interface HybridSystem. While the radius grows, the explicit form is the rate that keeps the
 /// volume balance (apparent_radius.hpp), and the implicit and direct forms are the balance itself, with its constant
 /// frozen at every transition.
 #pragma once
@@ -63,7 +63,7 @@ class System final : public HybridSystem {
     Particle particle;
     GuardSet guards{};
     ContactCaps caps;
-    std::optional<Diagnostic> validity{};  ///< first adhesive contact to unload for which the model is not valid
+    std::optional<Diagnostic> validity{};  ///< for the first adhesive contact that unloads outside the model's validity
     bool has_begun = false;
   };
 
@@ -78,7 +78,7 @@ class System final : public HybridSystem {
   contacts::Columns columns_;
   std::vector<Observable> observables_;
   State now_;
-  // Work space, so that nothing is allocated while integrating.
+  // Work space, kept so that integrating allocates no memory.
   ModeSearch search_;
   std::vector<Guard> fired_;
   std::vector<double> trial_;

@@ -1,13 +1,13 @@
 /// Transforms between an axisymmetric contact and its one-dimensional image, for arbitrary profiles.
 ///
 /// Profiles, displacements and pressures are callables of the distance from the axis, r in space and x in the image;
-/// functions of either are even, and are only asked for at arguments >= 0. The substitutions below take the square
-/// roots out of all kernels, so that a profile which is smooth inside and behaves like a square root (or its inverse)
-/// at the edge is integrated to rounding. One that is unbounded at the edge loses digits in the argument, however: the
-/// distance to the edge is not in a rounded r. A callable of two arguments, r and half the chord sqrt(a^2 - r^2), is
-/// given both and loses none. A jump of the integrand, or a logarithm at the axis, costs time and leaves an error of
-/// 1e-6 or 1e-8 of it. What the callables throw passes through; NaN in gives NaN out. Every function is homogeneous:
-/// lengths in any one unit, stresses in any one unit. Source: Zunker and Kamrin (2024), section 3.1.
+/// they are even functions, and are only called for arguments >= 0. The substitutions below take the square roots out
+/// of all kernels, so that a profile which is smooth inside and behaves like a square root (or its inverse) at the edge
+/// is integrated to round-off. A function that is unbounded at the edge loses digits, because a rounded r lacks the
+/// distance to the edge. A callable of two arguments, r and half the chord sqrt(a^2 - r^2), gets both and loses none. A
+/// jump of the integrand, or a logarithm at the axis, costs time and leaves a relative error of 1e-6 or 1e-8.
+/// Exceptions of the callables pass through; NaN in gives NaN out. Every function is homogeneous: lengths in any one
+/// unit, stresses in any one unit. Source: Zunker and Kamrin (2024), section 3.1.
 #pragma once
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
@@ -19,18 +19,18 @@ namespace monograin::mdr {
 
 namespace detail {
 
-// Asking for less than the noise of the integrand would bisect for ever; the depth bounds the cost of a kink.
+// A tolerance below the noise of the integrand would bisect for ever; the depth bounds the cost of a kink.
 inline constexpr double k_transform_tolerance = 1e-13;
 inline constexpr unsigned k_transform_depth = 15;
 
-/// int_0^end f(t) dt
+/// Integral of f(t) for t from 0 to end.
 template <class Function>
 [[nodiscard]] double angular_integral(Function&& f, double end) {
   return boost::math::quadrature::gauss_kronrod<double, 61>::integrate(f, 0.0, end, k_transform_depth,
                                                                        k_transform_tolerance);
 }
 
-/// A function of the radius, or of the radius and half the chord there.
+/// Value of a function of the radius, or of the radius and half the chord there.
 template <class Function>
 [[nodiscard]] double at_chord(Function&& f, double radius, double half_chord) {
   if constexpr (std::is_invocable_v<Function, double, double>) {
@@ -70,7 +70,7 @@ template <class Profile>
 /// @param pressure        r -> p3D(r), or (r, sqrt(a^2 - r^2)) -> p3D(r); may grow like 1/sqrt(a^2 - r^2)
 /// @param contact_radius  a
 /// @param x               >= 0
-/// @return 0 for x > a; at x = a what q1D comes down (or jumps) to is not in the pressure any more: 0
+/// @return 0 for x >= a: at x = a the pressure no longer shows the value to which q1D falls (or from which it jumps)
 template <class Pressure>
 [[nodiscard]] double line_load_1d(Pressure&& pressure, double contact_radius, double x) {
   if (x >= contact_radius) return 0.0;
@@ -145,10 +145,10 @@ template <class Slope>
 /// @throws std::domain_error for n < 0 or NaN, where the transform does not exist
 [[nodiscard]] double power_ratio(double exponent);
 
-/// Image of the profile C r^n, C kappa_n x^n. Domain and errors of power_ratio.
+/// Image of the profile C r^n, C kappa_n x^n. Domain and errors are those of power_ratio().
 [[nodiscard]] double power_profile_1d(double coefficient, double exponent, double x);
 
-/// Profile of the image C x^n, (C/kappa_n) r^n. Domain and errors of power_ratio.
+/// Profile of the image C x^n, (C/kappa_n) r^n. Domain and errors are those of power_ratio().
 [[nodiscard]] double power_profile_3d(double coefficient, double exponent, double r);
 
 }  // namespace monograin::mdr

@@ -1,4 +1,4 @@
-/// How a model checks the histories of its own scenes in the stress test.
+/// Tools with which a model checks the histories of its own scenes in the stress test.
 #pragma once
 
 #include <algorithm>
@@ -29,21 +29,24 @@ class HistoryRows {
   /// The word in a cell of a column that holds words.
   [[nodiscard]] virtual std::string_view word(std::size_t row, std::size_t column) const = 0;
 
-  /// Index of a column that there is.
+  /// Index of a column that the history has.
   [[nodiscard]] std::size_t column(std::string_view name) const { return find(name).value(); }
   [[nodiscard]] virtual double largest_magnitude(std::size_t column) const = 0;
 };
 
-/// A run as its model sees it.
+/// A run that its model checks.
 struct CheckedRun {
   const ModelInput& input;
   const HistoryRows& rows;
   std::span<const ContactClass> classes;
-  double tolerance = 0.0;  ///< error that the integrator is granted, over the largest values
-  double round_off = 0.0;  ///< of strains and other numbers of order one
+  double tolerance = 0.0;  ///< error that the integrator is allowed, over the largest values
+  double round_off = 0.0;  ///< round-off of strains and other numbers of order one
 };
 
-/// Rows of a history that break something, the first of each: where `excess(row)` is above zero.
+/// Adds a violation for the first row of a history, if any, that breaks a rule.
+/// @param check   name of the rule
+/// @param what    begins the violation's text
+/// @param excess  row -> by how much the row breaks the rule; <= 0 if it does not
 template <class Excess>
 void check_rows(const CheckedRun& run, std::string_view check, std::string_view what, std::vector<Violation>& found,
                 Excess&& excess) {
@@ -57,7 +60,7 @@ void check_rows(const CheckedRun& run, std::string_view check, std::string_view 
   }
 }
 
-/// Checks that the values of a column only grow, but for a fall below the most so far by no more than a tolerance.
+/// Checks that the values of a column never fall below the largest value so far by more than a tolerance.
 inline void check_growth(const CheckedRun& run, std::string_view name, double tolerance,
                          std::vector<Violation>& found) {
   double largest = 0.0;

@@ -11,14 +11,14 @@ namespace monograin {
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : engine_(seed) {}
-  /// The numbers of one member of a family: no two members share a sequence.
+  /// Sequence of one member of a family: no two members share a sequence.
   Dice(std::uint64_t seed, std::uint64_t member) {
     std::seed_seq both{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U),
                        static_cast<std::uint32_t>(member), static_cast<std::uint32_t>(member >> 32U)};
     engine_.seed(both);
   }
 
-  /// In [low, high).
+  /// Number in [low, high).
   double uniform(double low, double high) {
     return low + (high - low) * (static_cast<double>(engine_() >> 11U) * 0x1p-53);
   }

@@ -35,7 +35,7 @@ CentreLines::CentreLines(std::span<const ContactClass> classes, bool is_free) {
     arms_.push_back(arm);
     on_lines_.push_back(on);
   }
-  if (directions_.empty()) directions_.emplace_back(Vector::Zero());  // of those that do not act along any
+  if (directions_.empty()) directions_.emplace_back(Vector::Zero());  // line of classes that act along none
 }
 
 }  // namespace monograin::contacts

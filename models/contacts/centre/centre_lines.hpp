@@ -1,9 +1,9 @@
 /// Directions in which a free centre can move, and the lines along which contact classes push it.
 ///
-/// The centre can only move in ways that keep the symmetry of the walls: along the mean normals of the classes. Walls
-/// that face each other, or the same way, push it along one line. What they do is summed up there before it is
-/// resolved: the round-off of large forces that nearly cancel would otherwise act across the line, where a soft contact
-/// may be all that bears.
+/// The centre can only move along the mean normals of the classes, which keeps the symmetry of the walls. Classes of
+/// parallel or opposite mean normals push it along one line. Their forces are summed up along that line before they are
+/// resolved into components: the round-off of large forces that nearly cancel would otherwise act across the line,
+/// where a soft contact may be all that bears.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,8 +27,8 @@ class CentreLines {
   /// Vectors and matrices along the free directions of the centre; entries beyond their number are zero.
   using Vector = Eigen::Vector3d;
   using Matrix = Eigen::Matrix3d;
-  /// Smallest mean normal of a contact class, along the free directions, that counts. The stiffness along them goes
-  /// with its square, and is round-off below this.
+  /// Smallest component of a class's mean normal along the free directions that counts. The stiffness goes with the
+  /// square of that component, and is round-off below this.
   static constexpr double k_no_direction = 1e-6;
 
   CentreLines() = default;
@@ -52,10 +52,10 @@ class CentreLines {
   [[nodiscard]] std::size_t line_of(std::size_t i) const noexcept { return on_lines_[i].line; }
   [[nodiscard]] double along(std::size_t i) const noexcept { return on_lines_[i].along; }
 
-  /// Orthonormal basis along the line that is stiffest, across it along the one that is so there, and so on; no columns
-  /// for directions without stiffness. In these directions the forces of stiff contacts are nothing, not round-off,
-  /// where only soft ones bear.
-  /// @param stiffness  of a line
+  /// Orthonormal basis: the first column along the stiffest line, the second along the line that is stiffest across the
+  /// first, and so on; zero columns for directions without stiffness. Along directions in which only soft contacts
+  /// bear, the forces of stiff contacts then have a component of zero, not of round-off.
+  /// @param stiffness  line -> its stiffness
   template <class Stiffness>
   [[nodiscard]] Matrix stiffest_directions(Stiffness&& stiffness) const {
     Matrix basis = Matrix::Zero();
@@ -81,10 +81,10 @@ class CentreLines {
     const Vector raw = basis.transpose() * directions_[line];
     return (raw.array().abs() > k_no_component).select(raw, 0.0);
   }
-  /// Displacement of the centre, along the directions of a basis, that cancels forces by stiffnesses; none along
-  /// directions in which these are round-off.
-  /// @param stiffness  of a line
-  /// @param force      along a line
+  /// Displacement of the centre, along the directions of a basis, with which stiffnesses cancel forces; zero along
+  /// directions in which the stiffness is round-off.
+  /// @param stiffness  line -> its stiffness
+  /// @param force      line -> force along it
   template <class Stiffness, class Force>
   [[nodiscard]] Vector step(const Matrix& basis, Stiffness&& stiffness, Force&& force) const {
     constexpr double k_no_stiffness = 1e-12;  // over the greatest one, each scaled by its own contacts
@@ -112,13 +112,13 @@ class CentreLines {
  private:
   struct OnLine {
     std::size_t line = 0;
-    double along = 0.0;  ///< 0: acts along none
+    double along = 0.0;  ///< mean normal as a multiple of the line's direction; 0: acts along no line
   };
 
   int dimension_ = 0;
   Matrix basis_ = Matrix::Zero();  ///< orthonormal, in the first columns
   std::vector<Vector> arms_;
-  std::vector<Vector> directions_;  ///< of the lines
+  std::vector<Vector> directions_;  ///< directions of the lines
   std::vector<OnLine> on_lines_;
 };
 

@@ -1,6 +1,6 @@
-/// Contacts around a free centre in a mode: where the centre is, how it moves, which contacts bear, and what ends the
-/// mode. The functions of a law are listed in contacts/independent.hpp; lengths are over R0, forces over the law's
-/// unit.
+/// Contacts around a free centre in a mode: position and velocity of the centre, the contacts that bear, and the guards
+/// that end the mode. The functions of a law are listed in contacts/independent.hpp; lengths are over R0, forces over
+/// the law's unit.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,8 @@ class CentreMode {
   /// By how much the centre has moved towards the walls of a class.
   [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const { return centre_.along(i, position(y)); }
   /// Displacement of a contact.
-  /// @param d  with the centre where it started; under force control, where it is
+  /// @param d  displacement with the centre at its initial position; for a touching wall under force control, at its
+  ///           present one
   [[nodiscard]] double displacement(const Law& law, const Contact& c, std::size_t i, double d,
                                     std::span<const double> y) const {
     const double opening = law.opening(c.branch());
@@ -58,8 +59,7 @@ class CentreMode {
     const Vector c = centre_.equilibrium(Instant(law, contacts, xi), roles_, rest_, position(y));
     for (std::size_t k = 0; k < dimension(); ++k) y[slot_ + k] = c[static_cast<Eigen::Index>(k)];
   }
-  /// Writes its rates for integrators to begin with: a quotient of differences, which has no singularity at first
-  /// touch.
+  /// Writes the rates of the centre, with which integrators begin: difference quotients, not singular at first touch.
   void write_rates(const Law& law, std::span<const Contact> contacts, double xi, std::span<const double> y,
                    std::span<double> dy) {
     const Vector now = position(y);
@@ -70,8 +70,8 @@ class CentreMode {
     }
   }
   /// Rate of the work of one wall.
-  /// @param now       of the contact's coordinate
-  /// @param velocity  of the centre
+  /// @param now       slope of the contact's coordinate
+  /// @param velocity  velocity of the centre
   [[nodiscard]] double power(const Law& law, const Contact& c, std::size_t i, double xi, std::span<const double> y,
                              const typename Contact::Slope& now, const Vector& velocity) const {
     if (c.is_force_controlled()) {
@@ -81,6 +81,7 @@ class CentreMode {
     const double d = displacement(law, c, i, c.drive().value(xi), y);
     return c.bears(law, d) ? law.force(c.branch(), d) * c.drive().rate() : 0.0;
   }
+  /// Velocity of the centre.
   [[nodiscard]] Vector velocity(const Law& law, std::span<const Contact> contacts, double xi,
                                 std::span<const double> y) {
     for (std::size_t i = 0; i < contacts.size(); ++i) rates_[i] = contacts[i].drive().rate();
@@ -89,7 +90,7 @@ class CentreMode {
 
   // --- the mode
 
-  /// Takes up the ramps of a step.
+  /// Takes up the ramps of a step, and sets how far ahead the modes of the step are decided.
   void begin_step(std::span<const Contact> contacts) {
     fastest_wall_ = 0.0;
     for (const Contact& c : contacts) {
@@ -97,10 +98,13 @@ class CentreMode {
     }
     ahead_ = std::clamp(k_distance_ahead / fastest_wall_, k_least_ahead, k_most_ahead);
   }
-  /// Decides which walls touch, which bear and which contacts turn in the mode that begins, by evaluating a little
-  /// ahead: these depend on each other through the centre, so assume, evaluate, correct, and repeat.
-  /// @param is_decided  contact -> whether a guard has just decided that for it
+  /// Decides which walls touch, which contacts bear and which ones turn in the mode that begins, by evaluating a little
+  /// ahead. Contacts depend on each other through the centre: the search assumes a mode, evaluates and corrects it, and
+  /// repeats that until it is consistent.
+  /// @param is_decided  contact -> whether a guard has just decided about it
   /// @param is_seen     contact -> whether touching is an event
+  /// @return the reason to stop, if a contact reaches the end of its law
+  /// @throws DomainError if no mode is consistent
   template <class IsDecided, class IsSeen>
   std::optional<DomainEnd> find(Law& law, std::span<Contact> contacts, double xi, std::span<const double> y,
                                 IsDecided&& is_decided, IsSeen&& is_seen, std::vector<Event>& log) {
@@ -139,15 +143,17 @@ class CentreMode {
     if (const auto ahead = c.next(law)) add(k_boundary, 1, ahead->event, ahead->position);
     if (c.is_on_primary_branch() && roles_[i] == Role::bearing) add(k_retreat, -1, "retreat", 0.0);
   }
-  /// @param velocity  of the centre; only a guard of retreat asks for it
+  /// Value of a guard that arm_guards() has listed.
+  /// @param velocity  velocity of the centre; only guards of retreat use it
   [[nodiscard]] double guard_value(const Law& law, std::span<const Contact> contacts, std::size_t i, int kind,
                                    double target, double xi, std::span<const double> y, const Vector& velocity) {
     const WallDrive& drive = contacts[i].drive();
     if (kind == k_retreat) {
-      // A dent so shallow is gone with the contact: which of several carry the centre is round-off.
+      // A contact this shallow does not retreat: its dent would vanish with it, and round-off decides which of several
+      // such contacts carry the centre.
       const double overlap = drive.value(xi) + carried(i, y) - law.opening(contacts[i].branch());
       if (overlap <= k_shallow) return k_at_rest / reach_;
-      // A contact at rest has a rate of round-off.
+      // The rate of a contact at rest is round-off.
       const double fastest = std::max(velocity.norm(), fastest_wall_);
       return (drive.rate() + centre_.along(i, velocity) + k_at_rest * fastest) / reach_;
     }
@@ -156,18 +162,18 @@ class CentreMode {
   }
 
  private:
-  /// How far ahead of an instant, in step coordinates, the mode that begins there is decided: briefer ones are not
-  /// seen. Farther where walls hardly move, so that they go by more than round-off.
+  /// Bounds of the time (in step coordinates) by which a mode is decided ahead; briefer modes are missed. The slower
+  /// the walls, the farther ahead, so that the fastest wall moves by k_distance_ahead, which is more than round-off.
   static constexpr double k_least_ahead = 1e-6;
   static constexpr double k_most_ahead = 1e-3;
   static constexpr double k_distance_ahead = 1e-9;  ///< over R0
-  /// Changes of displacements over that which are round-off.
+  /// Change of an overlap (over R0), from an instant to the one ahead, that is round-off.
   static constexpr double k_no_change = 1e-14;
-  /// Gap or overlap of a wall that is where it meets the particle: it is lost where the gap would be larger.
+  /// Gap or overlap (over R0) up to which wall and particle just meet; a contact is lost when its gap becomes larger.
   static constexpr double k_touch = 1e-12;
-  /// Overlap that is hardly more.
+  /// Overlap (over R0) of a shallow contact, little more than k_touch.
   static constexpr double k_shallow = 10.0 * k_touch;
-  /// Rate of a contact's displacement over the fastest one that is round-off.
+  /// Rate of a contact's displacement, over that of the fastest wall or the centre, that is round-off.
   static constexpr double k_at_rest = 1e-9;
 
   /// The walls around the centre at one instant.
@@ -211,20 +217,21 @@ class CentreMode {
     for (std::size_t k = 0; k < dimension(); ++k) c[static_cast<Eigen::Index>(k)] = y[slot_ + k];
     return c;
   }
-  /// How far a contact is past where wall and particle meet. An idle wall that touches has an overlap of nothing: it
-  /// shows by the one that it would have if it did not push.
+  /// Overlap of a contact; negative for a gap. The overlap of an idle wall stays zero while the wall pushes the centre:
+  /// for that, gives the overlap that it would have if it did not push.
   [[nodiscard]] double overlap_as_touching(const Law& law, std::span<const Contact> contacts, std::size_t i, double xi,
                                            const Vector& c) {
     if (roles_[i] == Role::idle) return centre_.unpushed_overlap(i, Instant(law, contacts, xi), roles_, rest_, c);
     return contacts[i].drive().value(xi) + centre_.along(i, c) - law.opening(contacts[i].branch());
   }
-  /// Decides whether a contact that is where wall and particle meet touches. Farther away, a guard tells when that is.
+  /// Makes or loses a contact whose wall and particle just meet, by its overlap a little later.
   static void find_touch(Law& law, Contact& c, const Change& change, bool is_seen, std::vector<Event>& log) {
     const bool will_touch = change.then > k_no_change;
     if (will_touch && !c.touches() && change.now >= -k_touch) c.make(law, is_seen, log);
     if (!will_touch && c.touches() && change.now <= k_touch) c.lose(law, log);
   }
-  /// Decides whether a contact that touches turns, or goes on beyond a boundary.
+  /// Turns a contact that is about to unload, or takes it beyond the boundaries that it is about to pass.
+  /// @return the reason to stop, if the contact reaches the end of its law
   static std::optional<DomainEnd> find_branch(Law& law, Contact& c, const Change& change, std::vector<Event>& log,
                                               bool& has_changed) {
     if (!c.touches()) return std::nullopt;
@@ -244,13 +251,13 @@ class CentreMode {
   }
 
   FreeCentre centre_;
-  std::size_t slot_ = 0;  ///< in y, of the first coordinate of the centre
+  std::size_t slot_ = 0;  ///< index in y of the first coordinate of the centre
   double reach_ = 1.0;
-  Vector rest_ = Vector::Zero();  ///< of the centre, where the present mode began
+  Vector rest_ = Vector::Zero();  ///< position of the centre when the present mode began
   std::vector<Role> roles_;
-  double fastest_wall_ = 0.0;  ///< rate of the fastest one under displacement control
+  double fastest_wall_ = 0.0;  ///< rate of the fastest wall under displacement control
   double ahead_ = k_least_ahead;
-  std::vector<double> rates_;  ///< of what the program prescribes
+  std::vector<double> rates_;  ///< rates of the prescribed displacements and forces
 };
 
 }  // namespace monograin::contacts

@@ -12,15 +12,16 @@ namespace monograin::contacts {
 namespace {
 
 constexpr double k_round_off = 4.0 * std::numeric_limits<double>::epsilon();
-// A wall that is not farther away than this may be touched and left within an instant.
+// A wall whose gap (over R0) is below this may meet the centre early in the mode that begins: it is idle, not away.
 constexpr double k_near = 1e-5;
-// Stiffness over the greatest one that is comparable with it.
+// Determinant of the stiffness, over the cube of its largest diagonal element, above which the stiffnesses in all
+// directions are comparable.
 constexpr double k_comparable = 1e-3;
-// Share of the prescribed forces that their balance may leave where nothing bears.
+// Share of the prescribed forces that may stay unbalanced along directions in which no contact bears.
 constexpr double k_cancelled = 1e-9;
 constexpr int k_most_steps = 200;
-// A step is long enough where it takes this much off the slope of the energy along it, and short enough where it does
-// not lead as far up again.
+// The line search ends where the slope of the energy along the step has at most this share of its initial magnitude.
+// The full step is also taken if the energy still falls faster at its end.
 constexpr double k_descent = 0.9;
 constexpr int k_most_sections = 60;
 
@@ -37,7 +38,7 @@ FreeCentre::FreeCentre(std::span<const ContactClass> classes)
   to_clear_.reserve(classes.size());
 }
 
-/// Forces and stiffnesses of the contacts along their lines.
+/// Sums up the forces and stiffnesses of the contacts along their lines, with the centre at c.
 void FreeCentre::sum_up(const CentreWalls& walls, std::span<const Role> roles, const Vector& c) {
   std::ranges::fill(loads_, Load{});
   const double distance = c.norm();
@@ -72,7 +73,7 @@ FreeCentre::Vector FreeCentre::net_force() const noexcept {
   return sum;
 }
 
-/// Newton's step towards the balance where contacts of comparable stiffness bear in all directions; none elsewhere.
+/// Newton's step towards the balance if contacts of comparable stiffness bear in all directions; none otherwise.
 std::optional<FreeCentre::Vector> FreeCentre::step_of_all(const Vector& net) const {
   Matrix stiffness = Matrix::Zero();
   for (std::size_t line = 0; line < loads_.size(); ++line) {
@@ -101,7 +102,9 @@ FreeCentre::Matrix FreeCentre::stiffest_directions() const {
   return lines_.stiffest_directions([this](std::size_t line) { return loads_[line].stiffness; });
 }
 
-/// Where nothing bears a push it takes the centre to the nearest wall in its path, so far in that this bears it.
+/// Displacement of a centre under a push that no contact bears: to the nearest wall in its path, and as far into this
+/// wall's contact as bears the push.
+/// @throws DomainError if no wall is in the path
 FreeCentre::Vector FreeCentre::flight(const CentreWalls& walls, std::span<const Role> roles, const Vector& push,
                                       const Vector& c) const {
   const double size = push.norm();
@@ -122,8 +125,8 @@ FreeCentre::Vector FreeCentre::flight(const CentreWalls& walls, std::span<const 
   return (distance + overlap / approach) * path;
 }
 
-/// How much of a step leads to where the energy along it no longer falls: its slope only grows, as it is convex. Leaves
-/// the sums of that position.
+/// Share of a step that leads to about the minimum of the energy along it. The energy is convex, so that its slope
+/// grows along the step. The sums are then those of the position reached.
 double FreeCentre::share_of_step(const CentreWalls& walls, std::span<const Role> roles, const Vector& c,
                                  const Vector& step) {
   const double first = net_force().dot(step);
@@ -144,7 +147,7 @@ double FreeCentre::share_of_step(const CentreWalls& walls, std::span<const Role>
   return middle;
 }
 
-/// Makes contacts that bear less than a force as stiff as under that: at first touch they have no stiffness.
+/// Gives contacts that bear less than a force the stiffness that they have under it: at first touch they have none.
 void FreeCentre::lend_stiffness(const CentreWalls& walls, std::span<const Role> roles, double force) {
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     if (roles[i] != Role::bearing || !(overlaps_[i] > 0.0) || forces_[i] >= force) continue;
@@ -155,6 +158,8 @@ void FreeCentre::lend_stiffness(const CentreWalls& walls, std::span<const Role> 
   }
 }
 
+/// Position at which forces balance, by Newton's method with line search from c.
+/// @throws DomainError if no balance is found, or prescribed forces drive the centre away
 FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const Role> roles, Vector c) {
   double last = std::numeric_limits<double>::infinity();
   sum_up(walls, roles, c);
@@ -180,7 +185,7 @@ FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const
     if (borne.norm() <= round_off_) return c + wanted;
     const double share = share_of_step(walls, roles, c, wanted);
     c += share * wanted;
-    // Round-off of the position is all that is left.
+    // The step is round-off of the position.
     const double size = share * wanted.norm();
     if (size <= k_round_off * std::max(1.0, c.norm()) && size >= 0.5 * last) return c;
     last = size;
@@ -188,7 +193,7 @@ FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const
   throw DomainError(Limit::no_solution, "the balance of forces on the free centre was not found");
 }
 
-/// True if contacts bear in all directions, none of them below resolution, where the last search has ended.
+/// True if, at the end of the last search, contacts bear in all directions and none of them is below resolution.
 bool FreeCentre::is_held() const noexcept {
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     if (forces_[i] > 0.0 && !(forces_[i] > round_off_ && overlaps_[i] > k_resolution)) return false;
@@ -196,9 +201,9 @@ bool FreeCentre::is_held() const noexcept {
   return is_held_;
 }
 
-/// Finds the contacts that bear at the last sums.
-/// @param least_overlap  of a contact that does
-/// @return basis of the directions in which they do
+/// Finds the contacts that bear in the last sum_up().
+/// @param least_overlap  overlap above which a contact bears
+/// @return basis of the directions in which contacts bear
 FreeCentre::Matrix FreeCentre::held_directions(const CentreWalls& walls, double least_overlap) {
   for (Load& line : loads_) line.stiffness = 0.0;
   for (std::size_t i = 0; i < counts_.size(); ++i) {
@@ -211,9 +216,10 @@ FreeCentre::Matrix FreeCentre::held_directions(const CentreWalls& walls, double 
   return stiffest_directions();
 }
 
-/// Moves the centre by the least by which none of the walls overlaps.
-/// @param along  projector on the directions in which it may move
-/// @return false, and c as it was, if there is no such position
+/// Moves the centre by the smallest displacement after which none of the walls overlaps. Takes the walls in turn: a
+/// wall that still overlaps becomes a constraint, and the walls before it are solved again.
+/// @param along  projector on the directions in which the centre may move
+/// @return false, with c unchanged, if there is no such position
 bool FreeCentre::clear(std::span<const std::size_t> walls, const Matrix& along, Vector& c) const {
   Vector now = c;
   for (std::size_t k = 0; k < walls.size(); ++k) {
@@ -230,7 +236,8 @@ bool FreeCentre::clear(std::span<const std::size_t> walls, const Matrix& along, 
   return true;
 }
 
-/// Clears the walls that do not bear, but for one.
+/// Moves the centre out of all walls that do not bear, except for one.
+/// @return false, with c unchanged, if these walls leave no room
 bool FreeCentre::clear_all_but(std::optional<std::size_t> left_out, const CentreWalls& walls,
                                std::span<const Role> roles, Vector& c) {
   to_clear_.clear();
@@ -249,9 +256,10 @@ double FreeCentre::across_held(std::size_t i) const {
   return (lines_.arm(i) - held_directions_ * (held_directions_.transpose() * lines_.arm(i))).norm();
 }
 
-/// Moves the centre along directions in which no contact bears to where it was when the mode began, and out of the path
-/// of walls that push it.
-/// @param left_out  a wall that does not
+/// Completes a balanced position along loose directions, in which no contact bears: there the centre stays where the
+/// mode began, or moves out of the path of walls that push it.
+/// @param balanced  position that balances the forces
+/// @param left_out  a wall that does not push
 FreeCentre::Vector FreeCentre::with_loose_directions(const CentreWalls& walls, std::span<const Role> roles,
                                                      const Vector& rest, const Vector& balanced,
                                                      std::optional<std::size_t> left_out) {
@@ -259,7 +267,7 @@ FreeCentre::Vector FreeCentre::with_loose_directions(const CentreWalls& walls, s
     held_directions_ = held_directions(walls, least_overlap);
     if (dimension() == 0 || held_directions_.col(dimension() - 1).squaredNorm() > 0.0) return balanced;
     Vector c = rest + held_directions_ * (held_directions_.transpose() * (balanced - rest));
-    // Walls that leave no room bear, however little.
+    // Walls that leave no room bear, however small their overlap: the second round counts them.
     if (clear_all_but(left_out, walls, roles, c) || least_overlap == 0.0) return c;
   }
   return balanced;

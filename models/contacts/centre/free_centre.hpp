@@ -1,10 +1,10 @@
 /// Equilibrium of a particle whose centre is free, under unilateral contacts with walls.
 ///
 /// The centre c minimises a convex function: the energy of the contacts whose walls have a prescribed displacement,
-/// less the work of the prescribed forces. Newton's method with the contacts' tangent stiffness finds it. Directions in
-/// which no contact bears are not determined by that: there the centre stays where the mode began, unless idle walls
-/// (which touch and bear nothing) would go into the particle; then it moves by the least that clears them. A loose
-/// particle is carried along in this way.
+/// less the work of the prescribed forces. Newton's method with the contacts' tangent stiffness finds the minimum. It
+/// leaves directions undetermined in which no contact bears: there the centre stays where the mode began, unless idle
+/// walls (which touch and bear nothing) would enter the particle; then it moves by the smallest displacement that
+/// clears them. Walls carry a loose particle along in this way.
 ///
 /// Overlaps below 1e-13 R0, and forces below the round-off of the balance, count as none. Lengths are over R0, forces
 /// over any one unit.
@@ -21,9 +21,9 @@ namespace monograin::contacts {
 
 /// Part that a class of walls plays for a free centre in a mode.
 enum class Role : std::uint8_t {
-  away,     ///< nothing
-  bearing,  ///< its contact bears where it overlaps
-  idle      ///< it bears nothing; where it touches, it pushes the centre along
+  away,     ///< the class is out of reach
+  bearing,  ///< a contact of the class bears if it has an overlap
+  idle      ///< the class bears nothing; a wall that touches pushes the centre along
 };
 
 /// Walls around a free centre at one instant of the program.
@@ -33,11 +33,11 @@ class CentreWalls {
 
   struct Force {
     double value = 0.0;
-    double slope = 0.0;  ///< with the overlap, >= 0
+    double slope = 0.0;  ///< dF/d(overlap), >= 0
   };
   /// Force that the program prescribes the walls of a class; none where it prescribes their displacement.
   [[nodiscard]] virtual std::optional<double> prescribed_force(std::size_t i) const = 0;
-  /// How far a wall is past where its contact begins to bear, the centre being where it started; negative for a gap.
+  /// Overlap that a contact would have with the centre at its initial position; negative for a gap.
   [[nodiscard]] virtual double overlap(std::size_t i) const = 0;
   /// Force of a contact at an overlap > 0.
   [[nodiscard]] virtual Force force(std::size_t i, double overlap) const = 0;
@@ -53,30 +53,30 @@ class CentreWalls {
 class FreeCentre {
  public:
   using Vector = CentreLines::Vector;
-  /// Smallest overlap of a contact that bears: below, it only touches.
+  /// Smallest overlap (over R0) of a contact that bears; below, the contact only touches.
   static constexpr double k_resolution = 1e-13;
   explicit FreeCentre(std::span<const ContactClass> classes);
 
   [[nodiscard]] int dimension() const noexcept { return lines_.dimension(); }
-  /// By how much the walls of a class press on where the centre moves to c.
+  /// By how much a displacement c of the centre deepens the contacts of a class.
   [[nodiscard]] double along(std::size_t i, const Vector& c) const noexcept { return lines_.arm(i).dot(c); }
   [[nodiscard]] Eigen::Vector3d in_space(const Vector& c) const noexcept { return lines_.in_space(c); }
 
-  /// Where the centre is in a mode.
-  /// @param rest   where it was when the mode began
+  /// Position of the centre in a mode.
+  /// @param rest   position when the mode began
   /// @param guess  a position near to the solution
   /// @throws DomainError where prescribed forces drive it away: no wall is in the path
   [[nodiscard]] Vector equilibrium(const CentreWalls& walls, std::span<const Role> roles, const Vector& rest,
                                    const Vector& guess);
-  /// Its velocity, from the rates of what is prescribed, where contacts bear.
-  /// @param rates  of displacements and forces
+  /// Velocity of the centre at c; zero along directions in which no contact bears.
+  /// @param rates  rates of the prescribed displacements and forces
   [[nodiscard]] Vector velocity(const CentreWalls& walls, std::span<const Role> roles, std::span<const double> rates,
                                 const Vector& c);
-  /// Decides the roles of the walls in the mode that begins now, at an instant just after.
-  /// @param c  in: where the centre is now; out: where it is then
+  /// Decides the roles of the walls in the mode that begins now, from the equilibrium at an instant just after.
+  /// @param c  in: position of the centre now; out: its position then
   void find_roles(const CentreWalls& now, const CentreWalls& then, Vector& c, std::span<Role> roles);
-  /// Overlap that an idle wall would have if it did not push the centre: negative where it does not touch.
-  /// @param c  where the centre is
+  /// Overlap that an idle wall would have if it did not push the centre; negative for a gap.
+  /// @param c  present position of the centre
   [[nodiscard]] double unpushed_overlap(std::size_t i, const CentreWalls& walls, std::span<const Role> roles,
                                         const Vector& rest, const Vector& c);
 
@@ -112,17 +112,17 @@ class FreeCentre {
   CentreLines lines_;
   std::vector<double> counts_;  ///< walls of each class
 
-  // Results of the last sums.
-  std::vector<Load> loads_;     ///< of the lines
-  std::vector<double> forces_;  ///< of one wall of each class
-  double round_off_ = 0.0;      ///< of the balance of forces
+  // Results of the last sum_up().
+  std::vector<Load> loads_;     ///< loads along the lines
+  std::vector<double> forces_;  ///< force of one wall of each class
+  double round_off_ = 0.0;      ///< net force that is round-off
   bool is_held_ = false;        ///< contacts of comparable stiffness bear in all directions
   double prescribed_ = 0.0;     ///< sum of the magnitudes of prescribed forces
-  // Work space, so that nothing is allocated while integrating.
+  // Work space, kept so that integrating allocates no memory.
   std::vector<double> overlaps_;
-  std::vector<double> gone_in_;  ///< overlaps with the centre where it started
-  std::vector<char> bears_;      ///< whether a contact did when directions that are held were last asked for
-  Matrix held_directions_ = Matrix::Zero();  ///< and these
+  std::vector<double> gone_in_;              ///< overlaps with the centre at its initial position
+  std::vector<char> bears_;                  ///< whether a contact bears, as held_directions() has found last
+  Matrix held_directions_ = Matrix::Zero();  ///< last result of held_directions()
   std::vector<std::size_t> to_clear_;
 };
 
