@@ -428,7 +428,8 @@ class Direct final : public EventLocator {
     return 0.5 * (panel_end_ - panel_begin_) * work_.integral(t);
   }
 
-  /// Work at xi from the series of its panel; from the closed form if rows do not come in order of xi.
+  /// Work at xi from the series of its panel. From the closed form if the panel has no accurate series, or if rows do
+  /// not come in order of xi.
   /// @param y  complete state at xi but for the work
   double panel_work_at(double xi, std::span<const double> y) {
     while (xi > panel_end_) take_next_panel();
