@@ -77,7 +77,7 @@ enum class Accuracy {
          ///< not set to it
 };
 
-/// Finds minima downhill from given points: from all of them, or with rough accuracy from the best.
+/// Finds the minimum downhill from given points: from the best few of them, with rough accuracy only from the best one.
 /// @return nothing if none of the points has residuals
 [[nodiscard]] std::optional<LeastSquaresSolution> minimise_near(const LeastSquaresProblem& problem,
                                                                 std::span<const LocalMinimum> starts,
