@@ -128,7 +128,7 @@ class Drive {
       plan_ = plan_step(scene_, step_, held_, guard_set_, xi_, y_);
       xi_ = 0.0;
       if (step_ > 0) {
-        // The rows before this corner stand already; what comes after belongs to the step that begins.
+        // The rows before this corner are recorded already; the row after it belongs to the step that begins.
         begin_step(log);
         close_instant(step_start_, 0.0, log);
       } else {
@@ -285,7 +285,7 @@ class Drive {
     try {
       static_cast<void>(integrate());
       stops_in_step_ = false;
-    } catch (const Stop&) {  // what ends the run will end it again
+    } catch (const Stop&) {  // the recorded run will end here again
     } catch (const std::domain_error&) {
     } catch (const SolverError&) {
     }
@@ -634,7 +634,7 @@ class Drive {
       open_instant(xi_);
       close_instant(time(xi_), xi_, {{"limit"}});
     } catch (const std::domain_error&) {
-      return;  // the last row is the one before
+      return;  // the history ends with the row before the limit
     }
   }
 

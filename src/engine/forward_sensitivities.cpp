@@ -16,7 +16,7 @@ namespace {
 // Difference of step coordinates below which two instants are the same.
 constexpr double k_one_instant = 1e-12;
 // Guards that fire together in the base have to fire together in a neighbour: largest difference of their instants
-// there, over the distance of the neighbour's event from the base's.
+// there, over the distance that the neighbour moves to its event.
 constexpr double k_together = 1e-4;
 // Largest distance of a neighbour from the base, over the size of an unknown: curvature then leaves an error of 1e-6 in
 // a derivative.

@@ -45,7 +45,7 @@ enum class Failure {
   no_step,         ///< no step, however short, meets the tolerances
   too_much_work,   ///< more steps or evaluations than a step of the program may take
   no_progress,     ///< steps below the round-off of the step coordinate
-  chattering,      ///< regimes that answer each other at one instant
+  chattering,      ///< regimes that alternate at one instant
   endless_events,  ///< more events than a step of the program may have
   set_up           ///< a library did not start
 };

@@ -70,6 +70,7 @@ class ScaledForm {
     seen_xi_ = xi;
   }
 
+  /// Gives the scaled rates d/dxi of a scaled state.
   /// @throws std::domain_error where the equations end, or have no finite rates
   void rates(double xi, std::span<const double> z, std::span<double> dz) {
     ++evaluations_;

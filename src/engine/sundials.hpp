@@ -84,7 +84,7 @@ int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentS
   pending.forget();
   int flag = evolve();
   for (double step = 0.0; flag < 0 && pending.nearest_domain_end(); flag = evolve()) {
-    // Before its first step the library has none.
+    // Before its first step the library has no current step.
     if (step == 0.0 && (current_step(&step) != 0 || !(step > 0.0))) step = 1.0;
     step = k_retreat * std::min(step, 1.0 - begin);
     if (!(step > least_progress(begin))) throw *pending.nearest_domain_end();

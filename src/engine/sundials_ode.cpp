@@ -368,10 +368,10 @@ class SundialsOde final : public Integrator {
   }
 
   /// Corrects the beginning of a step of BDF, once its error exceeds the tolerance of the curve: to a multistep method,
-  /// any smaller correction is just a jump, with round-off in it. Where the tolerance of a step is round-off of xi, the
-  /// limit is as many of these tolerances as elsewhere. Otherwise the method would restart all the time, with the
-  /// errors of first steps, which no correction removes along a yield surface. Adams' method is not corrected: it gains
-  /// nothing where it is slow, at the stiff ends of segments on a yield surface.
+  /// any smaller correction is just a jump, with round-off in it. Where the round-off of xi is the tolerance of a step,
+  /// the limit is the same multiple of that tolerance as elsewhere. Otherwise the method would restart all the time,
+  /// with the errors of first steps, which no correction removes along a yield surface. Adams' method is not corrected:
+  /// it gains nothing where it is slow, at the stiff ends of segments on a yield surface.
   /// @return true if begin_state_ has changed
   bool corrects_begin() {
     if (method_ != OdeMethod::cvode_bdf || !form_.has_corrections()) return false;
@@ -408,9 +408,9 @@ class SundialsOde final : public Integrator {
   }
 
   /// d(rates)/dy by difference quotients, like the library's own except for two kinds of increments: those that leave
-  /// the domain are shortened, and that of an unknown that begins at zero is at least of the size of its change in the
-  /// step. Rates of the work may rise there like a square root, and a smaller increment shows no slope that the step
-  /// could use.
+  /// the domain are shortened, and that of an unknown that begins at zero is as large as its change in the step, up to
+  /// its tolerance. Rates of the work may rise there like a square root, and a much smaller increment shows no slope
+  /// that the step could use.
   static int jacobian(realtype xi, N_Vector y, N_Vector dy, SUNMatrix matrix, void* self, N_Vector shifted, N_Vector,
                       N_Vector) noexcept {
     constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
