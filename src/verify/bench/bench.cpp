@@ -222,8 +222,8 @@ struct Standard {
   RunRecord record;
 };
 
-/// Runs by two different methods at the tightest tolerance: the direct form, if the model has it, a one-step method and
-/// a multistep method, in this order.
+/// Runs by two different methods at the tightest tolerance: the direct form and a one-step method or, if the model has
+/// no direct form, a one-step and a multistep method.
 std::pair<Standard, Standard> standards_of(const CheckedScenario& scenario) {
   const bool is_solvable = make_scene(scenario).system->is_solvable();
   const std::string first = is_solvable ? integrators::k_direct : integrators::k_arkode_erk;

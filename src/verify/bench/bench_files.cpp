@@ -294,7 +294,7 @@ using Place = std::function<std::pair<double, double>(const BenchPoint&)>;
   BenchScene worst{.name = {}, .title = {}, .chosen = {}, .reference = {}, .check = {}, .points = {}};
   for (const BenchScene& scene : scenes) {
     for (const BenchPoint& point : scene.points) {
-      // Neither has a tolerance of its own.
+      // `direct` and `auto` have no tolerance of their own.
       if (point.integrator == integrators::k_direct || point.integrator == integrators::k_auto) continue;
       const auto found = std::ranges::find_if(worst.points, [&](const BenchPoint& one) {
         return one.integrator == point.integrator && one.rtol == point.rtol;

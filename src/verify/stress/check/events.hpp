@@ -17,8 +17,8 @@ using EventNames = std::vector<std::string>;
 [[nodiscard]] EventNames missing_from(const EventNames& other, const EventNames& names);
 
 /// True if every named event coincides, to within a share of its step, with another event or with a corner of the
-/// program, so that round-off decides their order. Contacts that open together may keep the force of a round-off where
-/// one of them is late, and a program may nearly reach an event at a corner.
+/// program, so that round-off decides their order. If contacts open together and one of them is late, it may keep a
+/// force of the size of round-off; and a program may nearly reach an event at a corner.
 [[nodiscard]] bool coincide_with_others(const Run& run, const EventNames& names, double share);
 
 /// The first event that only one of two lists has, in words.

@@ -301,7 +301,7 @@ void check_energy(const Run& run, Violations& found) {
     const double lost = table.at(row, *work) - table.at(row, *stored);
     if (dissipation) {
       const double gap = lost - table.at(row, *dissipation);
-      // Their sum is rounded once or twice.
+      // Round-off of the sum of three energies.
       if (std::abs(gap) > 8.0 * k_epsilon * scale) {
         found.push_back(
             {"energy-balance", fmt::format("work - stored energy - dissipation = {:.3g} of {:.6g} J, t = {:.9g} s", gap,

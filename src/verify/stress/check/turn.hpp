@@ -20,8 +20,8 @@ namespace monograin {
 /// The scene with its free walls in the opposite order; nothing if it has fewer than two.
 [[nodiscard]] std::optional<CheckedScenario> reordered(CheckedScenario scenario);
 
-/// The run with the columns and events of every wall by itself, in an order that does not depend on how walls were
-/// grouped into classes or turned. Events of two classes name both groups of walls.
+/// The run with columns for every single wall, in an order that does not depend on how walls were grouped into classes
+/// or turned. Events name the walls of their class; events of two classes name both groups of walls.
 /// @param rotation  rotation of the run's walls; the position of the centre is turned back by it
 [[nodiscard]] Run by_wall(const Run& run, const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity());
 

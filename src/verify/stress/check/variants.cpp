@@ -286,7 +286,7 @@ CheckedScenario changed(CheckedScenario scenario, double share, std::uint64_t sa
       const double drawn = of_steps.uniform(-1.0, 1.0);
       const double factor = factors.try_emplace({step.kind, step.target}, drawn).first->second;
       step.target *= 1.0 + side * factor;
-      // Overlaps are differences of lengths of the order of R0; strains, of logarithms of lengths of the order of 1.
+      // Overlaps are differences of lengths of the order of R0, strains are differences of logarithms of order 1.
       if (step.kind == Step::Kind::displacement) step.target += side * factor * radius;
       if (step.kind == Step::Kind::strain) step.target += side * factor;
       if (step.lateral) step.lateral->target *= 1.0 + side * factor;

@@ -32,7 +32,7 @@ namespace monograin {
 [[nodiscard]] std::optional<CheckedScenario> forth_and_back(CheckedScenario scenario);
 
 /// The scene with every number of its data changed by up to a share.
-/// @param sample  number of the set of changes; samples 2n and 2n + 1 differ in sign only
+/// @param sample  number of the set of changes; 2n and 2n + 1 change material and program in opposite directions
 [[nodiscard]] CheckedScenario changed(CheckedScenario scenario, double share, std::uint64_t sample);
 
 }  // namespace monograin
