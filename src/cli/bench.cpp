@@ -35,7 +35,7 @@ struct BenchOptions {
 
 constexpr const char* k_fe_figure = "laws-fe";
 
-/// Every law beside finite-element curves.
+/// Compares every law with finite-element curves.
 int bench_against_fe(const BenchOptions& options) {
   const std::vector<AtlasFigure> figures = make_atlas(options.definitions, {k_fe_figure});
   for (const fs::path& file : write_atlas(figures, options.output)) say("-> {}\n", file.string());
@@ -43,7 +43,7 @@ int bench_against_fe(const BenchOptions& options) {
   return exit_code_of(figures.front().status);
 }
 
-/// The scenes that are named, in the list or as scenario files; all of the list where none is.
+/// Scenes that are named, in the list or as scenario files; all scenes of the list if none is named.
 std::vector<CheckedScenario> chosen_scenes(const BenchOptions& options, const std::vector<CheckedScenario>& listed) {
   if (options.scenes.empty()) return listed;
   std::vector<CheckedScenario> chosen;
@@ -74,8 +74,8 @@ void check_integrators(const std::vector<std::string>& names) {
 
 constexpr const char* k_list = "scenarios/bench/scenes.toml";
 
-/// The options with what was not named filled in: the data that come with the program, and plots, where that is there,
-/// or bench for the result.
+/// Fills in options that were not given: the data that come with the program; for the result the folder plots, if it
+/// exists, else bench.
 BenchOptions with_defaults(BenchOptions options) {
   if (options.list.empty()) options.list = find_data({k_list}).path(k_list).string();
   if (options.definitions.empty()) options.definitions = find_data({"plots"}).path("plots").string();

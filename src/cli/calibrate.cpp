@@ -32,7 +32,7 @@ struct CalibrateOptions {
   bool has_report = false;
 };
 
-/// A line that tells how far a search has come, on a terminal.
+/// A line on a terminal that shows the progress of a search.
 class ProgressLine {
  public:
   explicit ProgressLine(bool is_wanted) : is_shown_(is_wanted && isatty(STDERR_FILENO) == 1) {}
@@ -60,7 +60,7 @@ Calibration read(const std::string& file, const CalibrateOptions& options) {
   return calibration;
 }
 
-/// Fits, and leaves the results in a folder.
+/// Fits a calibration, and writes the results into a folder.
 CalibrationResult run_calibration(const Calibration& calibration, const fs::path& folder,
                                   const CalibrateOptions& options) {
   StagedFolder staged(folder, k_calibration_marker);
@@ -122,7 +122,7 @@ struct DataOptions {
   bool draws = false;
 };
 
-/// Where the figure goes. It and the files beside it take the place of no data.
+/// Path of the figure. @throws UsageError if the figure or a file beside it would replace data
 fs::path figure_of(const DataOptions& options, const std::vector<DataReport>& reports) {
   const std::string stem = name_of_file(options.file).stem().string();
   const fs::path output = options.output.empty() ? fs::path(stem + "-data.svg") : fs::path(options.output);

@@ -1,5 +1,4 @@
-/// The commands of the program. Each adds itself to the command line; what it did comes back as the process's exit
-/// code.
+/// The commands of the program. Each command adds itself to the command line, and returns the exit code of the process.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -22,20 +21,20 @@ enum ExitCode : int {
   k_differs = 5          ///< a comparison was above its tolerance, or a fit is bad
 };
 
-/// What the end of a run makes of the process's.
+/// Exit code of the process after a run that has ended with a status.
 [[nodiscard]] int exit_code_of(RunStatus status);
 
-/// A fault in how the program was called; what() is shown as it is.
+/// A fault in the command line; what() is shown to the user.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The model that a command names.
-/// @throws UsageError where there is none of that name; it lists those there are
+/// The model of a name given on the command line.
+/// @throws UsageError if there is no such model; the message lists the models
 [[nodiscard]] const Model& model_named(const std::string& name);
 
-/// Set by the command that was named; runs it.
+/// Runs the command that was named, which sets it; returns the exit code.
 using Action = std::function<int()>;
 
 void add_run_command(CLI::App& app, Action& action);

@@ -18,20 +18,20 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* k_variable = "MONOGRAIN_DATA";
-/// From the folder of the installed program to that of its data.
+/// Path from the folder of the installed program to that of its data.
 constexpr const char* k_installed = MONOGRAIN_DATA_FROM_PROGRAM;
-/// Beside a program in the tree of a build: names the checkout.
+/// File beside a program in a build tree that contains the path of the checkout.
 constexpr const char* k_checkout_file = "monograin-data";
 
-/// The first part that a folder does not have; empty where it has all.
+/// The first part that a folder does not have; empty if it has all.
 std::string_view missing_part(const DataFolder& folder, std::initializer_list<std::string_view> parts) {
-  std::error_code ignored;  // what cannot be looked at is not there
+  std::error_code ignored;  // a part whose status is not available counts as missing
   const auto found =
       std::ranges::find_if(parts, [&](std::string_view part) { return !fs::exists(folder.path(part), ignored); });
   return found == parts.end() ? std::string_view{} : *found;
 }
 
-/// The folders beside the program that may have the data.
+/// Folders that may have the data, found from the path of the program.
 std::vector<DataFolder> folders_of_program() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);

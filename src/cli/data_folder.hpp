@@ -1,4 +1,4 @@
-/// Where the ready scenarios, figure definitions and stored curves are that come with the program.
+/// Finds the ready scenarios, figure definitions and stored curves that come with the program.
 #pragma once
 
 #include <filesystem>
@@ -7,22 +7,22 @@
 
 namespace monograin {
 
-/// A folder with what comes with the program: a checkout, or the data that an installation has.
+/// A folder with the program's data: a checkout, or the data of an installation.
 struct DataFolder {
   std::filesystem::path root;  ///< empty: the current folder
-  bool is_checkout = true;     ///< stored curves stand in tests/curves, not in curves
+  bool is_checkout = true;     ///< stored curves are in tests/curves, not in curves
 
-  /// Path of a part: "scenarios" or "plots", with what is below them, or "curves".
+  /// Path of a part: "scenarios", "plots" or a path below these, or "curves".
   [[nodiscard]] std::filesystem::path path(std::string_view part) const;
-  /// True for a checkout that the user works in: results may go there.
+  /// True if the folder is the current one, a checkout in which the user works: results may go there.
   [[nodiscard]] bool is_current() const { return root.empty(); }
 };
 
-/// Finds the first folder that has all of the parts: the one that the environment names in MONOGRAIN_DATA, the current
-/// one, ../share/monograin seen from the program, and the checkout that the program was built from, which stands in the
-/// file monograin-data beside it.
-/// @return the current folder where none has them
-/// @throws UsageError where MONOGRAIN_DATA is set and its folder lacks a part
+/// Finds the first folder that has all of the parts: the folder that the environment variable MONOGRAIN_DATA names, the
+/// current folder, ../share/monograin relative to the program's folder, and the checkout from which the program was
+/// built, whose path is in the file monograin-data beside the program.
+/// @return the current folder if no folder has all parts
+/// @throws UsageError if MONOGRAIN_DATA is set and its folder lacks a part
 [[nodiscard]] DataFolder find_data(std::initializer_list<std::string_view> parts);
 
 }  // namespace monograin

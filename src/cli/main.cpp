@@ -20,7 +20,7 @@ namespace {
 using namespace monograin;
 
 int fail_for_memory() {
-  // Without an allocation of its own.
+  // Must not allocate.
   write_stream(stderr,
                "monograin: there is not enough memory; nothing more was written. Ask for fewer output points, steps or "
                "runs\n");
@@ -61,7 +61,7 @@ std::string names_of(const std::vector<const CLI::App*>& commands) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Names the option that is at fault, and what it expects; empty if there is none.
+/// Message that names the option at fault and what it expects; empty if no option is at fault.
 std::string fault_of_option(const CLI::ParseError& error, const CLI::App& command) {
   const std::string text = error.what();
   for (const CLI::Option* option : command.get_options()) {
@@ -84,7 +84,7 @@ std::string fault_of_option(const CLI::ParseError& error, const CLI::App& comman
   return {};
 }
 
-/// Says what is wrong with the command line in the program's own words.
+/// Message on a fault of the command line, in the program's own words.
 std::string fault_of_line(const CLI::ParseError& error, const CLI::App& app) {
   const std::vector<CLI::App*> named = app.get_subcommands();
   if (named.empty()) {
@@ -111,7 +111,8 @@ std::string fault_of_line(const CLI::ParseError& error, const CLI::App& app) {
   return fmt::format("{}: {}. 'monograin {} --help' says more", command.get_name(), fault, command.get_name());
 }
 
-/// Whether the first word is no command of this version; says so, which "a command is missing" would not.
+/// True if the first word is no command of this version; prints a message, because the parser would only report a
+/// missing command.
 bool names_no_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return false;
   const std::vector<const CLI::App*> commands = commands_of(app);
@@ -123,13 +124,14 @@ bool names_no_command(const CLI::App& app, int argc, char** argv) {
 
 std::atomic<bool> has_run_out_of_memory{false};
 
-/// Called where an allocation fails.
+/// Called if an allocation fails.
 [[noreturn]] void fail_allocation() {
   has_run_out_of_memory = true;
   throw std::bad_alloc();
 }
 
-/// Ends the process where a library lets an exception go no further: a failed allocation is what it is elsewhere.
+/// Ends the process if an exception meets a noexcept function of a library. After a failed allocation the process ends
+/// with the usual message and exit code.
 [[noreturn]] void end_at_once() {
   if (!has_run_out_of_memory) std::abort();
   std::_Exit(fail_for_memory());

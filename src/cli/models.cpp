@@ -136,14 +136,14 @@ void print_model(const Model& model) {
   for (const std::string_view line : model.domain) print_data("  {}\n", line);
 }
 
-/// Derived constants of a scenario's material and particle.
+/// Prints the constants derived from a scenario's material and particle.
 void print_parameters(const CheckedScenario& scenario) {
   for (const auto& [name, value, unit, symbol] : derived_parameters(scenario)) {
     print_data("{:<28}{:.17g} {}{}\n", name, value, unit, symbol.empty() ? "" : fmt::format("  {}", symbol));
   }
 }
 
-/// Prints the references of models, of all where none is named, each once and in the order of the keys.
+/// Prints the references of the named models, or of all models if none is named: each once, in the order of the keys.
 int run_cite(const std::vector<std::string>& names) {
   std::map<std::string_view, const Citation*> entries;
   const auto add = [&entries](const Model& model) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t k_width = 30;
 constexpr std::chrono::milliseconds k_interval{100};
-// To the line's beginning, and without what stands on it.
+// Moves to the beginning of the line and clears it.
 constexpr const char* k_clear_line = "\r\x1b[K";
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// A bar on stderr that shows how far long work has come.
+/// A bar on stderr that shows the progress of long work.
 #pragma once
 
 #include <chrono>
@@ -7,17 +7,17 @@
 
 namespace monograin {
 
-/// Draws nothing where stderr is no terminal, or where NO_COLOR asks for plain output.
+/// A progress bar. Draws nothing if stderr is no terminal, or if NO_COLOR asks for plain output.
 class ProgressBar {
  public:
-  /// @param what  what is counted: "runs"
+  /// @param what  name of the counted items: "runs"
   explicit ProgressBar(std::string what);
   /// Removes the bar.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Not to be called by two threads at once.
+  /// Draws the bar. Must not be called by two threads at once.
   void show(std::size_t done, std::size_t of);
 
  private:

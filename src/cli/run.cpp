@@ -63,18 +63,19 @@ std::vector<Job> read_jobs(const RunOptions& options) {
   return jobs;
 }
 
-/// The folder's name below `runs` or below -o: runs with other overrides of one scenario stand side by side.
+/// Name of a run's folder below `runs` or below -o. A digest of the overrides lets runs of one scenario with different
+/// overrides have folders of their own.
 std::string folder_name(const CheckedScenario& scenario) {
   if (scenario.overrides.empty()) return scenario.name;
   std::vector<std::string> overrides = scenario.overrides;
-  // Only among those of one key the order counts.
+  // The order of overrides matters only among those of one key.
   std::ranges::stable_sort(overrides, {}, [](const std::string& text) { return text.substr(0, text.find('=')); });
   const std::string digest = text_digest(fmt::format("{}", fmt::join(overrides, "\n")));
   constexpr std::size_t k_digits = 8;
   return fmt::format("{}-{}", scenario.name, digest.substr(digest.find(':') + 1, k_digits));
 }
 
-/// Chooses and makes the folders of all jobs, so that none is run whose result could not be written.
+/// Chooses and makes the folders of all jobs before any job runs, so that no result turns out to have no folder.
 void choose_folders(std::vector<Job>& jobs, const std::string& output) {
   std::set<fs::path> taken;
   for (Job& job : jobs) {
@@ -91,7 +92,7 @@ void choose_folders(std::vector<Job>& jobs, const std::string& output) {
   for (Job& job : jobs) job.staged = std::make_unique<StagedFolder>(job.folder);
 }
 
-/// A run never fails because its figure could not be drawn.
+/// Draws the figure of a run; warns if this fails, because a run must not fail for its figure.
 void draw_figure(const fs::path& folder) {
   try {
     draw_runs({folder}, folder / "figure.svg");

@@ -29,7 +29,7 @@ struct CommandOptions {
   std::string output = "runs/stress";
 };
 
-/// Checks given scenarios, such as those that a stress test has left.
+/// Checks given scenarios, such as those that a stress test has written.
 int check_files(const std::vector<std::string>& files) {
   int code = k_success;
   std::vector<CheckedScenario> scenarios;

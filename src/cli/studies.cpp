@@ -71,7 +71,7 @@ struct AtlasOptions {
   bool only_lists = false;
 };
 
-/// Where definitions come from and, without -o, where figures go: beside them in a checkout that the user works in.
+/// Folders of definitions and figures. Without -o, figures go beside the definitions if the user works in a checkout.
 struct AtlasFolders {
   fs::path definitions;
   fs::path output;
@@ -118,7 +118,7 @@ struct CompareOptions {
   std::optional<double> tolerance;
 };
 
-/// The history of a run folder, or the table that a CSV file holds.
+/// Reads the history of a run folder, or the table of a CSV file.
 Table read_curves(const fs::path& path) { return read_csv(fs::is_directory(path) ? path / "history.csv" : path); }
 
 /// Compares the histories and the events of two run folders, or the tables of two files.
@@ -171,7 +171,8 @@ struct RegressOptions {
   bool accepts = false;
 };
 
-/// Those of a checkout where one of the folders is named, or where curves are stored anew.
+/// Folder of scenarios and curves: the current folder if one of them is named or curves are stored anew, else the
+/// program's data.
 DataFolder regress_data(const RegressOptions& options) {
   const bool is_checkout = options.accepts || !options.scenarios.empty() || !options.curves.empty();
   return is_checkout ? DataFolder{} : find_data({"scenarios", "curves"});

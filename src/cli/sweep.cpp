@@ -29,7 +29,7 @@ struct SweepCommandOptions {
   bool makes_design_only = false;
 };
 
-/// `i/n`, 1 <= i <= n.
+/// Reads a shard `i/n`, 1 <= i <= n. @throws UsageError
 SweepShard parse_shard(const std::string& text) {
   SweepShard shard{0, 0};
   const char* const end = text.data() + text.size();
@@ -41,7 +41,8 @@ SweepShard parse_shard(const std::string& text) {
   throw UsageError(fmt::format("--shard {}: expected i/n with i from 1 to n, for example 2/8", text));
 }
 
-/// @throws UsageError where a file cannot be written
+/// Writes the runs of a sweep to design.csv and prints the criterion psi, without running anything.
+/// @throws std::runtime_error if the file cannot be written
 int make_design(const Sweep& sweep, const fs::path& folder) {
   const fs::path file = folder / "design.csv";
   fs::create_directories(folder);
@@ -72,7 +73,8 @@ void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds, con
   return output.empty() ? fs::path("runs") / plan.name : fs::path(output);
 }
 
-/// Runs what is left of a sweep. @return how many runs are missing yet
+/// Makes the runs of a sweep that are still missing, as far as they belong to the shard.
+/// @return number of runs that are then still missing
 std::size_t run_all(const Sweep& plan, const fs::path& folder, int threads, SweepShard shard) {
   const auto start = std::chrono::steady_clock::now();
   const SweepOutcome outcome = [&] {

@@ -9,7 +9,7 @@ namespace monograin {
 void prepare_standard_streams() noexcept {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) != -1) continue;
-    // The lowest free descriptor is this one. The opposite direction makes every use of the stream fail.
+    // open() takes the lowest free descriptor, which is this one. The opposite direction makes every use of it fail.
     static_cast<void>(open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
   }
   static_cast<void>(signal(SIGPIPE, SIG_IGN));

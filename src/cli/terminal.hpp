@@ -16,16 +16,16 @@ void prepare_standard_streams() noexcept;
 /// False if anything that was printed has not reached standard output. Flushes it.
 [[nodiscard]] bool is_output_written() noexcept;
 
-/// Writes a text as it is; a failure only leaves its mark on the stream.
+/// Writes a text as it is; a failure only sets the error state of the stream.
 void write_stream(std::FILE* stream, std::string_view text) noexcept;
 
-/// Data, on standard output.
+/// Prints data on standard output.
 template <class... Args>
 void print_data(fmt::format_string<Args...> format, Args&&... args) {
   write_stream(stdout, fmt::format(format, std::forward<Args>(args)...));
 }
 
-/// Everything else, on standard error.
+/// Prints messages on standard error.
 template <class... Args>
 void say(fmt::format_string<Args...> format, Args&&... args) {
   write_stream(stderr, fmt::format(format, std::forward<Args>(args)...));

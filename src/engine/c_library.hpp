@@ -1,4 +1,4 @@
-/// The border to solvers written in C: who owns their objects, and what becomes of exceptions in their callbacks.
+/// The border to solvers written in C: ownership of their objects, and exceptions in their callbacks.
 #pragma once
 
 #include <exception>
@@ -22,10 +22,11 @@ struct HandleDeleter {
 template <class H, auto Free>
 using Handle = std::unique_ptr<std::remove_pointer_t<H>, HandleDeleter<Free>>;
 
-/// What callbacks do with exceptions: a domain error asks for a smaller step, anything else is kept and
-/// rethrown once the solver has returned, because exceptions must not cross C.
+/// Keeps exceptions from crossing C. A domain error in a callback asks the solver for a smaller step; any other
+/// exception is kept and rethrown once the solver has returned.
 class Pending {
  public:
+  /// Runs a callback. @return 0 if it succeeded, 1 if a smaller step may succeed, -1 if the solver has to give up
   template <class Function>
   int guard(Function&& function) noexcept {
     try {
@@ -39,8 +40,8 @@ class Pending {
     }
   }
 
-  /// Within guard(): a state beside a trial's, as difference quotients take them. That the equations end there says
-  /// why a step has failed, but does not stand in the way of one that has not.
+  /// Evaluates, within guard(), a state beside a trial state, as difference quotients do. If the equations end there,
+  /// this explains a failed step, but it does not make a successful step fail.
   template <class Function>
   void beside(Function&& function) {
     try {
@@ -61,7 +62,7 @@ class Pending {
   }
   /// Why the equations ended at some trial since the last forget(); none if they did not.
   [[nodiscard]] const std::optional<DomainError>& domain_end() const noexcept { return domain_end_; }
-  /// Why they ended at a trial or, failing that, at a state beside one.
+  /// Why the equations ended at a trial or, if they did at none, at a state beside a trial.
   [[nodiscard]] const std::optional<DomainError>& nearest_domain_end() const noexcept {
     return domain_end_ ? domain_end_ : end_beside_;
   }

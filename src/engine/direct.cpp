@@ -1,5 +1,5 @@
-// Integration without an integrator: every asked instant is solved for, events are roots along that solution, and the
-// work is a closed form or a Gauss-Legendre quadrature.
+// Integration without an integrator: the state at every requested instant is solved for, events are roots along that
+// solution, and the work is a closed form or a Gauss-Legendre quadrature.
 
 #include <algorithm>
 #include <cmath>
@@ -12,61 +12,66 @@
 namespace monograin {
 namespace {
 
-// Pieces of a step of the program for each of their nodes, at which guards are looked at; shorter where the state or
-// the quadrature needs it, and as long as the step where guards go one way and nothing is integrated.
+// Greatest length of a piece (step coordinates) per node; guards are evaluated at the nodes. Pieces are shorter if the
+// state or the quadrature needs it. If all guards are monotone and nothing is integrated, a piece may be the whole
+// step.
 constexpr double k_longest_per_node = 1.0 / 24.0;
 // A remainder of the step up to this share of a piece is merged into the piece.
 constexpr double k_rest = 0.25;
-// Looks between the beginning of a segment and its first node: the first one, and the ratio of two that follow each
-// other. They are made where a guard is so near zero, but not zero by rounding, that it may cross and come back in
-// between. Dependent unknowns may start with an infinite slope, so guards count as near from farther away.
+// Early evaluations of the guards, between the beginning of a segment and its first node: distance of the first one
+// (step coordinates), and ratio of successive distances. A guard that begins nearer to zero than k_near_zero, but is
+// not zero to within round-off, may cross and return before the first node. Dependent unknowns may start with an
+// infinite slope; guards then count as near from farther away.
 constexpr double k_first_look = 1e-9;
 constexpr double k_grading = 30.0;
 constexpr double k_near_zero = 1e-3;
 constexpr double k_near_zero_if_steep = 0.1;
-// Tiny pieces of a segment in which the equations may end: more of them are rounding that gets nowhere.
+// Pieces shorter than k_tiny (step coordinates) in which the equations may end, and how many a segment may have. More
+// of them are round-off without progress.
 constexpr double k_tiny = 1e-10;
 constexpr int k_most_refusals = 200;
-// How much pieces change at most, and how much shorter they are than would just do.
+// Largest and smallest ratio of a piece's length to the length before, and the safety factor on the predicted length.
 constexpr double k_most_growth = 2.0;
 constexpr double k_most_shrinkage = 0.2;
 constexpr double k_safety = 0.85;
-// The series of a piece's work may leave out a share of the tolerance, over the work: the tolerance itself, or
-// k_share_of_work where that is larger, but no less than rounding. Where the work has a singularity, as at a first
-// touch, its error is up to a hundred times that.
+// Tolerance of a piece's series, over the work: rtol times the larger of rtol and k_share_of_work, but at least
+// k_rounding_of_work. Next to a singularity of the work, as at a first touch, the error is up to a hundred times that.
 constexpr double k_rounding_of_work = 1e-16;
 constexpr double k_share_of_work = 1e-3;
-// Where a closed form of the work is costly and a step has many rows, they take the work from series over panels of a
-// piece: these are that accurate, over the work. The closed form stays for panels that are no longer than this and
-// whose series is not: those next to a singularity.
+// If the closed form of the work is costly and a step has at least k_many_rows rows, the rows take the work from series
+// over panels of a piece, accurate to k_panel_accuracy over the work. A panel no longer than k_shortest_panel (step
+// coordinates) whose series is less accurate lies next to a singularity: its rows use the closed form.
 constexpr std::size_t k_many_rows = 50;
 constexpr double k_shortest_panel = 1.0 / 32.0;
 constexpr double k_panel_accuracy = 1e-15;
-// How many times as large last terms may be that are rounding, where the rates are next to nothing beside the work.
+// Last terms of a series of rates up to this many times the round-off of the work count as round-off: the rates are
+// then next to nothing beside the work.
 constexpr double k_noise_of_nothing = 1e4;
-// From which of that on few nodes are enough for it.
+// Few nodes are enough for the work if its tolerance is at least this.
 constexpr double k_few_nodes_accuracy = 1e-5;
-// An event within this share of a piece may have all nodes beyond it; within that one, some. What the work up to it may
-// be wrong by, as the rates there and at the beginning show it; and how far beyond it the piece ends that is covered
-// again.
+// An event before the share k_deep_inside of a piece may have all nodes beyond it; one before k_inside, some. The work
+// up to the event may have the error k_event_accuracy, over the work, as estimated from the rates at the beginning and
+// at the event. A piece that is covered again ends at k_just_beyond times the event's distance from its beginning.
 constexpr double k_deep_inside = 0.5;
 constexpr double k_inside = 0.99;
 constexpr double k_event_accuracy = 1e-13;
 constexpr double k_just_beyond = 1.001;
-// Over its scale: an unknown that has gone so far within the rounding of the step coordinate has jumped.
+// Change of an unknown, over its scale, that is a jump if it happens within the round-off of the step coordinate.
 constexpr double k_spring = 1e-8;
-// Where there are several solutions, what the last terms of a piece's series are at most, over the largest: the way
-// from one solution to another is a jump, or goes like a root, and no piece on one of them does.
+// Largest last terms of a piece's series, over its largest term, that show a single branch where there are several. The
+// passage from one branch to another is a jump or behaves like a square root, and its series converges more slowly.
 constexpr double k_unresolved = 1e-2;
-// Terms over the unknown's scale of which nothing is asked: rounding.
+// Smaller last terms, over the unknown's scale, are round-off and pass that test.
 constexpr double k_rounding_of_branch = 1e-8;
-// Quadrature pieces are not refined below this; what is left is below round-off of the whole.
+// The quadrature does not refine pieces shorter than this (step coordinates): their error is below the round-off of the
+// whole work.
 constexpr double k_smallest_quadrature = 1e-6;
 
-/// Rounding of the rates, as the series of pieces show it: their last terms are as large as those of a longer piece
-/// from the same beginning, which was refused. Those of a root fall as the length to the power 1/2, those of a kink as
-/// the length; where it lies just inside a longer piece they do not, but those of several are not alike. Pieces need
-/// not be as short as to have no rounding: it would add up in their states.
+/// Estimates the round-off of the rates from the series of pieces. A shorter piece from the beginning of a refused one
+/// shows round-off if its last terms are as large as those of the refused piece. The last terms next to a square root
+/// fall as the length to the power 1/2, those next to a kink as the length. A kink just inside the refused piece can
+/// imitate round-off, but not with similar terms several times. Once round-off is known, pieces may show it: pieces
+/// short enough to avoid it would let it add up in their states.
 class RateRounding {
  public:
   [[nodiscard]] double known() const noexcept { return known_; }
@@ -94,7 +99,7 @@ class RateRounding {
  private:
   static constexpr double k_shorter = 0.5;
   static constexpr double k_as_large = 0.75;
-  static constexpr double k_most = 1e-6;  // over the rates
+  static constexpr double k_most = 1e-6;  // over the largest term of the rates
   static constexpr double k_alike = 10.0;
   static constexpr int k_often = 3;
 
@@ -156,7 +161,7 @@ class Direct final : public EventLocator {
       try {
         is_covered = cover_piece(factor);
       } catch (const std::domain_error&) {
-        // The equations end in it, or Newton's method has left the domain although there is a solution.
+        // The equations end within the piece, or Newton's method left their domain although there is a solution.
         if (tried < least_progress(begin_) || (tried < k_tiny && ++refusals_ > k_most_refusals)) throw;
         factor = 0.5;
       }
@@ -179,14 +184,14 @@ class Direct final : public EventLocator {
   [[nodiscard]] double guard_tolerance() const noexcept override { return 1e-13; }
 
  private:
-  /// Place in the piece, from -1 to 1.
+  /// Position of xi in the piece, from -1 at its beginning to 1 at its end.
   [[nodiscard]] double place(double xi) const noexcept {
     return piece_end_ > begin_ ? std::clamp(2.0 * (xi - begin_) / piece_length() - 1.0, -1.0, 1.0) : -1.0;
   }
 
-  /// The series through the nodes of the piece are the first guess. What may rest has gone the way that it has come,
-  /// which no series knows: from the last node before, if there is a way from there. Slaved unknowns are too steep for
-  /// that.
+  /// Solves for the state at xi, starting from the series through the nodes of the piece. Unknowns that no equation may
+  /// determine depend on the path so far, which no series represents: the solver then starts from the last node before
+  /// xi, and from the series only if that fails. Dependent unknowns are too steep to start from a node.
   void state_at(double xi, std::span<double> y) override {
     ++statistics_.rhs_evaluations;
     const double t = place(xi);
@@ -222,9 +227,10 @@ class Direct final : public EventLocator {
     for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
   }
 
-  /// Solves for the state at the nodes of the piece, finds its event and integrates over it; false where the piece is
-  /// too long for that.
-  /// @param factor  how many times as long the next piece, or this one, should be; left alone where nothing says
+  /// Solves for the state at the nodes of the piece, locates its event and integrates the work over it.
+  /// @param factor  receives the ratio of the next piece's length, or of this one's at the next try, to the present
+  ///   length; unchanged if nothing limits it
+  /// @return false if the piece is too long
   bool cover_piece(double& factor) {
     forget_looks();
     if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
@@ -276,18 +282,21 @@ class Direct final : public EventLocator {
   }
 
   /// How many times as long the interval of work_, the series of the work's rate, could be.
-  /// @param work      where the interval begins
-  /// @param accuracy  over the work
-  /// @param rounding  of the rates, that is known
+  /// @param work      work where the interval begins
+  /// @param length    of the interval, in step coordinates
+  /// @param accuracy  tolerated error, over the work
+  /// @param rounding  known round-off of the rates
   [[nodiscard]] double work_reach(double work, double length, double accuracy, double rounding = 0.0) const {
     const double scale = std::max(std::abs(work), system_.unknowns()[*quadrature_].scale);
-    // What is tolerated is no rounding: terms that fall slowly, as those of a kink do, leave out more than they show.
+    // The tolerance itself must not count as round-off: terms next to a kink fall slowly, and the sum of those left out
+    // exceeds the last ones kept.
     const double least = k_noise_of_nothing * k_rounding_of_work * scale / length;
     return work_.reach(2.0 * accuracy * scale / length, std::max(rounding, least));
   }
 
-  /// Whether an event at the beginning shows that the states of the piece are others than those that lead on from
-  /// there: next to a fold, the first node of a long piece may have gone over to them. Shorter pieces follow.
+  /// True if the states of the piece lie on another branch than its beginning: an event there comes with a jump of the
+  /// state. Next to a fold, the solver may find the other branch at the first node of a long piece; shorter pieces
+  /// avoid this.
   [[nodiscard]] bool has_sprung() const noexcept {
     if (fired_.empty() || end_ - begin_ > least_progress(begin_) || piece_length() <= k_tiny) return false;
     for (std::size_t k = 0; k < end_state_.size(); ++k) {
@@ -301,7 +310,8 @@ class Direct final : public EventLocator {
   }
   [[nodiscard]] double piece_length() const noexcept { return piece_end_ - begin_; }
 
-  /// How far a state is from the beginning of the piece, over how far it may be; 0 where it may be anywhere.
+  /// Largest change of an unknown since the beginning of the piece, over its branch_reach(); 0 if there is one branch
+  /// of solutions only.
   [[nodiscard]] double share_of_reach(std::span<const double> y) const noexcept {
     double share = 0.0;
     for (std::size_t k = 0; k < y.size(); ++k) {
@@ -310,8 +320,8 @@ class Direct final : public EventLocator {
     return share;
   }
 
-  /// Whether the state up to the end of the piece is one branch of solutions: nodes show it, and series go through
-  /// them.
+  /// True if the states up to the end of the piece lie on one branch of solutions: nodes lie before the end, and the
+  /// series through them converge.
   [[nodiscard]] bool is_resolved() const {
     const double length = piece_length();
     if (end_ - begin_ <= least_progress(begin_)) return true;
@@ -322,8 +332,8 @@ class Direct final : public EventLocator {
     return true;
   }
 
-  /// Nodes beyond an event belong to a mode that is not to be: what rests would keep, before the event, what has moved
-  /// it there.
+  /// Solves the nodes again, up to the event. Nodes beyond it were solved in a mode that ends there, and unknowns that
+  /// no equation determines carry that history back.
   void forget_what_follows() {
     piece_end_ = end_;
     for (std::size_t j = 0; j < nodes_->count; ++j) solve_at_node(j);
@@ -341,8 +351,9 @@ class Direct final : public EventLocator {
     }
   }
 
-  /// A step may begin with a singularity, as from first touch on: smooth in one guard, and not in another. A segment
-  /// that begins soon after is as near to it.
+  /// Evaluates the guards between the beginning of the segment and its first node, if one of them begins near zero. A
+  /// step may begin with a singularity, as at first touch, in which one guard is smooth and another is not. A segment
+  /// that begins soon after is as near to the singularity.
   void look_early() {
     const double near = has_slaves_ ? k_near_zero_if_steep : k_near_zero;
     const auto is_near = [near](double value) { return std::abs(value) > k_zero_guard && std::abs(value) < near; };
@@ -357,14 +368,14 @@ class Direct final : public EventLocator {
         look_inside(begin_ + distance, trial_);
       }
     } catch (const std::domain_error&) {
-      return;  // the nodes will find out how far there is a solution
+      return;  // solving at the nodes finds out how far solutions exist
     }
   }
 
-  /// From what is known at the beginning of the piece and the nodes so far. One after another: the guess is then never
-  /// far from the solution, which may not be the only one. Algebraic unknowns may be singular, over which polynomials
-  /// overshoot: from a line if an equation gives them outright, else the last one. What nothing determines stays
-  /// exactly what it is.
+  /// Predicts the state at node j by extrapolating from the beginning of the piece and the nodes already solved. Going
+  /// node by node keeps the guess close to the solution; a distant guess could converge to another one. Algebraic
+  /// unknowns may be singular, and polynomials overshoot there: dependent ones are extrapolated along a line, the
+  /// others keep the value of the last node. Unknowns that no equation determines keep their value exactly.
   void guess_ahead(std::size_t j) {
     const LegendreNodes::Ahead& ahead = nodes_->ahead[j];
     const double half = 0.5 * piece_length();
@@ -384,8 +395,8 @@ class Direct final : public EventLocator {
     }
   }
 
-  /// Whether the series of the work is that of this mode up to the event that has ended the piece: a mode need not go
-  /// on smoothly beyond it (a contact that opens has no force), and nodes lie there.
+  /// True if the series of the work holds up to the event that ended the piece. Nodes lie beyond the event, where the
+  /// mode need not continue smoothly (a contact that opens has no force).
   [[nodiscard]] bool holds_up_to_end() {
     system_.rates(end_, end_state_, rates_);
     const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
@@ -417,14 +428,16 @@ class Direct final : public EventLocator {
     return 0.5 * (panel_end_ - panel_begin_) * work_.integral(t);
   }
 
-  /// The work in a row. @param y  its state; rows come in their order, or the closed form gives it
+  /// Work at xi from the series of its panel. From the closed form if the panel has no accurate series, or if rows do
+  /// not come in order of xi.
+  /// @param y  complete state at xi but for the work
   double panel_work_at(double xi, std::span<const double> y) {
     while (xi > panel_end_) take_next_panel();
     if (!is_panel_resolved_ || xi < panel_begin_) return quadrature_at(xi, y);
     return panel_work_ + panel_integral(panel_place(xi));
   }
 
-  /// No event lies inside, so that the law holds at all nodes.
+  /// Fits the series of the work over the next panel. No event lies inside a piece, so the mode holds at all nodes.
   void take_next_panel() {
     const LegendreNodes& nodes = LegendreNodes::many();
     if (is_panel_resolved_) {
@@ -457,28 +470,28 @@ class Direct final : public EventLocator {
   std::optional<std::size_t> quadrature_;
   bool is_closed_ = false;
   double primitive_offset_ = 0.0;
-  // A panel of the piece, in which work_ is the series of the rates; with a closed form nothing else needs it.
+  // The present panel of the piece. work_ is the series of the rates in it; with a closed form it has no other use.
   bool has_panels_ = false;
   double panel_begin_ = 0.0, panel_end_ = 0.0;
-  double panel_length_ = 0.0;  ///< of the next one
-  double panel_work_ = 0.0;    ///< where it begins
+  double panel_length_ = 0.0;  ///< length of the next panel
+  double panel_work_ = 0.0;    ///< work where the panel begins
   bool is_panel_resolved_ = false;
   bool has_slaves_ = false;
-  bool may_rest_ = false;  ///< some unknown
+  bool may_rest_ = false;  ///< some unknown may be determined by no equation
   double segment_begin_ = 0.0;
-  int refusals_ = 0;                     ///< of tiny pieces in this segment
-  double length_ = 0.0;                  ///< of the next piece
+  int refusals_ = 0;                     ///< tiny pieces of this segment in which the equations ended
+  double length_ = 0.0;                  ///< length of the next piece
   double piece_end_ = 0.0;               ///< where the piece would end without an event
   LegendreSeries work_;                  ///< rate of the quadrature
-  RateRounding rounding_;                ///< of the segment
-  std::size_t integrated_ = 0;           ///< unknowns that rates() knows: the first ones
-  std::vector<LegendreSamples> gains_;   ///< at the nodes: what the unknowns have gained since the beginning
-  std::vector<LegendreSamples> slopes_;  ///< and the rates of the integrated ones
-  std::vector<LegendreSeries> series_;   ///< of the gains
+  RateRounding rounding_;                ///< round-off of the rates in this segment
+  std::size_t integrated_ = 0;           ///< number of unknowns with rates(): the first ones
+  std::vector<LegendreSamples> gains_;   ///< change of each unknown from the beginning of the piece to its nodes
+  std::vector<LegendreSamples> slopes_;  ///< rates of the integrated unknowns at the nodes
+  std::vector<LegendreSeries> series_;   ///< series of the gains
   std::vector<double> trial_, rates_, begin_rates_;
-  bool has_branches_ = false;             ///< of solutions, several
-  std::vector<double> branch_reach_;      ///< of the system where the piece begins
-  const LegendreNodes* nodes_ = nullptr;  ///< of the segment's pieces
+  bool has_branches_ = false;             ///< the equations have several branches of solutions
+  std::vector<double> branch_reach_;      ///< HybridSystem::branch_reach() where the piece begins
+  const LegendreNodes* nodes_ = nullptr;  ///< rule for all pieces of the segment
 };
 
 }  // namespace

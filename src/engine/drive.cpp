@@ -25,21 +25,21 @@
 namespace monograin {
 namespace {
 
-// What is left of a step, or lies between an event and an output point, and is too short to be integrated (step
-// coordinates).
+// Step coordinates closer than this are equal to within round-off: a remainder of a step that short is not integrated,
+// and an output point that near to an event falls on it. Also the tolerance of exact guards.
 constexpr double k_round_off = 1e-13;
-// Events in a row without progress after which two modes are chattering.
+// Events in a row without progress that a step may have; more of them show that two modes are chattering.
 constexpr int k_most_idle_events = 50;
-// Steps in a row that do not move the step coordinate after which none will.
+// Internal steps in a row that may leave the step coordinate where it is; after more of them the run fails.
 constexpr int k_most_idle_steps = 1000;
-// Evaluations of the equations for each of the internal steps that there may be: some codes take many for one, so that
-// their steps alone would set no end to the work.
+// Evaluations of the equations allowed per allowed internal step. Some codes take many evaluations for one step, so
+// that a bound on steps alone would not bound the work.
 constexpr long k_most_evaluations = 10;
-// Events of one step of the program after which they are taken to go on without end.
+// Events that one step of the program may have; more of them are taken to go on without end.
 constexpr int k_most_events = 1000;
-// Finer tolerances may be below the rounding of a scene's own equations.
+// Finer tolerances may be below the round-off of a scene's own equations.
 constexpr double k_surest_rtol = 1e-11;
-// An output time that counts as the program's end (relative).
+// Relative difference below which an output time is the program's end.
 constexpr double k_same_instant = 1e-12;
 
 // Step coordinate of the output point at the end of a step that may end early, wherever that will be.
@@ -128,7 +128,7 @@ class Drive {
       plan_ = plan_step(scene_, step_, held_, guard_set_, xi_, y_);
       xi_ = 0.0;
       if (step_ > 0) {
-        // The rows before this corner stand already; what comes after belongs to the step that begins.
+        // The rows before this corner are recorded already; the row after it belongs to the step that begins.
         begin_step(log);
         close_instant(step_start_, 0.0, log);
       } else {
@@ -149,7 +149,7 @@ class Drive {
     close_instant(step_start_, xi_, log);
   }
 
-  /// Says at which limit the run ends, and at which contact if it is one of a single contact.
+  /// Puts the limit that stops the run into the result, with the contact class if the limit belongs to one.
   void stop_at(const LimitPoint& point, std::string message, DriveResult& result) const {
     result.status = RunStatus::stopped;
     result.limit = point.limit;
@@ -182,7 +182,7 @@ class Drive {
     });
   }
 
-  /// Notes of a step that none of its conditions has ended.
+  /// Notes the conditions of a step that was ended by none of them.
   void note_unmet_conditions() {
     for (std::size_t i = 0; i < plan_.conditions.size(); ++i) {
       const Condition& condition = plan_.conditions[i];
@@ -200,7 +200,7 @@ class Drive {
     }
   }
 
-  /// Keeps since when each channel's contact is open in this step.
+  /// Records since when each channel's contact has been open in this step.
   void note_open_contacts() {
     for (std::size_t c = 0; c < open_since_.size(); ++c) {
       const bool is_open = system_.is_open(static_cast<int>(c));
@@ -209,7 +209,7 @@ class Drive {
     }
   }
 
-  /// Notes the forces that the step has prescribed to contacts which were open before it ended: they bear none.
+  /// Notes prescribed forces that no contact bears, because it opened before the step ended.
   void note_forces_not_borne() {
     for (std::size_t c = 0; c < open_since_.size(); ++c) {
       const Ramp& ramp = plan_.ramps[c];
@@ -222,7 +222,7 @@ class Drive {
     }
   }
 
-  /// Says which of the output times come after the last step has ended.
+  /// Warns of output times beyond the end of the last step.
   void note_unreached_times(std::vector<std::string>& warnings) const {
     const double end = step_start_ * (1.0 + k_same_instant);
     const auto count = std::ranges::count_if(output_.times, [end](double instant) { return instant > end; });
@@ -236,7 +236,7 @@ class Drive {
     return !plan_.detaching.empty() && std::ranges::all_of(plan_.detaching, [&](int c) { return system_.is_open(c); });
   }
 
-  /// Has the derivatives do what the base does; not while a step is rehearsed.
+  /// Applies an action to the sensitivities if there are any. They take no part in the rehearsal of a step.
   template <class Action>
   void follow(Action&& action) {
     if (sensitivities_ != nullptr && !is_rehearsing_) action(*sensitivities_);
@@ -252,7 +252,7 @@ class Drive {
   }
 
   /// Integrates the step that has begun; leaves xi_ and y_ where it ends. Returns whether a condition ended it.
-  /// @param log  events at its beginning, which may be what it waits for
+  /// @param log  events at its beginning; one of them may be the event that ends the step
   bool integrate_step(const std::vector<Event>& log) {
     xi_ = 0.0;
     guard_set_.begin_step(plan_.conditions, 0.0, y_);
@@ -273,8 +273,9 @@ class Drive {
     return !plan_.conditions.empty() || !plan_.ending_events.empty() || !plan_.detaching.empty();
   }
 
-  /// Runs the step that has begun without recording it, and comes back to its beginning.
-  /// @return where it ends, if only by a limit of the model
+  /// Runs the step that has begun without recording it, then restores its beginning. Output points divide the step up
+  /// to its end, which must be known before they are placed.
+  /// @return step coordinate where the step ends, by a condition or because the run cannot go on
   double rehearse() {
     const std::function<void()> restore = system_.checkpoint();
     const std::vector<double> state = y_;
@@ -284,7 +285,7 @@ class Drive {
     try {
       static_cast<void>(integrate());
       stops_in_step_ = false;
-    } catch (const Stop&) {  // what ends the run will end it again
+    } catch (const Stop&) {  // the recorded run will end here again
     } catch (const std::domain_error&) {
     } catch (const SolverError&) {
     }
@@ -301,10 +302,10 @@ class Drive {
     return end;
   }
 
-  /// Work done in a step of the program, and in how much of it nothing moved.
+  /// Work done in a step of the program. Idle steps and events are those since the step coordinate last moved.
   struct Work {
-    long steps = 0;             ///< internal ones
-    long first_evaluation = 0;  ///< of the equations
+    long steps = 0;             ///< internal steps
+    long first_evaluation = 0;  ///< evaluations of the equations before the step
     int idle_steps = 0;
     int events = 0;
     int idle_events = 0;
@@ -333,9 +334,9 @@ class Drive {
     return guard_set_.is_met(xi_, y_);
   }
 
-  /// Integrates to the first guard that fires, or to the end of the step. Where a branch of solutions ends, derivatives
-  /// need a second go, which knows how the end moves with the numbers.
-  /// @return where the integrator's last step began; nothing where no guard has fired
+  /// Integrates to the first guard that fires, or to the end of the step. If a branch of solutions ends there, a run
+  /// with sensitivities integrates the segment again: the first pass finds how that end moves with the numbers.
+  /// @return where the integrator's last step began; nothing if no guard has fired
   std::optional<double> integrate_segment(Work& work) {
     if (sensitivities_ == nullptr || is_rehearsing_ || !sensitivities_->may_end_branch()) return go_to_event(work);
     const double xi = xi_;
@@ -370,7 +371,7 @@ class Drive {
       const Integrator::Advance advance = integrator_->advance();
       work.idle_steps = advance.xi > last ? 0 : work.idle_steps + 1;
       if (work.idle_steps > k_most_idle_steps) throw stalled(work.idle_steps);
-      // Place and state together: an output may meet a limit, and the run then ends in them.
+      // Position and state change together: if an output row meets a limit, the run ends with both.
       change_state([&](std::span<double> y) { integrator_->dense_output(advance.xi, y); });
       xi_ = advance.xi;
       emit_outputs_before(last, xi_);
@@ -380,8 +381,8 @@ class Drive {
     }
   }
 
-  /// Counts an event, and gives up where events follow each other without end.
-  /// @param length  of the segment that it ends
+  /// Counts an event; throws SolverError if events follow each other without end.
+  /// @param length  of the segment that the event ends
   void count_event(double length, Work& work) {
     ++event_count_;
     if (length >= k_round_off) {
@@ -394,8 +395,8 @@ class Drive {
     if (++work.events > k_most_events) throw endless();
   }
 
-  /// Solves for the end of the step: what an event leaves of the step may be round-off, because a contact may be as
-  /// shallow. Returns whether there was any.
+  /// Solves for the state at the end of the step. An event may leave a remainder that is round-off, but a contact may
+  /// be equally shallow. Returns whether there was a remainder.
   bool solve_remainder() {
     if (!(plan_.duration > 0.0 && xi_ < 1.0)) return false;
     change_state([this](std::span<double> y) {
@@ -407,7 +408,8 @@ class Drive {
     return true;
   }
 
-  /// Changes the state wholly or, where that meets the end of the equations, not at all: the run ends in it.
+  /// Applies a change to the state. If the change throws at the end of the equations, the state stays as it was, and
+  /// the run ends with it.
   template <class Change>
   void change_state(Change&& change) {
     output_state_ = y_;
@@ -415,8 +417,8 @@ class Drive {
     std::swap(y_, output_state_);
   }
 
-  /// Applies what has fired at xi_. Returns whether a condition of the program ends the step here.
-  /// @param last  where the integrator's last step began
+  /// Applies the transitions of the guards that fire at xi_. Returns whether a condition of the program ends the step.
+  /// @param last  step coordinate where the integrator's last step began
   bool handle_event(double last) {
     const std::vector<std::size_t> fired = collect_fired(last);
     follow([&](ForwardSensitivities& s) { s.locate(fired, xi_, y_); });
@@ -448,7 +450,7 @@ class Drive {
       } catch (const std::domain_error&) {
         failure = std::current_exception();
       }
-      // The row after the events shows what has jumped; that a state was not found does not undo them.
+      // The row after the events is written even if no state was found: the transitions have been made.
       if (is_seen) close_instant(time(xi_), xi_, log);
       if (end) throw Stop{end->point, where(xi_) + text_of(end->point)};
       if (failure) std::rethrow_exception(failure);
@@ -495,7 +497,7 @@ class Drive {
       for (const std::size_t g : others) {
         const double side = before[g] < 0.0 ? 1.0 : -1.0;
         const bool counts = guard_set_.directions()[g] == 0 || guard_set_.directions()[g] == static_cast<int>(side);
-        // At its pace it arrives within as long again: a branch may be no longer than what counts as zero.
+        // At its mean rate the guard reaches zero within as long again; a branch may be shorter than the tolerance.
         const double way = side * (now[g] - before[g]);
         const bool has_arrived = way > 0.0 && -side * now[g] <= std::min(tolerance_of(g), std::max(k_round_off, way));
         if (!counts || before[g] == 0.0 || !has_arrived) continue;
@@ -507,9 +509,10 @@ class Drive {
     return fired;
   }
 
-  /// Whether a condition of the program has been nearer to being met before xi_ than it is there: as its branch ends, a
-  /// quantity may turn back.
-  /// @param from  where to begin to look; each look is so many times nearer to xi_
+  /// True if a condition of the program was nearer to being met before xi_ than at xi_: a quantity may reverse where
+  /// its branch ends.
+  /// @param now   value of the guard at xi_
+  /// @param from  beginning of the searched interval; the evaluations approach xi_ by a constant factor
   [[nodiscard]] bool goes_away(std::size_t guard, double now, double from) {
     constexpr double k_approach = 0.25;
     constexpr int k_looks = 12;
@@ -550,7 +553,8 @@ class Drive {
 
   [[nodiscard]] bool has_interior_points() const noexcept { return output_.times.empty() && output_.points > 1; }
 
-  /// @param end  of the step: points divide what lies before it into equal intervals
+  /// Plans the output points of the step: the listed times, or points at equal intervals.
+  /// @param end  step coordinate where the step ends
   void plan_outputs(double end) {
     next_output_ = 0;
     const int first = end > 0.0 ? 1 : output_.points;
@@ -568,8 +572,9 @@ class Drive {
 
   [[nodiscard]] bool records_internal_steps() const { return output_.times.empty() && output_.points == 0; }
 
-  /// Output points up to, but not at, xi. One that lies a rounding error before the integrator's last step is taken at
-  /// its beginning.
+  /// Emits the output points before xi. A point that lies before the integrator's last step by round-off is evaluated
+  /// at the beginning of that step.
+  /// @param last  step coordinate where the integrator's last step began
   void emit_outputs_before(double last, double xi) {
     if (records_internal_steps() && xi < 1.0 && integrator_->fired().empty()) {
       emit_output(time(xi), xi);
@@ -580,7 +585,7 @@ class Drive {
     }
   }
 
-  /// A row at a place of the integrator's last step.
+  /// Emits an output row at xi within the integrator's last step.
   void emit_output(double instant, double xi) {
     integrator_->dense_output(xi, output_state_);
     std::span<const double> derivatives;
@@ -597,13 +602,13 @@ class Drive {
     sink_.append(RowSide::output);
   }
 
-  /// Observes where the drive stands.
+  /// Observes the present state.
   void observe_here(double instant, double xi) {
     sink_.observe(instant, step_label(), xi, y_);
     follow([&](ForwardSensitivities& s) { sink_.differentiate(s.row_here()); });
   }
 
-  /// The first row. Nothing jumps at the start: before and after an event there are the same.
+  /// Records the first row. Nothing jumps at the start: the rows before and after an event there are equal.
   void begin_history(std::vector<Event>& log) {
     begin_step(log);
     observe_here(0.0, 0.0);
@@ -612,7 +617,7 @@ class Drive {
     if (!log.empty()) close_instant(0.0, 0.0, log);
   }
 
-  /// Rows just before an event or corner, and its output point if one falls on it.
+  /// Records the row just before an event or corner, and the row of an output point that falls on it.
   void open_instant(double xi) {
     if (is_rehearsing_) return;
     observe_here(time(xi), xi);
@@ -623,17 +628,17 @@ class Drive {
     }
   }
 
-  /// Where the equations end, as far as the state there can still be looked at.
+  /// Records the state where the equations end, if it can still be observed.
   void record_limit() {
     try {
       open_instant(xi_);
       close_instant(time(xi_), xi_, {{"limit"}});
     } catch (const std::domain_error&) {
-      return;  // the last row is the one before
+      return;  // the history ends with the row before the limit
     }
   }
 
-  /// Row just after it, and the events that lie in between.
+  /// Records the row just after an event or corner, and the events between the rows.
   void close_instant(double instant, double xi, const std::vector<Event>& log) {
     if (is_rehearsing_) return;
     observe_here(instant, xi);
@@ -645,14 +650,14 @@ class Drive {
   HybridSystem& system_;
   GuardSet guard_set_;
   std::unique_ptr<Integrator> integrator_;
-  std::optional<double> rtol_;  ///< none of the direct form, which has no tolerance
+  std::optional<double> rtol_;  ///< empty for the direct form, which has no tolerance
   HistorySink& sink_;
-  ForwardSensitivities* sensitivities_;  ///< none: null
+  ForwardSensitivities* sensitivities_;  ///< null if there are none
   const Output& output_;
   std::vector<double> y_;
   std::vector<double> output_state_;
-  std::vector<std::optional<double>> open_since_;  ///< of each channel, step coordinate; none while it is closed
-  std::vector<Ramp> held_;                         ///< where the program has taken the channels
+  std::vector<std::optional<double>> open_since_;  ///< step coordinate, for each channel; empty while it is closed
+  std::vector<Ramp> held_;                         ///< what each channel keeps when a step says nothing
   ProgramNotes notes_;
 
   std::size_t step_ = 0;
@@ -661,12 +666,12 @@ class Drive {
   double xi_ = 0.0;          ///< present step coordinate
   std::vector<OutputPoint> outputs_;
   std::size_t next_output_ = 0;
-  std::vector<HeldRow> held_rows_;  ///< of a segment that may have to be integrated again
+  std::vector<HeldRow> held_rows_;  ///< rows of a segment that may have to be integrated again
   bool holds_rows_ = false;
   bool is_rehearsing_ = false;  ///< nothing is recorded
-  bool stops_in_step_ = false;  ///< the run, as its rehearsal has shown
+  bool stops_in_step_ = false;  ///< the rehearsal has shown that the run stops in this step
   long event_count_ = 0;
-  std::set<std::string> idle_guards_;  ///< that have fired since the last progress
+  std::set<std::string> idle_guards_;  ///< guards that have fired since the last progress
 };
 
 }  // namespace

@@ -13,18 +13,19 @@
 namespace monograin {
 namespace {
 
-// Looks that are nearer to each other than this are not searched for guards that cross twice.
+// Between evaluations nearer to each other than this (step coordinates), guards are not searched for two crossings.
 constexpr double k_smallest_hidden = 1e-6;
-// Looks before the end of a branch: each so many times nearer than the one before, and how many.
+// Evaluations before the end of a branch: ratio of successive distances from that end, and their number.
 constexpr double k_approach = 0.25;
 constexpr std::size_t k_looks_before_end = 12;
-// What a guard is by rounding at its root, over the larger of its values around it, but no more over the smaller one;
-// and how closely the root is known.
+// A guard counts as zero at its root below k_rounding_of_guard times the larger of its values at the bracket's ends,
+// and below k_most_of_guard times the smaller one.
 constexpr double k_rounding_of_guard = 1e-14;
 constexpr double k_most_of_guard = 1e-12;
+// First distance, over xi, by which a root short of zero is moved on.
 constexpr double k_rounding_of_root = 1e-15;
-constexpr double k_share_of_progress = 1e-2;  // that a root is known to
-// How far ahead the side of a guard that begins at zero is read.
+constexpr double k_share_of_progress = 1e-2;  // width of the bracket of a root, over least_progress()
+// Distance ahead (step coordinates) at which the sign of a guard that begins at zero is read.
 constexpr double k_ahead = 1e-9;
 
 bool crosses(int direction, double before, double after) noexcept {
@@ -65,7 +66,7 @@ void EventLocator::look_inside(double xi, std::span<const double> y) {
   look_values_.resize((looks_.size() + 1) * guard_set_.size());
   const auto values = std::span(look_values_).last(guard_set_.size());
   look(xi, y, values);
-  // A guard that is zero but for rounding is on the side where it was.
+  // A guard that is zero to within round-off keeps the side of its last value.
   const View last = seen(looks_.size());
   for (std::size_t g = 0; g < values.size(); ++g) {
     if (std::abs(values[g]) <= k_zero_guard) values[g] = last.values[g];
@@ -78,7 +79,8 @@ void EventLocator::look(double xi, std::span<const double> y, std::span<double> 
   guard_set_.values(xi, y, values);
 }
 
-/// A guard that is zero, or just past it, where the segment begins (first touch) is on the side to which it leaves.
+/// Replaces the value of a guard that is zero, or just past zero, where the segment begins (as at first touch) by its
+/// value just ahead: the guard is on the side to which it moves.
 void EventLocator::read_sides() {
   const auto is_open = [this](std::size_t g) {
     return std::abs(end_values_[g]) <= guard_tolerance() && guard_set_.directions()[g] * end_values_[g] >= 0.0;
@@ -92,14 +94,15 @@ void EventLocator::read_sides() {
     state_ahead(ahead, guess_);
     look(ahead, guess_, values_);
   } catch (const std::domain_error&) {
-    return;  // no solution ahead: the first piece will find out how far there is one
+    return;  // no solution ahead: the first piece finds out how far solutions exist
   }
   for (std::size_t g = 0; g < end_values_.size(); ++g) {
     if (is_open(g)) end_values_[g] = values_[g];
   }
 }
 
-/// The guards at the beginning, inside, and at the end of the piece, in this order.
+/// Stored values of the guards in the order of xi: index 0 is the beginning of the piece, then come the evaluations
+/// inside it; any larger index is the end.
 EventLocator::View EventLocator::seen(std::size_t place) const {
   if (place == 0) return {begin_, begin_values_};
   if (place > looks_.size()) return {end_, end_values_};
@@ -114,15 +117,16 @@ bool EventLocator::any_crosses(const View& before, const View& after) const {
   return false;
 }
 
-/// Where between a look and the next a guard may have crossed and come back: the extremum of the parabola through these
-/// two and the one after, or before, whichever is first; where there is none, the next look.
+/// Position between an evaluation and the next at which a guard may have crossed zero and returned: the first extremum
+/// of a parabola through these two values and the one after, or the one before. Without any: the next evaluation.
+/// @param place  index of the first evaluation, as in seen()
 double EventLocator::hidden_extremum(std::size_t place) const {
   const View a = seen(place);
   const View b = seen(place + 1);
   if (b.xi - a.xi < k_smallest_hidden || looks_.empty()) return b.xi;
   struct Third {
     View view;
-    double per_b = 0.0;  ///< one over its distance from b, and from a
+    double per_b = 0.0;  ///< 1 / (signed distance from b); per_a: from a
     double per_a = 0.0;
   };
   std::array<Third, 2> thirds;
@@ -176,7 +180,7 @@ void EventLocator::locate_event() {
     try {
       root = first_root(before, after, first);
     } catch (const std::domain_error&) {
-      // Between two states there may be none, where the second is another one than the first leads to.
+      // No state need exist between two evaluations if the second state is not on the branch of the first.
       const double nearer = std::midpoint(before.xi, after.xi);
       if (nearer - begin_ < least_progress(begin_)) throw;
       place = shorten(nearer, place);
@@ -190,18 +194,19 @@ void EventLocator::locate_event() {
       look_up_to(last_look);
       continue;
     }
-    // A root that these looks did not show is looked for again in what is left of them.
+    // If another guard has an earlier root, the loop searches what is left of the piece again.
     if (collect_fired(first, seen(place), is_shorter)) return;
     fired_.clear();
   }
-  // Found short of zero by its rounding, it is a root nonetheless: the next piece would end there, and so on.
+  // The end of a branch counts as a root even if its guard is short of zero by round-off: every next piece would end
+  // there as well.
   if (of_branch && of_branch->root == end_) fired_.push_back(of_branch->guard);
 }
 
 /// Collects the guards that fire at the end of the piece: the first one, and those that cross zero with it.
-/// @param last        values at the last look before the end
-/// @param is_shorter  the root has moved the end
-/// @return false where another guard has a root before the end
+/// @param last        values at the last evaluation before the end
+/// @param is_shorter  true if the root has moved the end
+/// @return false if another guard has a root before the end
 bool EventLocator::collect_fired(std::size_t first, const View& last, bool is_shorter) {
   fired_.clear();
   bool has_earlier = false;
@@ -216,8 +221,9 @@ bool EventLocator::collect_fired(std::size_t first, const View& last, bool is_sh
   return !has_earlier;
 }
 
-/// Ends the piece at xi, or where it has a state before that, and forgets the looks beyond the first ones.
-/// @return how many looks are left
+/// Ends the piece at xi, or earlier if no state exists at xi, and drops the evaluations beyond the end.
+/// @param looks  number of evaluations inside the piece to keep at most
+/// @return number of evaluations left
 std::size_t EventLocator::shorten(double xi, std::size_t looks) {
   looks_.resize(looks);
   if (xi < end_) move_end(xi);
@@ -229,7 +235,7 @@ bool EventLocator::is_branch_end(std::size_t guard) const {
   return guard < guard_set_.system_guards() && system_.guards()[guard].is_branch_end;
 }
 
-/// Looks between the last one and the end that a root has given the piece, ever nearer to it.
+/// Evaluates the guards between xi = last and the end that a root has given the piece, ever nearer to the end.
 void EventLocator::look_up_to(double last) {
   double distance = end_ - last;
   for (std::size_t look = 0; look < k_looks_before_end; ++look) {
@@ -239,13 +245,14 @@ void EventLocator::look_up_to(double last) {
       state_at(end_ - distance, guess_);
       look_inside(end_ - distance, guess_);
     } catch (const std::domain_error&) {
-      continue;  // next to where the equations end a state is not found wherever there is one
+      continue;  // next to the end of the equations the solver may miss a state that exists
     }
   }
 }
 
-/// The first of the roots between two looks, and the guard whose it is. The guard that a secant lets cross first is
-/// taken first; a guard that has not crossed at that root has its own beyond it and is left alone.
+/// First root of any guard between two evaluations. Guards are polished in the order in which their secants cross zero;
+/// a guard that has not crossed at the first root so far has its own root beyond it and is skipped.
+/// @param guard  receives the guard of that root
 double EventLocator::first_root(const View& before, const View& after, std::size_t& guard) {
   const auto directions = guard_set_.directions();
   candidates_.clear();
@@ -267,7 +274,7 @@ double EventLocator::first_root(const View& before, const View& after, std::size
     try {
       root = polish(g, before, up_to);
     } catch (const std::domain_error&) {
-      // Looks that are as near as that are both the root, whether or not there is a state between them.
+      // Evaluations this near to each other are both the root, whether or not a state exists between them.
       if (up_to.xi - before.xi >= 2.0 * least_progress(begin_)) throw;
     }
     if (root >= first) continue;
@@ -277,9 +284,9 @@ double EventLocator::first_root(const View& before, const View& after, std::size
   return first;
 }
 
-/// Root of one guard between two looks: on or just past the boundary, so that the event lies behind and not ahead.
+/// Root of one guard between two evaluations: at or just past zero, so that the event lies behind xi and not ahead.
 double EventLocator::polish(std::size_t guard, const View& before, const View& after) {
-  // Of a piece as short as the rounding of xi both looks are the root.
+  // If the evaluations are as near as the round-off of xi, both are the root.
   if (after.values[guard] == 0.0 || !(after.xi > before.xi)) return after.xi;
   const auto [smaller, larger] = std::minmax({std::abs(before.values[guard]), std::abs(after.values[guard])});
   const double rounding = std::min(k_rounding_of_guard * larger, k_most_of_guard * smaller);

@@ -1,5 +1,5 @@
-/// Events for integrators that have no root finding of their own: roots of the guards along a solution that can be had
-/// at any instant of a piece.
+/// Events for integrators without root finding of their own: roots of the guards along a solution that is available at
+/// any instant of a piece.
 #pragma once
 
 #include <vector>
@@ -8,39 +8,42 @@
 
 namespace monograin {
 
-/// The integrator looks at the guards at the ends of a piece and wherever it wants in between, not farther apart than
-/// about 1/16 of a step of the program, unless all of them go one way. Guards cross once between two looks; one that
-/// crosses and comes back is looked for at the extremum of the parabola through three values, and ever nearer to the
-/// end of a branch.
+/// Base of integrators that locate events between evaluations of the guards. The integrator evaluates the guards at the
+/// ends of a piece and inside it, at most about 1/16 of a step of the program apart unless all guards are monotone. A
+/// guard is taken to cross zero at most once between two evaluations. To find one that crosses and returns, the guards
+/// are also evaluated at the extremum of the parabola through three values, and at points that approach the end of a
+/// branch.
 class EventLocator : public Integrator {
  public:
   [[nodiscard]] std::span<const std::size_t> fired() const noexcept override { return fired_; }
   [[nodiscard]] Statistics statistics() const override { return statistics_; }
 
  protected:
-  /// @param looks  inside of a piece, that there is room for without an allocation
+  /// @param looks  expected evaluations of the guards inside a piece; memory for them is reserved
   EventLocator(HybridSystem& system, GuardSet& guard_set, std::size_t looks = 0);
 
-  /// Shorter pieces are not looked into: guards near zero are rounding there.
+  /// Pieces shorter than this (step coordinates) have no evaluations inside: guards near zero are round-off there.
   static constexpr double k_smallest_looked_into = 1e-6;
-  /// What a guard at zero is by rounding. Errors of an integrator are no such thing: a short regime lies within them.
+  /// Largest value of a guard that is zero to within round-off. Errors of an integrator are larger and do not count as
+  /// zero: a short regime may lie within them.
   static constexpr double k_zero_guard = 1e-13;
 
-  /// Takes up a segment: state, guards, and their sides.
+  /// Starts a segment at xi: stores the state, evaluates the guards and finds which side of zero each one is on.
   void begin_segment(double xi, std::span<const double> y);
-  /// What was the end is the beginning.
+  /// Starts a piece where the last one ended.
   void begin_piece();
-  /// Looks at the guards inside of the piece that has begun, beyond the last such look.
+  /// Evaluates the guards inside the present piece and stores their values. xi must be beyond all earlier evaluations.
   void look_inside(double xi, std::span<const double> y);
-  /// Forgets the looks inside of the piece.
+  /// Drops the evaluations inside the piece.
   void forget_looks() noexcept { looks_.clear(); }
-  /// Moves the end of the piece to the first root in it, if there is one.
+  /// Moves the end of the piece to the first root in it, if there is one, and collects the guards that fire there.
   void locate_event();
+  /// Evaluates the guards at (xi, y), and counts the evaluation.
   void look(double xi, std::span<const double> y, std::span<double> values);
 
   HybridSystem& system_;
   GuardSet& guard_set_;
-  double begin_ = 0.0;  ///< of the piece
+  double begin_ = 0.0;  ///< where the present piece begins; end_: where it ends (step coordinates)
   double end_ = 0.0;
   std::vector<double> begin_state_, end_state_;
   std::vector<double> begin_values_, end_values_;
@@ -48,23 +51,25 @@ class EventLocator : public Integrator {
   Statistics statistics_;
 
  private:
-  /// The guards at one place of the piece.
+  /// Values of the guards at one position of the piece.
   struct View {
     double xi = 0.0;
     std::span<const double> values;
   };
 
-  /// A guard that crosses between two looks.
+  /// A guard that crosses zero between two evaluations.
   struct Candidate {
     std::size_t guard = 0;
-    double share = 0.0;  ///< of the distance between the looks at which its secant crosses
+    double share = 0.0;  ///< where its secant crosses zero, from 0 at the first evaluation to 1 at the second
   };
 
-  /// The complete state in the present piece.
+  /// Finds the complete state at xi within the present piece. @throws std::domain_error if there is none
   virtual void state_at(double xi, std::span<double> y) = 0;
-  /// The same just ahead of a segment's beginning, where y holds the state.
+  /// Finds the complete state at xi just ahead of a segment's beginning.
+  /// @param y  the state at the beginning; becomes that at xi
+  /// @throws std::domain_error if there is none
   virtual void state_ahead(double xi, std::span<double> y) = 0;
-  /// Ends the piece at xi, with state and guards there.
+  /// Ends the piece at xi and evaluates state and guards there. May end it earlier if no state exists at xi.
   virtual void move_end(double xi) = 0;
 
   void read_sides();
@@ -78,9 +83,9 @@ class EventLocator : public Integrator {
   void look_up_to(double last);
   [[nodiscard]] double polish(std::size_t guard, const View& before, const View& after);
 
-  std::size_t most_looks_;           ///< that are usual
-  std::vector<double> looks_;        ///< places of the looks inside of the piece
-  std::vector<double> look_values_;  ///< a row for each
+  std::size_t most_looks_;           ///< evaluations inside a piece for which memory is reserved
+  std::vector<double> looks_;        ///< positions of the evaluations inside the piece, in increasing order
+  std::vector<double> look_values_;  ///< one row of guard values for each of them
   std::vector<double> guess_;
   std::vector<double> values_, extremum_values_, root_values_;
   std::vector<Candidate> candidates_;

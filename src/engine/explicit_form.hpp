@@ -14,28 +14,29 @@
 
 namespace monograin {
 
-/// Share of a curve's tolerance that a step may take. Work and radius only ever grow, so the errors of the steps have
-/// one sign and add up; a tenth keeps the curve's error within a few rtol over some hundred steps.
+/// Share of a curve's tolerance that one step may use. Work and radius only grow, so the errors of steps have one sign
+/// and add up; a tenth keeps the curve's error within a few rtol over some hundred steps.
 inline constexpr double k_usual_share = 0.1;
 /// Share for methods whose global error exceeds the local one by more (variable order): keeps it within some ten rtol.
 inline constexpr double k_share_of_many = 0.01;
 
-/// What is tolerated of one step. Finer than that of an rtol of 1e-13, round-off keeps a corrector from converging.
+/// Tolerances of one step. Below those for a curve with rtol = 1e-13, round-off keeps a corrector from converging.
 [[nodiscard]] inline Tolerances of_step(const Tolerances& of_curve, double share = k_usual_share) noexcept {
   constexpr double k_finest = 1e-13;
   return {.rtol = share * std::max(of_curve.rtol, k_finest), .atol = std::max(of_curve.atol, share * k_finest)};
 }
-/// How near to zero a guard counts as fired together with another, where both carry an integrator's error.
+/// Largest distance from zero at which a guard fires together with another, if both carry an integrator's error.
 [[nodiscard]] inline double guard_tolerance_of(const Tolerances& tolerances) noexcept { return 1e-2 * tolerances.rtol; }
 
 [[nodiscard]] inline bool all_finite(std::span<const double> values) noexcept {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
-/// A difference quotient's increment: made smaller until `shift` finds the equations there. Where they end nearer than
-/// it reaches, a regime is as short, and its own scale so much smaller.
-/// @return the increment that was taken
-/// @throws std::domain_error where the equations have no state as near as that
+/// Finds an increment for a difference quotient: makes it smaller until `shift` stays within the domain of the
+/// equations. If the domain ends nearer than the increment, the regime is that short, and so is its own scale.
+/// @param shift  evaluates the equations beside the point; throws std::domain_error outside of their domain
+/// @return the increment with which `shift` succeeded
+/// @throws std::domain_error if `shift` fails even with 1e-16 times the increment
 template <class Shift>
 double shift_within_domain(double increment, Shift&& shift) {
   constexpr double k_nearer = 1e-2;
@@ -50,8 +51,8 @@ double shift_within_domain(double increment, Shift&& shift) {
   }
 }
 
-/// Largest change of rates beside the largest of them.
-/// @param scale_of  of an unknown, by its place
+/// Largest change of a rate over the largest rate before, each over its unknown's scale.
+/// @param scale_of  gives the scale of an unknown from its index
 template <class ScaleOf>
 double change_of_rates(std::span<const double> before, std::span<const double> after, ScaleOf&& scale_of) {
   double largest = 0.0;
@@ -62,12 +63,12 @@ double change_of_rates(std::span<const double> before, std::span<const double> a
   }
   return change > 0.0 ? change / largest : 0.0;
 }
-/// Rates that change by more over a difference quotient's increment may jump within it, where a contact opens or is no
-/// longer taken along. Then the side counts on which they change less.
+/// Largest change_of_rates() over the increment of a difference quotient. Rates that change by more may jump within it,
+/// as where a contact opens; the quotient is then taken on the side where they change less.
 inline constexpr double k_jump = 1e-2;
 
-/// Quadratures counted anew from every segment's start: their relative tolerance then refers to the segment's own
-/// share, and a hundred cycles of loading and unloading do not wear the total away.
+/// Counts quadratures from zero in every segment. Their relative tolerance then refers to the segment's own share, and
+/// their errors stay small over a hundred cycles of loading and unloading.
 class SegmentQuadratures {
  public:
   explicit SegmentQuadratures(std::span<const Unknown> unknowns) : offsets_(unknowns.size(), 0.0) {
@@ -75,7 +76,7 @@ class SegmentQuadratures {
       if (unknowns[k].kind == Unknown::Kind::quadrature) places_.push_back(k);
     }
   }
-  /// Takes the quadratures out of a segment's first state.
+  /// Keeps the quadratures of a segment's first state as offsets, and sets them to zero in y.
   void begin(std::span<double> y) {
     for (const std::size_t k : places_) offsets_[k] = std::exchange(y[k], 0.0);
   }
@@ -88,6 +89,7 @@ class SegmentQuadratures {
   std::vector<double> offsets_;
 };
 
+/// Completes integrated states and gives their rates; keeps the last complete state as the first guess of the next one.
 class ExplicitForm {
  public:
   explicit ExplicitForm(HybridSystem& system)
@@ -106,14 +108,15 @@ class ExplicitForm {
   [[nodiscard]] bool has_dependent_unknowns() const noexcept { return system_.has_dependent_unknowns(); }
   [[nodiscard]] bool has_corrections() const noexcept { return system_.has_corrections(); }
 
-  /// Takes up a segment's first complete state; the integrated part of it goes to `integrated`.
+  /// Starts a segment at a complete state and puts the integrated part of that state into `integrated`.
   void begin(std::span<const double> complete, std::span<double> integrated) {
     std::ranges::copy(complete, complete_.begin());
     std::ranges::copy(complete.first(size_), integrated.begin());
     quadratures_.begin(integrated);
   }
 
-  /// Takes over what completing has moved by more than rounding. @return whether that is anything
+  /// Copies to `integrated` the differential unknowns that completing has moved by more than round-off.
+  /// @return true if there are any
   [[nodiscard]] bool take_correction(std::span<const double> complete, std::span<double> integrated) const {
     constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
     bool is_moved = false;
@@ -126,19 +129,20 @@ class ExplicitForm {
     return is_moved;
   }
 
-  /// What the next complete state is sought from.
+  /// Sets the first guess of the next complete state.
   void guess(std::span<const double> complete) { std::ranges::copy(complete, complete_.begin()); }
   [[nodiscard]] std::span<const double> guess() const noexcept { return complete_; }
 
-  /// The complete state of an integrated one; valid until the next call of this object. Where there is none, the last
-  /// one stays the first guess: what a failed search has left behind would lead astray from a smaller step too.
+  /// Completes an integrated state; the result is valid until the next call of this object, and is the next first
+  /// guess. If completing throws, the last complete state stays the first guess: the remains of a failed search would
+  /// mislead the next, shorter step as well.
   [[nodiscard]] std::span<const double> complete(double xi, std::span<const double> integrated) {
     complete(xi, integrated, trial_);
     std::swap(complete_, trial_);
     return complete_;
   }
 
-  /// The same for a state that is only looked at: what was last completed stays the first guess.
+  /// Completes an integrated state without changing the first guess, as for a row of output.
   void complete(double xi, std::span<const double> integrated, std::span<double> complete) {
     std::ranges::copy(complete_, complete.begin());
     std::ranges::copy(integrated, complete.begin());
@@ -146,7 +150,7 @@ class ExplicitForm {
     system_.complete(xi, complete);
   }
 
-  /// @param rates  as many as there are integrated unknowns
+  /// Completes an integrated state and gives d/dxi of the integrated unknowns.
   /// @throws std::domain_error where the equations end
   void rates(double xi, std::span<const double> integrated, std::span<double> rates) {
     system_.rates(xi, complete(xi, integrated), rates);

@@ -13,18 +13,22 @@
 namespace monograin {
 namespace {
 
-// Step coordinates by which instants may differ and be one.
+// Difference of step coordinates below which two instants are the same.
 constexpr double k_one_instant = 1e-12;
-// Guards that fire together have to stay together: how far apart those of a neighbour may be, over its distance.
+// Guards that fire together in the base have to fire together in a neighbour: largest difference of their instants
+// there, over the distance that the neighbour moves to its event.
 constexpr double k_together = 1e-4;
-// How far a neighbour may be from the base, over the size of an unknown: bend then leaves 1e-6 of a derivative.
+// Largest distance of a neighbour from the base, over the size of an unknown: curvature then leaves an error of 1e-6 in
+// a derivative.
 constexpr double k_farthest = 1e-3;
-// What a guard beyond zero is by rounding.
+// Largest value of a guard that is zero to within round-off.
 constexpr double k_zero_guard = 1e-12;
+// A neighbour's root is located once a secant step (step coordinates) is shorter than this.
 constexpr double k_located = 1e-15;
 constexpr int k_most_secant_steps = 30;
 
-/// What goes wrong beside the base ends the derivatives, not the run.
+/// Performs an action on neighbours. A limit that a neighbour meets ends the derivatives, not the run: it is thrown as
+/// LostSensitivities.
 template <class Action>
 auto beside(Action&& action) {
   try {
@@ -36,7 +40,7 @@ auto beside(Action&& action) {
   }
 }
 
-/// Whether a branch of solutions ends at what has fired.
+/// True if one of the guards that have fired ends a branch of solutions.
 bool is_branch_end(const HybridSystem& system, std::span<const std::size_t> fired) {
   return std::ranges::any_of(
       fired, [&](std::size_t g) { return g < system.guards().size() && system.guards()[g].is_branch_end; });
@@ -44,19 +48,19 @@ bool is_branch_end(const HybridSystem& system, std::span<const std::size_t> fire
 
 }  // namespace
 
-/// A neighbour of the base at its own place of the program.
+/// A neighbour of the base, at its own position in the program.
 struct ForwardSensitivities::Side {
   Scene scene;
-  double sign = 1.0;  ///< of its distance from the base
+  double sign = 1.0;  ///< -1: lower neighbour, +1: upper neighbour
   GuardSet guard_set;
   std::vector<Ramp> held{};
   StepPlan plan{};
   double step_start = 0.0;  ///< [s]
   double xi = 0.0;
-  double begin = 0.0;  ///< of the segment
+  double begin = 0.0;  ///< step coordinate where the segment begins
   std::vector<double> begin_y{};
   std::vector<double> y{}, rates{}, guards{};
-  std::vector<double> begin_guards{};  ///< where the segment begins; nan where they have no values
+  std::vector<double> begin_guards{};  ///< guards where the segment begins; nan if they have no values there
 
   Side(Scene made, double its_sign)
       : scene(std::move(made)),
@@ -83,7 +87,7 @@ struct ForwardSensitivities::Side {
     xi = begin;
     y = begin_y;
   }
-  /// Goes along its rates by a distance of the order of that from the base.
+  /// Moves along its rates by a length (step coordinates) of the order of its distance from the base.
   void move(double length) {
     if (length == 0.0) return;
     system().rates(xi, y, rates);
@@ -203,8 +207,8 @@ double ForwardSensitivities::slope_of(const Number& number, std::size_t unknown)
   return (upper - lower) / (2.0 * number.step) + 0.5 * number.stretch * (upper + lower);
 }
 
-/// Puts the neighbours of a number to the base at xi.
-/// @param beyond  moves them along the base's rates by so much more, over the step of the number
+/// Sets the neighbours of a number to y - h s and y + h s, where the base is at xi.
+/// @param beyond  d(xi)/dp by which they are moved farther, along the base's rates
 void ForwardSensitivities::place(Number& number, double xi, std::span<const double> y, double beyond) {
   for (Side& side : number.sides) {
     const double distance = side.sign * number.step;
@@ -218,7 +222,7 @@ void ForwardSensitivities::place(Number& number, double xi, std::span<const doub
   }
 }
 
-/// Expects a neighbour to be so near that its difference shows a derivative.
+/// Throws LostSensitivities if a neighbour is too far from the base for their difference to show a derivative.
 void ForwardSensitivities::expect_near(const Side& side, std::span<const double> y) const {
   for (std::size_t i = 0; i < size_; ++i) {
     const Unknown& unknown = base_.unknowns()[i];
@@ -228,7 +232,7 @@ void ForwardSensitivities::expect_near(const Side& side, std::span<const double>
   }
 }
 
-/// Takes s and sigma from where the neighbours stand.
+/// Computes s and sigma from the neighbours' states and positions, where a segment begins.
 void ForwardSensitivities::resume() {
   for (Number& number : numbers_) {
     Side& lower = number.sides[0];
@@ -240,7 +244,7 @@ void ForwardSensitivities::resume() {
   }
 }
 
-/// Expects a neighbour to have logged what the base has, and to watch what it watches.
+/// Throws LostSensitivities if a neighbour has other events or other guards than the base.
 void ForwardSensitivities::expect_same_guards(Side& side, std::span<const Event> log,
                                               std::span<const Event> of_side) const {
   const bool has_same_events = std::ranges::equal(log, of_side, [](const Event& one, const Event& other) {
@@ -253,7 +257,7 @@ void ForwardSensitivities::expect_same_guards(Side& side, std::span<const Event>
   if (!has_same_events || !has_same_guards) throw LostSensitivities("a neighbouring run passes other events");
 }
 
-/// Expects that no guard has crossed on a neighbour that has not on the base.
+/// Throws LostSensitivities if a guard has crossed zero in a neighbour, but has not fired in the base.
 void ForwardSensitivities::expect_no_other_guard(Side& side, std::span<const std::size_t> fired) const {
   side.guards.resize(side.guard_set.size());
   side.guard_set.values(side.xi, side.y, side.guards);
@@ -310,7 +314,8 @@ void ForwardSensitivities::leave_singularity(double xi) {
   is_placed_ = false;
 }
 
-/// Moves a neighbour along its rates to where a guard that has fired is zero.
+/// Moves a neighbour along its rates to where the guards that have fired are zero; all of them have to be zero at the
+/// same instant.
 void ForwardSensitivities::go_to_guard(Side& side, std::span<const std::size_t> fired) {
   constexpr double k_short = 1e-7;
   HybridSystem& system = side.system();
@@ -383,7 +388,7 @@ void ForwardSensitivities::locate(std::span<const std::size_t> fired, double xi,
     for (Number& number : numbers_) {
       place(number, xi, y);
       for (Side& side : number.sides) {
-        if (!has_end) go_to_guard(side, fired);  // a neighbour is at the end of its branch by aim()
+        if (!has_end) go_to_guard(side, fired);  // aim() has brought a neighbour to the end of its branch
         expect_no_other_guard(side, fired);
       }
     }
@@ -446,7 +451,10 @@ void ForwardSensitivities::observe(Side& side) {
   side.system().observe(side.xi, side.y, values_[side.sign > 0.0 ? 1 : 0]);
 }
 
-/// @param beyond_slopes  how much farther than the neighbours the row stands, over the step of the number: by slopes
+/// Appends the derivatives of a number to the row.
+/// @param of_time        d(time)/dp
+/// @param beyond_slopes  d(xi)/dp by which the row is farther than the neighbours; the slopes of the observables extend
+///   their derivatives by it
 void ForwardSensitivities::add_to_row(Number& number, double of_time, double beyond_slopes) {
   for (Side& side : number.sides) observe(side);
   row_.push_back(of_time);
@@ -457,12 +465,13 @@ void ForwardSensitivities::add_to_row(Number& number, double of_time, double bey
   }
 }
 
-/// An observable that begins like a root at an event is known there no better than by the root of rounding.
+/// Appends to the row the errors that round-off of the instant makes in the derivatives of a number. An observable that
+/// begins like a square root at an event is known there only to the square root of round-off.
 void ForwardSensitivities::add_rounding_to_row(Number& number) {
   const std::size_t begin = row_.size();
   row_.resize(begin + 1 + columns_.size(), 0.0);
   Side& side = number.sides[1];
-  if (side.xi == 0.0 || side.xi == 1.0) return;  // an end of a step is no root
+  if (side.xi == 0.0 || side.xi == 1.0) return;  // the ends of a step are exact
   try {
     side.system().rates(side.xi, side.y, side.rates);
     if (!all_finite(side.rates)) return;
@@ -477,7 +486,7 @@ void ForwardSensitivities::add_rounding_to_row(Number& number) {
       }
     }
   } catch (const std::domain_error&) {
-    return;  // nothing is known of it where the equations end
+    return;  // the error is not known where the equations end
   }
 }
 
@@ -495,7 +504,7 @@ std::span<const double> ForwardSensitivities::row_here() {
 /// Slopes of the observables along the base's rates, by differences of fourth order.
 void ForwardSensitivities::find_slopes(double xi, std::span<const double> y) {
   constexpr double k_longest = 1e-5;
-  constexpr double k_share = 1e-3;  // of the segment up to there, at whose beginning curves may be singular
+  constexpr double k_share = 1e-3;  // of the distance from the segment's beginning, where curves may be singular
   const auto difference = [&](double length) {
     for (std::size_t k = 0; k < 2; ++k) {
       const double by = k == 0 ? -length : length;
@@ -512,7 +521,8 @@ void ForwardSensitivities::find_slopes(double xi, std::span<const double> y) {
 
 std::span<const double> ForwardSensitivities::row_at(double xi, std::span<const double> y, double start,
                                                      double duration) {
-  // Up to this share of the segment the neighbours move to the instant of the row; farther its curves are too bent.
+  // Up to this share of the segment so far, the neighbours are moved to the instant of the row along straight lines;
+  // farther away, the curvature is too large.
   constexpr double k_short = 1e-5;
   row_.clear();
   const double time = start + xi * duration;

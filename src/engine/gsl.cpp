@@ -1,5 +1,5 @@
-// Steppers of the GNU Scientific Library. They have no interpolation: a state in a step is found by integrating to it
-// from the step's beginning with the Runge-Kutta method of order 8.
+// Steppers of the GNU Scientific Library. They have no interpolation: a state within a step is found by integrating to
+// it from the step's beginning with the Runge-Kutta method of order 8.
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
@@ -21,9 +21,10 @@ namespace {
 using Driver = Handle<gsl_odeiv2_driver*, gsl_odeiv2_driver_free>;
 
 constexpr double k_first_step = 1e-3;
-constexpr double k_smallest_step = 1e-2;  // over the least progress
-// By how much, over what is tolerated, an implicit step may lie beside what the rates at its ends lead to before it is
-// looked at more closely; and then, where the rates answer to the state: what is tolerated of the curve.
+constexpr double k_smallest_step = 1e-2;  // over least_progress()
+// Largest distance, over the tolerance of a step, of an implicit step from the range to which the rates at its ends
+// lead. Beyond k_doubtful the distance is corrected for the dependence of the rates on the state, and may then be
+// k_wrong: the tolerance of the curve.
 constexpr double k_doubtful = 2.0;
 constexpr double k_wrong = 1.0 / k_share_of_many;
 
@@ -39,9 +40,9 @@ const gsl_odeiv2_step_type* type_of(GslMethod method) {
   return nullptr;
 }
 
-/// What is tolerated of a step, and how long the next one is: as the library's standard, but where a contact lasts
-/// hardly longer than the step coordinate is rounded. The errors of the stages are then those of rounding, and no less
-/// than that is tolerated.
+/// Error control of a step and choice of the next one: the library's standard, but with tolerances no finer than the
+/// round-off of xi times the rates. If a contact lasts hardly longer than that round-off, the errors of the stages are
+/// of its size.
 class ErrorControl {
  public:
   [[nodiscard]] static gsl_odeiv2_control* make(double atol, double rtol) {
@@ -115,7 +116,7 @@ class GslStepper final : public Stepper {
       permutation_.reset(gsl_permutation_alloc(form.size()));
       if (!permutation_) throw std::bad_alloc();
     }
-    // Without a limit it goes on for ever where the rates jump: its steps become as small as they like.
+    // Without a limit the driver would never end where the rates jump: its steps become ever smaller.
     gsl_odeiv2_driver_set_nmax(reaching_.get(), static_cast<unsigned long>(k_most_internal_steps));
   }
 
@@ -142,10 +143,10 @@ class GslStepper final : public Stepper {
           gsl_odeiv2_evolve_apply(driver_->e, driver_->c, driver_->s, &system_, &at, 1.0, &step_, now_.data());
       rejections += static_cast<long>(driver_->e->failed_steps - rejected);
       pending_.rethrow();
-      // Where the equations end the library halves its step by itself: one as short as this has arrived there, and
-      // those after it would never come to that.
+      // GSL itself halves a step in which the equations end. A step this short has reached their end; later steps
+      // would approach it without ever arriving.
       const bool has_arrived = at - begin_ < least_progress(begin_) && pending_.domain_end();
-      // A step that ends where the equations do not hold is none, however small its error.
+      // A step is accepted only if the equations hold at its end, however small its error.
       const bool is_accepted = status == GSL_SUCCESS && at > begin_ && !has_arrived &&
                                rates(at, now_.data(), rates_.data(), this) == GSL_SUCCESS && !leads_elsewhere(at);
       pending_.rethrow();
@@ -156,7 +157,7 @@ class GslStepper final : public Stepper {
         order = static_cast<int>(gsl_odeiv2_step_order(driver_->s));
         return end_;
       }
-      // Its history may hold what lies beyond the end of the equations.
+      // The history of a multistep method may contain states from beyond the end of the equations.
       std::ranges::copy(old_, now_.begin());
       gsl_odeiv2_driver_reset(driver_.get());
       step_ = 0.1 * std::min(step_, 1.0 - begin_);
@@ -188,9 +189,9 @@ class GslStepper final : public Stepper {
   }
 
  private:
-  /// Whether a step of BDF has led elsewhere than the rates do. The library takes corrections for small beside a
-  /// Jacobian of earlier steps that is far greater than that of this one; and where rates grow with the state by more
-  /// than one over the step, as before a fold, its equation has no solution, or one that leads back.
+  /// True if a step of BDF has left the curve along which the rates lead. The library takes corrections for small if it
+  /// uses the Jacobian of an earlier step that is far larger than the present one. Where d(rates)/dz exceeds 1/step, as
+  /// before a fold, the implicit equation has no solution, or one that leads back.
   [[nodiscard]] bool leads_elsewhere(double end) {
     if (by_z_.empty() || !are_rates_known_) return false;
     const std::size_t size = now_.size();
@@ -232,7 +233,7 @@ class GslStepper final : public Stepper {
     return driver;
   }
 
-  /// What rates() does with a domain error: GSL then tries a smaller step.
+  /// GSL's code for a result of Pending::guard(). After a domain error GSL tries a smaller step.
   static int answer(int pending) { return pending == 0 ? GSL_SUCCESS : pending > 0 ? GSL_EDOM : GSL_EBADFUNC; }
 
   static int rates(double xi, const double* z, double* dz, void* self) noexcept {
@@ -271,7 +272,7 @@ class GslStepper final : public Stepper {
 }  // namespace
 
 std::unique_ptr<Stepper> make_gsl(GslMethod method, ScaledForm& form, const Tolerances& tolerances) {
-  // Every return value is looked at; the library's own handler would end the program.
+  // Every return value is checked; the library's own handler would end the program.
   [[maybe_unused]] static auto* const before = gsl_set_error_handler_off();
   return std::make_unique<GslStepper>(method, form, tolerances);
 }

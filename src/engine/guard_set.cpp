@@ -69,8 +69,9 @@ void GuardSet::renew() {
   is_monotone_ = rooted_.empty() && std::ranges::all_of(system_.guards(), &Guard::is_monotone);
 }
 
-/// Force, pressure and contact radius reach zero where the contact is lost and stay there: no root function, but an
-/// event of the system, after which is_met() finds them. The force of an adhesive contact passes through zero before.
+/// True if the condition is met by losing the contact: force, pressure and contact radius become zero there and stay
+/// zero. Such a condition needs no root function: the system has an event there, after which is_met() finds it. The
+/// force and pressure of an adhesive contact pass through zero earlier.
 bool GuardSet::vanishes_with_contact(const Condition& condition) const {
   if (condition.target != 0.0) return false;
   if (condition.quantity == Quantity::contact_radius) return true;

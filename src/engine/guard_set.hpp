@@ -1,4 +1,4 @@
-/// The guards an integrator watches: those of the system in its present mode, and the program's own conditions.
+/// The guards of an integration: those of the system in its present mode, and the conditions of the program.
 #pragma once
 
 #include <optional>
@@ -26,7 +26,7 @@ class GuardSet {
  public:
   explicit GuardSet(HybridSystem& system) : system_(system) {}
 
-  /// Takes up the conditions of a step; which side of its target each one starts on is read from the state.
+  /// Takes up the conditions of a step. The state at its beginning shows on which side of its target each one starts.
   void begin_step(std::span<const Condition> conditions, double xi, std::span<const double> y);
 
   /// Index of the first condition that holds where the step began: its quantity equals its target there, or the step
@@ -34,17 +34,17 @@ class GuardSet {
   [[nodiscard]] std::optional<std::size_t> held_at_begin() const noexcept;
 
   /// Notes which conditions end the step: those among the guards that fired, and those whose quantities equal their
-  /// targets. One that was passed in a jump ends the step, too, but does not hold where the next one begins.
+  /// targets. A condition that a jump has passed ends the step as well, but does not hold where the next step begins.
   void note_met(std::span<const std::size_t> fired, double xi, std::span<const double> y);
 
-  /// True if the last step has ended where the quantity that a control prescribes a wall equals a value, by a condition
-  /// that says so.
+  /// True if a condition has ended the last step where the quantity that a control prescribes to a channel equals a
+  /// value.
   [[nodiscard]] bool has_ended_at(Control control, int channel, double value) const noexcept;
 
   /// Value of a condition's quantity where the step began.
   [[nodiscard]] double value_at_begin(std::size_t condition) const { return conditions_[condition].begin; }
 
-  /// Lists what is alive from here on. Call after every change of the system's mode.
+  /// Lists the guards alive from here on; to be called after every change of the system's mode.
   void renew();
 
   [[nodiscard]] std::size_t size() const noexcept { return directions_.size(); }
@@ -53,10 +53,11 @@ class GuardSet {
   /// Values of all guards alive.
   void values(double xi, std::span<const double> y, std::span<double> out);
 
-  /// How many of the guards, from the first on, are the system's.
+  /// Number of guards of the system; they come before the conditions of the program.
   [[nodiscard]] std::size_t system_guards() const noexcept { return system_count_; }
 
-  /// Whether the values of all guards at two instants show what crosses between them.
+  /// True if every guard is monotone over the rest of the step: its values at two instants show whether it crosses zero
+  /// between them.
   [[nodiscard]] bool is_monotone() const noexcept { return is_monotone_; }
 
   /// True if the present state meets a condition, however it came about (a ramp's end, a jump, a contact lost).
@@ -66,10 +67,10 @@ class GuardSet {
   struct Watched {
     Condition condition;
     double begin = 0.0;      ///< value of the quantity where the step began
-    double scale = 1.0;      ///< largest of target and distance: makes the root function of order one
-    int direction = 1;       ///< in which the target is met
-    bool is_held = false;    ///< where the step began
-    bool has_ended = false;  ///< the step
+    double scale = 1.0;      ///< larger of target and first distance: makes the root function of order one
+    int direction = 1;       ///< direction in which the quantity reaches the target
+    bool is_held = false;    ///< the condition held where the step began
+    bool has_ended = false;  ///< the condition has ended the step
   };
   [[nodiscard]] double value(const Condition& condition, double xi, std::span<const double> y);
   [[nodiscard]] double excess(const Watched& watched, double xi, std::span<const double> y);

@@ -24,16 +24,16 @@ struct IdaDeleter {
 };
 using IdaMemory = std::unique_ptr<void, IdaDeleter>;
 
-constexpr double k_slave_tolerance = 1e-4;  // loose, but small enough for difference quotients
-// Share of what is tolerated of a step that the corrector may leave. Of the library's third the differences of many
-// steps see nothing else where steps are many: the order stays low, and they become no longer. But no less than what
-// rounding leaves.
+constexpr double k_slave_tolerance = 1e-4;  // of dependent unknowns: loose, but small enough for difference quotients
+// Share of a step's tolerance that the corrector may leave as an error: k_left_by_corrector, or up to
+// k_most_left_by_corrector (the library's own) if round-off leaves more than the former. With the library's share, the
+// differences of many steps show nothing but these errors: the order stays low, and steps do not become longer.
 constexpr double k_left_by_corrector = 0.1;
 constexpr double k_most_left_by_corrector = 0.33;
 constexpr double k_left_by_rounding = 3e-14;
-// Steps of order 1 in a row, each of which was first tried longer, after which the method begins anew. As long as that
-// it never rises to a higher order: a difference of unknowns that go far sees nothing of their errors while steps are
-// alike, and all of them in a longer one.
+// Steps of order 1 in a row, each after a failed error test, after which the method is restarted: it would not rise to
+// a higher order by itself. While steps are alike, differences of fast-changing unknowns do not show their errors; in a
+// longer step they show all of them, and it fails.
 constexpr int k_most_failing_steps = 10;
 
 class Ida final : public Integrator {
@@ -49,7 +49,7 @@ class Ida final : public Integrator {
     N_VConst(0.0, y_.get());
     N_VConst(0.0, dy_.get());
     for (std::size_t k = 0; k < unknowns.size(); ++k) {
-      // A slaved unknown has no error of its own: hardly weighted, and completed wherever it is used.
+      // A dependent unknown has no error of its own: it has little weight, and is completed wherever it is used.
       const double absolute = unknowns[k].is_dependent ? k_slave_tolerance : of_step(tolerances).atol;
       view(least_atol_.get())[k] = std::max(absolute * unknowns[k].scale, k_above_rounding * unknowns[k].sum_scale);
       view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
@@ -63,7 +63,7 @@ class Ida final : public Integrator {
     check("IDASetUserData", IDASetUserData(memory_.get(), this));
     check("IDAWFtolerances", IDAWFtolerances(memory_.get(), error_weights));
     check("IDASetMaxNumSteps", IDASetMaxNumSteps(memory_.get(), k_most_internal_steps));
-    // From where a force is zero, the first steps are smaller than IDA's guess by many orders.
+    // If a segment starts at zero force, its first steps are smaller than IDA's guess by many orders of magnitude.
     check("IDASetMaxErrTestFails", IDASetMaxErrTestFails(memory_.get(), k_most_failures));
     const double left = std::clamp(k_left_by_rounding / tolerances.rtol, k_left_by_corrector, k_most_left_by_corrector);
     check("IDASetNonlinConvCoef", IDASetNonlinConvCoef(memory_.get(), left));
@@ -86,9 +86,9 @@ class Ida final : public Integrator {
     last_length_ = 0.0;
     failing_steps_ = 0;
     ++past_.segments;
-    // The system's own rates are consistent; IDACalcIC brings the rest within the tolerance. Where it cannot, because
-    // the balance is singular (first touch), the first step shows whether they were. It loses vectors of sensitivities
-    // where a residual has no value: they begin at the system's own state.
+    // The system's own rates are consistent; IDACalcIC brings state and rates within the tolerance. If it cannot,
+    // because the balance is singular (first touch), the first step shows whether they were consistent. IDACalcIC loses
+    // vectors of sensitivities if a residual has no value: with them, the segment begins at the system's own state.
     if (!system_.is_semi_explicit() || carried_) return;
     pending_.forget();
     const int flag = IDACalcIC(memory_.get(), IDA_YA_YDP_INIT, 1.0);
@@ -120,7 +120,7 @@ class Ida final : public Integrator {
         correct_begin(begin);
         restart(last_length_);
       } catch (const std::domain_error&) {
-        // Next to the end of the equations it goes on as it has come.
+        // Next to the end of the equations the method goes on without a restart.
         N_VScale(1.0, dy_.get(), begin_rates_.get());
       }
     }
@@ -195,9 +195,10 @@ class Ida final : public Integrator {
     return failures;
   }
 
-  /// Nothing is known better than the step coordinate: what goes through zero on a long way would be, and what
-  /// grows ever faster towards the end of its equations. A residual has that rounding, too: the share that the
-  /// corrector may leave is no less.
+  /// Raises the absolute tolerances to the round-off of xi times the rates: no unknown is known better. Without this,
+  /// tolerances are finer for an unknown that changes fast through zero, or ever faster towards the end of the
+  /// equations. Residuals have that round-off, too: it is divided by k_left_by_corrector, the share that the corrector
+  /// may leave.
   void raise_tolerances() {
     const auto rates = view(dy_.get());
     for (std::size_t k = 0; k < rates.size(); ++k) {
@@ -207,7 +208,7 @@ class Ida final : public Integrator {
     }
   }
 
-  /// One over what is tolerated.
+  /// One over the tolerance of each unknown.
   static int error_weights(N_Vector y, N_Vector weights, void* self) noexcept {
     const auto& ida = *static_cast<Ida*>(self);
     const double rtol = of_step(ida.tolerances_).rtol;
@@ -217,8 +218,8 @@ class Ida final : public Integrator {
     return 0;
   }
 
-  /// Takes the system's own state and rates for where a step begins. Beside a fold or a corner those that steps have
-  /// led to may be off by so much that no corrector comes back from them.
+  /// Replaces state and rates at the beginning of a step by the system's own. Next to a fold or a corner, those to
+  /// which the steps have led may be so wrong that no corrector converges from them.
   void correct_begin(double xi) {
     const auto state = view(begin_state_.get());
     std::ranges::copy(state, complete_.begin());
@@ -231,7 +232,7 @@ class Ida final : public Integrator {
     if (carried_) carried_->correct_begin(xi, complete_);
   }
 
-  /// Begins at xi with the state in y_ and dy_. @param step  the first to be tried; 0: the library's choice
+  /// Restarts IDA at xi with the state in y_ and dy_. @param step  first step to try; 0: the library's choice
   void start(double xi, double step) {
     past_ = statistics();  // counters are reset with the state
     for_jacobian_ = 0;
@@ -249,7 +250,7 @@ class Ida final : public Integrator {
     check("IDASetNoInactiveRootWarn", IDASetNoInactiveRootWarn(memory_.get()));
   }
 
-  /// Ends the step where a guard has crossed.
+  /// Moves the end of the step to where a guard crosses zero.
   void find_root(double begin) {
     const auto values_at = [this](double xi, std::span<double> values) {
       ++roots_.evaluations;
@@ -267,8 +268,9 @@ class Ida final : public Integrator {
 
   static int residual(realtype xi, N_Vector y, N_Vector dy, N_Vector res, void* self) noexcept {
     auto& ida = *static_cast<Ida*>(self);
-    // The staggered method asks for that of a corrected state, which a new Jacobian alone may want. Where it has no
-    // value, the library would begin its next trial without having taken back this one (6.4.1).
+    // The staggered method asks for the residual of a corrected state, which only a new Jacobian may need; jacobian()
+    // then evaluates it. If this residual had no value, the library would begin its next trial without undoing this
+    // one (6.4.1).
     ida.is_left_out_ = ida.carried_ && ida.is_corrected(xi);
     return ida.is_left_out_ ? 0 : ida.evaluate(xi, y, dy, res);
   }
@@ -280,7 +282,7 @@ class Ida final : public Integrator {
     });
   }
 
-  /// Whether the state at the end of a trial has been corrected since its residual was last asked for.
+  /// True if the corrector has changed the state at the end of a trial since the library last asked for its residual.
   bool is_corrected(double xi) noexcept {
     long corrections = 0;
     IDAGetNumNonlinSolvIters(memory_.get(), &corrections);
@@ -302,8 +304,8 @@ class Ida final : public Integrator {
     });
   }
 
-  /// d(residual)/dy + cj d(residual)/dy' by difference quotients, as the library's own, but for their increments: those
-  /// are no less than what is tolerated, which for loose tolerances is more than a law is smooth over.
+  /// d(residual)/dy + cj d(residual)/dy' by difference quotients. The library's own uses increments of at least the
+  /// tolerance; if tolerances are loose, a law need not be smooth over them.
   static int jacobian(realtype xi, realtype cj, N_Vector y, N_Vector dy, N_Vector res, SUNMatrix matrix, void* self,
                       N_Vector shifted, N_Vector, N_Vector) noexcept {
     static const double k_root = std::sqrt(std::numeric_limits<double>::epsilon());
@@ -329,7 +331,7 @@ class Ida final : public Integrator {
       const int flag = ida.pending_.guard([&] {
         shift_within_domain(std::copysign(size, step * rate), [&](double by) {
           values[j] = value + by;
-          increment = values[j] - value;  // as it stands in the sum
+          increment = values[j] - value;  // as rounded in the sum
           rates[j] = rate + cj * increment;
           ++ida.for_jacobian_;
           ida.pending_.beside([&] { ida.system_.residual(xi, values, rates, view(shifted)); });
@@ -352,7 +354,8 @@ class Ida final : public Integrator {
     ++ida.roots_.evaluations;
     return ida.pending_.guard([&] {
       std::ranges::copy(view(y), ida.complete_.begin());
-      // A centre that walls take along would lag behind them: of errors alone they would come into contact.
+      // Without completing, a free centre that idle contacts move would lag behind them, and errors alone would close
+      // contacts.
       ida.system_.complete(xi, ida.complete_);
       ida.guard_set_.values(xi, ida.complete_, {values, ida.guard_set_.size()});
       return true;
@@ -366,7 +369,7 @@ class Ida final : public Integrator {
   [[nodiscard]] SolverError failure(Failure why, const std::string& library) {
     double step = 0.0;
     std::string details;
-    // Weights and errors are there once a step has been tried.
+    // Weights and errors exist once a step has been tried.
     if (memory_ && IDAGetCurrentStep(memory_.get(), &step) == IDA_SUCCESS &&
         IDAGetErrWeights(memory_.get(), weights_.get()) == IDA_SUCCESS &&
         IDAGetEstLocalErrors(memory_.get(), errors_.get()) == IDA_SUCCESS) {
@@ -383,13 +386,13 @@ class Ida final : public Integrator {
   Pending pending_;
   RootList roots_;
   double end_ = 0.0;
-  double last_length_ = 0.0;  ///< of a step of this segment
-  int failing_steps_ = 0;     ///< in a row, of order 1
+  double last_length_ = 0.0;  ///< length of the last step of this segment; 0 before the first
+  int failing_steps_ = 0;     ///< steps of order 1 in a row, each after a failed error test
   Statistics past_;
-  long for_jacobian_ = 0;     ///< residuals
-  double residual_xi_ = 0.0;  ///< where one was last asked for
-  long corrections_ = 0;      ///< of states, up to then
-  bool is_left_out_ = false;  ///< the last one that was asked for
+  long for_jacobian_ = 0;     ///< residuals evaluated for Jacobians, which the library does not count
+  double residual_xi_ = 0.0;  ///< step coordinate at which the library last asked for a residual
+  long corrections_ = 0;      ///< corrections of states up to that call
+  bool is_left_out_ = false;  ///< that residual was not evaluated
 
   sundials::Context context_;  // first in, last out
   NVector y_, dy_, begin_state_, begin_rates_, id_, least_atol_, atol_, weights_, errors_;

@@ -53,7 +53,7 @@ Statistics& Statistics::operator+=(const Statistics& other) noexcept {
 
 namespace {
 
-// Finer steps would follow the rounding of states.
+// Least relative tolerance of an integrator: finer steps would follow the round-off of states.
 constexpr double k_least_rtol = 1e-14;
 
 using Method = std::variant<OdeMethod, OdeintMethod, GslMethod>;
@@ -79,7 +79,7 @@ constexpr std::array<NamedMethod, 11> k_of_explicit_form{{
     {integrators::k_gsl_msbdf, GslMethod::msbdf, true},
 }};
 
-/// Integrators that "auto" stands for where the states are not solved for directly.
+/// Name of the pair of integrators that "auto" chooses if states are not solved for directly.
 const std::string& switching_name() {
   static const std::string k_name =
       fmt::format("{}, {} where stiff", integrators::k_odeint_dopri5, integrators::k_cvode_bdf);
@@ -111,7 +111,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem&
   if (name == integrators::k_explicit) return make_fixed_step(system, guard_set, asked);
   const double gain = system.error_gain();
   const double rtol = std::max(asked.rtol / gain, std::min(asked.rtol, k_least_rtol));
-  // No smaller than it takes to let the relative one count: equations without rates have round-off.
+  // The absolute tolerance need not be below a tenth of the relative one: equations without rates have round-off.
   const Tolerances tolerances{rtol, std::min(asked.atol, std::max(asked.atol / gain, 0.1 * rtol))};
   if (name == integrators::k_ida) return make_ida(system, guard_set, tolerances, sensitivities);
   if (name == switching_name()) return make_switching(system, guard_set, tolerances);

@@ -1,4 +1,4 @@
-/// What the engine asks of an integrator, and the integrators there are.
+/// The interface of an integrator, and how integrators are chosen and made.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ enum class Failure {
   no_step,         ///< no step, however short, meets the tolerances
   too_much_work,   ///< more steps or evaluations than a step of the program may take
   no_progress,     ///< steps below the round-off of the step coordinate
-  chattering,      ///< regimes that answer each other at one instant
+  chattering,      ///< regimes that alternate at one instant
   endless_events,  ///< more events than a step of the program may have
   set_up           ///< a library did not start
 };
@@ -54,8 +54,8 @@ enum class Failure {
 class SolverError : public std::runtime_error {
  public:
   /// @param xi       step coordinate
-  /// @param step     last step size, in step coordinates; 0 where there was none
-  /// @param details  numbers that show it, such as the unknowns with the largest local errors; may be empty
+  /// @param step     last step size, in step coordinates; 0 if there was none
+  /// @param details  numbers that show the failure, such as the unknowns with the largest local errors; may be empty
   /// @param library  function of a library and the code it has returned, e.g. "CVode: CV_ERR_FAILURE"; may be empty
   SolverError(Failure failure, double xi, double step, std::string_view details, std::string_view library = {});
   [[nodiscard]] Failure failure() const noexcept { return failure_; }
@@ -66,9 +66,8 @@ class SolverError : public std::runtime_error {
   double xi_;
 };
 
-/// Length (step coordinates) below which a step that leaves the domain of the equations counts as having reached its
-/// boundary. At the beginning of a step of the program it is shorter: a contact may be that much shallower than the
-/// ramp.
+/// Length (step coordinates) below which a step that leaves the domain of the equations has reached the domain's
+/// boundary. The length shrinks towards the beginning of a step of the program, where a contact may be that shallow.
 [[nodiscard]] inline double least_progress(double xi) noexcept { return 1e-13 * std::max(xi, 1e-7); }
 
 /// Round-off of the step coordinate: no quantity is known better than its rate times this.
@@ -77,12 +76,14 @@ inline constexpr double k_rounding_of_xi = 4.0 * std::numeric_limits<double>::ep
 /// Internal steps of one step of the program after which it is given up.
 inline constexpr long k_most_internal_steps = 200'000;
 
-/// Integrates one system over segments: pieces of a step without a kink, from one restart to the next.
+/// Integrates one system over segments: smooth parts of a step of the program, from one restart to the next.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Starts a segment at xi < 1 that ends at 1, from a state the system has settled.
+  /// Starts a segment that ends at 1.
+  /// @param xi  < 1
+  /// @param y   complete state, consistent with the system's mode
   virtual void begin(double xi, std::span<const double> y) = 0;
 
   /// Where an internal step has ended: at xi = 1 exactly, at a guard's root, or in between.
@@ -90,45 +91,46 @@ class Integrator {
     double xi = 0.0;
     bool hit_guard = false;
   };
-  /// One internal step. @throws SolverError, or std::domain_error where the equations end
+  /// Takes one internal step. @throws SolverError, or std::domain_error where the equations end
   virtual Advance advance() = 0;
 
-  /// Guards that fired at the end of the last step, by index into the guard_set.
+  /// Guards that fired at the end of the last internal step, by index into the GuardSet.
   [[nodiscard]] virtual std::span<const std::size_t> fired() const noexcept = 0;
 
-  /// The complete state anywhere in the last internal step.
+  /// Gives the complete state at any xi in the last internal step.
   virtual void dense_output(double xi, std::span<double> y) = 0;
 
-  /// Puts s anywhere in the last internal step into the sensitivities that it carries along.
+  /// Stores s = dy/dp at any xi in the last internal step in the ForwardSensitivities, if the integrator has them.
   virtual void dense_sensitivities(double /*xi*/) {}
 
-  /// How near to zero a guard counts as fired together with one that has just fired.
+  /// Largest distance from zero at which a guard fires together with a guard that has just fired.
   [[nodiscard]] virtual double guard_tolerance() const noexcept = 0;
 
   [[nodiscard]] virtual Statistics statistics() const = 0;
-  /// Of these what limits the work, asked for after every internal step.
+  /// statistics().rhs_evaluations, by which the drive bounds the work; called after every internal step.
   [[nodiscard]] virtual long rhs_evaluations() const { return statistics().rhs_evaluations; }
 
-  /// How many internal steps a step of the program may take.
+  /// Largest number of internal steps that a step of the program may take.
   [[nodiscard]] virtual long most_steps() const noexcept { return k_most_internal_steps; }
 };
 
-/// What make_integrator makes: the names of scenario files but "auto".
+/// Names that make_integrator() accepts: those of scenario files except "auto".
 [[nodiscard]] std::span<const std::string_view> integrator_names() noexcept;
 
 /// False for methods that have to take short steps where the equations are stiff, however smooth their solution.
 [[nodiscard]] bool suits_stiff_equations(std::string_view name) noexcept;
 
-/// @param name  as in scenario files but "auto", or as choose_integrator() has chosen it
-/// @param rows           of the history in a step, about
-/// @param sensitivities  to be carried along, by an integrator that can; null: none
-/// @throws std::logic_error for another name, or where direct is asked of a system that is not solvable
+/// Makes an integrator for a system.
+/// @param name           one of integrator_names(), or IntegratorChoice::used of choose_integrator()
+/// @param rows           approximate number of rows of the history in a step of the program
+/// @param sensitivities  derivatives to integrate too, if the integrator has_forward_sensitivities(); null: none
+/// @throws std::logic_error for another name, or for "direct" with a system that is not solvable
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system,
                                                           GuardSet& guard_set, const Tolerances& tolerances,
                                                           std::size_t rows = 0,
                                                           ForwardSensitivities* sensitivities = nullptr);
 
-/// Which integrator runs, and why that one.
+/// Which integrator runs, and why.
 struct IntegratorChoice {
   std::string asked;
   std::string used;
@@ -138,7 +140,7 @@ struct IntegratorChoice {
   [[nodiscard]] bool is_direct() const noexcept { return used == integrators::k_direct; }
 };
 
-/// The integrator asked for, or for "auto" the cheapest that reaches the accuracy and that the system allows.
+/// Chooses the integrator asked for; for "auto", the direct form if the system is solvable, else switching methods.
 [[nodiscard]] IntegratorChoice choose_integrator(const std::string& asked, const HybridSystem& system);
 
 /// Version of the SUNDIALS library in use.
@@ -160,7 +162,7 @@ enum class GslMethod { rk8pd, msadams, msbdf };
 /// Forward Euler with 1/rtol steps in each step of the program, at most 1e7; transitions at the ends of steps.
 [[nodiscard]] std::unique_ptr<Integrator> make_fixed_step(HybridSystem& system, GuardSet& guard_set,
                                                           const Tolerances& tolerances);
-/// Odeint's dopri5, and CVODE's BDF from where that takes too many steps; what "auto" integrates with.
+/// Odeint's dopri5, replaced by CVODE's BDF when dopri5 takes too many steps; "auto" integrates with this pair.
 [[nodiscard]] std::unique_ptr<Integrator> make_switching(HybridSystem& system, GuardSet& guard_set,
                                                          const Tolerances& tolerances);
 [[nodiscard]] std::unique_ptr<Integrator> make_ida(HybridSystem& system, GuardSet& guard_set,

@@ -1,11 +1,12 @@
-/// How long integrators spend on linear algebra.
+/// Measures the time that integrators spend on linear algebra.
 #pragma once
 
 #include <chrono>
 
 namespace monograin {
 
-/// While one lives, the linear solvers of integrators that this thread makes are timed. One at a time.
+/// While a clock exists, the linear solvers of integrators that its thread makes are timed. A thread may have one clock
+/// at a time.
 class LinearAlgebraClock {
  public:
   LinearAlgebraClock() noexcept { running_ = this; }
@@ -13,7 +14,7 @@ class LinearAlgebraClock {
   LinearAlgebraClock(const LinearAlgebraClock&) = delete;
   LinearAlgebraClock& operator=(const LinearAlgebraClock&) = delete;
 
-  /// That of this thread, or nullptr.
+  /// The clock of this thread, or nullptr.
   [[nodiscard]] static LinearAlgebraClock* running() noexcept { return running_; }
 
   template <class Work>

@@ -1,4 +1,4 @@
-// Steppers of Boost.Odeint. Small states stand in arrays of fixed size, filled up with zeros.
+// Steppers of Boost.Odeint. Small states are arrays of fixed size, padded with zeros.
 
 #include <algorithm>
 #include <array>
@@ -21,14 +21,15 @@ namespace {
 namespace odeint = boost::numeric::odeint;
 
 constexpr double k_first_step = 1e-3;
-// The same of a linearly implicit method where rates may be singular: its difference quotients do not see that, and now
-// and then two errors cancel in its estimate. The error goes with the square of the step.
+// First step of the linearly implicit method if rates may be singular: its difference quotients do not show a
+// singularity, and now and then two errors cancel in its estimate. The error is proportional to the square of the step.
 constexpr double k_first_step_of_slaves = 1e-9;
-constexpr double k_smallest_step = 2e-3;  // over the least progress: still above the rounding of xi
-constexpr int k_most_tries = 500;         // of one step
-// Over what is tolerated of a step: by how much two sequences of the midpoint rule differ that are one solution.
+constexpr double k_smallest_step = 2e-3;  // over least_progress(): still above the round-off of xi
+constexpr int k_most_tries = 500;         // for one step
+// Largest difference between the two sequences of the midpoint rule, over the tolerance of a step, if both approximate
+// the same solution.
 constexpr double k_most_between_sequences = 100.0;
-constexpr double k_shorter = 0.25;  // what a step is made by that has come to nothing
+constexpr double k_shorter = 0.25;  // factor on the length of a step that failed
 
 template <class State>
 State zeros(std::size_t size) {
@@ -38,11 +39,16 @@ State zeros(std::size_t size) {
     return State{};
 }
 
-/// Bounds a step by the end of the program's step, and makes it smaller where the equations end in it.
+/// Takes one step that does not end beyond xi = 1; shortens it if its error is too large or the equations end in it.
+/// @param step        length to try first; receives the length of the next step
+/// @param rejections  counts failed tries
+/// @param attempt     (end, length): tries a step as Odeint's try_step() does
+/// @return where the step ends
+/// @throws std::domain_error where the equations end; SolverError if no step succeeds
 template <class Try>
 double controlled_step(double xi, double& step, long& rejections, Try&& attempt) {
   for (int tries = 0; tries < k_most_tries; ++tries) {
-    // What is left is not split into a step and a rest that is rounding.
+    // The last step is stretched by up to a tenth, so that no remainder of the size of round-off is left.
     const bool is_last = xi + 1.1 * step >= 1.0;
     double now = is_last ? 1.0 - xi : step;
     double end = xi;
@@ -52,7 +58,7 @@ double controlled_step(double xi, double& step, long& rejections, Try&& attempt)
         step = std::max(now, is_last ? step : 0.0);
         return is_last ? 1.0 : xi + tried;
       }
-      // The library tells steps apart by epsilon, and would try one that is hardly longer than that for ever.
+      // Odeint compares steps to within epsilon, and would try a step of about that length again and again.
       step = now < tried ? now : k_shorter * tried;
     } catch (const std::domain_error&) {
       step = k_shorter * std::min(step, 1.0 - xi);
@@ -64,17 +70,17 @@ double controlled_step(double xi, double& step, long& rejections, Try&& attempt)
   throw SolverError(Failure::no_step, xi, step, {});
 }
 
-/// What is tolerated of each unknown. Where a contact lasts hardly longer than the step coordinate is rounded, so are
-/// the errors of a step's stages: no less than that is.
+/// Tolerances of the unknowns in a step, no finer than the round-off of xi times the rates. If a contact lasts hardly
+/// longer than that round-off, the errors of a step's stages are of its size.
 template <class State>
 class Tolerated {
  public:
   Tolerated(const ScaledForm& form, const Tolerances& tolerances)
       : size_(form.size()), of_step_(of_step(tolerances)), rates_(zeros<State>(form.size())) {}
 
-  /// Rates of a step's stages; the last ones are those at its end.
+  /// Takes the rates of a step's stages in turn; the last rates are those at the step's end.
   void see(const State& rates) noexcept { rates_ = rates; }
-  /// The largest error over what is tolerated.
+  /// Largest error of an unknown over its tolerance.
   template <class Error>
   [[nodiscard]] double share(const State& begin, Error&& error) const noexcept {
     double largest = 0.0;
@@ -92,31 +98,31 @@ class Tolerated {
   State rates_;
 };
 
-/// Fehlberg's own error estimate is zero for rates that depend on xi alone, and blind where they depend on little else,
-/// as from first touch on. For those the method is the Newton-Cotes rule with nodes 0, 1/6 ... 1, and the rule of order
-/// 6 with five of them stands beside it.
+/// Error estimate of Fehlberg's method as a quadrature. The method's own estimate is zero for rates that depend on xi
+/// alone, and too small if they depend on little else, as just after first touch. For such rates the method is the
+/// Newton-Cotes rule with nodes 0, 1/6 ... 1; the estimate compares it with the rule of order 6 on five of these nodes.
 template <class State>
 class RuleErrors {
  public:
   explicit RuleErrors(std::size_t size) : size_(size), sums_(zeros<State>(size)) {}
 
-  /// @param stage  whose rates come first: 1 where those at the step's beginning are known
+  /// Begins a step. @param stage  index of the first stage to come: 1 if the rates at the step's beginning are known
   void begin(std::size_t stage) noexcept {
     stage_ = stage;
     for (std::size_t k = 0; k < size_; ++k) sums_[k] = 0.0;
   }
-  /// Rates of the method's stages, in their order.
+  /// Takes the rates of the method's stages, in their order.
   void see(const State& rates) noexcept {
     const double weight = k_differences[stage_];
     if (stage_ + 1 < k_differences.size()) ++stage_;
     if (weight == 0.0) return;
     for (std::size_t k = 0; k < size_; ++k) sums_[k] += weight * rates[k];
   }
-  /// Over the length of the step.
+  /// Error of unknown k, over the length of the step.
   [[nodiscard]] double operator[](std::size_t k) const noexcept { return sums_[k]; }
 
  private:
-  // The weights of the two rules, one less the other, by stage.
+  // Differences of the weights of the two rules, by stage.
   static constexpr double k_end = 41.0 / 840.0 - 7.0 / 150.0;
   static constexpr double k_sixth = 9.0 / 35.0 - 27.0 / 100.0;
   static constexpr std::array<double, 13> k_differences{
@@ -127,22 +133,22 @@ class RuleErrors {
   std::size_t stage_ = 0;
 };
 
-/// The midpoint rule goes from every second state to the next, by the rates in between: two sequences, of which the
-/// extrapolation takes the mean and sees only what changes with the number of places. Where rates jump, the one may go
-/// on as before the jump and the other as after it, however many places there are. Their difference, extrapolated as
-/// the states are.
+/// Error estimate of the extrapolated midpoint rule. The rule computes every second state from the rates in between,
+/// which makes two sequences. The extrapolation uses their mean, and detects only errors that change with the number of
+/// substeps. Where rates jump, one sequence may go on as before the jump and the other as after it, however many
+/// substeps there are. The estimate is the difference of the sequences, extrapolated as the states are.
 template <class State>
 class SequenceErrors {
  public:
   explicit SequenceErrors(std::size_t size) : size_(size) { table_.fill(zeros<State>(size)); }
 
-  /// @param rates  those at the step's beginning
+  /// Begins a step. @param rates  at the step's beginning; must outlive the step
   void begin(const State& rates) noexcept {
     first_ = &rates;
     column_ = 0;
     place_ = 0;
   }
-  /// Rates at the places of the midpoint rule, in their order: at 2, then at 4, 6 ... of them.
+  /// Takes the rates at the substeps of the midpoint rule, in their order: 2 of them, then 4, 6 ...
   void see(const State& rates) noexcept {
     if (column_ == k_most) return;
     State& sum = table_[column_];
@@ -164,11 +170,11 @@ class SequenceErrors {
     ++column_;
     place_ = 0;
   }
-  /// Over the length of the step.
+  /// Error of unknown k, over the length of the step.
   [[nodiscard]] double operator[](std::size_t k) const noexcept { return table_[0][k]; }
 
  private:
-  static constexpr std::size_t k_most = 9;  // of Odeint's
+  static constexpr std::size_t k_most = 9;  // columns of Odeint's extrapolation table
   static constexpr std::size_t places_of(std::size_t column) noexcept { return 2 * (column + 1); }
 
   std::size_t size_;
@@ -178,7 +184,7 @@ class SequenceErrors {
   std::size_t place_ = 0;
 };
 
-/// What Odeint asks for the error of a step over what is tolerated.
+/// Gives Odeint the error of a step over its tolerance.
 template <class State>
 class ErrorChecker {
  public:
@@ -202,7 +208,8 @@ using DormandPrince = odeint::controlled_runge_kutta<odeint::runge_kutta_dopri5<
 template <class State>
 using Fehlberg = odeint::controlled_runge_kutta<odeint::runge_kutta_fehlberg78<State>, ErrorChecker<State>>;
 
-/// The same tolerance for the extrapolation, which takes no checker of its own; with the rates at the step's beginning.
+/// Tolerances as in `Tolerated` for the extrapolation, which accepts no error checker. Uses the rates at the step's
+/// beginning.
 struct RoundedOperations : odeint::default_operations {
   template <class Value>
   struct rel_error : odeint::default_operations::rel_error<Value> {
@@ -221,8 +228,8 @@ using Extrapolation =
     odeint::bulirsch_stoer<State, double, State, double, typename odeint::algebra_dispatcher<State>::algebra_type,
                            RoundedOperations>;
 
-/// Explicit methods. That of order 5 has an interpolation of its own; in steps of the others a state is found by
-/// integrating to it with the method of order 8.
+/// Explicit methods. The method of order 5 has an interpolation of its own. Within a step of the others, a state is
+/// found by integrating to it with the method of order 8.
 template <class State, class Controlled>
 class ExplicitStepper final : public Stepper {
  public:
@@ -230,7 +237,7 @@ class ExplicitStepper final : public Stepper {
   static constexpr bool has_rule_errors = std::is_same_v<Controlled, Fehlberg<State>>;
   static constexpr bool has_sequences = std::is_same_v<Controlled, Extrapolation<State>>;
 
-  /// @param make  the controlled method, of what is tolerated and its errors as a quadrature
+  /// @param make  makes the controlled method from its tolerances and its error estimate as a quadrature
   template <class Make>
   ExplicitStepper(ScaledForm& form, const Tolerances& tolerances, int method_order, Make&& make)
       : form_(form),
@@ -274,7 +281,7 @@ class ExplicitStepper final : public Stepper {
             return odeint::fail;
           }
         }
-        // A step that ends where the equations do not hold is none, however small its error.
+        // A step is accepted only if the equations hold at its end, however small its error.
         if (result == odeint::success) rates(now_, now_rates_, end);
         return result;
       }
@@ -306,10 +313,11 @@ class ExplicitStepper final : public Stepper {
         rule_errors_.begin(0);
         try {
           const auto result = reaching_.try_step(system<true>(), between_, at, step);
-          // Not from the beginning again: of several states the one sought may not be the nearest to that.
+          // The state reached guides the next one: of several solutions, the one sought need not be the nearest to the
+          // step's beginning.
           if (result == odeint::success && at < xi) form_.reach(at, {between_.data(), form_.size()});
         } catch (const std::domain_error&) {
-          // Stages may lie where the equations do not hold, though all of the step does not.
+          // Stages may lie outside of the domain of the equations although the step does not.
           step *= k_shorter;
           if (step < least_progress(at)) throw;
         }
@@ -343,8 +351,8 @@ class ExplicitStepper final : public Stepper {
   bool has_rates_ = false;
 };
 
-/// The linearly implicit method of order 4. xi is one more unknown: with Boost 1.74 equations that hold it explicitly
-/// are integrated with order 1.
+/// The linearly implicit method of order 4. xi is one more unknown: Boost 1.74 integrates equations that contain xi
+/// explicitly with order 1.
 class RosenbrockStepper final : public Stepper {
  public:
   RosenbrockStepper(ScaledForm& form, const Tolerances& tolerances)
@@ -380,7 +388,7 @@ class RosenbrockStepper final : public Stepper {
     end_ = controlled_step(begin_, step_, rejections, [&](double& end, double& step) {
       length_ = known_for_ = step;
       if (!method_.try_step(end, step)) return odeint::fail;
-      // A step that ends where the equations do not hold is none, however small its error.
+      // A step is accepted only if the equations hold at its end, however small its error.
       form_.rates(end, {method_.end_state(), size_}, end_rates_);
       return odeint::success;
     });
@@ -393,7 +401,8 @@ class RosenbrockStepper final : public Stepper {
   }
 
  private:
-  /// What the derivatives saw of all of the step may lie beyond a regime that is as short as this part of it.
+  /// State within the step. The derivatives of the whole step may come from beyond a regime that is as short as the
+  /// part up to xi; they are then computed anew for that part.
   const double* state_between(double xi) {
     const double part = xi - begin_;
     const double length = DifferenceJacobian::reach(begin_, length_) > part ? part : length_;
@@ -404,7 +413,7 @@ class RosenbrockStepper final : public Stepper {
 
   static void rates(void* self, double, const double* z, double* dz) {
     auto& stepper = *static_cast<RosenbrockStepper*>(self);
-    // As an unknown, xi passes the end of the program's step by rounding, where a force may already have to pull.
+    // As an unknown, xi may pass the end of the program's step by round-off, where the prescribed force may be tensile.
     stepper.form_.rates(std::min(z[stepper.size_], 1.0), {z, stepper.size_}, {dz, stepper.size_});
     dz[stepper.size_] = 1.0;
   }
@@ -428,8 +437,8 @@ class RosenbrockStepper final : public Stepper {
   Rosenbrock4 method_;
   std::vector<double> start_, by_z_, by_xi_, end_rates_;
   double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
-  double length_ = k_first_step;     ///< of the step that is tried
-  double known_for_ = k_first_step;  ///< of what the derivatives were taken for
+  double length_ = k_first_step;     ///< length of the step that is tried
+  double known_for_ = k_first_step;  ///< length of the step for which the derivatives were computed
 };
 
 template <class State>

@@ -1,4 +1,4 @@
-/// What a program of loading steps has asked for and not got.
+/// Notes on demands of the load program that a run did not meet.
 #pragma once
 
 #include <cstddef>

@@ -11,7 +11,7 @@
 namespace monograin {
 namespace {
 
-// Durations of walls that end their steps together (relative).
+// Relative difference below which the durations of two walls are equal: all walls end a step together.
 constexpr double k_same_duration = 1e-9;
 
 /// A quantity of a condition: its word in scenario files and its unit.
@@ -37,7 +37,7 @@ const QuantityWords& words_of(Quantity quantity) {
   return *std::ranges::find(k_quantities, quantity, &QuantityWords::quantity);
 }
 
-/// A ramp from the present value of what a step controls in a channel.
+/// Ramp of a channel in a step: from the present value of the controlled quantity to the step's target.
 /// @param held  what the channel keeps when the step says nothing
 Ramp ramp_of(const Step& step, int channel, const Ramp& held, HybridSystem& system, const GuardSet& guard_set,
              double xi, std::span<const double> y) {
@@ -50,12 +50,12 @@ Ramp ramp_of(const Step& step, int channel, const Ramp& held, HybridSystem& syst
     ramp = {present, present, *control};
   }
   if (is_detaching) {
-    // One apparent radius back: farther than any contact stays closed.
+    // Withdrawal by one apparent radius: no contact stays closed that far.
     ramp.end = ramp.start - system.quantity(Quantity::apparent_radius, channel, xi, y);
     return ramp;
   }
   ramp.end = step.target;
-  // The value at which a condition has ended the last step has the error of an integrator: a ramp to it goes nowhere.
+  // The value at which a condition has ended the last step has an integrator's error: a ramp to that value holds it.
   if (guard_set.has_ended_at(*control, channel, ramp.end)) ramp.start = ramp.end;
   return ramp;
 }

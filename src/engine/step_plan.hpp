@@ -1,4 +1,4 @@
-/// A step of the program, worked out from where its channels stand when it begins.
+/// Ramps, duration and end conditions of a step of the program, computed from the state at its beginning.
 #pragma once
 
 #include <cstddef>
@@ -20,20 +20,20 @@ struct Stop {
 
 struct StepPlan {
   std::vector<Ramp> ramps;
-  double duration = -1.0;  ///< [s]; negative while no channel has said
+  double duration = -1.0;  ///< [s]; negative if no channel gives one
   std::vector<Condition> conditions;
   std::vector<std::string> ending_events;
-  std::vector<int> detaching;  ///< classes that are withdrawn until they are open
+  std::vector<int> detaching;  ///< channels that are withdrawn until their contacts are open
 };
 
-/// Works out a step that begins at a state.
+/// Plans a step of the program that begins at the state (xi, y) of the step before.
 /// @param held  what each channel keeps when the step says nothing
 /// @throws Stop where channels need different times
 [[nodiscard]] StepPlan plan_step(const Scene& scene, std::size_t step, std::span<const Ramp> held,
                                  const GuardSet& guard_set, double xi, std::span<const double> y);
 
-/// What a channel keeps after a step when nothing else is said: the end of its ramp, or where that was interrupted, at
-/// xi. A wall whose contact has snapped off bears no force any more.
+/// Ramp that a channel keeps after a step that ended at xi, if the next step says nothing: the value reached at xi,
+/// held. A force-controlled wall whose contact is open keeps a force of zero.
 [[nodiscard]] Ramp ramp_after(const StepPlan& plan, const HybridSystem& system, int channel, double xi);
 
 /// A condition in the words of the scenario, e.g. "until axial.force = 1000 N".

@@ -1,5 +1,5 @@
-// Codes without root finding of their own, with events located along their interpolated steps; and the fixed-step
-// scheme that locates none.
+// Integrators around codes without root finding: `Stepped` locates events along their interpolated steps, `FixedStep`
+// locates none.
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@
 namespace monograin {
 namespace {
 
-// Pieces of a step of the program that are looked at one by one; events do not depend on it as long as guards cross
-// once between two looks.
+// Pieces of a step of the program in which events are located one after the other. Events do not depend on this number
+// as long as a guard crosses zero once between two evaluations.
 constexpr double k_pieces = 32.0;
 
 class Stepped final : public EventLocator {
@@ -71,8 +71,8 @@ class Stepped final : public EventLocator {
   }
 
  private:
-  /// Goes on from the complete state: errors across the curve would add up from step to step, until that state is no
-  /// longer the one the rates have led to.
+  /// Lets the next step begin at the complete state. Errors across the solution curve would add up from step to step,
+  /// until completing finds another state than the rates have led to.
   void correct() {
     if (!form_.has_corrections()) return;
     stepper_->state_at(begin_, z_);
@@ -84,7 +84,7 @@ class Stepped final : public EventLocator {
     form_.complete(xi, z_, y);
   }
 
-  /// Where y holds the beginning of a segment, along its tangent.
+  /// Extrapolates along the tangent at the beginning of the segment.
   void state_ahead(double xi, std::span<double> y) override {
     stepper_->state_at(end_, z_);
     form_.rates(end_, z_, slope_);
@@ -92,8 +92,8 @@ class Stepped final : public EventLocator {
     form_.complete(xi, z_, y);
   }
 
-  /// Looks at the middle of the piece. Where a long step leads over an event there may be no state in the middle,
-  /// although there is one at the end: then the piece ends before that.
+  /// Evaluates the guards at the middle of the piece. If a long step leads beyond an event, the middle may have no
+  /// state although the end has one: the piece then ends before its middle.
   void look_into_middle() {
     while (end_ - begin_ > k_smallest_looked_into) {
       const double middle = std::midpoint(begin_, end_);
@@ -107,7 +107,8 @@ class Stepped final : public EventLocator {
     }
   }
 
-  /// A step may lead over an event to where this mode has no state; comes as near as it takes to get one.
+  /// Ends the piece at xi, or nearer to its beginning until a state exists: a step may lead beyond an event, to where
+  /// this mode has no state.
   void move_end(double xi) override {
     for (;;) {
       end_ = xi;
@@ -130,14 +131,15 @@ class Stepped final : public EventLocator {
   double step_end_ = 0.0;
 };
 
-// Difference quotients along xi: well within the step that they are for, and well above the rounding of xi.
+// Increments of difference quotients: k_share_of_step keeps them well within the step for which they are meant,
+// k_resolution (over xi) well above the round-off of xi.
 constexpr double k_share_of_step = 0.1;
 constexpr double k_resolution = 1e-14;
 const double k_cubic_root = std::cbrt(std::numeric_limits<double>::epsilon());
-constexpr double k_least_size = 1e-2;  // of an unknown over its scale
+constexpr double k_least_size = 1e-2;  // least size of an unknown, over its scale, that scales its increment
 
-/// Forward Euler with a fixed step, as explicit codes of the discrete-element kind go: transitions take effect at the
-/// first step's end that finds them past.
+/// Forward Euler with a fixed step, as in explicit discrete-element codes: a transition takes effect at the end of the
+/// step that passes it.
 class FixedStep final : public Integrator {
  public:
   FixedStep(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances)
@@ -161,8 +163,8 @@ class FixedStep final : public Integrator {
     guard_set_.values(xi, y, values_);
   }
 
-  /// Where a step ends is not asked for its rates before the next one begins: the mode may end there, and the errors of
-  /// steps have led out of it.
+  /// Takes one step. The rates at its end are evaluated only when the next step begins: the mode may end there, and
+  /// integration errors may have led out of its domain.
   Advance advance() override {
     std::swap(begin_state_, end_state_);
     std::swap(before_, values_);
@@ -202,7 +204,7 @@ class FixedStep final : public Integrator {
     return now;
   }
 
-  /// Their number is asked for; every event cuts one in two.
+  /// rtol prescribes the number of steps; the usual limit is a margin.
   [[nodiscard]] long most_steps() const noexcept override { return std::lround(1.0 / step_) + k_most_internal_steps; }
 
  private:
@@ -233,23 +235,23 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
   std::ranges::copy(z, point_.begin());
   form_.rates(xi, point_, base_);
   std::ranges::fill(jacobian, 0.0);
-  double largest_way = k_root;  // where nothing moves
+  double largest_way = k_root;  // if nothing moves
   for (const double rate : base_) largest_way = std::max(largest_way, std::abs(length * rate));
   for (std::size_t j = 0; j < n; ++j) {
     if (form_.is_quadrature(j)) continue;  // no rate depends on it
     const double size = std::abs(z[j]);
-    // Where contacts have just begun, the rates change over their overlaps, which other unknowns are much larger than:
-    // a step is as short as that, and so is the way it goes.
+    // Just after first touch, the rates change over the overlap, which is much smaller than the other unknowns. Steps
+    // are as short as that, so the change of the unknown in a step bounds the increment.
     const double way = base_[j] != 0.0 ? std::abs(length * base_[j]) : largest_way;
     const double wanted = std::max(std::min(k_share_of_step * way, k_cubic_root * std::max(size, k_least_size)),
                                    k_root * std::max(size, way));
     const double seen = look_beside(xi, j, wanted);
     for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted_[i] - beyond_[i]) / seen;
   }
-  // Of second order: next to a pole the rounding of xi leaves few digits of quotients over much less than the step, and
-  // those of first order over all of it are wrong by a share of their own.
+  // A second-order quotient over a good part of the step. Next to a pole, round-off of xi leaves few digits of a
+  // quotient over a much smaller part, and a first-order quotient over the whole step has a large relative error.
   const double onward = reach(xi, length);
-  // Beyond 1 the program goes on differently.
+  // Beyond xi = 1 another step of the program begins: the quotient is taken backwards.
   const double step = shift_within_domain(0.5 * (xi + onward > 1.0 ? -onward : onward), [&](double by) {
     form_.rates(xi + by, point_, shifted_);
     form_.rates(xi + 2.0 * by, point_, beyond_);

@@ -1,4 +1,4 @@
-/// Codes that step without finding roots, as the integrator that locates events for them wants them.
+/// Interface to codes that step without finding roots; the integrator `Stepped` locates events for them.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace monograin {
 
-/// The explicit form with every unknown over its own scale, so that one absolute tolerance serves all.
+/// The explicit form with every unknown over its own scale, so that one absolute tolerance serves all unknowns.
 class ScaledForm {
  public:
   explicit ScaledForm(HybridSystem& system)
@@ -30,14 +30,15 @@ class ScaledForm {
   [[nodiscard]] bool has_corrections() const noexcept { return form_.has_corrections(); }
   [[nodiscard]] long evaluations() const noexcept { return evaluations_; }
 
-  /// Takes up a segment's complete state; z is the integrated one.
+  /// Starts a segment at a complete state and puts the scaled integrated part of that state into z.
   void begin(std::span<const double> complete, std::span<double> z) {
     form_.begin(complete, y_);
     begin_step(0.0, complete);
     for (std::size_t k = 0; k < size(); ++k) z[k] = y_[k] / form_.unknown(k).scale;
   }
 
-  /// Takes over what completing has moved by more than rounding. @return whether that is anything
+  /// Copies to z the differential unknowns that completing has moved by more than round-off.
+  /// @return true if there are any
   [[nodiscard]] bool take_correction(std::span<const double> complete, std::span<double> z) {
     scale_back(z);
     if (!form_.take_correction(complete, y_)) return false;
@@ -45,14 +46,14 @@ class ScaledForm {
     return true;
   }
 
-  /// Where a step begins, and the state there.
+  /// Keeps the beginning of a step, with its complete state, as the first guess for states in the step.
   void begin_step(double xi, std::span<const double> complete) {
     std::ranges::copy(complete, begin_.begin());
     std::ranges::copy(complete, seen_.begin());
     seen_xi_ = last_xi_ = xi;
   }
 
-  /// A state on the curve.
+  /// Completes a state on the solution curve; the result guides the states after it.
   void complete(double xi, std::span<const double> z, std::span<double> complete) {
     scale_back(z);
     guess_on_curve(xi);
@@ -61,18 +62,20 @@ class ScaledForm {
     seen_xi_ = xi;
   }
 
-  /// Rates have led there, and on from there: a state on the curve, from those that they were asked for last.
+  /// Completes a state on the curve to which rates have led, and from which they lead on. The search starts from the
+  /// state of the last call of rates(), not from an earlier state on the curve.
   void reach(double xi, std::span<const double> z) {
     scale_back(z);
     std::ranges::copy(form_.complete(xi, y_), seen_.begin());
     seen_xi_ = xi;
   }
 
+  /// Gives the scaled rates d/dxi of a scaled state.
   /// @throws std::domain_error where the equations end, or have no finite rates
   void rates(double xi, std::span<const double> z, std::span<double> dz) {
     ++evaluations_;
     scale_back(z);
-    // Back from a stage, or from a step that came to nothing.
+    // xi goes back from a stage or a rejected step, whose complete state may lie far from the curve.
     if (xi < last_xi_) guess_on_curve(xi);
     last_xi_ = xi;
     form_.rates(xi, y_, dy_);
@@ -85,31 +88,32 @@ class ScaledForm {
     for (std::size_t k = 0; k < size(); ++k) y_[k] = z[k] * form_.unknown(k).scale;
   }
 
-  /// Stages may lie far from the curve, where the equations have other solutions; of its own states the next one before
-  /// xi is the first guess.
+  /// Makes the last complete state on the curve before xi the first guess. Stages may lie far from the curve, where the
+  /// equations have other solutions.
   void guess_on_curve(double xi) { form_.guess(xi < seen_xi_ ? begin_ : seen_); }
 
   ExplicitForm form_;
   std::vector<double> y_, dy_;
   std::vector<double> begin_, seen_;  ///< complete states: at the beginning of the step, and the last one on the curve
   double seen_xi_ = 0.0;
-  double last_xi_ = 0.0;  ///< where rates were last asked for
+  double last_xi_ = 0.0;  ///< step coordinate of the last call of rates()
   long evaluations_ = 0;
 };
 
+/// Takes steps of one segment with a code that has no root finding.
 class Stepper {
  public:
   virtual ~Stepper() = default;
 
   /// Starts a segment. @param z  scaled state
   virtual void begin(double xi, std::span<const double> z) = 0;
-  /// Goes on from this state, which differs from the end of the last step by its errors. A code that remembers steps
-  /// goes on from what it remembers.
+  /// Replaces the end of the last step by z, which differs from that end by errors of integration. Codes that remember
+  /// earlier steps (GSL's multistep methods) ignore z.
   virtual void correct(std::span<const double> z) = 0;
-  /// One accepted step that does not end beyond 1. @return where it ends
+  /// Takes one accepted step, which does not end beyond 1. @return where it ends
   /// @throws std::domain_error where the equations end; SolverError where the code gives up
   virtual double step() = 0;
-  /// Scaled state in the last step.
+  /// Gives the scaled state at xi within the last step.
   virtual void state_at(double xi, std::span<double> z) = 0;
 
   long rejections = 0;
@@ -120,22 +124,27 @@ class Stepper {
 [[nodiscard]] std::unique_ptr<Stepper> make_odeint(OdeintMethod method, ScaledForm& form, const Tolerances& tolerances);
 [[nodiscard]] std::unique_ptr<Stepper> make_gsl(GslMethod method, ScaledForm& form, const Tolerances& tolerances);
 
-/// d(rates)/dz and d(rates)/dxi by differences of second order: what those of first order leave would cost a linearly
-/// implicit method its order.
+/// d(rates)/dz and d(rates)/dxi by differences of second order: the error of first-order differences would cost a
+/// linearly implicit method its order.
 class DifferenceJacobian {
  public:
   explicit DifferenceJacobian(ScaledForm& form)
       : form_(form), base_(form.size()), shifted_(form.size()), beyond_(form.size()), point_(form.size()) {}
 
-  /// How far from xi the derivatives look for a step of that length: a regime may be as short.
+  /// Distance from xi within which rates are evaluated for d(rates)/dxi. It shrinks with the length of the step for
+  /// which the derivative is meant, because a regime may be as short as that step.
   [[nodiscard]] static double reach(double xi, double length) noexcept;
-  /// @param length    of the step that it is for
-  /// @param jacobian  row by row
+  /// Computes both derivatives at (xi, z).
+  /// @param length    of the step for which they are meant
+  /// @param jacobian  receives d(rates)/dz, row by row
+  /// @param by_xi     receives d(rates)/dxi
   void at(double xi, std::span<const double> z, double length, std::span<double> jacobian, std::span<double> by_xi);
 
  private:
-  /// Rates for more of an unknown, in `shifted_`, and for less of it, in `beyond_`; those at the point itself in place
-  /// of a side that does not count. @return how far apart the two are
+  /// Evaluates the rates with unknown j increased (`shifted_`) and decreased (`beyond_`). A side on which rates jump or
+  /// do not exist is replaced by the point itself.
+  /// @param wanted  increment; made smaller where the equations end
+  /// @return distance between the two states
   double look_beside(double xi, std::size_t j, double wanted);
 
   ScaledForm& form_;

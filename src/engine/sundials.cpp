@@ -14,10 +14,10 @@
 namespace monograin::sundials_boundary {
 namespace {
 
-// Looks before the end of a branch: each so many times nearer than the one before, and how many.
+// Evaluations before the end of a branch: ratio of successive distances from that end, and their number.
 constexpr double k_approach = 0.25;
 constexpr int k_looks_before_end = 12;
-// How closely the libraries know a root, over the place where the step ends and its length.
+// Accuracy of the libraries' roots, over the sum of the end and the length of the step.
 constexpr double k_rounding_of_root = 100.0 * std::numeric_limits<double>::epsilon();
 
 bool crosses(int direction, double before, double after, double tolerance) noexcept {
@@ -26,13 +26,14 @@ bool crosses(int direction, double before, double after, double tolerance) noexc
   return (rises && direction >= 0) || (falls && direction <= 0);
 }
 
-/// A guard, and where it crosses.
+/// A guard, and where it crosses zero.
 struct Crossing {
   double xi = 0.0;
   std::size_t guard = 0;
 };
 
-/// The first crossing within a step that ends with a branch, if there is one: looked for ever nearer to its end.
+/// First crossing of a guard within a step that ends at the end of a branch, or none. The evaluations approach that
+/// end.
 std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, const GuardSet& guard_set,
                                                    std::span<const std::size_t> fired, double begin, double end,
                                                    double tolerance,
@@ -75,8 +76,8 @@ std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, c
   return first;
 }
 
-/// Where a guard of the system goes beyond what counts as zero within the roundings of the end, its place is looked for
-/// among them. Conditions of the program are met wherever in them: no mode begins there that has to go on from it.
+/// Bisects for the root within the accuracy of the libraries if a guard of the system exceeds the tolerance at the end
+/// of the step. Conditions of the program need no such accuracy: no mode begins where they are met.
 double polished_root(const GuardSet& guard_set, std::span<const std::size_t> fired, double begin, double end,
                      double tolerance, const std::function<void(double, std::span<double>)>& values_at) {
   std::vector<double> values(guard_set.size());

@@ -1,4 +1,5 @@
-/// What the adapters of CVODE and IDA share: ownership of SUNDIALS objects, checked calls, and words for failures.
+/// Common parts of the adapters of CVODE and IDA: ownership of SUNDIALS objects, steps within the domain of the
+/// equations, roots, and words for failures.
 #pragma once
 
 #include <nvector/nvector_serial.h>
@@ -31,12 +32,12 @@ using NonlinearSolver = Handle<SUNNonlinearSolver, SUNNonlinSolFree>;
   return {N_VGetArrayPointer(v), static_cast<std::size_t>(N_VGetLength(v))};
 }
 
-/// Guards as an N_Vector-free root function sees them, and the bookkeeping that CVODE and IDA need around it.
+/// Guards as CVODE and IDA handle them: directions, roots found, and the guards that have fired.
 struct RootList {
   std::vector<int> directions;
   std::vector<int> found;
   std::vector<std::size_t> fired;
-  long evaluations = 0;  ///< counted here: the libraries' own counters are not set before a first step
+  long evaluations = 0;  ///< of the guards; the libraries' own counters are not set before a first step
 
   void collect() {
     fired.clear();
@@ -53,34 +54,37 @@ struct RootList {
   return name;
 }
 
-/// Keeps a library from printing its own messages; its return codes say the same.
+/// Keeps a library from printing its own messages; its return codes carry the same information.
 inline void ignore_message(int, const char*, const char*, char*, void*) {}
 
 /// A solver of small dense systems; timed where a LinearAlgebraClock runs.
 [[nodiscard]] LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context);
 
-/// Error tests and corrections that one step may fail. After a first step the next may be 1e4 times as long; where
-/// rates are singular at the beginning, the libraries' 7 and 10 do not always lead back from there.
+/// Failures of error tests and of corrections that one step may have. The second step of a segment may be tried 1e4
+/// times as long as the first. If rates are singular at the beginning, the libraries' own limits (7 and 10) do not
+/// always suffice to make that step short enough.
 inline constexpr int k_most_failures = 50;
 
-/// A corrector's tolerance over the sums in a residual: above their rounding.
+/// Least tolerance of a corrector, over the sums in a residual: above their round-off.
 inline constexpr double k_above_rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-/// What a step is made shorter by that has met the end of the equations.
+/// Factor on the length of a step in which the equations end.
 inline constexpr double k_retreat = 0.1;
 
-/// One step. Where its trials, or its guards, leave the domain, it is tried anew, shorter than the library itself
-/// would.
+/// Takes one step. If the trials or guards of the step leave the domain of the equations, tries it again with a shorter
+/// step than the library would choose.
+/// @param begin         step coordinate where the step begins
 /// @param evolve        takes the step and returns the library's flag
 /// @param current_step  puts the step that the library would take next into its argument, and returns its flag
-/// @param restart       begins anew where the step began, with this first step
-/// @throws std::domain_error where no step gets anywhere
+/// @param restart       restarts the library at `begin` with the given first step
+/// @return the library's flag
+/// @throws std::domain_error if even the shortest step leaves the domain
 template <class Evolve, class CurrentStep, class Restart>
 int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentStep&& current_step, Restart&& restart) {
   pending.forget();
   int flag = evolve();
   for (double step = 0.0; flag < 0 && pending.nearest_domain_end(); flag = evolve()) {
-    // Before its first step the library has none.
+    // Before its first step the library has no current step.
     if (step == 0.0 && (current_step(&step) != 0 || !(step > 0.0))) step = 1.0;
     step = k_retreat * std::min(step, 1.0 - begin);
     if (!(step > least_progress(begin))) throw *pending.nearest_domain_end();
@@ -89,22 +93,23 @@ int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentS
   return flag;
 }
 
-/// Whether a step that ends at no guard shows that ever smaller ones would never get to the end of the equations. Where
-/// only difference quotients have met that end, steps have to become smaller: the first one of a segment may be as
-/// short by itself.
+/// True if a step that ends at no guard is so short that ever smaller steps would approach the end of the equations
+/// without arriving. If only difference quotients have met that end, the step must also be shorter than the previous
+/// one: the first step of a segment may be that short by itself.
 /// @param previous  length of the step before; 0 for a segment's first one
 [[nodiscard]] inline bool is_stuck_at_end(const Pending& pending, double begin, double end, double previous) {
   if (end - begin >= least_progress(begin)) return false;
   return pending.domain_end() || (pending.nearest_domain_end() && end - begin < previous);
 }
 
-/// Where a step has to end that a library has ended at fired guards. Just before a branch ends, others may cross and
-/// come back, which it does not see: it looks at guards where its steps end. And it knows a root to a hundred roundings
-/// of the step coordinate only, in which a guard may go far.
-/// @param fired       in: the guards found at the end; out: the one that crosses before, if there is one
-/// @param begin, end  of the step
-/// @param tolerance   what of a guard counts as zero
-/// @param values_at   xi, values: the guards at a place of the step
+/// Corrects the end of a step that a library has ended at a root. Just before a branch ends, other guards may cross
+/// zero and return; the library misses them, because it evaluates guards only at the ends of its steps. The library
+/// also locates a root only to a hundred times the round-off of xi, within which a guard may change much.
+/// @param fired       in: the guards found at the end; out: the guard that crosses zero before, if there is one
+/// @param begin, end  of the step, as step coordinates
+/// @param tolerance   magnitude below which a guard counts as zero
+/// @param values_at   (xi, values): evaluates the guards at xi within the step
+/// @return step coordinate where the step has to end
 [[nodiscard]] double root_of_step(const HybridSystem& system, const GuardSet& guard_set,
                                   std::vector<std::size_t>& fired, double begin, double end, double tolerance,
                                   const std::function<void(double, std::span<double>)>& values_at);

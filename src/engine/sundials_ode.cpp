@@ -21,25 +21,25 @@ namespace {
 
 using namespace sundials_boundary;
 
-// The implicit method's estimate of the error of a quadrature is too small where steps are long: the work of an elastic
-// sphere then has 500 rtol, and 55 with steps of this length.
+// Longest step of the implicit method. Its estimate of a quadrature's error is too small for long steps: without this
+// bound the work of an elastic sphere has an error of 500 rtol, with it 55 rtol.
 constexpr double k_longest_implicit_step = 1.0 / 32.0;
 
-// The rtol that a step of that length still keeps where a polynomial through the states of the last steps is what is
-// seen between them. No estimate of the error sees that; it goes with that power of the length. Where the equations are
-// stiff beside that, steps are short because few corrections do not converge.
+// If states within a step come from a polynomial through the last steps, a step of that longest length keeps the rtol
+// k_interpolated_rtol. The error estimate does not include the polynomial's error, which is proportional to the length
+// to the power k_order_between_steps. Stiff equations keep steps short by themselves: few corrections do not converge.
 constexpr double k_interpolated_rtol = 1e-6;
 constexpr double k_order_between_steps = 6.0;
 
-// The rate at which the implicit method's corrections converge, as estimated from earlier ones, falls no lower than
-// this. By itself it falls with every stage while steps are alike, and after a change of their length a first
-// correction far larger than what is tolerated is then taken for the last: the estimate of the error sees nothing of
-// that. With 1 the last correction itself is as small as that. Beside a Jacobian of an earlier step the library's 3 may
-// be too few.
+// Least factor between successive estimates of the rate at which the implicit method's corrections converge. By itself
+// the estimate falls with every stage while steps are alike. After a change of their length, a first correction far
+// above the tolerance is then taken for the last one, and the error estimate does not show it. With 1, the last
+// correction itself is below the tolerance. If the Jacobian is that of an earlier step, the library's limit of 3
+// corrections may be too small.
 constexpr double k_least_convergence_rate = 1.0;
 constexpr int k_most_corrections = 10;
 
-/// CVODE under names that the adapter knows.
+/// CVODE's functions under the names that SundialsOde uses.
 struct CvodeLibrary {
   static constexpr const char* name = "CVode";
   static constexpr int root_return = CV_ROOT_RETURN;
@@ -87,7 +87,7 @@ struct CvodeLibrary {
   }
 };
 
-/// ARKODE likewise, as its additive Runge-Kutta module with one part of the two.
+/// ARKODE's functions under the names that SundialsOde uses: its additive Runge-Kutta module with one of the two parts.
 struct ArkodeLibrary {
   static constexpr const char* name = "ARKStepEvolve";
   static constexpr int root_return = ARK_ROOT_RETURN;
@@ -120,10 +120,10 @@ struct ArkodeLibrary {
   static constexpr auto error_weights = ARKStepGetErrWeights;
   static constexpr auto local_errors = ARKStepGetEstLocalErrors;
   static constexpr auto flag_name = ARKStepGetReturnFlagName;
-  /// ARKStepReInit does not forget that the last call ended at a root (6.4.1): where a guard is exactly zero, a later
-  /// one then takes that for the same root, and gives up.
+  /// ARKStepReInit does not forget that the last call ended at a root (6.4.1). If a guard is exactly zero, a later call
+  /// takes it for the same root and gives up.
   static constexpr bool remembers_roots = true;
-  static constexpr int order = 5;  // the highest with which its interpolation keeps up
+  static constexpr int order = 5;  // highest order that the interpolation keeps
 
   static int reinit(void* memory, OdeMethod method, ARKRhsFn rates, realtype xi, N_Vector y) {
     const bool is_implicit = method == OdeMethod::arkode_dirk;
@@ -180,7 +180,7 @@ class SundialsOde final : public Integrator {
     const double begin = end_;
     N_VScale(1.0, y_.get(), begin_state_.get());
     if (carried_) carried_->keep();
-    // Trials of a step that came to nothing may have led to where other solutions are found.
+    // Trials of a failed step may leave a first guess from which other solutions are found.
     begin_guess_.assign(form_.guess().begin(), form_.guess().end());
     const auto restart = [&](double step) {
       N_VScale(1.0, begin_state_.get(), y_.get());
@@ -225,7 +225,7 @@ class SundialsOde final : public Integrator {
   [[nodiscard]] std::span<const std::size_t> fired() const noexcept override { return roots_.fired; }
 
   void dense_output(double xi, std::span<double> y) override {
-    // An interpolation asks for rates beside the curve, which may be where there are none.
+    // Interpolation may evaluate rates beside the curve, where they may not exist: the end of the step needs none.
     const bool is_at_end = xi == end_;
     if (!is_at_end) check("GetDky", Library::derivative(memory_.get(), xi, 0, errors_.get()));
     form_.complete(xi, view((is_at_end ? y_ : errors_).get()), y);
@@ -274,17 +274,17 @@ class SundialsOde final : public Integrator {
     if (!linear_) return;
     check("SetLinearSolver", Library::set_linear_solver(memory_.get(), linear_.get(), matrix_.get()));
     check("SetJacFn", Library::set_jacobian(memory_.get(), jacobian));
-    // With one from a singular start Newton's corrections are far too small, and taken for convergence.
+    // With a Jacobian from a singular start, Newton's corrections are far too small and are taken for convergence.
     check("SetJacEvalFrequency", Library::set_jacobian_frequency(memory_.get(), 1));
   }
 
-  /// Begins at xi with the state in y_. @param step  the first to be tried; 0: the library's choice
+  /// Restarts the library at xi with the state in y_. @param step  first step to try; 0: the library's choice
   void start(double xi, double step) {
     past_ = statistics();  // counters are reset with the state
     for_jacobian_ = 0;
     end_ = xi;
     follows_root_ = follows_root_ || !roots_.fired.empty();
-    N_VConst(0.0, rates_.get());  // those of another mode say nothing of this one
+    N_VConst(0.0, rates_.get());  // rates of an earlier mode do not count
     find_first_rates();
     check("ReInit", Library::reinit(memory_.get(), method_, right_hand_side, xi, y_.get()));
     check("SetInitStep", Library::set_first_step(memory_.get(), step));
@@ -300,8 +300,8 @@ class SundialsOde final : public Integrator {
     check("SetNoInactiveRootWarn", Library::set_no_inactive_root_warning(memory_.get()));
   }
 
-  /// Where a contact is as shallow as the step coordinate is rounded, its rates where it is made are nothing beside
-  /// those that the next number has.
+  /// Evaluates the rates one round-off of xi after the start. If a contact is as shallow as that round-off, its rates
+  /// at first touch are negligible beside those at the next representable xi.
   void find_first_rates() {
     start_end_ = std::min(1.0, end_ * (1.0 + k_rounding_of_xi));
     first_guess_.assign(form_.guess().begin(), form_.guess().end());
@@ -315,10 +315,10 @@ class SundialsOde final : public Integrator {
     form_.guess(first_guess_);
   }
 
-  /// Ends the step where a guard has crossed.
+  /// Moves the end of the step to where a guard crosses zero.
   void find_root(double begin) {
     const auto values_at = [this](double xi, std::span<double> values) {
-      // An interpolation asks for rates beside the curve, where there may be none.
+      // Interpolation may evaluate rates beside the curve, where they may not exist.
       pending_.forget();
       const int flag = Library::derivative(memory_.get(), xi, 0, errors_.get());
       if (flag < 0 && pending_.domain_end()) throw *pending_.domain_end();
@@ -358,7 +358,7 @@ class SundialsOde final : public Integrator {
     });
   }
 
-  /// From a step's end to where completing takes it: there the next step begins.
+  /// Moves the end of a step to the completed state, where the next step begins.
   static int corrected(realtype xi, N_Vector y, void* self) noexcept {
     auto& ode = *static_cast<SundialsOde*>(self);
     return ode.pending_.guard([&] {
@@ -367,12 +367,12 @@ class SundialsOde final : public Integrator {
     });
   }
 
-  /// A method that remembers its steps goes on from them until the state is off by what is tolerated of the curve: in a
-  /// smaller correction its next steps would see nothing but a jump, and the rounding in it. Where what is tolerated of
-  /// a step is rounding of the step coordinate, it goes on for as many of them as elsewhere: errors of first steps are
-  /// all that it would get otherwise, and along the surface no correction takes them away. Adams' method gains
-  /// nothing by that where it is slow, at the stiff ends of segments of a yield surface.
-  /// @return whether begin_state_ is a new beginning
+  /// Corrects the beginning of a step of BDF, once its error exceeds the tolerance of the curve: to a multistep method,
+  /// any smaller correction is just a jump, with round-off in it. Where the round-off of xi is the tolerance of a step,
+  /// the limit is the same multiple of that tolerance as elsewhere. Otherwise the method would restart all the time,
+  /// with the errors of first steps, which no correction removes along a yield surface. Adams' method is not corrected:
+  /// it gains nothing where it is slow, at the stiff ends of segments on a yield surface.
+  /// @return true if begin_state_ has changed
   bool corrects_begin() {
     if (method_ != OdeMethod::cvode_bdf || !form_.has_corrections()) return false;
     N_VScale(1.0, begin_state_.get(), errors_.get());
@@ -393,7 +393,8 @@ class SundialsOde final : public Integrator {
     return monograin::change_of_rates(before, after, [this](std::size_t i) { return form_.unknown(i).scale; });
   }
 
-  /// That increment, or the opposite one where the rates change less.
+  /// Evaluates the rates with the opposite increment and keeps the side on which they change less.
+  /// @return the increment of that side
   template <class Shift>
   double take_gentler_side(double increment, std::span<const double> before, N_Vector shifted, Shift&& shift) const {
     const double change = change_of_rates(before, view(shifted));
@@ -406,9 +407,10 @@ class SundialsOde final : public Integrator {
     return increment;
   }
 
-  /// d(rates)/dy by difference quotients, as the library's own, but for increments that leave the domain, and those of
-  /// an unknown that begins at zero: rates of the work may rise there like a root, and what is rounding beside the step
-  /// shows no slope that the step could use.
+  /// d(rates)/dy by difference quotients, like the library's own except for two kinds of increments: those that leave
+  /// the domain are shortened, and that of an unknown that begins at zero is as large as its change in the step, up to
+  /// its tolerance. Rates of the work may rise there like a square root, and a much smaller increment shows no slope
+  /// that the step could use.
   static int jacobian(realtype xi, N_Vector y, N_Vector dy, SUNMatrix matrix, void* self, N_Vector shifted, N_Vector,
                       N_Vector) noexcept {
     constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
@@ -448,8 +450,9 @@ class SundialsOde final : public Integrator {
     return 0;
   }
 
-  /// One over what is tolerated. Where a contact lasts hardly longer than the step coordinate is rounded, so are the
-  /// errors of its stages: tolerances finer than that no step would keep.
+  /// One over the tolerance of each unknown, which is no finer than the round-off of xi times the rates. If a contact
+  /// lasts hardly longer than that round-off, the errors of stages are of its size, and no step would keep finer
+  /// tolerances.
   static int error_weights(N_Vector y, N_Vector weights, void* self) noexcept {
     const auto& ode = *static_cast<SundialsOde*>(self);
     const bool is_first = ode.end_ <= ode.start_end_;
@@ -462,8 +465,9 @@ class SundialsOde final : public Integrator {
     return 0;
   }
 
-  /// A segment begins with the state that it was given: completed anew, from a guess that first trials have left
-  /// farther on, what only touches would be as deep as rounding, and past a condition that is met within that.
+  /// Evaluates the guards. At the beginning of the segment they get the state that begin() was given. Completing it
+  /// anew, from a guess that first trials have left farther on, would give an idle contact an overlap of round-off, and
+  /// pass a condition that is met within it.
   static int guards(realtype xi, N_Vector y, realtype* values, void* self) noexcept {
     auto& ode = *static_cast<SundialsOde*>(self);
     ++ode.roots_.evaluations;
@@ -482,7 +486,7 @@ class SundialsOde final : public Integrator {
   [[nodiscard]] SolverError failure(Failure why, const std::string& library) {
     double step = 0.0;
     std::string details;
-    // Weights and errors are there once a step has been tried.
+    // Weights and errors exist once a step has been tried.
     if (memory_ && Library::current_step(memory_.get(), &step) == 0 &&
         Library::error_weights(memory_.get(), weights_.get()) == 0 &&
         Library::local_errors(memory_.get(), errors_.get()) == 0) {
@@ -498,21 +502,21 @@ class SundialsOde final : public Integrator {
   ExplicitForm form_;
   Pending pending_;
   RootList roots_;
-  bool follows_root_ = false;  ///< an earlier call ended at one, since memory_ is new
+  bool follows_root_ = false;  ///< a call since memory_ was made has ended at a root
   double end_ = 0.0;
   double segment_begin_ = 0.0;
-  std::vector<double> first_state_;  ///< of this segment, complete
-  std::vector<double> begin_guess_;  ///< of complete states, where the last step began
+  std::vector<double> first_state_;  ///< complete state where this segment begins
+  std::vector<double> begin_guess_;  ///< first guess of complete states where the last step began
   std::vector<double> first_guess_;
-  double start_end_ = 0.0;    ///< a rounding beyond where the library has begun
-  double last_length_ = 0.0;  ///< of a step of this segment
+  double start_end_ = 0.0;    ///< one round-off of xi beyond where the library has started
+  double last_length_ = 0.0;  ///< length of the last step of this segment; 0 before the first
   Statistics past_;
   long for_jacobian_ = 0;  ///< evaluations of rates that the library does not count
 
   sundials::Context context_;  // first in, last out
   NVector y_, begin_state_, atol_, weights_, errors_;
-  NVector rates_;        // the last ones that were asked for
-  NVector first_rates_;  // up to start_end_
+  NVector rates_;        // last rates that the library has asked for
+  NVector first_rates_;  // rates at start_end_
   Matrix matrix_;
   LinearSolver linear_;
   NonlinearSolver nonlinear_;
@@ -539,8 +543,8 @@ void SundialsOde<ArkodeLibrary>::create() {
   check("ARKStepSetOrder", ARKStepSetOrder(memory_.get(), ArkodeLibrary::order));
   if (form_.has_corrections()) {
     check("ARKStepSetPostprocessStepFn", ARKStepSetPostprocessStepFn(memory_.get(), corrected));
-    // Rates where a step has been corrected have that correction in them, times what may be a great stiffness: what
-    // lies within a step is interpolated without them.
+    // Rates at a corrected state contain the correction times a stiffness that may be large: the implicit method
+    // interpolates without rates.
     const int type = is_implicit ? ARK_INTERP_LAGRANGE : ARK_INTERP_HERMITE;
     check("ARKStepSetInterpolantType", ARKStepSetInterpolantType(memory_.get(), type));
   }

@@ -11,11 +11,11 @@ using sundials_boundary::view;
 
 namespace {
 
-// Tolerances of s over those of a step: its errors are no larger then than those of the curves, and steps are about as
-// long as without it.
+// Tolerances of s over those of a step. The errors of s are then no larger than those of the curves, and steps are
+// about as long as without s.
 constexpr double k_coarser = 10.0;
 
-/// The handles as the library's functions want them.
+/// Raw handles for the library's functions.
 std::vector<N_Vector> handles(const std::vector<NVector>& vectors) {
   std::vector<N_Vector> result;
   for (const NVector& vector : vectors) result.push_back(vector.get());
@@ -42,7 +42,8 @@ SundialsSensitivities<Library>::SundialsSensitivities(ForwardSensitivities& of, 
   }
 }
 
-/// The rounding of both residuals stands in their difference: no corrector takes it away.
+/// Raises the tolerances of s above the round-off in the difference of the neighbours' residuals, which no corrector
+/// removes.
 template <class Library>
 void SundialsSensitivities<Library>::raise_tolerances(std::size_t number) {
   const auto atol = view(atol_[number].get());

@@ -1,4 +1,4 @@
-/// Forward sensitivities inside of CVODES and IDAS: their vectors, and the libraries' calls for them.
+/// Forward sensitivities inside CVODES and IDAS: their vectors, and the libraries' functions for them.
 #pragma once
 
 #include <cvodes/cvodes.h>
@@ -13,7 +13,7 @@
 
 namespace monograin {
 
-/// CVODES under names that both libraries share.
+/// CVODES' functions under the names that SundialsSensitivities uses.
 struct CvodesCalls {
   using Function = CVSensRhs1Fn;
   static constexpr bool is_implicit = false;
@@ -30,7 +30,7 @@ struct CvodesCalls {
   static int reinit(void* memory, N_Vector* s, N_Vector*) { return CVodeSensReInit(memory, CV_SIMULTANEOUS, s); }
 };
 
-/// IDAS, whose sensitivities have rates beside them.
+/// IDAS' functions under the names that SundialsSensitivities uses. Its sensitivities have rates, too.
 struct IdasCalls {
   using Function = IDASensResFn;
   static constexpr bool is_implicit = true;
@@ -47,31 +47,34 @@ struct IdasCalls {
   static int reinit(void* memory, N_Vector* s, N_Vector* ds) { return IDASensReInit(memory, IDA_STAGGERED, s, ds); }
 };
 
-/// They have their share in the control of errors, each over the magnitude of its number. CVODES corrects them together
-/// with the state of a step (the simultaneous method): the staggered one takes 1.2 times as many evaluations. IDAS
-/// corrects them after the state: its simultaneous method does not test their errors (6.4.1).
+/// Sensitivities of a run that CVODES or IDAS integrates. They take part in the error test, each over the magnitude of
+/// its number. CVODES corrects them together with the state (the simultaneous method): the staggered method takes 1.2
+/// times as many evaluations. IDAS corrects them after the state: its simultaneous method does not test their errors
+/// (6.4.1).
 template <class Library>
 class SundialsSensitivities {
  public:
-  /// @param rtol, atol       of the integrated unknowns in a step
-  /// @param has_fixed_point  the state is corrected by fixed-point iteration, not by Newton's
+  /// @param rtol, atol       tolerances of the integrated unknowns in a step
+  /// @param has_fixed_point  the state is corrected by fixed-point iteration instead of Newton's method
   SundialsSensitivities(ForwardSensitivities& of, double rtol, N_Vector atol, bool has_fixed_point, SUNContext context);
 
-  /// Takes s from where the drive stands. @param y  complete
+  /// Takes s from the ForwardSensitivities where a segment begins. @param y  complete state there
   void take_state(double xi, std::span<const double> y);
-  /// Keeps s where a step begins.
+  /// Keeps s, and its rates, where a step begins.
   void keep();
+  /// Goes back to the kept s.
   void restore();
-  /// Takes what a complete state says of s, and their rates, where a step begins: what restore() goes back to.
+  /// Replaces the kept s and its rates by those that follow from a complete state. No effect with CVODES.
   void correct_begin(double xi, std::span<const double> y);
 
   // Each returns the library's flag.
 
-  /// Begins at the present s. @param function  gives their rates or residuals, with the integrator's user data
+  /// Starts the library at the present s.
+  /// @param function  gives rates or residuals of s; the library passes it the integrator's user data
   int start(void* memory, typename Library::Function function);
-  /// s at the end of the last step.
+  /// Takes s at the end of the last step from the library.
   int get(void* memory, double end);
-  /// Hands s anywhere in the last step to the drive.
+  /// Stores s at any xi in the last step in the ForwardSensitivities.
   int put(void* memory, double xi, double end);
 
   [[nodiscard]] ForwardSensitivities& of() noexcept { return of_; }
@@ -86,10 +89,10 @@ class SundialsSensitivities {
   SUNContext context_;
   double rtol_;
   Vectors s_, begin_, between_, atol_;
-  Vectors ds_, begin_rates_;  ///< of an implicit form
+  Vectors ds_, begin_rates_;  ///< used by the implicit form only
   std::vector<double> magnitudes_;
   sundials_boundary::NonlinearSolver nonlinear_;
-  void* initialized_ = nullptr;  ///< the memory that knows of them
+  void* initialized_ = nullptr;  ///< the library's memory in which the sensitivities have been set up
 };
 
 }  // namespace monograin

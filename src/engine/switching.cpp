@@ -1,5 +1,5 @@
-// Segments in which nothing has a history are solved for; the others are integrated by an explicit method as long as
-// it does, then by an implicit one.
+// Segments whose states depend on no history are solved for directly. The others are integrated by an explicit method
+// until it takes too many steps, then by an implicit one.
 
 #include <array>
 
@@ -8,7 +8,8 @@
 namespace monograin {
 namespace {
 
-// Steps of one segment after which the equations are taken for stiff: some ten times as many as smooth ones need.
+// Explicit steps of one segment after which the equations are taken for stiff: some ten times as many as smooth
+// equations need.
 constexpr long k_most_explicit_steps = 400;
 
 class Switching final : public Integrator {
@@ -28,7 +29,7 @@ class Switching final : public Integrator {
 
   Advance advance() override {
     if (active_ == explicit_.get() && explicit_->statistics().steps - segment_steps_ > k_most_explicit_steps) {
-      // Stiff here is stiff later: there is no way back.
+      // Equations that are stiff once are taken for stiff in all later segments.
       explicit_->dense_output(end_, state_);
       active_ = integrating_ = implicit_.get();
       active_->begin(end_, state_);
@@ -64,7 +65,7 @@ class Switching final : public Integrator {
   std::unique_ptr<Integrator> direct_;
   std::unique_ptr<Integrator> explicit_;
   std::unique_ptr<Integrator> implicit_;
-  Integrator* integrating_ = explicit_.get();  ///< segments that are not solved for
+  Integrator* integrating_ = explicit_.get();  ///< integrator of segments that are not solved for
   Integrator* active_ = explicit_.get();
   std::vector<double> state_;
   double end_ = 0.0;

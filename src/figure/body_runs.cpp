@@ -22,11 +22,11 @@ namespace fs = std::filesystem;
 struct Shown {
   std::string_view column;
   std::string_view label;  ///< gnuplot's enhanced text
-  std::string_view scale;  ///< key of the header whose number it is divided by; empty: none
-  bool has_sign = false;   ///< recorded with tension positive, and drawn as the abscissa begins
+  std::string_view scale;  ///< key of the header's number by which the column is divided; empty: none
+  bool has_sign = false;   ///< recorded with tension positive; drawn with the sign that lets the abscissa grow at first
 };
 
-/// What is drawn of a model, chosen by the column of its abscissa.
+/// Abscissa and panels of a model's figure, chosen by the column of the abscissa.
 struct BodyFigure {
   Shown x;
   std::span<const Shown> panels;
@@ -68,7 +68,9 @@ double sign_of(const Table& history, const Shown& x) {
   return moved != values.end() && *moved < values.front() ? -1.0 : 1.0;
 }
 
-/// A column over its scale; @param history  whose header has that; @param sign  of what has one
+/// Values of a column over its scale.
+/// @param history  table whose header has the scale
+/// @param sign     factor for columns that have a sign
 std::vector<double> values_of(const Table& table, const Table& history, const Shown& shown, double sign) {
   std::vector<double> values = table.column(shown.column);
   const double scale = shown.scale.empty() ? 1.0 : history.header_number(shown.scale).value_or(1.0);
@@ -76,7 +78,7 @@ std::vector<double> values_of(const Table& table, const Table& history, const Sh
   return values;
 }
 
-/// Circles at the events, one series for each name; those of the program are where the curves turn.
+/// Adds circles at the events, one series for each name. Events of the program are left out: the curves turn there.
 void append_events(const Table& events, const Table& history, const BodyFigure& figure, double sign, std::size_t panel,
                    std::vector<ChartSeries>& series) {
   const auto name = events.find("event");
@@ -125,7 +127,7 @@ std::optional<Chart> body_chart(const std::vector<fs::path>& runs) {
     std::error_code ignored;
     const Table marks = fs::exists(folder / "events.csv", ignored) ? read_table(folder / "events.csv") : Table{};
     for (std::size_t panel = 0; panel < figure->panels.size(); ++panel) {
-      // One run needs no name, and is drawn while its folder has none yet.
+      // A single run needs no name; its figure is drawn while the folder does not have its final name yet.
       chart.panels[panel].series.push_back({.legend = runs.size() > 1 ? verbatim_text(folder.filename().string()) : "",
                                             .style = ChartSeries::Style::phases,
                                             .colour = {},

@@ -21,7 +21,7 @@ namespace {
 using Style = ChartSeries::Style;
 
 constexpr double k_line_width = 1.8;
-constexpr unsigned k_shade = 0xECECECu;  ///< beyond the range of a law
+constexpr unsigned k_shade = 0xECECECu;  ///< colour beyond the range of a law
 constexpr double k_text_line_cm = 0.38;
 constexpr double k_text_margin_cm = 0.5;
 constexpr double k_a4 = 1.4142;  ///< height over width
@@ -57,7 +57,7 @@ void append_band(std::string& text, const ChartBand& band, std::size_t panel, st
     text += '\n';
   };
   for (std::size_t row = 0; row < band.x.size(); ++row) {
-    // Where x turns back a new piece begins: gnuplot leaves out what one piece covers twice.
+    // A new piece begins where x turns back: gnuplot does not fill an area that one piece covers twice.
     if (row > 1 && (band.x[row] - band.x[row - 1]) * (band.x[row - 1] - band.x[row - 2]) < 0.0) {
       text += '\n';
       append_row(row - 1);
@@ -66,7 +66,7 @@ void append_band(std::string& text, const ChartBand& band, std::size_t panel, st
   }
 }
 
-/// The lower end of the axis that the errors of a series go down to; nothing where it has no floor.
+/// Floor of a series of errors: the lower end of a logarithmic axis; nothing for other series and axes.
 [[nodiscard]] std::optional<double> floor_of(const ChartSeries& series, const Axis& y) {
   return series.is_error && y.is_logarithmic ? std::optional(y.range.lowest) : std::nullopt;
 }
@@ -115,7 +115,7 @@ void append_series(std::string& text, const ChartSeries& series, std::size_t pan
   }
 }
 
-/// The axis over all values on it.
+/// Axis whose range covers the given values.
 [[nodiscard]] Axis axis_over(const ChartAxis& wanted, std::vector<double> values) {
   std::erase_if(values, [&](double value) { return !std::isfinite(value) || (wanted.is_logarithmic && value <= 0.0); });
   if (values.empty()) values = wanted.is_logarithmic ? std::vector{1.0, 10.0} : std::vector{0.0, 1.0};
@@ -227,14 +227,14 @@ class Looks {
  private:
   struct Lines {
     std::string legend;
-    std::optional<std::size_t> colour;  ///< its place; that of the series, else one that is given here
+    std::optional<std::size_t> colour;  ///< number of the colour: that of the series, else one from give_colours()
   };
 
   [[nodiscard]] static std::string floor_style(unsigned colour) {
     return fmt::format("with points pt 11 ps 0.6 lc rgb '#{:06X}'", colour);
   }
 
-  /// gnuplot's dash type; that of the phases is the one of loading.
+  /// gnuplot's dash type of a style; for phases, that of loading.
   [[nodiscard]] static std::string_view dash_of(Style style) {
     switch (style) {
       case Style::dashed:
@@ -260,7 +260,7 @@ class Looks {
     if (!found->colour) found->colour = series.colour;
   }
 
-  /// Each legend without a colour takes the next that no other has.
+  /// Gives each legend without a colour the next one that no other legend has.
   void give_colours() {
     std::size_t next = 0;
     const auto is_taken = [this](std::size_t place) {
@@ -293,7 +293,7 @@ class Looks {
     if (!entry.title.empty() && std::ranges::none_of(row.entries, is_same)) row.entries.push_back(std::move(entry));
   }
 
-  /// Only where a line turns back, so that its dashes ask for an explanation.
+  /// Row that explains the dashes of loading, unloading and reloading; empty if no line turns back.
   [[nodiscard]] static LegendRow path_row(const Chart& chart) {
     LegendRow row{"Path", {}};
     for (const Phase phase : k_phases) {
@@ -348,7 +348,7 @@ class Looks {
   return plots.empty() ? std::string("plot NaN\n") : fmt::format("plot {}\n", fmt::join(plots, ", \\\n  "));
 }
 
-/// Shades what lies outside a range of the abscissa.
+/// gnuplot commands that shade the panel outside of a range of the abscissa.
 [[nodiscard]] std::string shades_of(const std::optional<ChartRange>& range, const Axis& x) {
   std::string text = "unset object\n";
   if (!range) return text;
@@ -369,7 +369,7 @@ class Looks {
   return lines.empty() ? 0.0 : k_text_margin_cm + k_text_line_cm * static_cast<double>(lines.size());
 }
 
-/// Moves panels and legend up, and the top of the page beyond them.
+/// Makes room for the lines of text above the panels and below the legend.
 void make_room(const Chart& chart, Layout& layout) {
   if (chart.head.empty() && chart.foot.empty()) return;
   const double needed = layout.height + height_of(chart.head) + height_of(chart.foot);

@@ -1,4 +1,4 @@
-/// Charts of any curves: panels with lines, points and filled areas, put together by whoever has the numbers.
+/// Charts of any curves: panels with lines, points and filled areas.
 #pragma once
 
 #include <array>
@@ -23,13 +23,13 @@ struct ChartSeries {
     points,
   };
 
-  std::string legend;  ///< gnuplot's enhanced text; series with the same one share its line there; empty: none
+  std::string legend;  ///< gnuplot's enhanced text; series with the same text share a line of the legend; empty: none
   Style style = Style::phases;
-  std::optional<std::size_t> colour;  ///< place among the colours, from 0; absent: the next that no other legend has
+  std::optional<std::size_t> colour;  ///< number of a colour, from 0; absent: the next one that no other legend has
   std::vector<double> x;
   std::vector<double> y;
-  /// y is an error, which may be zero. On a logarithmic ordinate the line does not go below the axis' lower end, and
-  /// has marks where its values are there or below.
+  /// y is an error, which may be zero. On a logarithmic ordinate, values at or below the lower end of the axis are
+  /// drawn at that end, with marks.
   bool is_error = false;
 };
 
@@ -53,23 +53,23 @@ struct ChartBand {
 
 struct ChartAxis {
   std::string label;               ///< gnuplot's enhanced text
-  std::optional<double> lowest{};  ///< absent: what the values take
+  std::optional<double> lowest{};  ///< absent: chosen from the values
   std::optional<double> highest{};
   bool is_logarithmic = false;       ///< only positive values are shown then
-  std::vector<std::string> names{};  ///< gnuplot's enhanced texts at 1, 2, ... in the place of numbers
+  std::vector<std::string> names{};  ///< gnuplot's enhanced texts at 1, 2, ... in place of numbers
 };
 
-/// The part of the abscissa to which a law was fitted, or in which it holds: what lies outside is shaded.
+/// The part of the abscissa to which a law was fitted, or in which it holds. The rest of the panel is shaded.
 struct ChartRange {
-  std::optional<double> from{};  ///< absent: it has no lower end
-  std::optional<double> to{};    ///< absent: it has no upper end
-  std::string legend{};          ///< of the shade
+  std::optional<double> from{};  ///< absent: no lower end
+  std::optional<double> to{};    ///< absent: no upper end
+  std::string legend{};          ///< legend of the shade
 };
 
 struct ChartPanel {
   ChartAxis x;
   ChartAxis y;
-  std::string note{};  ///< what tells this panel from the others, above it
+  std::string note{};  ///< text above the panel that distinguishes it from the others
   std::optional<ChartRange> range{};
   std::vector<ChartArea> areas{};
   std::vector<ChartBand> bands{};
@@ -78,13 +78,13 @@ struct ChartPanel {
 
 struct Chart {
   std::vector<ChartPanel> panels;         ///< at least one; arranged two by two
-  std::string area_heading = "Area";      ///< of areas and ranges in the legend; bands have their own
-  std::vector<std::string> head{};        ///< lines of text above the panels, in letters of one width
+  std::string area_heading = "Area";      ///< heading of areas and ranges in the legend; bands have their own
+  std::vector<std::string> head{};        ///< lines of text above the panels, in a monospaced font
   std::vector<std::string> foot{};        ///< lines below the legend; with any text the page is as tall as an A4 page
   std::vector<std::string> references{};  ///< of the models behind it, for the data file; a line may come twice
 };
 
-/// What the figure's data file holds. @param source  where the figure comes from, for the file's first line
+/// Text of the figure's data file. @param source  origin of the figure, for the file's first line
 [[nodiscard]] std::string chart_data(const Chart& chart, const std::string& source);
 
 /// The gnuplot script of the chart. A panel without any value on an axis is drawn from 0 to 1.
@@ -95,7 +95,7 @@ struct Chart {
 /// Draws a chart, with its script and its data beside it. @throws FigureError
 void draw_chart(const Chart& chart, const std::string& source, const std::filesystem::path& output);
 
-/// Draws a chart that its results can do without. @return why there is none; empty: there is one
+/// Draws a chart, without throwing if this fails. @return why it failed; empty if the chart was drawn
 [[nodiscard]] std::string try_to_draw(const Chart& chart, const std::string& source,
                                       const std::filesystem::path& output);
 

@@ -39,7 +39,7 @@ void append_number(std::string& text, double value) {
   if (std::isfinite(value)) {
     fmt::format_to(std::back_inserter(text), "{:.10g}", value);
   } else {
-    text += "NaN";  // a gap: the line breaks here
+    text += "NaN";  // a gap in the line
   }
 }
 

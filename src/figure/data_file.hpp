@@ -1,4 +1,4 @@
-/// The numbers behind a figure, as gnuplot reads them.
+/// The data file of a figure of runs, in gnuplot's format.
 #pragma once
 
 #include <span>
@@ -21,21 +21,22 @@ namespace monograin::figure {
   return static_cast<std::size_t>(quantity) + 2;
 }
 
-/// Whether an event is marked in the panel of a quantity: those of contacts on the contact's curves, those of the
-/// particle on its apparent radius.
+/// True if an event is marked in the panel of a quantity. Events of contacts are marked on the contact's curves, events
+/// of the particle on its apparent radius.
 [[nodiscard]] bool is_marked(const EventMark& mark, Quantity quantity);
 
 /// The names of all events, in the order in which they first happen.
 [[nodiscard]] std::vector<std::string> event_names(const std::vector<RunCurves>& runs);
 
-/// Whether a phase has any way to draw.
+/// True if any row is in a phase, so that there is a line to draw.
 [[nodiscard]] bool has_phase(const std::vector<Phase>& phases, Phase phase);
 
-/// A number as a cell of the file; where it is undefined the line breaks.
+/// Appends a number as a cell of the file; an undefined number makes a gap in the line.
 void append_number(std::string& text, double value);
 
-/// The lines of a block with the rows in one phase: each piece begins where the phase before it ended, after a blank
-/// line.
+/// Appends the rows in one phase to a block. Each piece begins, after a blank line, with the row at which the phase
+/// before it ended.
+/// @param append_row  appends the row with a given index
 template <class AppendRow>
 void append_phase(std::string& text, const std::vector<Phase>& phases, Phase phase, AppendRow append_row) {
   for (std::size_t row = 1; row < phases.size(); ++row) {
@@ -49,10 +50,11 @@ void append_phase(std::string& text, const std::vector<Phase>& phases, Phase pha
   }
 }
 
-/// Comment lines with references, each once.
+/// Comment lines with references, each of them once.
 [[nodiscard]] std::string reference_lines(std::span<const std::string> references);
 
-/// All blocks: each is headed by its name, ends with two blank lines, and is cut by single ones where the line breaks.
+/// All blocks of the file. Each one begins with its name and ends with two blank lines; a single blank line makes a gap
+/// in the line.
 [[nodiscard]] std::string data_text(const std::vector<RunCurves>& runs, const Scales& scales);
 
 [[nodiscard]] std::string_view phase_name(Phase phase) noexcept;

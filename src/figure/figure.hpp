@@ -13,15 +13,15 @@ class FigureError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Draws force, pressure, contact area and apparent radius of one or more runs against displacement; of a model without
-/// walls, its own quantities against the one that it is driven through.
+/// Draws force, pressure, contact area and apparent radius of one or more runs against displacement. For a model
+/// without walls, draws its own quantities against the quantity through which it is driven.
 ///
-/// Loading is drawn solid, unloading dashed, reloading dotted; events are open circles named in a legend. Beside the
-/// figure its gnuplot script and data file are kept, from which it can be drawn again.
+/// Loading is drawn solid, unloading dashed, reloading dotted; events are open circles named in a legend. The gnuplot
+/// script and the data file are kept beside the figure, which can be drawn again from them.
 ///
-/// The displacement is that of the driven contact class: the first one that moves. Quantities are dimensionless where
-/// every run gives its radius and modulus (p/Y where it gives a yield stress), else in SI. What no run has is left
-/// out: the panel of the apparent radius for a law at fixed radius, pressure and area of a contact that is never made.
+/// The displacement is that of the driven contact class: the first one that moves. Quantities are dimensionless if
+/// every run gives its radius and modulus (p/Y if it gives a yield stress), else in SI. Quantities that no run has are
+/// left out: the apparent radius of a law at fixed radius, pressure and area of a contact that is never made.
 ///
 /// @param runs    folders with history.csv and events.csv (or paths of history.csv files)
 /// @param output  file to write; the extension picks the format: .svg, .pdf, .png

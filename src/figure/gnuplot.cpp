@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* k_drawing = "drawing";
 constexpr const char* k_log = "log";
 
-/// A hidden folder beside a figure in which gnuplot works. It is gone when the work is done, however it ends.
+/// A hidden folder beside a figure in which gnuplot works. The destructor removes it.
 class Workplace {
  public:
   explicit Workplace(const fs::path& parent) {
@@ -55,8 +55,8 @@ class Workplace {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Runs a program in a folder, with nothing to read and all that it says in a file.
-/// @return its exit code; -1 where it did not come to its end
+/// Runs a program in a folder, without input and with all output in a log file.
+/// @return its exit code; -1 if it did not end by itself
 [[nodiscard]] int run_program(const fs::path& program, std::vector<std::string> words, const fs::path& folder,
                               const fs::path& log) {
   words.insert(words.begin(), program.string());
@@ -84,8 +84,8 @@ class Workplace {
 
 [[nodiscard]] bool is_control(char c) noexcept { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; }
 
-/// A gnuplot string that can hold any byte. What means something in it is given by its number: gnuplot runs what it
-/// finds between backquotes, even there.
+/// A gnuplot string in double quotes, which can hold any byte. Special characters are given by their numbers: gnuplot
+/// runs text between backquotes as a command, even in such a string.
 [[nodiscard]] std::string in_double_quotes(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -136,7 +136,7 @@ void run_gnuplot(const fs::path& gnuplot, const fs::path& script, const fs::path
 }
 
 std::string plain_text(std::string_view text) {
-  // The round trip replaces bytes that are not UTF-8: no reader opens an SVG that holds them.
+  // The round trip replaces bytes that are not UTF-8: no viewer opens an SVG file with such bytes.
   using Json = nlohmann::json;
   std::string result = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
   std::ranges::replace_if(result, is_control, ' ');

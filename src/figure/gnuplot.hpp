@@ -1,4 +1,4 @@
-/// The gnuplot program: found on the PATH, run on a script without a shell, and watched for what it leaves behind.
+/// The gnuplot program: how it is found on the PATH and run on a script, without a shell.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@ namespace monograin::figure {
 /// The gnuplot program on the PATH. @throws FigureError that says how to install it
 [[nodiscard]] std::filesystem::path find_gnuplot();
 
-/// Runs a script in its own folder and puts the figure in its place once it is whole. The script writes its figure to
-/// the file the gnuplot variable `output` names. Neither name is ever read as a command.
+/// Runs a script in its own folder, and moves the figure to its final name once it is complete. The script writes its
+/// figure to the file that the gnuplot variable `output` names. gnuplot never reads either name as a command.
 ///
 /// @param figure  in the script's folder
-/// @throws FigureError naming the script, with what gnuplot said, when no figure comes out; an older figure stays
+/// @throws FigureError with the script's name and gnuplot's messages if there is no figure; an older figure stays
 void run_gnuplot(const std::filesystem::path& gnuplot, const std::filesystem::path& script,
                  const std::filesystem::path& figure);
 

@@ -13,7 +13,7 @@
 namespace monograin::figure {
 namespace {
 
-/// Okabe and Ito's colours, which survive colour-blindness and grey print.
+/// Okabe and Ito's colours, which differ for the colour-blind and in grey print.
 constexpr std::array k_colours{0x0072B2u, 0xD55E00u, 0x009E73u, 0xCC79A7u, 0xE69F00u, 0x56B4E9u};
 
 constexpr double k_first_width = 2.0;
@@ -27,11 +27,12 @@ constexpr double k_paler = 0.5;
 /// Open points (circle, square, triangles, diamond, pentagon), then crosses, and only then filled points.
 constexpr std::array k_points{6, 4, 8, 10, 12, 14, 2, 1, 3, 7, 5, 9, 11, 13, 15};
 
-// What text takes in the legend, on the generous side: the font is the reader's.
+// Room for text in the legend, on the generous side: the font depends on the reader's machine.
 constexpr double k_character_cm = 0.19;
 constexpr double k_sample_cm = 1.6;
 constexpr double k_heading_cm = 1.7;
 
+/// A colour mixed with a share of grey.
 /// @param grey  0 for black, 255 for white
 [[nodiscard]] unsigned mixed_with(double grey, unsigned colour, double share) noexcept {
   unsigned mixed = 0;

@@ -17,13 +17,14 @@ struct Stroke {
   double width;
 };
 
-/// gnuplot's line of a phase: loading solid, unloading dashed, reloading as dots wider than the line, which show on top
-/// of dashes where both lines take the same path.
+/// gnuplot's line of a phase: loading solid, unloading dashed, reloading as dots wider than the line, which remain
+/// visible on top of dashes where both lines coincide.
 [[nodiscard]] std::string phase_line(const Stroke& stroke, Phase phase);
 /// gnuplot's line with a dash type of its own.
 [[nodiscard]] std::string dashed_line(const Stroke& stroke, std::string_view dash);
 
-/// Gives each contact class its colour and each run its shade and width; runs with one class in all differ in colour.
+/// Gives each contact class a colour, and each run a shade and a width. If all runs together have one class, runs
+/// differ in colour.
 class Palette {
  public:
   explicit Palette(const std::vector<RunCurves>& runs);
@@ -31,7 +32,7 @@ class Palette {
   [[nodiscard]] const std::vector<std::string>& contacts() const noexcept { return contacts_; }
 
   [[nodiscard]] Stroke contact_line(std::size_t run, std::string_view contact) const;
-  /// The line of what belongs to the particle.
+  /// Line of a quantity of the particle.
   [[nodiscard]] Stroke particle_line(std::size_t run) const;
 
  private:
@@ -42,33 +43,34 @@ class Palette {
   std::vector<std::string> contacts_;
 };
 
-/// Colours (0xRRGGBB) and gnuplot's point types, told apart in colour-blindness and in grey print. After six places the
-/// colours come again darker, after twelve paler; after eighteen, and the points after fifteen, they repeat.
+/// Colour (0xRRGGBB) with a number; colours differ for the colour-blind and in grey print. After six numbers the
+/// colours come again darker, after twelve paler; after eighteen they repeat.
 [[nodiscard]] unsigned colour_of(std::size_t place) noexcept;
+/// gnuplot's point type with a number; the types repeat after fifteen.
 [[nodiscard]] int point_of(std::size_t place) noexcept;
-/// For what has no colour of its own.
+/// Colour of items without a colour of their own.
 inline constexpr unsigned k_neutral_colour = 0x303030u;
 
-/// gnuplot's style of the marks of the event with that place in the legend.
+/// gnuplot's style of the marks of an event. @param place  number of the event in the legend
 [[nodiscard]] std::string event_points(std::size_t place);
 
 struct LegendRow {
   struct Entry {
     std::string title;  ///< gnuplot's enhanced text
-    std::string style;  ///< from `with` on
+    std::string style;  ///< gnuplot's plot style, beginning with `with`
   };
   std::string heading;
   std::vector<Entry> entries;
 };
 
-/// Characters that an enhanced text shows.
+/// Number of visible characters of an enhanced text.
 [[nodiscard]] std::size_t shown_length(std::string_view enhanced);
 
-/// Contacts, runs, phases and events; a row that would tell nothing is left out.
+/// Rows for contacts, runs, phases and events; rows that distinguish nothing are left out.
 [[nodiscard]] std::vector<LegendRow> legend_rows(const std::vector<RunCurves>& runs, const Palette& palette);
-/// Lines the rows take in a legend of that width.
+/// Number of lines that rows take in a legend of a given width.
 [[nodiscard]] std::size_t line_count(const std::vector<LegendRow>& rows, double width_cm);
-/// gnuplot commands that draw the legend in its place.
+/// gnuplot commands that draw the legend in its box of the layout.
 [[nodiscard]] std::string legend_text(const std::vector<LegendRow>& rows, const Layout& layout);
 
 }  // namespace monograin::figure

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr double k_x_label_cm = 1.05;  // from an axis down to the middle of its label
 constexpr std::string_view k_minus = "\u2212";
-// A logarithmic axis of more decades has no label at some of them: side by side, labels run into each other sooner than
-// one above the other.
+// A logarithmic axis with more decades leaves out some labels. Labels side by side run into each other sooner than
+// labels above each other.
 constexpr double k_most_decades_along = 5.0;
 constexpr double k_most_decades_up = 6.0;
 
@@ -57,7 +57,7 @@ void make_folder(const fs::path& folder) {
   return {};
 }
 
-/// Of numbers that are too long for the room beside an axis, the power of ten that they share; 0 for others.
+/// Power of ten by which the numbers of an axis are divided if they are too long for the room beside it; else 0.
 [[nodiscard]] int shared_power(const AxisRange& range) {
   constexpr int k_least = -3;
   constexpr int k_most = 4;
@@ -66,7 +66,7 @@ void make_folder(const fs::path& folder) {
   return power < k_least || power > k_most ? power : 0;
 }
 
-/// Tics with the numbers that a power of ten leaves.
+/// Tics with numbers that are divided by a power of ten.
 [[nodiscard]] std::string tics_over_power(const AxisRange& range, int power) {
   std::string tics;
   const double first = std::ceil(range.lowest / range.tic_step) + 0.0;  // no zero with a sign
@@ -106,7 +106,7 @@ void make_folder(const fs::path& folder) {
                      power == 0 ? fmt::format("{:.6g}", tic_step) : tics_over_power(axis.range, power));
 }
 
-/// Says at the end of an axis what its numbers are to be multiplied by.
+/// Text at the end of an axis that gives the power of ten of its numbers.
 [[nodiscard]] std::string power_text(int label, const Axis& axis, const std::string& place) {
   const int power = axis.is_logarithmic ? 0 : shared_power(axis.range);
   if (power == 0) return fmt::format("unset label {}\n", label);
@@ -157,8 +157,8 @@ std::string frame_text(const Layout& layout, std::size_t place, const Axis& x, c
 
 std::string label_string(std::string_view enhanced) {
   constexpr std::string_view k_before_a_minus = " ({=";
-  // gnuplot asks SVG renderers to keep the blanks of a text that has two in a row: else some drop those beside a change
-  // of font. These two are one point high.
+  // gnuplot asks SVG renderers to keep the blanks of a text only if it has two in a row; otherwise some renderers drop
+  // blanks beside a change of font. These two blanks are one point high.
   constexpr std::string_view k_keep_blanks = "{/=1   }";
   std::string text;
   char before = ' ';

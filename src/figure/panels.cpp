@@ -21,15 +21,15 @@ constexpr double k_legend_margin_cm = 0.3;
 
 constexpr double k_most_intervals = 5.0;  ///< between tics
 constexpr double k_air = 0.03;            ///< share of the range left free beyond the curves
-constexpr double k_flat = 0.9e-3;     ///< change relative to the value that is not worth an axis; its tics are 0.001
-constexpr double k_flat_steps = 1.2;  ///< distance of the ends from a flat curve in tics
+constexpr double k_flat = 0.9e-3;     ///< change, over the value, below which a curve is drawn flat; its tics are 0.001
+constexpr double k_flat_steps = 1.2;  ///< distance of the ends of the axis from a flat curve, in tics
 
-/// The next of 1, 2, 5, 10, 20, ... (or 0.5, 0.2, ...) that is not smaller; 1 for zero.
+/// The smallest of ..., 0.2, 0.5, 1, 2, 5, 10, 20, ... that is not below `least`; 1 for zero.
 [[nodiscard]] double round_step(double least) {
   if (!(least > 0.0)) return 1.0;
   const double decade = std::pow(10.0, std::floor(std::log10(least)));
   for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * decade >= least * (1.0 - 1e-9)) return factor * decade;  // 0.4/5 may be a rounding above 0.08
+    if (factor * decade >= least * (1.0 - 1e-9)) return factor * decade;  // 0.4/5 may exceed 0.08 by round-off
   }
   return 10.0 * decade;
 }

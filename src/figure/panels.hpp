@@ -1,4 +1,4 @@
-/// Which panels a figure has, in which scale, and where they are.
+/// Panels of a figure: scales, layout and ranges of axes.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace monograin::figure {
 
-/// Makes quantities dimensionless where every run gives what that takes; otherwise they stay in SI.
+/// Makes quantities dimensionless if every run gives the radius, modulus or yield stress for that; else keeps SI.
 class Scales {
  public:
   explicit Scales(const std::vector<RunCurves>& runs);
@@ -35,10 +35,10 @@ struct Box {
 
 struct Panel {
   Box axes;             ///< the plot area within the axes
-  double y_label_left;  ///< middle of the y axis' label: the same for panels above each other, whatever their tics
+  double y_label_left;  ///< middle of the y axis' label: equal for panels above each other, whatever their tics
 };
 
-/// Panels two by two; the legend takes the free place beside a third panel, else a strip below all.
+/// Panels two by two, in centimetres; the legend takes the free cell beside a third panel, else a strip below all.
 struct Layout {
   double width, height;
   std::vector<Panel> panels;
@@ -50,16 +50,17 @@ inline constexpr double k_legend_line_cm = 0.5;
 inline constexpr double k_legend_strip_cm = 16.4;
 inline constexpr double k_legend_cell_cm = 7.9;
 
-/// @param lines_in_strip, lines_in_cell  lines the legend takes in either width
+/// Arranges panels and legend on the page.
+/// @param lines_in_strip, lines_in_cell  number of lines of the legend at either width
 [[nodiscard]] Layout arrange(std::size_t panel_count, std::size_t lines_in_strip, std::size_t lines_in_cell);
 
-/// What an axis shows.
+/// Range of an axis and distance of its tics.
 struct AxisRange {
   double lowest, highest, tic_step;
 };
 
-/// The range of an axis with some values on it: a little air except at zero, and a round distance of tics with at most
-/// five intervals. Less than a thousandth of the values is no change to look at: it is drawn flat, not blown up.
+/// Range of an axis for some values: with a small margin except at zero, and a round distance of tics with at most five
+/// intervals. A change of less than a thousandth of the values is drawn flat instead of being enlarged.
 /// @param values  at least one, all finite
 [[nodiscard]] AxisRange axis_range(const std::vector<double>& values);
 

@@ -18,16 +18,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double k_round_off = 1e-12;  ///< share of a displacement by which none is passed
+constexpr double k_round_off = 1e-12;  ///< relative excess over a displacement that does not pass it
 constexpr std::string_view k_displacement = ".displacement";
 
-/// A scale to divide by.
+/// A positive number of the header, by which values are divided.
 [[nodiscard]] std::optional<double> header_scale(const Table& table, std::string_view key) {
   const auto value = table.header_number(key);
   return value && *value > 0.0 ? value : std::nullopt;
 }
 
-/// The names in front of ".displacement", in the order of the columns.
+/// Names of the contact classes, which precede ".displacement", in the order of the columns.
 [[nodiscard]] std::vector<std::string> contact_classes(const Table& history) {
   std::vector<std::string> names;
   for (const Column& column : history.columns()) {
@@ -37,7 +37,7 @@ constexpr std::string_view k_displacement = ".displacement";
   return names;
 }
 
-/// The first class that moves; the first of all where none does.
+/// The first class that moves; the first of all if none does.
 [[nodiscard]] std::string driven_class(const Table& history, const std::vector<std::string>& classes) {
   const auto moves = [&](const std::string& name) {
     const auto displacement = history.column(name + std::string(k_displacement));
@@ -84,10 +84,10 @@ class StateReader {
   return curve;
 }
 
-/// The program's own corners are where the curves turn; marking them too would say nothing new.
+/// True for a corner of the program, which needs no mark: the curves turn there.
 [[nodiscard]] bool is_of_program(std::string_view event) { return event == "step-end" || event == "until-met"; }
 
-/// An event of two classes ("axial/lateral") is marked on both.
+/// Contact classes of an event; an event of two classes ("axial/lateral") is marked on both.
 [[nodiscard]] std::vector<std::string> classes_of_event(std::string_view cell) {
   std::vector<std::string> names;
   for (std::size_t slash = cell.find('/'); slash != std::string_view::npos; slash = cell.find('/')) {
@@ -118,7 +118,7 @@ class StateReader {
 }
 
 [[nodiscard]] std::vector<EventMark> read_events(const fs::path& file, const std::string& driven) {
-  std::error_code ignored;  // what cannot be looked at cannot be read either, and is reported then
+  std::error_code ignored;  // a file whose status is not available cannot be read either; read_table() reports that
   if (!fs::exists(file, ignored) && !ignored) return {};
   const Table events = read_table(file);
   try {

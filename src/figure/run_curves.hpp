@@ -1,4 +1,4 @@
-/// What a figure shows of a recorded run: contact states along the path of the driven class, cut into phases.
+/// Curves of a recorded run for a figure: contact states along the path of the driven class, with their phases.
 #pragma once
 
 #include <array>
@@ -13,26 +13,26 @@
 
 namespace monograin::figure {
 
-/// A table of a run. @throws FigureError where it cannot be read
+/// Reads a table of a run. @throws FigureError if it cannot be read
 [[nodiscard]] Table read_table(const std::filesystem::path& file);
 
-/// References of the model that a history's header names, a line each; none where it names no model of this version.
+/// References of the model that a history's header names, one per line; none if this version has no such model.
 [[nodiscard]] std::vector<std::string> references_of(const Table& history);
 
 enum class Quantity { force, pressure, area, apparent_radius };
 inline constexpr std::array k_quantities{Quantity::force, Quantity::pressure, Quantity::area,
                                          Quantity::apparent_radius};
 
-/// Where the driven class moves: beyond its largest displacement so far, back, or forth again below it.
+/// Motion of the driven class: beyond its largest displacement so far, back, or forth again below that displacement.
 enum class Phase { loading, unloading, reloading };
 inline constexpr std::array k_phases{Phase::loading, Phase::unloading, Phase::reloading};
 
-/// The phase of the way that ends at each displacement; a hold goes on with the phase it interrupts.
+/// Phase of the path that ends at each displacement; a hold continues the phase that it interrupts.
 [[nodiscard]] std::vector<Phase> phases_along(std::span<const double> displacements);
 
-/// One contact at one instant, in SI; nan where the run does not have the quantity.
+/// One contact at one instant, in SI; nan for quantities that the run does not have.
 struct ContactState {
-  double displacement;                             ///< of the driven class, whichever contact this is
+  double displacement;                             ///< of the driven class, also for contacts of other classes
   std::array<double, k_quantities.size()> values;  ///< in the order of Quantity; area is pi a^2
 
   [[nodiscard]] double operator[](Quantity quantity) const { return values[static_cast<std::size_t>(quantity)]; }
@@ -41,9 +41,9 @@ struct ContactState {
 struct ContactCurve {
   std::string name;                  ///< contact class
   std::vector<ContactState> states;  ///< one for each row of the history
-  bool is_ever_made = false;         ///< bears a force at some time
+  bool is_ever_made = false;         ///< the contact bears a force at some time
 
-  /// Whether there is anything to draw of it.
+  /// True if the contact has any value of the quantity.
   [[nodiscard]] bool has(Quantity quantity) const;
 };
 
@@ -56,12 +56,12 @@ struct EventMark {
 
 struct RunCurves {
   std::string name;
-  std::vector<std::string> references;   ///< of its model, a line each
+  std::vector<std::string> references;   ///< of its model, one per line
   std::optional<double> radius;          ///< R0 [m]
   std::optional<double> youngs_modulus;  ///< E [Pa]
   std::optional<double> yield_stress;    ///< Y [Pa]
   std::vector<ContactCurve> contacts;    ///< in the order of the history's columns; at least one
-  std::vector<Phase> phases;             ///< of the way that ends at each row
+  std::vector<Phase> phases;             ///< of the path that ends at each row
   std::vector<EventMark> events;         ///< of contacts, material and particle; not of the program
 
   [[nodiscard]] bool has(Quantity quantity) const;
@@ -71,7 +71,7 @@ struct RunCurves {
 /// @throws FigureError when a file cannot be read, or does not hold a curve of a contact
 [[nodiscard]] RunCurves read_run(const std::filesystem::path& run);
 
-/// Reads several runs; those that would bear the same name bear their paths instead.
+/// Reads several runs; runs of the same name are named by their paths.
 [[nodiscard]] std::vector<RunCurves> read_runs(const std::vector<std::filesystem::path>& runs);
 
 }  // namespace monograin::figure

@@ -13,7 +13,7 @@
 namespace monograin::figure {
 namespace {
 
-/// The curve of a contact in a panel. One that never bears a force has neither pressure nor area to show.
+/// True if a panel shows the curve of a contact. A contact that never bears a force has neither pressure nor area.
 [[nodiscard]] bool is_shown(const ContactCurve& contact, Quantity quantity) {
   const bool needs_contact = quantity == Quantity::pressure || quantity == Quantity::area;
   return contact.has(quantity) && (contact.is_ever_made || !needs_contact);
@@ -31,7 +31,7 @@ void append_curves(std::vector<std::string>& plots, const std::vector<RunCurves>
         plots.push_back(fmt::format("data index {} using 1:{} {}", gnuplot_string(block_name(k, contact.name, phase)),
                                     data_column(quantity), phase_line(line, phase)));
       }
-      if (is_of_particle) break;  // the same beside every contact
+      if (is_of_particle) break;  // the apparent radius is the same with every contact
     }
   }
 }
@@ -49,7 +49,7 @@ void append_events(std::vector<std::string>& plots, const std::vector<RunCurves>
   }
 }
 
-/// What a panel has on its axes: all values of the curves that are shown.
+/// All values of the curves that a panel shows, for its axes.
 struct PanelValues {
   std::vector<double> x;
   std::vector<double> y;
@@ -77,7 +77,7 @@ struct PanelValues {
   return fmt::format("plot {}\n", fmt::join(plots, ", \\\n  "));
 }
 
-/// What at least one contact has to show.
+/// Quantities that at least one contact has.
 [[nodiscard]] std::vector<Quantity> shown_quantities(const std::vector<RunCurves>& runs) {
   std::vector<Quantity> shown;
   for (const Quantity quantity : k_quantities) {

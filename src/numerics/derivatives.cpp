@@ -7,7 +7,7 @@
 namespace monograin {
 namespace {
 
-constexpr double k_jump_share = 0.7;  // of a central difference: a smaller one to one side has no jump
+constexpr double k_jump_share = 0.7;  // a one-sided difference below this share of the central one has no jump
 
 }  // namespace
 

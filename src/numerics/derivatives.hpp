@@ -10,16 +10,17 @@
 
 namespace monograin {
 
-/// The step of central differences in a parameter: truncation, the square of it, and rounding, noise over it, are alike
-/// where the residuals change on the scale of the parameter, or of its range where that is less.
+/// Step of central differences in the k-th parameter, in its unit. Truncation (proportional to the square of the step)
+/// and round-off (the noise over the step) are similar if the residuals change on the scale of the parameter, or of its
+/// range if that is smaller.
 [[nodiscard]] double difference_step(const LeastSquaresProblem& problem, std::span<const double> parameters,
                                      std::size_t k);
 
 /// Derivatives of the residuals with respect to the parameters [residual / parameter], by central differences,
-/// one-sided at a bound and where one side has no residuals. Where a residual jumps within the step, the difference is
-/// that to the side without the jump: a law may jump, as a force does at yield, and a fit end where the jump stands at
-/// a datum.
-/// @return one row for each residual; zeros where there are no residuals at the parameters
+/// one-sided at a bound and where one side has no residuals. If a residual jumps within the step, the difference is
+/// taken on the side without the jump. A law may jump, as a force does at yield, and a fit may end with the jump at a
+/// datum.
+/// @return one row for each residual; zeros if there are no residuals at the parameters
 [[nodiscard]] Eigen::MatrixXd residual_jacobian(const LeastSquaresProblem& problem, std::span<const double> parameters);
 
 }  // namespace monograin

@@ -13,10 +13,10 @@
 namespace monograin {
 namespace {
 
-constexpr double k_quadratic = 0.2;   // a rise this much off the predicted one makes an interval a tenth too wide
-constexpr double k_kink_share = 0.7;  // of the difference at two standard errors, that a kink shows at one
-constexpr double k_less = 1e-3;       // of a standard error's rise, by which a better place is better
-constexpr double k_end = 3e-3;        // of the half-width, to which it is found
+constexpr double k_quadratic = 0.2;   // relative error of the predicted rise that makes an interval a tenth too wide
+constexpr double k_kink_share = 0.7;  // a kink shows this share of the difference at two standard errors already at one
+constexpr double k_less = 1e-3;       // fall of the cost at a better point, over the rise at one standard error
+constexpr double k_end = 3e-3;        // accuracy of an interval's end, over the half-width
 constexpr int k_most_steps = 12;
 constexpr std::size_t k_least_rows = 20;
 
@@ -28,11 +28,11 @@ class Profile {
 
   struct Point {
     double value = 0.0;
-    double rise = 0.0;  ///< of the cost, over that of one standard error; infinite without residuals
+    double rise = 0.0;  ///< rise of the cost over that at one standard error; infinite without residuals
     std::vector<double> parameters;
   };
 
-  /// The cost with all parameters given.
+  /// Rise of the cost at given parameters, over that at one standard error; infinite without residuals.
   [[nodiscard]] double rise_at(std::span<const double> parameters) {
     ++evaluations_;
     if (!problem_.residuals(parameters, residuals_)) return std::numeric_limits<double>::infinity();
@@ -41,7 +41,7 @@ class Profile {
     return rise;
   }
 
-  /// The least cost with the k-th parameter held. @param start  all parameters; the k-th is the value
+  /// Minimises the cost with the k-th parameter held. @param start  all parameters, with the held value of the k-th
   [[nodiscard]] Point refit(std::size_t k, std::vector<double> start) {
     if (start.size() == 1) return {start[0], rise_at(start), start};
     const double value = start[k];
@@ -62,7 +62,7 @@ class Profile {
     return {value, rise, std::move(all)};
   }
 
-  /// The parameters t standard errors along the k-th, the others as the covariance has them.
+  /// Parameters at t standard errors along the k-th; the others follow from the covariance.
   [[nodiscard]] std::vector<double> predicted(std::size_t k, double t) const {
     std::vector<double> parameters = solution_.parameters;
     const auto column = static_cast<Eigen::Index>(k);
@@ -82,8 +82,8 @@ class Profile {
     return true;
   }
 
-  /// Where the profile has risen by t^2, on one side.
-  /// @param is_cut  whether that is the bound
+  /// End of the k-th interval on one side: value at which the profile has risen by t^2.
+  /// @param is_cut  receives whether the search ended at the bound, or gave up, before that rise
   [[nodiscard]] double end(std::size_t k, bool is_above, bool& is_cut) {
     const double best = solution_.parameters[k];
     const double bound = is_above ? problem_.parameters[k].upper : problem_.parameters[k].lower;
@@ -105,7 +105,7 @@ class Profile {
       step *= std::clamp(1.1 * t / std::sqrt(std::max(outer.rise, 0.01)), 1.2, 4.0);
     }
     is_cut = false;
-    // The root of the rise is nearly linear in the value.
+    // The square root of the rise is nearly linear in the value.
     const auto excess = [t](const Point& point) { return std::sqrt(std::max(point.rise, 0.0)) - t; };
     double low = excess(inner);
     double high = std::min(excess(outer), k_far * t);
@@ -120,7 +120,7 @@ class Profile {
       if (found < 0.0) {
         inner = point;
         low = found;
-        high *= 0.5;  // the end that stays counts less (Illinois)
+        high *= 0.5;  // the end that stays has less weight (the Illinois method)
       } else {
         outer = point;
         high = std::min(found, k_far * t);
@@ -134,8 +134,8 @@ class Profile {
   [[nodiscard]] long evaluations() const noexcept { return evaluations_; }
 
  private:
-  static constexpr double k_first_step = 0.01;  // of the range
-  static constexpr double k_far = 3.0;          // widths
+  static constexpr double k_first_step = 0.01;  // over the range
+  static constexpr double k_far = 3.0;          // largest excess over t that guides the search
 
   [[nodiscard]] double rise_of(double cost) const { return (cost - solution_.cost) / uncertainty_.rise; }
 
@@ -145,7 +145,7 @@ class Profile {
     if (!better_ || cost < better_->cost) better_ = LocalMinimum{std::move(parameters), cost};
   }
 
-  /// A start for a further value: the others change on in proportion.
+  /// Start of the fit for another value of the k-th parameter: the others are extrapolated in proportion.
   [[nodiscard]] std::vector<double> moved(const Point& from, std::size_t k, double value) const {
     std::vector<double> start = from.parameters;
     const double done = from.value - solution_.parameters[k];
@@ -183,9 +183,9 @@ CostCheck check_cost(const LeastSquaresProblem& problem, const LeastSquaresSolut
     bool differs = false;
     for (const double t : {2.0, -2.0, 1.0, -1.0}) {
       const std::vector<double> place = profile.predicted(k, t);
-      if (!profile.is_inside(place)) continue;  // the profile is that of a bound there, and cut
+      if (!profile.is_inside(place)) continue;  // a bound cuts the profile there
       if (std::abs(t) == 1.0 && !differs) continue;
-      // At a kink the covariance knows the cost in its own direction, and a better one lies beside it.
+      // At a kink, refitting finds a lower cost beside the direction of the covariance.
       const double ratio = profile.refit(k, place).rise / (t * t);
       const double difference = std::abs(ratio - 1.0);
       differs = differs || difference > k_quadratic;
@@ -250,7 +250,7 @@ Bootstrap bootstrap(const LeastSquaresProblem& problem, const LeastSquaresSoluti
   const double inflation = std::sqrt(static_cast<double>(n) / static_cast<double>(n - p));
   const auto data = std::span(solution.residuals).first(n);
   const double mean = std::accumulate(data.begin(), data.end(), 0.0) / static_cast<double>(n);
-  std::vector<double> change(solution.residuals.size());  // of the residuals, by other data
+  std::vector<double> change(solution.residuals.size());  // change of the residuals by resampled data
   LeastSquaresProblem again = problem;
   again.progress = {};
   again.residuals = [&problem, &change](std::span<const double> parameters, std::span<double> residuals) {

@@ -1,4 +1,4 @@
-/// Intervals of fitted parameters where the covariance may not tell them: a check of the sum of squares, profile
+/// Intervals of fitted parameters if the covariance may not describe them: a check of the sum of squares, profile
 /// likelihood, bootstrap.
 #pragma once
 
@@ -15,44 +15,46 @@ namespace monograin {
 /// How the cost near a minimum differs from the parabola that the covariance predicts.
 enum class CostShape {
   quadratic,
-  curved,  ///< more, the farther from the minimum: smooth, but the problem is not linear there
-  kinked   ///< from the minimum on: derivatives jump near it
+  curved,  ///< the difference grows with the distance: the cost is smooth, but the problem is not linear there
+  kinked   ///< the difference begins at the minimum: derivatives jump near it
 };
 
+/// Result of check_cost().
 struct CostCheck {
   CostShape shape = CostShape::quadratic;
-  std::size_t parameter = 0;           ///< along which it differs most
-  double ratio = 1.0;                  ///< there: rise of the cost over the predicted rise
-  double at = 0.0;                     ///< there: distance from the minimum in standard errors
-  std::optional<LocalMinimum> better;  ///< a place of less cost that was found
+  std::size_t parameter = 0;           ///< parameter along which the cost differs most from the parabola
+  double ratio = 1.0;                  ///< rise of the cost over the predicted rise, at that largest difference
+  double at = 0.0;                     ///< distance of that difference from the minimum, in standard errors
+  std::optional<LocalMinimum> better;  ///< a point of lower cost, if one was found
   long evaluations = 0;
 };
 
-/// Compares the cost with its parabola two standard errors to both sides along each parameter, the others refitted, and
-/// where they differ, also one standard error away.
+/// Compares the cost, minimised over the other parameters, with its parabola: two standard errors to both sides along
+/// each parameter and, where cost and parabola differ, also at one standard error.
 [[nodiscard]] CostCheck check_cost(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
                                    const Uncertainty& uncertainty);
 
 struct Interval {
   double lower = 0.0;
   double upper = 0.0;
-  bool is_cut_below = false;  ///< the bound of the search is its end
+  bool is_cut_below = false;  ///< the lower end is the bound of the search, not a rise of the cost
   bool is_cut_above = false;
 };
 
 struct ProfileIntervals {
-  std::vector<Interval> intervals;     ///< nan where s is
-  std::optional<LocalMinimum> better;  ///< a place of less cost that was found; the intervals are not finished then
+  std::vector<Interval> intervals;     ///< nan if the standard deviation s is nan or the parameter is not determined
+  std::optional<LocalMinimum> better;  ///< a point of lower cost, if one was found; the intervals are then unfinished
   long evaluations = 0;
 };
 
-/// Where the cost, minimised over the other parameters, has risen t^2 times as far as the covariance says of one
-/// standard error (Venzon and Moolgavkar (1988)), to 0.3 % of the width.
+/// Profile-likelihood intervals (Venzon and Moolgavkar (1988)). At their ends the cost, minimised over the other
+/// parameters, has risen by t^2 times the rise that the covariance predicts for one standard error. Accurate to 0.3 %
+/// of the half-width.
 [[nodiscard]] ProfileIntervals profile_intervals(const LeastSquaresProblem& problem,
                                                  const LeastSquaresSolution& solution, const Uncertainty& uncertainty);
 
 struct Bootstrap {
-  std::vector<std::vector<double>> samples;  ///< parameters of each
+  std::vector<std::vector<double>> samples;  ///< fitted parameters, for each sample
   long evaluations = 0;
 
   /// Percentile interval of a parameter.
@@ -60,26 +62,28 @@ struct Bootstrap {
   [[nodiscard]] double standard_error(std::size_t parameter) const;
 };
 
-/// Fits again to residuals drawn with replacement in blocks that follow one another (Kuensch (1989)), larger by
-/// sqrt(n/(n - p)); residuals of priors are drawn from their distribution.
-/// @param n      residuals of data, the first ones; more than parameters
-/// @param block  rows that stay together: 1 where residuals are independent
+/// Repeats a fit with resampled data: residuals drawn with replacement in blocks of consecutive ones (Kuensch (1989)),
+/// enlarged by sqrt(n/(n - p)). Residuals of priors are drawn from their distribution.
+/// @param n      number of residuals of data, which come first; larger than the number of parameters
+/// @param block  length of the blocks; 1 if residuals are independent
+/// @param count  number of samples
 [[nodiscard]] Bootstrap bootstrap(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
                                   const Uncertainty& uncertainty, std::size_t n, std::size_t block, std::size_t count,
                                   std::uint64_t seed);
 
-/// Whether residuals, in their order, are independent.
+/// Tests whether residuals, in their order, are independent.
 struct ResidualTests {
   std::size_t runs = 0;        ///< stretches of one sign
-  double expected_runs = 0.0;  ///< of independent residuals
-  double runs_p = 1.0;         ///< two-sided probability of as many or as few (Wald and Wolfowitz (1940))
-  double correlation = 0.0;    ///< of neighbours
-  double correlation_p = 1.0;  ///< two-sided, of a correlation as large
+  double expected_runs = 0.0;  ///< expected number of runs of independent residuals
+  double runs_p = 1.0;         ///< two-sided probability of as many or as few runs (Wald and Wolfowitz (1940))
+  double correlation = 0.0;    ///< correlation of neighbouring residuals
+  double correlation_p = 1.0;  ///< two-sided probability of a correlation as large
 
   [[nodiscard]] bool are_independent() const noexcept { return runs_p >= 0.01 && correlation_p >= 0.01; }
 };
 
-/// @return nothing for fewer than 20 residuals, or where all have one sign
+/// Tests residuals for independence.
+/// @return nothing for fewer than 20 residuals, or if all have one sign
 [[nodiscard]] std::optional<ResidualTests> test_residuals(std::span<const double> residuals);
 
 }  // namespace monograin

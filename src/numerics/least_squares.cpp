@@ -20,35 +20,35 @@
 namespace monograin {
 namespace {
 
-constexpr std::array<std::size_t, 4> k_scanned{31, 63, 127, 255};  // places, by the number of parameters
-constexpr std::size_t k_most_passed_over = 4;  // times as many places are drawn where some have no residuals
+constexpr std::array<std::size_t, 4> k_scanned{31, 63, 127, 255};  // drawn points, by the number of parameters
+constexpr std::size_t k_most_passed_over = 4;  // draws over wanted points, if some points have no residuals
 constexpr std::size_t k_slices = 9;            // of each axis
-constexpr std::size_t k_most_in_vain = 10;     // polishes one after another that find nothing better
-constexpr double k_better = 0.99;              // cost over the best one's
-constexpr std::size_t k_polished_to_end = 3;   // places
-constexpr double k_worth_an_end = 4.0;         // cost over the best one's: those above it are not polished to the end
-constexpr double k_same_place = 1e-3;          // distance in z below which two places are one
-constexpr double k_near_place = 0.02;          // within which short polishes have come to the same minimum
-constexpr double k_near_bound = 1e-4;          // share of the range
+constexpr std::size_t k_most_in_vain = 10;     // polishes in a row that may find nothing better
+constexpr double k_better = 0.99;              // cost of a better minimum over that of the best so far
+constexpr std::size_t k_polished_to_end = 3;   // minima that are polished to the end
+constexpr double k_worth_an_end = 4.0;         // their largest cost over that of the best minimum
+constexpr double k_same_place = 1e-3;          // distance in z below which two points are the same
+constexpr double k_near_place = 0.02;          // distance in z below which short polishes approach the same minimum
+constexpr double k_near_bound = 1e-4;          // distance from a bound, over the range
 constexpr double k_end_of_z = std::numbers::pi / 2.0;
-constexpr double k_scan_share = 0.5;  // of the whole search, for its progress
+constexpr double k_scan_share = 0.5;  // share of the draw in the progress of the search
 constexpr double k_no_cost = std::numeric_limits<double>::infinity();
 constexpr int k_refinements = 3;
-constexpr double k_small_step = 1e-4;         // of z: a longer one shows that there is no minimum near
+constexpr double k_small_step = 1e-4;         // a Gauss-Newton step longer than this in z shows that no minimum is near
 constexpr double k_rounding_of_cost = 1e-12;  // over the cost
-constexpr double k_kinked = 1e-5;             // of the cost, which a smooth minimum does not promise to lose
+constexpr double k_kinked = 1e-5;             // fall of the cost predicted at a smooth minimum, over the cost, at most
 constexpr double k_margin_of_noise = 1e3;
-constexpr double k_longest_step = 0.1;       // of z
+constexpr double k_longest_step = 0.1;       // side of the first simplex, in z
 constexpr std::size_t k_simplex_steps = 60;  // for each parameter
-constexpr double k_simplex_end = 1e-3;       // of a standard error
-constexpr double k_exact_step = 1e-12;       // of z
-constexpr double k_nearly_exact = 1e-9;      // of z: where Gauss-Newton steps take over
+constexpr double k_simplex_end = 1e-3;       // size of the last simplex, in standard errors
+constexpr double k_exact_step = 1e-12;       // Gauss-Newton step in z that ends the search
+constexpr double k_nearly_exact = 1e-9;      // step in z below which a minimum has converged
 
-/// How far a polish goes, and how it finds derivatives.
+/// Accuracy of a polish, and kind of its derivatives.
 struct Effort {
   std::size_t iterations;
   double step;      ///< estimated distance to the minimum, in z, that ends it
-  bool is_central;  ///< central differences in every iteration; otherwise one-sided ones, brought up to date by secants
+  bool is_central;  ///< central differences in every iteration; otherwise one-sided ones, updated by secants
 };
 constexpr Effort k_short_polish{7, 1e-3, false};  // enough to leave a slice for its valley
 constexpr Effort k_rough_polish{20, 1e-5, false};
@@ -66,7 +66,7 @@ using Solver = std::unique_ptr<gsl_multifit_nlinear_workspace, Deleter<gsl_multi
 using Simplex = std::unique_ptr<gsl_multimin_fminimizer, Deleter<gsl_multimin_fminimizer_free>>;
 using Sequence = std::unique_ptr<gsl_qrng, Deleter<gsl_qrng_free>>;
 
-/// GSL ends the process at an error unless it is told not to.
+/// Keeps GSL from ending the process at an error.
 class QuietGsl {
  public:
   QuietGsl() : before_(gsl_set_error_handler_off()) {}
@@ -91,7 +91,7 @@ double share_of(const BoundedParameter& bounds, double parameter) {
 
 double share_at(double z) { return std::sin(z) * std::sin(z); }
 
-/// Where z has a value of its own: sin(z)^2 takes every share twice in each period.
+/// The value in [0, pi/2] with the same share: sin(z)^2 takes every share twice in each period.
 double folded(double z) {
   return z >= 0.0 && z <= k_end_of_z ? z : std::asin(std::sqrt(std::clamp(share_at(z), 0.0, 1.0)));
 }
@@ -126,7 +126,7 @@ class Search {
     return finish(std::move(ends));
   }
 
-  /// From places that are near minima already.
+  /// Searches from points that are already near minima.
   std::optional<LeastSquaresSolution> run_from(std::span<const LocalMinimum> minima, Accuracy accuracy) {
     std::vector<Place> starts;
     for (const LocalMinimum& minimum : minima) {
@@ -142,7 +142,7 @@ class Search {
   }
 
  private:
-  /// A point of the box, with what is known of it.
+  /// A point of the box.
   struct Place {
     std::vector<double> z;
     double cost = k_no_cost;
@@ -153,8 +153,9 @@ class Search {
     return parameter_at(problem_.parameters[k], share_at(place.z[k]));
   }
 
-  /// Residuals with the loss put in, so that the sum of their squares is the cost: sign(r) sqrt(rho(r)). A polish may
-  /// begin where the last one has ended.
+  /// Computes sign(r) sqrt(rho(r)) of the residuals r, so that the sum of squares is the cost. Results at the last
+  /// point are kept, because a polish may begin where the last one has ended.
+  /// @return false if there are no residuals
   bool evaluate(const Place& place, std::span<double> values) {
     for (std::size_t k = 0; k < size_; ++k) parameters_[k] = parameter(place, k);
     if (parameters_ == last_parameters_) {
@@ -194,7 +195,8 @@ class Search {
     return place;
   }
 
-  /// Places of a Sobol sequence in z, so that they crowd at the bounds; those with residuals, the best first.
+  /// Draws points of a Sobol sequence in z, which are densest at the bounds. Returns those with residuals, the best
+  /// first.
   [[nodiscard]] std::vector<Place> scan() {
     const std::size_t wanted = k_scanned[std::min(size_, k_scanned.size()) - 1];
     const Sequence sequence(gsl_qrng_alloc(gsl_qrng_sobol, static_cast<unsigned>(size_)));
@@ -212,7 +214,7 @@ class Search {
     return places;
   }
 
-  /// The best place of each slice of the box, in which one parameter has about one value.
+  /// The best point of each slice of the box, in which one parameter is nearly constant.
   [[nodiscard]] std::vector<Place> starts_of(const std::vector<Place>& scanned) const {
     std::vector<Place> starts;
     for (std::size_t k = 0; k < size_; ++k) {
@@ -270,7 +272,7 @@ class Search {
     return std::ranges::any_of(places, [&](const Place& place) { return is_near(place.z, z, k_near_place); });
   }
 
-  /// The best first, and of those that are one place only the best.
+  /// Sorts points by cost, and keeps only the best of points that are near each other.
   static void keep_distinct(std::vector<Place>& places, double distance) {
     std::ranges::stable_sort(places, {}, &Place::cost);
     std::vector<Place> distinct;
@@ -281,16 +283,16 @@ class Search {
     places = std::move(distinct);
   }
 
-  /// What the callbacks of one polish share.
+  /// Data of one polish, shared by its callbacks.
   struct Polish {
     Search& search;
     Place trial;
     bool is_central = false;
-    std::vector<double> z;         ///< where residuals were found last
-    std::vector<double> values;    ///< they
-    std::vector<double> before_z;  ///< where derivatives were found last
-    std::vector<double> before;
-    std::size_t trials = 0;  ///< since then
+    std::vector<double> z;         ///< point of the last residuals
+    std::vector<double> values;    ///< the last residuals
+    std::vector<double> before_z;  ///< point of the last derivatives
+    std::vector<double> before;    ///< residuals at that point
+    std::size_t trials = 0;        ///< residuals evaluated since then
     Eigen::MatrixXd jacobian;
     std::vector<double> above;
     std::vector<double> below;
@@ -318,7 +320,7 @@ class Search {
       polish.put(z);
       polish.z = polish.trial.z;
       ++polish.trials;
-      // A place without residuals is worse than any other: the step to it is refused, and a shorter one tried.
+      // A point without residuals gets a higher cost than any other: GSL then refuses the step and tries a shorter one.
       if (!polish.search.evaluate(polish.trial, polish.values)) {
         const double count = static_cast<double>(polish.values.size());
         std::ranges::fill(polish.values, 2.0 * std::sqrt(polish.search.worst_cost_ / count) + 1.0);
@@ -327,12 +329,12 @@ class Search {
     });
   }
 
-  /// Derivatives at a place whose residuals are the last that were found.
+  /// Gives GSL the derivatives at the point of the last residuals.
   static int jacobian_callback(const gsl_vector* z, void* self, gsl_matrix* jacobian) noexcept {
     auto& polish = *static_cast<Polish*>(self);
     return guarded(polish, [&] {
       polish.put(z);
-      // A step that was not taken at once shows derivatives that are too old.
+      // A step that was not accepted at once shows that the derivatives are too old for an update.
       if (polish.is_central || polish.before.empty() || polish.trials > 1 || !update(polish)) {
         for (std::size_t k = 0; k < polish.z.size(); ++k) polish.search.differentiate(polish, k);
       }
@@ -347,7 +349,7 @@ class Search {
     });
   }
 
-  /// Brings derivatives up to date with the last step (Broyden (1965), the first method). @return false: there was none
+  /// Updates the derivatives by the last step (Broyden (1965), the first method). @return false if there was no step
   static bool update(Polish& polish) {
     const auto size = static_cast<Eigen::Index>(polish.z.size());
     const auto count = static_cast<Eigen::Index>(polish.values.size());
@@ -360,7 +362,7 @@ class Search {
     return true;
   }
 
-  /// Derivative with respect to one z, into the Jacobian's column.
+  /// Computes the derivative with respect to the k-th z, a column of the Jacobian.
   void differentiate(Polish& polish, std::size_t k) {
     const double middle = polish.trial.z[k];
     const double step = difference_step(polish.is_central);
@@ -388,7 +390,7 @@ class Search {
     }
   }
 
-  /// Where truncation, h or h^2, and rounding, noise/h, are alike.
+  /// Step h at which truncation (h, or h^2 for central differences) and round-off (noise/h) are similar.
   [[nodiscard]] double difference_step(bool is_central) const {
     return is_central ? std::cbrt(problem_.noise) : std::sqrt(problem_.noise);
   }
@@ -408,8 +410,8 @@ class Search {
             .pending = {}};
   }
 
-  /// A minimum by Gauss-Newton steps: the cost, whose rounding hides the last half of the parameters' digits, has no
-  /// say.
+  /// Refines a minimum by Gauss-Newton steps. These do not minimise the cost itself, whose round-off hides the last
+  /// half of the parameters' digits.
   [[nodiscard]] Place refined(Place place) {
     if (problem_.residual_count < size_) return place;
     Polish polish = prepared(place, true);
@@ -431,8 +433,8 @@ class Search {
     return place;
   }
 
-  /// The minimum near a place at which derivatives predict a lower cost that is not there: downhill without
-  /// derivatives, by a simplex in directions in which the predicted cost rises alike.
+  /// Finds the minimum near a point at which derivatives predict a lower cost that does not exist. A simplex goes
+  /// downhill without derivatives; its sides are scaled so that the predicted cost rises equally along them.
   [[nodiscard]] Place past_kinks(const Place& place) {
     const auto count = static_cast<Eigen::Index>(residuals_.size());
     if (count <= static_cast<Eigen::Index>(size_) || !(place.cost > 0.0)) return place;
@@ -494,7 +496,7 @@ class Search {
     }
   }
 
-  /// The minimum downhill from a place, as far as the effort goes, or until it comes near a known place.
+  /// Goes downhill from a point until the effort is used up, the minimum is reached, or a known point is near.
   [[nodiscard]] Place polish(const Place& start, const Effort& effort, const std::vector<Place>& known = {}) {
     Polish polish = prepared(start, effort.is_central);
     if (problem_.residual_count < size_) return start;
@@ -532,13 +534,13 @@ class Search {
     const double norm = gsl_blas_dnrm2(gsl_multifit_nlinear_residual(solver.get()));
     end.cost = norm * norm;
     if (!(end.cost <= start.cost)) end = start;
-    // No progress means that no step, however short, leads down any more.
+    // GSL reports no progress if no step, however short, lowers the cost.
     end.has_converged = has_converged || status == GSL_ENOPROG;
     return end;
   }
 
-  /// Puts a parameter that lies almost at a bound on it, where that costs nothing, and searches that face of the box
-  /// for its own minimum.
+  /// Sets a parameter that is almost at a bound to that bound if this does not raise the cost, and searches that face
+  /// of the box for its own minimum.
   [[nodiscard]] LeastSquaresSolution settled_at_bounds(const Place& best, const std::vector<Place>& all) {
     LeastSquaresSolution found = solution(best, all);
     const double rounding = problem_.noise * problem_.noise * static_cast<double>(problem_.residual_count);
@@ -610,7 +612,7 @@ class Search {
   std::size_t size_;
   std::vector<double> parameters_;
   std::vector<double> residuals_;
-  std::vector<double> last_parameters_;  ///< that had residuals
+  std::vector<double> last_parameters_;  ///< last parameters with residuals
   std::vector<double> last_values_;
   double worst_cost_ = 0.0;
   long evaluations_ = 0;

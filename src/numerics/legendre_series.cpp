@@ -10,17 +10,17 @@ namespace {
 template <std::size_t count>
 using Rule = boost::math::quadrature::gauss<double, count>;
 
-// Share of the last Legendre coefficients below which a rate has converged. Its integral over the piece is exact to the
-// square of that, and to a fiftieth of it in between.
+// Last Legendre coefficients, over the largest one, below which a rate has converged. Its integral over the whole piece
+// is accurate to the square of that, and to a fiftieth of it in between.
 constexpr double k_tail = 1e-11;
-// Where the second half of the coefficients falls by less than this factor, they are rounding, which shorter pieces
-// have too; and how many times as large they may be there.
+// If the second half of the coefficients falls by less than k_flat, they are round-off, which shorter pieces have too.
+// They may then be k_noise times as large.
 constexpr double k_flat = 10.0;
 constexpr double k_noise = 100.0;
-// How many times as long the interval could be where there is nothing to tell it from.
+// Largest result of reach(), if the coefficients show no limit.
 constexpr double k_farthest = 2.0;
 
-// Divisions by what depends on the degree only would be most of what a polynomial costs.
+// Factors that depend on the degree only: their divisions would be most of the cost of a polynomial.
 struct ByDegree {
   LegendreSamples growth{};     // k/(k + 1)
   LegendreSamples per_width{};  // 1/(2k + 1)
@@ -35,7 +35,7 @@ struct ByDegree {
 };
 constexpr ByDegree k_by_degree;
 
-/// The next of the Legendre polynomials, from (P_(k-1), P_k) to (P_k, P_(k+1)): exact at -1 and 1.
+/// Advances Legendre polynomials from (P_(k-1), P_k) to (P_k, P_(k+1)); exact at -1 and 1.
 void next_legendre(std::size_t k, double x, double& previous, double& legendre) noexcept {
   const double turned = x * legendre;
   const double after = turned + k_by_degree.growth[k] * (turned - previous);
@@ -85,8 +85,8 @@ double LegendreNodes::place_before(std::size_t node, std::size_t back) const noe
   return node > back ? places[node - 1 - back] : -1.0;
 }
 
-/// The polynomial that is 1 at one of the last places before a node and 0 at the others, at the node.
-/// @param slope  becomes that at its own place
+/// Value at a node of the polynomial that is 1 at the i-th of the last positions before it and 0 at the others.
+/// @param slope  receives the slope of the polynomial at that i-th position
 double LegendreNodes::cardinal(std::size_t node, std::size_t i, std::size_t known, double& slope) const noexcept {
   double value = 1.0;
   slope = 0.0;
@@ -102,7 +102,7 @@ double LegendreNodes::cardinal(std::size_t node, std::size_t i, std::size_t know
 void LegendreSeries::fit(const LegendreNodes& nodes, const LegendreSamples& samples) noexcept {
   count_ = nodes.count;
   coefficients_.fill(0.0);
-  // All coefficients of a sample at once, those beyond the last one too, which are zero.
+  // The loop over a fixed number of coefficients adds zeros beyond the last one, and can be vectorised.
   for (std::size_t j = 0; j < count_; ++j) {
     for (std::size_t k = 0; k < k_most_nodes; ++k) coefficients_[k] += nodes.to_coefficients[j][k] * samples[j];
   }

@@ -8,35 +8,35 @@
 namespace monograin {
 
 inline constexpr std::size_t k_most_nodes = 12;
-/// One for each node; what is beyond their number is not used.
+/// One value for each node of a rule; values beyond the number of nodes are not used.
 using LegendreSamples = std::array<double, k_most_nodes>;
 
-/// The rule's nodes on [-1, 1], and what samples there are multiplied by.
+/// Nodes of a rule on [-1, 1], and coefficients that turn samples into a series or extrapolate them.
 class LegendreNodes {
  public:
-  /// Places before a node from which a function is extended to it.
+  /// Number of positions before a node from which a function is extrapolated to it.
   static constexpr std::size_t k_known = 3;
 
-  /// What extends the polynomial through values and slopes at the last places before a node, the nearest first, to that
-  /// node; the beginning of the interval, -1, is one of the places.
+  /// Coefficients that extrapolate the polynomial through values and slopes at the last positions before a node to that
+  /// node. The nearest position comes first; the beginning of the interval, -1, counts as a position.
   struct Ahead {
     std::array<double, k_known> values{};
     std::array<double, k_known> slopes{};
-    double onward = 0.0;  ///< the distance to the node over that between the last two places
+    double onward = 0.0;  ///< distance from the last position to the node over that between the last two positions
   };
 
-  /// Six nodes: what a smooth state needs to be guessed from.
+  /// The rule with six nodes, enough to predict a smooth state.
   [[nodiscard]] static const LegendreNodes& few();
-  /// Twelve: what an integral needs to be round-off's.
+  /// The rule with twelve nodes, enough to integrate to round-off.
   [[nodiscard]] static const LegendreNodes& many();
 
   std::size_t count;
   LegendreSamples places{};
-  std::array<LegendreSamples, k_most_nodes> to_coefficients{};  ///< of Legendre polynomials, for each sample
+  std::array<LegendreSamples, k_most_nodes> to_coefficients{};  ///< contribution of each sample to the coefficients
   std::array<Ahead, k_most_nodes> ahead{};
 
  private:
-  /// @param abscissae,weights  of the half from the middle onwards
+  /// @param abscissae, weights  of the half of the rule from the middle onwards
   LegendreNodes(std::span<const double> abscissae, std::span<const double> weights);
   [[nodiscard]] double place_before(std::size_t node, std::size_t back) const noexcept;
   [[nodiscard]] double cardinal(std::size_t node, std::size_t i, std::size_t known, double& slope) const noexcept;
@@ -47,20 +47,22 @@ class LegendreSeries {
  public:
   void fit(const LegendreNodes& nodes, const LegendreSamples& samples) noexcept;
 
-  /// @param t  in [-1, 1]
+  /// Value at t in [-1, 1].
   [[nodiscard]] double value(double t) const noexcept;
-  /// From -1 to t.
+  /// Integral from -1 to t.
   [[nodiscard]] double integral(double t) const noexcept;
 
-  /// How many times as long the interval could be for the series to have converged just so; its last term goes with the
-  /// length to the power of its degree.
-  /// @param negligible  error of the integral over [-1, 1] that does not count, however large a share of it that is
-  /// @param rounding    last coefficients that may be rounding, and are where the second half does not fall either
+  /// How many times as long the interval could be for the series to just converge; at most 2. The last term is taken to
+  /// be proportional to the length to the power of its degree.
+  /// @param negligible  error of the integral over [-1, 1] that is tolerated, however small the integral
+  /// @param rounding    largest last coefficients that count as round-off if the second half of the series is flat
   [[nodiscard]] double reach(double negligible, double rounding = 0.0) const noexcept;
-  /// The last coefficients, and the largest one.
+  /// Sum of the last two coefficients' magnitudes.
   [[nodiscard]] double tail() const noexcept;
+  /// Largest magnitude of a coefficient.
   [[nodiscard]] double largest() const noexcept;
-  /// Its last two terms over the largest one: how far it is from having converged. Nothing where they are negligible.
+  /// Larger one of the last two terms over the largest term: shows how far the series is from convergence. 0 if the
+  /// last terms do not exceed `negligible`.
   [[nodiscard]] double rest(double negligible) const noexcept;
 
  private:
@@ -68,7 +70,7 @@ class LegendreSeries {
 
   LegendreSamples coefficients_{};
   std::size_t count_ = 0;
-  std::size_t terms_ = 0;  ///< up to the last that is not zero: none of what stays as it is
+  std::size_t terms_ = 0;  ///< number of terms up to the last one that is not zero
 };
 
 }  // namespace monograin

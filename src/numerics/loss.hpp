@@ -1,9 +1,9 @@
-/// Losses: how much the residuals of a fit count.
+/// Losses: functions that weigh the residuals of a fit.
 #pragma once
 
 namespace monograin {
 
-/// How a residual r counts: rho(r), with rho = r^2 where r is small beside the loss' scale c.
+/// Loss rho(r) of a residual r. rho = r^2 if r is small beside the scale c of the loss.
 enum class Loss {
   linear,   ///< r^2
   huber,    ///< r^2 up to c, then 2 c |r| - c^2
@@ -16,9 +16,9 @@ struct LossFunction {
   double scale = 1.0;  ///< c > 0, in units of the residuals
 
   [[nodiscard]] double rho(double residual) const noexcept;
-  /// Half of rho's derivative: r where the loss is linear.
+  /// Half of rho's derivative: r for the linear loss.
   [[nodiscard]] double influence(double residual) const noexcept;
-  /// Half of its second derivative: 1 where the loss is linear.
+  /// Half of rho's second derivative: 1 for the linear loss.
   [[nodiscard]] double curvature(double residual) const noexcept;
 };
 

@@ -6,6 +6,7 @@
 
 namespace monograin {
 
+/// Number of threads to use.
 /// @param wanted  0: one for each core that this process may use
 /// @return at least 1
 [[nodiscard]] std::size_t thread_count(int wanted) noexcept;
@@ -13,8 +14,8 @@ namespace monograin {
 /// Calls work(i, thread) for every i below count; threads take the next i as they become free. The calling thread takes
 /// part, as number 0.
 ///
-/// The first exception is thrown again once all threads have come back; after it no further i is begun.
-/// @param threads  how many at most
+/// The first exception is thrown again once all threads have ended; after it no further i is begun.
+/// @param threads  largest number of threads
 void for_each_index(std::size_t count, std::size_t threads,
                     const std::function<void(std::size_t i, std::size_t thread)>& work);
 

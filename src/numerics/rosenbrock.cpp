@@ -25,8 +25,8 @@ class Controlled : public odeint::rosenbrock4_controller<Method> {
   Controlled(double atol, double rtol, double rounding)
       : odeint::rosenbrock4_controller<Method>(atol, rtol), rounding_(rounding) {}
 
-  /// Of a step that the library has refused, over what is tolerated where that is no less than the rounding of xi times
-  /// the rate.
+  /// Largest error in a step that the library has refused, over tolerances no finer than the round-off of xi times the
+  /// rate.
   [[nodiscard]] double largest_error(const Method::state_type& begin, const Method::state_type& end,
                                      double step) const {
     double largest = 0.0;
@@ -57,8 +57,8 @@ struct Rosenbrock4::Implementation {
         by_z(equations.size * equations.size),
         by_xi_of_step(equations.size) {}
 
-  /// Rates and their derivatives as the library wants them.
-  /// @param is_known  the derivatives at the beginning of the step are those that were asked for last
+  /// Rates and their derivatives as the library takes them.
+  /// @param is_known  the derivatives that were computed last are those at the step's beginning
   auto system(bool is_known = false) {
     const auto rates = [this](const State& z, State& dz, double at) {
       equations.rates(equations.self, at, &z[0], &dz[0]);
@@ -94,7 +94,7 @@ bool Rosenbrock4::try_step(double& xi, double& step) {
   Implementation& own = *implementation_;
   const double tried = step;
   if (own.controlled.try_step(own.system(), own.old, xi, own.now, step) == odeint::success) return true;
-  // Where a contact lasts hardly longer than xi is rounded, so are the errors of the stages.
+  // If a contact lasts hardly longer than the round-off of xi, the errors of the stages are of its size.
   const double error = own.controlled.largest_error(own.old, own.now, tried);
   if (!(error <= 1.0)) return false;
   xi += tried;

@@ -1,5 +1,5 @@
-/// Boost.Odeint's linearly implicit method of order 4 behind an interface without its matrices: Boost.uBLAS, which it
-/// brings along, is not C++20, so that its source file is compiled as C++17.
+/// Boost.Odeint's linearly implicit method of order 4, behind an interface without its matrices. These are of
+/// Boost.uBLAS, which is not C++20: the source file is compiled as C++17.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace monograin {
 
 class Rosenbrock4 {
  public:
-  /// What is integrated. Both functions may throw; the step is then not taken.
+  /// The equations that are integrated. Both functions may throw; the step is then not taken.
   struct Equations {
     std::size_t size = 0;
     void (*rates)(void* self, double xi, const double* z, double* dz) = nullptr;
@@ -17,25 +17,27 @@ class Rosenbrock4 {
     void* self = nullptr;
   };
 
-  /// @param rounding  of xi
+  /// @param rounding  round-off of xi; errors up to it times the rates are tolerated
   Rosenbrock4(const Equations& equations, double atol, double rtol, double rounding);
   ~Rosenbrock4();
   Rosenbrock4(const Rosenbrock4&) = delete;
   Rosenbrock4& operator=(const Rosenbrock4&) = delete;
 
-  /// Takes up a state.
+  /// Sets the state from which the next step begins.
   void begin(const double* z);
-  /// The end of the last step is the beginning of the next one.
+  /// Begins the next step at the end of the last one.
   void begin_step();
-  /// @param xi    in: the step's beginning; out, where it is accepted: its end
-  /// @param step  in: to be tried; out: to be tried next
-  /// @return whether the step is accepted
+  /// Tries a step.
+  /// @param xi    in: the step's beginning; out: its end, if the step is accepted
+  /// @param step  in: length to try; out: length to try next
+  /// @return true if the step is accepted
   [[nodiscard]] bool try_step(double& xi, double& step);
   [[nodiscard]] const double* begin_state() const noexcept;
   [[nodiscard]] const double* end_state() const noexcept;
-  /// Within the last step, by a shorter one: the method's own interpolation is some orders less exact. Valid until the
-  /// next call.
-  /// @param is_known  the derivatives at the step's beginning are those that were asked for last
+  /// State at xi within the last step, computed by a shorter step: the method's own interpolation is some orders less
+  /// accurate. Valid until the next call.
+  /// @param begin     where the last step begins
+  /// @param is_known  the derivatives that were computed last are those at the step's beginning
   [[nodiscard]] const double* state_at(double xi, double begin, bool is_known);
 
  private:

@@ -12,7 +12,7 @@
 namespace monograin {
 namespace {
 
-constexpr double k_share_of_null_vector = 1e-2;  // with which a parameter belongs to what is not determined
+constexpr double k_share_of_null_vector = 1e-2;  // component of a null vector above which its parameter is undetermined
 
 /// Mean curvature of the loss over the data.
 double mean_curvature(const LeastSquaresProblem& problem, std::span<const double> residuals, std::size_t n) {
@@ -21,15 +21,15 @@ double mean_curvature(const LeastSquaresProblem& problem, std::span<const double
   return curvature / static_cast<double>(n);
 }
 
-/// Columns of a Jacobian over their norms, and the inverse of their normal matrix. Directions in which the residuals do
-/// not change are left out.
+/// Norms of the columns of a Jacobian, and the inverse of the normal matrix of columns with norm one. Directions in
+/// which the residuals do not change are left out.
 struct NormalInverse {
   Eigen::VectorXd norms;
   Eigen::MatrixXd inverse;
   double condition = 0.0;
   std::vector<bool> is_determined;
 
-  /// @param noise  of the residuals, over their size
+  /// @param noise  relative error of the residuals
   NormalInverse(const Eigen::MatrixXd& columns, double noise)
       : norms(columns.colwise().norm()),
         inverse(Eigen::MatrixXd::Zero(columns.cols(), columns.cols())),
@@ -37,7 +37,7 @@ struct NormalInverse {
     const Eigen::MatrixXd scaled = columns * norms.cwiseInverse().asDiagonal();
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
     const Eigen::VectorXd& singular = svd.singularValues();
-    // Below this a singular value is the error of the differences.
+    // Smaller singular values are errors of the differences.
     const double least_singular = 10.0 * std::cbrt(noise) * std::cbrt(noise) * singular[0];
     for (Eigen::Index s = 0; s < singular.size(); ++s) {
       const auto direction = svd.matrixV().col(s);
@@ -58,7 +58,7 @@ struct NormalInverse {
   }
 };
 
-/// Whether residuals depend on a parameter: an influence that is no more than the error of its difference is none.
+/// True if residuals depend on a parameter by more than the error of their differences.
 bool has_influence(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
                    const Eigen::MatrixXd& jacobian, std::size_t parameter) {
   constexpr double k_margin = 10.0;
@@ -84,7 +84,7 @@ double Uncertainty::half_width(const Eigen::Ref<const Eigen::VectorXd>& gradient
   double variance = 0.0;
   for (Eigen::Index i = 0; i < gradient.size(); ++i) {
     for (Eigen::Index j = 0; j < gradient.size(); ++j) {
-      // What has no error of its own is taken as given.
+      // Parameters without an error of their own are taken as exact.
       if (std::isfinite(covariance(i, j))) variance += gradient[i] * covariance(i, j) * gradient[j];
     }
   }

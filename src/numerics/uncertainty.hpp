@@ -12,38 +12,39 @@
 
 namespace monograin {
 
-/// Of the linearised fit, with s^2 = cost / (n - p):
+/// Uncertainty of fitted parameters by the linearised fit, with s^2 = cost / (n - p):
 ///
 ///   covariance = s^2 (J^T J)^-1
 ///
-/// A loss other than the linear one has influence psi and curvature psi' in the place of residuals, and
+/// Other losses than the linear one have influence psi and curvature psi' in place of the residuals, and
 /// s^2 = sum psi^2 / (n - p) / mean(psi')^2: the asymptotic covariance of an M-estimator (Huber (1981), section 7.6).
-/// Residuals of priors are rows of J, and tell nothing of s.
+/// Residuals of priors are rows of J, but do not contribute to s.
 struct Uncertainty {
-  std::size_t degrees_of_freedom = 0;  ///< n - p; none: there are no errors and no intervals
-  double level = 0.95;                 ///< of the two-sided intervals
-  double t_quantile = 0.0;             ///< Student's t for them, normal where s is known; nan where there is none
-  double standard_deviation = 0.0;     ///< s, in units of the residuals; nan where there is none
-  double rise = 0.0;                   ///< of the cost, one standard error away: s^2 times the loss's mean curvature
-  std::vector<bool> is_determined;     ///< whether the residuals tell this parameter, at a bound or not
-  double condition = 1.0;              ///< of the Jacobian with columns of length one, of what is determined
+  std::size_t degrees_of_freedom = 0;  ///< n - p; if 0 and s is unknown, there are no errors and no intervals
+  double level = 0.95;                 ///< probability of the two-sided intervals
+  double t_quantile = 0.0;             ///< quantile of Student's t; normal if s is known; nan if there are no errors
+  double standard_deviation = 0.0;     ///< s, in units of the residuals; nan if there are no errors
+  double rise = 0.0;                   ///< rise of the cost at one standard error: s^2 times the loss's mean curvature
+  std::vector<bool> is_determined;     ///< the residuals determine this parameter; also for parameters at a bound
+  double condition = 1.0;              ///< of the Jacobian of determined parameters, with columns of length one
   Eigen::MatrixXd covariance;          ///< nan in rows and columns of parameters at a bound or not determined
 
   [[nodiscard]] double standard_error(std::size_t parameter) const;
   [[nodiscard]] double correlation(std::size_t first, std::size_t second) const;
   /// Half of the width of a parameter's t-interval.
   [[nodiscard]] double half_width(std::size_t parameter) const { return t_quantile * standard_error(parameter); }
-  /// The same for a function of the parameters. @param gradient  with respect to them
+  /// Half of the width of the t-interval of a function of the parameters. @param gradient  of that function
   [[nodiscard]] double half_width(const Eigen::Ref<const Eigen::VectorXd>& gradient) const;
 };
 
-/// s above, of the first n residuals. @return nan without degrees of freedom
+/// Standard deviation s of the first n residuals, as in Uncertainty. @return nan without degrees of freedom
 [[nodiscard]] double deviation_of(const LeastSquaresProblem& problem, std::span<const double> residuals, std::size_t n);
 
-/// @param jacobian  of the residuals at the solution, see residual_jacobian
-/// @param n         how many residuals, the first ones, are those of data
-/// @param level     in (0, 1)
-/// @param known     s, where the noise is known
+/// Uncertainty of the parameters of a solution.
+/// @param jacobian  of the residuals at the solution, see residual_jacobian()
+/// @param n         number of residuals of data, which come first
+/// @param level     probability of the intervals, in (0, 1)
+/// @param known     s, if the noise is known
 [[nodiscard]] Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
                                          const Eigen::MatrixXd& jacobian, std::size_t n, double level,
                                          std::optional<double> known = {});

@@ -45,7 +45,8 @@ std::string axis_of(const Eigen::Vector3d& normal) {
   return axis == 0 ? "x" : axis == 1 ? "y" : "z";
 }
 
-/// Class names: the group's where it is one class, with its axis where symmetry splits it, else the first wall's.
+/// Names of classes: that of a group if the group is one class, with the axis if symmetry splits the group, else that
+/// of the first wall.
 std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::vector<std::size_t>& first_wall) {
   std::vector<std::string> names;
   for (const std::size_t first : first_wall) {
@@ -62,25 +63,26 @@ std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::
   std::vector<std::string> sorted = names;
   std::ranges::sort(sorted);
   if (std::ranges::adjacent_find(sorted) == sorted.end()) return names;
-  // Not told apart by their axes (walls not merged at all): each class by its first wall.
+  // If axes do not distinguish the classes (walls are not merged at all), each class is named after its first wall.
   for (std::size_t c = 0; c < names.size(); ++c) names[c] = walls[first_wall[c]].name;
   return names;
 }
 
-/// How far a wall that is withdrawn so far is taken to reach into the particle: its contacts would have tolerances of
-/// the order of what the particle bears there. So is one that is pulled where nothing adheres.
+/// Depth that counts for a wall that is withdrawn by a distance, over that distance. With the whole distance,
+/// tolerances of its contacts would be of the order of what the particle bears at that depth. Also used for a wall that
+/// is pulled without adhesion.
 constexpr double k_share_of_withdrawal = 1e-4;
 
-/// Factor within which laws say where a condition is met that does not tell it: what the last ramp may have led to
-/// already need not end the next one.
+/// Factor within which laws predict displacement or force at a condition on another quantity. A condition that the last
+/// ramp may already have met, within that factor, need not end the next ramp.
 constexpr double k_known_within = 3.0;
 
-/// Depth over R0 below which a contact is below resolution; and share of a depth within which models say how deep a
-/// contact is under a force or a condition.
+/// Depth over R0 below which a contact is below resolution; and relative accuracy with which models predict the depth
+/// of a contact under a force or at a condition.
 constexpr double k_least_depth = 1e-12;
 constexpr double k_same_depth = 1e-6;
 
-/// Whether a free centre may leave its place: classes of walls that push it to no side keep it there.
+/// True if a free centre may move: it stays at rest if the normals of every class add up to zero.
 bool may_move_centre(const CheckedScenario& scenario, const std::vector<ContactClass>& classes) {
   constexpr double k_no_push = 1e-6;  // of unit normals
   return scenario.loading.centre_is_free && std::ranges::any_of(classes, [](const ContactClass& c) {
@@ -90,26 +92,26 @@ bool may_move_centre(const CheckedScenario& scenario, const std::vector<ContactC
          });
 }
 
-/// A program and the model that says how far it goes.
+/// A program and the model that predicts how far it leads.
 struct Program {
   const Model& model;
   const ModelInput& input;
   bool moves_centre = false;
 };
 
-/// How far a condition lets a ramp go that leads on to its target; infinity where the model has to be run to say so.
+/// Displacement and force at which a condition ends a ramp; infinity if only a run of the model can show it.
 Reach end_of(const Program& program, const Until& until) {
   Reach end{.displacement = std::numeric_limits<double>::infinity(), .force = std::numeric_limits<double>::infinity()};
   if (!(until.value > 0.0) && !until.is_event()) return end;
   if (program.model.reach != nullptr) end = program.model.reach(program.input, until);
-  // The centre goes along: its walls go farther than their contacts.
+  // A centre that moves follows the walls: they move farther than their contacts are deep.
   if (program.moves_centre) end.displacement = std::numeric_limits<double>::infinity();
   if (until.is_of(Quantity::displacement)) end.displacement = until.value;
   if (until.is_of(Quantity::force)) end.force = until.value;
   return end;
 }
 
-/// Number of steps up to one that ends every run that comes to it, because walls of the model cannot pull.
+/// Number of steps up to and including the first one that ends every run, because walls of the model cannot pull.
 std::size_t count_to_pull(const Model& model, const std::vector<Channel>& channels) {
   std::size_t count = 0;
   for (const Channel& channel : channels) count = std::max(count, channel.program.size());
@@ -128,11 +130,11 @@ std::size_t count_to_pull(const Model& model, const std::vector<Channel>& channe
   return count;
 }
 
-/// Index of the first step of a wall that goes back, where the model has no law for that; else their number.
+/// Index of the first step in which a wall unloads, if the model has no law for unloading; else the number of steps.
 std::size_t first_unloading_step(const Program& program, std::span<const Step> steps) {
   const auto can_unload = program.model.can_unload;
   if (steps.size() < 2 || can_unload == nullptr || can_unload(program.input)) return steps.size();
-  double deepest = 0.0;  // at least
+  double deepest = 0.0;  // lower bound of the depth so far
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const Step& step = steps[k];
     double depth = step.kind == Step::Kind::detach ? 0.0 : deepest;
@@ -152,7 +154,8 @@ std::size_t first_unloading_step(const Program& program, std::span<const Step> s
   return steps.size();
 }
 
-/// Number of steps that a run comes to: what lies beyond would make tolerances as large as what is reached.
+/// Number of steps that a run reaches. Targets of later steps must not count: tolerances could become as large as what
+/// is reached.
 std::size_t steps_reached(const Program& program, const std::vector<Channel>& channels) {
   std::size_t count = count_to_pull(program.model, channels);
   for (const Channel& channel : channels) {
@@ -162,14 +165,14 @@ std::size_t steps_reached(const Program& program, const std::vector<Channel>& ch
   return count;
 }
 
-/// How far the conditions of a ramp let it go, at most.
-/// @param reach     without conditions
-/// @param is_first  of the program
-/// @param before    where the last ramp of this kind has led, at most
+/// Upper bound of the value to which a ramp leads before a condition ends it.
+/// @param reach     that value without conditions
+/// @param is_first  the step is the first of its program
+/// @param before    upper bound of the value to which the last ramp of this kind has led
 double reach_until(const Program& program, const Step& step, double reach, bool is_first, double before) {
   const bool is_displacement = step.kind == Step::Kind::displacement;
   for (const Until& until : step.until) {
-    // Later steps may begin beyond an event, or a value, which then does not end them.
+    // Later steps may begin beyond an event, or beyond a value, which then does not end them.
     if (until.is_event() && !is_first) continue;
     const Reach end = end_of(program, until);
     const double place = is_displacement ? end.displacement : end.force;
@@ -179,13 +182,13 @@ double reach_until(const Program& program, const Step& step, double reach, bool 
   return reach;
 }
 
-/// Largest displacement or force of the programs.
+/// Largest displacement [m] or force [N] to which the programs lead.
 double largest_target(const Program& program, const std::vector<Channel>& channels, Step::Kind kind) {
   double largest = 0.0;
   const bool adheres = program.input.optional_material("surface_energy").value_or(0.0) > 0.0;
   const std::size_t count = steps_reached(program, channels);
   for (const Channel& channel : channels) {
-    double before = 0.0;  // where the last ramp of this kind has led, at most
+    double before = 0.0;  // upper bound of the value to which the last ramp of this kind has led
     for (const Step& step : std::span(channel.program).first(std::min(count, channel.program.size()))) {
       if (step.kind == Step::Kind::hold) continue;
       if (step.kind != kind) {
@@ -224,7 +227,7 @@ std::vector<Channel> channels_without_walls(const CheckedScenario& scenario,
   return channels;
 }
 
-/// Contact classes of the walls and their channels.
+/// Adds the contact classes of the walls, and their channels, to a scene.
 void add_walls(const CheckedScenario& scenario, bool merges_walls, Scene& scene) {
   const std::vector<Wall> walls = make_walls(scenario);
   std::vector<std::size_t> class_of(walls.size());

@@ -10,14 +10,14 @@
 namespace monograin {
 namespace {
 
-constexpr double k_same = 1e-9;     // two normals, or two of their scalar products, are the same
+constexpr double k_same = 1e-9;     // largest difference of equal normals, or of equal scalar products of normals
 constexpr double k_in_span = 1e-6;  // component of a normal outside a span that counts as none
 
 bool same_step(const Step& a, const Step& b) {
   return a.kind == b.kind && a.target == b.target && a.duration == b.duration && a.rate == b.rate && a.until == b.until;
 }
 
-/// Walls of the same colour start and move alike.
+/// Colours of walls: those with the same gap and the same program have the same colour.
 std::vector<std::size_t> colours_of(const std::vector<Wall>& walls) {
   std::vector<std::size_t> colours(walls.size());
   for (std::size_t i = 0; i < walls.size(); ++i) {
@@ -32,7 +32,7 @@ std::vector<std::size_t> colours_of(const std::vector<Wall>& walls) {
   return colours;
 }
 
-/// Looks for a rotation or reflection of the wall set that takes one given wall to another.
+/// Searches for a rotation or reflection of the wall set that maps one given wall to another.
 class Matcher {
  public:
   explicit Matcher(const std::vector<Wall>& walls) : colours_(colours_of(walls)) {
@@ -54,7 +54,7 @@ class Matcher {
   /// Chooses walls whose normals are a basis of all normals, beginning with a given wall: their images fix the map.
   void choose_basis(Eigen::Index first) {
     basis_.assign(1, first);
-    Eigen::Matrix3d outside = Eigen::Matrix3d::Identity();  // projector on what the basis does not span
+    Eigen::Matrix3d outside = Eigen::Matrix3d::Identity();  // projector onto directions that the basis does not span
     outside -= normals_.col(first) * normals_.col(first).transpose();
     for (Eigen::Index i = 0; i < normals_.cols() && basis_.size() < 3; ++i) {
       const Eigen::Vector3d rest = outside * normals_.col(i);

@@ -26,11 +26,11 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr double k_tightest = 1e-13;     ///< of references
-constexpr int k_rounds = 50;             ///< in which the runs are made
-constexpr double k_too_long = 1.0;       ///< a run after which tighter tolerances are left out [s]
-constexpr double k_profile_time = 0.02;  ///< for which a history is profiled [s]
-constexpr int k_evaluations = 16;        ///< of the law at each output point, to time them
+constexpr double k_tightest = 1e-13;     ///< rtol of references
+constexpr int k_rounds = 50;             ///< rounds in which all runs take turns
+constexpr double k_too_long = 1.0;       ///< time of a run after which tighter tolerances are left out [s]
+constexpr double k_profile_time = 0.02;  ///< time for which runs are profiled [s]
+constexpr int k_evaluations = 16;        ///< timed evaluations of the law at each output point
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -47,7 +47,7 @@ RunRecord run_once(const CheckedScenario& scenario, const std::string& integrato
   return record;
 }
 
-/// How long one run takes, recording included, set-up of the scene not.
+/// Time of one run [s], with recording, without set-up of the scene.
 double time_once(const CheckedScenario& scenario, const std::string& integrator, double rtol) {
   double seconds = 0.0;
   static_cast<void>(run_once(scenario, integrator, rtol, &seconds));
@@ -62,7 +62,8 @@ bool is_state(const Column& column) {
          column.name == "packing_fraction" || column.name == "work";
 }
 
-/// The output points of a history, by step of the program: rows around events stand elsewhere in another run.
+/// Rows at the output points of a history, by step of the program. Rows around events are left out: their positions
+/// differ from run to run.
 std::vector<std::vector<std::size_t>> output_rows(const Table& history) {
   const std::size_t step = *history.find("step");
   const std::size_t side = *history.find("row");
@@ -80,8 +81,8 @@ struct CurveError {
   double end = 0.0;
 };
 
-/// The largest difference over the largest value, of any column of the state. A step that a condition ends may have an
-/// output point more or less.
+/// Largest difference of any column of the state, over the column's largest value. A step that a condition ends may
+/// have an output point more or less.
 CurveError curve_error(const Table& reference, const Table& other) {
   const auto rows = output_rows(reference);
   const auto others = output_rows(other);
@@ -111,7 +112,7 @@ CurveError curve_error(const Table& reference, const Table& other) {
   return error;
 }
 
-/// Of the events' times over the whole time; nan where there are others, or in another order.
+/// Largest difference of an event's time, over the whole time; nan if the events or their order differ.
 double event_error(const RunRecord& reference, const RunRecord& other) {
   const Table& a = reference.events;
   const Table& b = other.events;
@@ -139,7 +140,7 @@ class EvaluationTimer final : public HistorySink {
     const auto start = Clock::now();
     for (int k = 0; k < k_evaluations; ++k) {
       std::ranges::copy(y, state_.begin());
-      // Another state by a rounding: a system may keep what it found of the last one.
+      // Every second state differs by round-off: a system may have cached its results for the last state.
       if (k % 2 == 1) state_.front() = std::nextafter(state_.front(), 0.0);
       if (system_.is_solvable())
         system_.solve(xi, state_);
@@ -173,19 +174,19 @@ double time_evaluation(const CheckedScenario& scenario, const std::string& integ
   return best;
 }
 
-/// Runs of one thing, as long as they take together.
+/// Times of repeated runs [s].
 struct Timing {
   double fastest = 0.0;
   double median = 0.0;
 };
 
-/// What is timed, and how long its runs have taken.
+/// Repeats a run and collects its times.
 class Stopwatch {
  public:
-  /// @param run  one run, and how long it took
+  /// @param run  makes one run and returns its time [s]
   explicit Stopwatch(std::function<double()> run) : run_(std::move(run)) {}
 
-  /// Runs it until its runs have taken so long together, and at least once.
+  /// Repeats the run until all runs so far have taken `least_time` [s] together, but makes at least one.
   void run_for(double least_time) {
     while (times_.empty() || total_ < least_time) {
       times_.push_back(run_());
@@ -205,8 +206,8 @@ class Stopwatch {
   double total_ = 0.0;
 };
 
-/// Things that are to be compared, all in turn, for a short time each: a machine that is slower or faster for a while
-/// is so for all of them.
+/// Times all runs that are to be compared, in turns of a short time each: if the machine is slower for a while, it is
+/// so for all of them.
 void time_in_turn(std::vector<Stopwatch>& watches, double least_time) {
   for (int round = 1; round <= k_rounds; ++round) {
     for (Stopwatch& watch : watches) watch.run_for(least_time * round / k_rounds);
@@ -215,14 +216,14 @@ void time_in_turn(std::vector<Stopwatch>& watches, double least_time) {
 
 // --- a scene
 
-/// What errors are measured against.
+/// A run from which errors are measured.
 struct Standard {
   std::string integrator;
   RunRecord record;
 };
 
-/// Two different methods as exact as they get. Of integrators of the explicit form, one that is one-step, the other
-/// multi-step.
+/// Runs by two different methods at the tightest tolerance: the direct form and a one-step method or, if the model has
+/// no direct form, a one-step and a multistep method.
 std::pair<Standard, Standard> standards_of(const CheckedScenario& scenario) {
   const bool is_solvable = make_scene(scenario).system->is_solvable();
   const std::string first = is_solvable ? integrators::k_direct : integrators::k_arkode_erk;
@@ -230,7 +231,7 @@ std::pair<Standard, Standard> standards_of(const CheckedScenario& scenario) {
   return {{first, run_once(scenario, first, k_tightest)}, {second, run_once(scenario, second, k_tightest)}};
 }
 
-/// All of a point but its times.
+/// Measures a point except for its repeated times.
 BenchPoint measure_point(const CheckedScenario& scenario, const std::string& name, const std::string& integrator,
                          double rtol, const Standard& standard) {
   BenchPoint point{.integrator = name, .rtol = rtol, .statistics = {}, .fault = {}};
@@ -260,7 +261,7 @@ std::vector<double> decades() {
   return tolerances;
 }
 
-/// The two walls of simple compression, and four beside the particle that it never reaches.
+/// The two walls of simple compression, and four walls that the particle never reaches.
 CheckedScenario with_walls_out_of_reach(CheckedScenario simple) {
   Loading& loading = simple.loading;
   loading.configuration = Loading::Configuration::walls;
@@ -274,7 +275,7 @@ CheckedScenario with_walls_out_of_reach(CheckedScenario simple) {
   return simple;
 }
 
-/// What the tables of a list of scenes may hold.
+/// Keys of the tables in a list of scenes.
 struct BenchKeys {
   using Kind = KeySpec::Kind;
   KeySpec scenario{.name = "scenario",
@@ -308,7 +309,7 @@ struct BenchKeys {
 
 /// Reads the scenarios that a list names, and collects their faults.
 struct ScenariosOfList {
-  fs::path folder;  ///< of the list
+  fs::path folder;  ///< folder of the list, from which scenario files are sought
   FaultList& faults;
 
   [[nodiscard]] std::optional<CheckedScenario> read(const fs::path& file, const Section& section) const {
@@ -325,7 +326,7 @@ struct ScenariosOfList {
     return read(folder / section.text("scenario"), section);
   }
 
-  /// A scene, or those of a folder, by the names that the list gives them.
+  /// The scenario, or all scenarios of a folder, that a [[scene]] names; with name and title from the list.
   [[nodiscard]] std::vector<CheckedScenario> of_scene(const Section& section) const {
     if (section.text("scenario").empty()) return {};
     const fs::path named = folder / section.text("scenario");
@@ -422,7 +423,7 @@ BenchProfile profile_scene(const CheckedScenario& scenario, const std::string& n
   double least = std::numeric_limits<double>::infinity();
   std::vector<Stopwatch> watches;
   watches.emplace_back([&] { return time_once(scenario, integrator, scenario.numerics.rtol); });
-  // Of several runs the one that others have disturbed least, as of those without a look at their parts.
+  // The fastest profiled run is kept, as the fastest run is without profile: other load has disturbed it least.
   watches.emplace_back([&] {
     SystemProfile system;
     const LinearAlgebraClock clock;
@@ -502,7 +503,7 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings, const st
   };
   add("work in closed form where there is one", "die, direct", direct,
       measure(die, integrators::k_direct, wrapped(always_integrated)));
-  // A saving this small shows only beside a system that is wrapped as well.
+  // This saving is so small that the run with it has to be wrapped, too.
   for (const char* integrator : {integrators::k_direct, integrators::k_cvode_bdf}) {
     const auto looking = [&](double factor) {
       return measure(die, integrator,

@@ -15,59 +15,60 @@ namespace monograin {
 struct BenchSettings {
   std::vector<std::string> integrators{};  ///< "auto" and the names of integrators; empty: all
   std::vector<double> tolerances{};        ///< relative ones, from loose to tight; empty: 1e-2 to 1e-13
-  double least_time = 0.05;                ///< a run is repeated until it has taken so long [s]
+  double least_time = 0.05;                ///< a run is repeated for at least this time [s]
 };
 
-/// One integrator at one tolerance. Errors are nan where the run has not come as far as the reference.
+/// Errors and times of one integrator at one tolerance. Errors are nan if the run does not end as the reference does.
 struct BenchPoint {
   std::string integrator;
   double rtol = 0.0;
-  /// Forces, stresses, apparent radius and work, each over its largest value: the worst at any output point, and at the
-  /// last.
+  /// Largest error at an output point of any force, displacement, stress, strain, apparent radius, packing fraction or
+  /// work, each over its largest value.
   double curve_error = 0.0;
-  double end_error = 0.0;
-  double event_error = 0.0;  ///< of the events' times, over the whole time; nan where there are other events
-  double fastest = 0.0;      ///< one history, recording included, set-up of the scene not [s]
-  double median = 0.0;
+  double end_error = 0.0;    ///< the same error at the last row
+  double event_error = 0.0;  ///< largest error of an event's time, over the whole time; nan if there are other events
+  double fastest = 0.0;      ///< shortest time of a run [s], with recording, without set-up of the scene
+  double median = 0.0;       ///< median time of a run [s]
   Statistics statistics;
-  std::string fault;  ///< why there are no errors; empty: there are
+  std::string fault;  ///< why the run has no errors; empty if it has
 };
 
+/// Measurements of one scene.
 struct BenchScene {
   std::string name;
   std::string title;
-  std::string chosen;       ///< by "auto"
-  std::string reference;    ///< what the errors are against
-  std::string check;        ///< what those of the reference's own integrator are against
-  double agreement = 0.0;   ///< of these two
-  double setup = 0.0;       ///< scene from scenario [s]
-  double evaluation = 0.0;  ///< one evaluation of the law along the history: an instant solved for, or its rates [s]
-  std::size_t rows = 0;     ///< of the history
+  std::string chosen;       ///< integrator that "auto" chooses
+  std::string reference;    ///< integrator of the reference, from which errors are measured
+  std::string check;        ///< integrator from which errors of the reference's own integrator are measured
+  double agreement = 0.0;   ///< curve error of these two against each other
+  double setup = 0.0;       ///< time to make the scene from its scenario [s]
+  double evaluation = 0.0;  ///< time of one evaluation of the law along the history: a solution or its rates [s]
+  std::size_t rows = 0;     ///< rows of the history
   std::vector<BenchPoint> points;
 };
 
-/// Where the time of one history goes [s]; what is left of the total is the integrator's own.
+/// Shares of the time of one run [s]; the rest of the total is the integrator's own.
 struct BenchProfile {
   std::string scene;
   std::string integrator;
   double total = 0.0;
   double law = 0.0;
-  double linear_algebra = 0.0;  ///< of SUNDIALS' solvers; that of `direct` is part of the law
+  double linear_algebra = 0.0;  ///< linear solvers of SUNDIALS; those of `direct` are part of the law
   double guards = 0.0;
   double recording = 0.0;
   long law_calls = 0;
 };
 
-/// What a scene is spared, measured by undoing it.
+/// Time saved by work that a scene leaves out, measured by a run that does this work.
 struct BenchSaving {
   std::string what;
   std::string scene;
-  double time = 0.0;        ///< with the saving [s]
-  double undone = 0.0;      ///< without [s]
-  double difference = 0.0;  ///< of the two curves
+  double time = 0.0;        ///< time of a run with the saving [s]
+  double undone = 0.0;      ///< time of a run without the saving [s]
+  double difference = 0.0;  ///< curve error of the two runs against each other
 };
 
-/// Two scenes with the same curve, of which the second does what the first is spared.
+/// Two scenes with the same curve; the second does work that the first leaves out.
 struct BenchPair {
   std::string what;
   std::string name;
@@ -75,45 +76,47 @@ struct BenchPair {
   CheckedScenario without;
 };
 
-/// Scenes and savings that are measured where no scene is named.
+/// Scenes and savings that are measured if no scene is named.
 struct BenchList {
   std::vector<CheckedScenario> scenes;
   std::vector<BenchPair> savings;
 };
 
-/// @throws ScenarioError
+/// Reads the list of scenes and savings (TOML) of a bench. @throws ScenarioError
 [[nodiscard]] BenchList read_bench_list(const std::filesystem::path& file);
 
-/// @param shown  called after each point
+/// Measures errors and times of a scene with the integrators and tolerances of the settings.
+/// @param shown  called after each point; may be empty
 [[nodiscard]] BenchScene measure_scene(const CheckedScenario& scenario, const BenchSettings& settings,
                                        const std::function<void()>& shown);
 
-/// @param name  of an integrator, or "auto"
+/// Measures where the time of a run goes.
+/// @param name  an integrator, or "auto"
 [[nodiscard]] BenchProfile profile_scene(const CheckedScenario& scenario, const std::string& name);
 
-/// The savings that a scene can do without, each over the default scenario or one near to it, and those of the list.
+/// Measures all savings that can be undone, each with the default scenario or a similar one, and the savings of a list.
 [[nodiscard]] std::vector<BenchSaving> measure_savings(const BenchSettings& settings,
                                                        const std::vector<BenchPair>& listed);
 
-/// The least time in which an integrator has reached an error [s]; nan: it has not.
+/// Least time [s] in which an integrator has reached a curve error; nan if it has not.
 [[nodiscard]] double time_to_error(const BenchScene& scene, std::string_view integrator, double error);
 
-/// Compiler, its flags, libraries and processor, a line.
+/// Compiler, its flags, libraries and processor, in one line.
 [[nodiscard]] std::string machine_text();
 
-/// What a terminal and `bench.md` show.
+/// Tables of a bench in Markdown, for the terminal and `bench.md`.
 [[nodiscard]] std::string bench_text(const std::vector<BenchScene>& scenes, const std::vector<BenchProfile>& profiles,
                                      const std::vector<BenchSaving>& savings);
 
-/// Writes bench.csv, bench.md and the figures: one for each scene, one of all, one of the events.
+/// Writes bench.csv, bench.md and the figures: one for each scene, a summary, and one of the events.
 /// @return the files @throws FigureError
 std::vector<std::filesystem::path> write_bench(const std::vector<BenchScene>& scenes,
                                                const std::vector<BenchProfile>& profiles,
                                                const std::vector<BenchSaving>& savings,
                                                const std::filesystem::path& folder);
 
-/// Draws the figures of an earlier bench anew, from its bench.csv and without measuring.
-/// @return the figures @throws FigureError, or std::runtime_error where the file is not of a bench
+/// Draws the figures of an earlier bench again from its bench.csv, without measuring.
+/// @return the figures @throws FigureError, or std::runtime_error if the file is not that of a bench
 std::vector<std::filesystem::path> redraw_bench(const std::filesystem::path& csv, const std::filesystem::path& folder);
 
 }  // namespace monograin

@@ -1,4 +1,4 @@
-// What a bench leaves: table, CSV and figures.
+// Files of a bench: tables, CSV and figures.
 
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ using figure::ChartSeries;
 
 constexpr std::array k_errors{1e-4, 1e-6, 1e-8, 1e-10};
 constexpr int k_measured_digits = 6;
-// Below this, errors are those of the reference and of rounding.
+// Smaller errors are those of the reference, and round-off.
 constexpr double k_rounding = 1e-11;
 
 struct Line {
@@ -36,8 +36,8 @@ struct Line {
   ChartSeries::Style style;
 };
 
-/// How integrators are drawn: those of one library in one panel and with one dash, each line in its own way in all
-/// panels together.
+/// Lines of the integrators: those of one library share a panel and a dash pattern. In all panels together, no two
+/// lines look the same.
 constexpr std::array k_lines{
     Line{integrators::k_direct, 0, 0, ChartSeries::Style::points},
     Line{integrators::k_auto, 0, 1, ChartSeries::Style::points},
@@ -76,7 +76,7 @@ constexpr std::array<const char*, 4> k_panels{"Direct form, fixed steps, IDA", "
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
 }
 
-/// The fastest of all but "auto" at an error.
+/// Least time [s] to a curve error of all integrators but "auto".
 [[nodiscard]] double best_time(const BenchScene& scene, double error) {
   double best = k_nan;
   for (const BenchPoint& point : scene.points) {
@@ -115,8 +115,8 @@ void append_scene(const BenchScene& scene, std::string& text) {
   append_markdown(text, rows);
 }
 
-/// How many times as long `cvode-bdf` takes to the error that "auto" has at the default tolerance; where it does not
-/// come to that, to the least that it comes to, and so at least.
+/// Time of `cvode-bdf` over that of "auto", at the error that "auto" has at the default tolerance. If `cvode-bdf` never
+/// reaches that error, its time to its least error gives a lower bound, marked by ">".
 [[nodiscard]] std::string bdf_at_own_error(const BenchScene& scene) {
   constexpr double k_default_rtol = Tolerances{}.rtol;
   const auto own = std::ranges::find_if(scene.points, [](const BenchPoint& point) {
@@ -159,9 +159,9 @@ void append_auto(const std::vector<BenchScene>& scenes, std::string& text) {
   append_markdown(text, rows);
 }
 
-/// The worst over all scenes.
+/// Largest errors of an integrator over all scenes.
 struct Constants {
-  double curve = 0.0;  ///< error over rtol, where the error is not rounding
+  double curve = 0.0;  ///< error over rtol, where the error is not round-off
   double event = 0.0;
   double least = k_nan;  ///< the largest of the scenes' least errors
   long faults = 0;
@@ -263,7 +263,7 @@ void append_savings(const std::vector<BenchSaving>& savings, std::string& text) 
 
 using Place = std::function<std::pair<double, double>(const BenchPoint&)>;
 
-/// Four panels, one for each library; a line for each integrator and scene.
+/// A chart with a panel for each library, and a line for each integrator and scene.
 [[nodiscard]] figure::Chart chart_of(const std::vector<BenchScene>& scenes, const figure::ChartAxis& x,
                                      const figure::ChartAxis& y, const Place& place) {
   figure::Chart chart;
@@ -289,12 +289,12 @@ using Place = std::function<std::pair<double, double>(const BenchPoint&)>;
   return chart;
 }
 
-/// The largest event error of all scenes, of each integrator at each tolerance, as if it were one scene.
+/// A scene that stands for all scenes: it has their largest event error for each integrator and tolerance.
 [[nodiscard]] BenchScene worst_events(const std::vector<BenchScene>& scenes) {
   BenchScene worst{.name = {}, .title = {}, .chosen = {}, .reference = {}, .check = {}, .points = {}};
   for (const BenchScene& scene : scenes) {
     for (const BenchPoint& point : scene.points) {
-      // Neither has a tolerance of its own.
+      // `direct` and `auto` have no tolerance of their own.
       if (point.integrator == integrators::k_direct || point.integrator == integrators::k_auto) continue;
       const auto found = std::ranges::find_if(worst.points, [&](const BenchPoint& one) {
         return one.integrator == point.integrator && one.rtol == point.rtol;
@@ -308,9 +308,9 @@ using Place = std::function<std::pair<double, double>(const BenchPoint&)>;
   return worst;
 }
 
-constexpr double k_least_error = 1e-16;  ///< what a figure shows of an error of zero
+constexpr double k_least_error = 1e-16;  ///< figures show an error of zero as this
 
-/// The scenes' geometric mean of the time to an error over that of "auto", where all of them have reached it.
+/// Chart of the time to an error over that of "auto": the geometric mean of the scenes in which both reach the error.
 [[nodiscard]] figure::Chart summary_of(const std::vector<BenchScene>& scenes) {
   figure::Chart chart;
   for (const char* note : k_panels) {

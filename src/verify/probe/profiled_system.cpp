@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 using State = std::span<double>;
 using View = std::span<const double>;
 
-/// What a reading of the clock takes [s], where nothing else takes the processor.
+/// Time for one reading of the clock [s], on an otherwise idle processor.
 double clock_cost() {
   constexpr int k_readings = 100;
   double least = std::numeric_limits<double>::infinity();
@@ -30,7 +30,7 @@ double clock_cost() {
   return least;
 }
 
-/// Passes everything on to another system.
+/// Passes every call on to another system.
 class Wrapped : public HybridSystem {
  public:
   explicit Wrapped(std::unique_ptr<HybridSystem> system) : system_(std::move(system)) {}
@@ -125,7 +125,7 @@ class Profiled final : public Wrapped {
   }
 
  private:
-  /// Also where the work ends by an exception.
+  /// Adds the time of some work to a share, also if the work throws.
   template <class Work>
   void time(SystemProfile::Share& share, Work&& work) {
     struct Lap {
@@ -167,7 +167,8 @@ class Limited final : public Wrapped {
   }
 
  private:
-  /// A thread has had a processor for no longer than has gone by, which is cheaper to know.
+  /// Throws OutOfTime if the time is up. The processor time of a thread grows no faster than the steady clock, which is
+  /// cheaper to read: it shows when to read the former again.
   void check_time() {
     const Clock::time_point now = Clock::now();
     if (now < next_look_) return;

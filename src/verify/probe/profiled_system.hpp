@@ -1,4 +1,5 @@
-/// A system that tells where the time goes, one that has no more than so much, and some that waste it.
+/// Wrappers around a system: one that measures where its time goes, one that limits its time, and some that undo what
+/// saves time.
 #pragma once
 
 #include <array>
@@ -9,51 +10,51 @@
 
 namespace monograin {
 
-/// Time spent in a system, by what it was asked for, less what the clock itself takes.
+/// Time spent in a system's functions, without that of the clock itself.
 struct SystemProfile {
   struct Share {
     double seconds = 0.0;
     long calls = 0;
   };
   Share law;        ///< right-hand sides, residuals, solutions, transitions
-  Share guards;     ///< their values
+  Share guards;     ///< values of guards
   Share recording;  ///< observables
 };
 
-/// The same system, timed.
-/// @param profile  outlives the system
+/// Wraps a system to measure the time spent in it.
+/// @param profile  receives the times; must outlive the system
 [[nodiscard]] std::unique_ptr<HybridSystem> profiled(std::unique_ptr<HybridSystem> system, SystemProfile& profile);
 
-/// The time that a system has is up.
+/// A system made by limited() has used up its time.
 class OutOfTime : public std::runtime_error {
  public:
   OutOfTime() : std::runtime_error("out of time") {}
 };
 
-/// For how long this thread has had a processor [s]; what else the machine does takes none of it.
+/// Processor time of this thread [s]; other load on the machine does not count.
 [[nodiscard]] double thread_seconds();
 
-/// The same system, whose equations and guards throw OutOfTime from an instant on.
-/// @param end  in thread_seconds()
+/// Wraps a system so that its equations and guards throw OutOfTime from an instant on.
+/// @param end  that instant, in thread_seconds()
 [[nodiscard]] std::unique_ptr<HybridSystem> limited(std::unique_ptr<HybridSystem> system, double end);
 
-/// The same system, which evaluates its observables wherever it evaluates its equations: what recording at output
-/// points only is measured against.
+/// Wraps a system so that it evaluates its observables with every evaluation of its equations. Shows what recording at
+/// output points only saves.
 [[nodiscard]] std::unique_ptr<HybridSystem> always_observed(std::unique_ptr<HybridSystem> system);
 
-/// The same system, to which every step of the program is the first part of one that many times as long: it watches
-/// what could happen after the step's end as well. With a factor of 10 what leaving out guards that cannot fire before
-/// the end of a step is measured against; with one of 1 the same system.
-/// @param factor  >= 1
+/// Wraps a system so that every step of the program is the first part of a longer one: guards that can only fire after
+/// the step's end are then evaluated, too. A factor of 10, compared with 1 (which changes nothing), shows what leaving
+/// out such guards saves.
+/// @param factor  length of the longer step over that of the step, >= 1
 [[nodiscard]] std::unique_ptr<HybridSystem> looking_beyond(std::unique_ptr<HybridSystem> system, double factor);
 
-/// The same system, whose integrated unknowns are changed by a share of themselves wherever a step of the program
-/// begins, and where they are shown: what its rates make of errors, and what is seen of them.
-/// @param shares  of the unknowns in turn: errors of several may be alike, or against each other
+/// Wraps a system so that its differential unknowns are disturbed at the beginning of every step of the program, and
+/// where they are observed. Shows how the system carries errors on, and how they appear in the history.
+/// @param shares  relative changes of every second unknown and of the others; of equal or opposite sign
 [[nodiscard]] std::unique_ptr<HybridSystem> disturbed(std::unique_ptr<HybridSystem> system,
                                                       const std::array<double, 2>& shares);
 
-/// The same system, without closed forms of its work: what they save is measured against it.
+/// Wraps a system so that its work has no closed form. Shows what closed forms save.
 [[nodiscard]] std::unique_ptr<HybridSystem> always_integrated(std::unique_ptr<HybridSystem> system);
 
 }  // namespace monograin

@@ -20,11 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The direct form reproduces a stored curve but for the rounding of another compiler or library.
+// The direct form reproduces a stored curve but for the round-off of another compiler or library.
 constexpr double k_direct_tolerance = 1e-10;
-// Integrated curves: so many times their rtol.
+// Tolerance of integrated curves, over their rtol.
 constexpr double k_rtol_multiple = 50.0;
-// Of that, what a stored curve may be wrong that had to be integrated itself.
+// Tolerances of a stored curve that had to be integrated itself, over those of the scenario.
 constexpr double k_tighter = 1e-2;
 
 constexpr std::size_t k_most_faults = 4;  // of one run: one change may touch every column
@@ -40,8 +40,8 @@ Run run_with(CheckedScenario scenario, std::string_view integrator) {
   return run_scenario(scenario);
 }
 
-/// A history with the squares of contact radii: they begin like a root, of which an overlap that is wrong by 1e-12
-/// makes a millionth where an event has just been reached.
+/// A history with the squares of contact radii. A contact radius begins like a square root: an overlap that is wrong by
+/// 1e-12 R0 makes it wrong by 1e-6 R0 just after first touch.
 Table with_smooth_columns(const Table& history) {
   Table smooth(history.columns());
   std::vector<double> row;
@@ -118,7 +118,7 @@ RegressionResult compare(const Run& run, const fs::path& curves) {
   return result;
 }
 
-/// Stored curves that no scenario stands for any more.
+/// Stored curves whose scenario no longer exists.
 std::vector<RegressionResult> orphaned_curves(const std::vector<fs::path>& scenarios, const fs::path& curves) {
   std::set<std::string> names;
   for (const fs::path& file : scenarios) names.insert(file.stem().string());

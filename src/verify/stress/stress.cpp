@@ -29,14 +29,14 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* k_report = "report.txt";
 constexpr const char* k_generator_rule = "generator";
-// Of the time, where there is something to shrink.
+// Share of the time for drawing and checking, if there are failures to shrink.
 constexpr double k_share_of_drawing = 0.75;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // --- checking scenes
 
-/// The verdict on a scene; nothing where it is not admissible.
+/// The verdict on a scene; nothing if the scene is not admissible.
 std::optional<StressVerdict> verdict_of(const StressScene& scene, const fs::path& tables, double seconds) {
   try {
     const CheckedScenario scenario = parse_stress_text(scenario_text(scene), tables);
@@ -59,7 +59,7 @@ CheckedScene check_drawn(const StressOptions& options, std::uint64_t index, cons
     checked.scene = draw_stress_scene(options.seed, index, tables, options.models);
     const CheckedScenario scenario = parse_stress_text(scenario_text(checked.scene), tables);
     checked.verdict = check_scene(scenario, {.seconds = most_seconds_of(scenario), .copies = index});
-  } catch (const std::exception& error) {  // of the generator: a scene that is not admissible
+  } catch (const std::exception& error) {  // the generator has made a scene that is not admissible
     checked.verdict.violations.push_back({k_generator_rule, error.what()});
   }
   checked.seconds = seconds_since(start);
@@ -72,12 +72,12 @@ std::string names_of(const DrawnModels& models) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-/// A sequence of scenes, for the reader.
+/// Name of a sequence of scenes, for readers.
 std::string sequence_name(std::uint64_t seed, const DrawnModels& models) {
   return models.empty() ? fmt::format("seed {}", seed) : fmt::format("seed {} of {}", seed, names_of(models));
 }
 
-/// Options of the command that draws the sequence.
+/// Options with which the command draws the sequence.
 std::string sequence_options(std::uint64_t seed, const DrawnModels& models) {
   return models.empty() ? fmt::format("--seed {}", seed) : fmt::format("--model {} --seed {}", names_of(models), seed);
 }
@@ -154,11 +154,11 @@ class StressTest {
     options_.progress(report_.scenes, options_.scenes > 0 ? std::min(options_.scenes, by_time) : by_time);
   }
 
-  /// The first of each kind are worth the time.
+  /// Shrinks the scene of a failure if it is the first one of its model and rule, and stores the scene's text.
   void make_smaller(StressFailure& failure) {
     if (failure.check == k_generator_rule) return;
     StressScene scene = draw_stress_scene(options_.seed, failure.index, tables_, options_.models);
-    // What takes too long would do so many times.
+    // A scene that takes too long would take as long for every candidate.
     if (failure.check != k_time_rule && time_left() > 0.0 && shrunk_.insert({failure.model, failure.check}).second) {
       scene = shrink(std::move(scene), [&](const StressScene& candidate) {
         if (!(time_left() > 0.0)) return false;

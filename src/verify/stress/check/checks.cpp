@@ -30,23 +30,24 @@
 namespace monograin {
 namespace {
 
-// What a scene does with changed data is measured by a few samples of all directions; the worst is a few times worse.
+// The response of a scene to changed data is measured by a few samples of all directions of change; the worst response
+// is a few times larger.
 constexpr double k_sample_multiple = 10.0;
 constexpr std::uint64_t k_samples = 8;  // in pairs
-// A run is stuck that takes so many times as long as the scene's own, or its reference.
+// A run is stuck if it takes this many times as long as the scene's own run or its reference.
 constexpr double k_patience = 4.0;
 // Overlaps over R0 below which there is nothing but round-off (docs/reference/limits.md).
 constexpr double k_resolution = 1e-12;
-// Sum of the squares of normals along a direction that they do not span: rounding.
+// Sum of the squared components of normals along a direction that they do not span: round-off.
 constexpr double k_same_directions = 1e-9;
 constexpr double k_slower = 1e6;
 constexpr Magnification k_magnification{.length = 731.0585, .stress = 1.618034e-5};
-// Turned copies of a scene that a limit has ended, and by how many more their distance from each other is measured.
+// Number of turned copies of a scene that a limit has ended, and of further copies that measure their mutual distance.
 constexpr std::uint64_t k_rotations = 4;
-// Relative tolerance of the integrated forms that the direct one is held against.
+// Relative tolerance of the integrated forms with which the direct form is compared.
 constexpr double k_form_rtol = 1e-8;
 
-/// The larger of two, of which not a number is the largest.
+/// The larger of two numbers; nan counts as the largest.
 double worse(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
 std::string quoted(const Run& run) {
@@ -55,16 +56,16 @@ std::string quoted(const Run& run) {
 
 double end_time(const Run& run) { return run.record.history.at(run.record.history.row_count() - 1, 0); }
 
-/// Whether two runs end at one instant, to a tolerance, where plastic strain grows without bound: the strain runs
-/// through other limits there, and either may be the one that is met.
+/// True if two runs end at the same instant, to a tolerance, where plastic strain grows without bound: the strain
+/// passes other limits there, and either run may stop at any of them.
 bool run_away_together(const Run& a, const Run& b, double tolerance) {
   const auto runs_away = [](const Run& run) { return run.record.limit == Limit::loss_of_uniqueness; };
   if (!runs_away(a) && !runs_away(b)) return false;
   return std::abs(end_time(a) - end_time(b)) <= tolerance * std::max(end_time(a), end_time(b));
 }
 
-/// How long the step in which a run has ended takes: as its program says, or where that gives a rate, as a ramp of the
-/// largest value that was recorded of what it controls.
+/// Duration [s] of the step in which a run has ended: as prescribed; if a rate is prescribed, the time for a ramp as
+/// large as the largest recorded value of the controlled quantity.
 double seconds_of_last_step(const Run& run) {
   const Table& table = run.record.history;
   const auto index = static_cast<std::size_t>(table.at(table.row_count() - 1, *table.find("step"))) - 1;
@@ -82,14 +83,14 @@ double seconds_of_last_step(const Run& run) {
   return seconds;
 }
 
-/// How far apart the ends of two runs are, over the step in which the first has ended.
+/// Time between the ends of two runs, over the step in which the first has ended.
 double ends_apart(const Run& a, const Run& b) {
   const double apart = std::abs(end_time(a) - end_time(b));
   return apart <= k_stress_rounding * end_time(a) ? 0.0 : apart / seconds_of_last_step(a);
 }
 
-/// Whether a limit ends a run where another one that goes on has a corner of the program: where that leads to a limit
-/// and no farther, rounding decides.
+/// True if a limit ends a run at a corner of the program that another run passes. If the program leads just up to a
+/// limit, round-off decides whether it is met.
 bool stops_at_corner(const Run& run, const Run& other, double tolerance) {
   if (run.record.status == RunStatus::complete) return false;
   const Table& events = other.record.events;
@@ -101,7 +102,7 @@ bool stops_at_corner(const Run& run, const Run& other, double tolerance) {
   return false;
 }
 
-/// Where the first of those runs that a limit has ended stands.
+/// Earliest end [s] of the runs that a limit has ended; infinity if there is none.
 double first_end(const std::vector<Run>& runs) {
   double first = std::numeric_limits<double>::infinity();
   for (const Run& run : runs) {
@@ -111,7 +112,9 @@ double first_end(const std::vector<Run>& runs) {
   return first;
 }
 
-/// Whether a free centre lies elsewhere in one row than in another, by as much as two such places may differ by.
+/// True if a free centre has different positions in two rows.
+/// @param tolerance   over the largest component of its position
+/// @param negligible  over R0
 bool is_elsewhere(const Run& run, std::size_t row, std::size_t other, double tolerance, double negligible) {
   const Table& table = run.record.history;
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
@@ -122,8 +125,8 @@ bool is_elsewhere(const Run& run, std::size_t row, std::size_t other, double tol
   return false;
 }
 
-/// Whether a free centre that nothing holds any more lies elsewhere than at first: walls that bear nothing have taken
-/// it along, and do not take it back.
+/// True if no contact bears a force at the end of a run, and a free centre is then not where it was at first: idle
+/// contacts have moved it, and do not move it back.
 bool is_left_elsewhere(const Run& run, double tolerance, double negligible) {
   const Table& table = run.record.history;
   const std::size_t last = table.row_count() - 1;
@@ -134,8 +137,8 @@ bool is_left_elsewhere(const Run& run, double tolerance, double negligible) {
   return is_elsewhere(run, 0, last, tolerance, negligible);
 }
 
-/// Whether contacts hold a centre in every direction in a row. Walls that follow a force do not. Along what is left,
-/// walls that bear nothing take it along.
+/// True if loaded contacts hold a centre in every direction in a row. Force-controlled walls do not hold it. Along
+/// directions without support, idle contacts move the centre.
 bool is_held(const Run& run, std::span<const ContactClass> classes, std::size_t row, double tolerance) {
   const Table& table = run.record.history;
   const double least = tolerance * largest_of_kind(table, "force");
@@ -149,10 +152,10 @@ bool is_held(const Run& run, std::span<const ContactClass> classes, std::size_t 
   return solver.eigenvalues()[0] > k_same_directions;
 }
 
-/// Whether an integrator has given up for a stated reason, which says nothing of how the scene goes on.
+/// True if an integrator has given up for a stated reason: the run then does not show how the scene goes on.
 bool has_given_up(const Run& run) { return run.record.status == RunStatus::failed && !stated_end(run).empty(); }
 
-/// Whether contacts are nowhere deeper than what is rounding in lengths of the order of R0.
+/// True if no overlap ever exceeds the round-off of lengths of the order of R0.
 bool is_below_resolution(const Run& run) {
   return run.scenario.radius > 0.0 && deepest_overlap(run.record.history) < k_resolution * run.scenario.radius;
 }
@@ -166,7 +169,7 @@ class SceneCheck {
     try {
       check_all();
     } catch (const OutOfTime&) {
-      // Where the scene itself or its reference has taken much of the time, what they would be compared with does, too.
+      // If the scene itself or its reference has taken much of the time, its copies are expected to take it as well.
       verdict_.is_cut_short = seconds_of_run() < k_patience * own_seconds_;
       if (!verdict_.is_cut_short) {
         report(k_time_rule,
@@ -184,9 +187,9 @@ class SceneCheck {
     own_ = &*run;
     verdict_.end = stated_end(*run);
     verdict_.violations = check_run(*run);
-    // What is broken already would be found again by every comparison.
+    // Every comparison would find these violations again.
     if (!verdict_.violations.empty()) return;
-    // The scheme without error control says nothing of how near it comes; its copies take the same steps.
+    // The scheme without error control has no tolerance, but its copies take the same steps.
     if (run->integrator.used == integrators::k_explicit) {
       reference_ = run;
       compares_curves_ = false;
@@ -195,15 +198,15 @@ class SceneCheck {
       return check_copies(*run);
     }
     const bool has_ended = run->record.status != RunStatus::complete;
-    // Rows at an integrator's own steps have none beside them in other runs, and contacts of rounding have no curves.
-    // Where a limit has ended them, others have to end there, too.
+    // Rows at an integrator's own steps have no counterparts in other runs, and contacts of the size of round-off have
+    // no curves. Only the limits at which such runs end are compared.
     compares_curves_ = scenario_.output.points > 0 && !is_below_resolution(*run);
     if (!compares_curves_ && !has_ended) return;
 
     const bool is_direct = run->integrator.is_direct();
     reference_ = is_direct ? run : try_run(as_reference(scenario_), "reference form");
     if (!reference_) return;
-    // What takes its time takes as long beside it.
+    // The reference's time counts, too: runs with changed data take as long.
     own_seconds_ = std::max(own_seconds_, seconds_of_run());
     if (!is_direct) verdict_.violations = check_run(*reference_);
     if (!verdict_.violations.empty()) return;
@@ -217,7 +220,7 @@ class SceneCheck {
     check_copies(*run);
   }
 
-  /// What the scene's own run may be wrong by.
+  /// Sets the tolerances of comparisons with the scene's own run.
   void measure_tolerance() {
     const bool is_direct = own_->integrator.is_direct();
     share_ = is_direct ? k_stress_rounding : std::max(scenario_.numerics.rtol, k_finest_rtol);
@@ -229,9 +232,9 @@ class SceneCheck {
                 .length = k_stress_rounding * scenario_.radius};
   }
 
-  // --- copies of the scene that must do what it does
+  // --- copies of the scene that must agree with it
 
-  /// All copies of a scene that a limit has ended; of a complete one those that the effort asks for.
+  /// Checks all copies of a scene that a limit has ended; of a complete scene, those that the effort asks for.
   void check_copies(const Run& run) {
     constexpr std::uint64_t k_kinds = 4;
     const bool needs_all = run.record.status != RunStatus::complete || effort_.copies == StressEffort::k_all_copies;
@@ -263,7 +266,7 @@ class SceneCheck {
     if (other) compare("order", by_wall(run), by_wall(*other), {.is_same_form = true, .copies = turned_copies(0)});
   }
 
-  /// The run of a turned copy, turned back; nothing where there is none.
+  /// Run of a turned copy, turned back; nothing if the scene cannot be turned.
   std::optional<Run> turned_back(std::uint64_t sample) {
     const Eigen::Matrix3d rotation = stress_rotation(sample);
     const std::optional<CheckedScenario> copy = turned(scenario_, rotation);
@@ -271,8 +274,8 @@ class SceneCheck {
     return run ? std::optional(by_wall(*run, rotation)) : std::nullopt;
   }
 
-  /// Turned copies beside one of them: normals are rounded, too, and how far such copies are from each other shows what
-  /// that does to the scene.
+  /// Makes other turned copies than that of a sample. The distances between turned copies show the effect of round-off
+  /// of the normals on the scene.
   std::function<std::vector<Run>()> turned_copies(std::uint64_t sample) {
     return [this, sample] {
       std::vector<Run> copies;
@@ -288,7 +291,7 @@ class SceneCheck {
     if (other) compare("turned", by_wall(run), *other, {.is_same_form = true, .copies = turned_copies(sample)});
   }
 
-  /// The direct form against an integrated one, an explicit form against the implicit one.
+  /// Compares the reference with a run by another integrator; the direct form with one at the tolerance k_form_rtol.
   void check_form(const Run& run, const char* integrator) {
     CheckedScenario other = with_integrator(scenario_, integrator);
     if (run.integrator.is_direct()) {
@@ -332,7 +335,7 @@ class SceneCheck {
     }
   }
 
-  /// Reference runs of a scene with data changed by up to that share.
+  /// Reference runs of a scene whose data are changed by up to a share.
   std::vector<Run> runs_beside(const CheckedScenario& scenario, double share) {
     std::vector<Run> runs;
     for (std::uint64_t sample = 0; sample < k_samples; ++sample) {
@@ -342,7 +345,7 @@ class SceneCheck {
       } catch (const OutOfTime&) {
         throw;
       } catch (const std::exception&) {
-        continue;  // changed out of what is admissible
+        continue;  // the changed data are not admissible
       }
     }
     return runs;
@@ -353,7 +356,7 @@ class SceneCheck {
     return *neighbours_;
   }
 
-  /// How far changed data take what is measured between two runs.
+  /// Largest measured distance of runs with changed data from a reference; nan without any runs.
   template <class Measure>
   double spread(const Run& reference, const std::vector<Run>& runs, Measure&& measure) {
     double widest = runs.empty() ? k_nan : 0.0;
@@ -361,14 +364,14 @@ class SceneCheck {
     return widest;
   }
 
-  /// How far the scene's own form carries on errors of its states, which a reference in closed form does not have. One
-  /// that is integrated carries on those of its own, but may know its states better than to what is tolerated of a
-  /// step.
+  /// Largest measured distance that errors in the states cause in the scene's own form, if that is integrated. A
+  /// reference in closed form has no such errors. An integrated reference has its own, but may know its states better
+  /// than to the tolerance of a step.
   template <class Measure>
   double spread_of_states(Measure&& measure) {
     if (own_->integrator.is_direct()) return 0.0;
     double widest = 0.0;
-    // By as much as they may be off, less what the samples are counted by.
+    // States are disturbed by their tolerated error over k_sample_multiple, by which the spread is multiplied later.
     const double most = (reference_->integrator.is_direct() ? tolerance_ : share_) / k_sample_multiple;
     for (const auto& shares : {std::array{most, most}, {-most, -most}, {most, -most}, {-most, most}}) {
       ++verdict_.runs;
@@ -380,14 +383,14 @@ class SceneCheck {
       } catch (const OutOfTime&) {
         throw;
       } catch (const std::exception&) {
-        continue;  // changed out of what is admissible
+        continue;  // the disturbed state is not admissible
       }
     }
     return widest;
   }
 
-  /// Whether something holds of the reference and of its neighbours, those farthest away included that an integrator
-  /// with the errors it may have cannot tell from it.
+  /// True if the reference and all runs with changed data have the same property, also with data changed by as much as
+  /// an integrator's tolerated errors.
   template <class Property>
   bool all_share(Property&& property) {
     const auto own = property(*reference_);
@@ -404,7 +407,7 @@ class SceneCheck {
     return distance_of(a, b, larger, std::numeric_limits<double>::infinity());
   }
 
-  /// At the last rows of two runs; not a number where either has not come to its end.
+  /// Distance at the last rows of two runs; nan if either is not complete.
   [[nodiscard]] Distance between_ends(const Run& a, const Run& b) const {
     if (a.record.status != RunStatus::complete || b.record.status != RunStatus::complete) return {k_nan, {}, 0.0};
     const Table& first = a.record.history;
@@ -412,11 +415,11 @@ class SceneCheck {
     return distance_at(first, second, {{first.row_count() - 1, second.row_count() - 1}}, nothing_);
   }
 
-  /// What two runs that are compared have to do with each other.
+  /// How two runs that are compared are related.
   struct Kinship {
-    Magnification larger = {};  ///< the second by the first
-    bool is_same_form = false;  ///< whether the first gives up where the second does
-    /// Runs whose distance from each other is allowed.
+    Magnification larger = {};  ///< factors by which the second is larger than the first
+    bool is_same_form = false;  ///< the second must give up where the first does
+    /// Makes runs whose distance from each other is allowed.
     std::function<std::vector<Run>()> copies = [] { return std::vector<Run>(); };
   };
 
@@ -435,23 +438,23 @@ class SceneCheck {
     const EventNames events = is_cut_short ? EventNames{} : sorted_events(actual);
     if (has_same_end && ends <= tolerance_ && events == expected_events && apart.value <= tolerance_) return;
 
-    // A spread that is no number is without bounds: an empty column, or data that cannot be changed.
+    // A spread of nan allows any distance: a column is empty, or the data cannot be changed.
     const std::vector<Run> copies = kinship.copies();
     const auto curves_apart = [this](const Run& a, const Run& b) { return between(a, b).value; };
     double widest = spread(*reference_, neighbours(), curves_apart);
     if (!copies.empty()) widest = worse(widest, spread(copies.front(), copies, curves_apart));
-    // Where changed data have met a limit already, a state is not determined.
+    // The state is not determined from where a run with changed data has met a limit.
     const Distance known = distance_of(expected, actual, kinship.larger, first_end(neighbours()));
     const auto is_beyond = [&](double spread) { return !(known.value <= tolerance_ + k_sample_multiple * spread); };
     const bool is_apart = is_beyond(widest) && is_beyond(spread_of_states(curves_apart));
-    // Where a decision is as near as errors are large, either way is right.
+    // If errors may decide which events happen, either outcome is right.
     const bool is_toss = events != expected_events && !all_share(sorted_events);
     if (is_apart && !std::isnan(widest) && !is_toss) {
       report(check, fmt::format("{} differs by {:.3g}, above {:.3g} ({:.3g} with data changed by {:.1g}), t = {:.9g} s",
                                 known.column, known.value, tolerance_, widest, share_, known.time));
       return;
     }
-    // A copy does what the scene does but for rounding, which decides only of limits that the program just reaches.
+    // Copies differ by round-off only, which may decide only about limits that the program just reaches.
     const bool is_met_at_corner =
         stops_at_corner(expected, actual, tolerance_) || stops_at_corner(actual, expected, tolerance_);
     if (!has_same_end && ((kinship.is_same_form && !is_met_at_corner) || all_share(stated_end))) {
@@ -478,13 +481,13 @@ class SceneCheck {
     verdict_.is_ill_conditioned = true;
   }
 
-  /// Reports a broken rule once: the first of several copies that break it says enough.
+  /// Reports a broken rule once, for the first of several copies that break it.
   void report(std::string check, std::string detail) {
     if (std::ranges::count(verdict_.violations, check, &Violation::check) > 0) return;
     verdict_.violations.push_back({std::move(check), std::move(detail)});
   }
 
-  /// A program knows its steps, not the seconds that they take: no digit may depend on them.
+  /// Checks that no digit of a history depends on the seconds that the steps of its program take.
   void check_rate(const Run& run) {
     const std::optional<Run> other = try_run(slower(scenario_, k_slower), "slower");
     if (!other) return;
@@ -496,7 +499,7 @@ class SceneCheck {
     }
   }
 
-  /// A program that stops in the middle of a step and goes on ends where it would have ended.
+  /// Checks that a program with a step cut in two ends in the same state.
   void check_restart(const Run& run) {
     std::size_t cut = 0;
     const std::optional<CheckedScenario> halves = halved(scenario_, cut);
@@ -508,7 +511,7 @@ class SceneCheck {
     const double widest =
         spread(*reference_, neighbours(), [this](const Run& a, const Run& b) { return between_ends(a, b).value; });
     const auto is_within = [&](double spread) { return apart.value <= tolerance_ + k_sample_multiple * spread; };
-    // Two runs each have errors of their own, which the scene carries on.
+    // Each of the two runs has errors of its own, which the scene may magnify.
     if (std::isnan(widest) || is_within(widest) ||
         is_within(spread_of_states([this](const Run& a, const Run& b) { return between(a, b).value; }))) {
       verdict_.is_ill_conditioned = true;
@@ -519,7 +522,7 @@ class SceneCheck {
                        cut + 1, apart.column, apart.value, tolerance_, widest, quoted(*other)));
   }
 
-  /// An elastic law goes back the way it came.
+  /// Checks that unloading retraces loading if the law is elastic.
   void check_retrace(const Run& of_scene) {
     const std::optional<CheckedScenario> there = forth_and_back(scenario_);
     if (!there || !(is_elastic(scenario_) || stays_elastic(of_scene))) return;
@@ -539,7 +542,7 @@ class SceneCheck {
           is_held(*run, scene.classes, row, tolerance_) || !is_elsewhere(*run, row, back, tolerance_, nothing_.share);
       (has_own_place ? pairs : pairs_elsewhere).emplace_back(row, back);
     }
-    // Where a centre lies that contacts do not hold depends on how it came there; what they bear does not.
+    // The position of a centre that contacts do not hold depends on its path; forces do not.
     Negligible nothing_there = nothing_;
     nothing_there.has_any_place = true;
     Distance apart = distance_at(table, table, pairs, nothing_);
@@ -559,14 +562,14 @@ class SceneCheck {
   const CheckedScenario& scenario_;
   StressEffort effort_;
   double end_;
-  double run_begin_ = thread_seconds();  ///< of the last run
-  double own_seconds_ = 0.0;             ///< that the scene's own run, or its reference, has taken
-  const Run* own_ = nullptr;             ///< the scene's run, while all is checked
+  double run_begin_ = thread_seconds();  ///< when the last run began
+  double own_seconds_ = 0.0;             ///< time of the scene's own run or its reference, whichever took longer
+  const Run* own_ = nullptr;             ///< the scene's own run
   std::optional<Run> reference_;
   double tolerance_ = 0.0;
   Negligible nothing_;
   bool compares_curves_ = true;
-  double share_ = 0.0;  ///< of the data, that errors of the runs amount to
+  double share_ = 0.0;  ///< relative change of the data that is equivalent to errors of the runs
   std::optional<std::vector<Run>> neighbours_, far_neighbours_;
   StressVerdict verdict_;
 };

@@ -11,7 +11,7 @@ namespace {
 
 bool is_energy(const Column& column) { return column.unit == "J"; }
 
-/// Of a material point or a packing: directions, invariants and parts of one strain.
+/// True for a strain of a material point or a packing: a direction, an invariant or a part of one tensor.
 bool is_strain(const Column& column) {
   return column.name.starts_with("strain") || column.name.starts_with("plastic_strain") || column.name == "phi";
 }
@@ -23,7 +23,8 @@ bool is_stress(const Column& column) {
 /// True for a column of a free centre: the components of one vector, whose axes are only a choice.
 bool is_centre(const Column& column) { return column.name.starts_with("centre_"); }
 
-/// Against what differences of a column count: magnitudes of one kind may cancel in one of them.
+/// Magnitude to which differences of a column are related: the largest of all related columns, because terms of that
+/// magnitude may cancel in one of them.
 double scale_of(const Table& table, std::size_t column) {
   const Column& own = table.columns()[column];
   for (const auto is_kin : {is_energy, is_strain, is_stress, is_centre}) {
@@ -37,18 +38,19 @@ double scale_of(const Table& table, std::size_t column) {
   return largest_of_kind(table, kind_of(own));
 }
 
-/// Not what says where a row is, nor what has rules of its own.
+/// False for columns that identify a row, and for those with rules of their own.
 bool is_compared(const Column& column) {
   return !column.holds_words() && column.name != "time" && column.name != "step" && column.name != "row" &&
          column.name != "yield_function" && column.name != "coordination_number" && kind_of(column) != "pressure";
 }
 
-/// Where a free centre lies, and where walls are by it; one under no force goes along.
+/// True for a position of a free centre, or of a wall relative to it. A centre under no force follows idle contacts.
 bool is_place(const Column& column) {
   return is_centre(column) || kind_of(column) == "overlap" || kind_of(column) == "displacement";
 }
 
-/// Where a column is empty on one side of an event, its value on the other side of the one that a row lies beside.
+/// Value of a column beyond an event beside a row, if the column is empty on one side of that event; else nothing.
+/// @param step_share  largest distance of the event from the row, over the duration of the step
 std::optional<double> beyond_event(const Table& table, std::size_t row, std::size_t column, double step_share) {
   const auto step = *table.find("step");
   const auto is_empty = [&](std::size_t r) { return std::isnan(table.at(r, column)); };
@@ -76,18 +78,18 @@ double factor_of(const std::string& unit, const Magnification& larger) {
   return unit == "J" ? larger.stress * std::pow(larger.length, 3) : 1.0;
 }
 
-/// A column of two tables, and by what measure its values are compared.
+/// A column of two tables, and how its values are compared.
 struct ColumnPair {
   const Table& first;
   const Table& second;
   std::size_t column = 0;
-  double factor = 1.0;   ///< by which values of the second are larger
-  double scale = 0.0;    ///< largest magnitude
-  bool is_root = false;  ///< the square of its distance from the origin is smooth
+  double factor = 1.0;   ///< by which values of the second table are larger
+  double scale = 0.0;    ///< largest magnitude, in units of the first table
+  bool is_root = false;  ///< the square of its distance from the origin is smooth at first touch
   double origin = 0.0;
-  double floor = 0.0;  ///< differences below it are none
+  double floor = 0.0;  ///< smaller differences do not count
 
-  /// Values over which a contact's first touch is smooth.
+  /// Function of a value that is smooth at first touch.
   [[nodiscard]] double smooth(double value) const { return is_root ? (value - origin) * (value - origin) : value; }
   [[nodiscard]] double unit() const { return is_root ? scale * scale : scale; }
   /// Distance of two values, each from the origin.
@@ -101,7 +103,8 @@ ColumnPair pair_of(const Table& first, const Table& second, std::size_t c, const
   const Column& column = first.columns()[c];
   const double factor = factor_of(column.unit, larger);
   const double scale = std::max(scale_of(first, c), scale_of(second, c) / factor);
-  // The area of a contact is smooth at first touch, its root is not; nor is the margin, which is 1 less such roots.
+  // The area of a contact is smooth at first touch. Its radius, a square root, is not, nor is the margin: 1 less such
+  // roots.
   const bool is_margin = column.name == "margin";
   return {.first = first,
           .second = second,
@@ -114,7 +117,8 @@ ColumnPair pair_of(const Table& first, const Table& second, std::size_t c, const
                    (is_energy(column) ? nothing.energy_share * scale : 0.0)};
 }
 
-/// Both values at a pair of rows, from the origin; where only one is empty, its value on the other side of an event.
+/// Both values at a pair of rows, from the origin. If only one is empty, a value beyond an event beside its row is
+/// used.
 std::pair<double, double> values_at(const ColumnPair& pair, std::size_t a, std::size_t b, double step_share) {
   double x = pair.first.at(a, pair.column) - pair.origin;
   double y = pair.second.at(b, pair.column) / pair.factor - pair.origin;
@@ -202,7 +206,7 @@ Distance distance_at(const Table& first, const Table& second,
       if (std::isnan(x - y)) return {x - y, first.columns()[c].name, first.at(a, 0)};
       const double apart = pair.apart(x, y);
       if (!(apart > worst.value * pair.unit())) continue;
-      // What is steep over the overlap is known as well as that.
+      // A quantity that is steep over the overlap is known only as well as the overlap.
       const auto smooth = [&pair](double of) { return pair.smooth(of); };
       const double value = (apart - change_with_overlap(first, a, c, nothing.length, smooth)) / pair.unit();
       if (value > worst.value) worst = {value, first.columns()[c].name, first.at(a, 0)};

@@ -1,4 +1,4 @@
-/// How far the histories of two runs are apart.
+/// Distance between the histories of two runs.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,8 @@
 
 namespace monograin {
 
-/// By which factors lengths and stresses of one run are larger than those of another; forces and energies accordingly.
+/// Factors by which lengths and stresses of one run are larger than those of another. Those of forces and energies
+/// follow from them.
 struct Magnification {
   double length = 1.0;
   double stress = 1.0;
@@ -25,44 +26,47 @@ struct Distance {
   double time = 0.0;
 };
 
-/// "force" of "axial.force".
+/// Kind of a column: the part of its name after the last dot, "force" for "axial.force".
 [[nodiscard]] std::string_view kind_of(const Column& column);
 
+/// Largest absolute value in a column.
 [[nodiscard]] double largest_magnitude(const Table& table, std::size_t column);
 
-/// Over all columns of that kind.
+/// Largest absolute value in all columns of a kind.
 [[nodiscard]] double largest_of_kind(const Table& table, std::string_view kind);
 
-/// Of all contacts; below zero, a gap, where none closes.
+/// Largest overlap of all contacts [m]; negative, a gap, if no contact is made.
 [[nodiscard]] double deepest_overlap(const Table& table);
 
-/// What a column of a contact, or a value that follows from it, changes by where the overlap does by a length, as the
-/// rows beside this one show; those of a jump, within that length, do not.
+/// Change of a contact's column, or of a value that follows from it, when the overlap changes by a length [m]. The
+/// slope comes from the nearest rows whose overlap differs by more than that length, so that a jump does not count.
+/// @param value  the value that follows from an entry of the column
+/// @return 0 if the column belongs to no contact with an overlap
 [[nodiscard]] double change_with_overlap(const Table& table, std::size_t row, std::size_t column, double length,
                                          const std::function<double(double)>& value = std::identity());
 
-/// Rows at output points of a history.
+/// Indices of the rows at output points of a history.
 [[nodiscard]] std::vector<std::size_t> output_rows(const Table& table);
 
-/// A particle's own measures, and what share of them is nothing: an absolute tolerance, or rounding.
+/// Differences that do not count: shares of a particle's own units, as an absolute tolerance or round-off.
 struct Negligible {
-  Magnification unit;
-  double share = 0.0;
+  Magnification unit;          ///< the particle's units of length [m] and stress [Pa]
+  double share = 0.0;          ///< of those units
   double energy_share = 0.0;   ///< of the largest energy: the tolerance of the direct form's work
-  double step_share = 0.0;     ///< of a step: how far an event may be from where it belongs
-  double length = 0.0;         ///< rounding of an overlap, a difference of lengths of the order of R0
-  bool has_any_place = false;  ///< where a free centre lies is nothing, nor are walls by it
+  double step_share = 0.0;     ///< of a step: how far an event may be from its exact instant
+  double length = 0.0;         ///< round-off of an overlap [m], a difference of lengths of the order of R0
+  bool has_any_place = false;  ///< positions of a free centre, and of walls relative to it, do not count
 };
 
-/// At pairs of rows, without the pressure (a force over an area, both of which are compared; where both vanish their
-/// quotient has no digits) and the coordination number (a root of the packing fraction). Where a column is empty in one
-/// regime, a row beside an event may lie on either side of it.
-/// @param larger  the second by the first
+/// Distance of two histories at pairs of rows. Not compared are the pressure (a force over an area, which are compared
+/// themselves; the quotient has no digits where both vanish) and the coordination number (a square root of the packing
+/// fraction). If a column is empty in one regime, a row beside an event may be compared on either side of the event.
+/// @param larger  factors by which values of the second table are larger than those of the first
 [[nodiscard]] Distance distance_at(const Table& first, const Table& second,
                                    const std::vector<std::pair<std::size_t, std::size_t>>& rows,
                                    const Negligible& nothing = {}, const Magnification& larger = {});
 
-/// At the output points that both have, up to a time.
+/// Distance of two histories at the output points that both have, up to the time `last` [s].
 [[nodiscard]] Distance distance_between(const Table& first, const Table& second, const Negligible& nothing = {},
                                         const Magnification& larger = {},
                                         double last = std::numeric_limits<double>::infinity());

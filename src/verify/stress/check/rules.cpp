@@ -25,18 +25,18 @@ constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 
 // Error of a controlled integrator over its rtol (docs/performance.md).
 constexpr double k_rtol_multiple = 100.0;
-// The multiple for each step of a long program: errors of work have one sign, and add up (measured: 16).
+// Error over rtol for each step of a long program: errors of work have one sign and add up (measured: 16).
 constexpr double k_rtol_multiple_of_step = 25.0;
 // Two runs of the direct form: each is polished to 1e-12 of the largest values, and work is a sum of
 // quadratures.
 constexpr double k_direct_tolerance = 1e-10;
-// Error of that work over the tolerance it is asked for (measured: 0.0014).
+// Error of the direct form's work over rtol (measured: 0.0014).
 constexpr double k_direct_work = 1e-2;
-// Fall of the dissipation from which on models warn, over the work.
+// Largest fall of the dissipation, over the work, of which models need not warn.
 constexpr double k_tolerated_loss = 1e-6;
-// Events of one step of the program; a fifty-fold of what scenes show.
+// Events of one step of the program; fifty times as many as scenes show.
 constexpr std::size_t k_most_events_per_step = 200;
-// Where growth ends again and again, events between.
+// Events from one end of growth to the next, if growth ends again and again.
 constexpr std::size_t k_most_events_between_ends = 10;
 // Evaluations of equations and guards for each row, event and step of the program. Of 1,761 drawn scenes half of the
 // direct runs need 3 or fewer, 99 % 102, the worst 159. Of the integrated ones half need 7 to 162, by integrator, 99 %
@@ -45,11 +45,12 @@ constexpr long k_most_work_direct = 1000;
 constexpr double k_most_work_integrated = 20000.0;
 // Resultant of unit normals below which a class of walls does not act on the centre.
 constexpr double k_no_direction = 1e-6;
-// Of what is left of a force's way; of the largest force, what is small beside it.
+// Share of the rest of a force's ramp that check_hold() looks ahead, and of the largest force that is small beside it.
 constexpr double k_little = 1e-3;
-// Gaps at which a wall touches, over how deep a program presses: as well as that places are known.
+// Largest gap at which a wall touches, over the depth to which a program presses: the accuracy of positions.
 constexpr double k_touch = 1e-9;
-// What laws leave of forces that balance, over these: walls that align but for more than that balance no others.
+// Largest resultant, over the forces, that laws leave of forces in balance. Walls whose alignment is worse than this do
+// not balance each other.
 constexpr double k_left_over = 1e-9;
 
 double material(const CheckedScenario& scenario, const char* key) {
@@ -70,15 +71,15 @@ double stiffest_modulus(const Run& run) {
   return stiffest;
 }
 
-/// Rounding of an energy, overlaps being differences of lengths of the order of R0; or what an integrator takes for
-/// nothing.
+/// Energy [J] that counts as zero: the round-off of overlaps, which are differences of lengths of the order of R0, or
+/// an integrator's absolute tolerance.
 double energy_floor(const Run& run) {
   const double negligible = run.integrator.is_direct() ? 0.0 : own_absolute_tolerance(run) * softest(run.scenario);
   return std::max(k_stress_rounding * stiffest_modulus(run), negligible) * std::pow(run.scenario.radius, 3);
 }
 
-/// Rounding of the force of a contact that goes back, for the same reason: how stiff that is does not show in a curve
-/// along which the particle grows.
+/// Round-off of the force [N] of a contact that unloads: that of its overlap times its unloading stiffness, which does
+/// not show in a curve along which the particle grows. 0 without a column for the contact radius.
 double force_floor(const Run& run, std::size_t row, const std::string& wall) {
   const auto contact_radius = run.record.history.find(wall + ".contact_radius");
   if (!contact_radius) return 0.0;
@@ -147,8 +148,8 @@ void check_forces(const Run& run, Violations& found) {
   }
 }
 
-/// What the walls of a class are to press with at the end of a step, counted from 0; nothing where a displacement is
-/// prescribed.
+/// Force prescribed to the walls of a class at the end of a step; nothing if a displacement is prescribed.
+/// @param step  counted from 0
 std::optional<double> prescribed_force(const Channel& channel, std::size_t step) {
   std::optional<double> force;
   for (std::size_t k = 0; k <= step && k < channel.program.size(); ++k) {
@@ -161,8 +162,9 @@ std::optional<double> prescribed_force(const Channel& channel, std::size_t step)
   return force;
 }
 
-/// The column that shows what a channel of the program prescribes; none where it need not come to that: contacts of a
-/// free centre move with it, and no wall pulls one that does not adhere, or may have snapped off.
+/// Column that shows the quantity which a step prescribes to a channel; none if the column need not reach the target.
+/// Contacts of a free centre move with it, and a wall cannot pull a contact that does not adhere or may have snapped
+/// off.
 std::optional<std::string> column_of(const CheckedScenario& scenario, const Scene& scene, const Channel& channel,
                                      const Step& step) {
   const auto control = control_of(step.kind);
@@ -180,7 +182,7 @@ std::optional<std::string> column_of(const CheckedScenario& scenario, const Scen
   return fmt::format("{}.{}", channel.name, *control == Control::force ? "force" : "displacement");
 }
 
-/// What the last step prescribes is reached, unless something else may end it.
+/// Checks that the last step reaches its targets, unless a condition or a withdrawal may end it.
 void check_program(const Run& run, Violations& found) {
   if (run.record.status != RunStatus::complete) return;
   const Table& table = run.record.history;
@@ -200,9 +202,9 @@ void check_program(const Run& run, Violations& found) {
     const std::size_t last_row = table.row_count() - 1;
     const double last = table.at(last_row, column);
     const double scale = std::max(std::abs(target), largest_magnitude(table, column));
-    // What is rounded: strains of order one, lengths of the order of R0.
+    // Round-off is that of strains of order one, or of lengths of the order of R0.
     const double unit = scene.classes.empty() ? 1.0 : name->ends_with("displacement") ? run.scenario.radius : 0.0;
-    // The force of a shallow contact is known as well as its overlap, a difference of such lengths.
+    // The force of a shallow contact is known only as well as its overlap, a difference of such lengths.
     double by_overlap = 0.0;
     if (name->ends_with("force")) {
       by_overlap = std::max(change_with_overlap(table, last_row, column, k_stress_rounding * run.scenario.radius),
@@ -214,7 +216,7 @@ void check_program(const Run& run, Violations& found) {
   }
 }
 
-/// How deep a program presses at most, as far as contacts are not as wide as the particle.
+/// Greatest depth [m] to which a program presses, but at most R0.
 double deepest_asked_for(const CheckedScenario& scenario, const Scene& scene) {
   const Model& model = *find_model(scenario.model);
   const ModelInput input = model_input(scenario);
@@ -230,14 +232,14 @@ double deepest_asked_for(const CheckedScenario& scenario, const Scene& scene) {
   return std::min(deepest, scenario.radius);
 }
 
-/// That forces drive the centre away holds only where no contacts that touch could balance them.
+/// Checks the limit that forces drive the centre away: it is right only if no touching contacts could balance them.
 void check_hold(const Run& run, Violations& found) {
   if (run.record.limit != Limit::centre_driven_away || material(run.scenario, "surface_energy") > 0.0) return;
   const Table& table = run.record.history;
   const std::size_t last = table.row_count() - 1;
   const auto step = static_cast<std::size_t>(table.at(last, *table.find("step"))) - 1;
   const Scene scene = make_scene(run.scenario);
-  std::vector<std::pair<double, Eigen::Vector3d>> pushes;  // by prescribed forces, and their normals
+  std::vector<std::pair<double, Eigen::Vector3d>> pushes;  // prescribed force and sum of normals, for each class
   double largest = 0.0;
   std::vector<Eigen::Vector3d> others, bearing;
   const double touch = k_touch * deepest_asked_for(run.scenario, scene);
@@ -250,12 +252,12 @@ void check_hold(const Run& run, Violations& found) {
       return table.at(last, *table.find(fmt::format("{}.{}", contact_class.name, column)));
     };
     const std::string_view regime = table.word(last, *table.find(contact_class.name + ".regime"));
-    // Where contacts bear, they lift the surface of this law elsewhere: the overlap is no gap there.
+    // With a law that moves the surface, loaded contacts lift it elsewhere: a negative overlap is not the gap.
     const double overlap = at_end("overlap");
     const bool touches = find_model(run.scenario.model)->moves_surface ? regime != "open" || std::abs(overlap) <= touch
                                                                        : overlap >= -touch && regime != "separated";
     if (const auto force = prescribed_force(scene.channels[c], step)) {
-      // A little later, as others may have yet to begin.
+      // The force a little later in the step, because other forces may still be zero.
       pushes.emplace_back(std::lerp(at_end("force"), *force, k_little), normals);
       largest = std::max(largest, pushes.back().first);
     } else if (touches) {
@@ -267,8 +269,8 @@ void check_hold(const Run& run, Violations& found) {
   Eigen::Vector3d small_push = Eigen::Vector3d::Zero();
   for (const auto& [force, normals] : pushes) (force < k_little * largest ? small_push : push) += force * normals;
   if (!(push.norm() > 0.0) || !in_reaction_cone(push, others, k_left_over)) return;
-  // Beside forces so much larger it is not seen whether the small ones can be balanced. Where contacts bear, they may
-  // also give way.
+  // Beside much larger forces the test does not show whether small ones can be balanced: they are tested alone. Loaded
+  // contacts may also yield some of their force to balance them.
   for (const Eigen::Vector3d& normal : bearing) others.push_back(-normal);
   if (small_push.norm() > 0.0 && !in_reaction_cone(small_push, others, k_left_over)) return;
   found.push_back(
@@ -286,10 +288,10 @@ void check_energy(const Run& run, Violations& found) {
   // Fixed steps control no error.
   if (run.integrator.used == integrators::k_explicit) return;
   const bool is_conservative = is_elastic(run.scenario);
-  // What integrators make of a law that keeps its energy is found where they are compared with the direct form, with
-  // what the scene magnifies.
+  // Integrated runs of a conservative law are compared with the direct form instead, which allows for errors that the
+  // scene magnifies.
   if (is_conservative && !run.integrator.is_direct()) return;
-  // A law that gives back more than was put in has to say so.
+  // A law that returns more energy than it received has to warn of it.
   const bool is_warned = run.record.creates_energy;
   const double of_run = run.integrator.is_direct() ? direct_work_tolerance(run) : own_tolerance(run);
   const double share = is_conservative ? k_direct_tolerance : k_tolerated_loss;
@@ -299,7 +301,7 @@ void check_energy(const Run& run, Violations& found) {
     const double lost = table.at(row, *work) - table.at(row, *stored);
     if (dissipation) {
       const double gap = lost - table.at(row, *dissipation);
-      // Their sum is rounded once or twice.
+      // Round-off of the sum of three energies.
       if (std::abs(gap) > 8.0 * k_epsilon * scale) {
         found.push_back(
             {"energy-balance", fmt::format("work - stored energy - dissipation = {:.3g} of {:.6g} J, t = {:.9g} s", gap,
@@ -322,8 +324,8 @@ void check_energy(const Run& run, Violations& found) {
   }
 }
 
-/// Whether modes may answer each other without end: those of contacts that adhere to a free centre, or to a particle
-/// that grows until one is touched and no longer while it is (docs/reference/limits.md).
+/// True if modes may alternate without end: with adhesion and a free centre, or with a particle that grows until a
+/// contact is made and stops growing while it is closed (docs/reference/limits.md).
 bool may_go_on(const Run& run) {
   if (!(material(run.scenario, "surface_energy") > 0.0)) return false;
   if (run.scenario.loading.centre_is_free) return true;
@@ -357,7 +359,7 @@ void check_events(const Run& run, Violations& found) {
   const auto step = *events.find("step");
   const auto name = *events.find("event");
   for (std::size_t row = 0; row < events.row_count(); ++row) {
-    // Caps that meet change nothing: a wall that comes in meets those of all others.
+    // Intersecting caps change nothing, and the cap of a wall that comes in may intersect those of all others.
     if (events.word(row, name) == "caps-intersect") continue;
     if (++counts[events.at(row, step)] == k_most_events_per_step && !may_go_on(run)) {
       found.push_back(
@@ -374,13 +376,14 @@ void check_events(const Run& run, Violations& found) {
   }
 }
 
-/// A run takes work in proportion to what it shows. Fixed steps are as many as the tolerance says, and methods that are
-/// not made for stiff equations take many where these are; the program itself says when they are too many.
+/// Checks that the work of a run is in proportion to its rows, events and steps. Exempt are fixed steps, whose number
+/// follows from the tolerance, and methods that are not made for stiff equations: the engine fails if they take too
+/// many steps.
 void check_work(const Run& run, Violations& found) {
   if (!suits_stiff_equations(run.integrator.used)) return;
-  // The program has said so itself, and check_end asks whether it may.
+  // The run has failed because of its work; check_end() judges whether it may.
   if (run.record.failure == Failure::too_much_work) return;
-  // As a method of order 4 needs more at a finer tolerance.
+  // The number of steps of a method of order 4 grows as rtol^(-1/4).
   const double finer = std::pow(std::max(1.0, 1e-8 / run.scenario.numerics.rtol), 0.25);
   const long most = run.integrator.is_direct() ? k_most_work_direct : std::lround(k_most_work_integrated * finer);
   const Statistics& done = run.record.statistics;
@@ -455,7 +458,7 @@ std::vector<Violation> check_run(const Run& run) {
   check_energy(run, found);
   check_events(run, found);
   check_work(run, found);
-  // Fixed steps control no error, and have none of these.
+  // Fixed steps control no error: the rules below do not hold for them.
   if (run.integrator.used == integrators::k_explicit) return found;
   check_program(run, found);
   if (const auto check = find_model(run.scenario.model)->check) check(checked, found);
@@ -466,7 +469,7 @@ std::string stated_end(const Run& run) {
   const RunRecord& record = run.record;
   if (record.status == RunStatus::complete) return "complete";
   if (record.status == RunStatus::failed) return stated_failure(run);
-  // Two sentences for one place: walls push the centre where forces do.
+  // The two limits describe one situation: whether walls or forces push the centre does not matter.
   if (record.limit == Limit::centre_driven_away) return std::string(code(Limit::centre_not_held));
   const bool is_stated = record.limit && record.limit != Limit::no_solution && record.limit != Limit::unequal_durations;
   return is_stated ? std::string(code(*record.limit)) : std::string();

@@ -1,4 +1,4 @@
-/// What must hold of every run by itself, whatever its model, walls, program and integrator.
+/// Rules that every run has to keep by itself, whatever its model, walls, program and integrator.
 #pragma once
 
 #include <limits>
@@ -12,17 +12,18 @@
 
 namespace monograin {
 
-/// Finer tolerances of an integrator are not kept: round-off of a scene's own equations may be larger
+/// Finest rtol that an integrator is expected to keep: the round-off of a scene's own equations may exceed finer ones
 /// (docs/reference/limits.md).
 inline constexpr double k_finest_rtol = 1e-11;
 
-/// Changes of a scene's data that stand for rounding on the way from a text to a state.
+/// Relative change of a scene's data that stands for round-off on the path from a text to a state.
 inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-/// What must hold of a run by itself: it completes, or stops at a stated limit that no touching wall contradicts; every
-/// value is finite; contacts without adhesion do not pull; the dissipation never falls without a warning; monotone
-/// quantities do not shrink; events come to an end; work is in proportion to rows, events and steps; the identities of
-/// the columns hold.
+/// Checks a run by itself: it completes, or stops at a stated limit that no touching wall contradicts; every value is
+/// finite; contacts without adhesion do not pull; the dissipation never falls without a warning; monotone quantities do
+/// not shrink; events come to an end; work is in proportion to rows, events and steps; the identities of the columns
+/// hold.
+/// @return the rules that the run breaks
 [[nodiscard]] std::vector<Violation> check_run(const Run& run);
 
 /// How a run has ended: "complete", the code of the model's limit, or the reason of a failure; empty where none is
@@ -32,23 +33,23 @@ inline constexpr double k_stress_rounding = 16.0 * std::numeric_limits<double>::
 /// Steps of the longest program, cycles written out.
 [[nodiscard]] std::size_t step_count(const CheckedScenario& scenario);
 
-/// What the work of a run of the direct form may be wrong by, over the largest energy; 0 for other runs.
+/// Tolerated error of the work in a run of the direct form, over the largest energy; 0 for other runs.
 [[nodiscard]] double direct_work_tolerance(const Run& run);
 
-/// Error of a run's own that its rules have to grant, over the largest values.
+/// Tolerated relative error of a run: over the largest value of each kind of column.
 [[nodiscard]] double own_tolerance(const Run& run);
 
-/// Error of a run's own that has no largest value, over units of the particle: adds up as the relative one does, and is
-/// held to be no finer.
+/// Tolerated absolute error of a run, over the particle's own units of each quantity: own_tolerance() with atol in
+/// place of rtol; round-off for the direct form.
 [[nodiscard]] double own_absolute_tolerance(const Run& run);
 
 /// The softest of a material's moduli and strengths.
 [[nodiscard]] double softest(const CheckedScenario& scenario);
 
-/// Whether the law of a scenario goes back the way it came.
+/// True if unloading retraces loading by the law of a scenario.
 [[nodiscard]] bool is_elastic(const CheckedScenario& scenario);
 
-/// Whether a run of a model without walls has not yielded.
+/// True for a run of a model without walls that has not yielded.
 [[nodiscard]] bool stays_elastic(const Run& run);
 
 }  // namespace monograin

@@ -39,14 +39,14 @@ std::vector<WallSpec> specs_of(const CheckedScenario& scenario) {
 
 constexpr std::array<std::string_view, 3> k_centre{"centre_x", "centre_y", "centre_z"};
 
-/// The walls of a class, in one order.
+/// Names of the walls of a class, sorted and joined.
 std::string joined_walls(const ClassSummary& of) {
   std::vector<std::string> walls = of.walls;
   std::ranges::sort(walls);
   return fmt::format("{}", fmt::join(walls, "+"));
 }
 
-/// Where a column of the table by wall comes from.
+/// A column of the table by wall: its name there, and its index in the table by class.
 struct Source {
   std::string name;
   std::size_t column = 0;
@@ -55,7 +55,7 @@ struct Source {
 std::vector<Source> columns_by_wall(const Run& run) {
   const Table& table = run.record.history;
   std::vector<Source> sources;
-  std::map<std::string, std::vector<Source>> of_walls;  // in one order, whatever that of the classes
+  std::map<std::string, std::vector<Source>> of_walls;  // sorted by wall, whatever the order of the classes
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
     const std::string& name = table.columns()[c].name;
     const std::size_t dot = name.rfind('.');

@@ -20,7 +20,7 @@
 namespace monograin {
 namespace {
 
-constexpr std::uint64_t k_of_steps = 1000;  // from where seeds of steps begin
+constexpr std::uint64_t k_of_steps = 1000;  // added to the seeds for the changes of steps
 constexpr double k_reference_rtol = 1e-11;
 
 void for_each_program(CheckedScenario& scenario, const std::function<void(std::vector<Step>&, double gap)>& change) {
@@ -69,7 +69,7 @@ double factor_of(Dimension dimension, const Magnification& by) {
   return dimension == Dimension::surface_energy ? by.stress * by.length : 1.0;
 }
 
-/// Whether walls that start at different places share one program: what starts it is then no property of the program.
+/// True if walls that start at different gaps share one program: the start of its first ramp then depends on the wall.
 bool starts_anywhere(const CheckedScenario& scenario) {
   return std::ranges::any_of(scenario.loading.walls, [](const WallSpec& wall) {
     return wall.steps.empty() && !wall.is_fixed && wall.gap > 0.0;
@@ -78,18 +78,19 @@ bool starts_anywhere(const CheckedScenario& scenario) {
 
 using Target = std::pair<Step::Kind, double>;  ///< of a ramp
 
-/// Where the program stands after a step that says so: a ramp leaves what it has controlled at its target.
+/// Target at which a step leaves the program: a ramp leaves the quantity that it controls at its target, a hold changes
+/// nothing.
 std::optional<Target> after(std::optional<Target> before, Step::Kind kind, double target) {
   return control_of(kind) ? Target{kind, target} : before;
 }
 
-/// What a step ramps, and from where, as the program says it; nothing where an earlier step leaves that open.
+/// Quantities and values from which a step's ramps start; nothing if an earlier step leaves them open.
 struct Start {
   std::optional<Target> first;
   std::optional<Target> lateral;
 };
 
-/// Whether a condition or a withdrawal may end a step of the program: for all walls, whichever has it.
+/// True if a condition or a withdrawal of any wall may end a step of the program, which then ends for all walls.
 bool may_end_early(const CheckedScenario& scenario, std::size_t index) {
   const auto ends = [index](const std::vector<Step>& steps) {
     return index < steps.size() && (!steps[index].until.empty() || steps[index].kind == Step::Kind::detach);
@@ -104,7 +105,7 @@ Start start_of(const CheckedScenario& scenario, const std::vector<Step>& steps, 
   for (std::size_t i = 0; i < index; ++i) {
     const Step& step = steps[i];
     const bool is_open = may_end_early(scenario, i);
-    // A wall that does not bear its pull goes on from no force.
+    // A wall whose contact does not bear the pull goes on from zero force.
     const bool is_pull = step.kind == Step::Kind::force && step.target < 0.0;
     const bool is_unknown = (is_open && step.kind != Step::Kind::hold) || is_pull;
     start.first = is_unknown ? std::nullopt : after(start.first, step.kind, step.target);
@@ -114,7 +115,7 @@ Start start_of(const CheckedScenario& scenario, const std::vector<Step>& steps, 
   return start;
 }
 
-/// At the start a wall stands at its gap, and a model without walls where it says.
+/// Start of the first step: a wall starts at its gap, a channel of a model without walls at its value at rest.
 Start rest_of(const CheckedScenario& scenario, const Step& first, double gap) {
   const Model& model = *find_model(scenario.model);
   if (model.has_walls()) return {.first = Target{Step::Kind::displacement, -gap}, .lateral = {}};
@@ -130,14 +131,14 @@ Start rest_of(const CheckedScenario& scenario, const Step& first, double gap) {
   return start;
 }
 
-/// Puts a target half way; false where it is not known from where.
+/// Moves a target half the distance towards the start of its ramp; false if the start is not known.
 bool halve(const std::optional<Target>& start, Step::Kind kind, double& target) {
   if (!start || start->first != kind) return false;
   target = std::midpoint(start->second, target);
   return true;
 }
 
-/// The first half of a step; nothing where it cannot be cut.
+/// The first half of a step; nothing if the step cannot be cut.
 std::optional<Step> first_half(const CheckedScenario& scenario, const std::vector<Step>& steps, std::size_t index,
                                double gap) {
   Step half = steps[index];
@@ -149,7 +150,8 @@ std::optional<Step> first_half(const CheckedScenario& scenario, const std::vecto
   return half;
 }
 
-/// Has all of a wall's way lie that much farther out: where it starts, and where its program leads.
+/// Moves the start and all targets of a wall outwards by a distance [m].
+/// @param common  program of walls without one of their own
 void move_out(WallSpec& wall, double distance, const std::vector<Step>& common) {
   wall.gap += distance;
   if (wall.is_fixed) return;
@@ -162,8 +164,9 @@ void move_out(WallSpec& wall, double distance, const std::vector<Step>& common) 
   }
 }
 
-/// Changes what ends a step. Overlaps are differences of lengths of the order of R0, and areas of contacts go with
-/// them. An area below zero is never met, as one is that a contact has passed by round-off where it is made.
+/// Changes the value of a condition. Overlaps are differences of lengths of the order of R0, and contact areas are
+/// proportional to them. A negative area is never met; nor is an area that a contact has passed by round-off when it is
+/// made.
 void change(Until& until, double share, double radius) {
   double& value = until.value;
   value *= 1.0 + share;
@@ -256,20 +259,20 @@ std::optional<CheckedScenario> forth_and_back(CheckedScenario scenario) {
 }
 
 CheckedScenario changed(CheckedScenario scenario, double share, std::uint64_t sample) {
-  // In pairs to both sides: one side alone may be the harmless one.
+  // In pairs of opposite sign: changes of one sign may be harmless.
   const std::uint64_t pair = sample / 2;
   const double side = sample % 2 == 0 ? share : -share;
   Dice dice(pair);
   const std::span<const QuantityKey> keys = find_model(scenario.model)->material;
   for (auto& [key, value] : scenario.material) {
     const double factor = side * dice.uniform(-1.0, 1.0);
-    // The other way at an end of what is admissible.
+    // The opposite change if the value would leave its admissible range.
     const Range& range = std::ranges::find(keys, std::string_view(key), &QuantityKey::name)->range;
     value *= range.contains(value * (1.0 + factor)) ? 1.0 + factor : 1.0 - factor;
   }
   const double radius = scenario.radius;
-  // Walls of one class stay so: what symmetry puts together rounding does not take apart. But a free centre is as
-  // steady as the walls hold it on all sides, and errors know of no symmetry.
+  // Walls of one class stay in one class: round-off does not break a symmetry of the scene. A free centre is different:
+  // it depends on the walls on all sides, and errors need not be symmetric.
   const bool is_skewed = scenario.loading.centre_is_free && sample % 4 < 2;
   for (WallSpec& wall : scenario.loading.walls) {
     wall.gap *= 1.0 + share;
@@ -277,13 +280,13 @@ CheckedScenario changed(CheckedScenario scenario, double share, std::uint64_t sa
   }
   for_each_program(scenario, [&](std::vector<Step>& steps, double) {
     Dice of_steps(pair + k_of_steps);
-    // What goes nowhere because two targets are equal does so whatever the errors.
+    // Equal targets get equal changes: a step between them stays without motion.
     std::map<Target, double> factors;
     for (Step& step : steps) {
       const double drawn = of_steps.uniform(-1.0, 1.0);
       const double factor = factors.try_emplace({step.kind, step.target}, drawn).first->second;
       step.target *= 1.0 + side * factor;
-      // Overlaps are differences of lengths of the order of R0; strains, of logarithms of lengths of the order of 1.
+      // Overlaps are differences of lengths of the order of R0, strains are differences of logarithms of order 1.
       if (step.kind == Step::Kind::displacement) step.target += side * factor * radius;
       if (step.kind == Step::Kind::strain) step.target += side * factor;
       if (step.lateral) step.lateral->target *= 1.0 + side * factor;

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr double k_right_angle = std::numbers::pi / 2.0;
 constexpr int k_most_cycles = 50;
-// To draw a scene that is admissible.
+// Tries to draw an admissible scene.
 constexpr int k_most_tries = 200;
 
 /// Draws a model for a scene, its configuration, material and options.
@@ -43,7 +43,7 @@ ProgramBounds draw_material(Dice& dice, StressScene& scene, const DrawnModels& m
   return bounds;
 }
 
-/// Cycles of a program, but of a law without unloading: that cannot begin anew.
+/// Draws cycles of a program, except for a law without unloading, which cannot repeat a program.
 void draw_cycles(Dice& dice, StressScene& scene, const ProgramBounds& bounds) {
   if (!dice.happens(0.15) || bounds.only_loads) return;
   scene.cycles = 2 + static_cast<int>(dice.below(static_cast<std::size_t>(k_most_cycles) - 1));
@@ -55,24 +55,24 @@ void draw_oblique_walls(Dice& dice, StressScene& scene) {
   if (dice.happens(0.5)) scene.oblique_angle = dice.uniform(least, k_right_angle - least);
   if (dice.happens(0.1)) scene.oblique_angle = 1.000001 * least;
   if (dice.happens(0.5)) scene.oblique_walls = 4;
-  // Four walls at a small angle stand close to each other, too.
+  // At a small angle, the four oblique walls are close to each other.
   if (scene.oblique_walls && scene.oblique_angle && 2.0 * *scene.oblique_angle < 1.01 * least) {
     scene.oblique_walls.reset();
   }
 }
 
-/// How the walls of a free set are moved.
+/// How the walls of a free set move.
 struct FreeSet {
-  std::size_t count = 0;  ///< of steps
-  bool have_own = false;  ///< programs
+  std::size_t count = 0;  ///< number of steps
+  bool have_own = false;  ///< every wall has a program of its own
   bool is_cell = false;   ///< the walls close a cell around the particle
 };
 
 void draw_free_walls(Dice& dice, StressScene& scene, const ProgramBounds& bounds, const FreeSet& set) {
-  // No wall touches a loose particle.
+  // All walls of a loose particle start with a gap.
   const bool is_loose = scene.centre_is_free && dice.happens(0.1);
   const double shared_gap = dice.happens(0.5) && !is_loose ? 0.0 : dice.log_uniform(1e-12, 0.1);
-  // Steps end together, so that all walls take the durations of the first.
+  // Walls end a step together: all of them take the durations of the first wall.
   std::vector<double> durations;
   for (const std::array<double, 3>& normal :
        set.is_cell ? draw_cell(dice) : draw_normals(dice, scene.model->least_wall_angle)) {
@@ -104,22 +104,22 @@ void draw_loading(Dice& dice, StressScene& scene, const ProgramBounds& bounds) {
   if (scene.model->has_free_centre && dice.happens(is_cell ? 0.5 : 0.2)) scene.centre_is_free = true;
   if (scene.configuration == "oblique-die") draw_oblique_walls(dice, scene);
   if (!have_own) {
-    // Free walls have different ways to go, and at one rate would not arrive together.
+    // Free walls move by different distances, and at one rate they would not arrive together.
     scene.steps = draw_program(dice, scene, bounds, count, 0.0, !are_free, true);
     draw_cycles(dice, scene, bounds);
   }
   if (are_free) draw_free_walls(dice, scene, bounds, {count, have_own, is_cell});
 }
 
-// --- places that a first run finds
+// --- critical displacements and forces that a first run finds
 
 struct Places {
-  std::vector<StressStep> of_events;  ///< steps to where the first driven class stood at an event
+  std::vector<StressStep> of_events;  ///< steps to the displacement of the first class at an event
   double largest_force = 0.0;         ///< in S R0^2
-  double least_force = 0.0;
+  double least_force = 0.0;           ///< in S R0^2
 };
 
-/// Of the class of the first wall, which is always driven.
+/// Runs a scene to find displacements at events, and extreme forces, of its first class. That class is always driven.
 Places find_places(const StressScene& scene, const fs::path& tables) {
   StressScene first = scene;
   first.integrator = integrators::k_auto;
@@ -137,7 +137,7 @@ Places find_places(const StressScene& scene, const fs::path& tables) {
   const auto event = *events.find("event");
   for (std::size_t row = 0; row < events.row_count(); ++row) {
     if (events.word(row, event) == "step-end") continue;
-    // Where the step of the event is one of the scene's own, its place in it is known.
+    // Only the steps of the scene's common program are known here.
     const auto index = static_cast<std::size_t>(events.at(row, step)) - 1;
     if (index >= scene.steps.size() || scene.steps[index].kind != Step::Kind::displacement) continue;
     StressStep corner = scene.steps[index];
@@ -147,7 +147,7 @@ Places find_places(const StressScene& scene, const fs::path& tables) {
   return places;
 }
 
-/// A law without unloading takes no target below an earlier one.
+/// Raises targets that are below earlier ones, for a law without unloading.
 void make_growing(std::vector<StressStep>& steps) {
   double displacement = 0.0;
   double force = 0.0;
@@ -157,7 +157,7 @@ void make_growing(std::vector<StressStep>& steps) {
   }
 }
 
-/// Lays the program on such a place.
+/// Adds a corner of the program next to an event that a first run has passed, or a force next to its extreme force.
 void refine(Dice& dice, StressScene& scene, const ProgramBounds& bounds, const fs::path& tables) {
   const Places places = find_places(scene, tables);
   if (!places.of_events.empty() && dice.happens(0.7)) {
@@ -167,7 +167,7 @@ void refine(Dice& dice, StressScene& scene, const ProgramBounds& bounds, const f
     corner.target *= 1.0 + rounding + nearby;
     corner.until.clear();
     corner.until_event.clear();
-    // The step that ran over the place now has its corner there, and goes back or on.
+    // The new corner precedes the step that passed the event; the program then goes back or on.
     const auto after = std::ranges::find_if(scene.steps, [&](const StressStep& step) {
       return step.kind == corner.kind && step.pace == corner.pace && step.has_rate == corner.has_rate;
     });
@@ -195,7 +195,7 @@ bool is_admissible(const StressScene& scene, const fs::path& tables) {
   }
 }
 
-/// Whether the direct form finds the state at any instant; so it is where the scene is not admissible.
+/// True if the direct form finds the state at any instant; also true if the scene is not admissible.
 bool is_solvable(StressScene scene, const fs::path& tables) {
   scene.integrator = integrators::k_auto;
   try {
@@ -205,7 +205,7 @@ bool is_solvable(StressScene scene, const fs::path& tables) {
   }
 }
 
-/// Any integrator; the direct form where the model has one.
+/// Draws an integrator; the direct form only if the model has it.
 std::string draw_integrator(Dice& dice, bool is_solvable) {
   const std::span<const std::string_view> all = integrator_names();
   const double what = dice.uniform(0.0, 1.0);
@@ -224,9 +224,9 @@ StressScene draw_scene(Dice& dice, const fs::path& tables, const DrawnModels& mo
   const bool has_direct_form = is_solvable(scene, tables);
   scene.integrator = draw_integrator(dice, has_direct_form);
   scene.rtol = dice.happens(0.5) ? 1e-8 : dice.log_uniform(1e-13, 1e-2);
-  // It takes as many steps as the tolerance says.
+  // Fixed steps are as many as 1/rtol.
   if (scene.integrator == integrators::k_explicit) scene.rtol = dice.log_uniform(1e-3, 1e-2);
-  // Where the reference has to be integrated, many cycles at a fine tolerance take minutes.
+  // If the reference has to be integrated, many cycles at a fine tolerance take minutes.
   if (!has_direct_form && scene.cycles > 1) {
     scene.cycles = std::min(scene.cycles, k_most_cycles / 5);
     scene.rtol = std::max(scene.rtol, 1e-8);
@@ -250,7 +250,7 @@ StressScene draw_stress_scene(std::uint64_t seed, std::uint64_t index, const fs:
     return draw_stress_scene(seed, index, tables, all);
   }
   Dice dice(seed, index);
-  // Where the parts of a scene do not go together, the next one of its sequence does.
+  // If the parts of a scene do not fit together, the next scene of its sequence is drawn.
   for (int tries = 1;; ++tries) {
     StressScene scene = draw_scene(dice, tables, models);
     if (tries == k_most_tries || is_admissible(scene, tables)) return scene;

@@ -9,15 +9,15 @@
 
 namespace monograin {
 
-/// Models whose scenes are drawn; empty: all. In any order the same.
+/// Models whose scenes are drawn; empty: all.
 using DrawnModels = std::set<const Model*>;
 
-/// Scene number `index` of a sequence: the same on every machine, whatever was drawn before. Every set of models has
-/// sequences of its own.
+/// Draws scene number `index` of a sequence: the same on every machine, whatever was drawn before. Every set of models
+/// has sequences of its own.
 ///
-/// Some scenes are laid on places that a first run of theirs has found: corners of the program a rounding error beside
-/// an event, forces beside the largest or the least that there was.
-/// @param tables  where write_stress_tables has left them
+/// A first run of some scenes finds critical values for their programs: corners within round-off of an event, forces
+/// next to the largest or the least force.
+/// @param tables  folder into which write_stress_tables() has written
 [[nodiscard]] StressScene draw_stress_scene(std::uint64_t seed, std::uint64_t index,
                                             const std::filesystem::path& tables, const DrawnModels& models = {});
 

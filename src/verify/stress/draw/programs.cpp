@@ -23,7 +23,7 @@ double draw_force(Dice& dice, const ProgramBounds& bounds) {
   return bounds.force * dice.log_uniform(1e-12, 1e3);
 }
 
-/// Waits for what an earlier step of the program waits for; false where none does.
+/// Gives a step the condition of the last earlier step that has one; false if there is none.
 bool repeat_condition(StressStep& step, const std::vector<StressStep>& program) {
   const auto earlier = std::ranges::find_if(
       program.rbegin(), program.rend(), [](const StressStep& s) { return !s.until.empty() || !s.until_event.empty(); });
@@ -39,14 +39,15 @@ void give_rate(StressStep& step) {
   step.pace = 1.0 / step.pace;
 }
 
-/// Where the steps drawn so far have led.
+/// Values to which the steps drawn so far lead.
 struct Standing {
   double displacement = 0.0;
   double force = 0.0;
-  double least_force = 0.0;  ///< of a law without unloading
+  double least_force = 0.0;  ///< least next force of a law without unloading
 };
 
-/// A displacement: every second one goes back, and some stay.
+/// Draws the target of a displacement; some steps stay at the present one.
+/// @param goes_back  the step unloads
 double draw_target(Dice& dice, const ProgramBounds& bounds, double present, bool goes_back) {
   double target = draw_depth(dice, bounds);
   const double back = dice.one_of({1e-14, 1e-9, 1e-5, 0.003, 0.03, 0.2, 1.0});
@@ -55,7 +56,7 @@ double draw_target(Dice& dice, const ProgramBounds& bounds, double present, bool
   return bounds.only_loads ? std::max(target, present) : target;
 }
 
-/// Draws what a step does, and to where.
+/// Draws the kind and the target of a step.
 void draw_kind(Dice& dice, const ProgramBounds& bounds, bool takes_forces, bool may_detach, bool goes_back,
                StressStep& step, Standing& present) {
   const double what = dice.uniform(0.0, 1.0);
@@ -74,8 +75,8 @@ void draw_kind(Dice& dice, const ProgramBounds& bounds, bool takes_forces, bool 
   }
 }
 
-/// Draws what a ramp waits for.
-/// @param before  where it begins
+/// Draws a condition that ends a ramp.
+/// @param before  values where the ramp begins
 void draw_condition(Dice& dice, const Model& model, const ProgramBounds& bounds, const Standing& before,
                     StressStep& step) {
   const bool has_area = model.has_contact_area;
@@ -88,7 +89,7 @@ void draw_condition(Dice& dice, const Model& model, const ProgramBounds& bounds,
   step.until = key;
   step.until_value = key == "force" || key == "pressure" ? draw_force(dice, bounds) : draw_depth(dice, bounds);
   if (key == "contact_radius") step.until_value = std::abs(step.until_value);
-  // A step may begin where its condition is met.
+  // The condition of a step may already hold where the step begins.
   if (key == "displacement" && dice.happens(0.2)) step.until_value = before.displacement;
   if (key == "force" && dice.happens(0.2)) step.until_value = before.force;
 }

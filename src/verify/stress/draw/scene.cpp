@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a quantity of that dimension is multiplied by to be in SI.
+/// Factor from a scene's units to SI for a dimension.
 double unit_of(const StressScene& scene, Dimension dimension) {
   switch (dimension) {
     case Dimension::length:
@@ -42,7 +42,7 @@ Dimension dimension_of_condition(const StressScene& scene, std::string_view key)
 /// `key = value` of a ramp.
 struct RampText {
   std::string text;
-  double unit = 1.0;  ///< by which a rate is multiplied, too
+  double unit = 1.0;  ///< factor to SI, also for a rate
 };
 
 RampText ramp_text(const StressScene& scene, Step::Kind kind, double target, std::span<const DriveKey> drives) {

@@ -20,9 +20,9 @@ namespace monograin {
 struct StressStep {
   Step::Kind kind = Step::Kind::displacement;
   double target = 0.0;
-  std::optional<double> lateral;  ///< target in the second channel of a material point, which takes lateral_kind
+  std::optional<double> lateral;  ///< target of lateral_kind, in the second channel of a material point
   Step::Kind lateral_kind = Step::Kind::strain;
-  double pace = 1.0;  ///< duration [s]; where it has a rate, that in units of the target per second
+  double pace = 1.0;  ///< duration [s]; if has_rate, the rate in units of the target per second
   bool has_rate = false;
   std::string until;  ///< key of a condition; empty: none
   double until_value = 0.0;
@@ -42,9 +42,10 @@ struct StressWall {
   bool operator==(const StressWall&) const = default;
 };
 
+/// A scene with dimensionless numbers, and the units R0 and S that make them physical.
 struct StressScene {
   const Model* model = nullptr;
-  double radius = 1.0;                         ///< R0 [m], where there is a particle
+  double radius = 1.0;                         ///< R0 [m], if there is a particle
   double stress = 1.0;                         ///< S [Pa]
   std::map<std::string, double> material;      ///< stresses in S, surface energies in S R0
   std::map<std::string, OptionValue> options;  ///< those that differ from their defaults, `[material]` ones included
@@ -53,7 +54,7 @@ struct StressScene {
   std::optional<double> oblique_angle;  ///< [rad]
   std::optional<int> oblique_walls;
   std::vector<StressStep> steps;
-  int cycles = 1;  ///< how often the steps are gone through
+  int cycles = 1;  ///< number of times that the steps are repeated
   std::vector<StressWall> walls;
   std::string integrator = integrators::k_direct;
   double rtol = 1e-8;
@@ -65,11 +66,11 @@ struct StressScene {
 /// The scene as a scenario file.
 [[nodiscard]] std::string scenario_text(const StressScene& scene);
 
-/// Writes the tables that options of drawn scenes name.
+/// Writes the tables to which options of drawn scenes refer.
 void write_stress_tables(const std::filesystem::path& folder);
 
-/// The checked scenario of a text, whose tables lie in a folder.
-/// @throws ScenarioError where the text is none
+/// The checked scenario of a text that refers to tables in a folder.
+/// @throws ScenarioError if the text is no admissible scenario
 [[nodiscard]] CheckedScenario parse_stress_text(std::string_view text, const std::filesystem::path& tables);
 
 }  // namespace monograin

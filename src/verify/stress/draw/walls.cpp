@@ -22,7 +22,7 @@ double angle_between(const std::array<double, 3>& a, const std::array<double, 3>
   return std::atan2(cross, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
 }
 
-/// A direction that is a small angle from another: where walls are nearly parallel.
+/// A direction at a small angle [rad] from another, for nearly parallel walls.
 std::array<double, 3> beside(const std::array<double, 3>& normal, double angle) {
   const double rho = std::hypot(normal[0], normal[1]);
   if (rho == 0.0) return {std::sin(angle), 0.0, std::cos(angle) * normal[2]};
@@ -40,7 +40,6 @@ std::vector<std::array<double, 3>> draw_cell(Dice& dice) {
 }
 
 std::vector<std::array<double, 3>> draw_normals(Dice& dice, double least_angle) {
-  // Not so many where they may not stand close.
   const std::size_t count = 2 + dice.below(k_most_walls - 1);
   const double apart = dice.happens(0.7) ? 0.6 : std::max(least_angle, 1e-3);
   std::vector<std::array<double, 3>> normals{draw_direction(dice)};

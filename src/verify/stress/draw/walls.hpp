@@ -8,10 +8,10 @@
 
 namespace monograin {
 
-/// Normals of a cell at right angles, around one plane or all around, in some scenes with a side left open.
+/// Draws the normals of a rectangular cell: four walls in a plane, or six. In some scenes one side is open.
 [[nodiscard]] std::vector<std::array<double, 3>> draw_cell(Dice& dice);
 
-/// Normals of two to six walls, no two of them nearer than an angle.
+/// Draws the normals of two to six walls, every two of them at least `least_angle` [rad] apart.
 [[nodiscard]] std::vector<std::array<double, 3>> draw_normals(Dice& dice, double least_angle);
 
 }  // namespace monograin

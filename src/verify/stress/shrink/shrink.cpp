@@ -57,7 +57,7 @@ std::vector<double*> numbers_of(StressScene& scene) {
   return numbers;
 }
 
-/// Collects scenes that are smaller than one, each by one change.
+/// Collects candidates for a smaller scene, each of which differs from the scene by one change.
 class Smaller {
  public:
   explicit Smaller(const StressScene& scene) : scene_(scene) {}
@@ -67,7 +67,7 @@ class Smaller {
     change(other);
     if (other != scene_) candidates_.push_back(std::move(other));
   }
-  /// A change of one step of one program, which may be shorter than others.
+  /// Adds a scene with one step of one program changed; none if that program has no such step.
   void add_step(std::size_t program, std::size_t step, const auto& change) {
     add([&](StressScene& s) {
       std::vector<StressStep>& changed = *programs_of(s)[program];
@@ -97,7 +97,7 @@ void erase_step(StressScene& scene, std::size_t step) {
   }
 }
 
-/// Fewer steps, walls and cycles.
+/// Adds scenes with fewer steps, walls and cycles.
 void add_fewer(const StressScene& scene, Smaller& smaller) {
   const std::size_t steps = step_count(scene);
   if (steps > 2) smaller.add([&](StressScene& s) { keep_steps(s, 0, steps / 2); });
@@ -112,7 +112,7 @@ void add_fewer(const StressScene& scene, Smaller& smaller) {
   }
 }
 
-/// Plainer configurations, options, materials, units and numerics.
+/// Adds scenes with plainer configurations, options, materials, units and numerics.
 void add_plainer(const StressScene& scene, Smaller& smaller) {
   smaller.add([](StressScene& s) {
     if (!s.configuration.empty()) s.configuration = "simple";
@@ -134,7 +134,7 @@ void add_plainer(const StressScene& scene, Smaller& smaller) {
   smaller.add([](StressScene& s) { s.stress = 1.0; });
 }
 
-/// Steps without conditions, lateral parts and rates, and walls without gaps and programs.
+/// Adds scenes whose steps have no conditions, lateral parts or rates, or whose walls have no gaps or are fixed.
 void add_plainer_programs(const StressScene& scene, Smaller& smaller) {
   const std::size_t steps = step_count(scene);
   for (std::size_t program = 0; program <= scene.walls.size(); ++program) {
@@ -148,7 +148,7 @@ void add_plainer_programs(const StressScene& scene, Smaller& smaller) {
       smaller.add_step(program, step, [](StressStep& s) { s.has_rate = s.kind == Step::Kind::detach; });
     }
   }
-  // Walls that end their steps together keep doing so.
+  // All durations change together, because walls have to end their steps together.
   smaller.add([](StressScene& s) {
     for (auto* program : programs_of(s)) {
       for (StressStep& step : *program) step.pace = 1.0;
@@ -173,7 +173,7 @@ void add_rounder_numbers(const StressScene& scene, Smaller& smaller) {
   }
 }
 
-/// Smaller scenes, those that leave most away first.
+/// Candidates for a smaller scene; those that leave out most come first.
 Candidates smaller_than(const StressScene& scene) {
   Smaller smaller(scene);
   add_fewer(scene, smaller);
@@ -183,8 +183,7 @@ Candidates smaller_than(const StressScene& scene) {
   return std::move(smaller.candidates());
 }
 
-/// Size of a scene: the characters of its text, so that a rounder number is smaller. A scene only changes for a smaller
-/// one.
+/// Size of a scene: the characters of its text, so that rounder numbers make it smaller.
 std::size_t size_of(const StressScene& scene) { return scenario_text(scene).size(); }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// From a scene that breaks a rule to a smaller one that still does.
+/// Reduction of a scene that breaks a rule to a smaller one that still does.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,8 @@
 
 namespace monograin {
 
-/// Makes a scene smaller as long as it stays faulty: without walls, steps, cycles, options, and with round numbers.
-/// @param is_faulty  asked of every candidate, which need not be admissible
+/// Makes a scene smaller as long as it stays faulty: removes walls, steps, cycles and options, and rounds numbers.
+/// @param is_faulty  called with candidates, which need not be admissible
 [[nodiscard]] StressScene shrink(StressScene scene, const std::function<bool(const StressScene&)>& is_faulty);
 
 }  // namespace monograin
