@@ -41,7 +41,7 @@ struct SurfaceDisplacement {
 };
 
 /// Legendre coefficients of 4 pi times the inward normal displacement of a sphere under a point force,
-/// (2n+1) u_n = alpha + (1 + nu)/(n - 1) + (p n + q)/((n + b)^2 + omega^2),   n = 0, 2, 3, ...
+///   (2n+1) u_n = alpha + (1 + nu)/(n - 1) + (p n + q)/((n + b)^2 + omega^2),   n = 0, 2, 3, ...
 /// 1/(n - 1) and (p n + q)/((n + b)^2 + omega^2) are integrals int_0^inf exp(-n y) f(y) dy, of exp(y) and of kernel(y).
 struct SphereModes {
   double nu, alpha, p, q, b, omega;

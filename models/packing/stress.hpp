@@ -9,7 +9,8 @@
 
 namespace monograin::packing {
 
-/// Materials from the published set outwards. Not every set is admissible: the generator draws again.
+/// Draws a material, starting from the published set. Not every drawn set is admissible; the generator then draws
+/// again.
 [[nodiscard]] ProgramBounds draw(Dice& dice, DrawnMaterial& drawn);
 [[nodiscard]] std::vector<DrawnStep> draw_program(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds,
                                                   std::size_t count);
