@@ -11,9 +11,9 @@ namespace monograin {
 namespace {
 
 constexpr std::size_t k_resamples = 500;
-constexpr double k_rounding = 1e-12;  // share of a mean by which results that are the same may differ
+constexpr double k_rounding = 1e-12;  // relative difference from the mean within which results are equal
 
-/// Groups of `size` results that are all there, one after another.
+/// Groups of `size` consecutive results without a missing one, joined together.
 [[nodiscard]] std::vector<double> whole_groups(std::span<const double> results, std::size_t size) {
   std::vector<double> whole;
   for (std::size_t begin = 0; begin + size <= results.size(); begin += size) {
