@@ -5,8 +5,8 @@
 
 namespace monograin {
 
-/// The schema as formatted JSON text. Made from the model catalogue and the language tables, so it cannot fall behind
-/// them.
+/// The schema as formatted JSON text, made from the model catalogue and the language tables, with which it therefore
+/// agrees.
 [[nodiscard]] std::string scenario_schema();
 
 }  // namespace monograin
