@@ -40,14 +40,14 @@ std::vector<std::pair<double, int>> rows(const TestRun& result) {
 
 using Rows = std::vector<std::pair<double, int>>;
 
-/// The forward Euler scheme at a tolerance that is its step.
+/// Tolerance of comparisons; larger for forward Euler, whose rtol is its step.
 double accuracy(std::string_view integrator) { return integrator == "explicit" ? 1e-4 : 1e-7; }
 
 TestRun run_with(const CheckedScenario& scenario, std::string_view integrator) {
   return run(scenario, integrator, relative(integrator == "explicit" ? 1e-5 : 1e-8));
 }
 
-/// The warnings that speak of steps of the program.
+/// Warnings about steps of the program.
 std::vector<std::string> notes(const TestRun& result) {
   std::vector<std::string> list;
   for (const std::string& warning : result.record.warnings) {
@@ -56,7 +56,7 @@ std::vector<std::string> notes(const TestRun& result) {
   return list;
 }
 
-/// When each step of the program has ended.
+/// End times of the program's steps.
 std::vector<double> step_ends(const TestRun& result) {
   std::vector<double> ends;
   const Table& events = result.record.events;

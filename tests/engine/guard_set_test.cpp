@@ -1,4 +1,4 @@
-// The guards of a system and the conditions of the program, as an integrator sees them.
+// The guards of a system and the conditions of the program, as an integrator evaluates them.
 
 #include <gtest/gtest.h>
 

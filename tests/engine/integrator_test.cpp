@@ -1,4 +1,4 @@
-// What every integrator must do with modes and guards, on systems whose solution is known.
+// Requirements on modes and guards that every integrator has to meet, on systems with known solutions.
 
 #include <gtest/gtest.h>
 
@@ -228,9 +228,9 @@ TEST(MakeIntegrator, RefusesUnknownNames) {
   EXPECT_THROW(static_cast<void>(make_integrator("euler", *toy, watch, {})), std::logic_error);
 }
 
-// --- the one that "auto" integrates with
+// --- the integrator that "auto" uses
 
-/// y0 follows cos(xi) as fast as the rate says.
+/// y0 approaches cos(xi) at a given rate.
 std::unique_ptr<ToySystem> following_toy(double rate) {
   auto toy = std::make_unique<ToySystem>();
   toy->initial = {1.0};

@@ -1,4 +1,4 @@
-// One contact of an elastic-plastic particle by itself: values computed elsewhere, derivatives, limits.
+// One contact of an elastic-plastic particle by itself: independently computed values, derivatives, limits.
 
 #include "cel/contact_law.hpp"
 
@@ -32,7 +32,7 @@ const std::vector<Material>& materials() {
   return all;
 }
 
-/// Dents over a_Y: just grown, in the middle of each part of the law, and large.
+/// Dent radii over a_Y: just grown, in the middle of each part of the law, and large.
 constexpr double k_growths[] = {1.001, 1.05, 1.3, 2.0, 4.0};
 
 /// Dents of a material that are no larger than the particle.
@@ -44,7 +44,7 @@ std::vector<double> dents_of(const Material& material) {
   return dents;
 }
 
-/// A place of a contact: support distance of the core under it and coverage factor.
+/// Surroundings of a contact: support distance of the core under it, and coverage factor.
 struct Surroundings {
   double l, m;
 };
@@ -57,7 +57,7 @@ std::vector<double> displacements_of(const Material& material, const Dent& dent,
   return {1e-6 * limit, 0.03 * limit, 0.4 * limit, limit, 1.1 * limit};
 }
 
-/// Calls a check for every material, dent, place and elastic displacement.
+/// Calls a check for every material, dent, surroundings and elastic displacement.
 template <class Check>
 void for_all_contacts(const Check& check) {
   for (const Material& material : materials()) {
@@ -76,7 +76,7 @@ void for_all_contacts(const Check& check) {
   }
 }
 
-/// Expects a derivative to be that of a function, by differences over a small share of the length over which that one
+/// Compares a derivative with differences of its function over a small share of the length over which the function
 /// changes.
 template <class Function>
 void expect_derivative(double derivative, const Function& function, double x, double length, const char* name) {
@@ -88,7 +88,7 @@ void expect_derivative(double derivative, const Function& function, double x, do
       << name << ": derivative = " << derivative << ", difference = " << difference << ", x = " << x;
 }
 
-// --- values computed elsewhere
+// --- independently computed values
 
 TEST(CelContactReference, IsMetWithItsComplexStepDerivatives) {
   const Table table = reference("point_values");
@@ -209,7 +209,7 @@ TEST(CelDent, GrowsInAllThatItSays) {
 }
 
 TEST(CelDent, OfAHalfSpaceHasTheFullyPlasticPressure) {
-  // Small against the particle, large against the elastic strain.
+  // A displacement that is small against the particle and large against the elastic strain.
   const Material material(1e-12, 0.3);
   const Dent dent = dent_of(material, 1e-4);
   EXPECT_NEAR(dent.p, k::pinf, 3e-3);
@@ -235,7 +235,7 @@ TEST(CelDent, HasTheDerivativesOfItsQuantities) {
   }
 }
 
-/// Expects the slopes of a quantity of a contact, made from a dent, its surroundings and its own coordinate.
+/// Compares the slopes of a quantity of a contact with respect to its dent, its surroundings and its own coordinate.
 template <class Make>
 void expect_slopes(const Make& make, double Contact::*value, const Slopes& by, const Material& material,
                    const Dent& dent, const Surroundings& at, double coordinate, const char* name) {
@@ -353,7 +353,7 @@ TEST(CelAdvance, IsSmoothFromShrinkingToBulging) {
 }
 
 TEST(CelAdvance, IsAsFarAsTheCoreShrinksAndFurtherThanItBulges) {
-  // Far from the change of slope, but for its width.
+  // Far from the change of slope the result differs only by its width.
   EXPECT_NEAR(advance_of(-0.5).c_l, -1.0, 1e-4);
   EXPECT_NEAR(advance_of(0.5).c_l, -k::chi, 1e-4);
   EXPECT_EQ(advance_of(0.0).c_l, -0.5 * (1.0 + k::chi));

@@ -11,7 +11,7 @@
 namespace monograin::compressible {
 namespace {
 
-// Events nearer than this to a row make its regime a matter of taste (over the run's length).
+// Distance of an event from a row, over the run's length, within which the row may have either regime.
 constexpr double k_near_event = 1e-6;
 
 const std::map<std::string, std::string> k_event_names{
@@ -24,7 +24,7 @@ const std::map<std::string, std::string> k_event_names{
     {"stop", "until-met"},
 };
 
-/// The words `key=value` of a header line.
+/// Pairs `key=value` of a header line.
 std::map<std::string, std::string> fields_of(std::string_view line) {
   std::map<std::string, std::string> fields;
   std::istringstream words{std::string(line)};
@@ -65,7 +65,7 @@ Step back_to(double axial, double rate, double stress) {
   return until(step, Quantity::stress_axial, stress);
 }
 
-/// What the line `path` of each file says.
+/// Configuration and program in the line `path` of a reference file.
 std::pair<Configuration, std::vector<Step>> program_of(const std::string& name) {
   const std::string number = name.substr(0, 4);
   if (number == "mp01") return {Configuration::hydrostatic, {strain(-0.08), back_to(0.0, 0.08, 0.0)}};

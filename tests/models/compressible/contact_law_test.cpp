@@ -1,4 +1,4 @@
-// The compressible contact law by itself: limits, joints, derivatives, inverses, work, unloading, its table.
+// The compressible contact law by itself: limits, joints, derivatives, inverses, work, unloading and its table.
 
 #include "compressible/contact_law.hpp"
 
@@ -160,7 +160,7 @@ TEST(CompressibleUnloading, DissipatesWhereItIsSteeperThanTheLoading) {
 }
 
 TEST(CompressibleUnloadingTable, IsBilinearAndConstantOutside) {
-  // alpha = 1 + ln(ratio) dm, beta = 2 + ln(ratio) + dm: bilinear itself.
+  // alpha = 1 + ln(ratio) dm and beta = 2 + ln(ratio) + dm are bilinear, so that the interpolation is exact.
   std::vector<UnloadingRow> rows;
   const auto shape = [](double ratio, double dm) {
     return UnloadingShape{1.0 + std::log(ratio) * dm, 2.0 + std::log(ratio) + dm};

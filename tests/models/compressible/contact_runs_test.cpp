@@ -25,7 +25,7 @@ namespace {
 
 using Real = long double;
 
-/// One contact, walked through a program of displacements or forces by eqs. 6 and 9 to 14.
+/// One contact, taken through a program of displacements or forces by eqs. 6 and 9 to 14.
 class Walk {
  public:
   explicit Walk(const CompressibleNumbers& n)
@@ -109,7 +109,7 @@ std::vector<Step> steps_of(Control control, const std::vector<double>& targets) 
   return steps;
 }
 
-/// Largest differences over the largest value of each column; work counts for one wall.
+/// Largest differences over the largest value of each column; work is that of one wall.
 struct Errors {
   double displacement = 0.0, force = 0.0, work = 0.0, stored = 0.0;
   [[nodiscard]] double largest() const { return std::max({displacement, force, work, stored}); }
@@ -133,7 +133,7 @@ struct Stored {
   std::vector<double> targets;
 };
 
-/// The numbers behind `name=` in the lines of a header.
+/// Numbers after `name=` in the lines of a header.
 double number_in(std::string_view text, std::string_view name) {
   const std::size_t at = text.find(std::string(name) + "=");
   return at == std::string_view::npos ? -1.0 : std::stod(std::string(text.substr(at + name.size() + 1)));
@@ -229,7 +229,7 @@ TEST_P(StoredHistory, HasItsEventsAtTheirPlaces) {
 }
 
 TEST_P(StoredHistory, AgreesWithTheIndependentEvaluation) {
-  // That evaluation is then trusted with what the files do not have.
+  // The independent evaluation then serves as the reference for columns that the files do not have.
   const Expected expected = expected_history(Walk(stored_.numbers), Control::displacement, stored_.targets, 40);
   EXPECT_LT(difference(expected.force, column("F_over_pi_R0^2_sigma_y0")), 1e-15);
   EXPECT_LT(errors_of(run_it("direct"), expected, "axial", 2.0).largest(), 1e-13);
@@ -240,7 +240,7 @@ INSTANTIATE_TEST_SUITE_P(Compressible, StoredHistory,
                                            "law04_soft_origin_clip"),
                          [](const auto& name) { return name.param.substr(0, 5); });
 
-// --- cases that are in no file
+// --- cases without a reference file
 
 struct Case {
   CompressibleNumbers numbers;
@@ -249,7 +249,7 @@ struct Case {
 };
 
 /// Parameters and a program of loads, unloads and reloads.
-/// @param stretch  1: numbers near those of the source's materials; larger: farther from them
+/// @param stretch  1: numbers near those of the source's materials; larger values: farther from them
 Case random_case(std::mt19937_64& generator, double stretch = 1.0) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   Case made;
@@ -512,7 +512,7 @@ TEST(CompressibleEnergies, AreNotLostOnTheWayOfAnUnloadingAndBack) {
 class Tolerance : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Tolerance, MeansSomething) {
-  // A program under a force has an unknown displacement; one under a displacement only the work.
+  // Under a force the displacement is an unknown; under a displacement only the work is.
   const CompressibleNumbers numbers{
       .k = 3.9, .delta_t = 0.11, .a = 3.65, .stiffness_ratio = 100, .nu0 = 0.3, .alpha = 1.3, .beta = 1.6};
   const std::vector<std::pair<Control, std::vector<double>>> programs{{Control::displacement, {0.3, 0.2, 0.45, 0.43}},
@@ -616,7 +616,7 @@ TEST(CompressibleWarnings, TellOfNumbersThatStandInAndOfExtrapolation) {
 }
 
 TEST(CompressibleRuns, ScaleWithRadiusAndYieldPressure) {
-  // Base case of the source, in units, against the same without.
+  // The source's base case in SI units, compared with the dimensionless one.
   const CheckedScenario scenario = granule("stiffness_ratio = 100\nshear_ratio = 1\n", "alpha = 1.3\nbeta = 1.6\n");
   const CompressibleNumbers numbers{.k = 3.8993577505742754,
                                     .delta_t = 0.1131952,

@@ -1,5 +1,5 @@
-// The runs against a second implementation that shares nothing with the first: the printed formulas in long double,
-// differentiated by a complex step, marched by an explicit method of eighth order with fixed steps.
+// Runs against an independent implementation: the printed formulas in long double, differentiated by a complex step,
+// integrated by an explicit method of eighth order with fixed steps.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ struct Law {
 
 enum class Piece { tension, shear, arc, cap };
 
-/// Table 2; `q` by the side of s.
+/// Yield function and potential of Table 2; `q` has the sign of `side`.
 template <class T>
 T f_of(const Parameters& m, Piece piece, Real side, T p, T s, T phi, bool is_potential) {
   using std::sqrt;
@@ -213,7 +213,7 @@ struct Case {
   std::vector<std::array<double, 2>> corners;  ///< axial and lateral strain
 };
 
-/// Materials and paths that no stored history has.
+/// Materials and paths that no reference file has.
 std::vector<Case> cases() {
   Parameters fujicalin = base_case();
   fujicalin.stiffness_ratio = 36.0;
@@ -361,8 +361,9 @@ TEST(ClosedForm, FirstYieldOfTheBaseCase) {
   EXPECT_NEAR(bar.at_event("yield", "stress_axial"), -0.99889061438090, 1e-13);
 }
 
-/// g^p of compression at constant lateral stress c: the stress is a function of the place b = (p + pi3)/A on the cap,
-/// and g^p the integral of g_s/g_p over phi, taken over ln(-b), in which it has no singularity at the critical state.
+/// g^p of compression at constant lateral stress c. The stress is a function of the position b = (p + pi3)/A on the
+/// cap, and g^p is the integral of g_s/g_p over phi, taken over ln(-b), in which it has no singularity at the critical
+/// state.
 double plastic_deviator_to(const Parameters& m, double c, double b_start, double b_end, double first_guess) {
   const auto phi_at = [&](double b) {
     double phi = first_guess;

@@ -1,4 +1,4 @@
-// What holds along every path, whatever the integrator.
+// Properties that hold along every path, with every integrator.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ struct RandomPoint {
   }
 };
 
-/// A material within the source's range and some corners of strain.
+/// A random material within the source's range, and corners of a strain program.
 RandomPoint random_point(std::mt19937& random) {
   const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
   RandomPoint result;
@@ -141,7 +141,7 @@ TEST(RandomStrainPaths, StayOnTheSurfaceAndDissipate) {
   EXPECT_LT(stopped, 500);
 }
 
-// Stiffening stores part of the plastic work: without that the balance does not close.
+// Stiffening stores part of the plastic work, without which the balance does not close.
 TEST(MaterialPoint, WorkIsStoredOrDissipated) {
   for (const Parameters& m : {base_case(), lactose(0.03), von_mises(3.0)}) {
     CheckedScenario scenario =
@@ -229,7 +229,7 @@ TEST(MaterialPoint, ElasticCyclesClose) {
   }
 }
 
-/// A double cap whose bar comes to a critical state, pi3 = Gamma/3, as it densifies.
+/// A double cap whose bar reaches a critical state, pi3 = Gamma/3, as it densifies.
 Parameters with_critical_state() {
   Parameters m = base_case();
   m.zeta = 5.0;
@@ -240,7 +240,7 @@ Parameters with_critical_state() {
 const double k_critical_density = 0.7 + std::log(0.7 + 1.0 / 3.0) / 5.0;
 const double k_critical_strength = 0.7 + 1.0 / 3.0;
 
-// The pressure comes to the end of the cap without crossing it, and the volume stands still.
+// The pressure tends to the end of the cap without crossing it, and the volume becomes stationary.
 TEST(MaterialPoint, TendsToTheCriticalStateWithoutAnEvent) {
   for (const YieldModel model : {YieldModel::vmdc, YieldModel::dpc}) {
     for (const double width : {0.0, 0.03}) {
@@ -277,8 +277,8 @@ TEST(MaterialPoint, HoldsWithoutUnloading) {
   }
 }
 
-// The stress follows the normal of a surface that is thin against the elastic strains of the program: the methods for
-// stiff equations do not mind, explicit ones are told.
+// The stress follows the normal of a surface that is thin against the elastic strains of the program, which makes the
+// equations stiff. Methods for stiff equations need few steps nevertheless.
 TEST(MaterialPoint, IsStiffInTension) {
   Parameters m = base_case();
   m.tensile_ratio = 0.003;
@@ -325,7 +325,7 @@ TEST(MaterialPoint, LosesUniquenessAtTheCriticalStress) {
   }
 }
 
-// A bar of this Drucker-Prager cap would grow longer by yielding in compression.
+// A bar of this Drucker-Prager cap would lengthen by yielding in compression.
 TEST(MaterialPoint, LosesUniquenessWhereFlowWorksAgainstTheProgram) {
   const TestRun result = run(point(lactose(0.03), Configuration::simple, {strain(-0.1)}), "cvode-bdf");
   EXPECT_EQ(result.record.status, RunStatus::stopped);

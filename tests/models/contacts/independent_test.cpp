@@ -1,5 +1,5 @@
-// The base of laws whose contacts depend on their own wall alone, seen with two laws of a few lines: a linear
-// spring, and one that is stiffer under unloading.
+// The base of laws whose contacts depend on their own wall alone, tested with small laws: a linear spring, one that is
+// stiffer under unloading, and others.
 
 #include <gtest/gtest.h>
 
@@ -37,8 +37,8 @@ struct Spring {
   [[nodiscard]] int regime(Branch, bool touches) const { return touches ? 1 : 0; }
 };
 
-/// The law of Walton and Braun: F = d under loading; under unloading stiffer by a ratio, from the largest displacement.
-/// It hardens at a knee, and ends.
+/// The law of Walton and Braun: F = d under loading; unloading from the largest displacement is stiffer by a ratio. The
+/// law hardens at a knee, and ends.
 struct Hysteretic {
   struct Branch {
     bool is_past_knee = false;
@@ -85,8 +85,8 @@ struct HystereticInClosedForm : Hysteretic {
   }
 };
 
-/// F = d^(3/2) with a displacement that is integrated under a force, and without unloading. Lateral walls of a die show
-/// a tenth of its force, and yield where it is at 0.1.
+/// F = d^(3/2), without unloading; under a force, its displacement is integrated. Lateral walls of a die show a tenth
+/// of its force, and yield at a force of 0.1.
 struct Powerful {
   struct Branch {
     bool has_yielded = false;

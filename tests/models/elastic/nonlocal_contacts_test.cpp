@@ -208,7 +208,7 @@ TEST(NonlocalCurveUnderForce, AgreesWithThirtyDigits) {
 
 // --- the branch
 
-/// Newton's method in s without any of the safeguards.
+/// Newton's method in s without safeguards.
 std::vector<double> plain_newton(Contacts& contacts, std::span<const Ramp> ramps, std::vector<double> y) {
   Eigen::VectorXd residual(static_cast<Eigen::Index>(y.size()));
   Eigen::MatrixXd jacobian;
@@ -224,7 +224,7 @@ std::vector<double> plain_newton(Contacts& contacts, std::span<const Ramp> ramps
 }
 
 TEST(NonlocalBranch, IsThePhysicalOneFromAColdStart) {
-  // The same contact radius everywhere is a fair guess for a compressed particle, and leads to the wrong branch.
+  // Equal contact radii are a plausible guess for a compressed particle, but lead to the wrong branch.
   const double displacement = 0.4;
   Contacts contacts({k_rubber, Terms::four}, die(), Centre::fixed);
   const auto ramps = compression(2, displacement);
@@ -664,7 +664,7 @@ TEST(NonlocalSymmetry, ItDoesNotMatterWhichOfTwoWallsMoves) {
 }
 
 TEST(NonlocalSymmetry, AFreeCentreIsFoundAmongAnyWalls) {
-  // Six walls, no two of them closer than 50 degrees. From some sets the particle escapes.
+  // Six walls, no two of them closer than 50 degrees. The particle escapes from some of these sets.
   std::mt19937_64 generator(3);
   std::normal_distribution<double> coordinate;
   std::uniform_real_distribution<double> displacement(-0.005, 0.04);
@@ -701,7 +701,7 @@ TEST(NonlocalSymmetry, AFreeCentreIsFoundAmongAnyWalls) {
 }
 
 TEST(NonlocalSymmetry, AWallThatStaysOpenChangesNothing) {
-  // Pushed off by the axial contact, 28 degrees away.
+  // The axial contact, 28 degrees away, pushes the surface off this wall.
   Contacts with({k_rubber, Terms::four}, oblique_die(62.0), Centre::fixed);
   Contacts without({k_rubber, Terms::four}, die(), Centre::fixed);
   std::vector<double> y(4, 0.0);
@@ -816,7 +816,7 @@ TEST(NonlocalRefusal, NamesForcesThatPull) {
 }
 
 TEST(NonlocalRefusal, NamesACentreThatNothingHolds) {
-  // Three walls on one side.
+  // All three walls are on one side of the particle.
   std::vector<ContactClass> bowl;
   for (const double degrees : {0.0, 120.0, 240.0})
     bowl.push_back(

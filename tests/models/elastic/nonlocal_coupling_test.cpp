@@ -37,7 +37,7 @@ TEST(NonlocalInfluence, PushesCloseNeighboursAway) {
   }
 }
 
-/// Coefficients of 4 pi times the inward displacement, without the half-space's and the logarithm's.
+/// Coefficients of 4 pi times the inward displacement, without those of the half-space and of the logarithm.
 double rest_of_mode(double nu, double n) {
   const double alpha = 4.0 * (1.0 - nu * nu);
   const double beta = alpha * (1.0 - 2.0 * nu) * (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu));

@@ -145,7 +145,7 @@ TEST(NonlocalLawOfFourTerms, HasThePrintedPressure) {
 }
 
 TEST(NonlocalLawOfAllTerms, HasTheClosedForm) {
-  // Where the closed form still has its digits in extended precision: loss 0.75/s.
+  // In this range the closed form in extended precision keeps its digits: it loses 0.75/s.
   const LocalLaw law(Terms::all);
   for (const double s : {1e-3, 0.05, 0.0999, 0.1001, 0.5, 0.999}) {
     const long double square = s;
@@ -157,7 +157,7 @@ TEST(NonlocalLawOfAllTerms, HasTheClosedForm) {
 }
 
 TEST(NonlocalLawOfAllTerms, IsWhatFewerTermsTendTo) {
-  // The first term left out is of order a^(2 terms): 1/(2n-1) a^(2n) in g, over a sum of at least a^2.
+  // The first omitted term is of order a^(2 terms): 1/(2n-1) a^(2n) in g, over a sum of at least a^2.
   const LocalLaw law(Terms::all);
   for (const double s : {1e-2, 0.1, 0.3}) {
     for (int terms = 1; terms <= 4; ++terms) {

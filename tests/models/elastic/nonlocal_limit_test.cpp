@@ -117,7 +117,8 @@ TEST(NonlocalLimit, IsTheSameUnderForceControl) {
 }
 
 TEST(NonlocalLimit, CountsModesThatBreakTheSymmetry) {
-  // Two pairs of close walls: of neighbours that push each other away one wins before all turn back together.
+  // Two pairs of close walls, which push each other away: one wall of a pair prevails before the symmetric mode turns
+  // back.
   const double half = 8.0 * k_degree;
   const double c = std::cos(half);
   const double s = std::sin(half);

@@ -1,5 +1,5 @@
-// Whole runs of the nonlocal sphere: curves and events computed elsewhere with 30 digits, in all forms; symmetries;
-// random wall sets.
+// Whole runs of the nonlocal sphere: independent curves and events with 30 digits, in all forms; symmetries; random
+// wall sets.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ Table reference(const std::string& file) {
   return read_csv(MONOGRAIN_SOURCE_DIR "/tests/models/elastic/reference/nonlocal/" + file + ".csv");
 }
 
-/// The preset that a reference file is about.
+/// The preset to which a reference file belongs.
 CheckedScenario preset_of(const std::string& name, double poisson_ratio, std::vector<Step> steps) {
   if (name.starts_with("simple")) return nonlocal_scenario(Configuration::simple, poisson_ratio, std::move(steps));
   if (name.starts_with("hydrostatic")) {
@@ -101,7 +101,7 @@ struct ColumnPair {
   double factor;
 };
 
-/// The columns of a reference table that a run has too.
+/// Columns that a reference table and a run have in common.
 std::vector<ColumnPair> columns_of(const Table& table, const TestRun& run, const std::string& radius_column) {
   std::vector<ColumnPair> pairs{{"stored_energy_over_ER3", "stored_energy", 1.0}, {"margin", "margin", 1.0}};
   for (const ContactClass& c : run.scene.classes) {
@@ -250,7 +250,7 @@ TEST(NonlocalEvents, StopWhereAContactIsAsWideAsTheParticleOrWallsMeet) {
 }
 
 TEST(NonlocalEvents, AWallThatIsNeverPressedChangesNothing) {
-  // 62 degrees from the lateral walls the surface is pushed away from an oblique wall that touches it.
+  // 62 degrees from the lateral walls the surface moves away from an oblique wall that touches it.
   const TestRun die = run(nonlocal_scenario(Configuration::die, 0.48, {ramp(0.4)}));
   const TestRun more =
       run(oblique(nonlocal_scenario(Configuration::oblique_die, 0.48, {ramp(0.4)}), 62.0 * pi / 180.0));
@@ -259,7 +259,7 @@ TEST(NonlocalEvents, AWallThatIsNeverPressedChangesNothing) {
   EXPECT_EQ(die.events(), more.events());
 }
 
-// --- what an elastic particle does
+// --- properties of an elastic particle
 
 TEST(NonlocalRuns, UnloadingRetracesLoadingAndTheWorkIsStored) {
   for (const char* integrator : k_integrators) {
@@ -331,7 +331,7 @@ TEST(NonlocalRuns, LeaveADisplacementThatOfTheWallItself) {
 }
 
 TEST(NonlocalRuns, OfOneTermWithoutCouplingAreHertzian) {
-  // A single driven wall under a fixed centre feels no other.
+  // With a fixed centre, a single driven wall is independent of the others.
   CheckedScenario one = between(nonlocal_scenario(Configuration::walls, 0.3, {}),
                                 {wall("a", {0, 0, 1}, {ramp(0.1)}), wall("b", {0, 0, -1}, {}, 0.5)});
   const TestRun now = run(with(one, "terms", "1"));

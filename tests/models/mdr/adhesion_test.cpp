@@ -27,7 +27,7 @@ constexpr double k_modulus = 1.3;
 constexpr double k_rounding = 16 * k_epsilon;  // a formula of some ten operations without cancellation
 constexpr double k_shares[] = {0.003, 0.03, 0.3, 0.7, 0.97};
 
-// --- the contacts the law is tested on
+// --- contacts on which the law is tested
 
 /// An adhesive contact below its largest overlap: its frame over radius, largest overlap and overlap.
 struct Bond {
@@ -76,7 +76,7 @@ struct Bond {
 
 std::ostream& operator<<(std::ostream& out, const Bond& bond) { return out << bond.name; }
 
-/// How strong the surface energy is: (pi/2) (dg/E*) (B/A)^2 / b, the cube of the critical radius over the half width
+/// Surface energy of a given strength: (pi/2) (dg/E*) (B/A)^2 / b, the cube of the critical radius over the half width
 /// while that is small.
 double surface_energy_of(double strength, const Indenter& indenter, double modulus) {
   const double flatness = 2.0 * indenter.half_width / indenter.height;
@@ -247,8 +247,8 @@ TEST(MdrAdhesionCriticalRadius, IsWhereTheEdgesForceOrDisplacementIsLeast) {
 
 // --- equilibrium of the edge
 
-/// A radius that has come back from what an edge has there: exact to rounding of that over its slope, and at the
-/// critical state, where the slope is zero, to the square root of it.
+/// Expects a radius computed back from a function of the edge. It is exact to the function's round-off over its slope;
+/// at the critical state, where the slope is zero, to the square root of that round-off.
 void expect_same_edge(const Bond& bond, double a, double back, double scale, double slope, double bend) {
   const double rounding = 8.0 * k_epsilon * scale;
   const double by_slope = rounding / std::max(slope, 1e-300);

@@ -1,4 +1,4 @@
-/// The edge of one adhesive contact as an automaton: where it follows, sticks, peels and pulls off.
+/// The edge of one adhesive contact as an automaton: it follows, sticks, peels and pulls off.
 
 #include "mdr/adhesive_edge.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr Adhesion k_adhesion{1.0, 1e-5};
 
-/// One-dimensional space of a contact, by its overlap, which is 0 where it touches without adhesion.
+/// One-dimensional space of a contact, given by its overlap, which is 0 where it touches without adhesion.
 struct Space {
   const char* name;
   UnloadingShape dent{};  ///< of an elastic contact: no height
@@ -31,10 +31,10 @@ AdhesiveEdge stuck_at(double radius) { return {Edge::sticking, radius}; }
 
 PullOff pull_off_in(const Space& space) { return pull_off_of(space.at(0.0).indenter, k_adhesion); }
 
-/// Radius of an edge that stuck well outside its critical radius.
+/// Radius of an edge that sticks well outside its critical radius.
 double wide_radius(const Space& space) { return 1.5 * pull_off_in(space).by_force.contact_radius; }
 
-/// Overlap at which a function of it is zero, which rises with the overlap.
+/// Root of a function that increases with the overlap.
 template <class Function>
 double root(Function&& function, double low, double high) {
   for (int k = 0; k < 200; ++k) {

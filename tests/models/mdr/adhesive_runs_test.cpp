@@ -1,4 +1,4 @@
-// Whole runs of adhesive particles: pull-off, hysteresis of the edge, energy, and what must not change a curve.
+// Whole runs of adhesive particles: pull-off, hysteresis of the edge, energy, and invariance of curves.
 
 #include <algorithm>
 #include <cmath>
@@ -292,8 +292,8 @@ TEST(MdrAdhesiveContact, SticksPeelsAndFollowsInTurn) {
 }
 
 TEST(MdrAdhesiveContact, TurnsItsEdgeOnceWhereTheRadiusGoesOnGrowing) {
-  // The rule of the seed lets the radius grow on unloading, too. The growing indenter goes on pressing the springs at
-  // the edge for a moment: the edge is turned a little after the wall, where the spring's displacement has no slope.
+  // The rule of the seed lets the radius grow on unloading, too. The growing indenter presses the springs at the edge
+  // for a moment longer: the edge turns a little after the wall, where the spring's displacement has no slope.
   for (const double modulus_over_yield : {25.0, 50.0, 100.0, 200.0}) {
     for (const double poisson_ratio : {0.0, 0.2}) {
       const CheckedScenario scenario =
@@ -312,7 +312,7 @@ TEST(MdrAdhesiveContact, TurnsItsEdgeOnceWhereTheRadiusGoesOnGrowing) {
 }
 
 TEST(MdrAdhesiveContact, ComesBackToWhereItHasPeeledFrom) {
-  // From a peeling edge in and out again: the edge sticks, so that the same place has the same force.
+  // The wall goes from a peeling edge in and out again: the edge sticks, so that equal positions have equal forces.
   const TestRun result =
       run(adhering(mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.05, 0.035, 0.038, 0.035, 0.038})), 1e-4));
   std::vector<double> forces;
@@ -350,7 +350,7 @@ TEST(MdrAdhesiveContact, HasTheRadiusBetweenThatWithoutAdhesionAndThatInEquilibr
   EXPECT_GT(sticking, 100);
 }
 
-// --- what must not change a curve
+// --- invariance of curves
 
 TEST(MdrAdhesiveInvariance, OutputPointsDoNotMatter) {
   for (const char* integrator : k_integrators) {
@@ -441,7 +441,7 @@ TEST(MdrAdhesiveInvariance, MergingOfWallsDoesNotMatter) {
   }
 }
 
-/// Pull-offs, one after another.
+/// Pull-offs in their order.
 Words torn_off(const TestRun& result) {
   Words events = result.events();
   std::erase_if(events, [](const std::string& event) { return !event.ends_with(":pull-off"); });
@@ -531,7 +531,8 @@ TEST(MdrAdhesiveEnergyBalance, DissipationNeverFallsWhereOnlyPlasticFlowGrows) {
 }
 
 TEST(MdrAdhesiveEnergyBalance, AClosedCycleDissipatesItsArea) {
-  // At a held radius: down to a peeling edge, and back to the largest overlap; and the same through pull-off.
+  // At a held radius, the wall retracts to a peeling edge and returns to the largest overlap; then it does so through
+  // pull-off.
   for (const double least : {0.035, 0.0}) {
     const TestRun result = run(
         with_points(adhering(mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.05, least, 0.05})), 1e-4), 4000));

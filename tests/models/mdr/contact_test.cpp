@@ -42,7 +42,7 @@ TEST_P(MdrYieldOverlapTable, MatchesPrintedDigits) {
       << "E/Y = " << row.modulus_over_yield;
 }
 
-// 40-digit roots for nu = 0.3, as many digits as were printed.
+// 40-digit roots for nu = 0.3, rounded to the printed digits.
 INSTANTIATE_TEST_SUITE_P(Mdr, MdrYieldOverlapTable,
                          ::testing::Values(YieldRow{"soft", 6.25, 0.273671768452174, 1e-15},
                                            YieldRow{"EY12p5", 12.5, 0.120974619957, 1e-12},
@@ -87,7 +87,7 @@ TEST(MdrYieldOverlap, FallsWithTheModulus) {
 
 // --- auxiliary functions
 
-/// Against 50 digits, closely around the switch-over from the series to the closed form and over the whole range.
+/// Compares with 50 digits, closely around the change from the series to the closed form and over the whole range.
 template <class Function, class Reference>
 void expect_full_accuracy(Function&& function, Reference&& reference, double switch_over) {
   constexpr double tolerance = 4 * k_epsilon;  // largest errors found: phi 1.5 eps, psi 2.6 eps
@@ -371,7 +371,7 @@ TEST(MdrMaterial, MayBeIncompressible) {
   }
 }
 
-/// A unit of length and one of stress, powers of two: every operation scales without a new rounding.
+/// A unit of length and one of stress, powers of two: every operation scales without further round-off.
 struct Units {
   double length, stress;
 

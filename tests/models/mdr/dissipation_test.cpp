@@ -1,4 +1,4 @@
-// Energy balance of whole runs: where the model dissipates, where it creates energy, and that the user is told.
+// Energy balance of whole runs: where the model dissipates, where it creates energy, and that it warns the user.
 
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ TEST(MdrDissipation, BalancesWorkAndStoredEnergyInEveryRow) {
 }
 
 TEST(MdrWork, IsTheAreaUnderTheForces) {
-  // The one check of the work that does not trust the integrators: forces and displacements of the history itself.
+  // Integrates the history's own forces over its displacements: the only check of the work without the integrators.
   const TestRun result = run(with_points(mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.2, 0.35})), 4000));
   const auto force = result.column("axial.force");
   const auto displacement = result.column("axial.displacement");

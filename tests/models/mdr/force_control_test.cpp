@@ -1,4 +1,4 @@
-// Walls whose force is prescribed: alone, beside walls whose displacement is, in turns, and with a free centre.
+// Walls under force control: alone, beside walls under displacement control, in turns with it, and with a free centre.
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +89,8 @@ TEST_P(MdrForceControl, MeetsThePrescribedForceInEveryRow) {
 }
 
 TEST_P(MdrForceControl, GivesWayAtOnceWhereItYields) {
-  // The ellipse yields into a contact that bears some tenths of a per cent more at once, so the wall goes back.
+  // At yield the ellipse becomes a contact that carries some tenths of a per cent more at once, so that the wall
+  // retreats.
   const TestRun result = run(with_points(simple(force_path({0.02})), 2000), GetParam());
   const auto side = result.column("row");
   const auto force = result.column("axial.force");
@@ -107,7 +108,7 @@ TEST_P(MdrForceControl, GivesWayAtOnceWhereItYields) {
 }
 
 TEST_P(MdrForceControl, GoesAlongTheCurveOfDisplacementControl) {
-  // Twenty places on a loading, an unloading and a reloading branch.
+  // Twenty positions on a loading, an unloading and a reloading branch.
   std::vector<double> places;
   for (int i = 1; i <= 8; ++i) places.push_back(0.01 * i);
   for (int i = 1; i <= 5; ++i) places.push_back(0.08 - 0.001 * i);
@@ -475,7 +476,7 @@ TEST_P(MdrFreeCentreUnderForce, IsPressedFromBothSidesAlike) {
 }
 
 TEST_P(MdrFreeCentreUnderForce, DoesTheWorkOfTheWallsWhileTheRadiusIsHeld) {
-  // Without growth, too: elastic only.
+  // Elastic contacts only, and therefore no growth.
   const TestRun pressed = run(against_a_fixed_wall(force_path({0.003, 0.001})), GetParam());
   const TestRun symmetric = run(simple(force_path({0.003, 0.001})));
   ASSERT_EQ(pressed.record.status, RunStatus::complete) << pressed.record.message;
@@ -485,7 +486,7 @@ TEST_P(MdrFreeCentreUnderForce, DoesTheWorkOfTheWallsWhileTheRadiusIsHeld) {
 }
 
 TEST_P(MdrFreeCentreUnderForce, IsPressedOnWhereBothWallsHaveLostIt) {
-  // The fixed wall has lost the particle, too, but it lies there still.
+  // The particle has lost the fixed wall, too, but still lies at it.
   const TestRun result = run(against_a_fixed_wall({force_ramp(0.02), ramp(0.0), force_ramp(0.01)}), GetParam());
   ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
   EXPECT_TRUE(result.has_event("contact-lost"));
@@ -496,7 +497,7 @@ TEST_P(MdrFreeCentreUnderForce, IsPressedOnWhereBothWallsHaveLostIt) {
 }
 
 TEST_P(MdrFreeCentreUnderForce, IsRefusedWhereNothingHoldsItAgainstAForce) {
-  // Both walls have gone away, and where it lies between them is not known.
+  // Both walls have gone away, and the particle's position between them is undetermined.
   CheckedScenario scenario = against_a_fixed_wall({force_ramp(0.02), ramp(0.0), force_ramp(0.01)});
   scenario.loading.walls[1] = wall("z-", -Eigen::Vector3d::UnitZ(), {hold(), ramp(-0.05), hold()});
   const TestRun result = run(scenario, GetParam());

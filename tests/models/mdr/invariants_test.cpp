@@ -1,4 +1,4 @@
-// What must not change a curve of the MDR model, and what must hold along every curve.
+// Changes that must not affect a curve of the MDR model, and properties of every curve.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 // A die that is loaded, unloaded until its axial walls separate, and loaded beyond: every regime and most events.
 CheckedScenario die_cycle() { return mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.2, 0.35})); }
 
-// Three pairs of walls one after another; the second and third load while the ones before go back a little.
+// Three pairs of walls one after another; while the second and the third load, the pairs before retreat a little.
 CheckedScenario triaxial_sequence() {
   const std::vector<std::vector<double>> programs{
       {0.20, 0.195, 0.19, 0.22}, {0.0, 0.20, 0.19, 0.22}, {0.0, 0.0, 0.20, 0.22}};

@@ -1,4 +1,4 @@
-// The overlap that bears a force, on each branch of a contact.
+// The overlap under a force, on each branch of a contact.
 
 #include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
@@ -23,7 +23,7 @@ using Wide = boost::multiprecision::cpp_bin_float_50;
 constexpr double k_modulus = 1.3;
 constexpr double k_rounding = 8 * k_epsilon;
 
-/// By how much a relative error of the force is magnified in the overlap.
+/// Amplification of a relative error of the force in the overlap.
 double condition(const Contact& contact, double overlap) { return contact.force / (contact.by_overlap * overlap); }
 
 // --- phi

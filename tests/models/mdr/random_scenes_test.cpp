@@ -1,4 +1,4 @@
-// Random scenes of the MDR model: what holds in every scene, whatever its walls, its programs and its material.
+// Random scenes of the MDR model: properties that hold for all walls, programs and materials.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,7 +34,7 @@ Eigen::Vector3d direction(Dice& dice) {
   return {rho * std::cos(angle), rho * std::sin(angle), z};
 }
 
-// Where a wall goes at most: soft and well confined scenes meet their limits on the way.
+// Largest displacement of a wall; soft and well confined scenes meet their limits before.
 constexpr double k_deepest = 0.35;
 constexpr double k_least_angle = 40.0 * std::numbers::pi / 180.0;
 
@@ -111,7 +111,7 @@ std::string option(const CheckedScenario& scenario, const std::string& name) {
   return std::get<std::string>(scenario.options.at(name));
 }
 
-// --- what is asked of a run
+// --- checks of a run
 
 /// Scenes that break a rule, each with its seed.
 class Breaches {
@@ -124,7 +124,7 @@ class Breaches {
   std::vector<std::string> lines_;
 };
 
-/// Where a run may end: the limits of the model, as its messages name them.
+/// Limits of the model at which a run may end, in the words of its messages.
 constexpr std::array<std::string_view, 9> k_limits{
     "the free surface of the particle is used up",
     "singular growth of the apparent radius",
@@ -137,7 +137,7 @@ constexpr std::array<std::string_view, 9> k_limits{
     "overlap above twice the apparent radius",
 };
 
-/// How a run has ended: complete, the limit it has met, or what should not be.
+/// End of a run: complete, the limit that it met, or a failure.
 std::string end_of(const TestRun& result) {
   if (result.record.status == RunStatus::complete) return "complete";
   const std::string& message = result.record.message;
@@ -147,7 +147,7 @@ std::string end_of(const TestRun& result) {
   return std::string(*found);
 }
 
-/// The first place in a table that holds no number.
+/// First position in a table without a number.
 std::string place_without_number(const Table& table) {
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     for (std::size_t c = 0; c < table.columns().size(); ++c) {
@@ -157,7 +157,7 @@ std::string place_without_number(const Table& table) {
   return {};
 }
 
-/// Whether an event of that name stands at that time; of any class, or of that one.
+/// True if there is an event with a name at a time; of any class, or of a given one.
 bool has_event_at(const TestRun& result, std::string_view name, double time, std::string_view contact_class = {}) {
   const Table& table = result.record.events;
   for (std::size_t i = 0; i < table.row_count(); ++i) {
@@ -168,7 +168,7 @@ bool has_event_at(const TestRun& result, std::string_view name, double time, std
   return false;
 }
 
-/// Largest distance of work = stored energy + dissipation, over the largest of them.
+/// Largest deviation from work = stored energy + dissipation, over the largest of these.
 double energy_gap(const TestRun& result) {
   const auto work = result.column("work");
   const auto stored = result.column("stored_energy");
@@ -187,7 +187,7 @@ struct Shrinking {
   double elsewhere = 0.0;
 };
 
-/// By how much the apparent radius goes down from one row to the next.
+/// Decreases of the apparent radius from one row to the next.
 Shrinking shrinking(const TestRun& result) {
   const auto times = result.column("time");
   const auto radius = result.column("apparent_radius");
@@ -207,7 +207,7 @@ struct Losses {
   double elsewhere = 0.0;  ///< largest decrease from one row to another
 };
 
-/// How the dissipation falls, over the largest energy, as long as the caps of the contacts stay apart.
+/// Decreases of the dissipation, over the largest energy, while the caps of the contacts are apart.
 Losses losses(const TestRun& result) {
   const auto times = result.column("time");
   const auto dissipation = result.column("dissipation");
@@ -226,7 +226,7 @@ Losses losses(const TestRun& result) {
   return losses;
 }
 
-/// Largest distance of a closed contact's force from its program, over the largest force it prescribes.
+/// Largest deviation of a closed contact's force from its program, over the largest prescribed force.
 double distance_from_program(const TestRun& result) {
   const Table& table = result.record.history;
   const auto times = result.column("time");
@@ -273,7 +273,7 @@ double distance_from_program(const TestRun& result) {
 
 // --- scenes solved at every instant
 
-/// Holds a measured value of one scene against the most it may be.
+/// Compares a measured value of one scene with its largest allowed value.
 void check(std::uint64_t seed, const char* what, double value, double most, Breaches& breaches) {
   if (!(value <= most)) breaches.add(seed, fmt::format("{} {:.3g}, above {:.3g}", what, value, most));
 }
@@ -345,7 +345,7 @@ struct Distance {
   double work = 0.0;   ///< over the largest work
 };
 
-/// How far two runs are apart at the output points that both have.
+/// Distance of two runs at their common output points.
 Distance distance(const TestRun& actual, const TestRun& expected) {
   const auto largest_difference = [](const std::vector<double>& a, const std::vector<double>& b) {
     double worst = 0.0;

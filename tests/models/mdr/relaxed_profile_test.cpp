@@ -126,7 +126,7 @@ TEST(MdrRelaxedProfile, IsExactForEvenPolynomialsOfDegreeSix) {
 }
 
 TEST(MdrRelaxedProfile, ConvergesToTheEllipseWithTheFourthPowerOfTheDistance) {
-  // A = 0.3, b = 1; the contact ends before the ellipse does, where its slope is not bounded.
+  // A = 0.3, b = 1; the contact ends before the ellipse, at whose end the slope is unbounded.
   const Indenter ellipse{ElasticProfile::ellipse, 0.3, 1.0};
   const auto height = [](double r) { return 0.15 * (1.0 - 2.0 / pi * boost::math::ellint_2(r)); };
   constexpr double largest_radius = 0.8;
@@ -190,7 +190,7 @@ TEST(MdrRelaxedProfile, PullsOffAsJkrForTheParabola) {
 }
 
 TEST(MdrRelaxedProfile, DoesNotDependOnTheUnits) {
-  // Powers of two, and squares of the length far outside of what a double holds to the fourth power.
+  // The units are powers of two, and lengths are so small that their fourth power underflows.
   constexpr double length = 0x1p-200;
   constexpr double stress = 0x1p30;
   Samples small = bowl(30);

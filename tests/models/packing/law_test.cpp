@@ -53,7 +53,7 @@ TEST_P(PackingCurve, IsThatOfTheReference) {
 INSTANTIATE_TEST_SUITE_P(Packing, PackingCurve, ::testing::ValuesIn(curves()),
                          [](const auto& curve) { return std::string(curve.param.file); });
 
-/// A column that holds words where it is not a number.
+/// Hardening modulus in a row; none if the column has a word there.
 std::optional<double> hardening_of(const Table& table, std::size_t row) {
   const std::size_t column = *table.find("H");
   if (!table.columns()[column].holds_words()) return table.at(row, column);
@@ -227,7 +227,7 @@ TEST(PackingLaw, ScalesWithItsStresses) {
 }
 
 TEST(PackingBranch, EndsWhereTheStrainIsGreatest) {
-  // By Newton's method with 30 digits.
+  // Expected values by Newton's method with 30 digits.
   const Law law = make_law(published());
   const Branch branch = growing_branch(law, Measure::strain);
   EXPECT_EQ(branch.begin, 0.8);

@@ -17,7 +17,7 @@ namespace {
 
 std::string option(const char* key, double value) { return fmt::format("{} = {:.17g}\n", key, value); }
 
-/// A scenario with these parameters.
+/// A scenario with given parameters.
 CheckedScenario scenario_of(const Parameters& p, std::vector<Step> steps,
                             std::optional<double> initial = std::nullopt) {
   std::string text = "model = \"packing\"\n[material]\n";
@@ -52,8 +52,8 @@ Step to_strain(double target) { return to(Step::Kind::strain, target); }
 
 constexpr Tolerances k_default{};
 
-/// Largest error of the columns over the rows of a run, against the printed equations at the packing fraction that is
-/// prescribed, each over its largest magnitude.
+/// Largest error of the columns over the rows of a run, each over its largest magnitude. The reference is the printed
+/// equations at the prescribed packing fraction.
 double error_of(const TestRun& run, const Parameters& p) {
   const Printed printed{p};
   const auto phi = run.outputs("packing_fraction");
@@ -219,7 +219,7 @@ TEST(PackingRuns, FollowThePrintedEquationsForAnyParameters) {
 }
 
 TEST(PackingRuns, ErrAsTheirToleranceSays) {
-  // No event resets the state on the way.
+  // No event resets the state during this program.
   const Parameters p = published();
   const double exact = static_cast<double>(Printed{p}.elastic(Precise(0.99)));
   for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
@@ -331,7 +331,7 @@ TEST(PackingRuns, HoldAndEndAtEvents) {
   }
 }
 
-/// A packing whose strain falls from jamming on, as its modulus begins.
+/// A packing whose strain falls at first from jamming on, where its modulus begins.
 Parameters falls_at_first(double coupling_factor) {
   Parameters p = published(0.0);
   p.poisson_ratio = 0.3;
@@ -413,7 +413,7 @@ TEST(PackingEnds, WhereTheStrainIsGreatest) {
 }
 
 TEST(PackingEnds, WhereTheStressIsGreatest) {
-  // So plastic that the stress falls before it is full.
+  // So plastic that the stress falls before the packing is full.
   Parameters p = published(0.0);
   p.plastic_growth = 8.0;
   p.plasticity->yield_stress = 0.1e6;

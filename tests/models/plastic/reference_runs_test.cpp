@@ -1,4 +1,4 @@
-// Whole runs of the plastic laws against curves computed elsewhere with 50 digits: all forms, both controls.
+// Whole runs of the plastic laws against independent curves with 50 digits: all forms, both controls.
 
 #include <gtest/gtest.h>
 
@@ -121,7 +121,7 @@ void expect_below(double bound, const Errors& e, std::string_view what) {
 }
 
 TEST_P(ReferenceCurve, IsMetByDirect) {
-  // Largest errors found: 1e-13, work just above yield; 2e-11, pressure next to zero porosity under a force.
+  // Largest errors: 1e-13 in the work just above yield; 2e-11 in the pressure next to zero porosity under a force.
   expect_below(2e-13, errors_of(run_through(false, "direct"), Scale::own), "displacement");
   expect_below(1e-10, errors_of(run_through(true, "direct"), Scale::own), "force");
 }

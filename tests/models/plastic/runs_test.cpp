@@ -299,13 +299,13 @@ TEST(PlasticEnds, StopWhereTheWallsMeetOrTheCellIsFilled) {
 }
 
 TEST(PlasticEnds, StopWhereAProgramGoesBackAfterACondition) {
-  // Which way the second step goes is known only when the first has ended.
+  // The direction of the second step is known only when the first has ended.
   const TestRun now = run(steel(Walls::simple, {until(ramp(0.3), Quantity::displacement, 0.2), ramp(0.1)}));
   EXPECT_EQ(now.record.status, RunStatus::stopped);
   EXPECT_TRUE(contains(now.record.message, "unloading = \"mdr\" adds one")) << now.record.message;
 }
 
-// --- contacts for themselves
+// --- independent contacts
 
 TEST(PlasticSimilarity, WallsMeetTheParticleAcrossTheirGaps) {
   CheckedScenario scenario = between(similarity_scenario(Walls::walls, 1.0, 0.24, {}),
@@ -329,7 +329,7 @@ TEST(PlasticSimilarity, WallsMeetTheParticleAcrossTheirGaps) {
 
 // --- random scenes
 
-/// Admissible materials and programs of either control; with unloading every other time.
+/// Random admissible materials and programs under either control; half of them with unloading.
 CheckedScenario random_scenario(std::mt19937_64& generator) {
   const Walls walls = k_walls[static_cast<std::size_t>(uniform(generator, 0.0, 3.0))];
   const double kind = uniform(generator, 0.0, 3.0);

@@ -46,7 +46,7 @@ Steel steel_of(const Table& table, std::size_t row) {
   return {number(table, row, "E"), number(table, row, "nu"), number(table, row, "sigma_y")};
 }
 
-/// All materials of the source's own calculations.
+/// All materials of the source's calculations.
 std::vector<Steel> steels_of_the_source() {
   const Table table = reference("table_A1");
   std::vector<Steel> steels;
@@ -54,8 +54,8 @@ std::vector<Steel> steels_of_the_source() {
   return steels;
 }
 
-/// From the least lambda to far beyond the calibrated range. Below a Poisson's ratio of 0 the elastic loss of volume
-/// may exceed the whole for soft materials, so that there is no law.
+/// Random materials from the least lambda to far beyond the calibrated range. Below a Poisson's ratio of 0 there may be
+/// no law, because the elastic loss of volume of a soft material may exceed the whole volume.
 struct RandomSteels {
   std::mt19937_64 generator{20240611};
 
@@ -154,7 +154,7 @@ TEST(SemimechParameters, LoseTheZeroSlopeAtTheMaximumBelowTheLeastModulus) {
 }
 
 TEST(SemimechParameters, KeepTheDigitsOfEarlyInflexions) {
-  // With r - 1 = 1.9e-13 and a negative shift the inflexion point is at -(r - 1)/(2 tan s) to first order, the small
+  // With r - 1 = 1.9e-13 and a negative shift, the inflexion point is at -(r - 1)/(2 tan s) to first order: a small
   // difference of two numbers of order 1.
   const PressureFall fall = make_semimech({1e40, 1e40}, Configuration::hydrostatic).fall;
   ASSERT_LT(fall.shift, 0.0);
@@ -336,8 +336,8 @@ TEST(SemimechDerivatives, AgreeWithDifferences) {
 }
 
 TEST(SemimechDerivatives, AgreeWithDifferencesOutsideOfTheirRegimes) {
-  // Where trial steps go: on the other side of x_Hmax the fall is a mirror image, and the rise goes on as the nearest
-  // whole power does.
+  // Trial steps may leave their regime: beyond x_Hmax the fall continues as its mirror image, and the rise as the
+  // nearest integer power.
   for (const Steel& steel : steels_of_the_source()) {
     for (const Configuration configuration : k_configurations) {
       const SemimechLaw law = steel.law(configuration);
@@ -413,7 +413,7 @@ TEST(SemimechForce, BecomesThatOfIdealPlasticityWithoutHardeningForStiffMaterial
   }
 }
 
-// --- contacts that reach each other
+// --- contacts that meet
 
 TEST(SemimechImpingement, IsWhereTheContactReachesTheEdgeOfItsFace) {
   RandomSteels random;
