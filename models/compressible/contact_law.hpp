@@ -32,7 +32,7 @@ struct LoadingLaw {
 /// The two parts of the law.
 enum class Part { linear, exponential };
 
-/// Force of one part, also outside of it, and its derivative with respect to d.
+/// Force by the formula of one part, also outside of that part; slope_in() gives its derivative with respect to d.
 [[nodiscard]] double force_in(const LoadingLaw& law, Part part, double displacement) noexcept;
 [[nodiscard]] double slope_in(const LoadingLaw& law, Part part, double displacement) noexcept;
 /// Work from first touch to a displacement, by the formula of one part, also outside of that part.

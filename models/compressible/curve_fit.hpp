@@ -11,7 +11,7 @@
 
 namespace monograin::compressible {
 
-/// How far a law is from a curve; integrals are trapezoidal sums over the curve's own points.
+/// Distance of a law from a curve; integrals are trapezoidal sums over the curve's own points.
 struct FitErrors {
   double area = 0.0;  ///< sqrt( int (f_model - f)^2 dd ) / int f dd (eq. 7)
   double peak = 0.0;  ///< max |f_model - f| / f(d_max) (eq. 8, the absolute value added)

@@ -38,7 +38,7 @@ ProgramBounds draw_material_point(Dice& dice, DrawnMaterial& drawn) {
 
 namespace {
 
-/// Draws what the steps of a program prescribe, one after the other.
+/// Draws the steps of a program, one after the other.
 class ProgramDraw {
  public:
   ProgramDraw(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds)

@@ -1,4 +1,4 @@
-/// How the stress test draws scenes of model `material-point`, and what must hold of their histories.
+/// Stress test of model `material-point`: draws scenes, and checks their histories.
 #pragma once
 
 #include <cstddef>

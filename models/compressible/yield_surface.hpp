@@ -57,8 +57,8 @@ struct CapConstants {
 /// Branch at a stress; side -1 (axial compression) where s is zero.
 [[nodiscard]] Branch branch_at(const Parameters& parameters, const Properties& properties, double p, double s);
 
-/// f, g and their derivatives on the formula of a branch, wherever p is; below the arc's centre f is the height over
-/// the top of the arc.
+/// f, g and their derivatives by the formula of a branch, at any p. Below the arc's centre, f is the height over the
+/// top of the arc.
 [[nodiscard]] Yield yield_on(const Parameters& parameters, const Properties& properties, Branch branch, double p,
                              double s);
 

@@ -127,7 +127,8 @@ bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> 
 }
 
 /// True if walls under displacement control with a gap below `near` can balance the prescribed forces. Small forces are
-/// asked for by themselves, because beside large ones round-off hides them; loaded contacts may also give way to them.
+/// tested by themselves, because round-off of large ones would hide them; a decrease of the force on a loaded contact
+/// may balance them, too.
 bool Contacts::may_balance(std::span<const Target> targets, std::span<const double> y, double near) const {
   const auto push_of = [&](std::size_t j) -> Eigen::Vector3d { return weights_[j] * targets[j].value * arm_of(j); };
   double largest = 0.0;

@@ -6,7 +6,7 @@
 ///   g(s_j) = d_j + n_j.u + sum_h G_jh F_h                                (eqs. 17, 18)
 ///
 /// and in every free direction sum_j w_j F_j n_j = 0, with the wall displacement d, the mean normal n, the number of
-/// walls w. The sign of s_j says whether the contact is open, so that nothing has to be decided.
+/// walls w. The sign of s_j shows whether the contact is open, so that no regime has to be chosen beforehand.
 ///
 /// Lengths are over R, forces over E R^2, energies over E R^3; a force is that on one wall of its class.
 ///
@@ -55,13 +55,13 @@ struct ContactState {
   double stiffness = 0.0;       ///< dF/dg at fixed surroundings, 2 E* a
 };
 
-/// Owns its working memory: solve(), rates(), margin() and the like do not allocate, and one object is not to be used
-/// by two threads at once.
+/// Owns its working memory: solve(), rates(), margin() and the like do not allocate. Two threads must not use one
+/// object at once.
 class Contacts {
  public:
   /// @param classes  walls that share a history by symmetry; only their normals are used
   /// @throws std::invalid_argument for a Poisson's ratio outside [0, 0.5], walls that are the same or closer than
-  /// k_least_wall_angle, and classes of which not every wall sees the same forces around it
+  /// k_least_wall_angle, and classes whose walls do not all have equal surroundings
   Contacts(const Formulation& model, std::span<const ContactClass> classes, Centre centre);
 
   [[nodiscard]] std::size_t class_count() const noexcept { return weights_.size(); }

@@ -1,4 +1,4 @@
-/// What the force of one contact does elsewhere on an elastic sphere: the displacement of its surface, and with it the
+/// Effect of the force of one contact elsewhere on an elastic sphere: the displacement of the surface, and with it the
 /// approach and the radius of other contacts.
 ///
 /// theta in (0, pi] is the angle between the normals of two walls, x = a/R the radius of the contact that is acted
@@ -53,9 +53,9 @@ constexpr double k_widest = 1.0 + 1e-12;
 [[nodiscard]] double pole_radius_influence(double poisson_ratio, double x);
 
 /// Growth of the contact's radius per unit force of a contact at an angle theta (eqs. 8, 14), x in [0, 1]. The
-/// integrals are singular at theta = asin(x), where the other contact's middle is on this contact's edge: exact to
-/// rounding ten degrees from there, to 1e-12 a tenth of a degree from there. The closed form has 3/4 of the integral's
-/// value at theta = pi/2, x = 1/2, and half of it at x = 3/4.
+/// integrals are singular at theta = asin(x), where the other contact's middle is on this contact's edge: they are
+/// exact to round-off ten degrees from there, to 1e-12 a tenth of a degree from there. The closed form has 3/4 of the
+/// integral's value at theta = pi/2, x = 1/2, and half of it at x = 3/4.
 /// @throws std::domain_error for x above k_widest
 [[nodiscard]] double radius_influence(RadiusRule rule, double poisson_ratio, double theta, double x);
 

@@ -1,5 +1,5 @@
-/// Local law of an elastic sphere against a rigid flat wall with the curvature of its profile: what one contact does
-/// under a given approach of its own, before the other contacts of the particle move its surface.
+/// Local law of an elastic sphere against a rigid flat wall with the curvature of its profile: force and radius of one
+/// contact under a given approach of its own, before the other contacts of the particle move its surface.
 ///
 /// Everything is a function of the signed square of the contact radius, s = a^2 in contact and s = -gap (over R)
 /// without: the laws are smooth in it down to first touch, where force and contact radius have infinite derivatives.

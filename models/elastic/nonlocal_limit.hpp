@@ -1,4 +1,4 @@
-/// Where a step of the program leaves the domain of the nonlocal formulation.
+/// The point at which a step of the program leaves the domain of the nonlocal formulation.
 #pragma once
 
 #include <optional>

@@ -66,7 +66,7 @@ struct Law {
   double end = 1.0;
 };
 
-/// @throws std::invalid_argument naming what is out of the ranges above, or leaves less than 1e-5 between Phi_J and 1
+/// @throws std::invalid_argument naming the parameter that is out of its range; or if Phi_J is within 1e-5 of 1
 [[nodiscard]] Law make_law(const Parameters& parameters);
 
 /// Z(Phi), eq. 17. @throws std::domain_error below Phi_c

@@ -1,4 +1,4 @@
-/// How the stress test draws scenes of model `packing`, and what must hold of their histories.
+/// Stress test of model `packing`: draws scenes, and checks their histories.
 #pragma once
 
 #include <cstddef>

@@ -30,6 +30,7 @@ namespace monograin::plastic {
 enum class Configuration { simple, die, hydrostatic };
 
 [[nodiscard]] std::string_view name(Configuration configuration) noexcept;
+/// Configuration with a name, as name() gives it.
 /// @throws std::invalid_argument for another word
 [[nodiscard]] Configuration configuration_named(std::string_view word);
 [[nodiscard]] int moving_walls(Configuration configuration) noexcept;
@@ -239,7 +240,7 @@ template <class Force>
   return boost::math::quadrature::gauss<double, 30>::integrate(integrand, root(s - b), root(s - a));
 }
 
-/// @throws std::domain_error unless x is below the limit; NaN is not
+/// @throws std::domain_error unless x is below the limit; also for NaN
 void require_approach_below(double x, double limit, Limit reason);
 
 }  // namespace monograin::plastic

@@ -1,4 +1,4 @@
-/// The atlas: figures and tables made anew from their definitions.
+/// The atlas: figures and tables computed anew from their definitions.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ namespace monograin {
 struct ComparisonRow {
   std::string label;
   std::vector<BranchComparison> lines;
-  std::string quantity{};               ///< what was compared; empty where the table names none
+  std::string quantity{};               ///< compared quantity; empty if the table names none
   std::vector<std::size_t> measures{};  ///< measures in the table, as indices of definition::k_measures
 };
 

@@ -1,4 +1,4 @@
-/// Percentile bands of a sweep's histories: how far inputs that are not known exactly spread the curves.
+/// Percentile bands of a sweep's histories: the spread of curves due to uncertain inputs.
 #pragma once
 
 #include <cstddef>
