@@ -111,8 +111,7 @@ std::string farthest(const SvgPlot& plot, const SvgPlot& other, const SvgToleran
   const std::vector<Piece> pieces = pieces_of(other);
   std::string worst;
   double most = 1.0;
-  std::size_t first = 0;  // the search begins where the last place was found, because both plots run in the same
-                          // direction
+  std::size_t first = 0;  // the search begins at the last match: both plots run in the same direction
   for (const SvgPlot::Line& line : plot.lines) {
     const double allowed = line.is_area ? tolerance.area : tolerance.line;
     for (const Place& place : line.places) {

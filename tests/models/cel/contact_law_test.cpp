@@ -81,7 +81,7 @@ void for_all_contacts(const Check& check) {
 template <class Function>
 void expect_derivative(double derivative, const Function& function, double x, double length, const char* name) {
   constexpr double share = 5e-3;
-  // Truncation, and a few eps of the function over the share; x is known to that of its length but for its rounding.
+  // Truncation error, and a few eps of the function over the share; x has the round-off of its own magnitude.
   const double tolerance = 4e-12 + 8.0 * k_epsilon / share * (x / length);
   const double difference = central_difference(function, x, share * length);
   EXPECT_LE(std::abs(derivative - difference), tolerance * (std::abs(derivative) + std::abs(function(x)) / length))
@@ -99,8 +99,7 @@ TEST(CelContactReference, IsMetWithItsComplexStepDerivatives) {
     const Dent dent = dent_of(material, value("zeta"));
     const Contact at_limit = contact_under(material, dent, 1.0, 1.0, contact_at(material, dent, 1.0, 1.0, 0.0).H);
     const auto expect = [&](std::string_view column, double actual) {
-      // Next to yield x = xi - xi_Y has lost six digits
-      // to the numbers that it is the difference of; h, and derivatives, take that over.
+      // Next to yield the difference x = xi - xi_Y has lost six digits, which h and the derivatives inherit.
       const double lost = value("xi") / (value("xi") - material.xi_Y);
       EXPECT_LE(relative_error(actual, value(column)), std::max(1e-12, 4.0 * k_epsilon * lost))
           << column << " of row " << row << ": " << actual << " instead of " << value(column);
@@ -144,12 +143,12 @@ TEST(CelInfluenceReference, IsMetBySelfTermAndNeighbours) {
 TEST(CelDent, OfAFreshSurfaceIsNone) {
   for (const Material& material : materials()) {
     const Dent dent = dent_of(material, material.a_Y);
-    // Johnson's parameter is at yield but for rounding.
+    // Johnson's parameter has its value at yield, up to round-off.
     EXPECT_NEAR(dent.h, 0.0, 1e-16 * material.a_Y * material.a_Y);
     EXPECT_LE(relative_error(dent.p, k::pY), 4 * k_epsilon);
     EXPECT_LE(relative_error(dent.q, 1.0 / 3.0), 4 * k_epsilon);
     EXPECT_LE(relative_error(dent.root_Gam, 1.0), 4 * k_epsilon);
-    // The indentation grows at once: by the term of the fourth power, and by rounding in the other one.
+    // The indentation grows at once, by its fourth-power term; the other term adds round-off only.
     const double rounding = 1e-14 * material.a_Y;
     EXPECT_LE(std::abs(dent.h_zeta - 2.0 * k::k1 * std::pow(material.a_Y, 3)), rounding);
   }
@@ -166,7 +165,7 @@ TEST(CelContact, OfAFreshSurfaceIsHertzs) {
       EXPECT_LE(relative_error(std::sqrt(contact.area), hertz_contact_radius(1.0, u)), tolerance) << u;
       EXPECT_LE(relative_error(contact.stored, hertz_energy(material.Es, 1.0, u)), tolerance) << u;
     }
-    // The limit force is met where the dent of the fresh surface is.
+    // The limit force is reached where the dent is that of the fresh surface.
     const Contact at_yield = contact_at(material, dent, 1.0, 1.0, material.a_Y * material.a_Y);
     EXPECT_LE(std::abs(at_yield.F_over_H - 1.0), 16 * k_epsilon);
   }
@@ -187,7 +186,7 @@ TEST(CelContact, GoesOnFromHertzAtYieldWithoutAKink) {
     EXPECT_LE(difference_at(1e-4), 6.0 * std::pow(1e-4, 1.5));
     EXPECT_LE(difference_at(1e-6), 6.0 * std::pow(1e-6, 1.5));
     const Contact at_yield = contact_at(material, dent_of(material, material.a_Y), 1.0, 1.0, 0.0);
-    // The slope goes with the root of the excess over yield, which is the root of its rounding.
+    // The slope goes like the square root of the excess over yield, which here is round-off.
     EXPECT_LE(relative_error(at_yield.H_by.zeta, 4.0 * material.Es * material.a_Y * material.a_Y), 5e-8);
   }
 }

@@ -138,7 +138,7 @@ TEST_P(CelCycle, RetracesItsUnloadingAndRejoinsTheFirstLoading) {
       EXPECT_NEAR(with_cycle[40 + k], with_cycle[40 - k], 1e-9 * scale) << name << " of reloading, point " << k;
       EXPECT_NEAR(with_cycle[60 + k], without[20 + k], 1e-8 * scale) << name << " of loading on, point " << k;
     }
-    // The unloading is not the loading.
+    // Unloading does not retrace loading.
     EXPECT_GT(std::abs(with_cycle[40] - without[18]), 1e-3 * scale) << name;
   }
 }
@@ -171,8 +171,8 @@ TEST(CelSystem, NeverForgetsFlowOrGivesBackWhatItDissipates) {
     SCOPED_TRACE(describe(scenario));
     const TestRun now = run_by(scenario, "auto", relative(1e-10));
     ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
-    // Where some contacts flow for the first time and others do not yet, the law itself gives back a little: with three
-    // walls 1.8e-8 of the last work, as computed elsewhere, too.
+    // Where some contacts flow for the first time and others do not yet, the law itself returns some work: with three
+    // walls 1.8e-8 of the last work, also in the independent computation.
     EXPECT_GE(lost_dissipation(now), -1e-7);
     EXPECT_GE(least_dissipation(now), -1e-7);
     EXPECT_GT(now.last("dissipation"), 0.2 * now.last("work"));
@@ -314,7 +314,7 @@ TEST(CelForceControl, LetsAWallStandWhereItsForceEnds) {
       run_by(cel_scenario(Configuration::simple, 25.0, 0.3, {force_ramp(0.03), force_ramp(0.0), hold()}), "auto");
   ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
   EXPECT_NEAR(now.last("axial.force"), 0.0, 1e-15);
-  // A dent stays.
+  // A dent remains.
   EXPECT_GT(now.last("axial.displacement"), 0.01);
   EXPECT_NEAR(now.last("stored_energy"), 0.0, 1e-10 * now.last("work"));
 }

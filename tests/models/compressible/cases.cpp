@@ -241,7 +241,7 @@ PointErrors errors_against(const PointReference& reference, const RunRecord& run
     const auto our_column = ours.find(column.name);
     if (!our_column || column.name == "step" || column.holds_words()) continue;
     const std::vector<double> values = theirs.column(column.name);
-    // A stress that is prescribed as zero is round-off of the others.
+    // A prescribed zero stress is the round-off of the other stresses.
     const bool is_stress = column.name == "stress_axial" || column.name == "stress_lateral";
     const double scale = column.name == "time" ? length
                          : is_stress           ? std::max(largest(theirs.column("p")), largest(theirs.column("s")))
@@ -274,7 +274,7 @@ PointErrors errors_against(const PointReference& reference, const RunRecord& run
     }
   }
 
-  // What happens at corners of the program the files do not list.
+  // The files do not list events at corners of the program.
   std::vector<std::pair<std::string, double>> actual;
   for (std::size_t i = 0; i < run.events.row_count(); ++i) {
     const std::string name(run.events.word(i, *run.events.find("event")));

@@ -90,7 +90,7 @@ Expected expected_history(const Walk& walk, Control control, const std::vector<d
     history.displacement.push_back(static_cast<double>(d));
     history.force.push_back(static_cast<double>(control == Control::displacement ? walk.force(d, before) : told));
     history.stored.push_back(static_cast<double>(stored));
-    // What is not stored has been dissipated in loading.
+    // The rest of the work has been dissipated in loading.
     history.work.push_back(static_cast<double>(walk.dissipated(dm) + stored));
   };
   add(0);
@@ -210,7 +210,7 @@ TEST_P(StoredHistory, HasItsEventsAtTheirPlaces) {
     const std::size_t name = *now.record.events.find("event");
     for (std::size_t row = 0; row < times.size(); ++row) {
       const std::string word(now.record.events.word(row, name));
-      // Corners of the program: the file does not list what coincides with them.
+      // The file does not list events that coincide with corners of the program.
       if (word != "step-end" && word != "load-reversal") events.emplace_back(word, times[row]);
     }
     std::size_t next = 0;
@@ -291,7 +291,7 @@ TEST(CompressibleRuns, AreThoseOfTheIndependentEvaluationForWhateverNumbers) {
     const TestRun now = run(scenario_of(made, Configuration::simple));
     ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
     const double error = errors_of(now, expected, "axial", 2.0).largest();
-    // Of the largest value; the inverse of a power law loses the digits of a force next to nothing.
+    // Over the largest value; the inverse of a power law loses the digits of a tiny force.
     EXPECT_LT(error, 1e-12) << i;
     worst["direct"] = std::max(worst["direct"], error);
     if (i >= 60) continue;
@@ -339,7 +339,7 @@ TEST(CompressibleRuns, MeetTheParticleAcrossGapsWithPrescribedDisplacementsAndFo
   for (const char* integrator : k_integrators) {
     const TestRun now = run(scenario, integrator);
     EXPECT_EQ(now.record.status, RunStatus::complete) << now.record.message;
-    // The wall of c is let onto the particle at once by its force.
+    // The force presses the wall of c onto the particle at once.
     EXPECT_EQ(now.events(),
               (std::vector<std::string>{"c:contact-made", "b:contact-made", "a:transition", "c:transition",
                                         "b:transition", "a:load-reversal", "b:load-reversal", "c:load-reversal",
@@ -413,7 +413,7 @@ TEST(CompressibleEvents, StopAtTheTransitionWhereTheSlopeJumps) {
       const auto changes = regime_changes(now, "axial");
       EXPECT_EQ(changes.size(), 1U) << integrator;
       for (const std::size_t k : changes) {
-        // At the place itself to the integrator's accuracy before, and exactly after.
+        // The row before the event has the integrator's accuracy; the row after it is exact.
         EXPECT_NEAR(d[k - 1], numbers.delta_t, 1e-8) << integrator;
         EXPECT_NEAR(d[k], numbers.delta_t, 1e-15) << integrator;
         EXPECT_NEAR(force[k], force[k - 1], 1e-8) << integrator;
@@ -558,7 +558,7 @@ TEST(CompressibleEnds, StopAtHalfTheRadius) {
       EXPECT_NEAR(now.last("axial.displacement"), 0.5, 1e-8) << integrator;
       EXPECT_NE(now.record.message.find("half the radius"), std::string::npos) << now.record.message;
     }
-    // Up to there and back is allowed; on from there is not.
+    // A program may reach the end and go back, but not go further.
     const TestRun there = run(compressible_scenario(Configuration::simple, {}, path({0.5, 0.4, 0.5})), integrator);
     EXPECT_EQ(there.record.status, RunStatus::complete) << there.record.message;
     EXPECT_FALSE(there.has_event("limit"));
@@ -579,7 +579,7 @@ TEST(CompressibleWarnings, TellOfClippedAndOfFlatUnloadings) {
   EXPECT_NE(clipped.front().find("such unloadings = 2"), std::string::npos) << clipped.front();
   const CompressibleNumbers steep{
       .k = 2.0, .delta_t = 0.1, .a = 12.0, .stiffness_ratio = 4.0, .nu0 = 0.3, .alpha = 1.0, .beta = 0.2};
-  // Also where nothing is unloaded: the energy that is stored would be given back on such a way.
+  // The warning also comes without unloading: an unloading would return the stored energy.
   for (const std::vector<double>& targets : {std::vector{0.4, 0.3}, std::vector{0.4}}) {
     const auto flat = warnings_of(steep, targets);
     bool found = false;

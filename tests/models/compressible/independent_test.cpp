@@ -78,7 +78,7 @@ class Marcher {
  public:
   explicit Marcher(const Parameters& m) : m_(m) {}
 
-  /// Along a straight piece of the way of strains.
+  /// Integrates along a straight part of the strain path.
   void go(Real axial, Real lateral, int steps) {
     from_ = to_;
     to_ = {axial, lateral};
@@ -175,7 +175,7 @@ class Marcher {
 
   [[nodiscard]] Real loading() const { return slopes(y_, 0).N; }
 
-  /// Bisection of the elastic part of the way.
+  /// Finds the yield point on the elastic part of the path by bisection.
   bool find_yield() {
     const auto yields = [this](Real x) {
       const auto [p, s] = stress_at(y_, x);
@@ -185,7 +185,7 @@ class Marcher {
       if (piece == Piece::arc && std::abs(s) < at.shear / 2) return false;
       return f_of<Real>(m_, piece, side, p, s, y_[0], false) > 0;
     };
-    // From inside (a point on the surface that unloads may be out by a rounding error).
+    // The search starts inside: a point on the surface that unloads may be outside by round-off.
     Real inside = 1e-9L;
     Real outside = 1;
     if (!yields(1)) return false;

@@ -101,7 +101,7 @@ TEST(RandomStrainPaths, StayOnTheSurfaceAndDissipate) {
     if (result.record.status == RunStatus::stopped) {
       ++stopped;
       const std::string end = result.events().back();
-      // The arc of dpc may come to have no place, which has no event of its own.
+      // The arc of dpc may cease to exist, which has no event of its own.
       const bool has_no_arc = end == "limit" && result.record.limit == Limit::cap_arc_too_wide;
       EXPECT_TRUE(k_ends.contains(end) || has_no_arc) << i << ": " << result.record.message;
     }
@@ -254,7 +254,7 @@ TEST(MaterialPoint, TendsToTheCriticalStateWithoutAnEvent) {
         EXPECT_EQ(result.events().front(), "yield");
         EXPECT_LE(result.events().size(), 2u) << integrator;
         const Properties at = properties_at(m, result.last("phi"));
-        // After a strain of 1.5 it is still so far away, whatever the integrator.
+        // After a strain of 1.5 the pressure is still this far away, with every integrator.
         EXPECT_NEAR(result.last("p"), -at.cap_centre.value, 2e-6) << integrator;
         if (model != YieldModel::vmdc) continue;
         EXPECT_EQ(result.events(), (std::vector<std::string>{"yield"})) << integrator;
@@ -394,7 +394,7 @@ TEST(MaterialPoint, StopsWhereRoundingOfStrainsWouldBeItsStress) {
   const double ratio = std::max(start.bulk_modulus.value, 3.0 * start.shear_modulus.value);
   const double phi = std::log(1e10 / ratio) / (m.xi - m.eta);
   const CheckedScenario scenario = point(m, Configuration::simple, {strain(-1.0)});
-  // Not ida, for which the material is too stiff before.
+  // Without ida, for which the material is too stiff before.
   for (const char* integrator : {"direct", "cvode-adams", "cvode-bdf"}) {
     const TestRun result = run(scenario, integrator);
     EXPECT_EQ(result.record.status, RunStatus::stopped) << integrator;
@@ -447,8 +447,8 @@ TEST(MaterialPoint, ConvergesWithTheToleranceOverEveryPath) {
     const TestRun exact = run(scenario, "cvode-bdf", relative(1e-13));
     ASSERT_EQ(exact.record.status, RunStatus::complete) << c.name << ": " << exact.record.message;
     for (const std::string integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
-      // Stiff, next to the tensile strength: Adams' method takes 13,000 steps or more than the 200,000 it may take, as
-      // the tolerance has it.
+      // Stiff, next to the tensile strength: depending on the tolerance, Adams' method takes 13,000 steps, or more than
+      // the allowed 200,000.
       if (integrator == "cvode-adams" && c.configuration == Configuration::strain_path) continue;
       std::cout << c.name << ", configuration " << static_cast<int>(c.configuration) << ", " << integrator << ':';
       std::vector<double> errors;
@@ -469,7 +469,7 @@ TEST(MaterialPoint, ConvergesWithTheToleranceOverEveryPath) {
 
 TEST(MaterialPoint, CurvesBetweenImplicitStepsConvergeWithTheTolerance) {
   for (const Smooth& c : smooth_cases()) {
-    // Stiff: as many steps as that takes, ten thousands.
+    // Stiff: ten thousands of steps.
     if (c.configuration == Configuration::strain_path) continue;
     const CheckedScenario scenario = with_points(point(c.parameters, c.configuration, c.steps), 40);
     const TestRun exact = run(scenario, "cvode-bdf", relative(1e-13));

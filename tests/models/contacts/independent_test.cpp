@@ -224,7 +224,7 @@ TEST(IndependentContacts, EndAtTheLimitOfTheLaw) {
       EXPECT_EQ(now.events(), (Names{"axial:knee", "axial:limit"})) << form;
       EXPECT_NEAR(now.last("axial.displacement"), k_end, 1e-13) << form;
     }
-    // Up to there and back is allowed; on from there is not.
+    // A program may reach the end and go back, but not go further.
     const TestRun there = run_law<Hysteretic>(pair_of_walls(path({k_end, 0.7, k_end})), form);
     EXPECT_EQ(there.record.status, RunStatus::complete) << there.record.message;
     const TestRun on = run_law<Hysteretic>(pair_of_walls(path({k_end, 0.9})), form);
@@ -282,7 +282,7 @@ TEST(IndependentContacts, EndTheRunWhereALawHasNoUnloading) {
   const TestRun now = run_law<Powerful>(scenario, "direct");
   EXPECT_EQ(now.record.limit, Limit::no_unloading_law);
   EXPECT_NE(now.record.message.find("nothing helps"), std::string::npos) << now.record.message;
-  // The last row shows all walls where the step would have begun.
+  // The last row has all walls where the step would have begun.
   EXPECT_EQ(now.last("a.displacement"), 0.2);
   EXPECT_EQ(now.last("b.displacement"), 0.3);
 }

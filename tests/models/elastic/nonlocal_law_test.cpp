@@ -66,7 +66,7 @@ TEST_P(NonlocalLaw, HasTheStiffnessOfAFlatPunch) {
 TEST_P(NonlocalLaw, IsInvertedByApproachAndForce) {
   for (const double s : k_squares) {
     const LocalContact contact = law.at(s);
-    // Rounding of g and F, and that it takes to change them by as much.
+    // Round-off of g and F, and of the inverse.
     EXPECT_LE(relative_error(law.signed_square(contact.approach), s), 8 * k_epsilon) << "s = " << s;
     EXPECT_LE(relative_error(law.signed_square_under(contact.force), s), 8 * k_epsilon) << "s = " << s;
   }

@@ -130,7 +130,7 @@ double error_of(const TestRun& run, const Table& table, const std::string& radiu
     EXPECT_GE(actual.size(), expected.size()) << run_name << ": " << run.record.message;
     if (actual.size() < expected.size()) return 1.0;
     const std::size_t shift = actual.size() - expected.size();
-    // A column that is zero but for rounding (a centre that symmetry holds) is measured in radii.
+    // A column that is zero by symmetry, up to round-off, is measured in radii.
     const double largest_value = largest(expected) < 1e-12 ? 1.0 : largest(expected);
     for (std::size_t k = 0; k < expected.size(); ++k) {
       worst = std::max(worst, std::abs(actual[k + shift] - factor * expected[k]) / (std::abs(factor) * largest_value));
@@ -342,7 +342,7 @@ TEST(NonlocalRuns, DoNotDependOnTheDirectionOfTheWalls) {
   const Eigen::Matrix3d turn = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized().toRotationMatrix();
   for (const bool is_free : {false, true}) {
     const auto walls = [&](const Eigen::Matrix3d& rotation) {
-      // A free centre has a definite place only where the lateral walls are pressed from the start.
+      // A free centre has a definite position only if the lateral walls are pressed from the start.
       const double gap = is_free ? 0.0 : 0.01;
       const double slant = is_free ? 0.0 : 0.3;
       CheckedScenario scenario =
@@ -435,7 +435,7 @@ TEST(NonlocalRandomWalls, EndCompleteOrAtANamedLimitAndGiveEverythingBack) {
       continue;
     }
     ++complete;
-    // The third step leads to where the first one ended.
+    // The third step returns to the end of the first one.
     for (const ContactClass& c : now.scene.classes) {
       const auto force = now.outputs(c.name + ".force");
       ASSERT_EQ(force.size(), 16u);

@@ -92,7 +92,7 @@ TEST(MdrAdhesiveEdge, DoesNotPeelWithinItsCriticalRadius) {
       EXPECT_FALSE(stuck_at(critical.contact_radius).torn(critical)) << space.name;
       EXPECT_TRUE(stuck_at(1.001 * critical.contact_radius).torn(critical)) << space.name;
     }
-    // A force is unstable before a displacement is.
+    // Force control becomes unstable before displacement control.
     EXPECT_GT(limits.by_force.contact_radius, limits.by_displacement.contact_radius) << space.name;
   }
 }
@@ -164,7 +164,7 @@ TEST(MdrAdhesiveEdge, IsSetBackByRoundOffAlone) {
     const AdhesiveEdge moved = edge.set_back(indenter, 1e-14);
     EXPECT_LT(moved.radius, edge.radius) << space.name;
     EXPECT_GE(moved.radius, edge.radius * (1.0 - 1e-8)) << space.name;
-    // So moved, it is no longer past the displacement at which it would peel.
+    // After the move, the edge is no longer past the displacement at which it would peel.
     const Frame frame = space.at(overlap_of_peeling(space, edge));
     EXPECT_GT(peel_guard(moved, frame, k_adhesion), peel_guard(edge, frame, k_adhesion)) << space.name;
     EXPECT_EQ(edge.set_back(indenter, 1e-3).radius, edge.radius) << space.name;

@@ -87,7 +87,7 @@ TEST(MdrForceExtremum, ComesWithEveryWithdrawalOfAPlasticContact) {
     const Words events = result.events();
     EXPECT_EQ(std::ranges::count(events, "axial:force-extremum"), 2) << integrator;
     EXPECT_EQ(std::ranges::count(events, "axial:pull-off"), 2) << integrator;
-    // No row of the withdrawal lies below.
+    // No row of the retraction has a lower force.
     const auto force = result.column("axial.force");
     const auto step = result.column("step");
     double least = 0.0;
@@ -98,7 +98,7 @@ TEST(MdrForceExtremum, ComesWithEveryWithdrawalOfAPlasticContact) {
 
 TEST(MdrForceExtremum, IsNoneWhereTheForceStays) {
   const double depth = 0.75 * std::cbrt(pi * 1e-5 / k_modulus * (pi * 1e-5 / k_modulus));
-  // Held between the greatest tension and pull-off; and driven back from there.
+  // One program holds between the greatest tension and pull-off, the other drives back from there.
   const std::vector<Step> held{ramp(0.005), ramp(-0.99 * depth), hold(), hold()};
   for (const std::string_view integrator : integrator_names()) {
     if (integrator == "explicit") continue;
@@ -136,7 +136,7 @@ TEST_P(MdrPullOff, FollowsTheGreatestTensionWhichIsThatOfJkr) {
     const double displacement = a * a - std::sqrt(2.0 * pi * a * dg / k_modulus);
     EXPECT_LE(relative_error(result.at_event("force-extremum", "axial.force"), -1.5 * pi * dg), 1e-10) << "dg = " << dg;
     EXPECT_LE(relative_error(result.at_event("force-extremum", "axial.displacement"), displacement), 1e-7);
-    // Nothing jumps there, and no row lies below.
+    // Nothing jumps at the extremum, and no row has a lower force.
     EXPECT_EQ(before_event(result, "force-extremum", "axial.force"), result.at_event("force-extremum", "axial.force"));
     const auto force = result.column("axial.force");
     EXPECT_EQ(*std::ranges::min_element(force), result.at_event("force-extremum", "axial.force"));
@@ -183,7 +183,7 @@ TEST_P(MdrPullOff, EndsAStepThatAsksForIt) {
   EXPECT_TRUE(result.has_event("until-met"));
   EXPECT_EQ(result.time_of("until-met"), result.time_of("pull-off"));
   EXPECT_LT(result.time_of("pull-off"), 2.0);
-  // The next step begins there and then.
+  // The next step begins at once.
   EXPECT_DOUBLE_EQ(result.column("time").back(), result.time_of("pull-off") + 1.0);
   EXPECT_GT(result.last("axial.force"), 0.0);
 }
@@ -217,9 +217,9 @@ INSTANTIATE_TEST_SUITE_P(AllForms, MdrPullOff, ::testing::ValuesIn(k_integrators
 
 TEST(MdrAdhesiveContact, AdheresAgainOnlyWhenItIsPressedAgain) {
   for (const char* integrator : k_integrators) {
-    // Off, back to just short of first touch, away again, into contact, off.
+    // The wall leaves, returns to just short of first touch, leaves again, makes contact, and leaves.
     const TestRun result = run(jkr(path({0.005, -0.01, -1e-6, -0.01, 0.002, -0.01})), integrator);
-    // The second time it stays below its largest overlap, so that only the edge is turned.
+    // The second contact stays below its largest overlap, so that only the edge turns.
     EXPECT_EQ(result.events(),
               (Words{"axial:load-reversal", "axial:stick", "axial:peel", "axial:force-extremum", "axial:pull-off",
                      "axial:contact-made", "axial:stick", "axial:peel", "axial:force-extremum", "axial:pull-off"}))
@@ -421,7 +421,7 @@ TEST(MdrAdhesiveInvariance, UnitsDoNotMatter) {
             std::pair("work", force * length), std::pair("dissipation", force * length)}) {
         std::vector<double> values = scaled.outputs(column);
         for (double& value : values) value /= scale;
-        // Rounding of the scaled input, amplified by the steep unloading branch.
+        // Round-off of the scaled input, amplified by the steep unloading branch.
         EXPECT_LE(difference(values, unit.outputs(column)), 1e-12)
             << column << ", lengths x " << length << ", stresses x " << stress;
       }
@@ -523,7 +523,7 @@ TEST(MdrAdhesiveEnergyBalance, DissipationNeverFallsWhereOnlyPlasticFlowGrows) {
     for (const char* integrator : k_integrators) {
       const TestRun result = run(with(scenario, "radius_rule", "yielded"), integrator);
       ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
-      // Rounding with the direct solution, else the error of the integrated work.
+      // Round-off with the direct solution, else the error of the integrated work.
       const double tolerance = std::string(integrator) == "direct" ? 1e-13 : 2e-7;
       EXPECT_GE(lost_dissipation(result), -tolerance) << integrator << ", " << describe(scenario);
     }

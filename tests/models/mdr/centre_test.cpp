@@ -118,7 +118,7 @@ TEST(FreeCentre, BalancesTheForcesInEveryRow) {
     for (const char* integrator : k_integrators) {
       const TestRun result = run(scenario, integrator);
       ASSERT_EQ(result.record.status, RunStatus::complete) << integrator << ": " << result.record.message;
-      // IDA solves for the balance to its tolerance; 3e-10 measured at rtol 1e-8. The others go on to rounding.
+      // IDA solves for the balance to its tolerance, 3e-10 measured at rtol 1e-8; the others to round-off.
       EXPECT_LE(net_force(result), std::string_view(integrator) == "ida" ? 1e-9 : 4e-15)
           << integrator << ", " << describe(scenario);
     }

@@ -149,7 +149,8 @@ TEST(MdrUnloadingOverlap, BearsTheForceBelowTheLargestOverlapAndSomewhatAbove) {
       const double overlap = dent.overlap_at(u);
       const Contact contact = unloading_contact(shape, dent.material.composite_modulus, overlap);
       const double back = unloading_overlap(shape, contact.force);
-      // Rounding of the overlap itself, and of the way from the opening over its condition (largest at the maximum).
+      // Round-off of the overlap itself, and of the distance from the opening over its condition (largest at the
+      // maximum).
       const double rounding = k_epsilon * dent.overlap_max + k_rounding * contact.force / contact.by_overlap;
       EXPECT_NEAR(back, overlap, 2.0 * rounding) << dent << ", u = " << u;
     }

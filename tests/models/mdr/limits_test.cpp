@@ -121,7 +121,7 @@ TEST(MdrSingularGrowth, StopsAtOneStateUnderEveryControl) {
       ASSERT_EQ(expected.events().back(), "singular-growth") << rule;
       const double force = expected.last("axial.force");
       for (const char* integrator : k_integrators) {
-        // Twice what the particle bears there.
+        // Twice the force that the particle carries there.
         const TestRun result = run(pressed_by(force_ramp(2.0 * force)), integrator);
         EXPECT_EQ(result.record.status, RunStatus::stopped) << integrator << ", " << rule;
         EXPECT_EQ(result.events().back(), "singular-growth") << integrator << ", " << rule;

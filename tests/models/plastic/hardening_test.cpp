@@ -237,7 +237,7 @@ TEST(HardeningDerivatives, AgreeWithDifferences) {
           const ContactState state = state_in(law, regime, x);
           const auto error = [&](auto member, double derivative) {
             const auto f = [&, branch = regime](double at) { return state_in(law, branch, at).*member; };
-            // Rounding of the differences: of the values over the step.
+            // Round-off of the values over the step of the differences.
             return scaled_error(central_difference(f, x, step), derivative,
                                 state.*member / std::min(x - begin, end - x));
           };
@@ -265,7 +265,7 @@ TEST(HardeningForce, RisesAndIsFiniteEverywhere) {
       const HardeningLaw law = make_hardening(exponent, configuration);
       for (const auto& [regime, begin, end] : stretches_of(law)) {
         for (int k = 0; k < 6; ++k) {
-          // The first ones at the regime's ends, which may be zero porosity and first touch.
+          // The first two positions are at the regime's ends, which may be zero porosity and first touch.
           const double x = k == 0 ? end : k == 1 ? begin + 1e-9 * (end - begin) : uniform(random.generator, begin, end);
           const ContactState state = state_at(law, x);
           ASSERT_EQ(state.regime, regime) << "1/m = " << exponent << ", " << configuration << ", x = " << x;

@@ -48,7 +48,7 @@ double difference(const LudwikMaterial& material, double range, double strength,
     return 0.5 * (lower + upper);
   };
   const auto square = [&](double root) {
-    // In the root of the strain, for the steep beginnings of both laws.
+    // The variable is the root of the strain, because both laws begin steeply.
     const double strain = root * root;
     const double excess = stress(strain) - strength * std::pow(strain, exponent);
     return excess * excess * 2.0 * root;

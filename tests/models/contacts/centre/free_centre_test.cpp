@@ -124,7 +124,7 @@ TEST(CentreSolver, IsNotPushedAcrossBigForcesByTheirRoundOff) {
 TEST(CentreSolver, IsCarriedByTheLeastThatClearsTheWallsThatPushIt) {
   const HertzWalls one({{{0, 0.6, 0.8}, 0.2}, {{0, 0, -1}, -1.0}});
   EXPECT_LE((one.centre() - Eigen::Vector3d(0, -0.12, -0.16)).norm(), 1e-15);
-  // Both push: it goes along the edge between them, as near as that comes.
+  // Both walls push: the centre moves along the edge between them, to the nearest position.
   const HertzWalls wedge({{{1, 0, 0}, 0.1}, {{0, 1, 0}, 0.3}, {{0, 0, -1}, -1.0}});
   EXPECT_LE((wedge.centre() - Eigen::Vector3d(-0.1, -0.3, 0)).norm(), 1e-15);
 }
