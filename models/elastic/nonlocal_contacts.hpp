@@ -78,7 +78,7 @@ class Contacts {
   /// Finds the state at the coordinate xi of a step of the program (ramps over R and E R^2).
   /// @param y  in: a state on the physical branch, the nearer the better; the unloaded one (s = -gap, u = 0) always is
   /// one. Out: the solution that is connected with it. Unchanged where this throws.
-  /// Uses Newton's method; where that does not contract, or would leave the branch, follows the program in smaller
+  /// Uses Newton's method; where that does not contract, or would leave the branch, approaches the state in smaller
   /// steps.
   /// @throws std::domain_error naming the numbers for a state beyond the limit of applicability, a negative force, or a
   /// centre that nothing supports
@@ -172,7 +172,7 @@ class Contacts {
     double touch_stiffness = 1.0;  ///< stiffness of contacts under the greatest prescribed force
     int free_steps = 1;            ///< first corrections, which need not contract
 
-    /// False on the intermediate points of a path in steps, where only the contacts of the previous point count.
+    /// False at intermediate points of a path in steps, which need no balance and keep the contacts of the last point.
     [[nodiscard]] bool is_to_balance() const noexcept { return imbalance == 0.0; }
   };
 

@@ -461,7 +461,7 @@ void System::arm_loosening() {
         arm_place(k_jams, "jamming", jamming);
       break;
     case Mode::jammed: {
-      // If the strain falls at first, it may pass its value at jamming before the closed start.
+      // If the strain falls at first, a decreasing ramp may pass its value at jamming before the closed start.
       const double start = prescribed_at(start_end_);
       const bool comes_loose = ramp_.control == Control::strain && start <= jamming;
       arm_place(comes_loose ? k_jams : k_starts, comes_loose ? "jamming" : "", start);

@@ -27,7 +27,7 @@ using PathPart = std::variant<std::string, std::size_t>;
 ///
 /// An index one past the end of an array appends to it.
 ///
-/// Adds a fault for a path that does not exist in the language, and for a value that is not TOML. The tree is then
+/// Adds a fault for a path that the tree cannot follow, and for a value that is not TOML. The tree is then
 /// unchanged, except for tables made for the first parts of the path.
 void apply_override(toml::table& root, const std::string& text, FaultList& faults);
 
