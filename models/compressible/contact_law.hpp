@@ -87,8 +87,7 @@ struct UnloadingRow {
   UnloadingNode node;
 };
 
-/// Unloading rule of one material: bilinear in ln(E0/Gamma0) and the largest displacement, constant outside of the
-/// rows.
+/// Unloading rule of one material: bilinear in ln(E0/Gamma0) and the largest displacement, constant outside the rows.
 /// Materials of the table need not have the same displacements.
 /// @throws std::invalid_argument without rows
 [[nodiscard]] UnloadingRule interpolated_rule(std::span<const UnloadingRow> rows, double stiffness_over_shear);

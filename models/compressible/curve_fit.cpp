@@ -133,13 +133,11 @@ Candidate with_best_pair(const Curve& curve, double transition) {
 }
 
 /// Least error over the transitions in the intervals of the data. Within an interval the error is smooth. The function
-/// evaluates the middle of each interval, and searches those that are better there than their neighbours, together with
-/// these neighbours.
+/// evaluates the middle of each interval, and searches the local minima together with their neighbours.
 /// @param inner  Candidate(interval, transition)
 template <class Inner>
 Candidate over_intervals(const Curve& curve, const Inner& inner) {
-  std::vector<double> middle(curve.size() + 1, k_infinity);  // of interval i at i + 1; the outer entries stand for no
-                                                             // interval
+  std::vector<double> middle(curve.size() + 1, k_infinity);  // interval i is at i + 1; the outer entries are empty
   for (std::size_t i = curve.first(); i + 1 < curve.size(); ++i) {
     const Candidate found = inner(i, std::midpoint(curve.displacement(i), curve.displacement(i + 1)));
     if (found.law.stiffness > 0.0) middle[i + 1] = found.error;

@@ -80,8 +80,7 @@ MaterialPoint::MaterialPoint(const Settings& settings) : settings_(settings) {
 
 std::span<const Unknown> MaterialPoint::unknowns() const noexcept { return k_unknowns; }
 
-/// Usual plastic strain over the elastic strain at yield, within bounds; elastic strains are smaller in a stiff
-/// material.
+/// Usual plastic strain over the elastic strain at yield, within bounds; a stiff material has smaller elastic strains.
 double MaterialPoint::error_gain() const noexcept {
   const Properties at = properties_at(settings_.parameters, 0.0);
   const double elastic_strain = at.yield_pressure.value / (3.0 * at.shear_modulus.value);
@@ -108,8 +107,8 @@ double MaterialPoint::prescribed_rate(std::size_t channel) const noexcept {
   return ramps_[channel].end - ramps_[channel].start;
 }
 
-/// Stress and strain: p = K (e_v - e_v^p), s = 3G (g - g^p). Strains that are not prescribed follow from prescribed
-/// stresses.
+/// Stress and strain: p = K (e_v - e_v^p), s = 3G (g - g^p). Prescribed stresses determine strains that are not
+/// prescribed.
 MaterialPoint::Response MaterialPoint::response(double xi, std::span<const double> y) const {
   Response now{.at = properties_at(settings_.parameters, y[k_phi])};
   if (!(now.at.poisson_ratio.value < 0.5)) {
@@ -377,8 +376,7 @@ bool MaterialPoint::leads_out(bool towards_compression, const Response& now) con
 }
 
 /// True if s may change its sign. Under prescribed strains, the flow's share in the rate of s is proportional to s.
-/// Then s passes zero only if the program drives it there, and otherwise decays until its sign is an integrator's
-/// error.
+/// Then s passes zero only if the program drives it there; otherwise it decays into an integrator's error.
 bool MaterialPoint::passes_apex(const Response& now) const {
   if (now.s == 0.0) return false;
   const bool follows_strains = !is_stress(k_axial) && !is_stress(k_lateral);

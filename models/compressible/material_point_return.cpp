@@ -208,7 +208,7 @@ class MaterialPoint::ReturnMapping {
     return is_on_surface || ++small_corrections_ >= k_most_small_corrections;
   }
 
-  /// True if f is round-off. Under prescribed stresses f may grow so little with phi that its round-off is a large
+  /// True if f is round-off. Under prescribed stresses f may vary so little with phi that its round-off is a large
   /// strain.
   [[nodiscard]] bool is_rounding() const {
     const Yield& at = now_.yield;
@@ -234,8 +234,7 @@ class MaterialPoint::ReturnMapping {
   Response here_;
   Flow now_;
   Strains correction_;            ///< the last one
-  Flow last_;                     ///< flow where the last correction began; its f is the part that the correction takes
-                                  ///< away
+  Flow last_;                     ///< flow where the last correction began; f is the part that it takes away
   std::optional<Strains> floor_;  ///< direction along the floor of a valley
   int small_corrections_ = 0;
   int corrections_of_rounding_ = 0;

@@ -18,8 +18,7 @@ enum class Segment { tension, shear, transition, cap };
 struct Branch {
   Segment segment = Segment::shear;
   /// Sign of s: q = side s. It is 0 for a state that stays on the axis s = 0, where f does not depend on s to first
-  /// order. Only on the shear and transition segments of dpc does f depend on the sign; elsewhere it contains s
-  /// squared.
+  /// order. Only on the shear and transition segments of dpc does f depend on the sign; elsewhere on s squared.
   double side = -1.0;
 
   friend bool operator==(const Branch&, const Branch&) = default;

@@ -28,8 +28,7 @@ constexpr double k_early = 1e-9;        // of a step: near its start, which wall
 // just left goes unnoticed; too near, the remainder is round-off.
 constexpr std::array k_late{1e-3, 1e-6, 1e-9};
 constexpr int k_most_sinking_steps = 100;
-constexpr double k_past_balance = 0.5;  // slope of the energy past its minimum along a step, over the slope at the
-                                        // step's start
+constexpr double k_past_balance = 0.5;  // slope of the energy past its minimum on a step, over the slope at the start
 constexpr int k_most_tries = 300;       // rejected steps of a path; after that many, differences are round-off
 constexpr double k_cancelled = 1e-12;   // net prescribed force that counts as zero, over the sum of the forces
 
@@ -258,8 +257,7 @@ void Contacts::let_unheld_centre_go(std::span<const Ramp> ramps, std::span<const
   find_holding_among([&](std::size_t j) { return ramps[j].control == Control::force; });
   const Eigen::Matrix3d projector = unheld_directions();
   if (projector.trace() < 0.5) return;
-  // Each row holds either a rate or a force: in short steps rates are so much larger that a mixed row would lose the
-  // force.
+  // Each row holds either a rate or a force: in short steps the far larger rates would hide the force in a mixed row.
   const auto count = static_cast<Eigen::Index>(free_count());
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
   const Eigen::SelfAdjointEigenSolver<Square> solver(Square(projector.topLeftCorner(count, count)));
@@ -348,8 +346,7 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
     if (!is_possible) break;
     std::ranges::copy(by_halves_, carried_.begin());
     done = next;
-    // A rejected step contains a point where other walls begin to touch. The next steps close in on that point, then
-    // pass it.
+    // A rejected step contains a point where other walls begin to touch. The next steps close in on it, and pass it.
     step = done < too_far ? std::max(k_shortest, 0.5 * (too_far - done)) : 1.0 - done;
   }
   std::copy(way_end_.begin(), way_end_.end(), targets_.begin());
@@ -440,8 +437,7 @@ bool Contacts::let_all_go(std::span<double> y) {
 }
 
 /// Sets the rates if no contact is loaded and none begins to be: the centre evades the walls that touch, and no others.
-/// Gaps that are integration errors close gradually: if only walls without a gap touched, walls would leave the centre
-/// in turns.
+/// Gaps that are integration errors close gradually; if they did not count as touching, walls would leave in turns.
 /// @return false, with dy unchanged, in all other cases
 bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch,
                          std::span<const char> touches) {

@@ -172,8 +172,7 @@ void Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> c
 }
 
 /// Projector on the directions in which no contact supports the centre. Removes the direction of the stiffest contact
-/// first: beside a stiff contact, the eigenvalues of the full matrix would not distinguish one that has just begun from
-/// zero.
+/// first: beside it, the eigenvalues of the full matrix do not distinguish a contact that has just begun from none.
 Eigen::Matrix3d Contacts::directions_of_nothing() const {
   Eigen::Matrix3d projector = Eigen::Matrix3d::Identity();
   double stiffest = 0.0;
@@ -219,8 +218,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
   }
 }
 
-/// Sets the right-hand sides of the rates: approach rates due to walls and prescribed forces before the contacts
-/// respond.
+/// Sets the right-hand sides of the rates: approach rates by walls and prescribed forces before the contacts respond.
 void Contacts::set_approach_rates_of_walls(std::span<const Ramp> ramps) {
   const std::size_t n = class_count();
   for (std::size_t j = 0; j < n; ++j) {
@@ -231,8 +229,8 @@ void Contacts::set_approach_rates_of_walls(std::span<const Ramp> ramps) {
   }
 }
 
-/// Adds the rates of a free centre: forces stay in balance, and touching walls move the centre where no contact
-/// supports it.
+/// Adds the rates of a free centre: forces stay balanced, and touching walls move the centre where no contact supports
+/// it.
 /// @throws std::domain_error where nothing supports it against prescribed forces
 void Contacts::let_centre_follow(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy,
                                  double touch, double pull, std::span<const char> touches) {
@@ -248,8 +246,8 @@ void Contacts::let_centre_follow(std::span<const Ramp> ramps, std::span<const do
   for (std::size_t j = 0; j < n; ++j) {
     const double force_rate = takes_force(ramps[j]) ? slope_of(ramps[j]) : stiffness_[j] * entry(j, n);
     net += weights_[j] * force_rate * arm_of(j);
-    // The tolerance is relative to all force rates that the walls would cause; where no rate is to change, to the
-    // forces.
+    // The tolerance is relative to all force rates that walls would cause, and to the forces where no rate is to
+    // change.
     pressing += weights_[j] * (std::abs(force_rate) + pull * forces_[j]);
   }
   const auto centre = dy.subspan(n);
@@ -294,7 +292,7 @@ double Contacts::reach_of_support(std::span<const Ramp> ramps, std::span<const d
   double near = touch;
   for (std::size_t j = 0; j < class_count(); ++j) {
     // A force that contacts bear already, or that does not shrink, says nothing about the gaps of walls that may bear
-    // the others.
+    // others.
     const bool is_shrinking = takes_force(ramps[j]) && slope_of(ramps[j]) < 0.0;
     const bool says_so = is_shrinking && (unheld * arm_of(j)).norm() > k_same_surroundings;
     near = std::max(near, says_so ? y[j] : k_unloaded * y[j]);

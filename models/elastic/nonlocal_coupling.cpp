@@ -88,8 +88,7 @@ double depth_of_edge(double x) noexcept { return std::sqrt(std::max(0.0, (1.0 - 
 /// 1/width points. None if more than k_most points would be needed.
 std::optional<double> integral_on_circle(const auto& f, double branch) {
   constexpr std::size_t k_most = 1024;
-  constexpr double k_rounding = 45.0;  // minus the logarithm of the error, with room for the size of f at its branch
-                                       // point
+  constexpr double k_rounding = 45.0;  // minus the error's logarithm, with room for f at its branch point
   static const auto k_squared_sines = [] {
     std::array<double, k_most / 2 + 1> squares{};
     for (std::size_t k = 0; k < squares.size(); ++k) {

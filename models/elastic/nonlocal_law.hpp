@@ -29,12 +29,10 @@ class LocalLaw {
 
   /// Exclusive upper bound of s: 1 for `all` terms (the contact is as wide as the sphere), infinity otherwise.
   [[nodiscard]] double end() const noexcept { return end_; }
-  /// Largest force over E* R^2 for which s stays below end() in double precision: above 17 for `all` terms, infinite
-  /// otherwise.
+  /// Largest force over E* R^2 for which s is below end() in double precision: above 17 for `all` terms, else infinite.
   [[nodiscard]] double greatest_force() const noexcept { return greatest_force_; }
 
-  /// The contact at s (eqs. 25, 27, 29, 31, 33, 35). For s <= 0: g = s without force. Once continuously differentiable
-  /// in s.
+  /// The contact at s (eqs. 25, 27, 29, 31, 33, 35). For s <= 0: g = s, and no force. Once continuously differentiable.
   /// @throws std::domain_error unless s is below end()
   [[nodiscard]] LocalContact at(double s) const;
 
@@ -51,8 +49,7 @@ class LocalLaw {
   /// @throws std::domain_error as at()
   [[nodiscard]] double energy(double s) const;
 
-  /// Pressure over E* at a distance from the middle of the contact (eq. 32); 0 outside of it. Relative error below
-  /// 1e-14.
+  /// Pressure over E* at a distance from the contact's middle (eq. 32); 0 outside of it. Relative error below 1e-14.
   /// @param distance_squared  (r/R)^2 >= 0
   /// @throws std::domain_error as at()
   [[nodiscard]] double pressure(double s, double distance_squared) const;

@@ -31,8 +31,7 @@ class Path {
     return solve(point, direction, unit).normalized();
   }
 
-  /// The point of the path in the plane normal to `tangent`, at `distance` from `from`; none where Newton's method does
-  /// not contract.
+  /// Point of the path in the plane normal to `tangent` at `distance` from `from`; none if Newton's method fails.
   [[nodiscard]] std::optional<Point> beyond(const Point& from, const Point& tangent, double distance) {
     Point point = from + distance * tangent;
     Point missing(point.size());

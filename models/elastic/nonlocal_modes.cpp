@@ -9,8 +9,7 @@ namespace monograin::nonlocal {
 namespace {
 
 constexpr double k_margin_tolerance = 1e-14;
-constexpr double k_rounding = std::numeric_limits<double>::epsilon();  // least magnitude of a pivot; the matrix is of
-                                                                       // order one
+constexpr double k_rounding = std::numeric_limits<double>::epsilon();  // least pivot; entries are of order one
 constexpr int k_most_quotients = 6;      // Rayleigh quotients; each cubes the error of the mode, two are usual
 constexpr double k_no_coupling = 1e-13;  // coupling that counts as none, over the largest one
 

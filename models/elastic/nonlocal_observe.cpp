@@ -48,8 +48,7 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
   evaluate_closely(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
   ContactState c = now_[i];
-  // A lost contact carries nothing, even if it is still loaded in the exact state, within the error of the event's
-  // time.
+  // A lost contact carries nothing, even if the exact state still loads it, within the error of the event's time.
   if (regimes_[i] == Regime::open) c.force = c.contact_radius = 0.0;
   const double length = settings_.initial_radius;
   const double area = pi * c.contact_radius * c.contact_radius;

@@ -93,7 +93,7 @@ double System::set_scales() {
   is_shallow_ = reach > 0.0 && reach <= k_least_depth;
   for (const ContactClass& c : classes_) reach = std::max(reach, c.gap / settings_.initial_radius);
   if (!(reach > 0.0)) reach = 1.0;
-  // A program may prescribe any displacement, but before R0 a wall reaches the centre or a contact is as wide as the
+  // A program may prescribe any displacement, but before R0 a wall is at the centre, or a contact as wide as the
   // particle.
   const double depth = std::min(reach, 1.0);
   touch_ = settings_.centre == Centre::free ? k_touch_of_free_centre * depth : k_touch * reach;

@@ -14,8 +14,7 @@ namespace {
 constexpr int k_newton_limit = 100;    // contraction by half reaches round-off in 52
 constexpr double k_contraction = 0.5;  // largest ratio of Newton's corrections; beyond it the guess is too far away
 constexpr int k_first_touch_steps = 20;
-constexpr double k_stagnation = 1e-9;   // relative correction that counts as round-off, which grows with 1/margin near
-                                        // the limit
+constexpr double k_stagnation = 1e-9;   // relative correction that is round-off, which grows with 1/margin
 constexpr double k_least_step = 1e-13;  // of the path to a state that Newton's method does not find at once
 constexpr int k_most_steps = 1000;      // on that path, rejected ones included
 constexpr int k_most_roundings = 20;    // times that the path's end balances but for forces of round-off

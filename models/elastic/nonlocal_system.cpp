@@ -26,8 +26,8 @@ enum Kind : int {
   k_limit
 };
 
-// Margin at which a run ends. The margin goes like the root of the distance from the limit: a run ends 1e-10 R0 before
-// it.
+// Margin at which a run ends. It goes like the root of the distance from the limit: a run ends 1e-10 R0 before the
+// limit.
 constexpr double k_least_margin = 1e-5;
 // Margin below which an integrator may find no further steps.
 constexpr double k_hard_margin = 1e-3;
@@ -87,8 +87,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   if (const auto end = limit_at_start(y)) throw CannotBegin(*end);
 }
 
-/// The limit at which a step begins, if the step leads beyond it: the guard of that limit would not cross zero. None
-/// otherwise.
+/// The limit at which a step begins, if the step leads beyond it: that limit's guard would not cross zero. Else none.
 std::optional<DomainEnd> System::limit_at_start(std::span<const double> y) {
   for (const Guard& guard : guards_) {
     if (guard.kind < k_radius) continue;
@@ -577,8 +576,7 @@ void System::resolve_others(double xi, std::span<const std::size_t> fired, std::
 
 // --- queries
 
-/// Uses the exact state, from which the wall continues: forces on opposite walls with integration errors would not
-/// balance.
+/// Uses the exact state, from which the wall continues: integration errors of opposite walls' forces would not balance.
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
   std::vector<double> exact(y.begin(), y.end());
   try {

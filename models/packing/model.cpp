@@ -153,8 +153,7 @@ class Destinations {
   std::optional<Branch> stress_;
 };
 
-/// Objects to steps that unload a plastic packing. Where a step may end early by its condition, the run has to find
-/// out.
+/// Objects to steps that unload a plastic packing. The run finds out about steps that may end early by their condition.
 void check_only_compaction(const Law& law, double initial, const ModelInput& input, std::vector<Objection>& found) {
   Destinations destinations(law);
   double least = initial;

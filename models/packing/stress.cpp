@@ -44,8 +44,7 @@ ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) {
 std::vector<DrawnStep> draw_program(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds,
                                     std::size_t count) {
   const double usual = dice.happens(0.6) ? 1.0 : dice.log_uniform(1e-12, 1e12);
-  // Plastic packings are only compacted. The order of targets of different kinds is unknown here, so that one kind is
-  // used.
+  // Plastic packings are only compacted. The order of targets of different kinds is unknown here: use one kind.
   const Control only = dice.one_of({Control::packing_fraction, Control::strain, Control::stress});
   double present = 0.0;  // share of the path
   return draw_steps(dice, usual, count, [&](DrawnStep& step, std::size_t i) {

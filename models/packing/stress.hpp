@@ -9,8 +9,7 @@
 
 namespace monograin::packing {
 
-/// Draws a material, starting from the published set. Not every drawn set is admissible; the generator then draws
-/// again.
+/// Draws a material, starting from the published set. The generator repeats a draw that is not admissible.
 [[nodiscard]] ProgramBounds draw(Dice& dice, DrawnMaterial& drawn);
 [[nodiscard]] std::vector<DrawnStep> draw_program(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds,
                                                   std::size_t count);

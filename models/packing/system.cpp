@@ -194,8 +194,7 @@ DomainEnd System::limit() const {
   return {{"limit"}, {end_of_branch(ramp_.control), -1, "greatest value", branch_.greatest}};
 }
 
-/// Throws beyond a greatest strain or stress: no state exists there, although the rates of neighbouring states are
-/// finite.
+/// Throws beyond a greatest strain or stress, where no state exists, although neighbouring states have finite rates.
 void System::require_state(double xi) const {
   if (branch_.end < 1.0 && prescribed(xi) > branch_.greatest) throw DomainError(end_of_branch(ramp_.control));
 }
@@ -260,8 +259,7 @@ double System::strain_of(std::span<const double> y) const noexcept {
 
 System::Seen System::seen(double xi, std::span<const double> y) const {
   if (mode_ != Mode::jammed) return by_law(xi);
-  // Where the stress hardly grows, Phi may exceed full plasticity by round-off before that event: observe at full
-  // plasticity.
+  // Where the stress hardly grows, Phi may exceed full plasticity by round-off before that event: observe it there.
   const double phi = is_fully_plastic_ ? y[k_fraction] : std::min(y[k_fraction], full_plasticity(law_));
   const double strain = strain_of(std::array{y[k_particles], phi});
   const double stress_elastic = strain * effective_modulus(law_, phi);
@@ -446,8 +444,7 @@ void System::arm_jamming() {
   }
 }
 
-/// Arms the guards of a decreasing ramp: integration ends, the stress falls below that of the branch, the packing comes
-/// loose.
+/// Arms the guards of a decreasing ramp: integration ends, the stress falls below its branch, the packing comes loose.
 void System::arm_loosening() {
   const double jamming = prescribed_at_jamming();
   switch (mode_) {

@@ -150,7 +150,7 @@ struct PressureFall {
 [[nodiscard]] PressureFall make_pressure_fall(Configuration configuration, const RadiusSeries& minimum, double greatest,
                                               double start, double exponent_excess, double rate);
 
-/// Mean pressure H at x. Before `start` it continues as its mirror image, which keeps a trial step there on a smooth
+/// Mean pressure H at x. Before `start` its mirror image continues it, so that a trial step there is on a smooth
 /// branch.
 [[nodiscard]] ValueAndSlope falling_pressure(const PressureFall& fall, double x) noexcept;
 
@@ -172,8 +172,7 @@ struct PressureFall {
 /// @param guess  initial guess of x; need not lie between the bounds
 template <class State>
 [[nodiscard]] double approach_between(const State& state, double lower, double upper, double force, double guess) {
-  // Newton's method in both logarithms: the laws are close to powers, so that the slope varies little between the
-  // bounds.
+  // Newton's method in both logarithms: the laws are close to powers, so that the slope varies little.
   const auto excess = [&](double log_x) {
     const double x = std::clamp(std::exp(log_x), lower, upper);
     const ContactState s = state(x);
@@ -194,8 +193,7 @@ template <class State>
   return std::clamp(x + (force - s.force) / s.force_by_approach, lower, upper);
 }
 
-/// The x at which a regime bears a force, from a close guess and without evaluating the bounds; none if it is not
-/// close.
+/// The x at which a regime bears a force, from a close guess and without evaluating the bounds; none if it is not near.
 template <class State>
 [[nodiscard]] std::optional<double> approach_near(const State& state, double lower, double upper, double force,
                                                   double guess) {
@@ -206,7 +204,7 @@ template <class State>
   for (int iteration = 0; x > 0.0 && iteration < 6; ++iteration) {
     const ContactState s = state(x);
     if (!(s.force > 0.0 && s.force_by_approach > 0.0)) return std::nullopt;
-    // Newton's method on the logarithms: the next step is about the square of this one, times this one over the last
+    // Newton's method on the logarithms: the next step is about this one squared, times the ratio of this to the last
     // squared.
     const double step = std::log(force / s.force) * s.force / (x * s.force_by_approach);
     if (!(std::abs(step) < 2.0)) return std::nullopt;

@@ -86,8 +86,8 @@ class Moments {
       const double e = strain(t) / range_;
       return e > 0.0 ? f(e, stress(t)) * (n * std::pow(t, n - 1.0) + elastic) / range_ : 0.0;
     };
-    // The integrand is nearly singular at first yield, where the elastic strain is small and the plastic one smaller
-    // still.
+    // The integrand is nearly singular at first yield, where the elastic strain is small and the plastic one even
+    // smaller.
     return quadrature_.integrate(integrand, 0.0, end_, 1e-14);
   }
 
@@ -133,8 +133,7 @@ HollomonMaterial fit_hollomon(const LudwikMaterial& material, double greatest_st
       const auto [plain, logarithmic] = moments.at(mu);
       return logarithmic / plain + 1.0 / (2.0 * mu + 1.0);
     };
-    // sigma/eps falls and sigma rises, which gives the condition these signs at the ends; at a root there, round-off
-    // decides.
+    // sigma/eps falls and sigma rises, which gives the condition these signs at the ends, up to round-off at a root.
     const double mu = condition(0.0) > 0.0 ? condition(1.0) < 0.0 ? root(condition) : 1.0 : 0.0;
     const double strength = (2.0 * mu + 1.0) * moments.at(mu).plain * std::exp(-mu * log_range);
     return {.strength = strength, .exponent = mu, .residual = moments.residual(strength, mu)};

@@ -221,7 +221,7 @@ constexpr double k_shallowest = 1e-12;
 constexpr int k_bisections = 20;
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
-/// Configuration of a scenario. Other sets of walls count as simple: the only law that allows them treats each wall by
+/// Configuration of a scenario. Other sets of walls count as simple: the law that allows them treats each wall by
 /// itself.
 Configuration configuration_of(const ModelInput& input) {
   if (input.configuration == "die") return Configuration::die;
@@ -321,8 +321,7 @@ struct Functions {
       return until.value <= 0.0;
     };
     double first = 0.0;
-    // Pressures fall again at greater depth, so that the search goes on to the least displacement that meets the
-    // condition.
+    // Pressures fall again at greater depth: the search goes on to the least displacement that meets the condition.
     for (double x = k_deepest * limit(law); x > 0.5 * k_shallowest; x *= 0.5) {
       if (is_met(x)) first = x;
     }

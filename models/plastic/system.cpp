@@ -76,8 +76,7 @@ std::pair<double, double> WallLaw::force_and_slope(const Branch& b, double x) co
   return {c.force, c.force_by_approach};
 }
 
-/// Uses the recompressed share: the displacement has too few digits if its distance from the opening is a small part of
-/// it.
+/// Uses the recompressed share: the displacement loses the digits of a small distance from the opening.
 double WallLaw::slope_under(const Branch& b, double force) const {
   if (!b.is_on_indenter) return slope(b, displacement(b, force));
   const double share = mdr::recompressed_share(b.indenter, force);
@@ -90,8 +89,7 @@ double WallLaw::displacement(const Branch& b, double force, double near) const {
 
 double WallLaw::coordinate_power(const Branch& b) const noexcept { return b.is_on_indenter ? 0.0 : first_power_; }
 
-/// False in low compressibility: next to its infinite pressure, an integrator's error would lead beyond the end of the
-/// law.
+/// False in low compressibility: next to infinite pressure, an integrator's error would lead beyond the end of the law.
 bool WallLaw::is_integrated(const Branch& b) const noexcept { return primary_regime(b) != Regime::low_compressibility; }
 
 contacts::BearingContact WallLaw::contact(const Branch& b, double x) const {

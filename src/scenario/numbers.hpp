@@ -11,8 +11,7 @@
 
 namespace monograin {
 
-/// Path of the initial radius. Lengths of a scenario may be given in R0, so that set_number() cannot change the radius;
-/// ScenarioTemplate can.
+/// Path of the initial radius. set_number() cannot change it, because lengths may be given in R0; ScenarioTemplate can.
 inline constexpr std::string_view k_radius_key = "particle.radius";
 
 /// A number of a scenario that can be fitted or varied.

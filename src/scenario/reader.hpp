@@ -10,8 +10,7 @@
 
 namespace monograin {
 
-/// Fills a scenario except its name, text and overrides. The result is only meaningful if nothing was added to
-/// `faults`.
+/// Fills a scenario except name, text and overrides. The result is only meaningful if nothing was added to `faults`.
 /// @param files  texts of all files that the tree may name; nullptr: files are read from disk, beside `origin`
 [[nodiscard]] CheckedScenario read_tree(const toml::table& root, const std::string& origin, const FileTexts* files,
                                         FaultList& faults);

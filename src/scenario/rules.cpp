@@ -66,8 +66,7 @@ void check_wall_angles(Reading& reading, const toml::table& tree, const std::str
   }
 }
 
-/// Reports steps that go back, for a law without unloading. The run finds out about steps that depend on a condition or
-/// another control.
+/// Reports steps that go back, for a law without unloading; the run checks steps that depend on its course.
 void check_only_loading(Reading& reading, std::span<const Step> program, double gap, const std::string& model) {
   double least_displacement = -gap;
   double least_force = 0.0;

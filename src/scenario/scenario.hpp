@@ -96,8 +96,7 @@ struct CheckedScenario {
   Output output;
   Numerics numerics;
   std::vector<SensitivityKey> sensitivities;
-  std::shared_ptr<const ScenarioTemplate> variants;  ///< template of this scenario for other numbers; null without
-                                                     ///< sensitivities
+  std::shared_ptr<const ScenarioTemplate> variants;  ///< template for other numbers; null without sensitivities
 };
 
 /// Texts of the files that a scenario names, by their names in the scenario.
@@ -147,8 +146,7 @@ class ScenarioTemplate {
                                             const std::vector<std::string>& overrides = {},
                                             FileKind kind = FileKind::regular);
 
-/// Reads and checks a scenario from a text in memory. `origin` replaces the file's name in messages and names the
-/// scenario.
+/// Reads and checks a scenario from a text in memory. `origin` replaces the file's name in messages and as its name.
 [[nodiscard]] CheckedScenario parse_scenario(std::string_view text, const std::string& origin,
                                              const std::vector<std::string>& overrides = {});
 
@@ -158,8 +156,7 @@ class ScenarioTemplate {
                                                       const std::vector<std::string>& overrides,
                                                       const FileTexts& files);
 
-/// Reads a scenario from a table of a larger document, which becomes the scenario's text. Positions are those in the
-/// document.
+/// Reads a scenario from a table of a larger document, which becomes its text. Positions are those in the document.
 [[nodiscard]] CheckedScenario parse_scenario_table(std::string_view text, std::string_view key,
                                                    const std::string& origin,
                                                    const std::vector<std::string>& overrides = {});

@@ -127,8 +127,7 @@ class ModelSchema {
     return schema;
   }
 
-  /// Adds the rules of walls: they have steps of their own, are fixed, or follow the steps of `[loading]`; at least one
-  /// is driven.
+  /// Adds the rules of walls: each has steps, is fixed, or follows the steps of `[loading]`; at least one is driven.
   static void add_rules_of_walls(json& schema) {
     const json is_on_its_own{{"anyOf", {is_fixed_wall(), {{"required", {"steps"}}}}}};
     json& walls = schema["properties"]["wall"];

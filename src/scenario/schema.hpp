@@ -5,8 +5,8 @@
 
 namespace monograin {
 
-/// The schema as formatted JSON text, made from the model catalogue and the language tables, with which it therefore
-/// agrees.
+/// The schema as formatted JSON text, made from the model catalogue and the language tables, so that it agrees with
+/// them.
 [[nodiscard]] std::string scenario_schema();
 
 }  // namespace monograin

@@ -1,5 +1,4 @@
-/// One table of a TOML file, checked against its keys in the language. For readers of such files: includes the TOML
-/// library.
+/// One table of a TOML file, checked against the language. For readers of such files: includes the TOML library.
 #pragma once
 
 #include <toml++/toml.h>

@@ -374,8 +374,8 @@ class DefinitionReader {
           faults_.add(fault.where, fault.message);
           continue;
         }
-        // An override is recognized by its text. The search begins at the end, because "x=0.3" is also found in the
-        // later "x=0.35".
+        // An override is recognized by its text. The search begins at the end: the later "x=0.35" contains "x=0.3",
+        // too.
         auto entry = overrides.rbegin();
         while (entry + 1 != overrides.rend() && fault.where.file.find(entry->text) == std::string::npos) ++entry;
         faults_.add(entry->where, fmt::format("{}: {}", entry->text, fault.message));

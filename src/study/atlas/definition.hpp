@@ -46,8 +46,7 @@ struct CurveSpec {
   /// One for each scenario: y is then its distance from the y of the reference, evaluated over the same rows.
   std::vector<CheckedScenario> references{};
   std::optional<double> profile_at;  ///< [s]; if given, columns are those of contact profiles at that instant
-  std::string at_event;  ///< if given, rows are the states just after events of this name instead of those of the
-                         ///< history
+  std::string at_event;              ///< if given, rows are the states just after events of this name
   std::optional<Parameter> parameter;
 };
 

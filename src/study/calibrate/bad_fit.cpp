@@ -87,8 +87,7 @@ void add_signs(const Calibration& calibration, std::vector<Suspicion>& suspicion
   }
 }
 
-/// Adds the suspicion that first touch lies anywhere within the measured displacements, unless the offset is free
-/// already.
+/// Adds the suspicion that first touch lies elsewhere within the measured displacements, unless the offset is free.
 void add_offset(const Calibration& calibration, std::vector<Suspicion>& suspicions) {
   const MeasuredQuantity& moved = calibration.machine_moves_x() ? calibration.x : calibration.y;
   const bool is_free = std::ranges::any_of(

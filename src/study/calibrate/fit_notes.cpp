@@ -89,9 +89,7 @@ void note_correlations(const Calibration& calibration, const CalibrationResult& 
       if (!(std::abs(correlation) > k_high_correlation)) continue;
       // The note names the parameter that the data determine less well.
       const auto relative = [&](std::size_t k) {
-        if (calibration.free[k].key.path == calibration::k_offset)
-          return 0.0;  // zero is an ordinary value of an
-                       // offset
+        if (calibration.free[k].key.path == calibration::k_offset) return 0.0;  // zero is an ordinary offset
         return result.uncertainty.standard_error(k) / std::abs(result.solution.parameters[k]);
       };
       const std::size_t poor = relative(i) > relative(j) ? i : j;

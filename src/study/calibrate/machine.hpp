@@ -1,5 +1,4 @@
-/// The testing machine between the displacement sensor and the particle: its first touch, and the deflection of its
-/// frame.
+/// The testing machine between displacement sensor and particle: its first touch, and its frame's deflection.
 #pragma once
 
 #include <functional>

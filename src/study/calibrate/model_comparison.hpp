@@ -23,12 +23,10 @@ struct RankedFit {
 struct ModelComparison {
   std::vector<RankedFit> fits;  ///< in the order of the calibrations
   std::size_t parts = 0;        ///< parts that were left out in turn; 0: the data cannot be divided
-  bool are_cycles = false;      ///< parts are cycles of loading and unloading; otherwise stretches between two turning
-                                ///< points
+  bool are_cycles = false;      ///< parts are cycles of loading and unloading; else stretches between turns
 };
 
-/// @throws std::runtime_error with the reason why fits cannot be compared: different rows, different weights, a robust
-/// loss
+/// @throws std::runtime_error if fits cannot be compared: different rows, different weights, a robust loss
 void check_comparable(std::span<const Calibration> calibrations);
 
 /// Leaves each cycle of the data out in turn, fits the models to the others, and predicts the one left out. If there is

@@ -28,8 +28,7 @@ const CurveProcedure* procedure_of(const Calibration& calibration) {
   return find_model(calibration.scenario.model)->curve_procedure;
 }
 
-/// True if the data are one curve, forces over displacements of one contact, and the fit has fixed radius, units and
-/// machine.
+/// True if the data are forces over displacements of one contact, and the fit has fixed radius, units and machine.
 bool is_force_curve(const Calibration& calibration) {
   return calibration.curves.size() == 1 && calibration.curves.front().control == Step::Kind::displacement &&
          calibration.y.observable.ends_with(".force") && class_of(calibration.x) == class_of(calibration.y) &&

@@ -16,8 +16,7 @@ struct ScenarioText {
   const std::string& file;
 };
 
-/// The free parameters, in the order of the file. Reports bounds that are missing, and numbers that the scenario cannot
-/// take.
+/// The free parameters in the file's order. Reports missing bounds, and numbers that the scenario cannot take.
 [[nodiscard]] std::vector<FreeParameter> free_in(Reading& reading, const Section& root, const ScenarioText& scenario);
 
 /// Adds the priors of `[prior]` to the parameters; a uniform distribution tightens their bounds.

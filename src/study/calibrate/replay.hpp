@@ -1,5 +1,4 @@
-/// A scenario that follows measured data instead of its own program, and its response at every datum. It may be run
-/// repeatedly.
+/// A scenario that follows measured data instead of its own program, repeatedly, with its response at every datum.
 #pragma once
 
 #include <array>

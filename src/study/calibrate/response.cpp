@@ -46,8 +46,7 @@ Response::Response(const Calibration& calibration, const MeasuredCurve& curve, s
 
 bool Response::operator()(std::span<const double> parameters, std::span<double> response) {
   problem_.clear();
-  for (const bool is_radius : {true, false}) {  // the radius comes first: lengths in R0 follow it, unless they are free
-                                                // themselves
+  for (const bool is_radius : {true, false}) {  // the radius comes first: lengths in R0 follow it
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       const std::string& path = calibration_.free[k].key.path;
       if (path.starts_with(calibration::k_data) || (path == k_radius_key) != is_radius) continue;

@@ -126,8 +126,7 @@ class PlanReader {
   }
 
  private:
-  /// Takes the values of the free numbers from the scenario. Reports a fault if a history cannot be differentiated by
-  /// one.
+  /// Takes the values of the free numbers from the scenario; a fault if one of them cannot differentiate a history.
   void take_values(const Section& root) {
     const Section::Origin free = root.table("free", "[free]");
     for (const FreeParameter& parameter : made_.free) {

@@ -19,8 +19,7 @@ struct PlacedBands {
 
 [[nodiscard]] PlacedBands bands_in(Reading& reading, const Section& root);
 
-/// Reports columns that histories of a scenario do not have. Called before the first run, which may be one of many long
-/// ones.
+/// Reports columns that histories of a scenario lack. Called before the first run, because there may be many long ones.
 void check_columns(const PlacedBands& bands, const CheckedScenario& scenario, FaultList& faults);
 
 }  // namespace monograin::sweep

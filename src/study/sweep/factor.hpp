@@ -52,8 +52,7 @@ struct FactorDistribution {
   [[nodiscard]] FactorValue at(double share) const;
 };
 
-/// A key and the values over which it is varied: a range, a distribution, or a list; none of them if a table gives the
-/// values.
+/// A key with a range, a distribution or a list of values; with none of them if a table gives the values.
 struct Factor {
   std::string key;  ///< path as of `--set`
   KeySpec spec;

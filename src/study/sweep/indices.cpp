@@ -32,8 +32,7 @@ constexpr double k_rounding = 1e-12;  // relative difference from the mean withi
   return {value, quantile(values, tail), quantile(values, 1.0 - tail)};
 }
 
-/// Calls estimate(samples, values) with all samples, then with resamples of them; the k-th value makes the k-th
-/// estimate.
+/// Calls estimate(samples, values) with all samples, then with resamples; the k-th value makes the k-th estimate.
 template <class Function>
 [[nodiscard]] std::vector<Estimate> bootstrapped(std::size_t samples, std::size_t count, double confidence,
                                                  Function&& estimate) {
