@@ -75,14 +75,13 @@ class Contacts {
   /// Unit vectors, one per column, along which the centre moves.
   [[nodiscard]] const Eigen::Matrix3Xd& free_directions() const noexcept { return directions_; }
 
-  /// Finds the state at the coordinate xi of a step of the program (ramps over R and E R^2).
-  /// @param y  in: a state on the physical branch, the nearer the better; the unloaded one (s = -gap, u = 0) always is
-  /// one. Out: the solution that is connected with it. Unchanged where this throws.
-  /// Uses Newton's method; where that does not contract, or would leave the branch, approaches the state in smaller
-  /// steps.
+  /// Finds the state at the coordinate xi of a step of the program (ramps over R and E R^2). Uses Newton's method;
+  /// where that does not contract, or would leave the branch, approaches the state in smaller steps.
+  /// @param y  in: a state on the physical branch, the nearer the better, or the unloaded state (s = -gap, u = 0),
+  /// which is always on it. Out: the solution that is connected with that state. Unchanged if this throws.
+  /// @param is_own_mode  true if the contacts that are loaded in y are also the loaded ones of the solution
   /// @throws std::domain_error naming the numbers for a state beyond the limit of applicability, a negative force, or a
   /// centre that nothing supports
-  /// @param is_own_mode  true if the contacts that are loaded in y are also the loaded ones of the solution
   void solve(std::span<const Ramp> ramps, double xi, std::span<double> y, bool is_own_mode = false);
 
   /// Moves the centre to the nearest position where no wall under displacement control overlaps the surface, and sets y
