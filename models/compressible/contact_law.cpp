@@ -16,20 +16,20 @@ UnloadingShape between(const UnloadingShape& first, const UnloadingShape& second
           std::lerp(first.stiffness_ratio, second.stiffness_ratio, share)};
 }
 
-/// (d - d0)/(dm - d0); exact to the last digits near dm, where the difference d - dm is.
+/// (d - d0)/(dm - d0), from the difference d - dm, which has all its digits near dm.
 double share_of(const UnloadingCurve& curve, double displacement) noexcept {
   return 1.0 + (displacement - curve.largest) / curve.length;
 }
 
-/// |share|^power with the digits of the distance from dm.
+/// share|^power, with all digits of the distance from dm.
 double power_of_share(const UnloadingCurve& curve, double displacement, double power) noexcept {
   const double share = share_of(curve, displacement);
   if (share <= 0.0) return std::pow(-share, power);
   return std::exp(power * std::log1p((displacement - curve.largest) / curve.length));
 }
 
-// Beyond this share to either side an unloading curve goes on along its tangent. Curves may be much shorter than what a
-// wall is off by when an event is located, and a power of that many lengths has no bounds.
+// Share to either side beyond which an unloading curve continues along its tangent. A curve may be much shorter than
+// the error of a wall's position while an event is located, and a power of so many lengths has no bound.
 constexpr double k_farthest_share = 2.0;
 
 }  // namespace
@@ -101,7 +101,7 @@ UnloadingRule interpolated_rule(std::span<const UnloadingRow> rows, double stiff
   if (above == materials.begin()) return UnloadingRule(above->second);
   const auto below = std::prev(above);
   if (above == materials.end()) return UnloadingRule(below->second);
-  // Between two materials the rule bends where either of them does.
+  // Between two materials the rule has a node where either of them has one.
   const UnloadingRule first(below->second);
   const UnloadingRule second(above->second);
   std::vector<double> places;
@@ -156,7 +156,7 @@ double recoverable_work(const UnloadingCurve& curve, double displacement) noexce
 
 double unloading_displacement(const UnloadingCurve& curve, double force) noexcept {
   if (force <= 0.0) return curve.separation();
-  // With the digits of the distance from dm, as above.
+  // expm1 keeps the digits of the distance from dm.
   return curve.largest + curve.length * std::expm1(std::log(force / curve.force) / curve.exponent);
 }
 

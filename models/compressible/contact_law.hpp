@@ -1,4 +1,4 @@
-/// Contact law of a compressible plastic particle: a wall that presses on it, and goes back.
+/// Contact law of a compressible plastic particle: first loading by a wall, and unloading.
 ///
 /// d is the displacement of a wall over R0 and f its force over pi R0^2 sigma_y0, sigma_y0 the hydrostatic yield
 /// pressure at the reference density; work is over pi R0^3 sigma_y0. Every contact depends on its own wall alone.
@@ -11,7 +11,7 @@
 
 namespace monograin::compressible {
 
-/// Displacement over R0 at which the source's data, and with them the law, end.
+/// Displacement over R0 at which the source's data end, and the law with them.
 inline constexpr double k_largest_displacement = 0.5;
 
 /// First loading (Edmans and Sinka, n.d., eq. 6):
@@ -32,17 +32,17 @@ struct LoadingLaw {
 /// The two parts of the law.
 enum class Part { linear, exponential };
 
-/// Force of one part, also outside of it, and its derivative with respect to d.
+/// Force by the formula of one part, also outside of that part; slope_in() gives its derivative with respect to d.
 [[nodiscard]] double force_in(const LoadingLaw& law, Part part, double displacement) noexcept;
 [[nodiscard]] double slope_in(const LoadingLaw& law, Part part, double displacement) noexcept;
-/// Work from first touch along the law; one part's formula, also outside of it.
+/// Work from first touch to a displacement, by the formula of one part, also outside of that part.
 [[nodiscard]] double work_in(const LoadingLaw& law, Part part, double displacement) noexcept;
 
-/// The part at a displacement; at delta_t the second.
+/// Part of the law that holds at a displacement; at delta_t the exponential one.
 [[nodiscard]] Part part_at(const LoadingLaw& law, double displacement) noexcept;
 [[nodiscard]] double loading_force(const LoadingLaw& law, double displacement) noexcept;
 [[nodiscard]] double loading_work(const LoadingLaw& law, double displacement) noexcept;
-/// Displacement under a force >= 0.
+/// Displacement of the first loading under a force >= 0.
 [[nodiscard]] double displacement_under(const LoadingLaw& law, double force) noexcept;
 
 /// Stiffness k_H of Hertz's law f = k_H d^(3/2) for the same material (eq. 10).
@@ -64,12 +64,12 @@ struct UnloadingNode {
   UnloadingShape shape;
 };
 
-/// How the shape depends on the largest displacement: linearly between nodes, constant outside of them.
+/// The shape as a function of the largest displacement: linear between nodes, constant outside of them.
 class UnloadingRule {
  public:
-  /// Hertz's.
+  /// Hertz's shape everywhere.
   UnloadingRule() : UnloadingRule(UnloadingShape{}) {}
-  /// The same shape everywhere.
+  /// One shape everywhere.
   explicit UnloadingRule(UnloadingShape shape) : nodes_{{0.0, shape}} {}
   /// @param nodes  with ascending largest displacements; at least one
   explicit UnloadingRule(std::vector<UnloadingNode> nodes) : nodes_(std::move(nodes)) {}
@@ -87,17 +87,17 @@ struct UnloadingRow {
   UnloadingNode node;
 };
 
-/// The rule for one material: bilinear in ln(E0/Gamma0) and the largest displacement, constant outside of the rows.
+/// Unloading rule of one material: bilinear in ln(E0/Gamma0) and the largest displacement, constant outside the rows.
 /// Materials of the table need not have the same displacements.
 /// @throws std::invalid_argument without rows
 [[nodiscard]] UnloadingRule interpolated_rule(std::span<const UnloadingRow> rows, double stiffness_over_shear);
 
-/// Unloading, and reloading on the same way, from a largest displacement (eq. 13):
+/// Curve of unloading, and of reloading, from a largest displacement (eq. 13):
 ///
 ///   f = fm ((d - d0)/(dm - d0))^alpha,   d0 = dm - h/beta,   h = (fm/k_H)^(2/3)
 ///
-/// d0 is not below 0 (added): the linear part of the law is stiffer than Hertz's at small d, and the surface would come
-/// back beyond where it has been.
+/// This law keeps d0 at or above 0 (added to the source). At small d its linear part is stiffer than Hertz's law, so
+/// that the surface would otherwise recover beyond its original position.
 struct UnloadingCurve {
   double largest = 0.0;     ///< dm
   double force = 0.0;       ///< fm > 0
@@ -112,16 +112,16 @@ struct UnloadingCurve {
 [[nodiscard]] UnloadingCurve unloading_from(const LoadingLaw& law, double hertz_stiffness, const UnloadingRule& rule,
                                             double largest) noexcept;
 
-/// Force on the curve; below d0 it goes on as an odd function of the distance from there, and a length beyond either
-/// end along its tangent.
+/// Force on the curve. Below d0 the curve continues as an odd function of d - d0. Where (d - d0)/(dm - d0) exceeds 2 in
+/// magnitude, it continues along its tangent.
 [[nodiscard]] double unloading_force(const UnloadingCurve& curve, double displacement) noexcept;
 [[nodiscard]] double unloading_slope(const UnloadingCurve& curve, double displacement) noexcept;
-/// Work that the contact gives back from here to its opening, from d0 on.
+/// Work that the contact returns from a displacement d >= d0 to its opening.
 [[nodiscard]] double recoverable_work(const UnloadingCurve& curve, double displacement) noexcept;
 /// Displacement under a force from 0 to fm.
 [[nodiscard]] double unloading_displacement(const UnloadingCurve& curve, double force) noexcept;
 
-/// Slope of the unloading over that of the loading at dm; a cycle dissipates for certain where it is at least 1.
+/// Slope of the unloading over that of the loading at dm. A cycle certainly dissipates if the ratio is at least 1.
 [[nodiscard]] double slope_ratio(const LoadingLaw& law, const UnloadingCurve& curve) noexcept;
 
 }  // namespace monograin::compressible

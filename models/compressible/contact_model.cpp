@@ -131,7 +131,7 @@ std::vector<Objection> objections(const ModelInput& input) {
   return found;
 }
 
-/// The law of a scenario, and what the user should know of it.
+/// Law of a scenario, and warnings for the user about it.
 struct Law {
   LoadingLaw loading;
   double hertz_stiffness = 1.0;  ///< k_H
@@ -212,7 +212,7 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
   list.push_back({"largest_force", loading_force(law, k_largest_displacement), "-", "f(0.5)"});
   list.push_back({"hertz_stiffness", hertz_stiffness, "-", "k_H"});
   list.push_back({"force_unit", force_unit(input), "N", "pi R0^2 sigma_y0"});
-  // Where the largest displacement is the end of the law; between, alpha and beta may follow from a table.
+  // Unloading from the end of the law. From smaller displacements, alpha and beta may follow from a table.
   const UnloadingCurve curve = unloading_from(law, hertz_stiffness, unloading, k_largest_displacement);
   const UnloadingShape shape = unloading.at(k_largest_displacement);
   list.push_back({"unloading_exponent", shape.exponent, "-", "alpha at 0.5"});

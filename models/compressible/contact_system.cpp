@@ -6,7 +6,7 @@
 namespace monograin::compressible {
 namespace {
 
-// A ratio of slopes this near to 1 is 1.
+// Distance from 1 within which a ratio of slopes counts as 1.
 constexpr double k_same_slope = 1e-12;
 
 }  // namespace

@@ -1,5 +1,5 @@
-/// A compressible plastic particle between rigid walls: what one contact does, and the hybrid system of contacts that
-/// know nothing of each other. Lengths in R0, forces in pi R0^2 sigma_y0.
+/// A compressible plastic particle between rigid walls: the law of one contact, and the hybrid system of independent
+/// contacts. Lengths in R0, forces in pi R0^2 sigma_y0.
 #pragma once
 
 #include <array>
@@ -16,14 +16,14 @@ struct ContactSettings {
   UnloadingRule unloading{};
   double initial_radius = 1.0;             ///< R0 [m]
   double yield_pressure = 1.0;             ///< sigma_y0 [Pa]
-  std::vector<Diagnostic> reservations{};  ///< what the user should know of these numbers
+  std::vector<Diagnostic> reservations{};  ///< warnings for the user about these numbers
   /// As contacts::Settings.
   double largest_displacement = 0.0;
   double largest_force = 0.0;
   bool centre_is_free = false;
 };
 
-/// One contact, as contacts::IndependentContacts asks for it.
+/// Law of one contact, for contacts::IndependentContacts.
 class WallLaw {
  public:
   struct Branch {
@@ -42,7 +42,7 @@ class WallLaw {
   [[nodiscard]] double displacement(const Branch& b, double force) const noexcept;
   [[nodiscard]] double opening(const Branch& b) const noexcept { return b.is_unloading ? b.curve.separation() : 0.0; }
   [[nodiscard]] double work(const Branch& b, double d) const noexcept;
-  /// Notes how steep unloading is, or would be.
+  /// Work that the contact would return. Records the least ratio of the slopes of unloading and loading.
   [[nodiscard]] double stored(const Branch& b, double d) noexcept;
   [[nodiscard]] contacts::Boundary next(const Branch& b) const noexcept;
   void pass(Branch& b) const noexcept { b.part = Part::exponential; }
@@ -59,7 +59,7 @@ class WallLaw {
 
   ContactSettings settings_;
   int clipped_ = 0;           ///< unloadings that would have opened before first touch
-  double least_ratio_ = 1.0;  ///< of the slopes where a contact that was looked at has turned back, or would
+  double least_ratio_ = 1.0;  ///< least slope of unloading over that of loading, over all evaluated states
 };
 
 using ContactSystem = contacts::IndependentContacts<WallLaw>;

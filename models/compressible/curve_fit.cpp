@@ -14,7 +14,7 @@ constexpr double k_least_exponent = 0.05;
 constexpr double k_greatest_exponent = 12.0;
 constexpr std::size_t k_scanned_exponents = 60;
 constexpr std::size_t k_scanned_transitions = 4;  // in each interval of the data
-constexpr double k_least_force = 0.02;            // of fm, of points of an unloading that count
+constexpr double k_least_force = 0.02;            // least force, over fm, of points of an unloading that count
 constexpr int k_full_digits = std::numeric_limits<double>::digits;
 
 /// A minimum of a function of one variable.
@@ -23,7 +23,7 @@ struct Minimum {
   double value = k_infinity;
 };
 
-/// The least of a scan over equal steps, refined by Brent's method between its neighbours.
+/// Least value of a scan over equal steps, refined by Brent's method between the neighbours of that value.
 template <class Function>
 Minimum scanned_minimum(const Function& function, double begin, double end, std::size_t count) {
   const auto node = [&](std::size_t k) {
@@ -57,10 +57,10 @@ class Curve {
 
   [[nodiscard]] std::size_t size() const noexcept { return d_.size(); }
   [[nodiscard]] double displacement(std::size_t i) const noexcept { return d_[i]; }
-  /// First and last places between which the transition is sought: one point at least on either side.
+  /// First interval in which the transition is sought: at least one point beyond d = 0 lies before it.
   [[nodiscard]] std::size_t first() const noexcept { return d_.front() > 0.0 ? 0 : 1; }
 
-  /// Slope of a line through the origin and the points up to a place.
+  /// Slope of the least-squares line through the origin and the points up to an index.
   [[nodiscard]] double slope_up_to(std::size_t last) const noexcept {
     double along = 0.0;
     double square = 0.0;
@@ -71,7 +71,7 @@ class Curve {
     return along / square;
   }
 
-  /// Slope of the whole law that is best for a transition and an exponent.
+  /// Least-squares k of the whole law for a transition and an exponent.
   [[nodiscard]] double best_slope(double transition, double exponent) const noexcept {
     const LoadingLaw unit{1.0, transition, exponent};
     double along = 0.0;
@@ -109,7 +109,7 @@ class Curve {
   std::vector<double> weights_;
 };
 
-/// Transition, with what is best for it.
+/// A law with its error; all parameters but the transition are the best for that transition.
 struct Candidate {
   LoadingLaw law;
   double error = k_infinity;  ///< squared
@@ -132,12 +132,12 @@ Candidate with_best_pair(const Curve& curve, double transition) {
   return {law(best.at), best.value};
 }
 
-/// The least error over the transitions in the intervals of the data. Within one of them it is smooth; so each is
-/// looked at in its middle, and those that are better there than their neighbours, with these, are searched to the end.
+/// Least error over the transitions in the intervals of the data. Within an interval the error is smooth. The function
+/// evaluates the middle of each interval, and searches the local minima together with their neighbours.
 /// @param inner  Candidate(interval, transition)
 template <class Inner>
 Candidate over_intervals(const Curve& curve, const Inner& inner) {
-  std::vector<double> middle(curve.size() + 1, k_infinity);  // one further on: intervals beyond the ends are none
+  std::vector<double> middle(curve.size() + 1, k_infinity);  // interval i is at i + 1; the outer entries are empty
   for (std::size_t i = curve.first(); i + 1 < curve.size(); ++i) {
     const Candidate found = inner(i, std::midpoint(curve.displacement(i), curve.displacement(i + 1)));
     if (found.law.stiffness > 0.0) middle[i + 1] = found.error;
@@ -149,7 +149,7 @@ Candidate over_intervals(const Curve& curve, const Inner& inner) {
              middle[k] <= middle[k + 1];
     };
     if (!is_low(i) && !is_low(i + 1) && !is_low(i + 2)) continue;
-    // Open to the right, where the next point joins the linear part.
+    // Open to the right, because the next point joins the linear part there.
     const double begin = curve.displacement(i);
     const double end = std::nextafter(curve.displacement(i + 1), begin);
     if (!(end > begin)) continue;
@@ -213,7 +213,7 @@ std::optional<UnloadingFit> fit_unloading(std::span<const double> displacements,
   const auto best_exponent = [&](double length) {
     return scanned_minimum([&](double exponent) { return error_of(length, exponent); }, 1.0, 6.0, 20);
   };
-  // From just below the last point to first touch.
+  // The curve ends between just below the last point and first touch.
   const double shortest = std::min(largest, (largest - lowest) * (1.0 + 1e-9));
   const double length =
       scanned_minimum([&](double trial) { return best_exponent(trial).value; }, shortest, largest, 100).at;

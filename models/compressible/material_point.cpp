@@ -10,40 +10,39 @@ namespace {
 
 using std::string_view;
 
-// The path starts from zero in every plastic phase, but has no more digits than the strains that f is made of. So has
-// phi, which in tension may start from zero beside large strains.
+// The path starts from zero in every plastic phase, but has no more digits than the strains that f is made of. That
+// holds for phi, too, which in tension may start from zero beside large strains.
 constexpr std::array k_unknowns{
     Unknown{.name = "phi", .scale = 0.1, .sum_scale = 1.0},
     Unknown{.name = "plastic_strain_deviatoric", .scale = 0.1, .sum_scale = 1.0},
     Unknown{"plastic_path", Unknown::Kind::quadrature, 1.0},
 };
-// Plastic strains over elastic ones, of which the stress is what is left: as they are at least in a usual material, and
-// up to where integrators would follow rounding.
+// Bounds of the error gain, of plastic strains over elastic ones, which determine the stress: its value in a usual
+// material, and the value beyond which integrators would follow round-off.
 constexpr double k_usual_gain = 10.0;
 constexpr double k_most_gain = 1e3;
 
-// What is nearer than this to the end of an elastic phase has arrived there (step coordinates).
+// Distance from the end of an elastic phase that counts as none (step coordinates).
 constexpr double k_round_off = 1e-13;
-// Cosine between the normal of the yield surface and the elastic rate of stress below which the two are at right
-// angles.
+// Cosine between the normal of the yield surface and the elastic rate of stress below which the two are perpendicular.
 constexpr double k_neutral = 1e-12;
-// A state this near to the end of a segment, over the yield pressure, is beyond it if the program moves it there: f is
-// quadratic in the distance.
+// Distance from the end of a segment, over the yield pressure, within which a state is beyond that end if the program
+// moves it there: f is quadratic in the distance.
 constexpr double k_arrived = 1e-9;
-// Share of its usual size that the stiffness along the flow has to keep. Under prescribed strains it goes to zero like
-// the root of the way that is left; under prescribed stresses in proportion to it.
+// Least stiffness along the flow, over its usual size. Under prescribed strains the stiffness goes to zero like the
+// root of the remaining path; under prescribed stresses, in proportion to it.
 constexpr double k_least_stiffness = 1e-6;
-// The same share from which on rounding of the stress, that much larger in the plastic strain, may keep integrators
-// from going on.
+// Stiffness along the flow, over its usual size, below which integrators may fail: round-off of the stress is larger in
+// the plastic strain by its reciprocal.
 constexpr double k_hardly_unique = 1e-3;
-// Plastic strain over a step of the program. Towards a stress that is borne only with unbounded strain, which grows
-// like the logarithm of the way that is left, rates go like the reciprocal of that; faster ones are made of rounding.
+// Largest rate of plastic strain over a step of the program. Towards a stress that only unbounded strain reaches, the
+// strain grows like the logarithm of the remaining path, and the rate like its reciprocal; faster rates are round-off.
 constexpr double k_fastest = 1e7;
 // Distance of Poisson's ratio from 1/2, where the bulk modulus is infinite, at which a run ends.
 constexpr double k_least_compressibility = 1e-6;
 // Bulk modulus over the yield pressure from which on integrators may fail.
 constexpr double k_stiff = 1e5;
-// Moduli over the yield pressure at which a run ends: the rounding of strains is there a millionth of the strength.
+// Moduli over the yield pressure at which a run ends: round-off of strains is then a millionth of the strength.
 constexpr double k_stiffest = 1e10;
 // Share of the strength below which a negative work of the flow is round-off.
 constexpr double k_negligible_work = 1e-9;
@@ -81,15 +80,15 @@ MaterialPoint::MaterialPoint(const Settings& settings) : settings_(settings) {
 
 std::span<const Unknown> MaterialPoint::unknowns() const noexcept { return k_unknowns; }
 
-/// In a stiff material elastic strains are smaller.
+/// Usual plastic strain over the elastic strain at yield, within bounds; a stiff material has smaller elastic strains.
 double MaterialPoint::error_gain() const noexcept {
   const Properties at = properties_at(settings_.parameters, 0.0);
   const double elastic_strain = at.yield_pressure.value / (3.0 * at.shear_modulus.value);
   return std::clamp(k_unknowns[k_deviatoric].scale / elastic_strain, k_usual_gain, k_most_gain);
 }
 
-// The flow of von Mises keeps its direction (d(phi) = |d(g^p)|), and so does flow without deviator: f = 0 along that
-// line is one equation.
+// The flow of von Mises keeps its direction (d(phi) = |d(g^p)|), and so does flow without deviator: along that line f =
+// 0 is one equation.
 bool MaterialPoint::is_solvable() const noexcept {
   return settings_.parameters.model == YieldModel::vm || settings_.is_hydrostatic;
 }
@@ -108,7 +107,8 @@ double MaterialPoint::prescribed_rate(std::size_t channel) const noexcept {
   return ramps_[channel].end - ramps_[channel].start;
 }
 
-/// p = K (e_v - e_v^p), s = 3G (g - g^p), with the strains that are not prescribed from the stresses that are.
+/// Stress and strain: p = K (e_v - e_v^p), s = 3G (g - g^p). Prescribed stresses determine strains that are not
+/// prescribed.
 MaterialPoint::Response MaterialPoint::response(double xi, std::span<const double> y) const {
   Response now{.at = properties_at(settings_.parameters, y[k_phi])};
   if (!(now.at.poisson_ratio.value < 0.5)) {
@@ -142,7 +142,7 @@ MaterialPoint::Response MaterialPoint::response(double xi, std::span<const doubl
     now.lateral_strain = lateral;
   }
   now.s = 2.0 * shear * (now.axial_strain - now.lateral_strain) - 3.0 * shear * flow;
-  // A stress that is prescribed leaves p no rounding of its own, which grows with the bulk modulus towards nu = 1/2.
+  // A prescribed stress determines p without its own round-off, which grows with the bulk modulus towards nu = 1/2.
   if (is_stress(k_lateral)) {
     now.p = lateral + now.s / 3.0;
   } else if (is_stress(k_axial)) {
@@ -153,8 +153,8 @@ MaterialPoint::Response MaterialPoint::response(double xi, std::span<const doubl
   return now;
 }
 
-/// Change of stress for a change of what is prescribed, and one that the moduli and the plastic strains would bring at
-/// fixed strains.
+/// Change of stress for a change of the prescribed quantities. `stiff` is a further change, which the moduli and the
+/// plastic strains would cause at fixed strains.
 MaterialPoint::Increment MaterialPoint::stress_change(const Properties& at, Increment stiff, double axial,
                                                       double lateral) const {
   if (is_stress(k_axial) && is_stress(k_lateral)) return {(axial + 2.0 * lateral) / 3.0, axial - lateral};
@@ -195,7 +195,7 @@ MaterialPoint::Flow MaterialPoint::flow(const Response& now, const Yield& yield)
   flow.deviatoric = y.g_s;
   flow.elastic = elastic_rate(at);
   flow.loading = y.f_p * flow.elastic.p + y.f_s * flow.elastic.s;
-  // At fixed strains: densification takes elastic strain away and stiffens what is left.
+  // At fixed strains, densification reduces the elastic strain and stiffens the rest.
   const double bulk = at.bulk_modulus.value;
   const double shear = at.shear_modulus.value;
   const Increment by_phi = stress_change(
@@ -209,7 +209,7 @@ MaterialPoint::Flow MaterialPoint::flow(const Response& now, const Yield& yield)
   return flow;
 }
 
-/// Of the angle between the surface's normal and the elastic rate of stress; 0 where nothing is prescribed to move.
+/// Cosine of the angle between the surface's normal and the elastic rate of stress; 0 if nothing is prescribed to move.
 double MaterialPoint::cosine(const Flow& flow) noexcept {
   const double length = std::hypot(flow.yield.f_p, flow.yield.f_s) * std::hypot(flow.elastic.p, flow.elastic.s);
   return length > 0.0 ? flow.loading / length : 0.0;
@@ -221,8 +221,8 @@ void MaterialPoint::require_unique(const Flow& flow) {
   }
 }
 
-/// Plastic strain for a unit of the multiplier, which is integrated times this: by itself it goes like the reciprocal
-/// of the gradient of f, and has the rounding and the errors of the stress.
+/// Plastic strain per unit of the multiplier. The integrated path contains this factor: the multiplier alone goes like
+/// the reciprocal of the gradient of f, and carries the round-off and the errors of the stress.
 double MaterialPoint::length(const Flow& flow) noexcept { return std::hypot(flow.phi, flow.deviatoric); }
 
 void MaterialPoint::rates(double xi, std::span<const double> y, std::span<double> dy) {
@@ -250,8 +250,8 @@ void MaterialPoint::residual(double xi, std::span<const double> y, std::span<con
   res[k_path] = now.yield.f;
 }
 
-/// The plastic strains of an elastic phase are those it began with; those of a solvable plastic one lie on a line
-/// through them, from which a guess may be off by rounding.
+/// In an elastic phase, restores the plastic strains with which it began. In a solvable plastic phase, moves a guess to
+/// the line through them, from which it may be off by round-off.
 void MaterialPoint::solve(double xi, std::span<double> y) {
   double along_phi = 0.0;
   double along_deviatoric = 0.0;
@@ -269,7 +269,7 @@ void MaterialPoint::solve(double xi, std::span<double> y) {
   complete(xi, y);
 }
 
-/// What solve() starts from in the phase that begins.
+/// Stores the plastic strains from which solve() starts in the phase that begins.
 void MaterialPoint::hold(std::span<const double> y) noexcept {
   held_phi_ = y[k_phi];
   held_deviatoric_ = y[k_deviatoric];
@@ -298,7 +298,7 @@ void MaterialPoint::begin_step(std::span<const Ramp> ramps, std::span<double> y,
   is_plastic_ = false;
   watch_elastic(0.0, now);
   if (guards_.empty() || exit_ > k_round_off) return;
-  // The last step ended on the surface, and this one goes out of it.
+  // The last step ended on the surface, and this step leads out of it.
   log.push_back({"yield"});
   turn_plastic(exit_branch_, now);
   go_on_plastic(now, log);
@@ -313,8 +313,8 @@ void MaterialPoint::go_on_plastic(const Response& now, std::vector<Event>& log) 
   watch_plastic(now);
 }
 
-/// Whether plastic flow continues over a corner of the program. A program that stands still changes nothing; one that
-/// leaves along the tangent of a curved surface goes out of it.
+/// True if plastic flow continues over a corner of the program: if the program stands still, if it leads outwards, or
+/// if it leaves along the tangent of a curved surface.
 bool MaterialPoint::goes_on_yielding(const Response& now) const {
   const Flow flow_now = flow(now);
   if (flow_now.elastic.p == 0.0 && flow_now.elastic.s == 0.0) return true;
@@ -337,7 +337,7 @@ void MaterialPoint::choose_side(const Response& now) {
   branch_.side = rate > 0.0 ? 1.0 : rate < 0.0 ? -1.0 : 0.0;
 }
 
-/// Moves on from the ends of segments that the state lies at and the program goes through.
+/// Enters the next segment if the state lies at the end of its segment and the program passes that end.
 void MaterialPoint::pass_ends(const Response& now, std::vector<Event>& log) {
   for (const bool towards_compression : {false, true}) {
     const auto distance = distance_to_end(settings_.parameters, now.at, branch_.segment, towards_compression, now.p);
@@ -351,7 +351,7 @@ void MaterialPoint::pass_ends(const Response& now, std::vector<Event>& log) {
   }
 }
 
-/// On the caps s may have changed its sign.
+/// Changes to the next segment. On the caps s may have changed its sign.
 void MaterialPoint::enter_neighbour(const Response& now, bool towards_compression) {
   branch_.segment = neighbour(settings_.parameters, branch_.segment, towards_compression);
   branch_.side = now.s > 0.0 ? 1.0 : -1.0;
@@ -363,8 +363,8 @@ bool MaterialPoint::is_isochoric_end(Segment segment, bool towards_compression) 
   return segment == Segment::cap || other == Segment::cap;
 }
 
-/// Whether the flow takes the state out through an end of its segment. Where an arc joins a shear line, the flow is the
-/// same on both, and a state that has just come over may be back by rounding alone.
+/// True if the flow takes the state out through an end of its segment. Where an arc joins a shear line, the flow is the
+/// same on both, and a state that has just crossed may return by round-off alone.
 bool MaterialPoint::leads_out(bool towards_compression, const Response& now) const {
   if (is_isochoric_end(branch_.segment, towards_compression)) return true;
   const Flow flow_now = flow(now);
@@ -375,15 +375,15 @@ bool MaterialPoint::leads_out(bool towards_compression, const Response& now) con
   return towards_compression ? away < 0.0 : away > 0.0;
 }
 
-/// Whether s may change its sign. Under prescribed strains the flow's own share of its rate is in proportion to s: it
-/// goes through zero only where the program takes it, and else decays to where its sign is an integrator's error.
+/// True if s may change its sign. Under prescribed strains, the flow's share in the rate of s is proportional to s.
+/// Then s passes zero only if the program drives it there; otherwise it decays into an integrator's error.
 bool MaterialPoint::passes_apex(const Response& now) const {
   if (now.s == 0.0) return false;
   const bool follows_strains = !is_stress(k_axial) && !is_stress(k_lateral);
   return !follows_strains || branch_.side * elastic_rate(now.at).s < 0.0;
 }
 
-/// How fast the pressure moves at an isochoric end, where phi stands still and s follows p along the tangent.
+/// Rate of the pressure at an isochoric end, where phi is stationary and s follows p along the tangent.
 double MaterialPoint::pressure_rate_at_end(const Response& now, bool towards_compression) const {
   const Parameters& parameters = settings_.parameters;
   const bool is_corner = parameters.model == YieldModel::dpc && branch_.segment == Segment::shear &&
@@ -463,7 +463,7 @@ void MaterialPoint::guard_values(double xi, std::span<const double> y, std::span
   }
 }
 
-/// How far the state is from the end of the equations' domain; negative beyond it.
+/// Distance of the state from a limit of the equations' domain; negative beyond it.
 double MaterialPoint::margin(Limit limit, const Response& now) const {
   switch (limit) {
     case Limit::pores_closed:
@@ -481,7 +481,7 @@ double MaterialPoint::margin(Limit limit, const Response& now) const {
   }
   const Flow flow_now = flow(now);
   const Yield& y = flow_now.yield;
-  if (is_stress(k_axial) && is_stress(k_lateral)) {  // nothing but hardening resists
+  if (is_stress(k_axial) && is_stress(k_lateral)) {  // only hardening resists
     const double length = std::hypot(flow_now.phi, flow_now.deviatoric);
     const double hardening = std::abs(y.f_phi) * length;
     if (!(hardening > 0.0)) return 0.0;
@@ -554,12 +554,12 @@ std::optional<DomainEnd> MaterialPoint::fire(std::span<const std::size_t> fired,
 
 // --- output
 
-/// Work rate of the flow over the strength and the size of its strains.
+/// Work rate of the flow, over the strength and the magnitude of the flow's strains.
 double MaterialPoint::flow_work(const Properties& at, const Yield& yield, double p, double s) noexcept {
   return (p * yield.g_p + s * yield.g_s) / (at.shear_strength.value * std::hypot(yield.g_p, yield.g_s));
 }
 
-/// Of a direction; where it is prescribed, without the round-off of p and s.
+/// Stress of a channel; a prescribed one without the round-off of p and s.
 double MaterialPoint::stress(std::size_t channel, double xi, const Response& now) const noexcept {
   if (is_stress(channel)) return prescribed(channel, xi);
   return channel == k_axial ? now.p + 2.0 * now.s / 3.0 : now.p - now.s / 3.0;

@@ -1,23 +1,23 @@
 /// A material point of a compressible plastic material under prescribed strains and stresses, as a hybrid system.
 ///
 /// Two channels, axial and lateral, each with its logarithmic strain or its stress prescribed; a single channel drives
-/// both alike. Tension is positive. Inside: stresses in units of the yield pressure at the reference density.
+/// both alike. Tension is positive. Stresses are in units of the yield pressure at the reference density.
 ///
-/// Unknowns: the state variable phi, the deviatoric plastic strain g^p, and the path l that both have gone, the
-/// accumulated plastic multiplier times the length of the flow. The strains and stresses follow from phi and g^p in
-/// closed form, because the elastic law is linear for given moduli, so that a prescribed lateral stress brings no
-/// unknown of its own. Elastic: nothing moves. Plastic, with the flow of the segment's potential:
+/// Unknowns: the state variable phi, the deviatoric plastic strain g^p, and the length l of their common path, which is
+/// the accumulated plastic multiplier times the length of the flow. The elastic law is linear for given moduli, so that
+/// strains and stresses follow from phi and g^p in closed form, and a prescribed lateral stress needs no unknown of its
+/// own. In an elastic phase the unknowns are constant. In a plastic phase, with the flow of the segment's potential:
 ///   implicit  phi' = l' a/n, g^p' = l' g_s/n, f = 0, with a = -g_p (vm: |g_s|), n = |(a, g_s)|; of index 1 in l
 ///   explicit  l' = n N/D from the derivative of f = 0; complete() takes the state back to f = 0
 ///   direct    only where the flow keeps its direction, so that f = 0 along it is one equation: all of vm, and
 ///             hydrostatic loading
 ///
 /// Modes. Between the corners of the program the elastic rates of stress are constant, so that the end of an elastic
-/// phase is known in closed form. The elastic domain is convex; where the plastic flow came to rest (N = 0), N would
-/// grow, and its other changes are proportional to N itself: plastic loading ends at corners only. Where a segment
-/// joins another at which the flow is isochoric, phi stands still there and the pressure moves as the program says:
-/// that end of the segment is reached in one direction only, and only if the program moves the pressure that way. If it
-/// does not, the state tends to that place (critical state) without reaching it.
+/// phase is known in closed form. Plastic loading ends at corners only: the elastic domain is convex, so that N would
+/// grow where the plastic flow came to rest (N = 0), and the other changes of N are proportional to N itself. At an end
+/// of a segment where the flow is isochoric, phi is stationary and the pressure moves as the program prescribes. The
+/// state passes such an end in one direction only, and only if the program moves the pressure in that direction.
+/// Otherwise it tends to the end (critical state) without reaching it.
 ///
 /// Source: Edmans and Sinka (n.d.), sections 2 and 3; Table 3 as corrected.
 #pragma once
@@ -68,7 +68,7 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
 
  private:
-  // Places in y.
+  // Indices of the unknowns.
   static constexpr std::size_t k_phi = 0;
   static constexpr std::size_t k_deviatoric = 1;
   static constexpr std::size_t k_path = 2;
@@ -78,7 +78,7 @@ class MaterialPoint final : public HybridSystem {
 
   enum GuardKind { yielding, end_of_segment, apex, domain_end_guard };
 
-  /// Stress and strain that belong to an instant and the plastic state.
+  /// Stress and strain at an instant, for given plastic strains.
   struct Response {
     Properties at;
     double p = 0.0;
@@ -93,17 +93,17 @@ class MaterialPoint final : public HybridSystem {
     double s = 0.0;
   };
 
-  /// What determines the plastic multiplier at a state.
+  /// Direction of the flow, and what determines the plastic multiplier.
   struct Flow {
     Yield yield;
     double phi = 0.0;              ///< d(phi)/dl
     double deviatoric = 0.0;       ///< d(g^p)/dl
-    double f_by_phi = 0.0;         ///< by what phi does to the stress as well
-    double f_by_deviatoric = 0.0;  ///< likewise of g^p
+    double f_by_phi = 0.0;         ///< df/dphi, including the change of stress
+    double f_by_deviatoric = 0.0;  ///< df/d(g^p), by the change of stress
     double loading = 0.0;          ///< N
     double stiffness = 0.0;        ///< D
-    double p_by_flow = 0.0;        ///< dp/dl, by the flow alone
-    Increment elastic;             ///< per xi, without flow
+    double p_by_flow = 0.0;        ///< dp/dl by the flow alone
+    Increment elastic;             ///< rate per xi, without flow
   };
 
   [[nodiscard]] double prescribed(std::size_t channel, double xi) const noexcept;
@@ -152,7 +152,7 @@ class MaterialPoint final : public HybridSystem {
   double exit_ = 0.0;  ///< xi at which the present elastic phase ends
   Branch exit_branch_;
   std::vector<Guard> guards_;
-  double least_work_ = 0.0;  ///< of the flow, as far as observed
+  double least_work_ = 0.0;  ///< least work rate of the flow in observed states
 };
 
 }  // namespace monograin::compressible

@@ -1,4 +1,4 @@
-/// Model `material-point`, and what its keys mean to the law.
+/// Model `material-point`, and its parameters from the keys of a scenario.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@ namespace monograin::compressible {
 
 [[nodiscard]] Model material_point_model() noexcept;
 
-/// Keys that the yield model does not use may be absent.
+/// Parameters of the material from a scenario's keys. Keys that the yield model does not use may be absent.
 [[nodiscard]] Parameters parameters_of(const ModelInput& input);
 
-/// Where the linear laws or the yield surface have no meaning before the first step.
+/// Objections to a material whose linear laws or yield surface have no meaning before the first step.
 [[nodiscard]] std::vector<Objection> start_objections(const Parameters& parameters);
 
 }  // namespace monograin::compressible

@@ -1,4 +1,4 @@
-// The way of a material point's state back to the yield surface.
+// Return mapping: brings a material point's state back to the yield surface.
 
 #include <algorithm>
 #include <cmath>
@@ -13,32 +13,32 @@
 namespace monograin::compressible {
 namespace {
 
-// Newton's method on f = 0: strain correction and f before it, below both of which the next one is round-off (where a
-// cap is narrow and the material hardly compressible, f is curved within 1e-11 of strain); such small corrections after
-// which f is made of rounding; and how many there may be at all.
+// Newton's method on f = 0 ends with a strain correction below k_last_correction that begins at an f below
+// k_last_excess: the next one is round-off. (Where a cap is narrow and the material hardly compressible, f is curved
+// within 1e-11 of strain.) After k_most_small_corrections of that size, f itself is round-off.
 constexpr double k_last_correction = 1e-11;
-// The correction after one of d is d^2 over the elastic strain: where that is tiny, d is the last one if the next is
-// below this.
+// The correction after one of d is d^2 over the elastic strain. Where the elastic strain is tiny, d is the last
+// correction if the next one is below this.
 constexpr double k_strain_rounding = 1e-16;
 constexpr double k_last_excess = 1e-9;
 constexpr int k_most_small_corrections = 12;
-// What is left of f by rounding, over the shares that the stresses have in it.
+// Round-off of f, over the shares that the stresses have in f.
 constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 constexpr int k_most_corrections_of_rounding = 2;
 constexpr int k_most_corrections = 60;
 constexpr int k_most_halvings = 20;
-// Plastic strain by which no guess of an integrator is wrong at any tolerance. A state that is farther away from its
-// guess than that and the elastic strain of the guess lies on another branch, behind a loss of uniqueness.
+// Plastic strain within which every guess of an integrator lies, at any tolerance. A state that is farther from its
+// guess than this, and than the guess's elastic strain, lies on another branch, behind a loss of uniqueness.
 constexpr double k_nearby = 1e-2;
-// How much farther than the shortest way the one along the flow may be. Next to a loss of uniqueness the flow goes
-// along the surface, and errors would move a state by their root, or to anywhere.
+// Largest length of a return along the flow, over that of the shortest return. Next to a loss of uniqueness the flow
+// runs along the surface, and errors would move a state by their root, or to anywhere.
 constexpr double k_most_detour = 1e3;
 
 }  // namespace
 
-/// Brings the plastic strains to f = 0 along the flow or, where that does not lead there or leads along the surface, by
-/// the shortest way: both strains may carry an integrator's errors. Where stresses are prescribed, f does not depend on
-/// g^p, and near a critical state the flow hardly changes phi: there by the shortest way alone.
+/// Brings the plastic strains to f = 0 along the flow. Where that does not arrive, or runs along the surface, takes the
+/// shortest path, because both strains may carry an integrator's errors. Under prescribed stresses, f does not depend
+/// on g^p, and near a critical state the flow hardly changes phi: there only the shortest path is tried.
 void MaterialPoint::complete(double xi, std::span<double> y) {
   if (!is_plastic_) return;
   const double phi = y[k_phi];
@@ -57,9 +57,10 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
   throw DomainError(Limit::loss_of_uniqueness, "no plastic strain brings the stress back to the yield surface");
 }
 
-/// Of a guess on the far side of a cap that the program does not leave: the tangent of f at its mirror image, which
-/// leads to the near side. In strains a cap of a hardly compressible material is narrow, and a guess may lie anywhere;
-/// f itself would lead to the ellipse that goes on beyond the segment's end.
+/// Yield function for a guess on the far side of a cap that the program does not leave: the tangent of f at the guess's
+/// mirror image, which leads to the near side. In strains, a cap of a hardly compressible material is narrow, and a
+/// guess may lie anywhere; f itself would lead to the ellipse's continuation beyond the segment's end. None for other
+/// guesses.
 std::optional<Yield> MaterialPoint::yield_across_cap(const Response& now) const {
   const Segment segment = branch_.segment;
   if (segment != Segment::cap && segment != Segment::tension) return std::nullopt;
@@ -70,15 +71,15 @@ std::optional<Yield> MaterialPoint::yield_across_cap(const Response& now) const 
   if (distance >= 0.0 || outwards * pressure_rate_at_end(now, ends_in_compression) > 0.0) return std::nullopt;
   const double to_image = 2.0 * outwards * distance;
   Yield yield = yield_on(settings_.parameters, now.at, branch_, now.p + to_image, now.s);
-  // Next to the end f goes on smoothly, for states that are there by an error.
+  // Next to the end, f continues smoothly for states that are there by an error.
   if (std::abs(distance * yield.f_p) <= std::abs(now.s * yield.f_s)) return std::nullopt;
   yield.f -= yield.f_p * to_image;
   return yield;
 }
 
-/// What leads back to f = 0. The shear segment of vm and vmdc is a pair of lines, c^2 = 1 with c = s over the strength,
-/// and a guess that is off by more than the elastic strain lies beside the other one: the distance c - 1 from the line
-/// of this side, with its own slopes, leads to the right one from anywhere.
+/// Flow and yield function that lead back to f = 0. The shear segment of vm and vmdc is a pair of lines, c^2 = 1 with c
+/// = s over the strength, and a guess that is off by more than the elastic strain lies beside the other line. The
+/// distance c - 1 from the line of this side, with its own slopes, leads to the right line from anywhere.
 MaterialPoint::Flow MaterialPoint::flow_to_surface(const Response& now) const {
   if (const auto across = yield_across_cap(now)) return flow(now, *across);
   Flow flow_now = flow(now);
@@ -91,14 +92,14 @@ MaterialPoint::Flow MaterialPoint::flow_to_surface(const Response& now) const {
   return flow_now;
 }
 
-/// Newton's method on f = 0 in one direction.
+/// Newton's method on f = 0 in one direction, along the flow or along the gradient of f.
 ///
-/// A cap much narrower in one direction is a valley of f. A correction that has passed its floor without having
-/// come inside goes back there, and on along the floor, where the slope across stays zero: straight down from slope to
-/// slope it would take many corrections.
+/// A cap much narrower in one direction is a valley of f. A correction that passes the valley's floor without coming
+/// inside returns to the floor, and goes on along it, where the slope across stays zero. Corrections from slope to
+/// slope would be many.
 class MaterialPoint::ReturnMapping {
  public:
-  /// @param y  in: the guess; out: where it leads
+  /// @param y  in: the guess; out: the corrected state
   ReturnMapping(const MaterialPoint& point, double xi, std::span<double> y, Way way)
       : point_(point),
         xi_(xi),
@@ -107,7 +108,7 @@ class MaterialPoint::ReturnMapping {
         has_caps_(is_compressible(point.settings_.parameters.model)),
         guess_{y[k_phi], y[k_deviatoric]} {}
 
-  /// @return whether it leads to f = 0, and not too far from the guess
+  /// @return true if the method reaches f = 0, not too far from the guess
   [[nodiscard]] bool succeeds() {
     try {
       for (int i = 0; i < k_most_corrections; ++i) {
@@ -121,7 +122,7 @@ class MaterialPoint::ReturnMapping {
         if (has_converged()) return is_near_guess();
       }
     } catch (const std::domain_error&) {
-      // Far corrections that lead to where the law has no surface at all have found nothing, either.
+      // A far correction that leads to where the law has no surface is a failure, too.
       if (std::abs(y_[k_phi] - guess_.phi) <= elastic_strain_) throw;
     }
     return false;
@@ -145,9 +146,9 @@ class MaterialPoint::ReturnMapping {
     return now_.f_by_phi * step.phi + now_.f_by_deviatoric * step.deviatoric;
   }
 
-  /// Evaluates stresses and flow. Next to where moduli become infinite a correction may lead beyond: half of it, or
-  /// less, does not.
-  /// @return false where half of the last correction has been taken back instead
+  /// Evaluates stresses and flow. Next to where moduli become infinite, a correction may leave the domain; half of it,
+  /// or less, does not.
+  /// @return false if half of the last correction was taken back instead
   [[nodiscard]] bool evaluate() {
     try {
       here_ = point_.response(xi_, y_);
@@ -162,7 +163,7 @@ class MaterialPoint::ReturnMapping {
     return true;
   }
 
-  /// How far from the guess it may lead.
+  /// Measures how far from the guess the method may lead.
   void measure_guess() {
     elastic_strain_of_guess_ = elastic_strain_;
     shortest_ = std::abs(now_.yield.f) / std::hypot(now_.f_by_phi, now_.f_by_deviatoric);
@@ -172,7 +173,7 @@ class MaterialPoint::ReturnMapping {
     return has_caps_ && last_.yield.f > 0.0 && now_.yield.f > 0.0 && slope_along(correction_) > 0.0;
   }
 
-  /// Takes the last correction back to where f was least along it, and turns to the direction of the floor.
+  /// Takes the last correction back to the least f along it, and turns to the direction of the floor.
   void go_back_to_floor() {
     const double slope = slope_along(correction_);
     move(correction_, -(slope / (last_.yield.f + slope)));
@@ -187,7 +188,7 @@ class MaterialPoint::ReturnMapping {
     return {now_.f_by_phi, now_.f_by_deviatoric};
   }
 
-  /// @return false where f does not change in the direction
+  /// @return false if f does not change in the direction
   [[nodiscard]] bool correct() {
     last_ = now_;
     const Strains along = direction();
@@ -207,7 +208,8 @@ class MaterialPoint::ReturnMapping {
     return is_on_surface || ++small_corrections_ >= k_most_small_corrections;
   }
 
-  /// Under prescribed stresses f may grow so little with phi that its rounding is a larger strain than the last one.
+  /// True if f is round-off. Under prescribed stresses f may vary so little with phi that its round-off is a large
+  /// strain.
   [[nodiscard]] bool is_rounding() const {
     const Yield& at = now_.yield;
     return std::abs(at.f) <= k_rounding * (std::abs(at.f_p * here_.p) + std::abs(at.f_s * here_.s));
@@ -232,7 +234,7 @@ class MaterialPoint::ReturnMapping {
   Response here_;
   Flow now_;
   Strains correction_;            ///< the last one
-  Flow last_;                     ///< where it began; f, as much of it as it takes away
+  Flow last_;                     ///< flow where the last correction began; f is the part that it takes away
   std::optional<Strains> floor_;  ///< direction along the floor of a valley
   int small_corrections_ = 0;
   int corrections_of_rounding_ = 0;

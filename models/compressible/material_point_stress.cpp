@@ -38,7 +38,7 @@ ProgramBounds draw_material_point(Dice& dice, DrawnMaterial& drawn) {
 
 namespace {
 
-/// Draws what the steps of a program prescribe, one after the other.
+/// Draws the steps of a program, one after the other.
 class ProgramDraw {
  public:
   ProgramDraw(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds)
@@ -49,7 +49,7 @@ class ProgramDraw {
         is_triaxial_(drawn.configuration == "triaxial"),
         size_(dice.one_of({1e-6, 1e-2, 0.1, 1.0, 1.0})) {}
 
-  /// Axial strain, some of them next to the one before, or stress.
+  /// Draws an axial stress, or an axial strain, which may be next to the previous one.
   void draw_axial(DrawnStep& step) {
     step.control = !is_path_ && dice_.happens(0.3) ? Control::stress : Control::strain;
     step.target = step.control == Control::stress ? stress() : strain();
@@ -58,10 +58,10 @@ class ProgramDraw {
     strain_ = step.target;
   }
 
-  /// Lateral strain or stress, where the configuration has one.
+  /// Draws a lateral strain or stress, where the configuration has one.
   void draw_lateral(DrawnStep& step) {
     if (is_path_) {
-      // Also straight along an axis of the stress: no deviator, or no pressure.
+      // Paths along an axis of the stress plane are among them: no deviator, or no pressure.
       const double of_axial = dice_.one_of({0.0, 1.0, -0.5, dice_.uniform(-1.0, 1.0)});
       if (dice_.happens(0.8)) step.lateral = {Control::strain, of_axial * step.target};
     } else if (is_triaxial_ && dice_.happens(0.5)) {
@@ -69,7 +69,7 @@ class ProgramDraw {
     }
   }
 
-  /// An event or a quantity that ends the step before its time.
+  /// Draws an event or a quantity that ends the step early.
   void draw_condition(DrawnStep& step) {
     const std::string_view key =
         dice_.one_of<std::string_view>({"stress_axial", "stress_lateral", "relative_density", "event"});
@@ -95,7 +95,7 @@ class ProgramDraw {
   bool is_path_;
   bool is_triaxial_;
   double size_;          ///< of targets, over the bounds
-  double strain_ = 0.0;  ///< axial one prescribed last
+  double strain_ = 0.0;  ///< axial strain prescribed last
 };
 
 }  // namespace
@@ -116,8 +116,8 @@ void check_material_point(const CheckedRun& run, std::vector<Violation>& found) 
   const HistoryRows& rows = run.rows;
   const double tolerance = run.tolerance;
   const double yield_pressure = run.input.material("yield_pressure");
-  // Stresses are moduli times strains; what is prescribed stands there without their round-off. Densities and strengths
-  // follow from the plastic strain by itself.
+  // Stresses are moduli times strains, with the strains' round-off; prescribed ones are without it. Densities and
+  // strengths follow from the plastic strain alone.
   const Parameters law = parameters_of(run.input);
   const std::size_t phi = rows.column("phi");
   const double strain_round_off = run.round_off * std::max(1.0, rows.largest_magnitude(rows.column("strain_axial")));
@@ -150,7 +150,7 @@ void check_material_point(const CheckedRun& run, std::vector<Violation>& found) 
     check_growth(run, "phi", tolerance, found);
     return;
   }
-  // Solid is neither made nor lost.
+  // The mass of the solid is constant.
   const std::size_t density = rows.column("relative_density");
   const std::size_t volumetric = rows.column("plastic_strain_volumetric");
   const double initial = rows.at(0, density);

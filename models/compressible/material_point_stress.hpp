@@ -1,4 +1,4 @@
-/// How the stress test draws scenes of model `material-point`, and what must hold of their histories.
+/// Stress test of model `material-point`: draws scenes, and checks their histories.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace monograin::compressible {
 
-/// Materials around the sets of the source's Tables 4 to 6.
+/// Draws a material around the sets of the source's Tables 4 to 6.
 [[nodiscard]] ProgramBounds draw_material_point(Dice& dice, DrawnMaterial& drawn);
 [[nodiscard]] std::vector<DrawnStep> draw_material_point_program(Dice& dice, const DrawnMaterial& drawn,
                                                                  const ProgramBounds& bounds, std::size_t count);

@@ -8,7 +8,7 @@ Properties properties_at(const Parameters& m, double phi) noexcept {
   Properties at;
   // In von Mises plasticity the density stays and phi itself is the argument (section 2, below eq. 3).
   const bool densifies = is_compressible(m.model);
-  // The growth by itself: the digits of a small phi would be lost in the density, and the exponents multiply the rest.
+  // expm1 gives the growth: a difference of densities would lose digits of a small phi, which exponents multiply.
   const double growth = densifies ? m.relative_density * std::expm1(phi) : 0.0;
   at.relative_density = densifies ? m.relative_density * std::exp(phi) : m.relative_density;
   const double x = densifies ? (m.relative_density - m.reference_density) + growth : phi;

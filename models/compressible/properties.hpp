@@ -14,7 +14,7 @@ enum class YieldModel {
   vmdc  ///< von Mises double cap
 };
 
-/// What the source calls the general parameters (eqs. 4, 5), at the reference density, and where the material starts.
+/// General parameters of the source (eqs. 4, 5), at the reference density, and the relative density at the start.
 struct Parameters {
   YieldModel model = YieldModel::vmdc;
   double stiffness_ratio = 100.0;  ///< Young's modulus, > 0
@@ -23,11 +23,11 @@ struct Parameters {
   double tensile_ratio = 0.01;     ///< Lambda0, hydrostatic tensile strength, > 0
   double eps0 = 0.7;               ///< half-axis of the cap along p over that along q
   double eta = 0.0;                ///< growth of the yield pressure with relative density
-  double xi = 0.0;                 ///< of Young's modulus
-  double zeta = 0.0;               ///< of the shear strength
-  double omega = 0.0;              ///< of the tensile strength
-  double xi1 = 0.0;                ///< of Poisson's ratio, linear
-  double xi2 = 0.0;                ///< of the cap's axis ratio, linear
+  double xi = 0.0;                 ///< growth of Young's modulus
+  double zeta = 0.0;               ///< growth of the shear strength
+  double omega = 0.0;              ///< growth of the tensile strength
+  double xi1 = 0.0;                ///< growth of Poisson's ratio, linear
+  double xi2 = 0.0;                ///< growth of the cap's axis ratio, linear
   double reference_density = 0.7;  ///< relative density to which the values above belong, > 0
   double relative_density = 0.7;   ///< at the start, > 0, < 1
   double transition_width = 0.0;   ///< pi8, size of the arc between shear line and cap (dpc only), >= 0
@@ -55,11 +55,11 @@ struct Properties {
 
 /// Properties after the state variable has become phi (eqs. 3 to 5; Table 3 with eps = (pi4 - pi3)/pi2, corrected).
 ///
-/// Total moduli: they multiply the whole elastic strain. Defined for every phi; where an axis ratio, a modulus or the
-/// cap's centre loses its meaning is for the caller to see.
+/// Total moduli: they multiply the whole elastic strain. Defined for every phi; callers have to check where an axis
+/// ratio, a modulus or the cap's centre loses its meaning.
 [[nodiscard]] Properties properties_at(const Parameters& parameters, double phi) noexcept;
 
-/// Whether plastic flow changes the volume, that is whether phi is minus the volumetric plastic strain.
+/// True if plastic flow changes the volume, so that phi is minus the volumetric plastic strain.
 [[nodiscard]] constexpr bool is_compressible(YieldModel model) noexcept { return model != YieldModel::vm; }
 
 /// Elastic energy per volume, in units of the yield pressure: p^2/(2K) + s^2/(6G).
@@ -67,7 +67,7 @@ struct Properties {
 /// @param s  axial minus lateral stress
 [[nodiscard]] double stored_energy(const Properties& properties, double p, double s) noexcept;
 
-/// Dissipation per volume, over the same increment as the strains: p de_v + s dg less what stiffening stores of it.
+/// Dissipation per volume, over the same increment as the strains: p de_v + s dg minus the part that stiffening stores.
 ///
 /// With total moduli part of the plastic work stays in the material as it stiffens: phi' (p^2 K'/(2 K^2) + s^2 G'/(6
 /// G^2)).

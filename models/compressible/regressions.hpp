@@ -10,12 +10,12 @@
 
 namespace monograin::compressible {
 
-/// Materials of the source's simulations.
+/// Range of the materials in the source's simulations.
 inline constexpr double k_least_stiffness_ratio = 3.0;
 inline constexpr double k_greatest_stiffness_ratio = 500.0;
 inline constexpr double k_least_shear_ratio = 0.25;
 inline constexpr double k_greatest_shear_ratio = 1.0;
-/// Softer ones were left out of the fits of delta_t and a.
+/// Least stiffness ratio in the source's fits of delta_t and a, which leave out softer materials.
 inline constexpr double k_least_fitted_stiffness_ratio = 4.5;
 
 /// k of eq. A.1, a1 corrected: printed a thousandth of it, for which k would fall with the shear strength.
@@ -35,16 +35,16 @@ struct GivenLaw {
   [[nodiscard]] bool is_complete() const noexcept { return stiffness && transition && exponent; }
 };
 
-/// Why what is not given does not follow from the material: it is outside of the source's, or its shear strength is not
-/// said. @param shear_ratio  may be absent where the law is given completely
+/// Objections if the material does not determine the parameters that are not given: it is outside of the source's
+/// range, or its shear strength is missing. @param shear_ratio  may be absent where the law is given completely
 [[nodiscard]] std::vector<Objection> regression_objections(const GivenLaw& given, double stiffness_ratio,
                                                            std::optional<double> shear_ratio);
 
-/// @throws std::invalid_argument with the first of these objections, or naming a parameter that is not above 0
+/// @throws std::invalid_argument with the first of regression_objections(), or naming a parameter that is not above 0
 [[nodiscard]] LoadingLaw loading_law_of(const GivenLaw& given, double stiffness_ratio,
                                         std::optional<double> shear_ratio);
 
-/// Whether delta_t or a come from a regression for a material softer than those it was fitted to.
+/// True if delta_t or a come from a regression, and the material is softer than those of that regression.
 [[nodiscard]] bool is_extrapolated(const GivenLaw& given, double stiffness_ratio) noexcept;
 
 }  // namespace monograin::compressible

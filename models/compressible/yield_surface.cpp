@@ -8,14 +8,14 @@
 namespace monograin::compressible {
 namespace {
 
-// Segments are taken to hold this much beyond their ends where an exit is looked for, in units of the yield pressure.
+// Length by which segments extend beyond their ends in the search for an exit, in units of the yield pressure.
 constexpr double k_slack = 1e-12;
 
 Evolving product(const Evolving& a, const Evolving& b) {
   return {a.value * b.value, a.slope * b.value + a.value * b.slope};
 }
 
-/// Of the cap's ellipse, along p (Table 3, corrected).
+/// Half-axis of the cap's ellipse along p (Table 3, corrected).
 Evolving half_axis(const Properties& at) { return product(at.axis_ratio, at.shear_strength); }
 
 /// Table 2, von Mises and von Mises double cap: f = g.
@@ -59,8 +59,8 @@ Yield yield_of_shear(const Properties& at, const CapConstants& cap, Branch branc
               p * cap.friction_slope.slope - cap.cohesion.slope};
   if (branch.segment == Segment::transition) {
     const double w = q - cap.arc_centre.value;
-    // Nothing below the centre belongs to the arc; from there the height leads to it, and not to the far side of its
-    // circle.
+    // Only points above its centre belong to the arc. Below, f is the height, which leads to the arc and not to the far
+    // side of its circle.
     const bool is_above = w > 0.0;
     const double root = is_above ? std::sqrt(y * y + w * w) : w;
     const double f_w = is_above ? w / root : 1.0;
@@ -78,12 +78,11 @@ Yield yield_of_shear(const Properties& at, const CapConstants& cap, Branch branc
   return yield;
 }
 
-/// A straight way in the plane of p and s, and where it leaves a segment's formula, its interior being on the near
-/// side.
+/// Straight stress path in the plane of p and s. Finds where the path leaves a segment's formula, if it begins inside.
 struct Way {
   double p, s, p_rate, s_rate;
 
-  /// Out of (x0 + x1 p)^2 + (y0 + y1 s)^2 = radius^2.
+  /// Parameter t at which the path leaves (x0 + x1 p)^2 + (y0 + y1 s)^2 = radius^2.
   [[nodiscard]] std::optional<double> out_of(double x0, double x1, double y0, double y1, double radius) const {
     const double x = x0 + x1 * p;
     const double y = y0 + y1 * s;
@@ -93,10 +92,10 @@ struct Way {
     if (a == 0.0) return std::nullopt;
     const double b = x * dx + y * dy;
     const double c = (x - radius) * (x + radius) + y * y;
-    // b^2 - a c without the digits that the two have in common where the way comes from far away.
+    // b^2 - a c, without the digits that the two have in common if the path comes from far away.
     const double across = x * dy - y * dx;
     const double discriminant = a * radius * radius - across * across;
-    // A way that begins outside by an error, along the tangent, need not meet the ellipse at all.
+    // A path that begins outside by an error, along the tangent, need not meet the ellipse at all.
     if (discriminant < 0.0) return c > 0.0 ? std::optional(0.0) : std::nullopt;
     const double root = std::sqrt(discriminant);
     return b > 0.0 ? -c / (b + root) : (root - b) / a;

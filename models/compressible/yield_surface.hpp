@@ -1,7 +1,7 @@
 /// Yield functions and flow potentials in the plane of mean stress p and signed deviatoric stress s.
 ///
-/// p is tension positive, s axial minus lateral stress, q = |s|. Every segment's formula goes on smoothly beyond the
-/// segment's ends, so that trial steps and roots may look there.
+/// p is tension positive, s axial minus lateral stress, q = |s|. Every segment's formula continues smoothly beyond the
+/// segment's ends, where trial steps and root searches may evaluate it.
 /// Source: Edmans and Sinka (n.d.), Tables 2 and 3 (with eps = (pi4 - pi3)/pi2, corrected).
 #pragma once
 
@@ -14,11 +14,11 @@ namespace monograin::compressible {
 /// Pieces of a yield surface. vm has `shear` alone, vmdc all but `transition`, dpc all but `tension`.
 enum class Segment { tension, shear, transition, cap };
 
-/// A place on or near the surface, and the formula that is taken there.
+/// Formula that is used at a point on or near the surface.
 struct Branch {
   Segment segment = Segment::shear;
-  /// Of s: q = side s, or 0 for a state that stays on the axis s = 0, where f does not depend on s to first order. Only
-  /// on the shear and transition segments of dpc does f depend on it; elsewhere s stands squared.
+  /// Sign of s: q = side s. It is 0 for a state that stays on the axis s = 0, where f does not depend on s to first
+  /// order. Only on the shear and transition segments of dpc does f depend on the sign; elsewhere on s squared.
   double side = -1.0;
 
   friend bool operator==(const Branch&, const Branch&) = default;
@@ -46,18 +46,18 @@ struct CapConstants {
   Evolving transition_start;  ///< p_i: the arc begins at p = -p_i
 };
 
-/// @throws std::domain_error where the line, the arc or the cap has no place (Lambda + pi3 <= 0, B <= 0, arc below q =
-/// 0)
+/// @throws std::domain_error where the line, the arc or the cap does not exist (Lambda + pi3 <= 0, B <= 0, arc below q
+/// = 0)
 [[nodiscard]] CapConstants cap_constants(const Parameters& parameters, const Properties& properties);
 
-/// The segment that the surface has at this pressure.
+/// Segment of the surface at a pressure.
 [[nodiscard]] Segment segment_at(const Parameters& parameters, const Properties& properties, double p);
 
-/// The branch at this stress; side -1 (axial compression) where s is zero.
+/// Branch at a stress; side -1 (axial compression) where s is zero.
 [[nodiscard]] Branch branch_at(const Parameters& parameters, const Properties& properties, double p, double s);
 
-/// f, g and their derivatives on the formula of a branch, wherever p is; below the arc's centre f is the height over
-/// the top of the arc.
+/// f, g and their derivatives by the formula of a branch, at any p. Below the arc's centre, f is the height over the
+/// top of the arc.
 [[nodiscard]] Yield yield_on(const Parameters& parameters, const Properties& properties, Branch branch, double p,
                              double s);
 
@@ -69,16 +69,16 @@ struct CapConstants {
 [[nodiscard]] std::optional<double> distance_to_end(const Parameters& parameters, const Properties& properties,
                                                     Segment segment, bool towards_compression, double p);
 
-/// The segment next to that end.
+/// Segment next to an end of a segment.
 [[nodiscard]] Segment neighbour(const Parameters& parameters, Segment segment, bool towards_compression);
 
-/// Where the straight way (p + t p', s + t s') leaves the elastic domain.
+/// Point where a straight stress path (p + t p', s + t s') leaves the elastic domain.
 struct Exit {
   double t = 0.0;  ///< >= 0
   Branch branch;
 };
 /// @param p, s  inside the domain or on its surface
-/// @return nothing where the way never leaves, or stands still
+/// @return none if the path never leaves the domain, or does not move
 [[nodiscard]] std::optional<Exit> way_out(const Parameters& parameters, const Properties& properties, double p,
                                           double s, double p_rate, double s_rate);
 

@@ -20,10 +20,10 @@ namespace monograin {
 /// checked).
 [[nodiscard]] double hertz_force(double composite_modulus, double radius, double overlap) noexcept;
 
-/// Contact radius of the same contact [m], a = sqrt(R delta); 0 without contact.
+/// Contact radius of an elastic sphere against a rigid flat wall [m], a = sqrt(R delta); 0 without contact.
 [[nodiscard]] double hertz_contact_radius(double radius, double overlap) noexcept;
 
-/// Elastic energy stored by the same contact [J], (2/5) F delta; 0 without contact.
+/// Elastic energy stored by an elastic sphere against a rigid flat wall [J], (2/5) F delta; 0 without contact.
 [[nodiscard]] double hertz_energy(double composite_modulus, double radius, double overlap) noexcept;
 
 }  // namespace monograin

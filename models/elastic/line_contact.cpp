@@ -10,7 +10,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// delta/D over (b/R)^2 for ln(b/R).
+/// delta/D over (b/R)^2, as a function of ln(b/R).
 double slenderness(double log_width) noexcept { return 0.25 * (2.0 * (std::log(4.0) - log_width) - 1.0); }
 
 LineContact of_width(double composite_modulus, double width) {
@@ -38,7 +38,7 @@ LineContact line_contact_at_strain(double composite_modulus, double strain) {
   if (!(strain > 0.0 && strain <= widest)) {
     throw std::domain_error("the contact of the cylinder is wider than its radius");
   }
-  // ln(delta/D) grows with ln b and is concave: Newton's method converges from the left without a step back.
+  // ln(delta/D) increases with ln b and is concave: Newton's method converges monotonically from the left.
   const double target = std::log(strain);
   double log_width = 0.5 * (target - std::log(slenderness(0.5 * target)));
   for (int k = 0; k < 50; ++k) {

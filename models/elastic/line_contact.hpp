@@ -15,20 +15,21 @@ struct LineContact {
   double strain = 0.0;      ///< delta/D
   double stress = 0.0;      ///< S
   double half_width = 0.0;  ///< b/R
-  double tangent = 0.0;     ///< dS/d(delta/D); 0 at first touch, which it leaves with infinite curvature
+  double tangent = 0.0;     ///< dS/d(delta/D); 0 at first touch, where the curve S(delta/D) has infinite curvature
 };
 
-/// Largest b/R for which the closed form is taken: half spaces are far from a contact as wide as the radius.
+/// Largest b/R for which the closed form is used. It treats both bodies as half-spaces, which a wider contact is not.
 inline constexpr double k_widest_line_contact = 1.0;
 
+/// State of the cylinder under a given nominal stress.
 /// @param composite_modulus  E*, > 0
 /// @param stress             S >= 0
 /// @throws std::domain_error where the contact would be wider than k_widest_line_contact
 [[nodiscard]] LineContact line_contact_under_stress(double composite_modulus, double stress);
 
-/// The same for a given approach, by Newton's method for ln b.
+/// State of the cylinder at a given approach, by Newton's method for ln b.
 /// @param strain  delta/D >= 0
-/// @throws std::domain_error as above: from delta/D = 0.443 on
+/// @throws std::domain_error where the contact would be wider than k_widest_line_contact: from delta/D = 0.443 on
 [[nodiscard]] LineContact line_contact_at_strain(double composite_modulus, double strain);
 
 }  // namespace monograin

@@ -1,4 +1,4 @@
-// Where walls take a free centre that they do not bear.
+// How idle walls move a free centre.
 
 #include <algorithm>
 #include <array>
@@ -13,26 +13,28 @@
 namespace monograin::nonlocal {
 namespace {
 
-constexpr int k_refinements = 2;                                        // of a place clear of all walls
-constexpr double k_no_approach = 1e-30;                                 // over R0; less is rounding of no way at all
-constexpr double k_no_wall = -std::numeric_limits<double>::infinity();  // displacement of one that does not count
-// How fast gaps of errors close, over a step of the program.
+constexpr int k_refinements = 2;                                        // repeated clearances of one position
+constexpr double k_no_approach = 1e-30;                                 // over R0; less is round-off of zero
+constexpr double k_no_wall = -std::numeric_limits<double>::infinity();  // marks a wall that does not count
+// Rate at which idle walls close gaps that are integration errors, per step of the program.
 constexpr double k_closing = 20.0;
-// Of a way on which walls take a centre along: places that are the same, over how far it leads; and the shortest steps.
+// In take_centre_to_targets(): distance of two positions that count as one, over the length of the path; shortest step.
 constexpr double k_same_place = 1e-13;
 constexpr double k_shortest = 1e-11;
-constexpr double k_small_force = 1e-3;  // over the largest
-constexpr double k_little = 1e-3;       // of what is left of a step
-constexpr double k_early = 1e-9;        // of a step: which walls touch in it is seen there
-// As long before its end: from too far one that has only just left is not seen, from too near the rest is rounding.
+constexpr double k_small_force = 1e-3;  // prescribed forces below this, over the largest, are balanced by themselves
+constexpr double k_little = 1e-3;       // of the rest of a step: how far ahead forces are evaluated
+constexpr double k_early = 1e-9;        // of a step: near its start, which walls touch is read here
+// Shares of a step before its end at which touching walls are read, too. Too far from the end, a wall that has only
+// just left goes unnoticed; too near, the remainder is round-off.
 constexpr std::array k_late{1e-3, 1e-6, 1e-9};
 constexpr int k_most_sinking_steps = 100;
-constexpr double k_past_balance = 0.5;  // what forces along a step may be beyond it, over those before it
-constexpr int k_most_tries = 300;       // of steps; then what differs is rounding
-constexpr double k_cancelled = 1e-12;   // of prescribed forces where nothing else bears, over their sum
+constexpr double k_past_balance = 0.5;  // slope of the energy past its minimum on a step, over the slope at the start
+constexpr int k_most_tries = 300;       // rejected steps of a path; after that many, differences are round-off
+constexpr double k_cancelled = 1e-12;   // net prescribed force that counts as zero, over the sum of the forces
 
-/// How fast, at most, a wall that takes a centre along closes a gap of errors. Beyond what touches that grows without
-/// bound, and the wall is free: ended at once, the bound would stand between an implicit step and its solution.
+/// Largest rate at which an idle wall closes a gap that is an integration error. From `touch` to twice that gap the
+/// bound grows to infinity, and beyond, the wall is free. A bound that ended abruptly would separate an implicit step
+/// from its solution.
 double closing(double signed_square, double touch) {
   const double gap = -signed_square;
   const double share = gap <= touch ? 1.0 : std::max(0.0, 2.0 - gap / touch);
@@ -41,8 +43,8 @@ double closing(double signed_square, double touch) {
 
 }  // namespace
 
-/// What the prescribed forces of the targets add up to in the directions in which no contact holds the centre,
-/// however small it is beside other forces.
+/// Magnitude of the net prescribed force along the directions in which no contact supports the centre, however small
+/// beside other forces; 0 if only round-off is left of it.
 double Contacts::unborne_force() const {
   if (std::ranges::none_of(targets_, &Target::is_force)) return 0.0;
   const Eigen::Matrix3d projector = directions_of_nothing();
@@ -57,10 +59,10 @@ double Contacts::unborne_force() const {
   return push.norm() > k_cancelled * sum ? push.norm() : 0.0;
 }
 
-/// Beside contacts that bear, only walls that touch in a state may bear a force which begins: they are taken to be as
-/// stiff as under it.
-/// @param gap  of walls that touch
-/// @return whether there is such a force
+/// Gives stiffness to touching walls if a prescribed force begins in a direction in which no contact supports the
+/// centre. Only these walls can bear such a force; they get the stiffness that they would have under it.
+/// @param gap  up to which a wall counts as touching
+/// @return true if there is such a force
 bool Contacts::lend_stiffness(double gap, std::span<const double> y) {
   const double force = unborne_force();
   if (force == 0.0) return false;
@@ -90,7 +92,8 @@ bool Contacts::has_redundant_walls() const {
   return std::ranges::any_of(is_redundant_, [](char is) { return is != 0; });
 }
 
-/// Sorts those that may bear into the walls that hold a free centre, and bystanders. A force holds it nowhere.
+/// Sorts the walls of may_bear_ into those that support a free centre (holds_) and redundant ones (is_redundant_). A
+/// wall under force control never supports the centre.
 void Contacts::find_holding_among(const auto& is_force) {
   find_redundant_walls();
   for (std::size_t j = 0; j < class_count(); ++j) holds_[j] = may_bear_[j] && !is_redundant_[j] && !is_force(j);
@@ -105,14 +108,14 @@ void Contacts::sort_near(std::span<const Ramp> ramps, std::span<const double> y,
   find_holding_among(is_force);
 }
 
-/// May change what are bystanders.
+/// Overwrites the classification of the walls (holds_, is_redundant_) and the targets.
 bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> y, double near) {
   sort_near(ramps, y, near);
   bool do_some_touch = false;
   for (std::size_t j = 0; j < class_count(); ++j) do_some_touch = do_some_touch || (holds_[j] && y[j] <= 0.0);
   if (!do_some_touch) return false;
-  // A little later, as forces may have yet to begin; but not beyond the end of the step, where what is left of them may
-  // point the other way.
+  // Forces are evaluated a little later, because they may only begin here. They are not evaluated at the end of the
+  // step, where the remaining ones may point in the opposite direction.
   evaluate(y);
   for (std::size_t j = 0; j < class_count(); ++j) {
     const bool is_force = ramps[j].control == Control::force;
@@ -123,7 +126,8 @@ bool Contacts::may_be_held(std::span<const Ramp> ramps, std::span<const double> 
 }
 
 /// True if walls under displacement control with a gap below `near` can balance the prescribed forces. Small forces are
-/// asked for by themselves, because beside large ones round-off hides them; loaded contacts may also give way to them.
+/// tested by themselves, because round-off of large ones would hide them; a decrease of the force on a loaded contact
+/// may balance them, too.
 bool Contacts::may_balance(std::span<const Target> targets, std::span<const double> y, double near) const {
   const auto push_of = [&](std::size_t j) -> Eigen::Vector3d { return weights_[j] * targets[j].value * arm_of(j); };
   double largest = 0.0;
@@ -153,7 +157,7 @@ bool Contacts::may_balance(std::span<const Target> targets, std::span<const doub
   return can_be_borne(true);
 }
 
-/// Projector on the directions in which a free centre may go without changing contacts that hold it.
+/// Projector on the directions in which a free centre can move without changing the contacts that support it.
 Eigen::Matrix3d Contacts::unheld_directions() const {
   const auto free = static_cast<Eigen::Index>(free_count());
   Eigen::Matrix3d projector = Eigen::Matrix3d::Zero();
@@ -165,9 +169,9 @@ Eigen::Matrix3d Contacts::unheld_directions() const {
   return projector;
 }
 
-/// Finds the contacts that hold a free centre in a state: not the bystanders, and not those that touch beside contacts
-/// so much deeper that they bear nothing; where nothing bears yet, those that touch but for a gap. @return whether
-/// there are other walls, which may take it along
+/// Finds the contacts that support a free centre in a state (holds_): neither redundant walls, nor contacts so much
+/// shallower than the deepest that they carry nothing. If no contact is loaded yet, walls with a gap up to `gap` count.
+/// @return true if other walls under displacement control remain, which may move the centre
 bool Contacts::find_holding(std::span<const double> y, double gap) {
   if (free_count() == 0) return false;
   const auto squares = y.first(class_count());
@@ -185,8 +189,8 @@ bool Contacts::find_holding(std::span<const double> y, double gap) {
   return are_others;
 }
 
-/// Whether prescribed forces act on the centre along such directions, where only the others could bear them. Beside
-/// large forces the balance of all does not tell a small one from nothing.
+/// True if prescribed forces act on the centre along the directions of the projector, in which only idle walls could
+/// balance them. The balance of all forces would not distinguish a small one from zero beside large ones.
 bool Contacts::leaves_forces(const Eigen::Matrix3d& projector, std::span<const double> y) {
   evaluate(y);
   Eigen::Vector3d push = Eigen::Vector3d::Zero();
@@ -253,7 +257,7 @@ void Contacts::let_unheld_centre_go(std::span<const Ramp> ramps, std::span<const
   find_holding_among([&](std::size_t j) { return ramps[j].control == Control::force; });
   const Eigen::Matrix3d projector = unheld_directions();
   if (projector.trace() < 0.5) return;
-  // In short steps rates weigh so much more than forces that a row of both would be one of rates.
+  // Each row holds either a rate or a force: in short steps the far larger rates would hide the force in a mixed row.
   const auto count = static_cast<Eigen::Index>(free_count());
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
   const Eigen::SelfAdjointEigenSolver<Square> solver(Square(projector.topLeftCorner(count, count)));
@@ -266,8 +270,8 @@ void Contacts::let_unheld_centre_go(std::span<const Ramp> ramps, std::span<const
   }
 }
 
-/// Adds to rates the velocity of a centre that touching bystanders take along. Errors leave small gaps, or overlaps,
-/// which close gradually: at once they would open and close in turns.
+/// Adds to the rates the velocity that touching redundant walls give the centre. Gaps and overlaps that are integration
+/// errors close gradually; closed at once, these contacts would open and close in turns.
 void Contacts::take_along(std::span<const Ramp> ramps, std::span<const double> y, double touch,
                           std::span<const char> touches, std::span<double> dy) {
   const std::size_t n = class_count();
@@ -288,9 +292,10 @@ void Contacts::take_along(std::span<const Ramp> ramps, std::span<const double> y
   for (std::size_t k = 0; k < free_count(); ++k) dy[n + k] += velocity[at(k)];
 }
 
-/// Takes a state along a straight line to the targets. A wall that comes and goes on that way leaves the centre where
-/// it has taken it: in steps in which the same walls touch, and whose halves lead to the same place.
-/// @return false, and y as it was, where further walls begin to bear on the way
+/// Moves a state along the straight line of targets to targets_. The path matters, because a wall that makes contact
+/// and leaves again keeps the centre where it has moved it. A step is accepted if the same walls touch all along it,
+/// and if its halves lead to the same position.
+/// @return false, with y unchanged, where further walls begin to bear on the path
 bool Contacts::take_centre_to_targets(std::span<double> y) {
   const std::size_t n = class_count();
   std::copy(targets_.begin(), targets_.end(), way_end_.begin());
@@ -318,13 +323,13 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
   };
   bool is_possible = true;
   double step = 1.0;
-  double too_far = 1.0;  // where the last step that was too long ended
+  double too_far = 1.0;  // end of the last step that was too long
   int tries = 0;
   for (double done = 0.0; is_possible && done < 1.0;) {
     const double next = std::min(1.0, done + step);
     for (auto* state : {&at_once_, &by_halves_, &early_, &late_}) std::ranges::copy(carried_, state->begin());
     const bool may_be_cut = step > k_shortest && tries < k_most_tries;
-    // What shows soonest that a step is too long is asked first: most are.
+    // The test that rejects a step soonest comes first, because most steps are too long.
     const auto goes_on = [may_be_cut](bool is_same) { return is_same || !may_be_cut; };
     is_possible =
         go_to(next, at_once_) && go_to(std::lerp(done, next, k_early), early_) && goes_on(touch_the_same(early_)) &&
@@ -341,7 +346,7 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
     if (!is_possible) break;
     std::ranges::copy(by_halves_, carried_.begin());
     done = next;
-    // A step is too long where other walls begin to touch on it: that place is closed in on, and passed.
+    // A rejected step contains a point where other walls begin to touch. The next steps close in on it, and pass it.
     step = done < too_far ? std::max(k_shortest, 0.5 * (too_far - done)) : 1.0 - done;
   }
   std::copy(way_end_.begin(), way_end_.end(), targets_.begin());
@@ -349,10 +354,11 @@ bool Contacts::take_centre_to_targets(std::span<double> y) {
   return is_possible;
 }
 
-/// From a guess with errors that are larger than what contacts bear: the centre goes where the energy of the particle
-/// falls. Over places of the centre that is convex wherever M is positive definite, so that no guess is too far away.
-/// @return false, and y as it was, where that does not end in balance, or M is not positive definite with every contact
-/// as deep as in y or in the end
+/// Finds the equilibrium from a guess whose errors exceed the overlaps: moves the centre in the direction in which the
+/// particle's energy falls. As a function of the centre's position, the energy is convex wherever M is positive
+/// definite, so that no guess is too far away.
+/// @return false, with y unchanged, if the search does not reach balance, or if M is not positive definite with every
+/// contact as deep as the deeper of y and the result
 bool Contacts::sink_to_balance(std::span<double> y) {
   if (free_count() == 0) return false;
   std::copy(y.begin(), y.end(), state_.begin());
@@ -375,7 +381,7 @@ bool Contacts::sink_to_balance(std::span<double> y) {
     if (way.norm() <= k_resolved * size) break;
     way *= std::min(1.0, size / way.norm());
     const double power = way.dot(*net);
-    // Shorter where it leads to contacts that were not seen from here, and past the balance.
+    // A step is halved if there is no state at its end, or if it goes too far past the balance.
     auto next = net_at(place + way);
     for (; !(next && way.dot(*next) <= -k_past_balance * power) && way.norm() > k_resolved * size;
          next = net_at(place + way)) {
@@ -402,8 +408,8 @@ void Contacts::clear_centre(std::span<const Ramp> ramps, double xi, std::span<co
     close_gaps(is_closed, y);
 }
 
-/// Puts open walls where their displacements and the forces of the others leave them: a force far away may lift them by
-/// less than errors of their gaps.
+/// Sets the gaps of open walls from their displacements and the forces on the others. A distant force may lift a wall's
+/// contact by less than the integration error of its gap.
 void Contacts::close_gaps(std::span<const char> is_closed, std::span<double> y) {
   evaluate(y);
   for (std::size_t j = 0; j < class_count(); ++j) {
@@ -413,8 +419,10 @@ void Contacts::close_gaps(std::span<const char> is_closed, std::span<double> y) 
   }
 }
 
-/// No other state balances then: its forces would do no work on a way there, sum_j F_j d_j <= 0, but sum_j F_j g_j >
-/// sum_jh F_j G_jh F_h wherever M is positive definite.
+/// Moves the centre clear of all walls, so that no contact is loaded. No other state is in equilibrium then: its forces
+/// balance, and the cleared centre has no overlap, hence sum_j F_j d_j <= 0 and sum_j F_j g_j <= sum_jh F_j G_jh F_h.
+/// Wherever M is positive definite, the left side is the larger one.
+/// @return false, with y unchanged, if a wall has a prescribed force, or if the walls leave no such position
 bool Contacts::let_all_go(std::span<double> y) {
   const std::size_t n = class_count();
   for (std::size_t j = 0; j < n; ++j) {
@@ -428,8 +436,9 @@ bool Contacts::let_all_go(std::span<double> y) {
   return true;
 }
 
-/// Where nothing bears and nothing begins to, the centre goes out of the way of the walls that touch, and of no other.
-/// Gaps of errors close gradually: walls that touch only where there is none would leave the centre in turns.
+/// Sets the rates if no contact is loaded and none begins to be: the centre evades the walls that touch, and no others.
+/// Gaps that are integration errors close gradually; if they did not count as touching, walls would leave in turns.
+/// @return false, with dy unchanged, in all other cases
 bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch,
                          std::span<const char> touches) {
   const std::size_t n = class_count();
@@ -453,8 +462,8 @@ bool Contacts::let_go_on(std::span<const Ramp> ramps, std::span<const double> y,
   return true;
 }
 
-/// Approach of a wall where nothing bears; exactly 0 where it touches but for rounding, which is that of how far the
-/// centre is, whatever the axes along which it moves.
+/// Approach of a wall while no contact is loaded; exactly 0 if the wall touches up to round-off. The round-off is
+/// relative to the distance of the centre, whatever the axes along which it moves.
 double Contacts::free_approach(std::size_t index, const Eigen::Vector3d& centre, double rounding) const {
   const double displacement = free_displacements_[index];
   const Eigen::Vector3d arm = arm_of(index);
@@ -463,21 +472,21 @@ double Contacts::free_approach(std::size_t index, const Eigen::Vector3d& centre,
   return std::abs(sum) <= std::max(rounding * size, k_no_approach) ? 0.0 : sum;
 }
 
-/// Moves a centre in a subspace, whose projector is given, to the nearest place where no wall of free_displacements_ is
-/// beyond the surface.
-/// @return false, and the centre where it was, if the walls leave no such place
+/// Moves the centre within the subspace of a projector to the nearest position where no wall of free_displacements_
+/// overlaps the surface.
+/// @return false, with the centre unchanged, if the walls leave no such position
 bool Contacts::release_centre(const Eigen::Matrix3d& projector, Eigen::Vector3d& centre) const {
   const auto clear = [&] { return clear_walls(class_count(), projector, centre); };
   if (!clear()) return false;
-  // What rounding has left beyond the surface on a long way is little, and so is the way from there.
+  // Round-off of a long displacement leaves a small overlap, which a small displacement removes.
   for (int refinement = 0; refinement < k_refinements; ++refinement) {
     if (!clear()) break;
   }
   return true;
 }
 
-/// The same, clear of the first walls only. One that the nearest place clear of those before it is not clear of touches
-/// the surface in the end.
+/// Moves a position like release_centre(), clear of the first `count` walls only. If the nearest position clear of the
+/// earlier walls overlaps a wall, that wall touches the surface in the result, and the search goes on in its plane.
 bool Contacts::clear_walls(std::size_t count, const Eigen::Matrix3d& projector, Eigen::Vector3d& place,
                            double rounding) const {
   Eigen::Vector3d now = place;
@@ -495,14 +504,14 @@ bool Contacts::clear_walls(std::size_t count, const Eigen::Matrix3d& projector, 
   return true;
 }
 
-/// What forces on other walls add to the approach of a wall.
+/// Approach that the forces on all walls add to that of a wall, sum_h G_jh F_h.
 double Contacts::lift_by_forces(std::size_t index) const noexcept {
   double sum = 0.0;
   for (std::size_t h = 0; h < class_count(); ++h) sum += coupling_(at(index), at(h)) * forces_[h];
   return sum;
 }
 
-/// Puts the centre of a state there, and the walls of free_displacements_ where they then are.
+/// Writes the position of the centre to a state, and the gaps that the walls of free_displacements_ then have.
 void Contacts::put(const Eigen::Vector3d& place, std::span<double> y) const {
   for (std::size_t j = 0; j < class_count(); ++j) {
     if (free_displacements_[j] != k_no_wall) y[j] = std::min(free_approach(j, place), 0.0);

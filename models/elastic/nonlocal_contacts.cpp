@@ -13,12 +13,12 @@
 namespace monograin::nonlocal {
 namespace {
 
-constexpr double k_least_hold = 1e-12;  // of the centre in a direction, over the greatest
-// Of where walls begin to push each other off, and of how deep contacts are: what the branch is followed by at once.
+constexpr double k_least_hold = 1e-12;  // stiffness that supports the centre in a direction, over the greatest
+// Bounds of a step along the branch: shares of the s at which walls push each other off, and of how deep contacts are.
 constexpr double k_share_of_rivalry = 0.25;
 constexpr double k_share_of_depth = 0.5;
 
-// How fast an error of the balance is drawn back where a force shrinks, over how fast that does.
+// Decay rate of a balance error where a prescribed force shrinks, over the relative rate of that force.
 constexpr double k_hurry = 2.0;
 
 bool takes_force(const Ramp& ramp) noexcept { return ramp.control == Control::force; }
@@ -30,7 +30,7 @@ double require_poisson_ratio(double nu) {
   throw std::invalid_argument("Poisson's ratio must be in [0, 0.5], but is " + std::to_string(nu));
 }
 
-/// Orthonormal basis of what the mean normals span; the axes where that is everything.
+/// Orthonormal basis of the span of the mean normals; the coordinate axes if they span all directions.
 Eigen::Matrix3Xd basis_of(const Eigen::Matrix3Xd& normals, double least) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(normals, Eigen::ComputeThinU);
   const auto rank = (svd.singularValues().array() > least).count();
@@ -63,7 +63,7 @@ Contacts::Contacts(const Formulation& model, std::span<const ContactClass> class
   reserve_working_memory();
 }
 
-/// Nothing is allocated after this.
+/// Allocates all working memory; nothing is allocated after this.
 void Contacts::reserve_working_memory() {
   const std::size_t n = class_count();
   stride_ = n + 1 + free_count();
@@ -78,7 +78,7 @@ void Contacts::reserve_working_memory() {
   forget();
 }
 
-/// Contacts, forces and stiffnesses of a state.
+/// Evaluates contacts, forces and stiffnesses of a state, or reuses the cached evaluation if it is for the same state.
 void Contacts::evaluate(std::span<const double> y) {
   const auto squares = y.first(class_count());
   if (std::ranges::equal(squares, seen_)) return;
@@ -91,10 +91,10 @@ void Contacts::evaluate(std::span<const double> y) {
   std::ranges::copy(squares, seen_.begin());
 }
 
-/// What was looked at is about to be changed.
+/// Drops the cached evaluation, whose values are about to be changed.
 void Contacts::forget() noexcept { seen_[0] = std::numeric_limits<double>::quiet_NaN(); }
 
-/// What the displacement of the centre and the forces on other walls add to the approach of a wall.
+/// Approach that the displacement of the centre and the forces on all walls add to that of a wall.
 double Contacts::lift(std::size_t index, std::span<const double> y) const noexcept {
   const std::size_t n = class_count();
   double sum = lift_by_forces(index);
@@ -108,8 +108,8 @@ double Contacts::net_force(std::size_t direction) const noexcept {
   return sum;
 }
 
-/// Solves (1 - G dF/dg) x = right-hand sides. The pivots are those of M: scaled by the roots of dF/dg the two are one
-/// matrix. So none has to be searched for, and one that is not positive is beyond the limit.
+/// Solves (1 - G dF/dg) x = right-hand sides. The pivots are those of M, because scaling by the roots of dF/dg makes
+/// the two matrices one. No pivot has to be searched for, and one that is not positive is beyond the limit.
 bool Contacts::eliminate() noexcept {
   const std::size_t n = class_count();
   for (std::size_t i = 0; i < n; ++i) {
@@ -132,13 +132,13 @@ bool Contacts::eliminate() noexcept {
   return true;
 }
 
-/// True where all stiffnesses vanish together, as at first touch. For move_centre() equal ones then stand in for them,
-/// which give the motion of equal contacts.
+/// True where all stiffnesses vanish together, as at first touch. Callers of move_centre() then substitute equal ones,
+/// under which the centre moves as between equal contacts.
 bool Contacts::bears_nothing() const noexcept {
   return std::ranges::all_of(stiffness_, [](double stiffness) { return stiffness == 0.0; });
 }
 
-/// The way of the centre on which a net force vanishes to first order. Directions that no contact holds stay.
+/// Displacement of the centre that cancels a net force to first order. Directions that no contact supports stay.
 Eigen::Vector3d Contacts::way_to_balance(const Eigen::Vector3d& net_force) {
   const std::size_t n = class_count();
   Eigen::Matrix3d hold = Eigen::Matrix3d::Zero();
@@ -149,7 +149,7 @@ Eigen::Vector3d Contacts::way_to_balance(const Eigen::Vector3d& net_force) {
       }
     }
   }
-  // It is symmetric but where stiffnesses have been lent; directions that no contact holds are those of either side.
+  // The matrix is symmetric unless stiffnesses have been lent. Its unsupported directions are the same from both sides.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (hold + hold.transpose()));
   const double least = k_least_hold * solver.eigenvalues().cwiseAbs().maxCoeff();
   Eigen::Vector3d way = Eigen::Vector3d::Zero();
@@ -161,7 +161,7 @@ Eigen::Vector3d Contacts::way_to_balance(const Eigen::Vector3d& net_force) {
   return way;
 }
 
-/// Displaces the centre by that way, and lets the approaches follow.
+/// Displaces the centre so that a net force vanishes to first order, and updates the approaches.
 void Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> centre) {
   const std::size_t n = class_count();
   const Eigen::Vector3d step = way_to_balance(net_force);
@@ -171,8 +171,8 @@ void Contacts::move_centre(const Eigen::Vector3d& net_force, std::span<double> c
   }
 }
 
-/// Projector on the directions in which no contact holds the centre, the stiffest taken first: beside a stiff one, the
-/// directions of the matrix of all do not tell one that has just begun from nothing.
+/// Projector on the directions in which no contact supports the centre. Removes the direction of the stiffest contact
+/// first: beside it, the eigenvalues of the full matrix do not distinguish a contact that has just begun from none.
 Eigen::Matrix3d Contacts::directions_of_nothing() const {
   Eigen::Matrix3d projector = Eigen::Matrix3d::Identity();
   double stiffest = 0.0;
@@ -199,7 +199,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
   if (let_go_on(ramps, y, dy, touch, touches)) return;
   evaluate(y);
   forget();
-  // What bystanders bear is error: two of them would hold the centre in their corner.
+  // Loads of redundant walls are integration errors: two such walls would hold the centre in their corner.
   if (free_count() > 0) sort_near(ramps, y, 2.0 * touch);
   for (std::size_t j = 0; j < n; ++j) {
     if (takes_force(ramps[j]) || (free_count() > 0 && is_redundant_[j])) stiffness_[j] = 0.0;
@@ -218,7 +218,7 @@ void Contacts::rates(std::span<const Ramp> ramps, std::span<const double> y, std
   }
 }
 
-/// Right-hand sides of the rates: what walls and prescribed forces do to approaches while nothing gives way.
+/// Sets the right-hand sides of the rates: approach rates by walls and prescribed forces before the contacts respond.
 void Contacts::set_approach_rates_of_walls(std::span<const Ramp> ramps) {
   const std::size_t n = class_count();
   for (std::size_t j = 0; j < n; ++j) {
@@ -229,8 +229,9 @@ void Contacts::set_approach_rates_of_walls(std::span<const Ramp> ramps) {
   }
 }
 
-/// Adds the rates of a free centre: forces stay in balance, and where none hold it, walls that touch take it along.
-/// @throws std::domain_error where nothing holds it against prescribed forces
+/// Adds the rates of a free centre: forces stay balanced, and touching walls move the centre where no contact supports
+/// it.
+/// @throws std::domain_error where nothing supports it against prescribed forces
 void Contacts::let_centre_follow(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy,
                                  double touch, double pull, std::span<const char> touches) {
   const std::size_t n = class_count();
@@ -245,14 +246,14 @@ void Contacts::let_centre_follow(std::span<const Ramp> ramps, std::span<const do
   for (std::size_t j = 0; j < n; ++j) {
     const double force_rate = takes_force(ramps[j]) ? slope_of(ramps[j]) : stiffness_[j] * entry(j, n);
     net += weights_[j] * force_rate * arm_of(j);
-    // What walls under displacements leave is rounding of all that they would change; where none is to change, that
-    // of the forces.
+    // The tolerance is relative to all force rates that walls would cause, and to the forces where no rate is to
+    // change.
     pressing += weights_[j] * (std::abs(force_rate) + pull * forces_[j]);
   }
   const auto centre = dy.subspan(n);
   std::ranges::fill(centre, 0.0);
   move_centre(net + error_decay(ramps, pull) * error, centre);
-  // So much of an error says nothing of what drives the centre where no contact holds it.
+  // Only `pull` times the error counts. A faster decay of the error does not drive a centre that no contact supports.
   const double left = (directions_of_nothing() * (net + pull * error)).norm();
   if (has_redundant_walls()) take_along(ramps, y, touch, touches, dy);
   if (left > k_balance * pressing && !may_be_held(ramps, y, reach_of_support(ramps, y, touch))) {
@@ -260,8 +261,8 @@ void Contacts::let_centre_follow(std::span<const Ramp> ramps, std::span<const do
   }
 }
 
-/// Net force on the centre that is error, where contacts bear it against a prescribed force: they end with that force
-/// only if no error is left. 0 elsewhere.
+/// Net force on the centre that is integration error. Nonzero only if contacts bear the centre against a prescribed
+/// force: they end together with that force only if no error is left.
 Eigen::Vector3d Contacts::error_against_forces(std::span<const Ramp> ramps, std::span<const double> y,
                                                double touch) const {
   Eigen::Vector3d error = Eigen::Vector3d::Zero();
@@ -273,8 +274,8 @@ Eigen::Vector3d Contacts::error_against_forces(std::span<const Ramp> ramps, std:
   return error;
 }
 
-/// How fast that error is drawn back. Where a force shrinks, an error of the balance would outlast it, and open the
-/// contact that bears it.
+/// Decay rate of the error of error_against_forces(), at least `least`. Where a force shrinks, an error of the balance
+/// would outlast it and open the contact that bears it.
 double Contacts::error_decay(std::span<const Ramp> ramps, double least) const noexcept {
   double decay = least;
   for (std::size_t j = 0; j < class_count(); ++j) {
@@ -284,13 +285,13 @@ double Contacts::error_decay(std::span<const Ramp> ramps, double least) const no
   return decay;
 }
 
-/// Gap up to which walls may bear what no contact does. Walls that just touch hold the centre at once, if they can
-/// bear. Where a force ends, so do walls that are as near as its contact is deep: errors take them off just before.
+/// Gap up to which walls may bear forces that no contact bears. Touching walls support the centre at once, if they can
+/// bear. Where a force ends, walls as near as its contact is deep count, too: errors separate them just before.
 double Contacts::reach_of_support(std::span<const Ramp> ramps, std::span<const double> y, double touch) const {
   const Eigen::Matrix3d unheld = unheld_directions();
   double near = touch;
   for (std::size_t j = 0; j < class_count(); ++j) {
-    // Forces that contacts bear already, or that do not shrink, do not say how near those are that may bear the
+    // A force that contacts bear already, or that does not shrink, says nothing about the gaps of walls that may bear
     // others.
     const bool is_shrinking = takes_force(ramps[j]) && slope_of(ramps[j]) < 0.0;
     const bool says_so = is_shrinking && (unheld * arm_of(j)).norm() > k_same_surroundings;

@@ -6,7 +6,7 @@
 ///   g(s_j) = d_j + n_j.u + sum_h G_jh F_h                                (eqs. 17, 18)
 ///
 /// and in every free direction sum_j w_j F_j n_j = 0, with the wall displacement d, the mean normal n, the number of
-/// walls w. The sign of s_j says whether the contact is open, so that nothing has to be decided.
+/// walls w. The sign of s_j shows whether the contact is open, so that no regime has to be chosen beforehand.
 ///
 /// Lengths are over R, forces over E R^2, energies over E R^3; a force is that on one wall of its class.
 ///
@@ -34,15 +34,15 @@
 
 namespace monograin::nonlocal {
 
-/// Which of the variants of the formulation is meant, and of what material.
+/// Variant of the formulation, and the material.
 struct Formulation {
   double poisson_ratio = 0.0;  ///< in [0, 0.5]
   Terms terms = Terms::four;
   Influence influence = Influence::half_space;
 };
 
-/// Whether the centre stays where it is, or moves until the forces balance. In directions in which every class balances
-/// itself it stays in any case.
+/// Whether the centre is fixed, or moves until the forces balance. Even a free centre does not move in directions in
+/// which the forces of every class balance by symmetry.
 enum class Centre { fixed, free };
 
 /// One contact of a class. Everything but displacement, approach and square is 0 without contact.
@@ -55,13 +55,13 @@ struct ContactState {
   double stiffness = 0.0;       ///< dF/dg at fixed surroundings, 2 E* a
 };
 
-/// Owns its working memory: solve(), rates(), margin() and the like do not allocate, and one object is not to be used
-/// by two threads at once.
+/// Owns its working memory: solve(), rates(), margin() and the like do not allocate. Two threads must not use one
+/// object at once.
 class Contacts {
  public:
   /// @param classes  walls that share a history by symmetry; only their normals are used
   /// @throws std::invalid_argument for a Poisson's ratio outside [0, 0.5], walls that are the same or closer than
-  /// k_least_wall_angle, and classes of which not every wall sees the same forces around it
+  /// k_least_wall_angle, and classes whose walls do not all have equal surroundings
   Contacts(const Formulation& model, std::span<const ContactClass> classes, Centre centre);
 
   [[nodiscard]] std::size_t class_count() const noexcept { return weights_.size(); }
@@ -75,107 +75,107 @@ class Contacts {
   /// Unit vectors, one per column, along which the centre moves.
   [[nodiscard]] const Eigen::Matrix3Xd& free_directions() const noexcept { return directions_; }
 
-  /// Finds the state at the coordinate xi of a step of the program (ramps over R and E R^2).
-  /// @param y  in: a state on the physical branch, the nearer the better; the unloaded one (s = -gap, u = 0) always is
-  /// one. Out: the solution that is connected with it. Unchanged where this throws.
-  /// Newton's method; where it does not contract, or would leave the branch, it goes there in smaller steps of the
-  /// program.
+  /// Finds the state at the coordinate xi of a step of the program (ramps over R and E R^2). Uses Newton's method;
+  /// where that does not contract, or would leave the branch, approaches the state in smaller steps.
+  /// @param y  in: a state on the physical branch, the nearer the better, or the unloaded state (s = -gap, u = 0),
+  /// which is always on it. Out: the solution that is connected with that state. Unchanged if this throws.
+  /// @param is_own_mode  true if the contacts that are loaded in y are also the loaded ones of the solution
   /// @throws std::domain_error naming the numbers for a state beyond the limit of applicability, a negative force, or a
-  /// centre that nothing holds
-  /// @param is_own_mode  the contacts that bear in y do so in the state that is sought, too
+  /// centre that nothing supports
   void solve(std::span<const Ramp> ramps, double xi, std::span<double> y, bool is_own_mode = false);
 
-  /// Moves the centre to the nearest place where no wall under displacement control is beyond the surface, and sets y
-  /// accordingly. If the walls leave no such place, or one is under a force: out of the way of those that touch but
-  /// cannot bear, where that changes nothing for contacts that hold it. Where the centre is fixed, gaps are what they
-  /// are under the forces of the others.
-  /// @param is_closed  classes in contact; others are where their s is above zero
+  /// Moves the centre to the nearest position where no wall under displacement control overlaps the surface, and sets y
+  /// accordingly. If there is no such position, or a wall is under a force, the centre evades only redundant walls, in
+  /// directions that leave the supporting contacts unchanged. With a fixed centre, sets the gaps of open walls from the
+  /// forces on the others.
+  /// @param is_closed  classes in contact by their regime; classes with s > 0 count as closed, too
   void clear_centre(std::span<const Ramp> ramps, double xi, std::span<const char> is_closed, std::span<double> y);
 
-  /// Whether walls as near as that may hold a centre that contacts do not, against the forces of a little later.
+  /// True if touching walls with a gap up to `near` could balance the prescribed forces that act a little later.
   [[nodiscard]] bool may_be_held(std::span<const Ramp> ramps, std::span<const double> y, double near);
 
-  /// dy/dxi along a solution. Regular from the unloaded state on, but for a class under force control at s = 0, where
-  /// its own s has an infinite rate; the other rates do not depend on that. A free centre leaves the unloaded state as
-  /// if the contacts were equally stiff, which is exact where they will be.
-  /// @param touch  walls with an s less than this below zero touch: they may hold the centre at once
-  /// @param touches  walls that may take the centre along as soon as they touch; empty: all
-  /// @param pull  how fast contacts that bear the centre against a force are drawn back to their balance, at least
-  /// @throws std::domain_error at and beyond the limit of applicability, and where nothing holds a free centre against
-  /// prescribed forces
+  /// dy/dxi along a solution. Regular from the unloaded state on, except for a class under force control at s = 0: its
+  /// own s has an infinite rate, on which the other rates do not depend. A free centre leaves the unloaded state as if
+  /// the contacts were equally stiff, which is exact where they will be.
+  /// @param touch  gap (minus s) up to which walls touch: they may support the centre at once
+  /// @param touches  classes whose idle walls may move the centre as soon as they touch; empty: all
+  /// @param pull  least decay rate of a balance error where contacts bear the centre against a force
+  /// @throws std::domain_error at and beyond the limit of applicability, and where nothing supports a free centre
+  /// against prescribed forces
   void rates(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy, double touch = 0.0,
              double pull = 0.0, std::span<const char> touches = {});
 
-  /// What is left of the equations, one per unknown: that of the approach under displacement control, s_j - s(F_j)
-  /// under force control, balance of forces.
+  /// Residual of the equations, one per unknown: the approach under displacement control, s_j - s(F_j) under force
+  /// control, the net force for each free direction.
   void residual(std::span<const Ramp> ramps, double xi, std::span<const double> y, std::span<double> residual);
-  /// Where no contact holds a free centre, the balance of forces does not determine it: puts what is missing to its
-  /// rate in place of that.
+  /// Where no contact supports a free centre, the balance of forces does not determine its position. Replaces the
+  /// balance in those directions by an equation for the centre's rate.
   /// @param is_closed  classes in contact
-  /// @param missing    rate of the centre less that of rates()
-  /// @param balance    rows of residual() for the centre; each is turned to say the one or the other
+  /// @param missing    rate of the centre minus that of rates()
+  /// @param balance    rows of residual() for the centre; rotated so that each holds either a force or a rate
   void let_unheld_centre_go(std::span<const Ramp> ramps, std::span<const char> is_closed,
                             const Eigen::Vector3d& missing, std::span<double> balance);
   /// d(residual)/dy.
   void jacobian(std::span<const Ramp> ramps, std::span<const double> y, Eigen::MatrixXd& jacobian);
 
-  /// The margin, over all walls and whatever their control: modes that break the symmetry of the classes count where
-  /// negative couplings let them come first.
+  /// The margin, the smallest eigenvalue of M over all walls, whatever their control. Includes modes that break the
+  /// symmetry of the classes if negative couplings may make those critical first.
   [[nodiscard]] double margin(std::span<const double> y);
-  /// The least pivot of an elimination, or the first that is not positive: has the sign of the margin less the shift,
-  /// goes smoothly through zero with it, and costs a tenth.
+  /// Smallest pivot of an elimination of M minus the shift; the first that is not positive, if there is one. Has the
+  /// sign of the margin minus the shift, passes smoothly through zero with it, and costs a tenth of margin().
   [[nodiscard]] double least_pivot(std::span<const double> y, double shift = 0.0);
 
-  /// How far the signed square of a class may go while the branch is followed at once. A wall under which others lift
-  /// the surface may be pushed off by them, or they by it, from where 2 E* a times their coupling is 1; that is over
-  /// where contacts have grown several times. Infinite where no contact narrower than the particle does that.
+  /// Change of a class's signed square within which one step may follow the branch. Walls can push each other off the
+  /// surface where 2 E* a times their coupling reaches 1, and that is over once contacts have grown several times.
+  /// Infinite if no contact narrower than the particle reaches that radius.
   [[nodiscard]] double branch_reach(std::size_t index, double signed_square) const noexcept;
 
-  /// Whether a free centre moves in a direction in which touching contacts shallower than s hold it alone, or none.
+  /// True if, in some free direction, all walls with a gap below s are shallower than s or under force control.
   [[nodiscard]] bool is_held_softly(std::span<const Ramp> ramps, std::span<const double> y, double s);
 
-  /// All contacts, one per class.
+  /// States of all contacts, one per class.
   void contacts(std::span<const double> y, std::span<ContactState> states);
-  /// Contact radius in the deformed configuration a' (eq. 6 for a wall, which is a mirror: with the full instead of
-  /// half the sum); 0 without contact.
+  /// Contact radius in the deformed configuration a' (eq. 6 with the full instead of half the sum, because a wall acts
+  /// as a mirror); 0 without contact.
   /// @throws std::domain_error for a contact radius of R or more
   [[nodiscard]] double deformed_radius(RadiusRule rule, std::size_t index, std::span<const double> y);
   /// Stored energy; its differential is the sum of w_j F_j dd_j.
   [[nodiscard]] double energy(std::span<const double> y);
-  /// dF/dd over all classes, with the centre free where it is.
+  /// Stiffness matrix dF/dd over all classes. A free centre moves so that the forces stay in balance.
   /// @throws std::domain_error at and beyond the limit of applicability
   void stiffness(std::span<const double> y, Eigen::MatrixXd& stiffness);
 
  private:
-  /// Of the largest signed square: what Newton's method leaves open.
+  /// Relative to the largest signed square: correction at which Newton's method has converged.
   static constexpr double k_resolved = 4.0 * std::numeric_limits<double>::epsilon();
-  /// Contacts shallower than this, over where the walls go, say nothing of which will bear the centre.
+  /// Contacts shallower than this, over the walls' displacements or the deepest contact, do not show which ones will
+  /// support the centre.
   static constexpr double k_unloaded = 1e-6;
-  static constexpr double k_touching = 1e-10;  ///< gap of walls that begin to bear
-  static constexpr double k_balance = 1e-9;    ///< net force over the sum of forces
+  static constexpr double k_touching = 1e-10;  ///< gap at which walls begin to bear, over the walls' displacements
+  static constexpr double k_balance = 1e-9;    ///< net force that counts as zero, over the sum of forces
   [[nodiscard]] static Eigen::Index at(std::size_t index) noexcept { return static_cast<Eigen::Index>(index); }
 
   struct Target {
     bool is_force = false;
     double value = 0.0;          ///< displacement or force
-    double signed_square = 0.0;  ///< under that force
+    double signed_square = 0.0;  ///< s under the prescribed force
   };
 
-  /// What Newton's method is to find, and what is known of that beforehand.
+  /// Goal of Newton's method, and what is known before its first correction.
   struct Search {
-    double imbalance = 0.0;  ///< share of imbalance_ that is left; where it is none, forces have to balance
+    double imbalance = 0.0;  ///< share of imbalance_ that is left over; if 0, forces have to balance
     bool moves_centre = false;
-    bool is_first_touch = false;   ///< a free centre has yet to find out which contacts bear it
-    double farthest = 0.0;         ///< prescribed displacement, where forces have to balance
-    double deepest = 0.0;          ///< signed square under the greatest force
-    double touch_stiffness = 1.0;  ///< that of contacts under the greatest force
-    int free_steps = 1;            ///< corrections at first that need not contract
+    bool is_first_touch = false;   ///< no contact shows yet that it supports a free centre
+    double farthest = 0.0;         ///< largest prescribed displacement, if forces have to balance
+    double deepest = 0.0;          ///< signed square under the greatest prescribed force
+    double touch_stiffness = 1.0;  ///< stiffness of contacts under the greatest prescribed force
+    int free_steps = 1;            ///< first corrections, which need not contract
 
-    /// On a path in steps nobody asks for balance, and the contacts are those of the state before.
+    /// False at intermediate points of a path in steps, which need no balance and keep the contacts of the last point.
     [[nodiscard]] bool is_to_balance() const noexcept { return imbalance == 0.0; }
   };
 
-  /// One of the corrections of Newton's method.
+  /// One correction of Newton's method.
   struct Correction {
     double largest = 0.0;  ///< change of a signed square
     double scale = 0.0;    ///< largest signed square after it
@@ -258,25 +258,25 @@ class Contacts {
 
   std::vector<std::vector<Neighbours>> neighbours_;  ///< of the first wall of each class
 
-  Modes modes_;  ///< of the classes, or of all walls where a coupling is negative
+  Modes modes_;  ///< of the classes; of all walls if a coupling is negative
   bool has_modes_of_walls_ = false;
-  std::vector<double> rivalry_;  ///< s of each class from where walls push each other off; infinite where they do not
+  std::vector<double> rivalry_;  ///< s of each class from which walls push each other off; infinite if they do not
 
   // Working memory.
   std::size_t stride_;
   std::vector<LocalContact> now_;
   std::vector<double> forces_;
   std::vector<double> stiffness_;           ///< dF/dg; 0 under force control
-  std::vector<double> seen_;                ///< signed squares that these are of
-  std::vector<double> free_displacements_;  ///< of the walls that a centre goes out of the way of
-  std::vector<char> may_bear_;              ///< among which bystanders are sought
-  std::vector<char> sorted_;                ///< that these are of
+  std::vector<double> seen_;                ///< signed squares of the cached evaluation
+  std::vector<double> free_displacements_;  ///< of the walls that the centre evades; k_no_wall: all others
+  std::vector<char> may_bear_;              ///< classes among which redundant walls are sought
+  std::vector<char> sorted_;                ///< may_bear_ for which is_redundant_ was found
   std::vector<char> is_redundant_;
-  std::vector<char> holds_;     ///< bears a free centre under displacement control
+  std::vector<char> holds_;     ///< supports a free centre under displacement control
   std::vector<double> matrix_;  ///< a row per class: 1 - G dF/dg, right-hand side, arms
   std::vector<Target> targets_, first_targets_, last_targets_;
   std::vector<double> trial_, state_, unit_rates_;
-  // On a way on which walls take the centre along.
+  // Working memory of take_centre_to_targets().
   std::vector<Target> way_start_, way_end_;
   std::vector<double> carried_, at_once_, by_halves_, early_, late_;
   std::vector<Ramp> unit_ramps_;

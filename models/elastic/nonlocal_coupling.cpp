@@ -18,12 +18,12 @@ namespace {
 
 using std::numbers::pi;
 
-/// C, of which all compliances are multiples.
+/// C = (1 + nu)/(4 pi), the unit of all compliances.
 double unit_compliance(double nu) noexcept { return (1.0 + nu) / (4.0 * pi); }
 
-/// @param rounding  of the integrand over its magnitude, below which no refinement gets
+/// @param rounding  relative round-off of the integrand; no refinement gets below it
 double integral(const auto& f, double begin, double end, double rounding = 0.0) {
-  // The estimated error is that of the Gauss rule inside; the value is exact to rounding long before.
+  // The tolerance bounds the error estimate of the embedded Gauss rule; the value is exact to round-off long before.
   const double tolerance = std::max(1e-12, rounding);
   return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(f, begin, end, 8, tolerance);
 }
@@ -40,9 +40,9 @@ struct SurfaceDisplacement {
   }
 };
 
-/// A sphere under a point force: Legendre coefficients of 4 pi times the inward normal displacement,
+/// Legendre coefficients of 4 pi times the inward normal displacement of a sphere under a point force,
 ///   (2n+1) u_n = alpha + (1 + nu)/(n - 1) + (p n + q)/((n + b)^2 + omega^2),   n = 0, 2, 3, ...
-/// and 1/(n - 1), p n + q over the quadratic are int_0^inf exp(-n y) of exp(y), h(y).
+/// 1/(n - 1) and (p n + q)/((n + b)^2 + omega^2) are integrals int_0^inf exp(-n y) f(y) dy, of exp(y) and of kernel(y).
 struct SphereModes {
   double nu, alpha, p, q, b, omega;
 
@@ -58,11 +58,12 @@ struct SphereModes {
     return std::exp(-b * y) * (p * std::cos(omega * y) + (q - p * b) / omega * std::sin(omega * y));
   }
   [[nodiscard]] double mode_zero() const noexcept { return 1.0 - 2.0 * nu; }
-  /// Of ln(1 + 1/sin(theta/2)), as 1/n for large n.
+  /// Coefficient of ln(1 + 1/sin(theta/2)), that is, of 1/n for large n.
   [[nodiscard]] double logarithm() const noexcept { return 2.0 * (1.0 + nu) * (1.0 - 2.0 * nu) * (1.0 - 2.0 * nu); }
 };
 
-/// int from begin to infinity of what falls like exp(-2 y): one rule on each of a few pieces is exact to rounding.
+/// Integral from `begin` to infinity of a function that decays like exp(-2 y). One Gauss-Kronrod rule on each of a few
+/// pieces is exact to round-off.
 double decaying_integral(const auto& f, double begin) {
   constexpr std::array k_ends{0.1, 1.0, 4.0, 12.0, 40.0};
   double sum = 0.0;
@@ -79,15 +80,15 @@ void require_inside(double x) {
   throw DomainError({Limit::contact_as_wide_as_particle, -1, "contact radius/R0", x});
 }
 
-/// sqrt(1 - x^2), which ends at x = 1 but for rounding.
+/// sqrt(1 - x^2); 0 for an x that exceeds 1 by round-off.
 double depth_of_edge(double x) noexcept { return std::sqrt(std::max(0.0, (1.0 - x) * (1.0 + x))); }
 
-/// int_0^pi f(sin^2(phi/2)) dphi for an f that is analytic up to tan(phi/2) = i branch, by the trapezoidal rule on the
-/// circle, once tan(phi/2) is stretched so that this point and infinity are equally far: errors fall by e for every
-/// 1/width of places. None where those would be too many.
+/// int_0^pi f(sin^2(phi/2)) dphi for an f that is analytic up to tan(phi/2) = i branch. The trapezoidal rule on the
+/// circle, with tan(phi/2) stretched so that this point and infinity are equally far: the error falls by e for every
+/// 1/width points. None if more than k_most points would be needed.
 std::optional<double> integral_on_circle(const auto& f, double branch) {
   constexpr std::size_t k_most = 1024;
-  constexpr double k_rounding = 45.0;  // of the logarithm of the error, with room for the size of f at its branch point
+  constexpr double k_rounding = 45.0;  // minus the error's logarithm, with room for f at its branch point
   static const auto k_squared_sines = [] {
     std::array<double, k_most / 2 + 1> squares{};
     for (std::size_t k = 0; k < squares.size(); ++k) {
@@ -104,7 +105,7 @@ std::optional<double> integral_on_circle(const auto& f, double branch) {
   for (std::size_t k = 0; k <= count / 2; ++k) {
     const double square = k_squared_sines[k * (k_most / count)];
     const double per_growth = 1.0 / (1.0 - square + branch * square);
-    const double share = k == 0 || k == count / 2 ? 0.5 : 1.0;  // of a place that stands for itself alone
+    const double share = k == 0 || k == count / 2 ? 0.5 : 1.0;  // an end point has no mirror image
     sum += share * f(branch * square * per_growth) * per_growth;
   }
   return 2.0 * pi / static_cast<double>(count) * std::sqrt(branch) * sum;
@@ -119,7 +120,7 @@ double edge_influence(bool is_projected, double nu, double theta, double x) {
   const double nearest_half_sine = std::sin(0.5 * (theta - cap));
   const double nearest_half_cosine = std::cos(0.5 * (theta - cap));
   const SurfaceDisplacement middle(nu, std::sin(0.5 * theta));
-  // At an angle phi around the contact, of which the square of sin(phi/2) is given.
+  // Displacement at an angle phi around the contact, given by square = sin^2(phi/2).
   const auto outward = [&](double square) {
     const double across = 1.0 - 2.0 * square;  // cos(phi)
     // sin^2 and cos^2 of beta/2 (eq. 10), both without cancellation where they are small.
@@ -144,7 +145,7 @@ double edge_influence(bool is_projected, double nu, double theta, double x) {
     if (const auto sum = integral_on_circle(outward, branch)) return unit_compliance(nu) / pi * *sum;
   }
   // The length of eq. A.10 is |sin(phi)| at theta = pi/2: the halves are smooth, the whole is not.
-  // Displacements at the edge and in the middle differ by a share of the order of x.
+  // Displacements at the edge and in the middle differ by a share of the order of x, which round-off limits.
   const double rounding = 64.0 * std::numeric_limits<double>::epsilon() / x;
   const auto around = [&](double phi) {
     const double half = std::sin(0.5 * phi);
@@ -170,7 +171,7 @@ double sphere_influence(double poisson_ratio, double theta) {
   const SphereModes modes(poisson_ratio);
   const double s = std::sin(0.5 * theta);
   const double cosine = std::cos(theta);
-  // sum_n exp(-n y) P_n = 1/D, without its first two terms.
+  // The kernel times the generating function sum_n exp(-n y) P_n = 1/D without its first two terms.
   const auto rest = [&](double y) {
     const double t = std::exp(-y);
     const double decay = -std::expm1(-y);
@@ -195,7 +196,7 @@ double sphere_self_influence(double poisson_ratio) {
 
 double sphere_self_influence(double poisson_ratio, double half_sine, int last) {
   const SphereModes m(poisson_ratio);
-  // The modes beyond the last one, by their expansion in 1/n, summed from the middle between two terms on.
+  // The modes beyond `last`, from their expansion in 1/n; the sum starts halfway between two terms.
   const double square = 1.0 + m.nu + m.q - 2.0 * m.b * m.p;
   const double cube = 1.0 + m.nu + m.p * (3.0 * m.b * m.b - m.omega * m.omega) - 2.0 * m.b * m.q;
   const double first = last + 0.5;

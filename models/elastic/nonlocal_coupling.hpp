@@ -1,4 +1,4 @@
-/// What the force of one contact does elsewhere on an elastic sphere: the displacement of its surface, and with it the
+/// Effect of the force of one contact elsewhere on an elastic sphere: the displacement of the surface, and with it the
 /// approach and the radius of other contacts.
 ///
 /// theta in (0, pi] is the angle between the normals of two walls, x = a/R the radius of the contact that is acted
@@ -12,26 +12,27 @@ namespace monograin::nonlocal {
 /// Angle between two directions, to full accuracy also where they are nearly parallel.
 [[nodiscard]] double angle_between(const Eigen::Vector3d& first, const Eigen::Vector3d& second) noexcept;
 
-/// Which displacement a point force causes on the surface: that of a half-space, seen on the sphere (the source's), or
-/// the sphere's own (this workbench's). The latter moves the loaded contact itself too, by a part of the solution that
-/// is regular there. It leaves out a logarithm, of which the coefficient (1+nu)(1-2nu)^2/(2 pi) vanishes for
-/// incompressible material: 4e-4 at nu = 0.48, but 0.03 at nu = 0.3, where it is no small correction.
+/// Which displacement a point force causes on the surface: that of a half-space, applied to the sphere (the source's),
+/// or the sphere's own (this workbench's). The sphere's own displacement also moves the loaded contact itself, by the
+/// part of the solution that is regular there. It leaves out a logarithm, whose coefficient (1+nu)(1-2nu)^2/(2 pi)
+/// vanishes for incompressible material: 4e-4 at nu = 0.48, but 0.03 at nu = 0.3, where the logarithm is no small
+/// correction.
 enum class Influence { half_space, sphere };
 
 /// Outward normal displacement per unit force at an angle from it (eq. 18). Negative below 70 to 85 degrees, depending
 /// on nu: a close neighbour pushes the surface away from the wall; -infinity as theta -> 0.
 [[nodiscard]] double half_space_influence(double poisson_ratio, double theta) noexcept;
 
-/// The same of the sphere, without rigid translation: exact sum over all Legendre polynomials. Errors below 1e-14 of
-/// the value at theta, or of 1. Not from the source.
+/// Outward normal displacement of a sphere per unit force at an angle from it, without rigid translation: exact sum
+/// over all Legendre polynomials. Errors below 1e-14 of the value at theta, or of 1. Not from the source.
 [[nodiscard]] double sphere_influence(double poisson_ratio, double theta);
 
-/// What is left of sphere_influence as theta -> 0 without the half-space's displacement (1-nu^2)/(2 pi sin(theta/2)),
-/// which is the local law's, and the logarithm of sin(theta/2).
+/// Limit of sphere_influence as theta -> 0, without the half-space's displacement (1-nu^2)/(2 pi sin(theta/2)), which
+/// the local law contains, and without the logarithm of sin(theta/2).
 [[nodiscard]] double sphere_self_influence(double poisson_ratio);
 
-/// The self influence of a contact of finite size: with the logarithm at half_sine = sin(theta/2) of its own radius,
-/// and modes up to the last one only. Error below 1e-12 for `last` above 1000.
+/// Self influence of a contact of finite size: with the logarithm, taken at half_sine = sin(theta/2) of the contact's
+/// own radius, and with the modes up to `last` only. Error below 1e-12 for `last` above 1000.
 [[nodiscard]] double sphere_self_influence(double poisson_ratio, double half_sine, int last);
 
 /// How the contact radius follows the deformation of the surface: by the source's closed form (eq. 14), by its integral
@@ -39,7 +40,7 @@ enum class Influence { half_space, sphere };
 /// length of that direction's projection for its component), or not at all.
 enum class RadiusRule { closed, integral, projected, none };
 
-/// Contact radius over R up to which there is one in the deformed configuration: 1 and its rounding.
+/// Largest contact radius over R that has a deformed radius: 1 plus round-off.
 constexpr double k_widest = 1.0 + 1e-12;
 
 /// Growth of the contact's radius per unit of its own force (eq. 7), for x in (0, 1]. Unbounded as x -> 0, where its
@@ -52,17 +53,17 @@ constexpr double k_widest = 1.0 + 1e-12;
 [[nodiscard]] double pole_radius_influence(double poisson_ratio, double x);
 
 /// Growth of the contact's radius per unit force of a contact at an angle theta (eqs. 8, 14), x in [0, 1]. The
-/// integrals are singular at theta = asin(x), where the other contact's middle is on this contact's edge: exact to
-/// rounding ten degrees from there, to 1e-12 a tenth of a degree from there. The closed form has 3/4 of the integral's
-/// value at theta = pi/2, x = 1/2, and half of it at x = 3/4.
+/// integrals are singular at theta = asin(x), where the other contact's middle is on this contact's edge: they are
+/// exact to round-off ten degrees from there, to 1e-12 a tenth of a degree from there. The closed form has 3/4 of the
+/// integral's value at theta = pi/2, x = 1/2, and half of it at x = 3/4.
 /// @throws std::domain_error for x above k_widest
 [[nodiscard]] double radius_influence(RadiusRule rule, double poisson_ratio, double theta, double x);
 
-/// Quotient in eq. 11 for a contact at an angle theta, of which the closed form is made.
+/// Quotient in eq. 11 for a contact at an angle theta; the closed form is built on it.
 [[nodiscard]] double radius_quotient(double poisson_ratio, double theta) noexcept;
 
-/// The same of one contact for many others: what does not depend on their angles is computed once, and what depends on
-/// nothing else, `quotient` = radius_quotient(), is given.
+/// Growth of one contact's radius per unit force of many other contacts. Computes once what does not depend on their
+/// angles; the caller gives `quotient` = radius_quotient(theta).
 class RadiusInfluence {
  public:
   /// @throws std::domain_error for x above k_widest
@@ -73,10 +74,10 @@ class RadiusInfluence {
   RadiusRule rule_;
   double poisson_ratio_;
   double x_;
-  double pole_ = 0.0;   ///< of the closed form: its value at the opposite contact, slope there, and the angle
-  double slope_ = 0.0;  ///< from which it is a straight line
-  double critical_angle_ = 0.0;
-  double at_critical_angle_ = 0.0;
+  double pole_ = 0.0;               ///< of the closed form: its value at the opposite contact
+  double slope_ = 0.0;              ///< of the closed form: slope of its straight part
+  double critical_angle_ = 0.0;     ///< of the closed form: angle from which it is straight
+  double at_critical_angle_ = 0.0;  ///< radius_quotient() at the critical angle
 };
 
 /// Angle at the centre between the middle of a contact and its edge. Two contacts impinge where theirs add up to the

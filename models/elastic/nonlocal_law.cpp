@@ -23,8 +23,8 @@ double polynomial(const std::array<double, N>& coefficients, double x) noexcept 
 /// 4n/((2n-1)(2n+1)), the coefficient of a^(2n+1) in the force.
 constexpr double force_coefficient(double n) noexcept { return 4.0 * n / ((2.0 * n - 1.0) * (2.0 * n + 1.0)); }
 
-/// ((1 + a^2) artanh(a) - a)/a^3. The difference loses a/F of its digits, so small contacts take the series; where they
-/// part, the one has lost three bits and the other is complete.
+/// ((1 + a^2) artanh(a) - a)/a^3. The difference cancels for a small contact, which takes the series instead. At the
+/// change-over, s = 0.1, the difference has lost three bits and the series is complete.
 double sphere_force(double s, double artanh_over_radius) noexcept {
   if (s > 0.1) return ((1.0 + s) * artanh_over_radius - 1.0) / s;
   double sum = 0.0;
@@ -32,8 +32,9 @@ double sphere_force(double s, double artanh_over_radius) noexcept {
   return sum;
 }
 
-/// int_0^end f. The estimated error is that of the Gauss rule inside, the value is exact to rounding long before. Over
-/// the unit interval, because Boost 1.74 does not scale the estimate with the length.
+/// Integral of f from 0 to `end`. The tolerance bounds the error estimate, which is that of the embedded Gauss rule;
+/// the value is exact to round-off long before. The quadrature runs over the unit interval, because Boost 1.74 does not
+/// scale the estimate with the length.
 double integral(const auto& f, double end) {
   return end * boost::math::quadrature::gauss_kronrod<double, 31>::integrate([&](double x) { return f(end * x); }, 0.0,
                                                                              1.0, 15, 1e-9);
@@ -69,7 +70,7 @@ LocalContact LocalLaw::at(double s) const {
   if (s <= 0.0) return {.approach = s, .approach_slope = 1.0, .force = 0.0, .contact_radius = 0.0};
   const double a = std::sqrt(s);
   if (terms_ == Terms::all) {
-    // artanh(a) by way of 1 - a = (1 - s)/(1 + a): exact up to the end.
+    // artanh(a) from 1 - a = (1 - s)/(1 + a): exact up to the end.
     const double ratio = 0.5 * std::log1p(2.0 * a * (1.0 + a) / (1.0 - s)) / a;
     return {.approach = s * ratio,
             .approach_slope = 0.5 * (ratio + 1.0 / (1.0 - s)),
@@ -94,10 +95,10 @@ double LocalLaw::descend(double x, Step&& step) const {
 
 double LocalLaw::signed_square(double approach) const {
   if (approach <= 0.0 || terms_ == Terms::one) return approach;
-  // Two terms alone: an upper bound, as all further ones are positive.
+  // The law of two terms gives an upper bound, because all further terms are positive.
   double bound = 2.0 * approach / (1.0 + std::sqrt(1.0 + 4.0 / 3.0 * approach));
   if (terms_ == Terms::all) {
-    // artanh(a) = g/a, where a is at least tanh(g).
+    // artanh(a) = g/a <= g/tanh(g), because a >= tanh(g).
     const double a = std::tanh(approach / std::tanh(approach));
     bound = std::min(bound, a * a);
   }
@@ -128,7 +129,7 @@ double LocalLaw::energy(double s) const {
   const LocalContact contact = at(s);
   if (s <= 0.0) return 0.0;
   if (terms_ != Terms::all) return contact.contact_radius * s * s * polynomial(energy_, s);
-  // In x = artanh(a) the integrand is analytic up to the end of the law.
+  // The integrand is analytic in x = artanh(a) up to the end of the law.
   return integral(
       [&](double x) {
         const double a = std::tanh(x);

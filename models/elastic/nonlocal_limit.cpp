@@ -24,14 +24,14 @@ class Path {
  public:
   Path(Contacts& contacts, std::span<const Ramp> ramps) : contacts_(contacts), ramps_(ramps) {}
 
-  /// Unit tangent with a positive component along another direction.
+  /// Unit tangent of the path at a point, with a positive component along `direction`.
   [[nodiscard]] Point tangent(const Point& point, const Point& direction) {
     Point unit = Point::Zero(point.size());
     unit[point.size() - 1] = 1.0;
     return solve(point, direction, unit).normalized();
   }
 
-  /// The point of the path in the plane at a distance along a tangent; none where Newton's method does not contract.
+  /// Point of the path in the plane normal to `tangent` at `distance` from `from`; none if Newton's method fails.
   [[nodiscard]] std::optional<Point> beyond(const Point& from, const Point& tangent, double distance) {
     Point point = from + distance * tangent;
     Point missing(point.size());
@@ -61,8 +61,8 @@ class Path {
   static constexpr int k_newton_limit = 60;
   static constexpr double k_rounding = 1e-15;
 
-  /// Of the equations' derivatives, and a border that makes them regular where the path turns back. Directions of the
-  /// centre that nothing holds stay: the least solution.
+  /// Solves the equations' Jacobian bordered by one row, which keeps it regular where the path turns back. The
+  /// least-norm solution leaves the centre in place along directions that no contact supports.
   [[nodiscard]] Point solve(const Point& point, const Point& border, const Point& right_side) {
     const Eigen::Index count = point.size() - 1;
     contacts_.jacobian(ramps_, unknowns(point), jacobian_);
@@ -91,7 +91,7 @@ class Path {
 }  // namespace
 
 std::optional<double> limit_of_step(Contacts& contacts, std::span<const Ramp> ramps, double end, std::span<double> y) {
-  // Away from first touch, where a contact under force control has an infinite rate.
+  // Start away from first touch, where a contact under force control has an infinite rate.
   double xi = std::min(end, 1.0 / 64.0);
   for (;; xi *= 0.5) {
     try {

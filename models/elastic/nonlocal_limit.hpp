@@ -1,4 +1,4 @@
-/// Where a step of the program leaves the domain of the nonlocal formulation.
+/// The point at which a step of the program leaves the domain of the nonlocal formulation.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,16 @@
 
 namespace monograin::nonlocal {
 
-/// The coordinate xi at which the margin vanishes on the way of a step from 0 to `end`; none if that is reached before.
+/// Follows the equilibria of a step from xi = 0 and returns the xi at which the margin vanishes; none if the path
+/// reaches `end` before.
 ///
-/// Under displacement control the path turns back there, so that xi cannot lead along it: it is followed in its own
-/// length, in which nothing is singular. xi is then exact to rounding, the state at the limit to the root of that.
+/// Under displacement control the path turns back at the limit, so that xi cannot parametrize it. The function follows
+/// the path in its arc length, in which nothing is singular. The returned xi is exact to round-off, the state at the
+/// limit to the square root of round-off.
 /// @param ramps  over R and E R^2 (elastic/nonlocal_contacts.hpp)
-/// @param y      in: the state at xi = 0; out: that at the limit, or at `end`
-/// @throws std::domain_error where Contacts::solve does before the limit
+/// @param y      in: the state at xi = 0; out: the state at the limit, or at `end`
+/// @throws std::domain_error if there is no state before the limit (Contacts::solve), or if the path cannot be
+/// continued
 [[nodiscard]] std::optional<double> limit_of_step(Contacts& contacts, std::span<const Ramp> ramps, double end,
                                                   std::span<double> y);
 

@@ -110,7 +110,7 @@ std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactC
 }
 
 /// Displacement over R0 of the first driven wall at the limit of applicability, if all walls go on as in their first
-/// step. None where a wall follows a force then, none moves, or the limit lies beyond the centre of the particle.
+/// step. None if a wall is under force control, if none moves, or if the limit lies beyond the centre of the particle.
 std::optional<double> limit_displacement(const ModelInput& input, const FirstStep& step) {
   std::vector<Ramp> ramps;
   std::optional<Ramp> driven;
@@ -148,8 +148,8 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
       {"limit_displacement", limit_displacement(input, step).value_or(k_nan) * input.radius, "m"}};
 }
 
-/// Displacement and force of a wall whose contact, by itself, meets a condition; infinite where none does as long as it
-/// is narrower than the particle, or where an event says.
+/// Displacement and force of a wall at which its contact, considered alone, meets a condition. Infinite if the contact
+/// does not while it is narrower than the particle, or if the condition is an event.
 Reach reach(const ModelInput& input, const Until& until) {
   const LocalLaw law(formulation_of(input).terms);
   const double radius = input.radius;
@@ -176,7 +176,7 @@ ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) {
   return {.deepest = 0.3, .force = 0.2};
 }
 
-/// The formulas of the deformed contact radius end where a contact is as wide as the particle.
+/// The formulas of the deformed contact radius are undefined from where a contact is as wide as the particle.
 bool may_be_undefined(const CheckedRun& run, std::size_t row, string_view column) {
   constexpr string_view k_deformed = "_deformed";
   if (!column.ends_with(k_deformed)) return false;

@@ -9,15 +9,16 @@ namespace monograin::nonlocal {
 namespace {
 
 constexpr double k_margin_tolerance = 1e-14;
-constexpr double k_rounding = std::numeric_limits<double>::epsilon();  // of modes, which are of order one
-constexpr int k_most_quotients = 6;      // each cubes the error of the mode; two are usual
-constexpr double k_no_coupling = 1e-13;  // over the largest one
+constexpr double k_rounding = std::numeric_limits<double>::epsilon();  // least pivot; entries are of order one
+constexpr int k_most_quotients = 6;      // Rayleigh quotients; each cubes the error of the mode, two are usual
+constexpr double k_no_coupling = 1e-13;  // coupling that counts as none, over the largest one
 
 std::size_t in(Eigen::Index index) noexcept { return static_cast<std::size_t>(index); }
 Eigen::Index at(std::size_t index) noexcept { return static_cast<Eigen::Index>(index); }
 
-/// L D L^T of a lower half in place: pivots on the diagonal, below it the columns of L times their pivots.
-/// @return the least pivot; the first that is not positive, with the rest left undone, unless asked to go to the end
+/// L D L^T factorization in place of a matrix given by its lower half: pivots on the diagonal, below it the columns of
+/// L times their pivots.
+/// @return the least pivot; without `to_the_end` the first that is not positive, with the rest left undone
 double eliminate(Eigen::MatrixXd& matrix, bool to_the_end) noexcept {
   const Eigen::Index count = matrix.rows();
   double least = std::numeric_limits<double>::infinity();
@@ -39,7 +40,7 @@ double eliminate(Eigen::MatrixXd& matrix, bool to_the_end) noexcept {
   return least;
 }
 
-/// Solves with an eliminated matrix, in place.
+/// Solves with a matrix factorized by eliminate(), in place.
 void solve(const Eigen::MatrixXd& matrix, Eigen::VectorXd& x) noexcept {
   const Eigen::Index count = matrix.rows();
   for (Eigen::Index p = 0; p < count; ++p) {
@@ -53,7 +54,7 @@ void solve(const Eigen::MatrixXd& matrix, Eigen::VectorXd& x) noexcept {
   }
 }
 
-/// Rayleigh quotient of a lower half.
+/// Rayleigh quotient of a matrix given by its lower half.
 double quotient(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& mode) noexcept {
   double sum = 0.0;
   for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
@@ -64,7 +65,7 @@ double quotient(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& mode) noex
   return sum;
 }
 
-/// Which rows of a matrix couple, over however many others: for each the first of them.
+/// For each row of a matrix, the first row that it couples with, directly or through other rows.
 std::vector<std::size_t> coupled(const Eigen::MatrixXd& matrix) {
   const double least = k_no_coupling * matrix.cwiseAbs().maxCoeff();
   std::vector<std::size_t> first(in(matrix.rows()));
@@ -137,14 +138,14 @@ void Modes::set_matrix(Block& block, double shift) const noexcept {
   }
 }
 
-/// The least pivot of a block.
+/// Least pivot of a block minus the shift.
 double Modes::eliminated(Block& block, double shift) const noexcept {
   set_matrix(block, shift);
   return eliminate(block.matrix, false);
 }
 
-/// The mode changes little from one state to the next. No eigenvalue is above a quotient of Rayleigh's without another
-/// below it, and with positive pivots none is below the shift.
+/// Least eigenvalue of a block. Starts from the mode of the previous state, which changes little. A Rayleigh quotient
+/// is never below the least eigenvalue, and positive pivots show that no eigenvalue is below the quotient.
 double Modes::least_eigenvalue(Block& block) const {
   for (int step = 0; step < k_most_quotients; ++step) {
     set_matrix(block, 0.0);

@@ -9,8 +9,9 @@
 namespace monograin::nonlocal {
 
 /// The matrix I - k^(1/2) G k^(1/2) of the stiffnesses dF/dg of walls and the influence of forces on them, whose
-/// eigenvalues are those of the problem's own, unsymmetric matrix. Walls of a class have one stiffness: in a basis of
-/// what classes do together, and of differences within them, the matrix falls into blocks that stay the same.
+/// eigenvalues are those of the problem's own, unsymmetric matrix. All walls of a class have one stiffness. In a basis
+/// of the common motions of classes and of differences within them, the matrix therefore splits into blocks, the same
+/// ones at every state.
 ///
 /// Owns its working memory: margin() and least_pivot() do not allocate, and one object is not to be used by several
 /// threads.
@@ -25,15 +26,15 @@ class Modes {
   /// The least eigenvalue.
   /// @param stiffness  of the classes
   [[nodiscard]] double margin(std::span<const double> stiffness);
-  /// The least pivot of an elimination of the matrix less the shift; the first that is not positive, if there is one.
+  /// Smallest pivot of an elimination of the matrix minus the shift; the first that is not positive, if there is one.
   [[nodiscard]] double least_pivot(std::span<const double> stiffness, double shift);
 
  private:
   struct Block {
     Eigen::MatrixXd coupling;
     std::vector<std::size_t> class_of;
-    Eigen::MatrixXd matrix;         ///< its lower half; eliminated: pivots, and below them columns of L times them
-    Eigen::VectorXd critical_mode;  ///< of the least eigenvalue, as it was found last
+    Eigen::MatrixXd matrix;         ///< lower half; once eliminated: pivots, and below them columns of L times them
+    Eigen::VectorXd critical_mode;  ///< mode of the least eigenvalue found last
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigenvalues;
   };
 
@@ -43,7 +44,7 @@ class Modes {
   [[nodiscard]] double least_eigenvalue(Block& block) const;
 
   std::vector<Block> blocks_;
-  std::vector<double> roots_;  ///< of the stiffnesses
+  std::vector<double> roots_;  ///< square roots of the stiffnesses
   std::size_t critical_ = 0;   ///< block that had the least eigenvalue
 };
 

@@ -1,4 +1,4 @@
-// What can be seen of the nonlocal system: columns of the history, quantities of conditions, surfaces, warnings.
+// Observables of the nonlocal system: columns of the history, quantities of conditions, surfaces, warnings.
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +48,7 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
   evaluate_closely(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
   ContactState c = now_[i];
-  // A contact that is lost bears nothing, even where the exact state has it for as long as the error of that instant.
+  // A lost contact carries nothing, even if the exact state still loads it, within the error of the event's time.
   if (regimes_[i] == Regime::open) c.force = c.contact_radius = 0.0;
   const double length = settings_.initial_radius;
   const double area = pi * c.contact_radius * c.contact_radius;

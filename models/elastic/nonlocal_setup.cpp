@@ -1,4 +1,4 @@
-// What the nonlocal system is made of before it runs: its scales, unknowns, columns, and walls that may come to meet.
+// Set-up of the nonlocal system: its scales, unknowns, columns, and the walls that may meet on the surface.
 
 #include <algorithm>
 #include <array>
@@ -14,26 +14,26 @@ namespace {
 
 constexpr std::array<std::string_view, 2> k_regime_words{"open", "elastic"};
 
-// Walls this near to opposite never meet on the surface.
+// Walls whose angle is this near to pi never meet on the surface [rad].
 constexpr double k_opposite = 1e-9;
-// Angles that are the same but for rounding.
+// Difference of angles that is round-off [rad].
 constexpr double k_same_angle = 1e-9;
-// Distance over the program's reach that a surface moves by rounding alone: less is neither touch nor gap.
+// Touch tolerance over the program's reach: smaller distances are round-off of the surface's position.
 constexpr double k_touch = 1e-13;
-// That distance over the deepest contact where forces balance: s goes like their rounding to the power 2/3.
+// Touch tolerance of a free centre, over the deepest contact: its s has the forces' round-off to the power 2/3.
 constexpr double k_touch_of_free_centre = 1e-9;
-// Guards of contacts at such a distance, at least: a wall that stands is well off what integrators take for zero.
+// Least value of a contact's guard at the touch tolerance: a wall at rest is well off what integrators take for zero.
 constexpr double k_guard_at_touch = 1e-12;
-// With all terms, approach and force follow from what a contact lacks to the particle's width, of which its own width
-// keeps fewer and fewer digits: from here on less than eleven of the approach.
+// Largest contact radius over R0 with all terms. Approach and force depend on 1 - a, of which a has ever fewer digits;
+// beyond this radius, the approach has less than eleven.
 constexpr double k_widest_of_all_terms = 1.0 - 1e-6;
-// Contacts nowhere deeper than that, over R0, are rounding of lengths.
+// A program whose deepest contact is no deeper than this, over R0, works with round-off of lengths.
 constexpr double k_least_depth = 1e-12;
-// Contacts shallower than this, over the deepest, hold a free centre too softly for an integrator.
+// Contacts shallower than this, over the deepest, support a free centre too softly for an integrator.
 constexpr double k_idle = 1e-6;
 
-/// Angles at which walls of two classes may come to meet on the surface, each once.
-/// @param is_one  both are one class
+/// Angles at which walls of two classes may meet on the surface, each listed once.
+/// @param is_one  true if both classes are the same one
 std::vector<double> meeting_angles(const ContactClass& first, const ContactClass& second, bool is_one) {
   std::vector<double> angles;
   for (std::size_t m = 0; m < first.normals.size(); ++m) {
@@ -86,14 +86,15 @@ double System::greatest_depth() const {
   return std::max(depth, contacts_.law().signed_square_under(bearable));
 }
 
-/// Sets what is round-off, idle and too wide, by how far the program goes.
+/// Sets the limits of round-off, of idle contacts and of wide contacts, from the program's reach.
 /// @return scale of the unknowns
 double System::set_scales() {
   double reach = greatest_depth();
   is_shallow_ = reach > 0.0 && reach <= k_least_depth;
   for (const ContactClass& c : classes_) reach = std::max(reach, c.gap / settings_.initial_radius);
   if (!(reach > 0.0)) reach = 1.0;
-  // A program may ask for any displacement: a wall comes to the centre, a contact is as wide as the particle before.
+  // A program may prescribe any displacement, but before R0 a wall is at the centre, or a contact as wide as the
+  // particle.
   const double depth = std::min(reach, 1.0);
   touch_ = settings_.centre == Centre::free ? k_touch_of_free_centre * depth : k_touch * reach;
   guard_unit_ = std::min(depth, touch_ / k_guard_at_touch);
@@ -129,7 +130,7 @@ void System::list_observables() {
   if (settings_.centre == Centre::free) contacts::add_centre_columns(observables_);
 }
 
-/// Nothing is allocated while integrating.
+/// Allocates the work space; nothing is allocated while integrating.
 void System::reserve_work_space() {
   const std::size_t count = classes_.size();
   for (auto* ramps : {&ramps_, &drawn_ramps_}) ramps->resize(count);

@@ -1,5 +1,4 @@
-// How the contacts of a nonlocal elastic sphere find their state: Newton's method, and the path to states that it does
-// not find at once.
+// How the contacts of a nonlocal elastic sphere find their state: Newton's method, and a path in steps where it fails.
 
 #include <algorithm>
 #include <cmath>
@@ -12,16 +11,16 @@
 namespace monograin::nonlocal {
 namespace {
 
-constexpr int k_newton_limit = 100;    // contraction by half reaches rounding in 52
-constexpr double k_contraction = 0.5;  // of Newton's corrections; less is a guess too far away
+constexpr int k_newton_limit = 100;    // contraction by half reaches round-off in 52
+constexpr double k_contraction = 0.5;  // largest ratio of Newton's corrections; beyond it the guess is too far away
 constexpr int k_first_touch_steps = 20;
-constexpr double k_stagnation = 1e-9;   // rounding grows with 1/margin near the limit
-constexpr double k_least_step = 1e-13;  // of the path to a state that is not found at once
-constexpr int k_most_steps = 1000;      // on that path, tried ones included
-constexpr int k_most_roundings = 20;    // times that its end is found with forces of rounding left over
+constexpr double k_stagnation = 1e-9;   // relative correction that is round-off, which grows with 1/margin
+constexpr double k_least_step = 1e-13;  // of the path to a state that Newton's method does not find at once
+constexpr int k_most_steps = 1000;      // on that path, rejected ones included
+constexpr int k_most_roundings = 20;    // times that the path's end balances but for forces of round-off
 
-// Margin, and contact radius over R, of a path of states that ends at the limit of applicability, or where the contacts
-// open: as near as a search comes to either.
+// Smallest margin, and smallest contact radius over R, that a search along a path resolves: the path ends at the limit
+// of applicability, or where the contacts open.
 constexpr double k_no_margin = 5e-4;
 constexpr double k_no_contact = 5e-7;
 
@@ -32,14 +31,14 @@ Contacts::Target Contacts::target(bool is_force, double value) const {
   return {is_force, value, is_force ? law_.signed_square_under(value / modulus_) : 0.0};
 }
 
-/// The targets of an instant of a step of the program.
+/// Sets the targets at an instant of a step of the program.
 void Contacts::set_targets(std::span<const Ramp> ramps, double xi) {
   for (std::size_t j = 0; j < class_count(); ++j) {
     targets_[j] = target(ramps[j].control == Control::force, std::lerp(ramps[j].start, ramps[j].end, xi));
   }
 }
 
-/// Finds what would be prescribed of a state in place of the ends.
+/// Finds the targets of which the state y is the solution, with the controls of `ends`.
 void Contacts::find_start(std::span<const Target> ends, std::span<const double> y, std::span<Target> starts) {
   evaluate(y);
   for (std::size_t j = 0; j < class_count(); ++j) {
@@ -55,8 +54,8 @@ void Contacts::set_targets_between(std::span<const Target> starts, std::span<con
   }
 }
 
-/// What a search knows before its first correction.
-/// @param imbalance  share of imbalance_ that is left to the forces
+/// Collects what a search knows before its first correction.
+/// @param imbalance  share of imbalance_ that may remain
 Contacts::Search Contacts::begin_search(std::span<const double> y, double imbalance, bool moves_centre) const {
   Search search{.imbalance = imbalance, .moves_centre = moves_centre};
   for (const Target& goal : targets_) {
@@ -67,17 +66,18 @@ Contacts::Search Contacts::begin_search(std::span<const double> y, double imbala
   }
   search.is_first_touch = moves_centre;
   for (std::size_t j = 0; j < class_count(); ++j) {
-    // How deep a contact is under a force does not say what bears that.
+    // The depth of a contact under a force does not show which contacts will support the centre.
     if (!targets_[j].is_force && y[j] > k_unloaded * search.farthest) search.is_first_touch = false;
   }
-  // Later, a wall that nothing opposes takes the centre along: the force s^(3/2) that the first correction gives that
-  // wall is undone by corrections of 2/3, 2/9 ... of it.
+  // After first touch, a wall that nothing opposes moves the centre. The first correction gives that wall a force
+  // s^(3/2), which the next ones undo by 2/3, 2/9 ... of it; the ratio 2/3 would fail the test of contraction.
   if (moves_centre && search.is_to_balance()) search.free_steps = 2;
   if (search.is_first_touch) search.free_steps = k_first_touch_steps;
   return search;
 }
 
-/// Contacts, forces and stiffnesses of a trial. Contacts under a force are as deep as that makes them, and give way.
+/// Evaluates contacts, forces and stiffnesses of a trial. A contact under a force takes the depth of that force and
+/// gives way: its stiffness is 0.
 /// @return false for a contact beyond the end of the law
 bool Contacts::evaluate_trial(std::span<double> y) {
   for (std::size_t j = 0; j < class_count(); ++j) {
@@ -97,7 +97,7 @@ bool Contacts::evaluate_trial(std::span<double> y) {
   return true;
 }
 
-/// Right-hand sides of the corrections: what approaches are short of the targets.
+/// Sets the right-hand sides of the corrections: the misfit of each approach.
 void Contacts::set_misfits(std::span<const double> y) {
   const std::size_t n = class_count();
   for (std::size_t j = 0; j < n; ++j) {
@@ -105,7 +105,7 @@ void Contacts::set_misfits(std::span<const double> y) {
   }
 }
 
-/// Net force on the centre after the corrections of the approaches, to first order, less what is left of the imbalance.
+/// Net force on the centre after the corrections of the approaches, to first order, less the imbalance that may remain.
 Eigen::Vector3d Contacts::corrected_net_force(double imbalance) {
   const std::size_t n = class_count();
   Eigen::Vector3d sum = -imbalance * imbalance_;
@@ -116,7 +116,7 @@ Eigen::Vector3d Contacts::corrected_net_force(double imbalance) {
   return sum;
 }
 
-/// Takes walls that only touch for as stiff as contacts under the greatest force.
+/// Gives touching walls without stiffness that of contacts under the greatest force.
 void Contacts::stiffen_touching(const Search& search, std::span<const double> y) {
   for (std::size_t j = 0; j < class_count(); ++j) {
     if (targets_[j].is_force || stiffness_[j] != 0.0) continue;
@@ -124,8 +124,8 @@ void Contacts::stiffen_touching(const Search& search, std::span<const double> y)
   }
 }
 
-/// Correction of a free centre, with which the forces balance to first order.
-/// @param may_find_more  where the contacts do not hold the centre, further walls that touch may
+/// Corrects the position of a free centre so that the forces balance to first order.
+/// @param may_find_more  true if further touching walls may support the centre where the contacts do not
 void Contacts::balance_centre(const Search& search, bool may_find_more, std::span<double> y) {
   const auto centre = y.subspan(class_count());
   if (bears_nothing()) stiffen_touching(search, y);
@@ -140,7 +140,7 @@ void Contacts::balance_centre(const Search& search, bool may_find_more, std::spa
   move_centre(rest, centre);
 }
 
-/// Corrects the signed squares by the approaches that were solved for.
+/// Corrects the signed squares by the corrections found for the approaches.
 Contacts::Correction Contacts::correct_squares(std::span<double> y) {
   const std::size_t n = class_count();
   Correction correction;
@@ -154,8 +154,8 @@ Contacts::Correction Contacts::correct_squares(std::span<double> y) {
   return correction;
 }
 
-/// True for a correction that does not contract because it is made of rounding. Contacts that are shallow against the
-/// path of the centre are what rounding of that leaves.
+/// True for a correction that does not contract because it is round-off. Contacts that are shallow against the path of
+/// the centre carry the round-off of that path.
 bool Contacts::is_rounding(const Correction& correction, std::span<const double> y) const {
   double length = 0.0;
   for (std::size_t j = 0; j < class_count(); ++j) {
@@ -164,8 +164,8 @@ bool Contacts::is_rounding(const Correction& correction, std::span<const double>
   return correction.largest <= std::max(k_stagnation * correction.scale, k_resolved * length);
 }
 
-/// Newton's method towards the targets, with a part of the imbalance left. Gives up where its corrections do not
-/// contract, or M is not positive definite: the other branches are beyond such a state.
+/// Newton's method towards the targets, with a part of the imbalance left. Gives up if its corrections do not contract,
+/// or if M is not positive definite: other branches lie beyond such a state.
 bool Contacts::newton(std::span<double> y, double imbalance, bool do_hold_centre) {
   Search search = begin_search(y, imbalance, free_count() > 0 && !do_hold_centre);
   const bool may_lend = search.moves_centre && search.is_to_balance() && !search.is_first_touch;
@@ -181,7 +181,7 @@ bool Contacts::newton(std::span<double> y, double imbalance, bool do_hold_centre
     const bool is_free_step = iteration < search.free_steps;
     if (search.moves_centre) balance_centre(search, search.is_first_touch && is_free_step, y);
     const Correction correction = correct_squares(y);
-    // What is left is at most a further contraction of this correction.
+    // The remaining error is at most one further contraction of this correction.
     const double contraction = iteration > 0 ? std::min(correction.largest / last, 1.0) : 1.0;
     if (correction.largest * contraction <= k_resolved * correction.scale) return true;
     if (!is_free_step && contraction > k_contraction) return is_rounding(correction, y);
@@ -190,7 +190,7 @@ bool Contacts::newton(std::span<double> y, double imbalance, bool do_hold_centre
   return false;
 }
 
-/// Whether a state found by Newton's method is off the branch in modes that the method does not see: those of single
+/// True if a state found by Newton's method is off the branch in modes that the method does not see: those of single
 /// walls, and of contacts under force control.
 bool Contacts::has_left_branch(std::span<const double> y) {
   const bool has_unseen_modes = has_modes_of_walls_ || std::any_of(targets_.begin(), targets_.end(),
@@ -213,8 +213,8 @@ bool Contacts::is_balanced(std::span<const double> y) {
   return unborne_force() == 0.0;
 }
 
-/// Contacts of a centre that only goes along are no deeper than rounding: what the resolved displacement makes of their
-/// forces need not balance.
+/// True if the net force is no larger than the resolution of s makes it. Idle contacts are no deeper than round-off,
+/// and their forces need not balance.
 bool Contacts::is_balanced_but_for_rounding(std::span<const double> y) {
   evaluate(y);
   double widest = 0.0;
@@ -232,7 +232,7 @@ bool Contacts::is_balanced_but_for_rounding(std::span<const double> y) {
 
 void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y, bool is_own_mode) {
   set_targets(ramps, xi);
-  // Of the places to which others may take a centre along, Newton's method knows no nearest one.
+  // Idle walls may move the centre to several positions, of which Newton's method does not choose the nearest.
   if (is_own_mode && find_holding(y) && take_centre_to_targets(y)) return;
   std::copy(y.begin(), y.end(), trial_.begin());
   for (std::size_t j = 0; j < class_count(); ++j) {
@@ -250,8 +250,8 @@ void Contacts::solve(std::span<const Ramp> ramps, double xi, std::span<double> y
   }
 }
 
-/// From a state, which is the solution for some displacements, forces and imbalance, along a straight line to the
-/// targets. Newton's method contracts from one point to the next, if they are near, only on the branch of the first.
+/// Follows the straight line from the displacements, forces and imbalance of the state y to the targets. From a point
+/// to a near one, Newton's method contracts only on the branch of the first.
 void Contacts::approach_in_steps(std::span<double> y) {
   const double pivot = least_pivot(y);
   if (!(pivot > 0.0)) {
@@ -278,7 +278,7 @@ void Contacts::approach_in_steps(std::span<double> y) {
       continue;
     }
     step *= 0.5;
-    // Short steps that succeed now and then do not arrive either.
+    // A path that also accepts short steps now and then may still not arrive.
     const bool may_go_on = step > k_least_step && steps < k_most_steps;
     if (is_on_branch && is_balanced_but_for_rounding(trial_) && (++roundings == k_most_roundings || !may_go_on)) {
       std::copy(trial_.begin(), trial_.end(), state_.begin());

@@ -12,7 +12,7 @@
 namespace monograin::nonlocal {
 namespace {
 
-// Guards. The index is that of a class, of a pair, or -1.
+// Kinds of guards. A guard's index is that of a class, of a pair, or -1.
 enum Kind : int {
   k_made,
   k_lost,
@@ -26,23 +26,24 @@ enum Kind : int {
   k_limit
 };
 
-// The margin at which a run ends. It goes like the root of the distance from the limit: this is 1e-10 of R0 before it.
+// Margin at which a run ends. It goes like the root of the distance from the limit: a run ends 1e-10 R0 before the
+// limit.
 constexpr double k_least_margin = 1e-5;
-// The margin below which an integrator may find no more steps.
+// Margin below which an integrator may find no further steps.
 constexpr double k_hard_margin = 1e-3;
-// How far ahead of an instant its mode is read.
+// Distance in xi ahead of an instant at which its mode is read.
 constexpr double k_ahead = 1e-9;
-// How far from the end of a force that bears a free centre no integrator need go on.
+// Distance in xi from the end of a force that bears a free centre at which an integrator stops.
 constexpr double k_end_of_force = 1e-8;
-// Over the distance that is neither touch nor gap, how near a wall is that begins to take a free centre along: at the
-// whole of it the centre would go before the wall is there.
+// Gap at which a wall begins to move a free centre, over the touch tolerance: at the whole tolerance the centre would
+// move before the wall arrives.
 constexpr double k_begins = 1e-3;
-// Over the distance that is neither touch nor gap, how far off walls may be that have just been lost at such a gap: by
-// an error of where that was.
+// Gap up to which a wall counts as just lost, over the touch tolerance. A contact is lost at that tolerance; the rest
+// allows for the error of that event.
 constexpr double k_just_lost = 2.0;
 constexpr double k_nowhere = std::numeric_limits<double>::infinity();
-// How fast an integrated state is drawn back to the equations, over a step of the program: an error that it has
-// gathered would grow with 1/margin towards the limit of applicability.
+// Rate at which an integrated state is drawn back to the equations, per step of the program. Without it an accumulated
+// error would grow with 1/margin towards the limit of applicability.
 constexpr double k_pull = 20.0;
 
 }  // namespace
@@ -86,7 +87,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   if (const auto end = limit_at_start(y)) throw CannotBegin(*end);
 }
 
-/// The limit at which the step that has begun stands already, if it leads beyond: its guard would not cross zero.
+/// The limit at which a step begins, if the step leads beyond it: that limit's guard would not cross zero. Else none.
 std::optional<DomainEnd> System::limit_at_start(std::span<const double> y) {
   for (const Guard& guard : guards_) {
     if (guard.kind < k_radius) continue;
@@ -105,18 +106,18 @@ std::optional<DomainEnd> System::limit_at_start(std::span<const double> y) {
   return std::nullopt;
 }
 
-/// How far the state that evaluate_closely() found is from a limit; negative beyond it.
+/// Distance of the state of evaluate_closely() from a limit; negative beyond it.
 double System::limit_value(const Guard& guard, double xi) {
   const auto index = static_cast<std::size_t>(std::max(0, guard.index));
   if (guard.kind == k_radius) {
     return greatest_approach_ ? 1.0 - now_[index].approach / *greatest_approach_ : widest_ - now_[index].contact_radius;
   }
   if (guard.kind == k_centre) return 1.0 - depth(index, xi);
-  // Zero where the margin is that, in whatever order the walls are eliminated.
+  // Vanishes where the margin is k_least_margin, in whatever order the walls are eliminated.
   return contacts_.least_pivot(state_, k_least_margin);
 }
 
-/// What a limit's guard says.
+/// End of the domain that the guard of a limit reports.
 DomainEnd System::end_at(const Guard& guard, double xi, std::span<const double> y) {
   const Event event{guard.name, guard.index};
   if (guard.kind == k_radius) {
@@ -137,8 +138,8 @@ void System::throw_pull(std::size_t i) const {
   throw DomainError({.limit = Limit::wall_would_pull, .contact_class = static_cast<int>(i)});
 }
 
-/// Where a force ends, contacts leave the centre at the same instant: that the wall would have to pull is said of
-/// whatever has no state there, a trial far off among them.
+/// Calls `ask`, and replaces its error where a prescribed force ends and would turn negative: the wall would have to
+/// pull. Contacts leave the centre at the same instant, so that any trial may lack a state there, even a distant one.
 void System::or_pull_that_follows(double xi, auto&& ask) const {
   try {
     ask();
@@ -150,7 +151,7 @@ void System::or_pull_that_follows(double xi, auto&& ask) const {
   }
 }
 
-/// Where in the step a force comes down to nothing; nowhere in it where it does not.
+/// The xi at which a force falls to zero in this step; k_nowhere if it does not.
 double System::end_of_force(std::size_t i) const noexcept {
   const Ramp& ramp = ramps_[i];
   return ramp.start > 0.0 && ramp.end <= 0.0 ? ramp.start / (ramp.start - ramp.end) : k_nowhere;
@@ -162,7 +163,7 @@ double System::square_under_force(std::size_t i, double xi) const {
   return contacts_.law().signed_square_under(force / contacts_.composite_modulus());
 }
 
-/// The unknowns as contacts_ wants them, in state_.
+/// Copies the unknowns to state_ as contacts_ expects them: s for classes under force control, too.
 std::span<double> System::evaluate(double xi, std::span<const double> y) {
   std::ranges::copy(y.first(state_.size()), state_.begin());
   for (std::size_t i = 0; i < classes_.size(); ++i) {
@@ -171,7 +172,7 @@ std::span<double> System::evaluate(double xi, std::span<const double> y) {
   return state_;
 }
 
-/// The same, and all contacts in that state in now_.
+/// Evaluates the unknowns in state_, and all contacts in that state in now_.
 void System::evaluate_closely(double xi, std::span<const double> y) { contacts_.contacts(evaluate(xi, y), now_); }
 
 void System::mark_closed() {
@@ -187,7 +188,7 @@ void System::note(std::span<double> y) const {
 }
 
 void System::complete(double xi, std::span<double> y) {
-  // The gaps themselves, and the place of a free centre: errors of them would close walls that only touch.
+  // Recomputes the gaps, and the position of a free centre: their errors would close walls that only touch.
   evaluate(xi, y);
   mark_closed();
   contacts_.clear_centre(ramps_, xi, is_closed_, state_);
@@ -205,11 +206,12 @@ void System::branch_reach(std::span<const double> y, std::span<double> reach) co
 
 void System::solve(double xi, std::span<double> y) {
   evaluate(xi, y);
-  // Under forces, too, the way begins where y is: the centre would be carried along another one.
+  // The path begins at y under force control, too: from another depth, the centre would move along another path.
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_loaded(i)) state_[i] = square_of(y[i]);
   }
-  // Beyond an event that is still to be found, contacts bear that the places before it know nothing of.
+  // A contact that is open in its regime may be loaded beyond an event still to be located. The states before know
+  // nothing of it.
   bool is_own_mode = true;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     is_own_mode = is_own_mode && (regimes_[i] == Regime::elastic || state_[i] <= touch_);
@@ -218,8 +220,8 @@ void System::solve(double xi, std::span<double> y) {
   note(y);
 }
 
-/// Contacts that bear a free centre against a force alone are as deep as its power 2/3, and so is its place: where the
-/// force begins, and where it ends.
+/// Advances past the begin or the end of a force that contacts alone bear against a free centre. Their depth, and with
+/// it the centre's position, goes like the force to the power 2/3: its rate is infinite at zero force.
 double System::leave_singularity(double xi, std::span<double> y) {
   if (contacts_.free_count() == 0) return xi;
   evaluate(xi, y);
@@ -252,7 +254,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
   }
   or_pull_that_follows(xi, [&] { contacts_.rates(drawn_ramps_, state_, rates_, touch_, k_pull, touches_); });
   std::ranges::copy(rates_, dy.begin());
-  // dF/dxi of every contact, and with it that of the walls that follow a force.
+  // dF/dxi of every contact, and of the walls under force control.
   const auto force_rate = [&](std::size_t i) {
     if (is_loaded(i)) return ramps_[i].end - ramps_[i].start;
     const ContactState c = now_[i];
@@ -264,7 +266,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
     double speed = ramps_[i].end - ramps_[i].start;
     if (is_loaded(i)) {
       const double force_speed = speed;
-      // s^(3/2), on which nothing else depends.
+      // Rate of s^(3/2), the unknown; no other rate depends on it.
       const LocalContact local = contacts_.law().at(std::max(state_[i], 1e-200));
       dy[i] = force_speed * k_force_power / (2.0 * contacts_.composite_modulus() * local.approach_slope);
       speed = c.stiffness > 0.0 ? force_speed / c.stiffness : 0.0;
@@ -288,7 +290,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
   }
   rates(xi, y, all_rates_);
   res[work_place_] = dy[work_place_] - all_rates_[work_place_];
-  // Forces do not say where a centre goes that no contact holds.
+  // The balance of forces does not determine the position of a centre that no contact supports.
   const std::size_t count = contacts_.free_count();
   if (count == 0) return;
   Eigen::Vector3d missing = Eigen::Vector3d::Zero();
@@ -305,8 +307,8 @@ std::optional<double> System::closed_quadrature(double xi, std::span<const doubl
 
 // --- transitions
 
-/// Signed square of a class a little later, as soon as it is on a side; 0 if it never is, nothing if there is no state
-/// any more before that.
+/// Signed square of a class shortly after xi, as soon as it exceeds the touch tolerance on either side; 0 if it never
+/// does, none if no state exists before that.
 std::optional<double> System::square_ahead(std::size_t i, double xi) {
   std::vector<double> ahead = state_;
   return contacts::side_ahead(xi, touch_, [&](double later) {
@@ -315,8 +317,8 @@ std::optional<double> System::square_ahead(std::size_t i, double xi) {
   });
 }
 
-/// Regimes from the state that evaluate() found. Walls that just touch belong to the side to which they go. At a fixed
-/// centre an open one is where it is but for rounding: its guard says when it is made, which may be much later.
+/// Sets the regimes from the state of evaluate(). Touching walls belong to the side to which they go. At a fixed centre
+/// the gap of an open wall is exact up to round-off: its guard fires when contact is made, which may be much later.
 void System::resolve_mode(double xi, std::vector<Event>& log) {
   const bool are_exact = has_begun_ && contacts_.free_count() == 0;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
@@ -342,7 +344,7 @@ void System::add_guard(int kind, std::size_t index, int direction, std::string_v
   guards_.push_back({kind, static_cast<int>(index), direction, name});
 }
 
-/// Walls that touch in the state that evaluate() found, until they are well off.
+/// Marks the walls that touch in the state of evaluate(). A wall loses its mark once its gap exceeds idle_.
 void System::mark_touching() {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     const bool is_off = regimes_[i] == Regime::open && state_[i] < -idle_;
@@ -361,14 +363,14 @@ void System::arm_guards() {
   arm_limits();
 }
 
-/// Contacts are made and lost at walls under displacement control.
+/// Arms the guards of contacts made and lost at walls under displacement control.
 void System::arm_contacts() {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_loaded(i)) continue;
     if (regimes_[i] == Regime::open)
       add_guard(k_made, i, 1, "contact-made");
     else
-      // The others follow its force, whose slope has no slope there.
+      // The other contacts depend on this contact's force, whose second derivative is infinite where contact is lost.
       guards_.push_back({.kind = k_lost,
                          .index = static_cast<int>(i),
                          .direction = -1,
@@ -377,7 +379,7 @@ void System::arm_contacts() {
   }
 }
 
-/// From where, and until where, an open wall may take a free centre along.
+/// Arms the guards of where an open wall begins and ceases to move a free centre.
 void System::arm_carriers() {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_loaded(i) || regimes_[i] != Regime::open) continue;
@@ -389,7 +391,7 @@ void System::arm_carriers() {
   }
 }
 
-/// Contacts meet on the surface, each pair once.
+/// Arms the guards of contacts that meet on the surface, each pair once.
 void System::arm_impingement() {
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const bool both = regimes_[pairs_[p].first] == Regime::elastic && regimes_[pairs_[p].second] == Regime::elastic;
@@ -397,7 +399,7 @@ void System::arm_impingement() {
   }
 }
 
-/// Next to the end of a force that bears a free centre an integrator stops.
+/// Arms the guards that stop an integrator next to the end of a force that bears a free centre.
 void System::arm_ends_of_forces() {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (!is_loaded(i) || end_of_force(i) == k_nowhere) continue;
@@ -410,9 +412,9 @@ void System::arm_ends_of_forces() {
   }
 }
 
-/// Where the formulation stiffens, and ends.
+/// Arms the guards of stiffening, and of the ends of the domain.
 void System::arm_limits() {
-  // It stiffens before it comes to its limit.
+  // The formulation stiffens before it reaches its limit, so that the limit needs no guard until then.
   const bool will_stiffen = !has_stiffened_ && contacts_.least_pivot(state_, k_stiff_margin) > 0.0;
   if (!has_stiffened_) guards_.push_back({k_stiffening, -1, -1, "stiffening"});
   const bool needs_radius = settings_.radius_rule != RadiusRule::none || settings_.model.terms == Terms::all;
@@ -425,12 +427,12 @@ void System::arm_limits() {
   if (!will_stiffen) guards_.push_back({k_limit, -1, -1, "limit"});
 }
 
-/// How far a wall has come towards the centre, wherever that is.
+/// Displacement of a wall towards the centre of the particle, wherever that is; over R0.
 double System::depth(std::size_t i, double xi) {
   return (is_loaded(i) ? now_[i].displacement : prescribed(i, xi)) + shift(i, state_);
 }
 
-/// What the displacement of the centre adds to that.
+/// Contribution of the centre's displacement to depth().
 double System::shift(std::size_t i, std::span<const double> y) const noexcept {
   double sum = 0.0;
   for (std::size_t k = 0; k < contacts_.free_count(); ++k) {
@@ -439,9 +441,9 @@ double System::shift(std::size_t i, std::span<const double> y) const noexcept {
   return sum;
 }
 
-/// What is left of the angle between two walls outside of their contacts.
+/// Angle that two contacts leave free between their edges; 0 where they meet.
 double System::angle_between_edges(const Pair& pair, double xi) {
-  // Each belongs to many pairs.
+  // Each class belongs to many pairs.
   const auto edge = [&](std::size_t i) {
     if (std::isnan(edge_angles_[i])) {
       const double radius = contacts_.deformed_radius(settings_.radius_rule, i, state_);
@@ -474,7 +476,7 @@ void System::guard_values(double xi, std::span<const double> y, std::span<double
         values[g] = angle_between_edges(pairs_[index], xi);
         break;
       case k_stiffening:
-        values[g] = contacts_.least_pivot(state_, k_stiff_margin);  // zero where the margin is that
+        values[g] = contacts_.least_pivot(state_, k_stiff_margin);  // zero where the margin is k_stiff_margin
         break;
       case k_force_ends:
         values[g] = end_of_force(index) - k_end_of_force - xi;
@@ -541,8 +543,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   return std::nullopt;
 }
 
-/// Whether a wall that seems to be made does not touch the surface yet, nor goes on to it: one that comes to stand
-/// there may be within an integrator's tolerance. Where the centre is free, what stands takes it along.
+/// True if a wall whose contact seems to be made does not touch the surface yet, nor goes on to it. A wall that comes
+/// to rest at the surface may be within an integrator's tolerance. False with a free centre, which such a wall moves.
 bool System::only_stands(std::size_t i, double xi, std::span<const double> y) {
   if (contacts_.free_count() > 0) return false;
   std::vector<double> exact(y.begin(), y.end());
@@ -554,8 +556,9 @@ bool System::only_stands(std::size_t i, double xi, std::span<const double> y) {
   return state_[i] <= touch_ && square_ahead(i, xi).value_or(touch_) <= 0.0;
 }
 
-/// Contacts that the exact state has on another side than an integrator had, whose guards would not cross any more. At
-/// a fixed centre a wall at which the surface ends to stand bears nothing, as before it was pressed.
+/// Switches the regime of contacts that are on another side in the exact state than in the integrated one; their guards
+/// would not cross any more. At a fixed centre, a wall at which the surface comes to rest carries nothing, as before it
+/// was pressed.
 void System::resolve_others(double xi, std::span<const std::size_t> fired, std::vector<Event>& log) {
   const bool is_fixed = contacts_.free_count() == 0;
   for (std::size_t i = 0; i < classes_.size(); ++i) {
@@ -571,9 +574,9 @@ void System::resolve_others(double xi, std::span<const std::size_t> fired, std::
   }
 }
 
-// --- what others ask
+// --- queries
 
-/// What a wall is to go on from is that of the law: forces of errors on opposite walls would not balance.
+/// Uses the exact state, from which the wall continues: integration errors of opposite walls' forces would not balance.
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
   std::vector<double> exact(y.begin(), y.end());
   try {
@@ -589,7 +592,7 @@ bool System::is_open(int contact_class) const noexcept {
 }
 
 std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
-  if (is_shallow_) return Difficulty::below_resolution;  // of the whole program
+  if (is_shallow_) return Difficulty::below_resolution;  // the whole program is
   if (contacts_.margin(evaluate(xi, y)) < k_hard_margin) return Difficulty::near_applicability_limit;
   if (contacts_.free_count() == 0 || !contacts_.is_held_softly(ramps_, evaluate(xi, y), idle_)) return std::nullopt;
   return Difficulty::singular_balance;

@@ -2,9 +2,9 @@
 ///
 /// Unknowns: the signed square s of the contact radius of every class, the displacement of a free centre, and the work
 /// of the walls. In s the equations are regular from the unloaded state on, and its sign says whether a contact is
-/// open; in force or radius they would not start. Where a force is prescribed, s follows from it outright and s^(3/2)
-/// stands in its place, which begins linearly. Three forms: direct, Newton's method for all at an instant; explicit,
-/// ds/dxi from the same matrix; implicit, the equations themselves.
+/// open; in force or radius the rates would be infinite there. A class under force control has s^(3/2) as its unknown
+/// instead: s follows from the force alone, and s^(3/2) begins linearly. Three forms: direct, Newton's method for all
+/// unknowns at an instant; explicit, ds/dxi from the same matrix; implicit, the equations themselves.
 ///
 /// Elastic: a contact has no memory, and the work of the walls is the stored energy. Lengths over R0, forces over E
 /// R0^2. Source: Agarwal and Gonzalez (2018).
@@ -25,8 +25,8 @@ struct Settings {
   double initial_radius = 0.0;  ///< R0 [m], > 0
   double youngs_modulus = 0.0;  ///< E [Pa], > 0
   Centre centre = Centre::fixed;
-  /// Largest displacement [m] and force [N] the program asks of a wall: how large the unknowns become, which absolute
-  /// tolerances are relative to. 0: not said.
+  /// Largest displacement [m] and force [N] that the program prescribes to a wall. They set the size of the unknowns,
+  /// to which absolute tolerances are relative. 0: not known.
   double largest_displacement = 0.0;
   double largest_force = 0.0;
 };
@@ -67,7 +67,7 @@ class System final : public HybridSystem {
  private:
   enum class Regime { open, elastic };
 
-  /// Two walls, by their classes, that may come to touch on the surface of the particle; one for each angle.
+  /// Two walls, given by their classes, that may meet on the surface of the particle; one pair for each angle.
   struct Pair {
     std::size_t first = 0, second = 0;
     double angle = 0.0;
@@ -111,7 +111,7 @@ class System final : public HybridSystem {
   void arm_limits();
   void add_guard(int kind, std::size_t index, int direction, std::string_view name);
 
-  /// The margin from which on the source's formulation is seen to stiffen.
+  /// Margin below which the source's formulation counts as stiffened.
   static constexpr double k_stiff_margin = 0.25;
   /// The power of s that is the unknown of a force-controlled class.
   static constexpr double k_force_power = 1.5;
@@ -127,24 +127,24 @@ class System final : public HybridSystem {
 
   std::vector<Ramp> ramps_;  ///< displacements over R0, forces over E R0^2
   std::vector<Regime> regimes_;
-  double touch_ = 0.0;                       ///< least |s| that puts a contact on a side
-  double guard_unit_ = 1.0;                  ///< of |s| in guards of contacts
-  double idle_ = 0.0;                        ///< least s that lets a contact hold a free centre
-  double widest_ = 1.0;                      ///< contact radius up to which there are states
-  std::optional<double> greatest_approach_;  ///< where a contact is that wide, if the law says so in few digits
-  bool is_shallow_ = false;                  ///< no contact of the program is deeper than rounding
+  double touch_ = 0.0;                       ///< touch tolerance: |s| below this is round-off
+  double guard_unit_ = 1.0;                  ///< unit of |s| in guards of contacts
+  double idle_ = 0.0;                        ///< least s of a contact that supports a free centre
+  double widest_ = 1.0;                      ///< largest contact radius over R0 for which states exist
+  std::optional<double> greatest_approach_;  ///< approach at widest_, if the radius there has too few digits
+  bool is_shallow_ = false;                  ///< no contact of the program is deeper than round-off
   bool has_begun_ = false;
   bool has_stiffened_ = false;
   double least_margin_ = 1.0;
   std::vector<Guard> guards_;
   // Work space, so that nothing is allocated while integrating.
-  std::vector<double> state_, rates_;  ///< unknowns of contacts_
+  std::vector<double> state_, rates_;  ///< unknowns of contacts_, and their rates
   std::vector<double> all_rates_;
   std::vector<ContactState> now_;
-  std::vector<double> edge_angles_;  ///< as far as the guards have asked for them; nan: not yet
+  std::vector<double> edge_angles_;  ///< edge angles that the guards have computed in this state; nan: none
   std::vector<Ramp> drawn_ramps_;
   std::vector<char> is_closed_;
-  std::vector<char> touches_;  ///< may take a free centre along; an open wall until it is well off
+  std::vector<char> touches_;  ///< wall may move a free centre; if open, until its gap exceeds idle_
 };
 
 }  // namespace monograin::nonlocal

@@ -17,7 +17,7 @@ void require_apart(double angle, const ContactClass& first, const ContactClass& 
                               " rad apart, less than " + std::to_string(k_least_wall_angle));
 }
 
-/// @throws std::invalid_argument for a wall around which forces do other than around its class
+/// @throws std::invalid_argument if forces act differently on the walls of a class
 void require_same_surroundings(const Eigen::MatrixXd& by_wall, const Eigen::MatrixXd& coupling,
                                std::span<const Wall> walls, std::span<const ContactClass> classes) {
   for (std::size_t i = 0; i < walls.size(); ++i) {
@@ -31,7 +31,7 @@ void require_same_surroundings(const Eigen::MatrixXd& by_wall, const Eigen::Matr
   }
 }
 
-/// Counts a wall among the neighbours that are like it.
+/// Counts a wall among the neighbours of its class and angle.
 void count_neighbour(std::vector<Neighbours>& neighbours, std::size_t contact_class, double angle,
                      double poisson_ratio) {
   const auto alike = std::ranges::find_if(neighbours, [&](const Neighbours& other) {

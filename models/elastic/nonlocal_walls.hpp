@@ -15,7 +15,7 @@
 
 namespace monograin::nonlocal {
 
-/// Least angle between two walls: eq. 18 is that of a point force, and grows without bound towards it.
+/// Least angle between two walls [rad]. Eq. 18 is for a point force and diverges as the angle goes to zero.
 constexpr double k_least_wall_angle = 0.05;
 /// Differences of directions and couplings up to here are round-off.
 constexpr double k_same_surroundings = 1e-9;
@@ -25,11 +25,11 @@ struct Wall {
   std::size_t contact_class;
 };
 
-/// Walls that the first wall of a class sees alike: of one class, and at one angle.
+/// Neighbours that act alike on the first wall of a class: walls of one class, at one angle from it.
 struct Neighbours {
   std::size_t contact_class;
   double angle;
-  double quotient;  ///< radius_quotient() of it
+  double quotient;  ///< radius_quotient() of the angle
   int count;
 };
 
@@ -57,7 +57,7 @@ struct Neighbours {
 [[nodiscard]] std::vector<std::vector<Neighbours>> neighbours_of(double poisson_ratio, std::span<const Wall> walls,
                                                                  std::size_t class_count);
 
-/// Signed square s of each class from where walls push each other off; infinite where they do not.
+/// Signed square s of each class from which its walls and others push each other off; infinite if they do not.
 [[nodiscard]] std::vector<double> rivalry_of(const Eigen::MatrixXd& influence, double composite_modulus,
                                              std::span<const Wall> walls, std::size_t class_count);
 

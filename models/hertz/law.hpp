@@ -12,11 +12,11 @@
 
 namespace monograin::hertz {
 
-/// One contact, as contacts::IndependentContacts asks for it.
+/// Law of one contact, for contacts::IndependentContacts.
 struct WallLaw {
-  struct Branch {};  ///< unloading goes back on the same curve
+  struct Branch {};  ///< unloading retraces loading
   static constexpr std::array<std::string_view, 2> k_regimes{"open", "elastic"};
-  /// Distance of a wall from the centre, over R0, at which it has reached it.
+  /// Distance of a wall from the particle's centre, over R0, at which the wall counts as having reached the centre.
   static constexpr double k_least_distance = 1e-3;
 
   double composite_modulus = 1.0;  ///< E* [Pa], > 0

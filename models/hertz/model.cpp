@@ -64,7 +64,7 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
           {"bulk_compliance", (1.0 - 2.0 * poisson_ratio) / youngs_modulus, "1/Pa"}};
 }
 
-/// How far a contact is pressed that meets a condition for the first time.
+/// Displacement and force at which a contact meets a condition for the first time.
 Reach reach(const ModelInput& input, const Until& until) {
   constexpr double k_infinity = std::numeric_limits<double>::infinity();
   const double radius = input.radius;
@@ -87,7 +87,7 @@ ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) {
   return {.force = 0.3};
 }
 
-/// Between elastic spheres and walls an overlap without a force is a contact that was missed.
+/// Reports missed contacts: between elastic sphere and wall an overlap always has a force.
 void check(const CheckedRun& run, std::vector<Violation>& found) {
   for (const ContactClass& c : run.classes) {
     const std::size_t overlap = run.rows.column(c.name + ".overlap");

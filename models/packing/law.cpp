@@ -15,9 +15,9 @@ namespace monograin::packing {
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
-constexpr double k_least_room = 1e-5;  // between Phi_J and 1
-// Search for the ends of a growing branch: from this far above Phi_J, in equal ratios and then in equal steps; and this
-// far, over Phi, before the last particles yield.
+constexpr double k_least_room = 1e-5;  // least distance of Phi_J from 1
+// Samples of growing_branch(): from this far above Phi_J in equal ratios, then in equal steps; and one sample this far,
+// over Phi, before full plasticity.
 constexpr double k_first = 1e-15;
 constexpr double k_before_full_plasticity = 1e-14;
 constexpr int k_ratios = 60;
@@ -27,7 +27,7 @@ void require(bool is_met, const char* message) {
   if (!is_met) throw std::invalid_argument(message);
 }
 
-/// x = 1 - (1 - Phi)/p_c, in the form that loses nothing where it begins.
+/// x = 1 - (1 - Phi)/p_c, without cancellation near x = 0.
 double openness(const Law& law, double phi) noexcept { return (phi - law.rigidity) / law.given.critical_porosity; }
 
 /// M_eff and its slope over Phi (eqs. 7-9), with E_eff/G_eff = r = 2 (1 + nu) x^n, n = f_E - f_G.
@@ -58,7 +58,8 @@ double coordination_slope(const Law& law, double phi) noexcept {
   return 0.5 * gain / std::sqrt((p.reference_fraction - p.jamming_fraction) * (phi - p.jamming_fraction));
 }
 
-/// s m, without the 1 beside it, of which nearly incompressible particles leave few digits.
+/// s m by itself. In 1 + s m, the small m of nearly incompressible particles would keep few digits. Throws where that
+/// sum, by which the consistent coupling divides, is not positive.
 double give(const Law& law, double modulus, double coordination, double phi) {
   const double result = law.sign * modulus / (law.given.coupling_factor * law.bulk_modulus * coordination * phi);
   if (!(1.0 + result > 0.0)) {
@@ -80,7 +81,8 @@ double slope_of(const Law& law, Measure measure, double phi) {
   return 0.0;
 }
 
-/// Where the consistent coupling divides by zero, or 1. What it divides by need not fall all the way.
+/// Phi at which the consistent coupling divides by zero, or 1. The divisor need not fall monotonically, so that its
+/// zero is bracketed by a scan.
 double end_of_states(const Law& law) {
   if (law.sign > 0.0) return 1.0;
   const auto has_state = [&law](double phi) {
@@ -108,7 +110,7 @@ double end_of_states(const Law& law) {
   return 1.0;
 }
 
-/// Where a function changes sign; on the side of `above` to the last bit.
+/// Root of a function between two bounds, to the last bit: of the final bracket's ends, the one with the smaller value.
 template <class Function>
 double sign_change(Function&& function, double below, double above, double at_below, double at_above) {
   std::uintmax_t iterations = 200;
@@ -258,7 +260,7 @@ double measured(const Law& law, Measure measure, double phi) {
 Branch growing_branch(const Law& law, Measure measure) {
   std::array<double, k_ratios + k_steps + 2> places{};
   const double room = 1.0 - law.jamming;
-  // Ratios end where the equal steps begin.
+  // The ratios end where the equal steps begin.
   for (int k = 0; k <= k_ratios; ++k) {
     places[static_cast<std::size_t>(k)] =
         law.jamming + room * std::pow(k_first, 1.0 - static_cast<double>(k) / k_ratios) /
@@ -267,7 +269,7 @@ Branch growing_branch(const Law& law, Measure measure) {
   for (int k = 1; k <= k_steps; ++k) {
     places[static_cast<std::size_t>(k_ratios + k)] = std::lerp(law.jamming, 1.0, static_cast<double>(k) / k_steps);
   }
-  // Where particles yield the stress falls the fastest just before all of them do, and grows again at once.
+  // As the particles yield, the stress falls fastest just before all of them have yielded, and grows again at once.
   const double yielding = full_plasticity(law) * (1.0 - k_before_full_plasticity);
   places.back() = std::clamp(yielding, places.front(), 1.0);
   std::ranges::sort(places);
@@ -287,7 +289,7 @@ Branch growing_branch(const Law& law, Measure measure) {
       before = std::max(before, place);
       continue;
     }
-    // Bisection: the slope may have a jump, and no value where the equations end.
+    // Bisection, because the slope may have a jump, and has no value where the equations end.
     double lower = before;
     double upper = place;
     while (std::midpoint(lower, upper) > lower && std::midpoint(lower, upper) < upper) {

@@ -1,14 +1,13 @@
 /// Compaction of a packing of soft discs: stress against packing fraction, from jamming to no pores left.
 ///
-/// Stress and strain are positive in compression. The strain is the one that the packing has suffered since it jammed,
-/// ln(h_c/h), as its elastic relation sigma_e = M_eff e has it. Stresses and moduli in Pa.
+/// Stress and strain are positive in compression. The strain is that of the packing since it jammed, ln(h_c/h), for
+/// which sigma_e = M_eff e. Stresses and moduli in Pa.
 ///
 ///   M_eff    modulus of the packing: eq. 7 with the porosity laws of eqs. 8, 9
-///   m        M_eff/(c1 K Z Phi), how much the particles give way beside the packing
+///   m        M_eff/(c1 K Z Phi), strain of the particles over that of the packing
 ///   sigma_e  M_eff (ln Phi + c2)/(1 + s m), eq. 6; s = +1: published coupling, s = -1: consistent coupling
-///   sigma    (1 - f_p) sigma_e + f_p sigma_p, eq. 10; with one set of exponents for the elastic and the plastic
-///   packing
-///            sigma_p = sigma_y + sigma_e H/(E + H) exactly, without any 0/0 for H = 0
+///   sigma    (1 - f_p) sigma_e + f_p sigma_p, eq. 10; the elastic and the plastic packing have one set of exponents,
+///            so that sigma_p = sigma_y + sigma_e H/(E + H) exactly, without any 0/0 for H = 0
 ///
 /// Equations are those of Nezamabadi et al. (2022); 6, 13 and 22 corrected in sign (as printed they are negative where
 /// the packing is compressed).
@@ -19,8 +18,8 @@
 namespace monograin::packing {
 
 enum class Coupling {
-  published,  ///< eq. 6 as printed: to it the published parameters were fitted
-  consistent  ///< what eqs. 18-20 give with one sign convention: the particles' shrinking adds to the packing's strain
+  published,  ///< eq. 6 as printed, to which the published parameters were fitted
+  consistent  ///< eqs. 18-20 with one sign convention: the particles' shrinking adds to the packing's strain
 };
 
 /// Bilinear von Mises plasticity of the particles.
@@ -29,7 +28,7 @@ struct Plasticity {
   double hardening_modulus = 0.0;  ///< H = d sigma_y/d eps_p [Pa], >= 0
 };
 
-/// What the law is given; the defaults are the published values.
+/// Parameters of the law; the defaults are the published values.
 struct Parameters {
   double youngs_modulus = 10e6;          ///< E [Pa], > 0
   double poisson_ratio = 0.45;           ///< nu, in (-1, 0.5)
@@ -49,7 +48,7 @@ struct Parameters {
   bool has_continuous_jamming = false;
 };
 
-/// The law with what follows from its parameters.
+/// The law: its parameters, and the constants that follow from them.
 struct Law {
   Parameters given;
   double shear_modulus = 0.0;   ///< G [Pa]
@@ -59,21 +58,21 @@ struct Law {
   double zero_stress = 0.0;     ///< Phi at which eq. 6 is zero, exp(-c2)
   double sign = 1.0;            ///< s
   double hardening_share = 0;   ///< h = H/(E + H); 1 for an elastic packing
-  /// Phi_J, the largest of Phi_c, 1 - p_c and exp(-c2), which the published values do not make one: from here on the
-  /// packing bears stress.
+  /// Phi_J, from which on the packing bears stress: the largest of Phi_c, 1 - p_c and exp(-c2). With the published
+  /// values these three differ.
   double jamming = 0.0;
-  /// Phi up to which there is a state: 1, or where M_eff = c1 K Z Phi, which the consistent coupling divides by; may be
-  /// Phi_J itself.
+  /// Largest Phi that has a state: 1, or the Phi where M_eff = c1 K Z Phi and the consistent coupling divides by zero,
+  /// which may be Phi_J itself.
   double end = 1.0;
 };
 
-/// @throws std::invalid_argument naming what is out of the ranges above, or leaves less than 1e-5 between Phi_J and 1
+/// @throws std::invalid_argument naming the parameter that is out of its range; or if Phi_J is within 1e-5 of 1
 [[nodiscard]] Law make_law(const Parameters& parameters);
 
 /// Z(Phi), eq. 17. @throws std::domain_error below Phi_c
 [[nodiscard]] double coordination_number(const Law& law, double packing_fraction);
 
-/// Pieces of eq. 11, where f_p is clipped at 1. By itself each goes on smoothly beyond where they meet.
+/// Pieces of eq. 11, which clips f_p at 1. Each piece by itself continues smoothly beyond the point where they meet.
 enum class Piece { either, growing, full };
 
 /// f_p(Phi), eq. 11, between 0 and 1; 0 for an elastic packing.
@@ -91,6 +90,7 @@ struct State {
   double stress = 0.0;           ///< sigma [Pa]
 };
 
+/// State of a jammed packing by the closed form.
 /// @param packing_fraction  Phi >= Phi_J; may be a little above 1
 /// @throws std::domain_error below Phi_J, and where a denominator of eqs. 6 or 7 vanishes
 [[nodiscard]] State state(const Law& law, double packing_fraction);
@@ -98,7 +98,7 @@ struct State {
 /// ln Phi + c2, the strain of packing and particles together: e + s v with the particles' v = m e.
 [[nodiscard]] double total_strain(const Law& law, double packing_fraction) noexcept;
 
-/// M_eff(Phi) (eq. 7) [Pa]. @throws std::domain_error as state(), but for eq. 6
+/// M_eff(Phi) (eq. 7) [Pa]. @throws std::domain_error above the critical porosity, and where eq. 7 has no denominator
 [[nodiscard]] double effective_modulus(const Law& law, double packing_fraction);
 
 /// sigma for a given sigma_e (eq. 10) [Pa].
@@ -114,27 +114,27 @@ struct State {
 /// Derivatives with respect to Phi of a jammed packing.
 struct Slopes {
   double strain = 0.0;
-  double particle_strain = 0.0;     ///< v' = 1/Phi - e' but for the sign, in which nothing cancels
+  double particle_strain = 0.0;     ///< v' = s (1/Phi - e'), in a form without cancellation
   double stress_elastic = 0.0;      ///< [Pa]
   double stress = 0.0;              ///< [Pa]; beyond full plasticity the one-sided value
-  double at_given_particles = 0.0;  ///< of the stress, while the particles keep their strain v [Pa]
+  double at_given_particles = 0.0;  ///< of the stress, with the particles' strain v held constant [Pa]
 };
 
-/// Of the solution of eq. 21 that has the strain e = sigma_e/M at Phi: with this in the place of sigma_e, and the sign
-/// of the coupling, the equation reads
+/// Derivatives of the solution of eq. 21 that has the strain e = sigma_e/M at Phi. In terms of e, and with the sign of
+/// the coupling, the equation reads
 ///   (1 + s m) e' = 1/Phi - s m (M'/M - Z'/Z - 1/Phi) e
-/// Its solutions come together as m grows; those for sigma_e part with M, which may grow by many orders from jamming
-/// on. Infinite at Phi_c, and where M_eff begins.
+/// Solutions for e converge as m grows. Solutions for sigma_e diverge with M, which may grow by many orders from
+/// jamming on. Infinite at Phi_c, and where M_eff begins.
 /// @throws std::domain_error as state()
 [[nodiscard]] Slopes slopes(const Law& law, double packing_fraction, double strain, Piece piece = Piece::either);
 
-/// What can be prescribed instead of Phi.
+/// Quantity that may be prescribed instead of Phi.
 enum class Measure { strain, stress_elastic, stress };
 
 [[nodiscard]] double measured(const Law& law, Measure measure, double packing_fraction);
 
-/// The first stretch of packing fractions from jamming on over which a measure grows. Neither strain nor stress need
-/// grow up to Phi = 1: the modulus may grow faster than the stress, and the plastic fraction faster than both.
+/// First interval of packing fractions from jamming on over which a measure grows. Neither strain nor stress need grow
+/// up to Phi = 1: the modulus may grow faster than the stress, and the plastic fraction faster than both.
 struct Branch {
   Measure measure = Measure::strain;
   double begin = 0.0;     ///< Phi; above Phi_J where the measure falls at first (consistent coupling)
@@ -145,16 +145,16 @@ struct Branch {
 
 [[nodiscard]] Branch growing_branch(const Law& law, Measure measure);
 
-/// Phi from which on the plastic packing is softer than the elastic one, sigma_e = sigma_y (1 + H/E): just above
-/// jamming it is stiffer. Infinite where there is none such.
+/// Phi above which the plastic packing is softer than the elastic one: sigma_e = sigma_y (1 + H/E). Just above jamming
+/// the plastic packing is stiffer. Infinite if it never becomes softer.
 [[nodiscard]] double softening(const Law& law);
 
-/// Phi at which the measure has this value, to round-off.
+/// Phi on a branch at which the measure has this value, to round-off.
 /// @throws std::domain_error where the value is not on the branch
 [[nodiscard]] double packing_fraction_at(const Law& law, const Branch& branch, double value);
 
-/// Phi between two others at which a packing whose particles have a strain v bears a stress, to round-off.
-/// @return none where it bears more at the lower one already, or less at the upper one
+/// Phi between two bounds at which a packing whose particles have the strain v bears a stress, to round-off.
+/// @return none if the packing bears more at the lower bound already, or less at the upper bound
 [[nodiscard]] std::optional<double> packing_fraction_under(const Law& law, double stress, double particle_strain,
                                                            double lower, double upper, Piece piece = Piece::either);
 

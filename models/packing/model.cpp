@@ -126,12 +126,12 @@ constexpr std::array<string_view, 7> k_domain{
     "coordination law: Z_c, Z_1 and Phi_1 are assumed (isostatic frictionless discs, 6 contacts at Phi = 1)",
 };
 
-/// Where the steps of a packing lead.
+/// Packing fractions to which the steps of a program lead.
 class Destinations {
  public:
   explicit Destinations(const Law& law) : law_(law) {}
 
-  /// Packing fraction that a step leads to from one before; infinite where it leads out of the model.
+  /// Packing fraction after a step that begins at `now`; infinite if the step leads out of the model's domain.
   double of(const Prescription& step, double now) {
     if (step.control == Control::packing_fraction) return step.target;
     const bool is_strain = step.control == Control::strain;
@@ -153,7 +153,7 @@ class Destinations {
   std::optional<Branch> stress_;
 };
 
-/// Steps of a plastic packing that go back. What a step leaves open by its condition is the run's to find out.
+/// Objects to steps that unload a plastic packing. The run finds out about steps that may end early by their condition.
 void check_only_compaction(const Law& law, double initial, const ModelInput& input, std::vector<Objection>& found) {
   Destinations destinations(law);
   double least = initial;
@@ -174,7 +174,7 @@ void check_only_compaction(const Law& law, double initial, const ModelInput& inp
   }
 }
 
-/// The key whose value does not go with the others.
+/// Key whose value conflicts with the others.
 const char* culprit(const Parameters& p) {
   if (p.stretch_exponent < p.shear_exponent) return "f_E";
   if (p.coordination_at_reference < p.coordination_at_jamming) return "Z_1";

@@ -17,7 +17,7 @@ namespace monograin::packing {
 /// The law that a scenario asks for. @throws std::invalid_argument where its parameters make no law
 [[nodiscard]] Law law_of(const ModelInput& input);
 
-/// Packing fraction at the start.
+/// Packing fraction at the start: the key initial_packing_fraction, or Phi_J without it.
 [[nodiscard]] double initial_packing_fraction(const ModelInput& input, const Law& law);
 
 /// Options that a drawn scene may set to other words than the default.

@@ -44,7 +44,7 @@ ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) {
 std::vector<DrawnStep> draw_program(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds,
                                     std::size_t count) {
   const double usual = dice.happens(0.6) ? 1.0 : dice.log_uniform(1e-12, 1e12);
-  // Plastic packings are compacted only; targets of different kinds are in no order that is known here.
+  // Plastic packings are only compacted. The order of targets of different kinds is unknown here: use one kind.
   const Control only = dice.one_of({Control::packing_fraction, Control::strain, Control::stress});
   double present = 0.0;  // share of the path
   return draw_steps(dice, usual, count, [&](DrawnStep& step, std::size_t i) {
@@ -85,7 +85,7 @@ void check(const CheckedRun& run, std::vector<Violation>& found) {
     if (word == "unjammed") return phi / law.jamming - 1.0 - tolerance;
     return (word == "fully-plastic" ? full / phi : phi / full) - 1.0 - tolerance;
   });
-  // It grows like a root from jamming on, and is compared by what it follows from.
+  // The coordination number has an infinite slope at jamming, so that each row is compared by its own packing fraction.
   const std::size_t coordination = rows.column("coordination_number");
   check_rows(run, "coordination", "the coordination number does not belong to the packing fraction", found,
              [&](std::size_t row) {

@@ -1,4 +1,4 @@
-/// How the stress test draws scenes of model `packing`, and what must hold of their histories.
+/// Stress test of model `packing`: draws scenes, and checks their histories.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace monograin::packing {
 
-/// Materials from the published set outwards. Not every set is admissible: the generator draws again.
+/// Draws a material, starting from the published set. The generator repeats a draw that is not admissible.
 [[nodiscard]] ProgramBounds draw(Dice& dice, DrawnMaterial& drawn);
 [[nodiscard]] std::vector<DrawnStep> draw_program(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds,
                                                   std::size_t count);

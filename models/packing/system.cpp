@@ -13,41 +13,41 @@ namespace monograin::packing {
 namespace {
 
 constexpr int k_iterations = 60;
-constexpr double k_resolution = 1e-14;  // of the last step but one of an iteration that doubles its digits
-constexpr double k_noise = 1e-11;       // steps below it may be rounding
-// The start is closed over this share of Phi, and of the first half of what is prescribed: of more, where that has its
-// least value there, about which Phi goes like the root of an error.
+constexpr double k_resolution = 1e-14;  // step of Newton's method after which the next one is below round-off
+constexpr double k_noise = 1e-11;       // smaller steps may be round-off
+// Extent of the closed start, over Phi, and over the first half of the controlled quantity's range. It is larger for a
+// branch that begins at a minimum of that quantity, where Phi goes like the root of an error.
 constexpr double k_start = 1e-6;
 constexpr double k_start_of_fold = 1e-3;
-constexpr double k_margin = 1e-6;  // share of what is prescribed by which a run ends before the branch does
-// Distance of Phi from a pole at which every branch ends: nearer to it strains and rates are made of rounding.
+constexpr double k_margin = 1e-6;  // share of a branch's range by which a run ends before the branch does
+// Distance of Phi from a pole at which every branch ends: nearer to the pole, strains and rates are round-off.
 constexpr double k_margin_of_pole = 1e-7;
-// Share of what is prescribed that is rounding.
+// Relative difference of the controlled quantity that is round-off.
 constexpr double k_same = 1e-12;
 
-// Places of the unknowns.
+// Indices of the unknowns.
 constexpr std::size_t k_particles = 0;
 constexpr std::size_t k_fraction = 1;
 
 // Kinds of guards.
 constexpr int k_jams = 0;    // the packing jams, or comes loose
-constexpr int k_grips = 1;   // the stress with which its branch begins
+constexpr int k_grips = 1;   // the stress reaches the value with which its branch begins
 constexpr int k_starts = 2;  // the end of the closed start
 constexpr int k_softens = 3;
 constexpr int k_plastic = 4;
 constexpr int k_full = 5;
 constexpr int k_limit = 6;
 
-/// Why a branch ends before the packing is full.
+/// The limit at which a branch ends before the packing is full.
 Limit end_of_branch(Control control) {
   if (control == Control::strain) return Limit::greatest_strain;
   return control == Control::stress ? Limit::greatest_stress : Limit::infinite_stress;
 }
 
-/// Of the closed form.
+/// Strain of the particles by the closed form.
 double particle_strain(const Law& law, double packing_fraction) { return state(law, packing_fraction).particle_strain; }
 
-/// Half way through the compaction; anything where a packing that jams has come to its end.
+/// Scale of the particles' strain: its value half way through the compaction; 1 if the states end at jamming.
 double typical_particle_strain(const Law& law) {
   return law.end > law.jamming ? particle_strain(law, std::midpoint(law.jamming, law.end)) : 1.0;
 }
@@ -92,13 +92,13 @@ void System::start(std::span<double> y) {
   y[k_particles] = is_jammed_ ? particle_strain(law_, initial_) : 0.0;
 }
 
-// --- what is prescribed
+// --- the controlled quantity
 
 double System::prescribed(double xi) const noexcept { return std::lerp(ramp_.start, ramp_.end, xi); }
 
 int System::direction() const noexcept { return (ramp_.end > ramp_.start) - (ramp_.end < ramp_.start); }
 
-/// What is prescribed where a jammed packing has this packing fraction.
+/// Controlled quantity of a jammed packing at a packing fraction.
 double System::prescribed_at(double packing_fraction) const {
   if (ramp_.control == Control::packing_fraction) return packing_fraction;
   return measured(law_, branch_.measure, packing_fraction);
@@ -124,15 +124,15 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     if (is_jammed_ && is_pressed_on && y[k_fraction] >= 1.0) throw DomainError(Limit::pores_closed);
   };
   require_pores();
-  // Another control may find the packing where what it prescribes falls as the packing is compacted.
+  // After a change of control, the packing may stand where the new controlled quantity falls during compaction.
   if (is_jammed_ && y[k_fraction] > branch_.end * (1.0 + k_margin)) {
     throw DomainError(end_of_branch(ramp_.control));
   }
   if (!is_jammed_) at_rest_ = y[k_fraction];
   const Mode before = mode_;
   resolve_mode(0.0, log);
-  // An integrated state goes on; elsewhere the law says what it is: a packing that jams beyond its closed start, too,
-  // and one that stands where what is prescribed falls at first, which gives way to where it grows.
+  // An integrated state goes on. Elsewhere the law gives the state, also for a packing that jams beyond its closed
+  // start, and for one that stands where the controlled quantity falls at first and moves on to where it grows.
   const bool goes_on = mode_ == before && !(mode_ == Mode::jammed && y[k_fraction] < branch_.begin);
   if (!goes_on) {
     if (is_jammed_) require_state(0.0);
@@ -140,7 +140,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   }
   if (!goes_on) pass_places(0.0, log);
   take_piece(0.0);
-  require_pores();  // it may have given way until it is full
+  require_pores();  // the packing may have moved on until it is full
   if (is_at_limit(0.0)) throw CannotBegin(limit());
   if (goes_on) complete(0.0, y);
   arm_guards(0.0);
@@ -153,7 +153,7 @@ void System::take_branch() {
   growth_at_end_ = 0.0;
   if (branch_.end < 1.0 && ramp_.control != Control::packing_fraction) {
     const double at_end = growth_by_law(packing_fraction_at(law_, branch_, last_place()));
-    // Otherwise it ends at a pole, next to which what an integrator tolerates makes growth any number.
+    // Otherwise the branch ends at a pole, next to which an integrator's tolerated error gives the growth any value.
     const bool is_fold = at_end < growth_by_law(std::midpoint(branch_.begin, branch_.end));
     if (is_fold) growth_at_end_ = at_end;
   }
@@ -177,15 +177,15 @@ double System::growth_by_law(double packing_fraction) const {
   return growth_of(slopes(law_, packing_fraction, state(law_, packing_fraction).strain));
 }
 
-/// Whether what is prescribed grows less with an integrated state than the law lets it anywhere, up to its last place:
-/// errors have led past it, and rates without bound would lead on.
+/// True if the controlled quantity grows less with an integrated state than the law admits anywhere on the branch.
+/// Errors have then led past the branch's end, where unbounded rates would lead further on.
 bool System::has_passed_end(double packing_fraction, double growth) const {
   constexpr double k_doubt = 0.5;
   return growth < k_doubt * growth_at_end_ &&
          (packing_fraction >= branch_.end || growth < k_doubt * growth_by_law(packing_fraction));
 }
 
-/// Whether a program that goes on is there already.
+/// True if a jammed packing has reached the end of its branch and the program goes on.
 bool System::is_at_limit(double xi) const noexcept {
   return is_jammed_ && branch_.end < 1.0 && direction() > 0 && prescribed(xi) >= last_place();
 }
@@ -194,12 +194,12 @@ DomainEnd System::limit() const {
   return {{"limit"}, {end_of_branch(ramp_.control), -1, "greatest value", branch_.greatest}};
 }
 
-/// Beyond a greatest strain or stress there is no state, but rates of neighbouring ones that look as if there were.
+/// Throws beyond a greatest strain or stress, where no state exists, although neighbouring states have finite rates.
 void System::require_state(double xi) const {
   if (branch_.end < 1.0 && prescribed(xi) > branch_.greatest) throw DomainError(end_of_branch(ramp_.control));
 }
 
-/// Mode at the start of a step.
+/// Sets the mode at the start of a step; logs an event where the packing jams or comes loose.
 void System::resolve_mode(double xi, std::vector<Event>& log) {
   const double value = prescribed(xi);
   const int d = direction();
@@ -216,7 +216,8 @@ void System::resolve_mode(double xi, std::vector<Event>& log) {
   mode_ = is_jammed_ ? mode_of_jammed(value) : Mode::unjammed;
 }
 
-/// Where the strain falls at first, a packing jams beyond its closed start.
+/// Mode of a jammed packing at a value of the controlled quantity. If the strain falls at first, a packing jams beyond
+/// its closed start.
 System::Mode System::mode_of_jammed(double value) const {
   const int d = direction();
   if (ramp_.control == Control::stress && (value < branch_.least || (value == branch_.least && d <= 0))) {
@@ -228,7 +229,7 @@ System::Mode System::mode_of_jammed(double value) const {
 
 // --- the state
 
-/// State by the closed form, for what is prescribed.
+/// State by the closed form, for the prescribed value.
 System::Seen System::by_law(double xi) const {
   const double value = prescribed(xi);
   if (mode_ == Mode::unjammed) {
@@ -241,32 +242,32 @@ System::Seen System::by_law(double xi) const {
     const State s = state(law_, branch_.begin);
     return {branch_.begin, s.stress_elastic, s.strain, value};
   }
-  // A trial may go beyond the stretch that this mode has, where a guard ends it: the end is seen instead.
+  // A trial may go beyond the range of this mode, at whose end a guard fires: the state at that end is used instead.
   const double last = mode_ == Mode::starting ? prescribed_at(start_end_) : branch_.greatest;
   const double inside = std::clamp(value, branch_.least, last);
   const double phi = ramp_.control == Control::packing_fraction ? inside : packing_fraction_at(law_, branch_, inside);
   const State s = state(law_, phi);
-  // Next to jamming strain and stress may grow by all of a program before the packing fraction does by its rounding.
+  // Next to jamming, strain and stress may pass through a whole program within the round-off of Phi.
   if (ramp_.control == Control::stress) return {phi, stress_elastic_at(law_, phi, inside), s.strain, inside};
   return {phi, s.stress_elastic, ramp_.control == Control::strain ? inside : s.strain, s.stress};
 }
 
-/// Strain of the packing: what the particles leave of the whole.
+/// Strain of the packing: the total strain without the particles' share.
 double System::strain_of(std::span<const double> y) const noexcept {
   return total_strain(law_, y[k_fraction]) - law_.sign * y[k_particles];
 }
 
 System::Seen System::seen(double xi, std::span<const double> y) const {
   if (mode_ != Mode::jammed) return by_law(xi);
-  // Past where all of its particles yield by the rounding of a stress that hardly grows there, it is seen there.
+  // Where the stress hardly grows, Phi may exceed full plasticity by round-off before that event: observe it there.
   const double phi = is_fully_plastic_ ? y[k_fraction] : std::min(y[k_fraction], full_plasticity(law_));
   const double strain = strain_of(std::array{y[k_particles], phi});
   const double stress_elastic = strain * effective_modulus(law_, phi);
   return {phi, stress_elastic, strain, total_stress(law_, phi, stress_elastic, piece_)};
 }
 
-/// How far a jammed packing is from what is prescribed. A trial may go beyond the stress of a full packing, where a
-/// guard ends it.
+/// Distance of a jammed packing from the prescribed value; over E for a stress. A trial may go beyond the stress of a
+/// full packing, where a guard fires.
 double System::excess(double xi, std::span<const double> y) const {
   const double phi = y[k_fraction];
   if (ramp_.control == Control::packing_fraction) return phi - prescribed(xi);
@@ -275,7 +276,7 @@ double System::excess(double xi, std::span<const double> y) const {
   return (stress - std::min(prescribed(xi), branch_.greatest)) / law_.given.youngs_modulus;
 }
 
-/// Its derivatives by the unknowns over their scales.
+/// Derivatives of excess() with respect to the unknowns over their scales.
 std::array<double, 2> System::excess_slopes(std::span<const double> y) const {
   const double phi = y[k_fraction];
   const double scale = law_.sign * unknowns_[k_particles].scale;
@@ -286,11 +287,12 @@ std::array<double, 2> System::excess_slopes(std::span<const double> y) const {
   return {-scale * by_strain / law_.given.youngs_modulus, by_fraction / law_.given.youngs_modulus};
 }
 
-/// Of an integrated state: the closed start lies below.
+/// Least Phi of an integrated state, in the middle of the closed start.
 double System::least_fraction() const noexcept { return law_.jamming * (1.0 + 0.5 * k_start); }
 
-/// What an integrator tolerates may reach down to the closed start, and below jamming, or beyond where what is
-/// prescribed has its least value: from within the closed start on everything goes on along its tangent.
+/// State with a Phi that is inside the branch. Within an integrator's tolerance a state may reach down into the closed
+/// start, below jamming, or beyond the minimum of the controlled quantity. From inside the closed start downwards the
+/// equations go on along their tangent.
 std::array<double, 2> System::within_branch(std::span<const double> y) const noexcept {
   const double least = std::max(least_fraction(), std::midpoint(branch_.begin, start_end_));
   return {y[k_particles], std::max(y[k_fraction], least)};
@@ -304,15 +306,15 @@ void System::complete(double xi, std::span<double> y) {
     return;
   }
   if (ramp_.control == Control::strain) {
-    // A first guess of an implicit stage leaves the particles as they were, and so takes the packing below jamming or
+    // The first guess of an implicit stage keeps the particles' strain, which would take the packing below jamming or
     // beyond a pole.
     const double with_particles = law_.zero_stress * std::exp(prescribed(xi) + law_.sign * y[k_particles]);
     y[k_fraction] = std::max(std::min(with_particles, branch_.end), least_fraction());
     return;
   }
-  // By the shortest way: where the particles give way with the packing (consistent coupling), the packing fraction at a
-  // given strain of theirs has a greatest stress before the packing has. Where the modulus begins within less of Phi
-  // than is tolerated, no direction leads there; the particles say where.
+  // Takes the shortest path in both unknowns. With the consistent coupling, the stress at a given strain of the
+  // particles has a maximum before the packing's own. If the modulus begins within a tolerated error of Phi, that path
+  // does not arrive; Phi then follows from the strain of the particles.
   const std::array<double, 2> guess{y[k_particles], y[k_fraction]};
   if (is_brought_back(xi, y)) return;
   std::ranges::copy(guess, y.begin());  // the next trial begins there
@@ -322,12 +324,12 @@ void System::complete(double xi, std::span<double> y) {
   y[k_fraction] = *found;
 }
 
-/// Newton's method along the gradient.
+/// Newton's method along the gradient of excess(). False if it does not converge.
 bool System::is_brought_back(double xi, std::span<double> y) const {
   const double scale = unknowns_[k_particles].scale;
   double last = 1.0;
   for (int k = 0; k < k_iterations; ++k) {
-    // Next to jamming and to a full packing of nearly incompressible particles what is tolerated may be beyond.
+    // Next to jamming, and to a full packing of nearly incompressible particles, a tolerated state may lie outside.
     const double inside = std::max(std::min(y[k_fraction], branch_.end), least_fraction());
     const bool is_inside = y[k_fraction] == inside;
     y[k_fraction] = inside;
@@ -338,7 +340,7 @@ bool System::is_brought_back(double xi, std::span<double> y) const {
     y[k_fraction] += share * slope[k_fraction];
     y[k_particles] += share * slope[k_particles] * scale;
     const double step = std::abs(share) * steepness;
-    // Corrections that no longer shrink are rounding.
+    // Corrections that no longer shrink are round-off.
     const bool is_rounding = step < k_noise && step > 0.5 * last;
     last = step;
     if (step <= k_resolution || is_rounding) return true;
@@ -346,20 +348,20 @@ bool System::is_brought_back(double xi, std::span<double> y) const {
   return false;
 }
 
-/// By the law: an integrated state may have errors that lead past where the pieces meet.
+/// Sets the piece of eq. 11 by the law: the errors of an integrated state may lead past where the pieces meet.
 void System::take_piece(double xi) {
   const bool is_full = is_fully_plastic_ || (is_jammed_ && by_law(xi).packing_fraction > full_plasticity(law_));
   piece_ = is_full ? Piece::full : Piece::growing;
 }
 
-/// Next to a pole the rounding of Phi shows in the strain: there the particles have what the strain leaves of the
-/// whole.
+/// Sets the unknowns by the closed form. Next to a pole, the round-off of Phi shows in the strain; the particles'
+/// strain is then the total strain minus that of the packing.
 void System::solve(double xi, std::span<double> y) {
   const Seen now = by_law(xi);
   y[k_fraction] = now.packing_fraction;
   y[k_particles] = mode_ == Mode::unjammed ? 0.0 : particle_strain(law_, now.packing_fraction);
   if (ramp_.control == Control::packing_fraction || mode_ == Mode::unjammed) return;
-  // Elsewhere digits would cancel: beside a greater strain, or in a stress that is plastic for the most part.
+  // Elsewhere the difference would lose digits: beside a greater strain, or in a stress that is mostly plastic.
   const bool is_prescribed = ramp_.control == Control::strain;
   const bool gives_way_as_much = y[k_particles] > 0.5 * now.strain;
   const double elastic_part = now.stress_elastic * total_stress_slope(law_, now.packing_fraction);
@@ -390,7 +392,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
   const std::array<double, 2> inside = within_branch(y);
   std::array<double, 2> all{};
   rates(xi, inside, all);
-  // Rates count along what is prescribed, whichever of the unknowns that leaves free.
+  // Rates are compared along the line on which the prescribed value is met, whichever unknown that line leaves free.
   const std::array<double, 2> slope = excess_slopes(inside);
   const double scale = unknowns_[k_particles].scale;
   res[k_particles] = (slope[k_fraction] * (dy[k_particles] - all[k_particles]) -
@@ -403,7 +405,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
 
 // --- events
 
-/// Lists a place, if it is ahead on the path to the ramp's end.
+/// Adds a guard at a value of the controlled quantity, if the ramp leads there.
 void System::arm_place(int kind, std::string_view name, double place) {
   const int d = direction();
   if (!(d > 0 ? place <= ramp_.end : place >= ramp_.end)) return;
@@ -417,18 +419,18 @@ void System::arm_guards(double xi) {
   const int d = direction();
   if (d > 0) {
     arm_jamming();
-    // A loose packing comes to strains that a jammed one has, but not to its states.
+    // A loose packing reaches strains that a jammed one has, but not its states.
     if (is_jammed_) arm_compaction(xi);
   } else if (d < 0) {
     arm_loosening();
   }
 }
 
-/// Places up to which a packing is not integrated: it jams, its branch begins, and its closed start ends.
+/// Arms the guards before integration: the packing jams, its branch begins, and its closed start ends.
 void System::arm_jamming() {
   switch (mode_) {
     case Mode::unjammed:
-      // Under stress it jams at once, where a step begins.
+      // Under stress the packing jams at once, at the start of the step.
       if (ramp_.control != Control::stress) arm_place(k_jams, "jamming", prescribed_at_jamming());
       break;
     case Mode::held:
@@ -442,7 +444,7 @@ void System::arm_jamming() {
   }
 }
 
-/// Those places on the path back.
+/// Arms the guards of a decreasing ramp: integration ends, the stress falls below its branch, the packing comes loose.
 void System::arm_loosening() {
   const double jamming = prescribed_at_jamming();
   switch (mode_) {
@@ -456,7 +458,7 @@ void System::arm_loosening() {
         arm_place(k_jams, "jamming", jamming);
       break;
     case Mode::jammed: {
-      // Where the strain falls at first, it passes that at jamming before.
+      // If the strain falls at first, a decreasing ramp may pass its value at jamming before the closed start.
       const double start = prescribed_at(start_end_);
       const bool comes_loose = ramp_.control == Control::strain && start <= jamming;
       arm_place(comes_loose ? k_jams : k_starts, comes_loose ? "jamming" : "", start);
@@ -465,7 +467,7 @@ void System::arm_loosening() {
   }
 }
 
-/// A jammed packing softens, yields as a whole, and is full or comes to the end of its branch.
+/// Arms the guards of a jammed packing: it softens, yields as a whole, and is full or reaches the end of its branch.
 void System::arm_compaction(double xi) {
   const double end = branch_.end;
   if (!is_softer_ && softening_ <= end) arm_place(k_softens, "plastic-softening", prescribed_at(softening_));
@@ -480,7 +482,7 @@ void System::arm_compaction(double xi) {
   }
 }
 
-/// A packing that jams or gives way beyond its closed start passes these with it.
+/// Logs the events that a packing passes when it jams or moves on beyond its closed start.
 void System::pass_places(double xi, std::vector<Event>& log) {
   const auto is_passed = [&](double place) {
     if (!is_jammed_ || place > branch_.end) return false;
@@ -496,8 +498,8 @@ void System::pass_places(double xi, std::vector<Event>& log) {
   }
 }
 
-/// Where the strain falls at first and never grows to what it is at jamming, or the branch ends there but for rounding,
-/// there is nothing to give way to.
+/// Ends the branch at jamming. The strain falls at first and never grows back to its value at jamming, or the branch
+/// ends there up to round-off: the packing has no state to move on to.
 void System::end_branch_at_jamming() noexcept {
   branch_.begin = branch_.end = law_.jamming;
   branch_.least = branch_.greatest = prescribed_at_jamming();
@@ -547,12 +549,12 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         break;
     }
   }
-  // Other places may lie where the one that has been met does.
+  // Other guards may lie at the position of the one that fired.
   if (is_up && is_jammed_) {
     if (const Mode onward = mode_of_jammed(prescribed(xi)); onward > mode_) set_mode(onward, xi, y);
     pass_places(xi, log);
   }
-  if (!end && is_at_limit(xi)) {  // it jams there
+  if (!end && is_at_limit(xi)) {  // the packing jams there
     end = limit();
     log.push_back(end->event);
   }
@@ -562,7 +564,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   return end;
 }
 
-// --- what is seen
+// --- observation
 
 Regime System::regime() const noexcept {
   if (!is_jammed_) return Regime::unjammed;

@@ -1,21 +1,21 @@
 /// A packing of soft discs under a prescribed packing fraction, strain or stress as a hybrid system.
 ///
-/// Loose, it rearranges without stress: its strain is then that at jamming plus ln(Phi/Phi_J), so that it goes on
-/// through jamming, where the published parameters let the stress jump. Jammed, the direct form is the closed form, its
-/// inverse where strain or stress is prescribed. The others integrate eq. 21 as the appendix puts it together, the
-/// strain of the particles v = m e (eqs. 19, 20) beside that of the packing:
+/// A loose packing rearranges without stress. Its strain is that at jamming plus ln(Phi/Phi_J): the strain is
+/// continuous through jamming, where the published parameters let the stress jump. For a jammed packing, the direct
+/// form is the closed form, or its inverse where strain or stress is prescribed. The other forms integrate eq. 21 as
+/// the appendix assembles it, with the strain of the particles v = m e (eqs. 19, 20) beside that of the packing:
 ///
 ///   v' = s (1/Phi - d e/d Phi) Phi'     with e = ln Phi + c2 - s v; singular where the packing jams
-///   0  = Phi, e or sigma less what is prescribed    gives Phi
+///   0  = Phi, e or sigma minus its prescribed value    gives Phi
 ///
-/// from a millionth of Phi_J above the singular point, where eq. 22 starts them; until there the integrated unknowns
-/// rest, and what is seen is the closed form. Under a prescribed stress the packing
-/// stays at jamming until that stress is reached with which its branch begins.
+/// The integration begins a millionth of Phi_J above the singular point, where eq. 22 starts it. Below that, the
+/// integrated unknowns rest, and the closed form is observed. Under a prescribed stress, the packing stays at jamming
+/// until the stress reaches the value with which its branch begins.
 ///
-/// A prescribed strain or stress that the packing cannot reach, or a packing fraction beyond its equations, ends the
-/// run a little before, where the rates are still finite.
+/// If a prescribed strain or stress exceeds what the packing can reach, or a packing fraction leaves the domain of the
+/// equations, the run ends a little before, where the rates are still finite.
 ///
-/// All events lie at known packing fractions, and so at known values of what is prescribed.
+/// All events lie at known packing fractions, and therefore at known values of the controlled quantity.
 #pragma once
 
 #include <array>
@@ -68,7 +68,7 @@ class System final : public HybridSystem {
     jammed     ///< integrated where there is an integrator
   };
 
-  /// What is seen at an instant.
+  /// Observed state at an instant.
   struct Seen {
     double packing_fraction = 0.0;
     double stress_elastic = 0.0;  ///< [Pa]
@@ -113,23 +113,24 @@ class System final : public HybridSystem {
   Law law_;
   double initial_ = 0.0;
   State at_jamming_;
-  double softening_ = 0.0;  ///< Phi from which on the plastic packing is softer than the elastic one; infinite: never
+  double softening_ = 0.0;  ///< Phi above which the plastic packing is softer than the elastic one; infinite: never
   std::array<Unknown, 2> unknowns_;
   std::vector<Observable> observables_;
 
   Ramp ramp_;
-  Branch branch_;               ///< of what is prescribed
-  double growth_at_end_ = 0.0;  ///< of what is prescribed with Phi, where a branch ends because that growth does
-  double start_end_ = 0.0;      ///< Phi up to which the start is closed
+  Branch branch_;               ///< growing branch of the controlled quantity
+  double growth_at_end_ = 0.0;  ///< derivative of the controlled quantity by Phi at the end of a branch that ends at a
+                                ///< fold; else 0
+  double start_end_ = 0.0;      ///< Phi up to which the closed form is used at the start
   Mode mode_ = Mode::unjammed;
-  double resting_ = 0.0;  ///< integrated Phi outside of the mode in which it is integrated
+  double resting_ = 0.0;  ///< value of the unknown Phi in modes that do not integrate it
   double at_rest_ = 0.0;  ///< Phi of an unjammed packing under no stress
   bool is_jammed_ = false;
   bool is_softer_ = false;
   bool is_fully_plastic_ = false;
-  Piece piece_ = Piece::growing;  ///< of the plastic fraction, along which an integrated state goes
+  Piece piece_ = Piece::growing;  ///< piece of eq. 11 that an integrated state follows
   std::vector<Guard> guards_;
-  std::vector<double> places_;  ///< of the guards, in what is prescribed
+  std::vector<double> places_;  ///< positions of the guards, as values of the controlled quantity
 };
 
 }  // namespace monograin::packing

@@ -125,7 +125,7 @@ ContactState loaded_contact(Regime regime, ValueAndSlope contact_radius, ValueAn
 }
 
 double filled_cell_approach(Configuration configuration) noexcept {
-  // 1 - pi/6 and 1 - (pi/6)^(1/3); computed so, they would carry the rounding of numbers above 1/2.
+  // 1 - pi/6 and 1 - (pi/6)^(1/3). Evaluated, these differences would carry the round-off of numbers above 1/2.
   return configuration == Configuration::hydrostatic ? 0.194004022991765179641517 : 0.476401224401701126922893;
 }
 

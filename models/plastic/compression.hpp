@@ -1,5 +1,5 @@
-/// What the laws for a plastic sphere between rigid flat walls have in common: the ways of compression, regimes, the
-/// series of the contact radius, the room left to the particle, and the fall of the mean pressure.
+/// Common parts of the laws for a plastic sphere between rigid flat walls: configurations, regimes, the series of the
+/// contact radius, the room left to the particle, and the fall of the mean pressure.
 ///
 /// The sphere is one half of a symmetric pair: gamma is the approach of the two centres, every moving wall moves by
 /// gamma/2, and the laws depend on
@@ -30,12 +30,13 @@ namespace monograin::plastic {
 enum class Configuration { simple, die, hydrostatic };
 
 [[nodiscard]] std::string_view name(Configuration configuration) noexcept;
+/// Configuration with a name, as name() gives it.
 /// @throws std::invalid_argument for another word
 [[nodiscard]] Configuration configuration_named(std::string_view word);
 [[nodiscard]] int moving_walls(Configuration configuration) noexcept;
 
-/// In the order in which a contact passes them. `undefined`: the source says nothing there. The last two are of
-/// contacts that have been unloaded, for which the source has no law.
+/// Regimes, in the order in which a contact passes them. The source has no law for `undefined`, nor for the last two,
+/// which belong to contacts that have been unloaded.
 enum class Regime {
   open,
   elastic,
@@ -61,15 +62,15 @@ struct ContactState {
   double force_by_approach = 0.0;     ///< dP/dx over S R^2, > 0 in contact
 };
 
-/// End of a regime and the event that it stands for.
+/// End of a regime, and the event that marks it.
 struct Boundary {
   std::string_view event;
   double approach = 0.0;  ///< x; still belongs to the regime before
   Regime beyond = Regime::undefined;
 };
 
-/// In ascending order; no law has more than four. Nothing is allocated, because forces are inverted with them at every
-/// instant of a run.
+/// Boundaries in ascending order; no law has more than four. The vector does not allocate, because every instant of a
+/// run inverts forces with it.
 using Boundaries = boost::container::static_vector<Boundary, 4>;
 
 /// A quantity outside the range over which the source fitted its constants.
@@ -91,8 +92,9 @@ struct RadiusSeries {
   double first = 0.0, third = 0.0, fifth = 0.0;
 };
 
-/// Of a material without any elastic strain, D_i = alpha_i b_i^(i/2): eq. 2.14 for lambda -> infinity, constants of
-/// Table 2.2 as printed. The printed exponent 1/2 of b_i contradicts the values in Table 3.1 for i = 3 and 5.
+/// Coefficients of a material without any elastic strain, D_i = alpha_i b_i^(i/2): eq. 2.14 for lambda -> infinity,
+/// constants of Table 2.2 as printed. The printed exponent 1/2 of b_i contradicts the values in Table 3.1 for i = 3 and
+/// 5.
 [[nodiscard]] RadiusSeries rigid_radius_series(Configuration configuration) noexcept;
 
 /// a/R, for x > 0; increasing, because 9 D3^2 < 20 D1 D5 for every fitted set.
@@ -135,7 +137,7 @@ struct PressureFall {
   double lag = 0.0;              ///< Z - s
   double peak = 0.0;             ///< T(Z)
   double inflexion = 0.0;        ///< approximate z of the inflexion point
-  // The same in simple compression, and the two estimates of H_min; equal to the above there.
+  // Values in simple compression, and the two estimates of H_min; in simple compression they equal those above.
   double simple_shift = 0.0;
   double simple_amplitude = 0.0;
   double simple_inflexion = 0.0;
@@ -148,7 +150,8 @@ struct PressureFall {
 [[nodiscard]] PressureFall make_pressure_fall(Configuration configuration, const RadiusSeries& minimum, double greatest,
                                               double start, double exponent_excess, double rate);
 
-/// H; before `start` continued as its mirror image, so that a trial step a little outside stays on a smooth branch.
+/// Mean pressure H at x. Before `start` its mirror image continues it, so that a trial step there is on a smooth
+/// branch.
 [[nodiscard]] ValueAndSlope falling_pressure(const PressureFall& fall, double x) noexcept;
 
 /// x at which the relative density of the cell times the share of its face that is in contact reaches Gamma = 0.0593
@@ -162,20 +165,20 @@ struct PressureFall {
 
 // --- Helpers for all laws.
 
-/// The x between two bounds at which a regime bears a force, to rounding.
+/// The x between two bounds at which a regime bears a force, to round-off.
 /// @param state  function of x: the regime's ContactState, defined between the bounds and at them
 /// @param lower  > 0; the force there is below `force`
 /// @param upper  the force there is not below `force`
-/// @param guess  an x to begin with; need not lie between the bounds
+/// @param guess  initial guess of x; need not lie between the bounds
 template <class State>
 [[nodiscard]] double approach_between(const State& state, double lower, double upper, double force, double guess) {
-  // Both logarithms: the laws are close to powers, so that the slope varies little from one end to the other.
+  // Newton's method in both logarithms: the laws are close to powers, so that the slope varies little.
   const auto excess = [&](double log_x) {
     const double x = std::clamp(std::exp(log_x), lower, upper);
     const ContactState s = state(x);
     return std::pair(std::log(s.force / force), x * s.force_by_approach / s.force);
   };
-  constexpr int bits = 50;  // fewer would do but for infinite pressures, next to which a short step may still be long
+  constexpr int bits = 50;  // fewer would do, except next to infinite pressures, where a short step may still be long
   const double log_lower = std::log(lower);
   const double log_upper = std::log(upper);
   double root = log_upper;  // where the bounds are too close for their logarithms to differ
@@ -184,24 +187,25 @@ template <class State>
     const double log_guess = std::log(std::clamp(guess, lower, upper));
     root = boost::math::tools::newton_raphson_iterate(excess, log_guess, log_lower, log_upper, bits, iterations);
   }
-  // The logarithm is rounded relative to itself, which is up to |ln x| roundings of x.
+  // Round-off of the logarithm is up to |ln x| times that of x. A last step of Newton's method in x removes it.
   const double x = std::clamp(std::exp(root), lower, upper);
   const ContactState s = state(x);
   return std::clamp(x + (force - s.force) / s.force_by_approach, lower, upper);
 }
 
-/// The same from a close guess, without looking at the bounds; none where it is not close.
+/// The x at which a regime bears a force, from a close guess and without evaluating the bounds; none if it is not near.
 template <class State>
 [[nodiscard]] std::optional<double> approach_near(const State& state, double lower, double upper, double force,
                                                   double guess) {
   if (!(guess > 0.0)) return std::nullopt;
-  // A guess across a bound is as good as the bound: an event there is looked for from both sides.
+  // A guess across a bound is as good as the bound: an event there is located from both sides.
   double x = std::clamp(guess, lower, upper);
   double last = 1.0;
   for (int iteration = 0; x > 0.0 && iteration < 6; ++iteration) {
     const ContactState s = state(x);
     if (!(s.force > 0.0 && s.force_by_approach > 0.0)) return std::nullopt;
-    // Newton's method on the logarithms: the next step is that over the last one's square, times its own square.
+    // Newton's method on the logarithms: the next step is about this one squared, times the ratio of this to the last
+    // squared.
     const double step = std::log(force / s.force) * s.force / (x * s.force_by_approach);
     if (!(std::abs(step) < 2.0)) return std::nullopt;
     x = std::clamp(x * std::exp(step), lower, upper);
@@ -212,17 +216,17 @@ template <class State>
   return std::nullopt;
 }
 
-/// The same between first touch and an upper bound.
+/// The x between first touch and an upper bound at which a regime bears a force.
 template <class State>
 [[nodiscard]] double approach_from_touch(const State& state, double upper, double force, double guess) {
   double lower = std::min(guess, upper);
   while (lower > 0.0 && state(lower).force >= force) lower *= 0.5;
-  // So small a force that its x, or the square of its contact radius, underflows.
+  // The force is so small that its x, or the square of its contact radius, underflows.
   if (!(lower > 0.0)) return std::min(guess, upper);
   return approach_between(state, lower, upper, force, guess);
 }
 
-/// int P dx from a to b below the place s >= b of a logarithmic singularity of the pressure.
+/// int P dx from a to b below the point s >= b of a logarithmic singularity of the pressure.
 template <class Force>
 [[nodiscard]] double work_below_singularity(const Force& force, double a, double b, double s) {
   // In t = (s - x)^(1/6) the integrand behaves as t^5 ln t.
@@ -234,7 +238,7 @@ template <class Force>
   return boost::math::quadrature::gauss<double, 30>::integrate(integrand, root(s - b), root(s - a));
 }
 
-/// @throws std::domain_error unless x is below the limit; NaN is not
+/// @throws std::domain_error unless x is below the limit; also for NaN
 void require_approach_below(double x, double limit, Limit reason);
 
 }  // namespace monograin::plastic

@@ -31,7 +31,7 @@ RadiusSeries hardening_radius_series(Configuration configuration, double mu) noe
           .fifth = d5 * std::exp(-0.5279 * std::pow(mu, 0.4616))};
 }
 
-/// H without its factor x^(mu/2).
+/// Mean pressure H of low compressibility without its factor x^(mu/2), and the slope of that.
 ValueAndSlope reduced_low_compressibility_pressure(const HardeningLaw& law, double x) {
   const double span = law.cell_at_least - 1.0;
   const double rest = cell_excess(law.configuration, x) / span;  // 1 - y
@@ -54,12 +54,12 @@ ValueAndSlope reduced_pressure(const HardeningLaw& law, Regime regime, double x)
                           " compression has no law for the regime '" + std::string(name(regime)) + "'");
 }
 
-/// P for small x is this times x^(1 + mu/2).
+/// Coefficient c of the force P = c x^(1 + mu/2) for small x.
 double small_force_coefficient(const HardeningLaw& law) noexcept {
   return pi * law.fall.greatest * law.radius.first * law.radius.first;
 }
 
-/// The farthest x of the fully plastic regime.
+/// Largest x of the fully plastic regime.
 double end_of_fall(const HardeningLaw& law) noexcept { return std::min(law.fall.end, std::nextafter(law.limit, 0.0)); }
 
 void set_end(HardeningLaw& law, double calibrated_end, double limit) {
@@ -76,8 +76,8 @@ HardeningLaw make_hardening(double exponent, Configuration configuration, Minimu
   HardeningLaw law{
       .configuration = configuration, .exponent = exponent, .radius = hardening_radius_series(configuration, exponent)};
   const RadiusSeries minimum = condition == MinimumCondition::current ? law.radius : rigid_radius_series(configuration);
-  // eq. 3.48. The same value has to stand in the amplitudes of the fall, where the source prints 3.101: only so is the
-  // pressure continuous at its minimum, and positive in simple compression.
+  // eq. 3.48. The amplitudes of the fall need this value, too, where the source prints 3.101: only then is the pressure
+  // continuous at its minimum, and positive in simple compression.
   const double greatest = 3.101 * std::exp(-1.748 * exponent);
   law.fall = make_pressure_fall(configuration, minimum, greatest, 0.0, 0.0, k_rate);
   if (!is_enclosed(law)) {
@@ -146,7 +146,7 @@ double approach_under(const HardeningLaw& law, double force, double near) {
 double impingement_approach(const HardeningLaw& law) { return impingement_approach(law.configuration, law.radius); }
 
 double work_in(const HardeningLaw& law, Regime regime, double x) {
-  // In each regime a variable in which the force is smooth.
+  // Each regime is integrated in a variable in which its force is smooth.
   const auto force = [&](double at) { return state_in(law, regime, at).force; };
   if (regime == Regime::low_compressibility) return work_below_singularity(force, law.fall.end, x, law.zero_porosity);
   return boost::math::quadrature::gauss<double, 30>::integrate(

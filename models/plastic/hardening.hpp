@@ -10,8 +10,8 @@
 
 namespace monograin::plastic {
 
-/// Which contact radius enters the condition for the least pressure: the current one, or that without hardening. The
-/// source does not say; with `ideal`, the pressure late in the die would rise again with mu above 0.66.
+/// Contact radius in the condition for the least pressure: the current one, or that without hardening. The source does
+/// not say which; with `ideal`, the pressure late in the die would rise again with mu above 0.66.
 enum class MinimumCondition { current, ideal };
 
 /// Derived parameters for one exponent in one configuration.
@@ -33,26 +33,27 @@ struct HardeningLaw {
 [[nodiscard]] HardeningLaw make_hardening(double exponent, Configuration configuration,
                                           MinimumCondition condition = MinimumCondition::current);
 
-/// Distance from zero porosity, relative to it, at which a run stops: the pressure grows without bound behind it.
+/// Distance from zero porosity, relative to it, at which a run stops: beyond it the pressure grows without bound.
 constexpr double k_zero_porosity_margin = 1e-9;
 
-/// Regime boundaries in ascending order. Enclosed particles: `low-compressibility`, and `zero-porosity` at the margin
-/// before it, where the law is left. Simple compression has none.
+/// Regime boundaries in ascending order. Enclosed particles have `low-compressibility`, and `zero-porosity` at the
+/// margin before it, where the law ends. Simple compression has none.
 [[nodiscard]] Boundaries boundaries(const HardeningLaw& law);
 
-/// A boundary belongs to the regime before it; x <= 0 is open.
+/// Regime at x. A boundary belongs to the regime before it; x <= 0 is open.
 [[nodiscard]] Regime regime_at(const HardeningLaw& law, double x) noexcept;
 
+/// State of a contact at x.
 /// @throws std::domain_error for x at the limit or above, and NaN
 [[nodiscard]] ContactState state_at(const HardeningLaw& law, double x);
 
-/// The formulas of one regime, also outside of it, for trial steps.
-/// @throws std::domain_error for x <= 0 (but open), a regime that the law or the configuration has not, and low
+/// State of a contact by the formulas of one regime, also outside of it, for trial steps.
+/// @throws std::domain_error for x <= 0 (but open), a regime that the law or the configuration does not have, and low
 /// compressibility at zero porosity or beyond
 [[nodiscard]] ContactState state_in(const HardeningLaw& law, Regime regime, double x);
 
 /// x under a force over kappa R^2; 0 for no force.
-/// @param near  an x to begin with; 0: none is known
+/// @param near  initial guess of x; 0: none is known
 /// @throws std::domain_error for forces that the law does not reach below its limit
 [[nodiscard]] double approach_under(const HardeningLaw& law, double force, double near = 0.0);
 

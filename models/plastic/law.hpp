@@ -1,4 +1,4 @@
-/// One of the laws of this folder, as a hybrid system needs it: a contact that is loaded for the first time.
+/// One of the laws of this folder, for a contact that is loaded for the first time.
 /// Conventions: plastic/compression.hpp; x is the displacement of a wall over R.
 #pragma once
 
@@ -15,15 +15,15 @@ using Law = std::variant<SimilarityLaw, SemimechLaw, HardeningLaw>;
 /// Regime from first touch on.
 [[nodiscard]] Regime first_regime(const Law& law) noexcept;
 
-/// Where its regimes end, in ascending order. The boundary after which the regime is `undefined` ends the law.
+/// Ends of a law's regimes, in ascending order. The boundary after which the regime is `undefined` ends the law.
 [[nodiscard]] Boundaries boundaries(const Law& law);
 
-/// The formulas of one regime, also a little outside of it, for x > 0.
+/// State of a contact by the formulas of one regime, also a little outside of it, for x > 0.
 /// @throws std::domain_error where they end
 [[nodiscard]] ContactState state_in(const Law& law, Regime regime, double x);
 
 /// x under a force over S R^2, whatever the regime; 0 for no force.
-/// @param near  an x to begin with; 0: none is known
+/// @param near  initial guess of x; 0: none is known
 /// @throws std::domain_error for forces that the law does not reach
 [[nodiscard]] double approach_under(const Law& law, double force, double near = 0.0);
 
@@ -31,7 +31,7 @@ using Law = std::variant<SimilarityLaw, SemimechLaw, HardeningLaw>;
 /// @throws std::domain_error beyond the law's limit
 [[nodiscard]] double work_per_wall(const Law& law, double x);
 
-/// The same from the beginning of a regime, and a little outside of it.
+/// int P dx of one wall over S R^3 from the beginning of a regime to x, which may lie a little outside of it.
 /// @throws std::domain_error as state_in
 [[nodiscard]] double work_in(const Law& law, Regime regime, double x);
 
@@ -41,10 +41,10 @@ using Law = std::variant<SimilarityLaw, SemimechLaw, HardeningLaw>;
 /// x up to which the source compares the law with finite elements.
 [[nodiscard]] double calibrated_end(const Law& law) noexcept;
 
-/// n of the power P ~ x^n with which the force begins.
+/// Exponent n of the power P ~ x^n with which the force begins.
 [[nodiscard]] double first_power(const Law& law) noexcept;
 
-/// Whether the contact gives back its work before it yields.
+/// True if the contact is elastic, and gives back its work, before it yields.
 [[nodiscard]] bool begins_elastic(const Law& law) noexcept;
 
 /// x at which neighbouring contacts touch; none where the law has no neighbours.

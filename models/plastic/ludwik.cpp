@@ -66,7 +66,7 @@ class Moments {
   }
 
   [[nodiscard]] double end_of_range() const {
-    // The plastic strain alone is less than the whole.
+    // The plastic strain alone is less than the total strain.
     const double most = std::pow(range_, 1.0 / material_.exponent_inverse);
     const auto excess = [&](double t) { return strain(t) - range_; };
     if (!(excess(most) > 0.0)) return most;  // rigid-plastic
@@ -86,7 +86,8 @@ class Moments {
       const double e = strain(t) / range_;
       return e > 0.0 ? f(e, stress(t)) * (n * std::pow(t, n - 1.0) + elastic) / range_ : 0.0;
     };
-    // Nearly singular at first yield, where the elastic strain is small and the plastic one smaller still.
+    // The integrand is nearly singular at first yield, where the elastic strain is small and the plastic one even
+    // smaller.
     return quadrature_.integrate(integrand, 0.0, end_, 1e-14);
   }
 
@@ -94,7 +95,7 @@ class Moments {
   double range_;
   double elastic_end_ = 0.0;  ///< e at first yield, or 1
   double elastic_stress_ = 0.0;
-  double end_ = 0.0;  ///< t at the end of the range; 0: it is elastic
+  double end_ = 0.0;  ///< t at the end of the range; 0: the whole range is elastic
   mutable boost::math::quadrature::tanh_sinh<double> quadrature_;
 };
 
@@ -127,12 +128,12 @@ HollomonMaterial fit_hollomon(const LudwikMaterial& material, double greatest_st
   const double log_range = std::log(greatest_strain);
   // Both conditions are positive where a larger exponent fits better.
   if (fit == HollomonFit::both) {
-    // The strength that fits best for each exponent put into the derivative by the exponent.
+    // Derivative with respect to the exponent, with the strength that fits best for each exponent.
     const auto condition = [&](double mu) {
       const auto [plain, logarithmic] = moments.at(mu);
       return logarithmic / plain + 1.0 / (2.0 * mu + 1.0);
     };
-    // sigma/eps falls and sigma rises, so that the ends have these signs, but for rounding where they are roots.
+    // sigma/eps falls and sigma rises, which gives the condition these signs at the ends, up to round-off at a root.
     const double mu = condition(0.0) > 0.0 ? condition(1.0) < 0.0 ? root(condition) : 1.0 : 0.0;
     const double strength = (2.0 * mu + 1.0) * moments.at(mu).plain * std::exp(-mu * log_range);
     return {.strength = strength, .exponent = mu, .residual = moments.residual(strength, mu)};

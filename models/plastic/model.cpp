@@ -213,15 +213,16 @@ constexpr std::array<string_view, 6> k_hardening_domain{
 
 // --- from a scenario to the law
 
-// Where the search for a condition's value begins, over the limit, at which pressures may be infinite; and where it
-// ends, over R0: shallower contacts are below resolution.
+// Range of the search for the displacement that meets a condition: from this share of the limit, where pressures may be
+// infinite, down to this depth over R0, at which contacts are below resolution.
 constexpr double k_deepest = 0.9;
 constexpr double k_shallowest = 1e-12;
-// How closely the displacement is then known: next to the limit work may grow by orders over a tenth of the path.
+// Bisections that refine the displacement: next to the limit, work may grow by orders over a tenth of the path.
 constexpr int k_bisections = 20;
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
-/// Walls of other sets are each for themselves, in the one law that allows them.
+/// Configuration of a scenario. Other sets of walls count as simple: the law that allows them treats each wall by
+/// itself.
 Configuration configuration_of(const ModelInput& input) {
   if (input.configuration == "die") return Configuration::die;
   return input.configuration == "hydrostatic" ? Configuration::hydrostatic : Configuration::simple;
@@ -251,7 +252,7 @@ std::vector<Objection> semimech_objections(const ModelInput& input) {
   try {
     static_cast<void>(semimech_law(input));
   } catch (const std::invalid_argument& error) {
-    // Too soft against its strength, or compressed to nothing, or not at all.
+    // The material is too soft against its strength, too compressible, or incompressible.
     const bool is_soft = semimech_material(input).modulus_over_yield < k_least_modulus_over_yield;
     return {{is_soft ? "yield_stress" : "poisson_ratio", error.what()}};
   }
@@ -263,7 +264,7 @@ std::vector<Objection> semimech_objections(const ModelInput& input) {
 double strength(const ModelInput& input) { return input.material("strength"); }
 double yield_stress(const ModelInput& input) { return input.material("yield_stress"); }
 
-/// A law of this folder, and the stress that its pressures are counted in.
+/// Functions of a law of this folder, with the unit of its pressures.
 template <Law (*make_law)(const ModelInput&), double (*stress_unit)(const ModelInput&)>
 struct Functions {
   static std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> classes,
@@ -320,7 +321,7 @@ struct Functions {
       return until.value <= 0.0;
     };
     double first = 0.0;
-    // Pressures fall again further in.
+    // Pressures fall again at greater depth: the search goes on to the least displacement that meets the condition.
     for (double x = k_deepest * limit(law); x > 0.5 * k_shallowest; x *= 0.5) {
       if (is_met(x)) first = x;
     }
@@ -333,7 +334,7 @@ struct Functions {
     return reach_at(first);
   }
 
-  /// Completes what a model says of itself.
+  /// Adds to a model the functions that all three laws share.
   static Model of(Model model) {
     model.bind = bind;
     model.parameters = parameters;
@@ -355,7 +356,7 @@ PowerLaw power_law_of(const LudwikInput& ludwik) {
 
 // --- the stress test
 
-/// Strength and exponent of a power law, and the elastic constants that unloading needs.
+/// Draws strength and exponent of a power law, and the elastic constants that unloading needs.
 ProgramBounds draw_power_law(Dice& dice, DrawnMaterial& drawn, std::span<const OptionKey> options) {
   const double exponent = dice.uniform(0.0, 1.0);
   drawn.values = {{"strength", 1.0}, {"hardening_exponent", dice.happens(0.7) ? exponent : std::round(exponent)}};
@@ -379,7 +380,7 @@ ProgramBounds draw_hardening(Dice& dice, DrawnMaterial& drawn) {
 ProgramBounds draw_semimech(Dice& dice, DrawnMaterial& drawn) {
   const bool is_enclosed = drawn.configuration != "simple";
   const double poisson_ratio = draw_poisson_ratio(dice, is_enclosed ? 0.4999 : 0.5);
-  // From the softest that the law has, E/((1 - nu^2) Y) = 22.0931, just above it in some scenes.
+  // The softest material that the law admits has E/((1 - nu^2) Y) = 22.0931; some scenes lie just above it.
   const double lambda = dice.happens(0.1) ? 22.0931 : dice.log_uniform(22.0931, 1e6);
   drawn.values = {{"youngs_modulus", lambda * (1.0 - poisson_ratio * poisson_ratio)},
                   {"poisson_ratio", poisson_ratio},

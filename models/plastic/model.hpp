@@ -10,7 +10,7 @@ namespace monograin::plastic {
 [[nodiscard]] Model semimech_model() noexcept;
 [[nodiscard]] Model hardening_model() noexcept;
 
-// The law of a scenario of each of them. @throws std::invalid_argument for a material that it has no law for
+// Laws of these models for a scenario. @throws std::invalid_argument for a material without a law
 [[nodiscard]] Law similarity_law(const ModelInput& input);
 [[nodiscard]] Law semimech_law(const ModelInput& input);
 [[nodiscard]] Law hardening_law(const ModelInput& input);

@@ -17,7 +17,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double k_yield_pressure = 1.1;  // H at x_y (text before eq. 2.17)
-constexpr double k_little_beyond = 1e-3;  // of zero porosity: trial steps
+constexpr double k_little_beyond = 1e-3;  // distance beyond zero porosity that trial steps may reach
 
 bool is_enclosed(Configuration configuration) noexcept { return configuration != Configuration::simple; }
 
@@ -60,8 +60,8 @@ ValueAndSlope elastic_pressure(const SemimechLaw& law, double x) noexcept {  // 
   return {.value = factor * root, .slope = 0.5 * factor / root};
 }
 
-/// Beyond the greatest pressure it goes on as the nearest whole power would: where the exponent is near 1, its mirror
-/// image would have a kink there.
+/// Beyond the greatest pressure the curve continues like the nearest integer power: where the exponent is near 1, a
+/// mirror image would have a kink there.
 ValueAndSlope elastic_plastic_pressure(const SemimechLaw& law, double x) noexcept {  // eqs. 2.18, 2.21
   const double ratio = logarithm_to_greatest(law, x) / law.yield_logarithm;
   const double rise = law.fall.greatest - k_yield_pressure;
@@ -74,8 +74,8 @@ ValueAndSlope elastic_plastic_pressure(const SemimechLaw& law, double x) noexcep
                 : ValueAndSlope{.value = law.fall.greatest - drop, .slope = -slope};
 }
 
-/// A little beyond zero porosity it goes on along its tangent: nearly incompressible materials have the logarithm's
-/// pole there, and a trial step that begins at zero porosity has to end somewhere.
+/// A little beyond zero porosity the curve continues along its tangent. For nearly incompressible materials the pole of
+/// the logarithm lies there, and a trial step that begins at zero porosity has to end somewhere.
 ValueAndSlope low_compressibility_pressure(const SemimechLaw& law, double x) {  // eq. 2.41
   const Stiffening& c = law.stiffening;
   const double within = std::min(x, c.zero_porosity);
@@ -95,7 +95,7 @@ ValueAndSlope low_compressibility_pressure(const SemimechLaw& law, double x) {  
 }
 
 ValueAndSlope elastic_volumetric_pressure(const SemimechLaw& law, double x) noexcept {  // eq. 2.44
-  // 1 - chi counted from zero porosity, so that the branches join there to the last digit.
+  // 1 - chi is counted from zero porosity, so that the branches join there to the last digit.
   const Stiffening& c = law.stiffening;
   const double loss = c.elastic_volume + cell_shrinkage(law.configuration, c.zero_porosity, x);
   const double zeta = law.material.bulk_over_yield;
@@ -132,7 +132,7 @@ double integral(const Integrand& f, double a, double b) {
   return boost::math::quadrature::gauss<double, Points>::integrate(f, a, b);
 }
 
-/// x under a small force, where a/R = D1 x^(1/2): off by a relative error of order x.
+/// x under a small force, where a/R = D1 x^(1/2). Its relative error is of order x.
 double small_approach(const SemimechLaw& law, double force) {
   const double first = law.radius.first;
   const double root = std::cbrt(3.0 * force / (4.0 * law.material.modulus_over_yield * first * first));
@@ -271,7 +271,7 @@ double approach_under(const SemimechLaw& law, double force, double near) {
 double impingement_approach(const SemimechLaw& law) { return impingement_approach(law.configuration, law.radius); }
 
 double work_in(const SemimechLaw& law, Regime regime, double x) {
-  // In each regime a variable in which the force is smooth.
+  // Each regime is integrated in a variable in which its force is smooth.
   const auto force = [&](double at) { return state_in(law, regime, at).force; };
   switch (regime) {
     case Regime::elastic:
@@ -293,7 +293,7 @@ double work_in(const SemimechLaw& law, Regime regime, double x) {
                           1.0);
     }
     case Regime::low_compressibility: {
-      // The logarithm's singularity at l y^2 = 1, to first order in 1 - l.
+      // Position of the logarithm's singularity, l y^2 = 1, to first order in 1 - l.
       const double span = cell_shrinkage(law.configuration, law.fall.end, law.stiffening.zero_porosity);
       const double beyond = -0.5 * law.stiffening.softness_complement * span /
                             cell_slope(law.configuration, law.stiffening.zero_porosity);

@@ -26,8 +26,8 @@ struct SemimechMaterial {
 /// Least lambda at which the elastic-plastic branch can end with the slope zero (c2 = 1); printed as 22.08.
 constexpr double k_least_modulus_over_yield = 22.093089842902306;
 
-/// What of a material is outside the source's calculations: lambda in 117.24..5933.40 and, where the particle is
-/// enclosed, E/Y in 100..5000, nu in 0.2..0.48 and zeta in 64..28000 (ranges of Tables 2.1 and A.1).
+/// Ratios of a material that are outside the source's calculations: lambda in 117.24..5933.40 and, where the particle
+/// is enclosed, E/Y in 100..5000, nu in 0.2..0.48 and zeta in 64..28000 (ranges of Tables 2.1 and A.1).
 [[nodiscard]] std::vector<OutOfRange> outside_calibration(double youngs_modulus, double poisson_ratio,
                                                           double yield_stress, Configuration configuration);
 
@@ -66,21 +66,22 @@ struct SemimechLaw {
 /// `zero-porosity`. The last regime goes on to the limit.
 [[nodiscard]] Boundaries boundaries(const SemimechLaw& law);
 
-/// A boundary belongs to the regime before it; x <= 0 is open.
+/// Regime at x. A boundary belongs to the regime before it; x <= 0 is open.
 [[nodiscard]] Regime regime_at(const SemimechLaw& law, double x) noexcept;
 
+/// State of a contact at x.
 /// @throws std::domain_error for x >= 1 and NaN
 [[nodiscard]] ContactState state_at(const SemimechLaw& law, double x);
 
-/// The formulas of one regime, also somewhat outside of it, for trial steps: its laws are continued analytically, those
-/// with an infinite second derivative at x_Hmax as their mirror image beyond, low compressibility along its tangent
-/// a little beyond zero porosity.
-/// @throws std::domain_error for x <= 0 (but open), a regime that the configuration has not, and low compressibility
-/// farther beyond zero porosity
+/// State of a contact by the formulas of one regime, also somewhat outside of it, for trial steps. The formulas are
+/// continued analytically. Those with an infinite second derivative at x_Hmax continue as their mirror image, and low
+/// compressibility along its tangent a little beyond zero porosity.
+/// @throws std::domain_error for x <= 0 (but open), a regime that the configuration does not have, and low
+/// compressibility farther beyond zero porosity
 [[nodiscard]] ContactState state_in(const SemimechLaw& law, Regime regime, double x);
 
 /// x under a force over Y R^2; 0 for no force.
-/// @param near  an x to begin with; 0: none is known
+/// @param near  initial guess of x; 0: none is known
 /// @throws std::domain_error for forces that the law does not reach below its limit
 [[nodiscard]] double approach_under(const SemimechLaw& law, double force, double near = 0.0);
 
@@ -110,26 +111,27 @@ struct LateralLaw {
   static constexpr double small_range_end = 0.1;  ///< x up to which x_s is fitted
 };
 
-/// lambda over which the lateral contacts were fitted.
+/// Range of lambda over which the lateral contacts were fitted.
 constexpr double k_least_lateral_modulus_over_yield = 163.08;
 constexpr double k_greatest_lateral_modulus_over_yield = 4954.40;
 
 /// @throws std::invalid_argument unless the law is that of the die
 [[nodiscard]] LateralLaw make_lateral(const SemimechLaw& law);
 
-/// x at which all contacts begin to bear the same pressure. Table 2.4, which comes from computed contact areas, for its
-/// own five materials; for others 0.409833 + 4.03e-4 (lambda/1000)^(-1.4956), which meets it within 8.3e-5, with lambda
-/// limited to the table's range.
+/// x at which all contacts begin to bear the same pressure. For its own five materials, Table 2.4, which comes from
+/// computed contact areas. For other materials, 0.409833 + 4.03e-4 (lambda/1000)^(-1.4956), with lambda limited to the
+/// table's range; this formula meets the table within 8.3e-5.
 [[nodiscard]] double lateral_onset(double modulus_over_yield) noexcept;
 
 /// x_s and dx_s/dx, for x > 0.
 [[nodiscard]] ValueAndSlope lateral_approach(const LateralLaw& lateral, double x) noexcept;
 
-/// Where the regimes of a lateral contact end, in terms of the primary x: `yield`, the end of the small range and zero
+/// Ends of a lateral contact's regimes, in terms of the primary x: `yield`, the end of the small range and zero
 /// porosity (no events of the lateral contact: empty names), and `secondary-onset`.
 [[nodiscard]] Boundaries boundaries(const SemimechLaw& law, const LateralLaw& lateral);
 
-/// A boundary belongs to the regime before it, but for the onset; x <= 0 is open. `undefined` between the two ranges.
+/// Regime of a lateral contact at x. A boundary belongs to the regime before it, except the onset; x <= 0 is open.
+/// `undefined` between the two ranges.
 [[nodiscard]] Regime lateral_regime_at(const SemimechLaw& law, const LateralLaw& lateral, double x) noexcept;
 
 /// State of a lateral contact by the formulas of one regime, with derivatives with respect to the primary x > 0.
@@ -138,7 +140,7 @@ constexpr double k_greatest_lateral_modulus_over_yield = 4954.40;
 /// @throws std::domain_error as state_in
 [[nodiscard]] ContactState lateral_state_in(const SemimechLaw& law, const LateralLaw& lateral, Regime regime, double x);
 
-/// The same with the regime that belongs to x.
+/// State of a lateral contact at x, in the regime that belongs to x.
 /// @throws std::domain_error as state_at
 [[nodiscard]] ContactState lateral_state_at(const SemimechLaw& law, const LateralLaw& lateral, double x);
 

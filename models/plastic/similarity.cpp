@@ -58,7 +58,7 @@ double similarity_strength(double first, double second, double exponent) {
                                 " and " + number_text(second));
   }
   const auto [weaker, stronger] = std::minmax(first, second);
-  // Only for equal strengths would m ln 1 be no number.
+  // The formula below would give m ln 1 for equal strengths, which is not a number where m is infinite.
   if (exponent == 0.0) return weaker;
   const double power = std::exp(std::log(weaker / stronger) / exponent);
   return weaker * std::exp(-exponent * std::log1p(power));

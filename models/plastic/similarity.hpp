@@ -10,9 +10,9 @@
 
 namespace monograin::plastic {
 
-/// How the contact radius follows from the approach: eq. 2.5, or eq. B.24, which keeps the fourth power of the profile
-/// and takes the same constant c^2 for it. The source gives the force with the first only; here the second bears the
-/// same force at the same radius.
+/// Relation of contact radius and approach: eq. 2.5, or eq. B.24, which keeps the fourth power of the profile and uses
+/// the same constant c^2. The source gives the force with the first only; here a contact has the same force at the same
+/// radius with both.
 enum class SimilarityRadius { parabolic, corrected };
 
 /// Two spheres in contact, or a sphere and a wall (radius infinity), in any unit of length.
@@ -67,13 +67,13 @@ struct SimilarityContact {
 /// x at which the walls of a symmetric pair meet: the law ends before.
 constexpr double k_similarity_limit = 1.0;
 
-/// x up to which the source sees the law follow its computed curves.
+/// x up to which the law follows the source's computed curves, according to the source.
 constexpr double k_similarity_calibrated_end = 0.03;
 
-/// Regime fully_plastic; zeros for x <= 0.
+/// State of a contact at a wall, in regime fully_plastic; zeros for x <= 0.
 [[nodiscard]] ContactState contact_of(const SimilarityLaw& law, double x) noexcept;
 
-/// The same up to the limit.
+/// State of a contact at a wall, for x below the limit.
 /// @throws std::domain_error for x >= 1 and NaN
 [[nodiscard]] ContactState state_at(const SimilarityLaw& law, double x);
 

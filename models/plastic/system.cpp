@@ -11,9 +11,9 @@
 namespace monograin::plastic {
 namespace {
 
-// Contacts shallower than this over R0 have no digits left where a ramp takes the wall there.
+// Least typical depth over R0: shallower contacts have too few digits where a ramp prescribes the wall's displacement.
 constexpr double k_least_typical = 1e-7;
-// Share of a law, towards the limit where the pressure of an enclosed particle is infinite, that sets scales.
+// Share of a law's limit that sets scales: at the limit itself the pressure of an enclosed particle may be infinite.
 constexpr double k_far_from_limit = 0.9;
 // gamma/2R from which on semimech agrees with finite elements.
 constexpr double k_least_trusted = 0.03;
@@ -76,7 +76,7 @@ std::pair<double, double> WallLaw::force_and_slope(const Branch& b, double x) co
   return {c.force, c.force_by_approach};
 }
 
-/// Where the distance from the opening is a small share of the displacement, the displacement has not its digits.
+/// Uses the recompressed share: the displacement loses the digits of a small distance from the opening.
 double WallLaw::slope_under(const Branch& b, double force) const {
   if (!b.is_on_indenter) return slope(b, displacement(b, force));
   const double share = mdr::recompressed_share(b.indenter, force);
@@ -89,7 +89,7 @@ double WallLaw::displacement(const Branch& b, double force, double near) const {
 
 double WallLaw::coordinate_power(const Branch& b) const noexcept { return b.is_on_indenter ? 0.0 : first_power_; }
 
-/// Next to where its pressure becomes infinite, an integrator's error would lead beyond the end of the law.
+/// False in low compressibility: next to infinite pressure, an integrator's error would lead beyond the end of the law.
 bool WallLaw::is_integrated(const Branch& b) const noexcept { return primary_regime(b) != Regime::low_compressibility; }
 
 contacts::BearingContact WallLaw::contact(const Branch& b, double x) const {
@@ -106,7 +106,7 @@ double WallLaw::work(const Branch& b, double x) const {
   return b.is_on_indenter ? mdr::unloading_energy(b.indenter, x) : work_in(settings_.law, primary_regime(b), x);
 }
 
-/// Work is a quadrature of 30 forces but for power laws and polynomials.
+/// True where work is a quadrature of 30 forces; for power laws and polynomials it is not.
 bool WallLaw::is_work_costly(const Branch& b) const noexcept {
   return !b.is_on_indenter && !std::holds_alternative<SimilarityLaw>(settings_.law) &&
          primary_regime(b) != Regime::elastic && primary_regime(b) != Regime::elastic_volumetric;
@@ -122,11 +122,11 @@ contacts::Magnitudes WallLaw::magnitudes(double reach) const {
   const Law& law = settings_.law;
   const bool is_said = settings_.largest_displacement > 0.0 || settings_.largest_force > 0.0;
   reach = is_said ? std::min(reach, k_far_from_limit * limit(law)) : 0.5 * limit(law);
-  // Where there is a yield point, what lies before it counts too.
+  // A yield point makes the range before it count, too.
   const double first = boundaries_.empty() || !begins_elastic(law) ? reach : std::min(reach, boundaries_[0].approach);
-  // A depth that follows from a force has digits, however shallow.
+  // A depth that follows from a force has all its digits, however shallow it is.
   const double least = settings_.largest_displacement > 0.0 ? k_least_typical : 0.0;
-  // Beyond where the law is fitted work grows by orders, and a condition may end a program long before its targets.
+  // Beyond the fitted range work grows by orders, and a condition may end a program long before its targets.
   return {std::max(first, least), work_per_wall(law, std::min(reach, calibrated_end(law)))};
 }
 
@@ -204,7 +204,8 @@ bool WallLaw::follows(const ContactClass& walls) const noexcept {
   return is_die(settings_.law) && std::abs(walls.normals.front().z()) < 0.5;
 }
 
-/// Lateral contacts follow the axial ones while those are loaded, and while nothing has yielded.
+/// Regime of the lateral contacts. They follow the axial contacts until those unload from a plastic state; then there
+/// is no law.
 Regime WallLaw::lateral_regime(const Branch& leader, bool touches) const noexcept {
   if (leader.is_on_indenter) return Regime::undefined;
   if (!touches) return Regime::open;
@@ -219,7 +220,7 @@ contacts::VisibleContact WallLaw::follower(const Branch& leader, bool touches, d
   has_lateral_gap_ = has_lateral_gap_ || is_undefined;
   if (is_undefined) shown.overlap = shown.force = shown.contact_radius = shown.pressure = k_nan;
   if (is_undefined || regime == Regime::open) return shown;
-  // The approach that a lateral contact behaves as if it had.
+  // The overlap is that of an equivalent primary contact.
   const bool is_in_small_range = regime == Regime::elastic || regime == Regime::elastic_plastic;
   if (!is_in_small_range) shown.overlap = k_nan;
   if (!(x > 0.0)) return shown;

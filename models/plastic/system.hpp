@@ -1,9 +1,9 @@
-/// A plastic particle between rigid walls, by one of the laws of this folder: what one contact does, and the hybrid
-/// system of contacts that each depend on their own wall; the lateral contacts of a die follow the axial walls and do
+/// A plastic particle between rigid walls, by one of the laws of this folder: the law of one contact, and the hybrid
+/// system of contacts that each depend on their own wall. The lateral contacts of a die follow the axial walls and do
 /// not act back. Lengths in R0, stresses in the strength S.
 ///
 /// Unloading: the source has no law. `mdr` gives every yielded contact the elastic indenter that model mdr would leave
-/// under the same mean pressure and contact radius; a contact that has not yielded goes back the way it came.
+/// under the same mean pressure and contact radius; a contact that has not yielded retraces its loading curve.
 #pragma once
 
 #include <array>
@@ -27,19 +27,19 @@ struct Settings {
   Unloading unloading = Unloading::none;
   double composite_modulus = 0.0;          ///< E* [Pa], > 0; for unloading only
   double poisson_ratio = 0.0;              ///< for unloading only
-  std::vector<OutOfRange> out_of_range{};  ///< what of the material the law was not fitted to
+  std::vector<OutOfRange> out_of_range{};  ///< properties of the material to which the law was not fitted
   /// As contacts::Settings.
   double largest_displacement = 0.0;
   double largest_force = 0.0;
   bool centre_is_free = false;
 };
 
-/// One contact, as contacts::IndependentContacts asks for it.
+/// Law of one contact, for contacts::IndependentContacts.
 class WallLaw {
  public:
   struct Branch {
     std::size_t next = 0;          ///< boundary ahead on the primary branch
-    std::size_t next_lateral = 0;  ///< and that of the lateral contacts
+    std::size_t next_lateral = 0;  ///< boundary ahead of the lateral contacts
     bool has_impinged = false;     ///< has met its neighbours
     bool is_on_indenter = false;   ///< unloaded since it yielded, and not back at its largest displacement
     mdr::UnloadingShape indenter{};

@@ -25,13 +25,13 @@ std::size_t characters_in(std::string_view text) {
 /// Blanks that may stand around a cell.
 std::string_view blanks_beside(char separator) { return separator == '\t' ? " " : " \t"; }
 
-/// Where the cell ends that begins here: at the next separator, or at the end of the line.
+/// Position where a cell ends: at the next separator, or at the end of the line.
 std::size_t end_of_cell(std::string_view line, std::size_t begin, char separator) {
   const std::string_view separators = separator == ' ' ? std::string_view(" \t") : std::string_view(&separator, 1);
   return std::min(line.find_first_of(separators, begin), line.size());
 }
 
-/// The closing quote of a cell that begins with one; npos where it has none, or where text follows it.
+/// Position of the closing quote of a cell that begins with a quote; npos if there is none, or if text follows it.
 std::size_t closing_quote(std::string_view line, std::size_t begin, char separator) {
   std::size_t at = line.find('"', begin + 1);
   while (at != std::string_view::npos && line.substr(at + 1).starts_with('"')) at = line.find('"', at + 2);
@@ -58,7 +58,7 @@ bool is_comment(std::string_view line) noexcept {
 
 std::vector<Cell> cells_of(std::string_view line, char separator) {
   std::vector<Cell> cells;
-  std::size_t counted = 0;  // bytes of the line before which the characters have been counted
+  std::size_t counted = 0;  // bytes of the line in which the characters have been counted
   std::size_t column = 1;
   const auto add = [&](std::size_t begin, std::size_t end) {
     column += characters_in(line.substr(counted, begin - counted));

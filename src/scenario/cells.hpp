@@ -1,4 +1,4 @@
-/// Cells of a table in a text file, and where they stand.
+/// Cells of a table in a text file, with their positions.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,10 @@ struct Cell {
   std::size_t column = 1;  ///< of its first character in the line, counted in characters of UTF-8
 };
 
-/// Takes the next line off the text, without its line end.
+/// Removes the first line from the text and returns it without its line end.
 [[nodiscard]] std::string_view take_line(std::string_view& text);
 
-/// Whether a line says nothing: it is blank, or begins with '#'.
+/// True if a line is blank or begins with '#'.
 [[nodiscard]] bool is_comment(std::string_view line) noexcept;
 
 /// The cells of a line. A cell may stand in double quotes, which are not part of its text; the separator counts as text
@@ -23,8 +23,8 @@ struct Cell {
 /// @param separator  a character, or ' ' for any number of blanks and tabs
 [[nodiscard]] std::vector<Cell> cells_of(std::string_view line, char separator = ',');
 
-/// The finite number that all of the text is, whatever the locale.
-/// @param decimal  '.' or ','; the other one is no part of a number
+/// Parses a text that is a finite number as a whole, whatever the locale; none otherwise.
+/// @param decimal  '.' or ','; the other character is not allowed in a number
 [[nodiscard]] std::optional<double> number_in(std::string_view text, char decimal = '.') noexcept;
 
 /// The text without a byte order mark at its beginning.

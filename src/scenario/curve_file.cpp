@@ -46,7 +46,7 @@ class CurveParser {
       fault(line.find_first_not_of(" \t") + 1,
             fmt::format("{} cell{} where 2 are expected, for example {}", cells.size(), cells.size() == 1 ? "" : "s",
                         has_headings_ ? "0.1,2.1" : k_example_headings));
-      has_headings_ = true;  // what follows is not to be taken for them
+      has_headings_ = true;  // the next row is not a row of headings
       ++rows_;
     } else if (has_headings_) {
       take_row(cells);
@@ -140,7 +140,7 @@ SampledCurve parse_columns(std::string_view text, const std::string& origin, std
   MeasuredData data = parse_measured(text, origin, wanted, faults);
   SampledCurve table{.text = std::move(data.text), .x = {}, .y = {}};
   if (faults.size() > before) return table;
-  std::map<std::pair<double, double>, std::size_t> lines;  // of what has been read, by its first two columns
+  std::map<std::pair<double, double>, std::size_t> lines;  // lines of earlier rows, by their first two columns
   for (std::size_t row = 0; row < data.lines.size() && faults.size() < before + k_most_table_faults; ++row) {
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const double value = data.columns[k].values[row];

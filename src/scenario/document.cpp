@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t k_most_key_parts = 32;
 
-/// Finds keys of very many parts. The parser makes one table per part, and tables nested without bound would overflow
-/// the stack when they are destroyed; for values it has a limit of its own.
+/// Finds keys with too many parts. The parser makes one table for each part, and the destruction of deeply nested
+/// tables would overflow the stack; the parser limits the nesting of values only.
 class KeyScanner {
  public:
   explicit KeyScanner(std::string_view text) : text_(text) {}
@@ -45,7 +45,7 @@ class KeyScanner {
     const std::string_view end = is_long ? std::string_view(long_quote) : std::string_view(long_quote).substr(0, 1);
     for (std::size_t i = 0; i < end.size(); ++i) advance();
     while (at_ < text_.size() && text_.substr(at_, end.size()) != end) {
-      // A short string that is still open at the end of its line is an error, which the parser will report.
+      // A short string without an end on its line is an error that the parser reports.
       if (!is_long && text_[at_] == '\n') return;
       if (quote == '"' && text_[at_] == '\\') advance();
       advance();
@@ -74,7 +74,7 @@ class KeyScanner {
   std::size_t dots_ = 0;
 };
 
-/// A kind of fault of the syntax: what the parser's description has in it, and what is said instead.
+/// A kind of syntax fault: a part of the parser's description, and the sentence shown instead.
 struct SyntaxFault {
   std::string_view clue;
   std::string_view sentence;
@@ -82,7 +82,7 @@ struct SyntaxFault {
 
 constexpr std::string_view k_end_of_text = "encountered end-of-file";
 
-/// Parts that the end of the text leaves open.
+/// Parts of a document that the end of the text may leave open.
 constexpr SyntaxFault k_open_parts[] = {
     {"inline table", "the braces are not closed; expected '}'"},
     {"array", "the array is not closed; expected ']'"},
@@ -90,7 +90,7 @@ constexpr SyntaxFault k_open_parts[] = {
     {"table", "the name of the table is not closed; expected [name] or [[name]]"},
 };
 
-// The first clue that is met counts.
+// The first clue that the description contains decides.
 constexpr SyntaxFault k_syntax_faults[] = {
     {"nested value depth", "arrays or braces are nested too deeply; expected at most 256 levels"},
     {"into existing inline table", "a table in braces cannot be added to; expected all of its keys in the braces"},
@@ -130,7 +130,7 @@ constexpr SyntaxFault k_syntax_faults[] = {
     {"length", "the number is too long; expected at most 17 digits"},
 };
 
-/// A fault of the syntax in the program's words. The parser's description only says which.
+/// A syntax fault in the program's own words. The parser's description only determines which sentence.
 std::string sentence_of(std::string_view description) {
   constexpr std::string_view k_redefined = "cannot redefine existing ";
   if (const auto at = description.find(k_redefined); at != std::string_view::npos) {

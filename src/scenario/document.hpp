@@ -1,5 +1,4 @@
-/// The parsed TOML tree and the places of its parts. For readers of TOML files: it includes the TOML
-/// library.
+/// The parsed TOML tree and the positions of its parts. For readers of TOML files: includes the TOML library.
 #pragma once
 
 #include <toml++/toml.h>
@@ -13,14 +12,14 @@ namespace monograin {
 
 inline constexpr std::size_t k_largest_text = 16U * 1024U * 1024U;
 
-/// Parses a text; `origin` is what its nodes give as their file.
-/// @throws ScenarioError with one fault where the text is not TOML, is too large or nests too deeply
+/// Parses a text; its nodes give `origin` as their file.
+/// @throws ScenarioError with one fault if the text is not TOML, is too large or nests too deeply
 [[nodiscard]] toml::table parse_document(std::string_view text, const std::string& origin);
 
-/// Where a node or key was written; `fallback` where the tree does not know.
+/// Position of a node or key; `fallback` if the tree does not have it.
 [[nodiscard]] SourceLocation place_of(const toml::source_region& region, const SourceLocation& fallback);
 
-/// A node as a user would recognise it in a message: its value, or "a table".
+/// Text by which a user recognizes a node in a message: its value, or "a table".
 [[nodiscard]] std::string shown(const toml::node& node);
 
 }  // namespace monograin

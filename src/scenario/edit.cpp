@@ -12,7 +12,7 @@
 namespace monograin {
 namespace {
 
-/// Where a position of the parser, whose columns count characters, is in the text.
+/// Byte offset of a parser's position, whose columns count characters.
 std::size_t offset_of(std::string_view text, const toml::source_position& position) {
   std::size_t at = text.size() - without_byte_order_mark(text).size();
   for (toml::source_index line = 1; line < position.line; ++line) at = text.find('\n', at) + 1;

@@ -1,4 +1,4 @@
-/// Collects what is wrong with a scenario, so that a user sees all of it at once.
+/// Collects the faults of a scenario, so that a user sees all of them at once.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,16 @@
 
 namespace monograin {
 
-/// Faults of one table after which no more are reported: nobody reads on.
+/// Largest number of faults that are reported for one table.
 inline constexpr std::size_t k_most_table_faults = 20;
 
 class FaultList {
  public:
-  /// Adds a fault, unless it was found at the same place before. Takes the same time however many there are.
+  /// Adds a fault, unless the list has it already. The time does not depend on the number of faults.
   void add(SourceLocation where, std::string message);
   [[nodiscard]] std::size_t size() const noexcept { return faults_.size(); }
 
-  /// @throws ScenarioError with every fault, those of files before those of overrides, each in the order of the text
+  /// @throws ScenarioError with every fault: those of files before those of overrides, each in the order of the text
   void throw_if_any() const;
 
  private:

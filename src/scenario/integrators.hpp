@@ -1,4 +1,4 @@
-/// Names of the integrators that a scenario may ask for: the one place where they are spelled.
+/// Names of the integrators that a scenario may select. No other file spells them.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ inline constexpr const char* k_gsl_msadams = "gsl-msadams";
 inline constexpr const char* k_gsl_msbdf = "gsl-msbdf";
 inline constexpr const char* k_explicit = "explicit";  ///< forward Euler
 
-/// All of them, in the order in which they are listed to users.
+/// All integrators, in the order of their lists for users.
 inline constexpr std::array<std::string_view, 15> k_all{k_auto,
                                                         k_direct,
                                                         k_cvode_bdf,

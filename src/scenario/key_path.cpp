@@ -12,7 +12,7 @@
 namespace monograin {
 namespace {
 
-/// Walks down a path, with the language on one hand and the tree on the other.
+/// Follows a path through the language and the tree at once.
 class KeyFinder {
  public:
   KeyFinder(std::string_view path, const std::vector<PathPart>& parts, const Language& language)
@@ -37,7 +37,7 @@ class KeyFinder {
  private:
   using Node = toml::node_view<const toml::node>;
 
-  /// The next part if it is a key, else nothing.
+  /// Takes the next part if it is a key; else an empty text.
   std::string take_name() {
     const auto* name = at_ < parts_.size() ? std::get_if<std::string>(&parts_[at_]) : nullptr;
     return name == nullptr ? std::string() : (++at_, *name);
@@ -47,7 +47,7 @@ class KeyFinder {
     return at_ < parts_.size() && std::holds_alternative<std::size_t>(parts_[at_]);
   }
 
-  /// The entry that the next part, an index, picks from an array.
+  /// The entry of an array that the next part, an index, selects.
   Node take_entry(Node array) {
     const std::size_t index = std::get<std::size_t>(parts_[at_++]);
     return array[index];

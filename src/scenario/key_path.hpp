@@ -1,4 +1,4 @@
-/// What the language says of the key that a path leads to. Internal to readers of TOML files: includes the library.
+/// The spec of the key at a path, according to the language. Internal to readers of TOML files: includes the library.
 #pragma once
 
 #include <toml++/toml.h>
@@ -11,15 +11,15 @@
 
 namespace monograin {
 
-/// The key, or why no scenario of that model can have one there.
+/// The spec of a key, or the reason why no scenario of the model can have the key.
 struct KeyAnswer {
   std::optional<KeySpec> spec;
   std::string problem;  ///< empty: there is a spec
 };
 
 /// @param path   as in overrides: `material.yield_stress`, `loading.steps[0].displacement`
-/// @param root   the scenario: its steps and walls say what keys they can have
-/// @param model  name of the model whose language counts
+/// @param root   the scenario: its steps and walls determine which keys they can have
+/// @param model  name of the model whose language is used
 [[nodiscard]] KeyAnswer key_at(std::string_view path, const toml::table& root, std::string_view model);
 
 }  // namespace monograin

@@ -27,7 +27,7 @@ constexpr std::array<string_view, 7> k_configurations{"simple", "die",      "hyd
 constexpr std::array<string_view, 2> k_centres{"fixed", "equilibrium"};
 constexpr std::array<string_view, 2> k_ludwik_fits{"both", "exponent"};
 
-// Stands in for a model that is missing or misspelt, so that the loading is checked as far as no model is needed.
+// Replaces a model that is missing or misspelt, so that the loading is checked as far as no model is needed.
 constexpr Model k_any_model{.name = {},
                             .summary = {},
                             .source = {},
@@ -212,7 +212,7 @@ std::vector<KeySpec> material_keys(const Model& model) {
   }
   for (const QuantityKey& key : model.material) {
     keys.push_back(quantity_key(key));
-    // The preset may have it; the reader knows what is missing then.
+    // The preset may give the value; the reader checks what is missing then.
     if (!model.presets.empty()) keys.back().is_required = false;
   }
   if (model.power_law_of != nullptr) {
@@ -481,7 +481,7 @@ std::vector<string_view> material_names_of_all_models() {
 
 void add_model_tables(Language& language, string_view model) {
   std::vector<string_view> names = model_names();
-  // Without a valid model nobody can say whose options are the right ones.
+  // Without a valid model, the options of all models are accepted.
   const bool is_known = is_in(names, model);
   for (const string_view name : names) {
     if (is_known && name != model) {
@@ -522,7 +522,7 @@ void add_material_and_options(Language& language, const Model& model) {
 
 namespace {
 
-/// @param info  null: of a model that is not known
+/// @param info  null: the model is not known
 Language make_language(const Model* info) {
   Language language;
   language.root = root_keys();
@@ -544,7 +544,7 @@ Language make_language(const Model* info) {
 }  // namespace
 
 const Language& language_of(string_view model) {
-  // A sweep reads a scenario for each of its runs: what they are read by is made once.
+  // A sweep reads a scenario for each run, so that languages are made once and kept.
   static std::mutex mutex;
   static std::map<const Model*, Language> languages;
   const Model* info = find_model(model);

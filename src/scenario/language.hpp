@@ -1,6 +1,6 @@
 /// The scenario language as one table: every key with its kind, range, default and meaning.
 ///
-/// The reader checks files against these tables and the JSON Schema is written from them, so that the two agree.
+/// The reader checks files against these tables, and the JSON Schema is made from them, so that both agree.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@
 
 namespace monograin {
 
-/// What a key accepts.
+/// A key of the language with the values that it accepts.
 struct KeySpec {
   enum class Kind {
     text,
@@ -29,7 +29,7 @@ struct KeySpec {
     pair,       ///< one quantity, or a list of two
     instants,   ///< strictly ascending list of quantities
     direction,  ///< three numbers, not all zero
-    texts,      ///< list of texts; a number in it is taken as it is written
+    texts,      ///< list of texts; a number in it is read as its text
     table,
     tables,  ///< not empty
   };
@@ -46,43 +46,43 @@ struct KeySpec {
   bool may_be_empty = true;          ///< of a table
   std::vector<std::string_view> choices{};
   std::vector<std::string_view> reserved{};  ///< choices that the language knows but that are not available here
-  std::string reserved_where{};              ///< where not: "in this version"
+  std::string reserved_where{};              ///< where they are unavailable: "in this version"
   Default default_value{};
   std::string example{};                   ///< as written in a file; empty: that of the dimension, or the first choice
   std::string_view only_with{};            ///< `[loading]`: the configuration that the key belongs to; empty: any
   std::span<const QuantityKey> columns{};  ///< of a file that is not a curve of two columns
 };
 
-/// A key that is known to the language but does not belong where it was found, and why.
+/// A key of the language that does not belong where it was found, with the reason.
 struct ForeignKey {
   std::string_view name;
   std::string reason;  ///< goes on from "key 'x' ..."
 };
 
-/// One form of a step: the key that marks it and the keys it may have.
+/// One form of a step: the key that marks it, and its other keys.
 struct StepForm {
   std::optional<Step::Kind> kind;  ///< none: a cycle
   std::string_view key;
   std::vector<KeySpec> keys;
-  bool takes_duration_or_rate = false;  ///< exactly one of the two
-  std::span<const DriveKey> lateral{};  ///< of which one at most goes with it
+  bool takes_duration_or_rate = false;  ///< exactly one of the two is required
+  std::span<const DriveKey> lateral{};  ///< keys for the lateral direction, at most one of which is allowed
 };
 
 inline constexpr int k_most_points = 1'000'000;
 inline constexpr double k_most_rows = 2e7;      ///< of a history, events not counted
 inline constexpr int k_most_steps = 100'000;    ///< of all programs, cycles written out
-inline constexpr int k_most_walls = 200;        ///< which take mdr with a free centre a quarter of a minute
-inline constexpr double k_least_normal = 1e-6;  ///< magnitude that one component of a normal has to reach
+inline constexpr int k_most_walls = 200;        ///< this many take mdr with a free centre a quarter of a minute
+inline constexpr double k_least_normal = 1e-6;  ///< least magnitude of a normal's largest component
 inline constexpr double k_greatest_normal = 1e6;
 
-/// The language as one model understands it.
+/// The language of one model.
 struct Language {
-  const Model* model = nullptr;  ///< null: unknown
+  const Model* model = nullptr;  ///< null: the file names no valid model
   std::vector<KeySpec> root;
-  std::vector<KeySpec> particle;  ///< empty where the model has none
+  std::vector<KeySpec> particle;  ///< empty if the model has no particle
   std::vector<KeySpec> material;  ///< empty without a model
   std::vector<KeySpec> options;   ///< empty without a model
-  std::vector<KeySpec> ludwik;    ///< the table in `[material]`; empty where the model does not take it
+  std::vector<KeySpec> ludwik;    ///< the table in `[material]`; empty if the model does not have it
   std::vector<KeySpec> loading;
   std::vector<KeySpec> wall;
   std::vector<KeySpec> until;
@@ -98,22 +98,22 @@ struct Language {
   std::vector<ForeignKey> foreign_until_keys;
 };
 
-/// The same object for each call.
-/// @param model  name as written in the file; any text
+/// Language of a model; every call returns one and the same object.
+/// @param model  name as written in the file, valid or not
 [[nodiscard]] const Language& language_of(std::string_view model);
 
-/// The spec of that name, or nullptr.
+/// The spec with a name, or nullptr.
 [[nodiscard]] const KeySpec* find_key(std::span<const KeySpec> keys, std::string_view name) noexcept;
 
 [[nodiscard]] std::vector<std::string_view> names_of(std::span<const KeySpec> keys);
 
-/// The spec of a number that a model knows.
+/// Spec of a number that a model has.
 [[nodiscard]] KeySpec quantity_key(const QuantityKey& key);
 
-/// What the key accepts, to follow "expected ": `a stress, for example "50 MPa"`.
+/// Text of the accepted values, to follow "expected ": `a stress, for example "50 MPa"`.
 [[nodiscard]] std::string expectation(const KeySpec& spec);
 
-/// A line with the key as it could stand in a file: `youngs_modulus = "50 MPa"`.
+/// Example of a line with the key: `youngs_modulus = "50 MPa"`.
 [[nodiscard]] std::string example_line(const KeySpec& spec);
 
 /// The finite range of a quantity or integer.

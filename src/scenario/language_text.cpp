@@ -1,4 +1,4 @@
-// How keys of the language are described in messages.
+// Descriptions of the language's keys for messages.
 
 #include <fmt/format.h>
 

@@ -15,8 +15,8 @@ namespace {
 
 using Configuration = Loading::Configuration;
 
-constexpr double k_same_direction = 1e-9;  // [rad]
-constexpr double k_same_duration = 1e-9;   // relative
+constexpr double k_same_direction = 1e-9;  // angle between equal directions [rad]
+constexpr double k_same_duration = 1e-9;   // relative difference of equal durations
 
 Configuration to_configuration(const std::string& word) {
   if (word == "die") return Configuration::die;
@@ -28,7 +28,7 @@ Configuration to_configuration(const std::string& word) {
   return Configuration::simple;
 }
 
-/// Angle between two directions, as its sine; 2 where they point apart.
+/// Sine of the angle between two directions; 2 for an angle of 90 degrees or more.
 double sine_between(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   const double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   if (dot <= 0.0) return 2.0;
@@ -108,7 +108,7 @@ class LoadingReader {
     check_names();
     check_directions();
     check_driven();
-    // Programs with faults would only seem to differ from one another.
+    // With faults in the programs, differences between them could be mere consequences.
     if (reading_.faults.size() == faults_before_) check_programs();
   }
 
@@ -157,7 +157,7 @@ class LoadingReader {
     return wall.steps.empty() ? loading_.steps : wall.steps;
   }
 
-  /// Steps end for all walls together, so that programs must have as many steps and, where they say so, as long ones.
+  /// Steps end for all walls together: programs need equally many steps, and given durations have to be equal.
   void check_programs() {
     const WallSpec* first = nullptr;
     for (const WallSpec& wall : loading_.walls) {
@@ -199,7 +199,7 @@ class LoadingReader {
   Section section_;
   ProgramReader programs_;
   Loading loading_;
-  std::vector<std::size_t> followers_;  ///< walls that have neither steps of their own nor are fixed
+  std::vector<std::size_t> followers_;  ///< walls that are not fixed and have no steps of their own
 };
 
 }  // namespace

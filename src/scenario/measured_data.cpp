@@ -17,14 +17,14 @@ namespace {
 
 constexpr std::array<std::string_view, 8> k_missing{"", "nan", "na", "n/a", "-", "--", "---", "-----"};
 
-/// Whether a cell says that there is no number.
+/// True if a cell marks a missing number.
 bool is_missing(std::string_view text) {
   std::string word(text);
   std::ranges::transform(word, word.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return std::ranges::find(k_missing, word) != k_missing.end();
 }
 
-/// Advice on a cell that is no number: its likely meaning, and the way out. Empty where nothing is known.
+/// Advice on a cell that is no number: its likely meaning, and a remedy. Empty if the meaning is unclear.
 std::string advice_for(std::string_view text, char decimal) {
   const char other = decimal == '.' ? ',' : '.';
   if (text.find(other) == std::string_view::npos) return {};
@@ -87,7 +87,7 @@ class DataParser {
     }
   }
 
-  /// Which column of the file a request means.
+  /// Index of the requested column in the file.
   std::optional<std::size_t> place_of(const ColumnRequest& request) {
     const std::vector<std::string>& headings = data_.layout.headings;
     if (request.number > headings.size()) {

@@ -1,4 +1,4 @@
-/// Columns of numbers from a table that somebody, or a machine, has measured.
+/// Columns of numbers from a table that was measured.
 #pragma once
 
 #include <cstddef>
@@ -11,36 +11,36 @@
 
 namespace monograin {
 
-/// A column that is asked for, and where and how: `x = "force[N]"`, `x = 2`.
+/// A requested column, with the position and the text of the request: `x = "force[N]"`, `x = 2`.
 struct ColumnRequest {
-  std::string name;  ///< a heading, or a heading without its unit; empty: the number counts
+  std::string name;  ///< a heading, with or without its unit; empty: `number` selects the column
   SourceLocation where;
   std::string naming;
-  std::size_t number = 0;  ///< from 1; 0: the name counts
+  std::size_t number = 0;  ///< from 1; 0: `name` selects the column
 };
 
 struct MeasuredColumn {
-  std::size_t number = 0;  ///< place of the column, from 1; 0 where there is no such column
-  std::string heading;     ///< as in the file; empty where it has none
+  std::size_t number = 0;  ///< number of the column, from 1; 0 if there is no such column
+  std::string heading;     ///< as in the file; empty if it has none
   std::string unit;        ///< see TableLayout
   std::vector<double> values;
-  std::vector<std::size_t> at;  ///< place of each value in its line, from 1
+  std::vector<std::size_t> at;  ///< position of each value in its line, from 1
 };
 
 struct MeasuredData {
-  std::vector<MeasuredColumn> columns;  ///< in the order in which they were asked for
+  std::vector<MeasuredColumn> columns;  ///< in the order of the requests
   std::vector<std::size_t> lines;       ///< of each row in the file, from 1
   std::vector<std::size_t> left_out;    ///< lines of the rows without a number in one of the columns
   TableLayout layout;
   std::string text;  ///< the file as it was read, in UTF-8
 };
 
-/// Reads a table of numbers. Lines that begin with '#', blank lines and lines of separators do not count, nor do
-/// columns that were not asked for. Every cell has to be a finite number. A cell that is empty or says that there is
-/// none (nan, n/a, a dash) leaves its row out, as long as no more rows are left out than `format` admits.
+/// Reads a table of numbers. Lines that begin with '#', blank lines, lines of separators, and columns that were not
+/// requested do not count. Every cell has to be a finite number. A cell that is empty or marks a missing number (nan,
+/// n/a, a dash) leaves its row out, as long as `format` admits so many.
 ///
-/// What comes back is only meaningful if nothing was added to `faults`: the first twenty of the table, each with line
-/// and column.
+/// The result is only meaningful if nothing was added to `faults`. Reports the first twenty faults of the table, with
+/// line and column.
 /// @param bytes  the file, in any encoding that decode_text knows
 [[nodiscard]] MeasuredData parse_measured(std::string_view bytes, const std::string& origin,
                                           const std::vector<ColumnRequest>& wanted, FaultList& faults,

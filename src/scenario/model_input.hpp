@@ -1,4 +1,4 @@
-/// A checked scenario as its model sees it.
+/// The view that a model has of a checked scenario.
 #pragma once
 
 #include "scenario/scenario.hpp"
@@ -6,7 +6,7 @@
 
 namespace monograin {
 
-/// Refers to the scenario, which has to outlive it.
+/// Input of the model. It refers to the scenario, which has to outlive it.
 [[nodiscard]] ModelInput model_input(const CheckedScenario& scenario);
 
 }  // namespace monograin

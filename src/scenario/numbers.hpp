@@ -1,4 +1,4 @@
-/// The numbers of a scenario that can be set anew, as often as wanted, without reading its file again.
+/// Numbers of a scenario that can be changed repeatedly without reading its file again.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,10 @@
 
 namespace monograin {
 
-/// The initial radius. Lengths of a scenario may be given in terms of it, so that set_number() does not take it: see
-/// ScenarioTemplate.
+/// Path of the initial radius. set_number() cannot change it, because lengths may be given in R0; ScenarioTemplate can.
 inline constexpr std::string_view k_radius_key = "particle.radius";
 
-/// A number that can be sought.
+/// A number of a scenario that can be fitted or varied.
 struct NumberKey {
   std::string path;  ///< as of `--set`: "material.yield_stress"
   std::string_view meaning;
@@ -23,14 +22,14 @@ struct NumberKey {
   Range range;  ///< of admissible values [SI], finite
 };
 
-/// Those of a checked scenario: the constants of its material, the numbers among its model's options, what its
-/// configuration adds to them, gaps of its walls, and the radius of its particle.
+/// Numbers of a checked scenario: the constants of its material, the numbers among its model's options and those of its
+/// configuration, the gaps of its walls, and the radius of its particle.
 [[nodiscard]] std::vector<NumberKey> number_keys(const CheckedScenario& scenario);
 
 /// Path of the gap of a wall, counted from 0: "loading.wall[1].gap".
 [[nodiscard]] std::string gap_path(std::size_t wall);
 
-/// Sets one of them, other than the radius. What it accepts is not checked again: see the key's range.
+/// Sets a number other than the radius, without checking the range of its key.
 /// @param value  [SI]
 /// @throws std::logic_error for another path
 void set_number(CheckedScenario& scenario, std::string_view path, double value);

@@ -74,12 +74,12 @@ bool begins_like_a_bare_text(std::string_view value) {
   return first == std::string_view::npos || std::string_view("[{\"'").find(value[first]) == std::string_view::npos;
 }
 
-/// One override while it is being applied.
+/// An override while it is applied.
 class Override {
  public:
   Override(const std::string& text, FaultList& faults) : text_(text), here_{origin_of(text)}, faults_(faults) {}
 
-  /// @param number  the value, where it is known; none: it is read
+  /// @param number  the value, if it is known; none: the text is parsed
   void apply(toml::table& root, std::optional<double> number = {}) {
     const std::size_t equals = text_.find('=');
     if (equals == std::string::npos) return fault("expected key=value");
@@ -101,8 +101,8 @@ class Override {
     return key;
   }
 
-  /// A table with the value as its only entry. The key is replaced by one of the same length, so that the places in
-  /// the tree are those in the override.
+  /// A table with the value as its only entry. A key of the same length replaces the path, so that positions in the
+  /// tree are those in the override.
   std::optional<toml::table> parse_value(std::size_t equals) {
     const std::string_view value = std::string_view(text_).substr(equals + 1);
     const std::string key(equals, 'x');
@@ -119,7 +119,7 @@ class Override {
     }
   }
 
-  /// A whole number is an integer, as it is in a text.
+  /// A table with a number as its only entry. A whole number becomes an integer, as it would from a text.
   static toml::table holder_of(double number) {
     constexpr double k_largest_integer = 1e15;
     const bool is_integer = std::trunc(number) == number && std::abs(number) < k_largest_integer;
@@ -188,7 +188,7 @@ class Override {
   }
 
   void insert(toml::table& table, const std::string& key, toml::node& value) {
-    table.erase(key);  // an assignment would keep the place of the old key
+    table.erase(key);  // an assignment would keep the position of the old key
     toml::source_region region = value.source();
     region.begin = {1, 1};
     value.visit([&](auto& concrete) { table.insert(toml::key(key, region), std::move(concrete)); });
@@ -200,7 +200,7 @@ class Override {
     return table;
   }
 
-  /// The node as an array that has the index, or of which it is the next one.
+  /// The node as an array that contains the index, or to which the index appends.
   toml::array* as_array(toml::node& node, std::size_t index) {
     toml::array* array = node.as_array();
     if (array == nullptr) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int k_deepest_cycle = 16;
 
-/// None for the key of an event.
+/// Quantity of a condition's key; none for the key of an event.
 std::optional<Quantity> quantity_of(std::string_view key) {
   if (key == "force") return Quantity::force;
   if (key == "displacement") return Quantity::displacement;
@@ -82,7 +82,7 @@ void ProgramReader::report_formless(const Section::Origin& table) {
   }
   const std::size_t faults_before = reading_.faults.size();
   check_names(reading_.faults, *table.table, table.place, table.label, all_keys, language_.foreign_step_keys);
-  // The form is most likely the key that has just been reported as misspelt.
+  // The key of the form is most likely misspelt, which has just been reported.
   if (reading_.faults.size() != faults_before) return;
   reading_.faults.add(table.place,
                       fmt::format("the step has nothing to do; expected exactly one of {}", fmt::join(forms, ", ")));
@@ -144,7 +144,7 @@ void ProgramReader::read_targets(const Section& section, const StepForm& form, S
   const bool is_pair = form.keys.front().kind == KeySpec::Kind::pair;
   const std::vector<double> targets = is_pair ? section.numbers(form.key) : std::vector<double>{};
   step.target = is_pair ? (targets.empty() ? 0.0 : targets.front()) : section.number(form.key).value_or(0.0);
-  std::string_view first;  // what says what happens in the lateral direction
+  std::string_view first;  // key that prescribes the lateral direction
   if (targets.size() == 2) {
     step.lateral = {.kind = step.kind, .target = targets[1]};
     first = form.key;

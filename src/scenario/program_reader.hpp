@@ -15,8 +15,8 @@ class ProgramReader {
  public:
   ProgramReader(Reading& reading, const Language& language) : reading_(reading), language_(language) {}
 
-  /// The steps below `key` of `parent`; empty where there are none or too many.
-  /// @param label  how messages call one of them: "[[loading.steps]]"
+  /// Reads the steps below `key` of `parent`; empty if there are none or too many.
+  /// @param label  name of a step in messages: "[[loading.steps]]"
   [[nodiscard]] std::vector<Step> read(const Section& parent, std::string_view key, const std::string& label);
 
  private:
@@ -35,7 +35,7 @@ class ProgramReader {
 
   Reading& reading_;
   const Language& language_;
-  std::size_t steps_so_far_ = 0;  ///< of all programs
+  std::size_t steps_so_far_ = 0;  ///< steps of all programs read so far
 };
 
 }  // namespace monograin

@@ -21,7 +21,7 @@
 namespace monograin {
 namespace {
 
-/// The model whose language the file is checked against: the one it names, or a near one that it misspells.
+/// Name of the model whose language checks the file: the named one, or the one that the name misspells.
 std::string model_to_check_against(const toml::table& root) {
   const std::string word = root["model"].value_or(std::string());
   if (find_model(word) != nullptr) return word;
@@ -40,7 +40,7 @@ void read_particle(Reading& reading, const Section& root, const Language& langua
   }
 }
 
-/// The power law that a table `ludwik` stands for, as strength and hardening_exponent.
+/// Reads a table `ludwik`: the power law nearest to it gives strength and hardening_exponent.
 void read_ludwik(Reading& reading, const Section& material, const Language& language, CheckedScenario& scenario) {
   const std::size_t faults_before = reading.faults.size();
   const Section section(reading, material.table("ludwik", "ludwik"), language.ludwik);
@@ -67,7 +67,7 @@ void read_ludwik(Reading& reading, const Section& material, const Language& lang
                                       .fits_both = section.text("fit") == "both"});
     scenario.material.emplace("strength", power_law.strength);
     scenario.material.emplace("hardening_exponent", power_law.exponent);
-  } catch (const std::logic_error& error) {  // what the fit objects to
+  } catch (const std::logic_error& error) {  // objections of the fit
     reading.faults.add(material.value_place("ludwik"), fmt::format("ludwik: {}", error.what()));
   }
 }
@@ -78,7 +78,7 @@ std::optional<OptionValue> option_value(const Section& options, const KeySpec& s
   return options.text(spec.name);
 }
 
-/// What the named preset says of keys that are not given, and what is missing all the same.
+/// Takes the values of a named preset for keys that are not given, and reports keys that are still missing.
 void read_preset(Reading& reading, const Section& material, const Language& language, CheckedScenario& scenario) {
   const auto presets = language.model->presets;
   const std::string name = material.text("preset");
@@ -131,7 +131,7 @@ FileText text_in(const FileTexts& files, const std::string& name) {
   return found == files.end() ? FileText{{}, "it was not recorded"} : FileText{found->second, {}};
 }
 
-/// The curve in the file that an option names, if it names one.
+/// Reads the curve in the file that an option names, if it names one.
 void read_curve_of(Reading& reading, const Section& options, const KeySpec& spec, const std::filesystem::path& folder,
                    const FileTexts* files, CheckedScenario& scenario) {
   const std::string name = options.text(spec.name);
@@ -157,7 +157,7 @@ void read_options(Reading& reading, const Section& root, const Language& languag
 void read_output(Reading& reading, const Section& root, const Language& language, CheckedScenario& scenario) {
   const Section output(reading, root.table("output", "[output]"), language.output);
   scenario.output.times = output.numbers("times");
-  // The default number of points is that of a scenario without times.
+  // The default number of points applies only without times.
   const bool has_points = scenario.output.times.empty() || output.has("points");
   scenario.output.points = has_points ? static_cast<int>(output.number("points").value_or(0.0)) : 0;
   std::size_t steps = scenario.loading.steps.size();
@@ -184,7 +184,7 @@ struct ReadQuantity {
   std::string problem;
 };
 
-/// The number at a path, in SI; a problem where there is none that a history can be differentiated by.
+/// The number at a path, in SI; or the problem, if no history can be differentiated by it.
 ReadQuantity quantity_at(const std::string& path, const toml::table& tree, const CheckedScenario& scenario) {
   const KeyAnswer answer = key_at(path, tree, scenario.model);
   if (!answer.spec) return {{}, answer.problem};

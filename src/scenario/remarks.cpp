@@ -9,7 +9,7 @@
 namespace monograin {
 namespace {
 
-// An output time that counts as the program's end (relative).
+// Relative distance from the program's end within which an output time is at the end.
 constexpr double k_same_instant = 1e-12;
 
 /// Programs of all walls, or the one of a model without walls.
@@ -19,17 +19,17 @@ std::vector<std::vector<Step>> programs_of(const CheckedScenario& scenario) {
   return programs;
 }
 
-/// Seconds that a step takes where no condition ends it; none where that depends on the run.
+/// Duration of a step [s] that no condition ends early; none if it depends on the run.
 std::optional<double> duration_of(const std::vector<Step>& program, std::size_t index) {
   const Step& step = program[index];
   if (step.duration || !step.rate) return step.duration;
-  // A ramp by its rate takes as long as its way: from the target of the step before, if that has led there.
+  // A ramp with a rate begins at the target of the step before, if that step reaches its target for certain.
   if (index == 0 || program[index - 1].kind != step.kind || !program[index - 1].until.empty()) return std::nullopt;
   if (!control_of(step.kind)) return std::nullopt;
   return std::abs(step.target - program[index - 1].target) / *step.rate;
 }
 
-/// Latest end of a program [s]: conditions may end its steps earlier. None where that depends on the run.
+/// Latest end of a program [s]; conditions may end steps earlier. None if it depends on the run.
 std::optional<double> latest_end(const CheckedScenario& scenario) {
   const auto programs = programs_of(scenario);
   std::size_t count = 0;

@@ -1,4 +1,4 @@
-/// What a scenario asks for to no effect, as far as it shows without a run.
+/// Remarks on settings of a scenario that have no effect, as far as that is known without a run.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,11 @@
 
 namespace monograin {
 
-/// Says that `points` are ignored where `times` are given, if both are.
+/// Remark that `points` are ignored because `times` are given; none if only one of them is given.
 [[nodiscard]] std::optional<std::string> remark_on_points(const CheckedScenario& scenario);
 
-/// Says how many output times lie beyond the latest end that the program may have, if any do and that end is known.
+/// Remark on output times beyond the latest end of the program, with their number. None if there are none, or if that
+/// end is unknown.
 [[nodiscard]] std::optional<std::string> remark_on_times(const CheckedScenario& scenario);
 
 }  // namespace monograin

@@ -15,7 +15,7 @@
 namespace monograin {
 namespace {
 
-/// Where a key stands, in whichever of the tables it may, or the preset that gives it.
+/// Position of a key, in any table that may contain it, or of the preset that gives it.
 SourceLocation place_of_key(const toml::table& tree, const std::string& origin, std::string_view model,
                             std::string_view key) {
   for (const std::string_view name :
@@ -42,7 +42,7 @@ double angle_between(const std::array<double, 3>& a, const std::array<double, 3>
   return std::atan2(cross, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
 }
 
-/// Walls that are closer than the model allows.
+/// Reports walls that are closer to each other than the model allows.
 void check_wall_angles(Reading& reading, const toml::table& tree, const std::string& origin, const Model& model,
                        const Loading& loading) {
   const auto expectation = [&](double angle) {
@@ -58,7 +58,7 @@ void check_wall_angles(Reading& reading, const toml::table& tree, const std::str
     }
   }
   if (loading.configuration != Loading::Configuration::oblique_die) return;
-  // From the lateral walls, from the axial ones, and with four of them from each other.
+  // Oblique walls have angles with the lateral walls, with the axial ones, and four of them with each other.
   double angle = std::min(loading.oblique_angle, std::numbers::pi / 2.0 - loading.oblique_angle);
   if (angle < model.least_wall_angle) {
     reading.faults.add(place_of_key(tree, origin, model.name, "angle"),
@@ -66,8 +66,7 @@ void check_wall_angles(Reading& reading, const toml::table& tree, const std::str
   }
 }
 
-/// A program of a law without unloading. What a step leaves open (its condition, or another control) is the run's to
-/// find out.
+/// Reports steps that go back, for a law without unloading; the run checks steps that depend on its course.
 void check_only_loading(Reading& reading, std::span<const Step> program, double gap, const std::string& model) {
   double least_displacement = -gap;
   double least_force = 0.0;

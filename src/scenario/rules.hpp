@@ -1,4 +1,4 @@
-/// Rules between values that are right one by one. For the reader of scenarios: it includes the TOML library.
+/// Rules between values that are valid one by one. For the reader of scenarios: includes the TOML library.
 #pragma once
 
 #include <toml++/toml.h>
@@ -9,8 +9,8 @@
 
 namespace monograin {
 
-/// Reports what the scenario's model objects to, and walls that go back where it has no unloading.
-/// @param tree  what the scenario was read from without a fault, for the places
+/// Reports the objections of the scenario's model, and walls that go back although the model has no unloading.
+/// @param tree  from which the scenario was read without a fault; gives positions
 void check_rules(Reading& reading, const toml::table& tree, const std::string& origin, const Language& language,
                  const CheckedScenario& scenario);
 

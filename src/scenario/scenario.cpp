@@ -20,7 +20,7 @@ namespace monograin {
 namespace {
 
 std::string read_file(const std::filesystem::path& file, FileKind kind) {
-  // A text beyond the limit is refused by the parser.
+  // The parser refuses a text beyond the limit.
   auto [text, problem] = read_text_file(file, k_largest_text, kind);
   if (problem.empty()) return std::move(text);
   throw_fault({name_of_file(file, kind).string()}, problem + "; expected a scenario file");
@@ -31,7 +31,7 @@ std::string name_of(const std::string& origin) {
   return stem.empty() ? "scenario" : stem;
 }
 
-/// The table of that name, its places kept.
+/// A table of a document, with its positions.
 toml::table parse_table(std::string_view text, std::string_view key, const std::string& origin) {
   toml::table document = parse_document(text, origin);
   toml::table* const table = document[key].as_table();
@@ -39,7 +39,7 @@ toml::table parse_table(std::string_view text, std::string_view key, const std::
   return std::move(*table);
 }
 
-/// The tree of a source, with overrides in it.
+/// The tree of a source, with overrides applied.
 toml::table tree_of(const ScenarioSource& source, const std::vector<std::string>& overrides, FaultList& faults) {
   toml::table root = source.table.empty() ? parse_document(source.text, source.origin)
                                           : parse_table(source.text, source.table, source.origin);
@@ -47,7 +47,7 @@ toml::table tree_of(const ScenarioSource& source, const std::vector<std::string>
   return root;
 }
 
-/// @param overrides  that the tree has already, for the record
+/// @param overrides  which the tree contains already, for the record
 CheckedScenario check_tree(const toml::table& root, const ScenarioSource& source, std::vector<std::string> overrides,
                            FaultList& faults) {
   CheckedScenario scenario = read_tree(root, source.origin, source.files ? &*source.files : nullptr, faults);
@@ -67,14 +67,14 @@ CheckedScenario parse_source(const ScenarioSource& source, const std::vector<std
 
 constexpr std::string_view k_of_material = "material.";
 
-/// Whether numbers of the material are all that a change of them changes.
+/// True if a change of the material's numbers changes nothing else in the scenario.
 bool may_set_material(const toml::table& tree, const CheckedScenario& scenario) {
   return !tree["material"]["ludwik"] && scenario.sensitivities.empty();
 }
 
-/// That scenario with other numbers of its material, at those of the keys that belong to it; none where one of them is
-/// no such number, or where something objects.
-/// @param tree  what the scenario was made of
+/// The scenario with other numbers of its material, at the keys that belong to the material; none if one of these is no
+/// such number, or if a check objects.
+/// @param tree  from which the scenario was made
 std::optional<CheckedScenario> with_material(const CheckedScenario& made, const toml::table& tree,
                                              const std::string& origin, std::span<const std::string> keys,
                                              std::span<const double> numbers) {
@@ -99,7 +99,7 @@ std::optional<CheckedScenario> with_material(const CheckedScenario& made, const 
 }  // namespace
 
 struct ScenarioTemplate::Document {
-  /// A checked scenario, and what it was made of.
+  /// A checked scenario, with the inputs from which it was made.
   struct Made {
     std::vector<std::string> overrides;
     std::vector<std::string> keys;
@@ -114,7 +114,7 @@ struct ScenarioTemplate::Document {
   mutable std::mutex mutex{};
   mutable std::shared_ptr<const Made> last{};  ///< changed under the mutex
 
-  /// The last one, if it was made of these: numbers of the material at the same keys are all that it lacks.
+  /// The last scenario, if its inputs are equal except for numbers of the material at the keys.
   [[nodiscard]] std::shared_ptr<const Made> find(const std::vector<std::string>& more,
                                                  std::span<const std::string> keys,
                                                  const std::vector<double>& numbers) const {
@@ -167,7 +167,7 @@ CheckedScenario ScenarioTemplate::with(const std::vector<std::string>& overrides
     }
     return scenario;
   } catch (const ScenarioError&) {
-    return parse_source(source, all);  // a copy does not know its places
+    return parse_source(source, all);  // only a parsed source gives positions in messages
   }
 }
 

@@ -1,4 +1,4 @@
-/// A checked scenario: data, in SI units, of what a scenario file says.
+/// A checked scenario: the content of a scenario file as data in SI units.
 #pragma once
 
 #include <array>
@@ -20,27 +20,27 @@
 
 namespace monograin {
 
-/// One step of the program of a wall, a packing or a material point. Cycles are already written out. Of duration and
-/// rate exactly one is given; in a channel that follows another one, none: it takes as long.
+/// One step of the program of a wall, a packing or a material point. Cycles are written out. Exactly one of duration
+/// and rate is given; neither in a channel that follows another one and takes as long.
 struct Step {
   enum class Kind { displacement, force, strain, stress, packing_fraction, hold, detach };
-  /// What is prescribed in the lateral direction.
+  /// Prescribed quantity in the lateral direction.
   struct Lateral {
     Kind kind = Kind::strain;
     double target = 0.0;  ///< [SI]
   };
   Kind kind = Kind::hold;
-  double target = 0.0;             ///< of a ramp: what its end prescribes [SI]
+  double target = 0.0;             ///< value at the end of a ramp [SI]
   std::optional<double> duration;  ///< [s], > 0
   std::optional<double> rate;      ///< of the ramp [SI], > 0
   std::vector<Until> until;
   SourceLocation where;
-  std::optional<Lateral> lateral{};  ///< of a material point; none: what is prescribed there is kept
+  std::optional<Lateral> lateral{};  ///< of a material point; none: the lateral quantity keeps its value
 };
 
-/// What a ramp controls; none for a hold or a withdrawal.
+/// Quantity that a ramp controls; none for a hold or a withdrawal.
 [[nodiscard]] std::optional<Control> control_of(Step::Kind kind) noexcept;
-/// The ramp that controls it.
+/// Kind of the ramp that controls a quantity.
 [[nodiscard]] Step::Kind ramp_of(Control control) noexcept;
 
 struct WallSpec {
@@ -75,7 +75,7 @@ struct Numerics {
 
 class ScenarioTemplate;
 
-/// A number that a history is differentiated by.
+/// A number by which a history is differentiated.
 struct SensitivityKey {
   std::string key;     ///< path as of an override
   std::string unit;    ///< SI, "-" of a pure number
@@ -84,50 +84,50 @@ struct SensitivityKey {
 
 struct CheckedScenario {
   std::string name;  ///< file name without folder and extension; names the run's folder
-  std::string text;  ///< the file as it was read
+  std::string text;  ///< content of the file
   std::vector<std::string> overrides;
   std::string title;
   std::string model;
   double radius = 0.0;                         ///< initial radius [m]; 0 where the model has no particle
   std::map<std::string, double> material;      ///< SI, every key of the model (defaults filled in)
   std::map<std::string, OptionValue> options;  ///< table named after the model, defaults filled in
-  std::map<std::string, SampledCurve> curves;  ///< by option: what the files hold that options name
+  std::map<std::string, SampledCurve> curves;  ///< by option: content of the files that options name
   Loading loading;
   Output output;
   Numerics numerics;
   std::vector<SensitivityKey> sensitivities;
-  std::shared_ptr<const ScenarioTemplate> variants;  ///< this scenario, for other numbers; null without sensitivities
+  std::shared_ptr<const ScenarioTemplate> variants;  ///< template for other numbers; null without sensitivities
 };
 
-/// Texts of the files that a scenario names, by the names that it has for them.
+/// Texts of the files that a scenario names, by their names in the scenario.
 using FileTexts = std::map<std::string, std::string>;
 
-/// Where a scenario comes from.
+/// Source of a scenario.
 struct ScenarioSource {
   std::string text;                  ///< TOML
-  std::string origin;                ///< stands for the file's name in messages and names the scenario
-  std::string table{};               ///< of the text that is the scenario; empty: all of it
-  std::optional<FileTexts> files{};  ///< of the files that it names; none: they are read, beside `origin`
+  std::string origin;                ///< replaces the file's name in messages and names the scenario
+  std::string table{};               ///< table of the text that is the scenario; empty: the whole text
+  std::optional<FileTexts> files{};  ///< texts of the files that it names; none: files are read, beside `origin`
 };
 
-/// A scenario's text, parsed once to be checked many times, each time with other values of some keys.
+/// Text of a scenario, parsed once and checked many times with different values of some keys.
 class ScenarioTemplate {
  public:
-  /// @param overrides  of every scenario that is made
-  /// @throws ScenarioError where the text is not TOML; what it says is not checked here
+  /// @param overrides  applied to every scenario that is made
+  /// @throws ScenarioError if the text is not TOML; its content is not checked here
   explicit ScenarioTemplate(ScenarioSource source, std::vector<std::string> overrides = {});
   ~ScenarioTemplate();
   ScenarioTemplate(ScenarioTemplate&&) noexcept;
   ScenarioTemplate& operator=(ScenarioTemplate&&) noexcept;
 
-  /// The checked scenario, with `key=value` overrides as read_scenario takes them. Its steps and walls do not know
-  /// their places in the text. May be called from many threads.
-  /// @param numbers  in SI, at `keys`, after the overrides; as their texts would, which are not read
+  /// Makes a checked scenario, with `key=value` overrides as in read_scenario. Its steps and walls do not have
+  /// positions in the text. May be called from many threads.
+  /// @param numbers  in SI, set at `keys` after the overrides, as their texts would be, but without parsing
   /// @throws ScenarioError with every fault of the text and the overrides
   [[nodiscard]] CheckedScenario with(const std::vector<std::string>& overrides, std::span<const std::string> keys = {},
                                      std::span<const double> numbers = {}) const;
 
-  /// Why a key cannot be set to a number; empty: it can.
+  /// Reason why a key cannot be set to a number; empty: it can.
   [[nodiscard]] std::string problem_of_number(const std::string& key) const;
 
  private:
@@ -137,31 +137,31 @@ class ScenarioTemplate {
 
 /// Reads and checks a scenario file.
 ///
-/// @param overrides  `key=value` texts as of `--set`; the value is TOML, a bare word is a string. Keys are dotted
-/// paths, an
-///                   index in brackets picks from an array: `loading.steps[0].displacement=0.3`. Checked like the file.
-/// @throws ScenarioError with every fault found: wrong syntax, unknown or missing keys, types, units, ranges,
-/// combinations
+/// @param overrides  `key=value` texts as of `--set`, checked like the file. The value is TOML; a bare word is a
+/// string.
+///                   Keys are dotted paths; an index in brackets selects from an array:
+///                   `loading.steps[0].displacement=0.3`.
+/// @throws ScenarioError with every fault found: syntax, unknown or missing keys, types, units, ranges, combinations
 [[nodiscard]] CheckedScenario read_scenario(const std::filesystem::path& file,
                                             const std::vector<std::string>& overrides = {},
                                             FileKind kind = FileKind::regular);
 
-/// The same from a text in memory; `origin` stands for the file's name in messages and names the scenario.
+/// Reads and checks a scenario from a text in memory. `origin` replaces the file's name in messages and as its name.
 [[nodiscard]] CheckedScenario parse_scenario(std::string_view text, const std::string& origin,
                                              const std::vector<std::string>& overrides = {});
 
-/// A scenario that was recorded with the files that it names. No file is opened: one that is not in `files` is reported
-/// as missing.
+/// Reads a scenario that was recorded with the files that it names. Opens no file, and reports one that is not in
+/// `files` as missing.
 [[nodiscard]] CheckedScenario parse_recorded_scenario(std::string_view text, const std::string& origin,
                                                       const std::vector<std::string>& overrides,
                                                       const FileTexts& files);
 
-/// The same from a table of a larger document, which is the scenario's text then; places are those in the document.
+/// Reads a scenario from a table of a larger document, which becomes its text. Positions are those in the document.
 [[nodiscard]] CheckedScenario parse_scenario_table(std::string_view text, std::string_view key,
                                                    const std::string& origin,
                                                    const std::vector<std::string>& overrides = {});
 
-/// Text of the scenario that `monograin run` takes when no file is named.
+/// Text of the scenario that `monograin run` uses if no file is named.
 [[nodiscard]] std::string_view default_scenario_text() noexcept;
 
 }  // namespace monograin

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Schemas of what is below the keys of kind table and tables, by key.
+/// Schemas of the content of keys of kind table and tables, by key.
 using Contents = std::map<std::string_view, json>;
 
 json properties_of(std::span<const KeySpec> keys, const Contents& contents = {}) {
@@ -45,10 +45,10 @@ json exactly_one_of(std::string_view a, std::string_view b) {
   return json::array({{{"required", {a}}}, {{"required", {b}}}});
 }
 
-/// The key that marks a fixed wall.
+/// Schema that a fixed wall meets.
 json is_fixed_wall() { return {{"properties", {{"fixed", {{"const", true}}}}}, {"required", {"fixed"}}}; }
 
-/// The definitions of one model and where they refer to one another.
+/// Definitions of one model and the references between them.
 class ModelSchema {
  public:
   explicit ModelSchema(const Model& model) : language_(language_of(model.name)), name_(model.name) {}
@@ -76,7 +76,7 @@ class ModelSchema {
     return {{"oneOf", std::move(forms)}};
   }
 
-  /// A lateral key stands alone, and not beside a pair.
+  /// Excludes other lateral keys, and a pair, beside a lateral key.
   static void add_exclusions(json& schema, const StepForm& form, const DriveKey& key) {
     json others = json::array();
     for (const DriveKey& other : form.lateral) {
@@ -93,7 +93,7 @@ class ModelSchema {
     return schema;
   }
 
-  /// One alternative for each configuration that has keys of its own, and one for all others.
+  /// One alternative for each configuration with keys of its own, and one for all others.
   [[nodiscard]] json loading() const {
     const KeySpec* configuration = find_key(language_.loading, "configuration");
     if (configuration == nullptr) return loading_of({});
@@ -127,7 +127,7 @@ class ModelSchema {
     return schema;
   }
 
-  /// Walls have steps of their own, are fixed, or follow the steps of `[loading]`; one at least is driven.
+  /// Adds the rules of walls: each has steps, is fixed, or follows the steps of `[loading]`; at least one is driven.
   static void add_rules_of_walls(json& schema) {
     const json is_on_its_own{{"anyOf", {is_fixed_wall(), {{"required", {"steps"}}}}}};
     json& walls = schema["properties"]["wall"];

@@ -5,7 +5,7 @@
 
 namespace monograin {
 
-/// The schema as formatted JSON text. Made from the model catalogue and the language tables, so it cannot fall behind
+/// The schema as formatted JSON text, made from the model catalogue and the language tables, so that it agrees with
 /// them.
 [[nodiscard]] std::string scenario_schema();
 

@@ -14,8 +14,8 @@ namespace {
 using nlohmann::json;
 using Kind = KeySpec::Kind;
 
-/// Bounds that NaN does not pass, however a validator compares: whichever way `x < bound` and `x >= bound` come out for
-/// NaN, one of `minimum` and the negated `exclusiveMaximum` fails.
+/// Bounds that NaN does not pass in any validator. Whatever `x < bound` and `x >= bound` give for NaN, one of `minimum`
+/// and the negated `exclusiveMaximum` fails.
 json bounds(const Range& range) {
   json schema{{"type", "number"}};
   schema[range.lower_is_open ? "exclusiveMinimum" : "minimum"] = range.lower;
@@ -44,7 +44,7 @@ std::string units_pattern(const DimensionInfo& info, bool with_relative) {
 constexpr std::string_view k_magnitude = R"(([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?0*[0-9]{1,2})?)";
 constexpr std::string_view k_not_zero = R"((?=[0-9.]*[1-9]))";
 
-/// Texts with a unit; sign and zero as the range has them. The upper bound is left to the reader.
+/// Schema of texts with a unit; sign and zero as in the key's range. The reader checks the upper bound.
 json unit_text(const KeySpec& spec) {
   const DimensionInfo& info = dimension_info(spec.dimension);
   const bool with_relative = spec.knows_initial_radius && !info.relative.empty();
@@ -144,7 +144,7 @@ json default_json(const KeySpec& spec) {
 
 json value_schema(const KeySpec& spec, const json& content) {
   json schema = kind_schema(spec, content);
-  // In draft 7 a validator ignores what stands beside a reference.
+  // In draft 7 a validator ignores everything beside a reference.
   if (schema.contains("$ref")) schema = {{"allOf", {schema}}};
   schema["description"] = spec.meaning;
   if (json value = default_json(spec); !value.is_null()) schema["default"] = std::move(value);

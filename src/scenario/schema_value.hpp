@@ -7,8 +7,8 @@
 
 namespace monograin {
 
-/// What the key accepts, with its description and default. Tables are left to who knows what is in them: this gives
-/// `content` for a table, an array of `content` for tables.
+/// Schema of the values that a key accepts, with its description and default. The caller gives the `content` of tables:
+/// the schema is `content` for a table, an array of `content` for tables.
 [[nodiscard]] nlohmann::json value_schema(const KeySpec& spec,
                                           const nlohmann::json& content = nlohmann::json::object());
 

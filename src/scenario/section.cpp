@@ -31,7 +31,7 @@ std::optional<double> as_number(const toml::node& node) {
   return std::nullopt;
 }
 
-/// A word, which may be written as a number where the choices are numbers: 4, inf.
+/// A choice as a word. It may be written as a number if the choices are numbers: 4, inf.
 std::optional<std::string> as_word(const toml::node& node) {
   if (const auto* text = node.as_string()) return text->get();
   const auto number = as_number(node);
@@ -127,7 +127,7 @@ SourceLocation Section::value_place(std::string_view key, std::size_t entry) con
 
 void Section::check_required() {
   for (const KeySpec& spec : keys_) {
-    // A key that is there but misspelt is one fault, not two.
+    // A misspelt key is one fault, not two.
     if (!spec.is_required || has_or_misspells(spec.name)) continue;
     reading_.faults.add(origin_.place, fmt::format("key '{}' is missing in {}; expected for example {}", spec.name,
                                                    origin_.label, example_line(spec)));
@@ -184,7 +184,7 @@ std::optional<Section::Value> Section::read_choice(const KeySpec& spec, const to
   if (!written) return unexpected(spec, node);
   const std::string& word = *written;
   if (!node.is_string() && std::ranges::find(spec.choices, word) == spec.choices.end()) return unexpected(spec, node);
-  // Without a model there are no events to choose from.
+  // Without a model, any event is accepted.
   if (spec.choices.empty() || std::ranges::find(spec.choices, word) != spec.choices.end()) return word;
   if (std::ranges::find(spec.reserved, word) != spec.reserved.end()) {
     reading_.faults.add(place_of(node.source(), origin_.place),

@@ -1,5 +1,4 @@
-/// One table of a TOML file, checked against the keys that the language gives it. For readers of such files: it
-/// includes the TOML library.
+/// One table of a TOML file, checked against the language. For readers of such files: includes the TOML library.
 #pragma once
 
 #include <toml++/toml.h>
@@ -17,7 +16,7 @@
 
 namespace monograin {
 
-/// What the reading of a scenario shares: where faults go, and the length of R0.
+/// State that all readers of a scenario share: the list of faults, and the length of R0.
 struct Reading {
   FaultList& faults;
   double initial_radius = 1.0;  ///< [m]
@@ -29,9 +28,9 @@ std::vector<std::string_view> check_names(FaultList& faults, const toml::table& 
                                           std::string_view label, std::span<const KeySpec> keys,
                                           std::span<const ForeignKey> foreign);
 
-/// Checks everything that a key's spec says when it is made: names, kinds, units, ranges, required keys.
+/// Checks a table when it is constructed, by the specs of its keys: names, kinds, units, ranges, required keys.
 ///
-/// What remains, rules between keys, is its user's. Faulty values read as absent; the faults already tell of them.
+/// Rules between keys are left to the caller. Faulty values read as absent; their faults are already reported.
 class Section {
  public:
   struct Origin {
@@ -42,28 +41,28 @@ class Section {
 
   Section(Reading& reading, Origin origin, std::span<const KeySpec> keys, std::span<const ForeignKey> foreign = {});
 
-  /// Whether the key stands in the text, be its value good or not.
+  /// True if the text contains the key, with a valid value or not.
   [[nodiscard]] bool has(std::string_view key) const { return origin_.table->contains(key); }
 
-  /// Whether the key stands in the text, or one that was reported as its misspelling.
+  /// True if the text contains the key, or a key that was reported as its misspelling.
   [[nodiscard]] bool has_or_misspells(std::string_view key) const;
 
-  /// The value, else the default, else nothing.
+  /// Value of the key, else its default, else none.
   [[nodiscard]] std::optional<double> number(std::string_view key) const { return get<double>(key); }
   [[nodiscard]] std::optional<bool> toggle(std::string_view key) const { return get<bool>(key); }
   [[nodiscard]] std::string text(std::string_view key) const;
   [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
 
-  /// The table below this key; where it is absent or faulty an empty one at this section's place.
+  /// The table below a key; if it is absent or faulty, an empty table at this section's position.
   [[nodiscard]] Origin table(std::string_view key, std::string label) const;
-  /// The tables of the array below this key; those entries that are tables.
+  /// The tables of the array below a key, without entries that are no tables.
   [[nodiscard]] std::vector<Origin> tables(std::string_view key, const std::string& label) const;
 
   [[nodiscard]] const SourceLocation& place() const noexcept { return origin_.place; }
   [[nodiscard]] SourceLocation key_place(std::string_view key) const;
   [[nodiscard]] SourceLocation value_place(std::string_view key) const;
-  /// The place of an entry of the array below this key.
+  /// Position of an entry of the array below a key.
   [[nodiscard]] SourceLocation value_place(std::string_view key, std::size_t entry) const;
 
  private:
@@ -97,7 +96,7 @@ class Section {
   Reading& reading_;
   Origin origin_;
   std::span<const KeySpec> keys_;
-  std::vector<std::string_view> misspelt_;  ///< keys that were suggested for unknown ones
+  std::vector<std::string_view> misspelt_;  ///< keys that were suggested for unknown names
   std::map<std::string_view, Value> values_;
 };
 

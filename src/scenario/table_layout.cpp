@@ -20,7 +20,7 @@ struct Dialect {
   char decimal;
 };
 
-// The order decides where two give the same number of numbers: "1;2" has points, "1,2" is no decimal number.
+// The order decides between equal scores: "1;2" has decimal points, "1,2" is no decimal number.
 constexpr std::array k_dialects{Dialect{'\t', '.'}, Dialect{';', '.'}, Dialect{',', '.'}, Dialect{' ', '.'},
                                 Dialect{'\t', ','}, Dialect{';', ','}, Dialect{',', ','}, Dialect{' ', ','}};
 
@@ -100,8 +100,8 @@ SampledRow row_of(const Line& line, const Dialect& dialect) {
   return row;
 }
 
-/// Sums of the squared shares of numbers among the cells: of rows with several numbers, and of rows with one, which may
-/// be chance and counts only where there are no others. The square favours fewer rows without a cell that is no number.
+/// Sums of the squared shares of numbers among the cells: of rows with several numbers, and of rows with one number,
+/// which may be chance and only decides if there are no others. The square favours few rows of pure numbers.
 using Score = std::pair<double, double>;
 
 Score score_of(const std::vector<Line>& lines, const Dialect& dialect) {
@@ -153,7 +153,7 @@ class LayoutFinder {
     dialect_ = dialect_of(lines, given);
     for (const Line& line : lines) {
       SampledRow row = row_of(line, dialect_);
-      if (row.filled > 0) rows_.push_back(std::move(row));  // a line of separators says nothing
+      if (row.filled > 0) rows_.push_back(std::move(row));  // a line of separators has no content
     }
   }
 
@@ -213,7 +213,7 @@ class LayoutFinder {
     return row.numbers >= least_numbers_ && row.cells.size() == cell_count_;
   }
 
-  /// The first row with numbers, and nothing else, in the columns of numbers; the number of rows where there is none.
+  /// First row with numbers only in the columns of numbers; the number of rows if there is none.
   [[nodiscard]] std::size_t first_of_data() const {
     const auto first = std::ranges::find_if(rows_, [this](const SampledRow& row) {
       if (cell_count_ == 0 || !is_of_table(row)) return false;
@@ -226,8 +226,8 @@ class LayoutFinder {
     return static_cast<std::size_t>(first - rows_.begin());
   }
 
-  /// The cells of a row of headings or units. Between blanks a heading's unit in brackets is a cell of its own; it goes
-  /// with the one before where the row has too many.
+  /// Cells of a row of headings or units. With blanks as separators, a unit in brackets is a cell of its own; it joins
+  /// the cell before it if the row has too many cells.
   [[nodiscard]] std::vector<Cell> headings_of(std::size_t row) const {
     std::vector<Cell> cells;
     const bool has_too_many = dialect_.separator == ' ' && rows_[row].cells.size() > width_;
@@ -267,14 +267,14 @@ class LayoutFinder {
            (width_ == 0 || headings_of(row).size() == width_);
   }
 
-  /// Where the headings stand. @param first  of the data
+  /// Index of the row of headings. @param first  index of the first row of data
   [[nodiscard]] std::optional<std::size_t> heading_row(std::size_t first) const {
     const auto has_numbers = [this](std::size_t row) { return rows_[row].numbers == rows_[row].filled; };
     if (given_.skip) return has_numbers(0) ? std::nullopt : std::optional<std::size_t>(0);
     for (std::size_t row = 0; row < rows_.size() && !names_.empty(); ++row) {
       if (has_all_names(row)) return row;
     }
-    if (first == rows_.size()) return 0;  // no data: the first row is taken for what it should be
+    if (first == rows_.size()) return 0;  // no data: the first row must be the headings
     for (std::size_t row = first; row-- > 0;) {
       if (!may_be_headings(row)) continue;
       const bool is_below_headings = names_units(row) && row > 0 && may_be_headings(row - 1);
@@ -288,7 +288,7 @@ class LayoutFinder {
     return std::ranges::any_of(rows_[row].cells, [](const Cell& cell) { return is_unit(bare_unit(cell.text)); });
   }
 
-  /// Whether a row of units stands there. @param first  of the data
+  /// True if a row is one of units. @param first  index of the first row of data
   [[nodiscard]] bool has_units_at(std::size_t row, std::size_t first) const {
     if (given_.units == TableFormat::Units::none || row >= rows_.size()) return false;
     return given_.units == TableFormat::Units::row || (row < first && names_units(row));
@@ -322,10 +322,10 @@ class LayoutFinder {
   const std::vector<std::string_view>& names_;
   Dialect dialect_{};
   std::vector<SampledRow> rows_;
-  std::size_t least_numbers_ = 1;    ///< in a row of data
-  std::size_t cell_count_ = 0;       ///< of a row of data, with empty ones at its end; 0: there are no such rows
-  std::size_t width_ = 0;            ///< of the table, without columns at its end that are always empty
-  std::vector<bool> holds_numbers_;  ///< most cells of the column
+  std::size_t least_numbers_ = 1;    ///< least count of numbers in a row of data
+  std::size_t cell_count_ = 0;       ///< cells in a row of data, with empty ones at its end; 0: there are no such rows
+  std::size_t width_ = 0;            ///< columns of the table, without those at its end that are always empty
+  std::vector<bool> holds_numbers_;  ///< true if most cells of the column are numbers
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-/// How a table of measured numbers is written in its file: separator, decimal sign, headings, units. Testing machines
-/// differ in all of them; what the user does not give is found.
+/// Layout of a table of measured numbers in its file: separator, decimal sign, headings, units. Testing machines differ
+/// in all of them; find_layout() finds what the user does not give.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,16 @@
 
 namespace monograin {
 
-/// Layout as the user gives it; absent: to be found.
+/// Layout as the user gives it; absent parts are found.
 struct TableFormat {
   enum class Units { found, row, none };
 
   std::optional<char> separator{};     ///< ',' ';' '\t', or ' ' for any number of blanks and tabs
   std::optional<char> decimal{};       ///< '.' or ','
   std::optional<std::size_t> skip{};   ///< lines above the headings, or above the data of a table without headings
-  Units units = Units::found;          ///< whether a row of units stands below the headings
-  std::vector<std::string> unit_of{};  ///< units of the columns in their order; empty: those of the file
-  double most_missing = 0.0;           ///< share of the rows that may lack a number in a column that is asked for
+  Units units = Units::found;          ///< row: a row of units stands below the headings
+  std::vector<std::string> unit_of{};  ///< units of the columns in their order; empty: as in the file
+  double most_missing = 0.0;           ///< share of the rows that may lack a number in a requested column
 };
 
 /// Layout as it was found. Lines are counted from 1 as an editor does; 0: there is none.
@@ -33,31 +33,30 @@ struct TableLayout {
   std::size_t preamble = 0;             ///< lines above the headings that are neither blank nor comments
   std::vector<std::string> headings{};  ///< one for each column; empty texts where the table has none
   std::vector<std::string> units{};     ///< of each column: as given, or of the row of units, or of its heading
-  std::vector<bool> is_numeric{};       ///< whether most cells of the column are numbers
+  std::vector<bool> is_numeric{};       ///< true if most cells of the column are numbers
 };
 
-/// Looks at the first thousand lines that are neither blank nor comments ('#').
+/// Finds the layout from the first thousand lines that are neither blank nor comments ('#').
 ///
-/// Separator and decimal sign are those that make the largest share of the cells numbers. The data begin with the first
-/// row that has a number in every column of numbers. The headings are the row that has all of `names`; where there is
-/// none, the last row above the data without any number. A row of units is the next one if it is without numbers and
-/// names a unit.
+/// Separator and decimal sign are those with which the largest share of the cells are numbers. The data begin with the
+/// first row that has a number in every column of numbers. The headings are the row that contains all of `names`, else
+/// the last row above the data without any number. The next row is one of units if it has no numbers and names a unit.
 /// @param text   in UTF-8, without a byte order mark
-/// @param names  headings, or headings without their units
+/// @param names  headings, with or without their units
 [[nodiscard]] TableLayout find_layout(std::string_view text, const TableFormat& given,
                                       const std::vector<std::string_view>& names);
 
-/// Whether this is CSV in UTF-8 with commas and points, the headings first and nothing between them and the data.
+/// True for CSV in UTF-8 with commas and decimal points, with the headings first and nothing between them and the data.
 [[nodiscard]] bool is_plain(const TableLayout& layout) noexcept;
 
 /// Describes a layout: "UTF-16LE, semicolon between cells, decimal comma, headings in line 3, units in line 4".
 [[nodiscard]] std::string describe(const TableLayout& layout);
 
-/// The word for a separator: "comma", "semicolon", "tab", "blanks".
+/// Name of a separator: "comma", "semicolon", "tab", "blanks".
 [[nodiscard]] std::string_view separator_word(char separator) noexcept;
 
-/// The heading's unit: "N" of "force[N]" and "force [N]"; of "force (N)", "force / N" and "force in N" where it is a
-/// unit that is known. Empty where it has none.
+/// Unit in a heading: "N" of "force[N]" and "force [N]", also of "force (N)", "force / N" and "force in N" if the unit
+/// is known. Empty if there is none.
 [[nodiscard]] std::string_view unit_in(std::string_view heading) noexcept;
 /// The heading without its unit.
 [[nodiscard]] std::string_view name_in(std::string_view heading) noexcept;

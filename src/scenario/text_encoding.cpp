@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t k_looked_at = 4096;  // bytes in which zeros are counted
 constexpr std::string_view k_zip_archive = "PK\x03\x04";
 
-/// A converter to UTF-8 that is closed.
+/// Owns a converter to UTF-8, and closes it.
 class Converter {
  public:
   explicit Converter(const char* from) : handle_(iconv_open("UTF-8", from)) {}
@@ -23,7 +23,7 @@ class Converter {
     if (is_open()) iconv_close(handle_);
   }
 
-  /// @return nothing where bytes are no text of that encoding, or the system does not know it
+  /// @return none if the bytes are no text of that encoding, or the system does not know it
   [[nodiscard]] std::optional<std::string> convert(std::string_view bytes) const {
     if (!is_open()) return std::nullopt;
     std::string text;
@@ -59,7 +59,7 @@ struct Mark {
 constexpr std::array k_marks{Mark{{"\xFF\xFE\x00\x00", 4}, "UTF-32LE"}, Mark{"\xEF\xBB\xBF", "UTF-8"},
                              Mark{"\xFF\xFE", "UTF-16LE"}, Mark{"\xFE\xFF", "UTF-16BE"}};
 
-/// UTF-16 without a mark: most characters of a table have one zero byte, all in the same half of their unit.
+/// Finds UTF-16 without a mark: most characters of a table have one zero byte, always in the same half of their unit.
 const char* wide_encoding(std::string_view bytes) {
   std::array<std::size_t, 2> zeros{};
   const std::size_t looked_at = std::min(bytes.size(), k_looked_at);

@@ -1,4 +1,4 @@
-/// The encoding of text files that other programs have written.
+/// Encoding of text files from other programs.
 #pragma once
 
 #include <string>
@@ -6,17 +6,17 @@
 
 namespace monograin {
 
-/// A file's text in UTF-8, and how the file has it.
+/// Text of a file in UTF-8, with its original encoding.
 struct DecodedText {
   std::string text;      ///< without a byte order mark; lines end with "\n" or "\r\n"
   std::string encoding;  ///< "UTF-8", "UTF-8 with BOM", "UTF-16LE", "UTF-16BE", "Windows-1252"
-  std::string problem;   ///< why it is no text; empty: it is one
+  std::string problem;   ///< why the file is no text; empty: it is one
 };
 
-/// Finds the encoding by the byte order mark, else by the places of zero bytes (UTF-16), else UTF-8 where the bytes are
-/// valid UTF-8, else Windows-1252, which is Latin-1 with a few signs more.
+/// Finds the encoding: by the byte order mark, else UTF-16 by the positions of zero bytes, else UTF-8 if the bytes are
+/// valid UTF-8, else Windows-1252, a superset of Latin-1.
 ///
-/// A lone "\r" ends a line in files without "\n". The conversion is that of iconv (POSIX).
+/// A lone "\r" ends a line in files without "\n". iconv (POSIX) converts the text.
 [[nodiscard]] DecodedText decode_text(std::string_view bytes);
 
 }  // namespace monograin

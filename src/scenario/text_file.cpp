@@ -25,13 +25,13 @@ constexpr std::string_view k_standard_input = "-";
   throw std::runtime_error(file.string() + ": cannot be written: " + std::generic_category().message(error));
 }
 
-/// A file that is closed, and removed unless it was moved to its place.
+/// Owns a partly written file, which is removed unless it is moved to its final name.
 class PartialFile {
  public:
-  /// @param file  the file that is to be written
+  /// @param file  the final name
   explicit PartialFile(const fs::path& file) {
     static std::atomic<unsigned> count{0};
-    do {  // O_EXCL: nothing that lies there already is opened, be it a link
+    do {  // O_EXCL: never opens an existing file or link
       path_ = file.parent_path() / fmt::format(".{}-{}.partial", getpid(), count++);
       descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     } while (descriptor_ < 0 && errno == EEXIST);
@@ -45,7 +45,7 @@ class PartialFile {
     if (!path_.empty()) fs::remove(path_, ignored);
   }
 
-  /// @return whether all was written; errno says why not
+  /// @return true if everything was written; otherwise errno has the reason
   [[nodiscard]] bool write(std::string_view text) {
     while (!text.empty()) {
       const ssize_t written = ::write(descriptor_, text.data(), text.size());
@@ -126,7 +126,7 @@ std::vector<fs::path> scenario_files(const fs::path& folder) {
 void sync_to_disk(const fs::path& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   if (descriptor < 0) fail(file, errno);
-  const bool is_done = fsync(descriptor) == 0 || errno == EINVAL;  // a file system that has no such thing
+  const bool is_done = fsync(descriptor) == 0 || errno == EINVAL;  // EINVAL: the file system cannot synchronize
   const int error = errno;
   close(descriptor);
   if (!is_done) fail(file, error);

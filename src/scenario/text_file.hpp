@@ -1,4 +1,4 @@
-/// Whole files that a user names.
+/// Reads and writes whole files that a user names.
 #pragma once
 
 #include <filesystem>
@@ -9,37 +9,37 @@
 
 namespace monograin {
 
-/// What a file holds, or why it cannot be read.
+/// Content of a file, or the reason why it cannot be read.
 struct FileText {
   std::string text;
   std::string problem;  ///< "there is no such file"; empty: the text was read
 };
 
-/// What may be opened.
+/// Kinds of files that may be opened.
 enum class FileKind {
   any,      ///< pipes too, and `-` for standard input: for files named on the command line
-  regular,  ///< for files named by other files, which could name a device or a pipe that nobody writes to
+  regular,  ///< for files named in other files, which could name a device, or a pipe without a writer
 };
 
-/// Reads no more than a little beyond `largest` bytes, which is for the caller to refuse: pipes and devices need not
-/// end.
+/// Reads a file, at most slightly more than `largest` bytes, because pipes and devices need not end. The caller has to
+/// refuse a longer text.
 [[nodiscard]] FileText read_text_file(const std::filesystem::path& file, std::size_t largest,
                                       FileKind kind = FileKind::regular);
 
-/// The name of a file in messages and of what is made from it: `stdin` for standard input.
+/// Name of a file in messages and in names derived from it: `stdin` for standard input.
 [[nodiscard]] std::filesystem::path name_of_file(const std::filesystem::path& file, FileKind kind = FileKind::any);
 
-/// Writes a file whole or not at all: under a hidden name beside its place first. A link of that name is replaced, not
-/// followed.
+/// Writes a file completely or not at all: first under a hidden name in the same folder. A link with the file's name is
+/// replaced, not followed.
 /// @throws std::runtime_error naming the file and why it cannot be written
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
-/// Writes a text that comes in parts, whole or not at all: `produce` hands each part to the sink that it is given.
+/// Writes a text that comes in parts, completely or not at all. `produce` passes each part to its sink.
 using TextSink = std::function<void(std::string_view part)>;
 void write_text_file(const std::filesystem::path& file, const std::function<void(const TextSink&)>& produce);
 
-/// The scenario files (.toml) of a folder, in the order of their names.
-/// @throws std::runtime_error where there is no such folder, or none in it
+/// Scenario files (.toml) of a folder, in the order of their names.
+/// @throws std::runtime_error if there is no such folder, or no scenario file in it
 [[nodiscard]] std::vector<std::filesystem::path> scenario_files(const std::filesystem::path& folder);
 
 /// Waits until a file, or the list of names in a folder, is on the disk.

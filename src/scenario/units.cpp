@@ -14,7 +14,7 @@
 namespace monograin {
 namespace {
 
-// The sign of micro has two code points that look alike: U+00B5 (keyboards) and U+03BC (Greek letter).
+// The micro sign has two code points: U+00B5 (keyboards) and U+03BC (Greek letter).
 constexpr std::array k_lengths{
     Unit{"m", 1.0},   Unit{"cm", 1e-2}, Unit{"mm", 1e-3}, Unit{"um", 1e-6},
     Unit{"µm", 1e-6}, Unit{"μm", 1e-6}, Unit{"nm", 1e-9}, Unit{"km", 1e3},
@@ -46,7 +46,7 @@ constexpr std::array k_strain_rates{Unit{"1/s", 1.0}, Unit{"%/s", 1e-2}, Unit{"1
 constexpr std::array k_stress_rates{Unit{"Pa/s", 1.0}, Unit{"kPa/s", 1e3}, Unit{"MPa/s", 1e6}, Unit{"GPa/s", 1e9}};
 constexpr std::array k_angles{Unit{"deg", std::numbers::pi / 180.0}, Unit{"rad", 1.0}};
 
-// Wide enough for a nanometre grain and a kilometre one, from gels to diamond, and for durations over 24 decades.
+// The limits admit grains from a nanometre to a kilometre, gels and diamond, and durations over 24 decades.
 const std::array<DimensionInfo, 11> k_dimensions{{
     {Dimension::none, "a number", "", "0.3", "", 0.0, 1e100, {}},
     {Dimension::length, "a length", "m", "\"10 mm\"", "R0", 1e-12, 1e6, k_lengths},

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t k_farthest_suggestion = 2;
 constexpr std::size_t k_longest_shown = 40;
 
-/// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`.
+/// Least number of insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last(b.size() + 1);
   std::vector<std::size_t> last(b.size() + 1);
@@ -48,7 +48,7 @@ std::string_view nearest_word(std::string_view word, std::span<const std::string
     const std::size_t shorter = std::min(word.size(), candidate.size());
     if (longer - shorter > k_farthest_suggestion) continue;
     const std::size_t distance = edit_distance(word, candidate);
-    // A word that would be replaced letter by letter was not this candidate misspelt.
+    // A candidate that differs in every letter is not meant by a misspelling.
     if (distance <= k_farthest_suggestion && distance < shorter && distance < smallest) {
       nearest = candidate;
       smallest = distance;

@@ -1,4 +1,4 @@
-/// Words in messages: what a misspelt one was meant to be, lists of them, and showing a user's text safely.
+/// Words in messages: suggestions for misspelt words, lists, and safe output of a user's text.
 #pragma once
 
 #include <exception>
@@ -12,7 +12,7 @@ namespace monograin {
 /// and fewer than the word has letters; otherwise an empty view.
 [[nodiscard]] std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates);
 
-/// `; did you mean 'x'?`, or nothing where no candidate is near.
+/// `; did you mean 'x'?`, or an empty text if no candidate is near.
 [[nodiscard]] std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
 
 /// The words with commas between them.
@@ -21,11 +21,11 @@ namespace monograin {
 /// The text with its control characters replaced, so that it cannot break a message's line.
 [[nodiscard]] std::string on_one_line(std::string_view text);
 
-/// The same, and cut where it is long.
+/// The text with its control characters replaced, shortened if it is long.
 [[nodiscard]] std::string shown(std::string_view text);
 
-/// Message of an exception, in words of this program where a library threw it: a path and why the system refuses it, or
-/// that memory is short.
+/// Message of an exception. For exceptions of a library, in words of this program: a path with the system's reason, or
+/// a lack of memory.
 [[nodiscard]] std::string in_own_words(const std::exception& error);
 
 }  // namespace monograin

@@ -1,4 +1,4 @@
-// What the direct integrator does between the instants at which it looks.
+// The direct integrator between the instants that it evaluates.
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@ namespace {
 
 using View = ToySystem::View;
 
-// Guards are looked at 32 times in a step: these instants lie within one piece.
+// Guards are evaluated 32 times in a step: these instants lie within one piece.
 constexpr double k_first = 0.505;
 constexpr double k_second = 0.510;
 constexpr double k_third = 0.520;
 
-/// Above zero between two instants only.
+/// A guard that is above zero between two instants only.
 double window(double y, double from, double to) { return 1e3 * (y - from) * (to - y); }
 
 TestRun run_directly(std::unique_ptr<ToySystem> toy, int points = 4) {
@@ -63,7 +63,8 @@ TEST(Direct, SeesAGuardThatBeginsAtZeroAndReturnsWithinTheFirstPiece) {
 }
 
 TEST(Direct, DoesNotSearchForARootWithinRounding) {
-  // A small difference of large numbers is the same at a hundred neighbouring instants, and zero at none of them.
+  // A small difference of large numbers has equal values at a hundred neighbouring instants, and is zero at none of
+  // them.
   constexpr double k_root = 0.0123;
   const auto difference = [](double y) { return (1.0 + 0.01 * y) - (1.0 + 0.01 * k_root) - 1e-18; };
   auto toy = std::make_unique<ToySystem>();

@@ -40,14 +40,14 @@ std::vector<std::pair<double, int>> rows(const TestRun& result) {
 
 using Rows = std::vector<std::pair<double, int>>;
 
-/// The forward Euler scheme at a tolerance that is its step.
+/// Tolerance of comparisons; larger for forward Euler, whose rtol is its step.
 double accuracy(std::string_view integrator) { return integrator == "explicit" ? 1e-4 : 1e-7; }
 
 TestRun run_with(const CheckedScenario& scenario, std::string_view integrator) {
   return run(scenario, integrator, relative(integrator == "explicit" ? 1e-5 : 1e-8));
 }
 
-/// The warnings that speak of steps of the program.
+/// Warnings about steps of the program.
 std::vector<std::string> notes(const TestRun& result) {
   std::vector<std::string> list;
   for (const std::string& warning : result.record.warnings) {
@@ -56,7 +56,7 @@ std::vector<std::string> notes(const TestRun& result) {
   return list;
 }
 
-/// When each step of the program has ended.
+/// End times of the program's steps.
 std::vector<double> step_ends(const TestRun& result) {
   std::vector<double> ends;
   const Table& events = result.record.events;
@@ -105,10 +105,10 @@ TEST(Rows, AreTheIntegratorsOwnStepsWithoutOutputPoints) {
     const TestRun result = run(with_points(die(path({0.3})), 0), integrator);
     const auto time = result.column("time");
     EXPECT_TRUE(std::ranges::is_sorted(time)) << integrator;
-    // All but the step that ends at the corner, and those that end at an event; and the start.
+    // One row for each step, except the step that ends at the corner and those that end at an event; and the start.
     const auto own = static_cast<long>(result.outputs("time").size());
     EXPECT_EQ(own, result.record.statistics.steps - result.record.statistics.events) << integrator;
-    // What is solved for directly has pieces, and they are long.
+    // The direct form divides a step into pieces, which are long.
     EXPECT_GT(own, std::string_view(integrator) == "direct" ? 5 : 20) << integrator;
   }
 }
@@ -131,7 +131,7 @@ TEST(Rows, DoNotChangeWhereARunEnds) {
     for (const int points : {20, 2000}) {
       const TestRun more = run(with_points(die(path({0.3, 0.2, 0.35})), points), integrator);
       for (const char* column : {"apparent_radius", "work", "axial.force", "lateral.force"}) {
-        // Output is interpolated: the steps themselves are the same, bit for bit.
+        // Output is interpolated: the integrator's steps agree bit for bit.
         EXPECT_EQ(more.last(column), two.last(column)) << integrator << ", " << column << ", " << points << " points";
       }
       EXPECT_EQ(more.record.statistics.steps, two.record.statistics.steps) << integrator;
@@ -197,7 +197,7 @@ TEST(Rows, OfAnEarlyEndLeaveTheRunAsItIsWithoutThem) {
     EXPECT_EQ(many.events(), few.events()) << integrator;
     EXPECT_EQ(many.record.statistics.events, few.record.statistics.events) << integrator;
     EXPECT_EQ(step_ends(many), step_ends(few)) << integrator;
-    // Its step control remembers steps from before the segment.
+    // This integrator's step control remembers steps from before the segment.
     const double apart = integrator == "odeint-rosenbrock4" ? 1e-14 : 0.0;
     for (const char* column : {"apparent_radius", "work", "axial.force", "lateral.force"})
       EXPECT_NEAR(many.last(column), few.last(column), apart) << integrator << ", " << column;
@@ -260,7 +260,7 @@ TEST(Steps, WithdrawUntilContactIsLost) {
     EXPECT_EQ(result.events().back(), "axial:contact-lost") << integrator;
     EXPECT_EQ(result.last("axial.force"), 0.0) << integrator;
     EXPECT_EQ(result.last("time"), result.time_of("contact-lost")) << integrator;
-    // At the step's rate.
+    // The wall retreats at the step's rate.
     EXPECT_NEAR(result.last("axial.displacement"), 0.3 - 0.5 * (result.last("time") - 1.0), 1e-15) << integrator;
   }
 }
@@ -345,12 +345,13 @@ TEST(Conditions, ExceededWhereTheirStepBeginsAreMetWhenTheyAreCrossed) {
 
 TEST(Conditions, HoldingWhereTheirStepBeginsEndItThere) {
   const std::vector<Step> programs[] = {
-      // Met at the end of the step before, by a crossing; by the loss of the contact; by the end of a ramp.
+      // The condition is met at the end of the step before: by a crossing, by the loss of the contact, by the end of a
+      // ramp.
       {until(ramp(0.3), force, hertz(0.1)), until(ramp(0.0), force, hertz(0.1)), hold()},
       {ramp(0.2), until(ramp(-0.1), force, 0.0), until(ramp(0.1), force, 0.0), hold()},
       {ramp(0.2), until(ramp(0.3), displacement, 0.2), hold()},
       {until(ramp(0.2), displacement, 0.2), until(ramp(0.1), displacement, 0.2), hold()},
-      // Not met before, and no contact yet.
+      // The condition is not met before, and there is no contact yet.
       {until(ramp(0.2), force, 0.0), hold()}};
   for (const std::vector<Step>& program : programs) {
     const std::size_t held = program.size() - 1;  // the step before the last one
@@ -461,7 +462,7 @@ TEST(Events, ThatOnlyMarkAnInstantBringNoConditionWithThem) {
                             .transition = {},
                             .is_mark = true});
     Scene scene = toy_scene(std::move(toy));
-    // As near as what an integrator leaves open, but not met.
+    // Within the tolerance of an integrator, but not met.
     constexpr double k_beyond = 1e-10;
     scene.channels[0].program[0].until.push_back({.quantity = force, .value = 0.4 + k_beyond, .event = {}});
     const TestRun result{

@@ -17,7 +17,7 @@ namespace {
 
 using MadeToy = std::function<std::unique_ptr<ToySystem>(double p)>;
 
-/// y0' = p y0 from 1 to y0 = 2, where it grows by p/2 at once; y0' = -y0 from there.
+/// y0' = p y0 from 1 to y0 = 2, where y0 jumps by p/2; y0' = -y0 from there.
 std::unique_ptr<ToySystem> jumping_toy(double p) {
   auto toy = std::make_unique<ToySystem>();
   ToySystem* const self = toy.get();
@@ -34,7 +34,7 @@ std::unique_ptr<ToySystem> jumping_toy(double p) {
   return toy;
 }
 
-/// y0' = sqrt(0.5 p - xi) from 0 to xi = 0.5 p, where it ends, and rests from there: y0 = 2/3 (0.5 p)^(3/2) then.
+/// y0' = sqrt(0.5 p - xi) from 0 to xi = 0.5 p, where it ends; from there y0 stays at 2/3 (0.5 p)^(3/2).
 std::unique_ptr<ToySystem> ending_toy(double p) {
   auto toy = std::make_unique<ToySystem>();
   ToySystem* const self = toy.get();
@@ -50,7 +50,7 @@ std::unique_ptr<ToySystem> ending_toy(double p) {
   return toy;
 }
 
-/// y0' = p from 0, with a guard that each number sets for itself.
+/// y0' = p from 0, with guards that depend on p and y0.
 MadeToy rising_toy(std::vector<std::function<double(double p, double y)>> guards) {
   return [guards](double p) {
     auto toy = std::make_unique<ToySystem>();
@@ -154,7 +154,7 @@ TEST(ForwardSensitivities, PassTheEndOfABranchAsTheClosedFormDoes) {
   }
 }
 
-/// y0' = p y0 from 1. A rate of the base is missing where it is asked for the n-th time.
+/// y0' = p y0 from 1. The n-th evaluation of the base's rate fails.
 MadeToy failing_toy(int n) {
   return [n](double p) {
     auto toy = std::make_unique<ToySystem>();

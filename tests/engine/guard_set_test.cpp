@@ -1,4 +1,4 @@
-// The guards of a system and the conditions of the program, as an integrator sees them.
+// The guards of a system and the conditions of the program, as an integrator evaluates them.
 
 #include <gtest/gtest.h>
 
@@ -82,12 +82,12 @@ TEST_F(WatchTest, IsMetWithinATargetsTolerance) {
 TEST_F(WatchTest, HoldsATargetByWhichTheLastStepHasEnded) {
   const std::vector<Condition> conditions{{Quantity::displacement, 0, 2.0}};
   const std::vector<std::size_t> fired{2};
-  // Located no closer than the steps of an integrator are long.
+  // The event is located only to within an integrator's step.
   begin(conditions, 1.0);
   watch_.note_met(fired, 0.5, std::vector<double>{2.1});
   begin(conditions, 2.1);
   EXPECT_EQ(watch_.held_at_begin(), 0u);
-  // Another target, or the step after next, has nothing to do with it.
+  // The memory does not apply to another target, or to the step after next.
   begin(conditions, 1.0);
   watch_.note_met(fired, 0.5, std::vector<double>{2.1});
   begin({{Quantity::displacement, 0, 2.05}}, 2.1);

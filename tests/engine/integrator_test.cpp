@@ -1,4 +1,4 @@
-// What every integrator must do with modes and guards, on systems whose solution is known.
+// Requirements on modes and guards that every integrator has to meet, on systems with known solutions.
 
 #include <gtest/gtest.h>
 
@@ -74,7 +74,7 @@ TEST_P(EveryIntegrator, BouncesABallAtTheRightTimes) {
   const auto times = result.record.events.column("time");
   ASSERT_GE(times.size(), 4u);
   double expected = 0.25;
-  // Shorter flights than these lie between two of the instants at which `direct` looks at guards.
+  // Shorter flights lie between two of the instants at which `direct` evaluates guards.
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_NEAR(times[k], expected, is_direct() ? 1e-13 : 1e-7)
         << "bounce " << k;  // some rtol, doubled at every bounce
@@ -85,14 +85,14 @@ TEST_P(EveryIntegrator, BouncesABallAtTheRightTimes) {
 TEST_P(EveryIntegrator, AppliesSimultaneousGuardsOnceInTheirDeclaredOrder) {
   auto toy = std::make_unique<ToySystem>();
   const auto nothing = [](std::span<double>) {};
-  // Three forms of y = 0.3 that differ by rounding and slope; the first in order is not the first to be rounded past
-  // zero.
+  // Three forms of y = 0.3 that differ by round-off and slope; the first guard is not the first that round-off moves
+  // past zero.
   toy->watched = {{"square", 1, [](double, View y) { return y[0] * y[0] - 0.09; }, nothing},
                   {"steep", 1, [](double, View y) { return 3.0 * y[0] - 0.9; }, nothing},
                   {"plain", 1, [](double, View y) { return y[0] - 0.3; }, nothing},
                   {"later", 1, [](double, View y) { return y[0] - 0.6; }, nothing}};
   for (ToySystem::ToyGuard& guard : toy->watched) {
-    // Past its root a guard stays there: moved beyond by a little, as a model sets its state.
+    // A guard stays beyond its root: the transition moves the state a little further, as a model does.
     guard.transition = [](std::span<double> y) { y[0] += 1e-9; };
   }
   const TestRun result = run_toy(std::move(toy), GetParam());
@@ -228,9 +228,9 @@ TEST(MakeIntegrator, RefusesUnknownNames) {
   EXPECT_THROW(static_cast<void>(make_integrator("euler", *toy, watch, {})), std::logic_error);
 }
 
-// --- the one that "auto" integrates with
+// --- the integrator that "auto" uses
 
-/// y0 follows cos(xi) as fast as the rate says.
+/// y0 approaches cos(xi) at a given rate.
 std::unique_ptr<ToySystem> following_toy(double rate) {
   auto toy = std::make_unique<ToySystem>();
   toy->initial = {1.0};

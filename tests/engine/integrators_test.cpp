@@ -1,4 +1,4 @@
-// Every integrator over systems of every kind: the same curves and events as the direct form.
+// Every integrator on systems of every kind gives the curves and events of the direct form.
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ TEST_P(AnyIntegrator, GivesTheCurvesAndEventsOfTheDirectForm) {
   }
 }
 
-/// All but the one without error control.
+/// All integrators with error control.
 std::vector<std::string_view> controlled() {
   std::vector<std::string_view> names(integrator_names().begin(), integrator_names().end());
   std::erase(names, "explicit");
@@ -76,8 +76,8 @@ TEST(FixedSteps, ConvergeWithTheirLength) {
   EXPECT_LT(last, 1e-3);
 }
 
-/// A free centre between six walls, one of which touches and bears nothing: the rates jump where that one opens, and
-/// where contacts begin they change over overlaps that the unknowns are much larger than.
+/// A free centre between six walls. One wall is an idle contact: the rates jump where it opens. Where contacts begin,
+/// the rates change over overlaps much smaller than the unknowns.
 constexpr const char* k_touching_wall = R"(
 model = "nonlocal"
 particle.radius = 1e-3

@@ -1,5 +1,5 @@
-// What the engine takes for granted about stopping, restarting and root finding in SUNDIALS 6.4.1, and that the cures
-// it uses work. A test that fails here after a library upgrade names the assumption to look at.
+// Assumptions of the engine about stopping, restarting and root finding in SUNDIALS 6.4.1, and checks that its remedies
+// work. A test that fails after a library upgrade names the assumption to review.
 
 #include <algorithm>
 #include <cmath>
@@ -213,7 +213,7 @@ class Ida {
   std::unique_ptr<void, MemoryDeleter> memory_{IDACreate(context_)};
 };
 
-// --- Only sign changes between the ends of a step are seen.
+// --- Root finding detects only sign changes between the ends of a step.
 
 TEST(SundialsRootFinding, MissesTwoCrossingsInsideOneStep) {
   Cvode solver(constant(1), 0, 0);
@@ -287,7 +287,7 @@ TEST(SundialsRootFinding, SwitchesOffAGuardThatIsIdenticallyZeroAndWarns) {
   EXPECT_NE(solver.messages().find("root functions identically 0"), std::string::npos) << solver.messages();
 }
 
-/// Zero up to y = 0.4, where it jumps to 0.2, from where it falls through zero at y = 0.6.
+/// Zero up to y = 0.4, where it jumps to 0.2; then it falls through zero at y = 0.6.
 double clamped_guard(double, double y) { return y < 0.4 ? 0 : 0.6 - y; }
 
 TEST(SundialsRootFinding, LosesTheCrossingOfAZeroGuardInTheStepInWhichItLeavesZero) {
@@ -307,7 +307,7 @@ TEST(SundialsRootFinding, SwitchesAZeroGuardOnOnceItIsNonzeroAtTheEndOfAStep) {
 
 // --- A guard that is switched off.
 
-/// A solver at t = 1 whose only guard was zero all the way, hence is off; from now on the guard is y - 0.5.
+/// A solver at t = 1 whose only guard was always zero and is therefore off; from now on the guard is y - 0.5.
 class SundialsGuardSwitchedOff : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -392,7 +392,7 @@ TEST(SundialsRestart, ExactlyOnTheGuardDoesNotFire) {
   EXPECT_EQ(solver.advance(1), CV_SUCCESS);
 }
 
-// --- Guards that are meant to fire together.
+// --- Guards that fire together.
 
 TEST(SundialsRootFinding, FiresEqualGuardsTogether) {
   Cvode solver(constant(1), 0, 0);
@@ -492,7 +492,7 @@ TEST(SundialsStopTime, SetAgainAfterReInitIsTheOneThatCounts) {
   EXPECT_EQ(solver.t(), 3);
 }
 
-/// The latest time at which the right-hand side is asked for on the way to t = 1.
+/// Latest time up to t = 1 at which the solver evaluates the right-hand side.
 double latest_evaluation(bool with_stop_time) {
   double latest = 0;
   Cvode solver(

@@ -1,4 +1,4 @@
-/// How far a number is off, and derivatives by differences.
+/// Relative errors, and derivatives by differences.
 #pragma once
 
 #include <cmath>

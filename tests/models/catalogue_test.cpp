@@ -35,7 +35,7 @@ bool contains(const Range& range, string_view name) {
   return std::ranges::find(range, name) != std::ranges::end(range);
 }
 
-/// Names of a list of keys or terms that occur more than once, or are empty.
+/// Names in a list of keys or terms that are empty or occur more than once.
 template <class Items>
 std::set<string_view> faulty_names(const Items& items) {
   std::set<string_view> seen;
@@ -114,7 +114,7 @@ TEST(Catalogue, HasDefaultsInsideTheirRanges) {
   }
 }
 
-/// Whether a model that has the preset knows the key.
+/// True if a model with the preset has the key.
 bool is_key_beside(const Preset& preset, std::string_view key) {
   return std::ranges::any_of(model_catalogue(), [&](const Model& model) {
     const bool has_preset = std::ranges::find(model.presets, preset.name, &Preset::name) != model.presets.end();

@@ -63,7 +63,7 @@ TEST(Citation, WritesAnArticleAsBibTex) {
             "  doi = {10.1/x(1)}\n}\n");
 }
 
-/// Every closing brace has its opening one before it, and none stays open.
+/// True if every closing brace follows its opening one, and no brace stays open.
 bool has_balanced_braces(std::string_view text) {
   int depth = 0;
   for (const char c : text) {

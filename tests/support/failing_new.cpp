@@ -1,5 +1,5 @@
-// Loaded before a program: of the allocations of its main(), the one that MONOGRAIN_FAILING_ALLOCATION counts to
-// fails. Where there are fewer, a line on stderr says so.
+// Loaded before a program: makes one allocation of its main() fail, the one with the number
+// MONOGRAIN_FAILING_ALLOCATION. If there are fewer allocations, a line on stderr says so.
 
 #include <dlfcn.h>
 
@@ -11,7 +11,7 @@
 
 namespace {
 
-std::atomic<long> allocations_left{0};  // until one fails; 0: none does
+std::atomic<long> allocations_left{0};  // allocations until one fails; 0: none fails
 int (*program_main)(int, char**, char**) = nullptr;
 
 bool fails_now() {
@@ -40,7 +40,7 @@ void* operator new(std::size_t size) {
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
-/// The C library's call of main().
+/// Replaces the function with which the C library calls main().
 extern "C" int __libc_start_main(int (*main_function)(int, char**, char**), int argc, char** argv, void (*init)(),
                                  void (*fini)(), void (*unload)(), void* stack_end) {
   program_main = main_function;

@@ -75,7 +75,8 @@ CheckedScenario scenario_of(const nlohmann::json& json) {
   return scenario;
 }
 
-/// Rows of a table at one instant and side; the first one before, the last one after an instant with several events.
+/// Rows of a table by instant and side. At an instant with several events, the first row before and the last one after
+/// them.
 std::map<std::pair<int, double>, std::size_t> rows_by_instant(const Table& table, const std::string& time) {
   const std::vector<double> times = table.column(time);
   const std::vector<double> sides = table.column("row");
@@ -153,7 +154,7 @@ CurveErrors errors_against(const ReferenceCase& reference, const RunRecord& run,
     const std::string wall = column.substr(column.find('_') + 1, 1);
     return std::abs(reference.table.column("F_" + wall + "_over_ER02")[row]);
   };
-  // At a yield under force the reference has the row before the wall gives way, where its contact bears too much.
+  // At a yield under force, the reference has a row before the wall moves on, in which its contact carries too much.
   const auto yields_under_force = [&](double instant) {
     return std::ranges::any_of(reference.events, [&](const ReferenceEvent& e) {
       if (e.name != "yield" || std::abs(e.time - instant) > 1e-5 * length) return false;
@@ -170,7 +171,7 @@ CurveErrors errors_against(const ReferenceCase& reference, const RunRecord& run,
     for (const auto& [key, row] : theirs) {
       if (key.first > 0 && yields_under_force(key.second)) continue;
       auto found = ours.lower_bound({key.first, key.second - 1e-5 * length});
-      // The nearest of our rows of that kind.
+      // The nearest row of the run on that side.
       auto best = found;
       while (found != ours.end() && found->first.first == key.first &&
              found->first.second < key.second + 1e-5 * length) {
@@ -183,8 +184,8 @@ CurveErrors errors_against(const ReferenceCase& reference, const RunRecord& run,
           errors.mismatch = "no row at t = " + std::to_string(key.second) + "; ";
         continue;
       }
-      // Contact radius and pressure follow a square root at loss of contact: an event time's error is not theirs, nor
-      // is round-off where the force vanishes.
+      // Contact radius and pressure go like a square root where contact is lost: the error of the event's time is no
+      // error of theirs, nor is round-off where the force vanishes.
       const bool is_root = pair.reference.starts_with("a_") || pair.reference.starts_with("pmean_");
       if (is_root && (key.first != 0 || force_of(pair.reference, row) < 1e-20)) continue;
       worst = std::max(worst, std::abs(actual[best->second] * pair.scale - expected[row]));
@@ -194,8 +195,8 @@ CurveErrors errors_against(const ReferenceCase& reference, const RunRecord& run,
     errors.largest = std::max(errors.largest, relative);
   }
 
-  // Program events, reversals, edges that come to rest there and extrema of forces are ours alone; the reference lists
-  // one event per wall.
+  // The reference does not list events of the program, reversals, edges that come to rest and extrema of forces. It
+  // lists one event per wall.
   std::vector<std::pair<std::string, double>> actual;
   const auto time = *run.events.find("time");
   const auto class_column = *run.events.find("class");

@@ -1,4 +1,5 @@
-/// Reference curves of the MDR model: the scenario each file states, and how far a run is from its rows and events.
+/// Reference curves of the MDR model: the scenario that each file states, and the distance of a run from its rows and
+/// events.
 #pragma once
 
 #include <map>
@@ -21,7 +22,7 @@ struct ReferenceCase {
   Table table;
   CheckedScenario scenario;  ///< R0 = 1, E = 1; one output point per row-0 time
   std::vector<ReferenceEvent> events;
-  std::vector<int> walls;  ///< whose columns the file has
+  std::vector<int> walls;  ///< walls whose columns the file has
 };
 
 /// Path of a file beside the tests.
@@ -34,7 +35,7 @@ struct CurveErrors {
   std::map<std::string, double> by_quantity;
   double largest = 0.0;
   double event_time = 0.0;  ///< over the run's length
-  std::string mismatch;     ///< what is wrong with the events; empty: all there, in order
+  std::string mismatch;     ///< difference between the events; empty: all are there, in order
 };
 [[nodiscard]] CurveErrors errors_against(const ReferenceCase& reference, const RunRecord& run, const Scene& scene);
 

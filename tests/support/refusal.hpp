@@ -1,4 +1,4 @@
-/// What a call is refused with.
+/// Message with which a call is refused.
 #pragma once
 
 #include <string>

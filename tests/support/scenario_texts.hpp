@@ -1,4 +1,4 @@
-/// Texts of scenarios that several tests begin with.
+/// Texts of scenarios from which several tests start.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ displacement = "0.01 R0"
 duration = "1 s"
 )";
 
-/// Two walls of their own, of which one is late.
+/// A free set of two walls, of which one makes contact later.
 inline constexpr const char* k_late_wall_text = R"(model = "hertz"
 [particle]
 radius = "10 mm"
@@ -39,7 +39,7 @@ normal = [1, 0, 0]
 gap = "0.002 R0"
 )";
 
-/// A text with a part of it, which has to be there, in another form.
+/// A text in which a part, which has to be there, is replaced.
 [[nodiscard]] inline std::string replaced(std::string text, const std::string& old, const std::string& by) {
   const std::size_t at = text.find(old);
   EXPECT_NE(at, std::string::npos) << old;

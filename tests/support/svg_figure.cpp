@@ -17,7 +17,7 @@ namespace {
 
 using Place = SvgPlot::Place;
 
-/// The text between two others, from a place on; empty where there is none. Moves the place behind it.
+/// The text between two others, from a position on; empty if there is none. Moves the position behind it.
 std::string_view between(std::string_view text, std::string_view before, std::string_view after, std::size_t& at) {
   const std::size_t start = text.find(before, at);
   if (start == std::string_view::npos) return at = std::string_view::npos, std::string_view{};
@@ -62,7 +62,7 @@ SvgPlot::Line line_of(std::string_view coordinates, bool is_area) {
   return line;
 }
 
-/// A path draws a line from each M on.
+/// Appends the lines of a path; each M begins a line.
 void append_path(std::string_view path, SvgPlot& plot) {
   for (std::size_t at = path.find('M'); at != std::string_view::npos;) {
     const std::size_t next = path.find('M', at + 1);
@@ -96,7 +96,7 @@ double distance(const Place& place, const Place& from, const Place& to) {
 
 using Piece = std::pair<Place, Place>;
 
-/// The straight pieces of all lines of a plot; a point is a piece without length.
+/// Straight pieces of all lines of a plot; a point is a piece without length.
 std::vector<Piece> pieces_of(const SvgPlot& plot) {
   std::vector<Piece> pieces;
   for (const SvgPlot::Line& line : plot.lines) {
@@ -106,12 +106,12 @@ std::vector<Piece> pieces_of(const SvgPlot& plot) {
   return pieces;
 }
 
-/// Says where a plot has a place that is far from all of the other's.
+/// Describes the place of a plot that is farthest from the other plot; empty if all are within the tolerance.
 std::string farthest(const SvgPlot& plot, const SvgPlot& other, const SvgTolerance& tolerance) {
   const std::vector<Piece> pieces = pieces_of(other);
   std::string worst;
   double most = 1.0;
-  std::size_t first = 0;  // the search begins where the place before was found: both plots go the same way
+  std::size_t first = 0;  // the search begins at the last match: both plots run in the same direction
   for (const SvgPlot::Line& line : plot.lines) {
     const double allowed = line.is_area ? tolerance.area : tolerance.line;
     for (const Place& place : line.places) {

@@ -1,4 +1,4 @@
-/// What an SVG that gnuplot drew shows, and how far two of them are from each other.
+/// Content of an SVG that gnuplot drew, and comparison of two of them.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct SvgPlot {
 
   std::string title;
   std::set<std::string> styles;  ///< colours, dashes and kinds of points
-  std::vector<Line> lines;       ///< a point is a line of one place
+  std::vector<Line> lines;       ///< a point is a line with one place
 };
 
 struct SvgFigure {
@@ -27,17 +27,17 @@ struct SvgFigure {
   std::vector<SvgPlot> plots;
 };
 
-/// @throws std::runtime_error where there is no such file or it is empty
+/// @throws std::runtime_error if the file does not exist or is empty
 [[nodiscard]] SvgFigure read_svg(const std::filesystem::path& file);
 
-/// How far a place may be from what the other figure shows there [px]; panels are about 155 px high.
+/// Largest distance of a place in one figure from the other figure's lines [px]; panels are about 155 px high.
 struct SvgTolerance {
   double line = 1.0;
   double area = 2.5;
 };
 
-/// Says what one figure shows and the other does not: texts, curves, styles, places. Empty: they show the same. How
-/// many vertices a line has does not count.
+/// Differences between two figures: texts, curves, styles, places. Empty: the figures look alike. The number of a
+/// line's vertices does not matter.
 [[nodiscard]] std::vector<std::string> differences(const SvgFigure& a, const SvgFigure& b,
                                                    const SvgTolerance& tolerance = {});
 

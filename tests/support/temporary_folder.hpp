@@ -1,4 +1,4 @@
-/// A folder that lives as long as a test.
+/// A folder that exists as long as a test.
 #pragma once
 
 #include <cstdlib>
@@ -16,7 +16,7 @@ class TemporaryFolder {
     path_ = pattern;
   }
   ~TemporaryFolder() {
-    std::error_code ignored;  // a test's verdict does not depend on its litter
+    std::error_code ignored;  // a failure to clean up must not fail the test
     std::filesystem::remove_all(path_, ignored);
   }
   TemporaryFolder(const TemporaryFolder&) = delete;

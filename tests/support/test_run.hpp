@@ -1,4 +1,4 @@
-/// Scenarios of a unit particle (R0 = 1, E = 1) written in code, and what tests ask of their runs.
+/// Scenarios of a unit particle (R0 = 1, E = 1) written in code, and queries of their runs.
 #pragma once
 
 #include <ostream>
@@ -35,14 +35,14 @@ inline constexpr const char* k_integrators[] = {"direct", "cvode-adams", "cvode-
 [[nodiscard]] CheckedScenario hertz_scenario(Configuration configuration, std::vector<Step> steps);
 [[nodiscard]] CheckedScenario mdr_scenario(Configuration configuration, double modulus_over_yield, double poisson_ratio,
                                            std::vector<Step> steps);
-/// The same with another option of the model, e.g. radius_rule = yielded.
+/// A scenario with another option of the model, e.g. radius_rule = yielded.
 [[nodiscard]] CheckedScenario with(CheckedScenario scenario, const std::string& option, const std::string& word);
 [[nodiscard]] CheckedScenario with_points(CheckedScenario scenario, int points);
 
 /// A wall of a free set; no steps: fixed.
 [[nodiscard]] WallSpec wall(const std::string& name, const Eigen::Vector3d& normal, std::vector<Step> steps = {},
                             double gap = 0.0);
-/// The same particle between free walls.
+/// The particle of a scenario between free walls.
 [[nodiscard]] CheckedScenario between(CheckedScenario scenario, std::vector<WallSpec> walls);
 /// The walls of a scenario written out as a free set.
 [[nodiscard]] std::vector<WallSpec> written_out(const CheckedScenario& scenario);
@@ -56,14 +56,14 @@ struct TestRun {
   Scene scene;
   RunRecord record;
 
-  /// A column at all rows, and at output points only.
+  /// A column at all rows; outputs() gives it at output points only.
   [[nodiscard]] std::vector<double> column(std::string_view name) const { return record.history.column(name); }
   [[nodiscard]] std::vector<double> outputs(std::string_view name) const;
   [[nodiscard]] double last(std::string_view name) const { return column(name).back(); }
-  /// Of the columns `<class>.<name>`, one per class.
+  /// Columns `<class>.<name>` at output points, one per class.
   [[nodiscard]] std::vector<std::vector<double>> outputs_by_class(std::string_view name) const;
 
-  /// "class:event" in order ("event" where there is no class), without the ends of the steps.
+  /// Events "class:event" in order ("event" without a class), except the ends of steps.
   [[nodiscard]] std::vector<std::string> events() const;
   [[nodiscard]] bool has_event(std::string_view name) const;
   /// Time of the first event with that name; NaN without one.
@@ -74,22 +74,22 @@ struct TestRun {
 
 [[nodiscard]] TestRun run(const CheckedScenario& scenario, std::string_view integrator = "direct",
                           const Tolerances& tolerances = {}, bool merges_walls = true);
-/// atol far below rtol, so that rtol alone is tested.
+/// Tolerances with atol far below rtol, so that only rtol has an effect.
 [[nodiscard]] inline Tolerances relative(double rtol) { return {.rtol = rtol, .atol = 1e-4 * rtol}; }
 
 [[nodiscard]] double largest(const std::vector<double>& values);
 /// Largest difference over the largest magnitude of `expected`; infinity for different lengths.
 [[nodiscard]] double difference(const std::vector<double>& actual, const std::vector<double>& expected);
 
-/// How far two runs are apart at their output points: forces, overlaps, radius, volume, each over its largest value,
-/// and energies over the largest work. Names of classes may differ; they are taken in order.
+/// Difference of two runs at their output points: forces, overlaps, radius, volume, each over its largest value, and
+/// energies over the largest work. Classes are compared in order, whatever their names.
 [[nodiscard]] double difference(const TestRun& actual, const TestRun& expected);
 
-/// The rows that come just after a change of a contact's regime. Expects each of them, and the row before it, to be
-/// marked as the two sides of an event.
+/// Rows just after a change of a contact's regime. Expects each of these rows, and the row before it, to be marked as
+/// the two sides of an event.
 [[nodiscard]] std::vector<std::size_t> regime_changes(const TestRun& run, const std::string& contact_class);
 
-/// Least dissipation over the largest work; and the sum of its decreases over the largest work.
+/// Least dissipation over the largest work; lost_dissipation() gives the sum of its decreases over the largest work.
 [[nodiscard]] double least_dissipation(const TestRun& run);
 [[nodiscard]] double lost_dissipation(const TestRun& run);
 

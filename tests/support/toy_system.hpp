@@ -1,4 +1,4 @@
-/// A small hybrid system put together from functions, to see what the engine does with it.
+/// A small hybrid system made of functions, for tests of the engine.
 #pragma once
 
 #include <algorithm>
@@ -35,16 +35,16 @@ class ToySystem final : public HybridSystem {
   std::function<void(double xi, View y, std::span<double> dy)> rates_function = [](double, View, std::span<double> dy) {
     dy[0] = 1.0;
   };
-  /// Exact state at xi from that at the present mode's start, for the direct form.
+  /// Exact state at xi, from the state at the start of the present mode, for the direct form.
   std::function<void(double start, View from, double xi, std::span<double> y)> flow =
       [](double start, View from, double xi, std::span<double> y) { y[0] = from[0] + xi - start; };
-  std::function<double(double xi)> costly_primitive;  ///< of y0, if it has one
+  std::function<double(double xi)> costly_primitive;  ///< primitive of y0, if it has one
   std::vector<ToyGuard> watched;
-  bool is_quadrature = false;  ///< y0: rates do not depend on it
-  bool adheres = false;        ///< whether a force may pass through zero
-  int mode = 0;                ///< for transitions to set and rates to read
+  bool is_quadrature = false;  ///< y0 is a quadrature: rates do not depend on it
+  bool adheres = false;        ///< a force may pass through zero
+  int mode = 0;                ///< transitions set it, and rates use it
 
-  // What the engine did.
+  // Record of the engine's calls.
   double earliest_xi = 1.0;
   double latest_xi = 0.0;
   int rates_count = 0;
@@ -144,7 +144,7 @@ class ToySystem final : public HybridSystem {
   State mode_state_;
 };
 
-/// A scene of a toy, whose program is a number of steps of one second.
+/// A scene of a toy, whose program has a number of steps of one second.
 [[nodiscard]] inline Scene toy_scene(std::unique_ptr<ToySystem> toy, std::size_t steps = 1) {
   toy->finish();
   Scene scene;
@@ -157,7 +157,7 @@ class ToySystem final : public HybridSystem {
   return scene;
 }
 
-/// The toy in a scene, to see what has been done with it.
+/// The toy in a scene, with its record of the engine's calls.
 [[nodiscard]] inline const ToySystem& toy_in(const Scene& scene) {
   return dynamic_cast<const ToySystem&>(*scene.system);
 }

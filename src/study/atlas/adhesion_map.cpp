@@ -55,7 +55,7 @@ std::vector<FlattenedContact> flatten(double modulus_over_yield, double poisson_
   CheckedScenario scenario = parse_scenario(map.scenario, "adhesion map");
   scenario.material.at("poisson_ratio") = poisson_ratio;
   scenario.material.at("yield_stress") = 1.0 / run_modulus;
-  // One metre in a second: the time is the displacement.
+  // The wall moves by one metre in a second: time and displacement have the same number.
   scenario.loading.steps.front().target = displacements.back();
   scenario.loading.steps.front().duration = displacements.back();
   scenario.output.times.assign(displacements.begin(), displacements.end());

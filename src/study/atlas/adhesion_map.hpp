@@ -1,7 +1,7 @@
-/// Phase diagrams of adhesion: for which materials the model's pull-off can be trusted after how much flattening.
+/// Phase diagrams of adhesion: the materials and the flattening for which the model's pull-off is valid.
 ///
-/// Source: Zunker and Kamrin (2024), Appendix F.2 (F.7, Fig. F.21). Lengths are in R0. Poisson's ratio, which enters
-/// through the growth of the apparent radius, and xi are left open there.
+/// Source: Zunker and Kamrin (2024), Appendix F.2 (F.7, Fig. F.21), which leaves Poisson's ratio and xi open. Poisson's
+/// ratio enters through the growth of the apparent radius. Lengths are in R0.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@
 
 namespace monograin {
 
-/// Presses a particle between two walls through the engine, by the scenario of the model that offers the map.
+/// Presses a particle between two walls with the engine, by the scenario of the model that offers the map.
 ///
 /// @param modulus_over_yield  E/Y > 0, finite (not E*/Y)
 /// @param poisson_ratio       in (-1, 0.5]
 /// @param displacements       delta_o,max/R0, ascending, > 0
 /// @return one contact for each displacement
-/// @throws std::invalid_argument for arguments out of range; std::runtime_error where the run ends before its time,
-/// because the model does not reach that far
+/// @throws std::invalid_argument for arguments out of range; std::runtime_error if the run ends early, because the
+/// model does not reach that far
 [[nodiscard]] std::vector<FlattenedContact> flatten(double modulus_over_yield, double poisson_ratio,
                                                     std::span<const double> displacements);
 

@@ -9,17 +9,17 @@
 namespace monograin {
 namespace {
 
-/// Colours of the classes in turn: yellow where the model holds and two blues where it does not, as in the source, from
-/// the palette of all figures.
+/// Colours of the classes in turn, from the palette of all figures: as in the source, yellow where the model holds and
+/// two blues where it does not.
 constexpr std::array<unsigned, 3> k_colours{0xF0E442u, 0x56B4E9u, 0x0072B2u};
 
-/// Share of a row by which boxes overlap the next one: a renderer would leave a hair of white between them.
+/// Share of a row by which a box overlaps the next one; a renderer would otherwise leave a white hairline between them.
 constexpr double k_overlap = 0.05;
 
-/// Half the distance of two points, as a factor.
+/// Half the distance of two points on a logarithmic axis, as a factor.
 [[nodiscard]] double half_step(const std::vector<double>& axis) { return std::sqrt(axis[1] / axis[0]); }
 
-/// Boxes around the points of a class, those beside each other in a row as one.
+/// Boxes around the points of a class; neighbours in a row form one box.
 [[nodiscard]] std::vector<figure::ChartArea::Box> boxes_of(const AdhesionDiagram& diagram, std::size_t kind) {
   std::vector<figure::ChartArea::Box> boxes;
   const double half_column = half_step(diagram.modulus);

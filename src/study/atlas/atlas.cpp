@@ -65,8 +65,8 @@ constexpr std::size_t k_parameter_values = 201;
 
 // --- values of formulas
 
-/// What names stand for: columns of a table, t, numbers of the table's header (R0, E, nu, Y, surface_energy), what
-/// follows from them (Es, V0, pi), and what a model derives from its scenario.
+/// Values of the names in a formula: columns of a table, t, numbers of the table's header (R0, E, nu, Y,
+/// surface_energy), numbers that follow from these (Es, V0, pi), and parameters that a model derives from its scenario.
 class Scope {
  public:
   explicit Scope(const Table* table, std::vector<DerivedParameter> derived = {}, Values parameter = {})
@@ -83,7 +83,7 @@ class Scope {
     return value ? std::optional(Values{*value}) : std::nullopt;
   }
 
-  /// For a message about an unknown name: what could have been meant.
+  /// Names that could have been meant, for a message about an unknown name.
   [[nodiscard]] std::string hint(std::string_view unknown) const {
     std::vector<std::string_view> names{"pi"};
     if (!parameter_.empty()) names.emplace_back("t");
@@ -139,14 +139,14 @@ class Scope {
   }
 }
 
-/// Formulas without a column in one of them have one value there, which then holds for all rows.
+/// Evaluates two formulas over the rows of a table. A formula without a column has one value, which holds for all rows.
 [[nodiscard]] XyCurve curve_of(const PlacedExpression& x, const PlacedExpression& y, const Scope& scope,
                                FaultList& faults) {
   XyCurve curve{evaluated(x, scope, faults), evaluated(y, scope, faults)};
   const std::size_t rows = std::max(curve.x.size(), curve.y.size());
   if (curve.x.size() == 1) curve.x.assign(rows, curve.x.front());
   if (curve.y.size() == 1) curve.y.assign(rows, curve.y.front());
-  if (curve.x.size() != curve.y.size()) curve = {};  // one of them is at fault
+  if (curve.x.size() != curve.y.size()) curve = {};  // one of the formulas is at fault
   return curve;
 }
 
@@ -161,7 +161,7 @@ class Scope {
   }
   XyCurve chosen;
   for (const XyCurve& unloading : unloadings(curve)) {
-    if (!chosen.x.empty()) {  // the line is to break between two
+    if (!chosen.x.empty()) {  // the line breaks between two unloadings
       chosen.x.push_back(k_nan);
       chosen.y.push_back(k_nan);
     }
@@ -180,7 +180,7 @@ class Scope {
   return values;
 }
 
-/// Derived parameters as columns, a row for each scenario; nan where one of them lacks what the first has.
+/// Derived parameters as columns, with a row for each scenario; nan if a scenario lacks a parameter of the first one.
 [[nodiscard]] Table derived_table(std::span<const CheckedScenario> scenarios) {
   std::vector<Column> columns;
   for (const DerivedParameter& parameter : derived_parameters(scenarios.front())) {
@@ -242,7 +242,7 @@ class FigureMaker {
   void append_curves(const CurveSpec& spec, figure::ChartPanel& panel) {
     for (const CheckedScenario& scenario : spec.scenarios) cite(*find_model(scenario.model));
     std::vector<XyCurve> curves = curves_of(spec);
-    // Runs of which only one number is asked make one curve of these numbers.
+    // Runs that give a single number each make one curve of these numbers.
     const bool is_one = curves.size() > 1 && std::ranges::all_of(curves, [](const auto& c) { return c.x.size() == 1; });
     if (is_one) {
       XyCurve joined;
@@ -295,7 +295,7 @@ class FigureMaker {
     return curves;
   }
 
-  /// Runs a scenario; panels that show other columns of the same run share it.
+  /// Runs a scenario; panels with other columns of a run share its record.
   [[nodiscard]] const RunRecord& run_of(const CheckedScenario& scenario) {
     const auto [entry, is_new] = runs_.try_emplace(scenario_digest(scenario));
     RunRecord& record = entry->second;
@@ -308,7 +308,7 @@ class FigureMaker {
     return record;
   }
 
-  /// The states just after the events of a name.
+  /// The states just after the events with a name.
   [[nodiscard]] const Table& states_at(const CheckedScenario& scenario, const std::string& event) {
     const auto [entry, is_new] = tables_.try_emplace(fmt::format("{} at {}", scenario_digest(scenario), event));
     if (!is_new) return entry->second;
@@ -335,7 +335,7 @@ class FigureMaker {
     return entry->second;
   }
 
-  /// The rows of a file that a definition asks for.
+  /// The rows of a file that a definition selects.
   [[nodiscard]] XyCurve points_of(const PointsSpec& spec) {
     const Scope scope(&spec.table);
     XyCurve all = curve_of(spec.x, spec.y, scope, faults_);
@@ -379,14 +379,14 @@ class FigureMaker {
         }
       }
     }
-    // One line of the table has all quantities of a label.
+    // One line of the table contains all quantities of a label.
     std::map<std::string, std::size_t> order;
     for (const ComparisonRow& row : table.rows) order.try_emplace(row.label, order.size());
     std::ranges::stable_sort(table.rows, {}, [&](const ComparisonRow& row) { return order.at(row.label); });
     return table;
   }
 
-  /// Below this magnitude of the reference the loading is not measured.
+  /// Magnitude of the reference below which the loading is not measured.
   [[nodiscard]] double least_of(const ComparisonSpec& row, std::size_t curve) {
     if (!row.least) return 0.0;
     if (row.curve.scenarios.size() <= curve) return 0.0;
@@ -415,10 +415,10 @@ class FigureMaker {
   FaultList& faults_;
   AtlasFigure made_;
   std::map<std::string, RunRecord> runs_;
-  std::map<std::string, Table> tables_;  ///< of profiles, and of states at events
+  std::map<std::string, Table> tables_;  ///< profiles, and states at events
 };
 
-/// Adds what an error holds to the faults of others.
+/// Adds the faults of an error to other faults.
 void collect(const ScenarioError& error, FaultList& faults) {
   for (const Fault& fault : error.faults()) faults.add(fault.where, fault.message);
 }

@@ -1,4 +1,4 @@
-// What the atlas leaves: figures and tables.
+// Files of the atlas: figures and tables.
 
 #include <fmt/format.h>
 
@@ -23,8 +23,8 @@ using definition::k_measures;
 
 struct Measure {
   double (*value)(const BranchComparison& line);
-  int digits = 3;           ///< in Markdown; CSV has all
-  bool is_percent = false;  ///< in Markdown, with one decimal
+  int digits = 3;           ///< digits in Markdown; CSV has all
+  bool is_percent = false;  ///< shown in Markdown as a percentage with one decimal
 };
 
 /// The measures in the order of their names.
@@ -57,7 +57,7 @@ constexpr std::array<Measure, k_measures.size()> k_cells{{
 
 using Row = MarkdownRow;
 
-/// Headings of a quantity's measures.
+/// Appends the headings of a quantity's measures.
 void append_headings(const ComparisonRow& quantity, Row& headings) {
   for (const std::size_t measure : quantity.measures) {
     std::string heading(k_measures[measure]);
@@ -68,10 +68,10 @@ void append_headings(const ComparisonRow& quantity, Row& headings) {
   }
 }
 
-/// Rows of one label, which are its quantities, lie side by side.
+/// Rows of a table in Markdown. The quantities of one label stand side by side in one row.
 [[nodiscard]] std::vector<Row> rows_of(const ComparisonTable& table) {
   std::vector<Row> rows{{"case"}};
-  std::vector<const ComparisonRow*> quantities;  // all that the table has, in their order
+  std::vector<const ComparisonRow*> quantities;  // all quantities of the table, in their order
   for (const ComparisonRow& row : table.rows) {
     const auto has_name = [&](const ComparisonRow* known) { return known->quantity == row.quantity; };
     if (std::ranges::none_of(quantities, has_name)) quantities.push_back(&row);
@@ -97,7 +97,7 @@ void append_headings(const ComparisonRow& quantity, Row& headings) {
   return rows;
 }
 
-/// Half a unit in the last place of a printed number: how far it may be from the value it stands for.
+/// Half a unit in the last digit of a printed number: its largest distance from the value that it rounds.
 [[nodiscard]] double rounding_of(const std::string& printed) {
   const std::size_t point = printed.find('.');
   const std::size_t decimals = point == std::string::npos ? 0 : printed.size() - point - 1;
@@ -114,7 +114,7 @@ void append_headings(const ComparisonRow& quantity, Row& headings) {
   return std::ranges::any_of(table.rows, [](const ValueRow& row) { return row.reference.has_value(); });
 }
 
-/// Values beside those of a file.
+/// Rows of a table that compares values with those of a file.
 [[nodiscard]] std::vector<Row> referenced_rows(const ValueTable& table) {
   std::vector<Row> rows{{"quantity", "computed", "reference", "difference", "relative", "remark"}};
   for (const ValueRow& row : table.rows) {
@@ -180,7 +180,7 @@ struct Words {
   Column labels{.name = "case", .unit = {}, .labels = {}};
   Column quantities{.name = "quantity", .unit = {}, .labels = {}};
 
-  /// @param has_quantities  the third column is there
+  /// @param has_quantities  true if the table has the third column
   [[nodiscard]] std::vector<double> last(bool has_quantities = false) const {
     const auto place = [](const Column& column) { return static_cast<double>(column.labels.size()) - 1.0; };
     std::vector<double> places{place(titles), place(labels)};
@@ -189,7 +189,7 @@ struct Words {
   }
 };
 
-/// Measures that some table of comparisons of a figure shows, in the order of k_measures.
+/// Measures that any table of comparisons of a figure shows, in the order of k_measures.
 [[nodiscard]] std::vector<std::size_t> measures_of(const AtlasFigure& figure) {
   std::set<std::size_t> measures;
   for (const ComparisonTable& table : figure.tables) {

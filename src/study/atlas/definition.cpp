@@ -29,16 +29,16 @@ using Style = figure::ChartSeries::Style;
 template <std::size_t N>
 [[nodiscard]] std::size_t place_of_word(const std::array<std::string_view, N>& words, std::string_view word) {
   const auto place = static_cast<std::size_t>(std::ranges::find(words, word) - words.begin());
-  return place < N ? place : 0;  // a word that is none of them has been reported
+  return place < N ? place : 0;  // an unknown word has been reported
 }
 
-/// What a curve takes from its panel, and that from the definition, where it has none of its own.
+/// Formulas and sections that a curve without its own takes from its panel, and the panel from the definition.
 struct Inherited {
   std::optional<PlacedExpression> x{};
   std::optional<PlacedExpression> y{};
-  const Section* vary = nullptr;     ///< the section that has one; null: none
-  const Section* against = nullptr;  ///< likewise
-  const Section* panel = nullptr;    ///< whose overrides come before the curve's; null: none
+  const Section* vary = nullptr;     ///< section with key `vary`; null: none
+  const Section* against = nullptr;  ///< section with key `against`; null: none
+  const Section* panel = nullptr;    ///< section whose overrides precede the curve's; null: none
 };
 
 class DefinitionReader {
@@ -102,7 +102,7 @@ class DefinitionReader {
     }
   }
 
-  /// The section's own formula, else the inherited one; a fault where there is neither.
+  /// The section's own formula, else the inherited one; a fault if there is neither.
   [[nodiscard]] PlacedExpression formula(const Section& section, std::string_view key,
                                          const std::optional<PlacedExpression>& inherited) {
     if (auto own = formula(section, key)) return *own;
@@ -223,7 +223,7 @@ class DefinitionReader {
     return spec;
   }
 
-  /// Every model of the curve has to know the event.
+  /// Reports an event that a model of the curve does not have.
   void check_event(const Section& section, const CurveSpec& spec) {
     for (const CheckedScenario& scenario : spec.scenarios) {
       std::vector<std::string_view> names;
@@ -248,21 +248,21 @@ class DefinitionReader {
     return {section.number("from").value_or(0.0), section.number("to").value_or(1.0)};
   }
 
-  /// Where what makes the runs of a curve stands.
+  /// Sections from which the runs of a curve are made.
   struct CurveSections {
     const Section& curve;
-    const Section* panel;    ///< null: none, as in what follows
-    const Section* vary;     ///< has the key
-    const Section* against;  ///< likewise
+    const Section* panel;    ///< null: none
+    const Section* vary;     ///< has the key `vary`; null: none
+    const Section* against;  ///< has the key `against`; null: none
   };
 
-  /// An override of a scenario, and where the definition asks for it.
+  /// An override of a scenario, with its position in the definition.
   struct Override {
     std::string text;
     SourceLocation where;
   };
 
-  /// The values of the swept key.
+  /// Overrides for the values of the swept key.
   [[nodiscard]] std::vector<Override> sweep(const Section& curve, CurveSpec& spec) {
     static const Keys keys = sweep_keys();
     const Section section(reading_, curve.table("sweep", "sweep"), keys);
@@ -283,7 +283,7 @@ class DefinitionReader {
     std::vector<Override> overrides;
     for (std::size_t k = 0; k < spec.sweep; ++k) {
       const double share = static_cast<double>(k) / static_cast<double>(spec.sweep - 1);
-      // The ends are met exactly; a rounding beyond could be outside of a model's domain.
+      // The ends are met exactly: a value beyond them by round-off could be outside of a model's domain.
       const double between = is_logarithmic ? *from * std::pow(*to / *from, share) : std::lerp(*from, *to, share);
       const double value = k + 1 == spec.sweep ? *to : between;
       overrides.push_back({fmt::format("{}={}", section.text("key"), value), section.value_place("key")});
@@ -324,7 +324,7 @@ class DefinitionReader {
     spec.variants = section.has("legends") ? section.texts("legends") : values;
   }
 
-  /// The scenarios of one curve: one, or one for each value that is swept.
+  /// Adds the scenarios of one curve: one, or one for each value that is swept.
   void add_curve(const CurveSections& sections, const std::vector<Override>& varied, const std::vector<Override>& swept,
                  CurveSpec& spec) {
     const Section& curve = sections.curve;
@@ -347,7 +347,7 @@ class DefinitionReader {
     for (const Override& value : swept) {
       overrides.push_back(value);
       auto made = checked_scenario(curve, overrides);
-      if (!made) return;  // the other values would most likely tell the same
+      if (!made) return;  // the other values would most likely have the same faults
       spec.scenarios.push_back(std::move(*made));
       overrides.pop_back();
     }
@@ -361,7 +361,7 @@ class DefinitionReader {
     return overrides;
   }
 
-  /// The section's scenario; nothing where it has faults, each of which is reported where it stands.
+  /// The section's scenario; none if it has faults, each of which is reported at its own position.
   [[nodiscard]] std::optional<CheckedScenario> checked_scenario(const Section& section,
                                                                 const std::vector<Override>& overrides) {
     std::vector<std::string> texts;
@@ -374,7 +374,8 @@ class DefinitionReader {
           faults_.add(fault.where, fault.message);
           continue;
         }
-        // An override is known by its text. From the end: "x=0.3" is found in the later "x=0.35" too.
+        // An override is recognized by its text. The search begins at the end: the later "x=0.35" contains "x=0.3",
+        // too.
         auto entry = overrides.rbegin();
         while (entry + 1 != overrides.rend() && fault.where.file.find(entry->text) == std::string::npos) ++entry;
         faults_.add(entry->where, fmt::format("{}: {}", entry->text, fault.message));
@@ -397,7 +398,7 @@ class DefinitionReader {
     return read_scenario(file, overrides);
   }
 
-  /// @param y  of points that have none of their own
+  /// @param y  formula of points that have none of their own
   [[nodiscard]] PointsSpec points(const Section::Origin& table, const std::optional<PlacedExpression>& y = {}) {
     static const Keys keys = points_keys();
     const Section section(reading_, table, keys);
@@ -417,7 +418,7 @@ class DefinitionReader {
     return spec;
   }
 
-  /// The table of the file that a section names; an empty one where it cannot be read.
+  /// The table in the file that a section names; an empty one if it cannot be read.
   [[nodiscard]] Table table_in(const Section& section) {
     if (section.text("file").empty()) return {};
     try {
@@ -428,7 +429,7 @@ class DefinitionReader {
     return {};
   }
 
-  /// What a value is held against instead of a printed one.
+  /// Reference of a value from a file, instead of a printed number.
   [[nodiscard]] PointsSpec reference(const Section& value) {
     static const Keys keys = reference_keys();
     const Section section(reading_, value.table("reference", "reference"), keys);
@@ -478,7 +479,7 @@ class DefinitionReader {
     return spec;
   }
 
-  /// A quantity that all rows of a table are asked for.
+  /// A quantity that is compared in all rows of a table.
   struct QuantitySpec {
     std::string name{};
     std::optional<PlacedExpression> y{};
@@ -503,7 +504,7 @@ class DefinitionReader {
     return places;
   }
 
-  /// The measures that a section asks for, else others.
+  /// The measures that a section names; `others` if it names none.
   [[nodiscard]] std::vector<std::size_t> measures(const Section& section, std::vector<std::size_t> others) {
     if (!section.has("measures")) return others;
     std::vector<std::size_t> places;
@@ -537,7 +538,7 @@ class DefinitionReader {
     return spec;
   }
 
-  /// A number as text, because its digits say how far it is rounded.
+  /// A printed number as text, because its digits show how it is rounded.
   [[nodiscard]] std::string printed_number(const Section& section) {
     const std::string text = section.text("printed");
     double value = 0.0;
@@ -551,7 +552,7 @@ class DefinitionReader {
     return text;
   }
 
-  /// A text that will be a cell of a CSV file.
+  /// A text for a cell of a CSV file; reports characters that a cell cannot contain.
   [[nodiscard]] std::string plain(const Section& section, std::string_view key) {
     const std::string text = section.text(key);
     if (text.find_first_of(",\"|\r\n") != std::string::npos) {

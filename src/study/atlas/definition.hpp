@@ -1,4 +1,4 @@
-/// Definitions of figures: TOML files that say which curves go where, and what they are held against.
+/// Definitions of figures: TOML files that describe the curves of each panel, and their references.
 #pragma once
 
 #include <cstddef>
@@ -16,36 +16,37 @@
 
 namespace monograin {
 
-/// A formula and where it stands, for what can only be found wrong when it is evaluated.
+/// A formula with its position in the file, for faults that only its evaluation finds.
 struct PlacedExpression {
   Expression expression{"0"};
   SourceLocation where;  ///< of the formula's first character
 };
 
-/// Which way of x: all, only beyond the largest so far, only back.
+/// Rows by the direction of x: all, only beyond the largest x so far, only backwards.
 enum class RowChoice { all, load, unload };
 
-/// Curves from runs: one, or one for each value that is varied; or of parameters that a model derives from a swept key;
-/// or a formula of the parameter t.
+/// Curves of a panel, from runs: one, or one for each value of a varied key. Or curves of parameters that a model
+/// derives over a swept key, or of a formula of the parameter t.
 struct CurveSpec {
   struct Parameter {
     double from = 0.0;
     double to = 1.0;
   };
 
-  std::vector<CheckedScenario> scenarios;  ///< at least one, but for a formula that needs none
-  std::size_t sweep = 0;                   ///< so many scenarios in a row are one curve of derived parameters; 0: runs
+  std::vector<CheckedScenario> scenarios;  ///< at least one, except for a formula that needs none
+  std::size_t sweep = 0;                   ///< number of consecutive scenarios that make one curve of derived
+                                           ///< parameters; 0: runs
   std::vector<std::string> legends;        ///< one for each curve, or one
-  std::vector<std::string> variants{};     ///< names of the curves of a key that is varied; empty: none is
+  std::vector<std::string> variants{};     ///< names of the curves of a varied key; empty: no key is varied
   PlacedExpression x;
   PlacedExpression y;
   RowChoice rows = RowChoice::all;
-  std::vector<figure::ChartSeries::Style> styles{figure::ChartSeries::Style::phases};  ///< likewise
+  std::vector<figure::ChartSeries::Style> styles{figure::ChartSeries::Style::phases};  ///< one for each curve, or one
   std::optional<std::size_t> colour;
-  /// One for each scenario: y is then its distance from the reference's y, which is evaluated over the same rows.
+  /// One for each scenario: y is then its distance from the y of the reference, evaluated over the same rows.
   std::vector<CheckedScenario> references{};
-  std::optional<double> profile_at;  ///< [s]; then columns are those of contact profiles at that instant
-  std::string at_event;  ///< then rows are the states just after events of this name; empty: those of the history
+  std::optional<double> profile_at;  ///< [s]; if given, columns are those of contact profiles at that instant
+  std::string at_event;              ///< if given, rows are the states just after events of this name
   std::optional<Parameter> parameter;
 };
 
@@ -55,8 +56,8 @@ struct PointsSpec {
   PlacedExpression x;
   PlacedExpression y;
   RowChoice rows = RowChoice::all;
-  std::optional<PlacedExpression> where;  ///< only rows in which this is zero
-  std::size_t every = 1;                  ///< only each so manieth row
+  std::optional<PlacedExpression> where;  ///< only rows in which this formula is zero
+  std::size_t every = 1;                  ///< only every n-th row
   std::string legend;
   std::optional<std::size_t> colour;
 };
@@ -70,11 +71,11 @@ struct PanelSpec {
   std::vector<PointsSpec> points;
 };
 
-/// Curves that are held against points, which are the reference.
+/// Curves that are compared with points, which are the reference.
 struct ComparisonSpec {
   std::string label;
-  std::string quantity;                   ///< what y is; empty where the table names none
-  std::vector<std::size_t> measures;      ///< that are shown, places among k_measures
+  std::string quantity;                   ///< name of y; empty if the table names no quantities
+  std::vector<std::size_t> measures;      ///< measures in the table, as indices of k_measures
   std::optional<PlacedExpression> least;  ///< loading with smaller y is not measured; a formula of the run's numbers
   CurveSpec curve;
   PointsSpec points;
@@ -82,12 +83,12 @@ struct ComparisonSpec {
 
 struct TableSpec {
   std::string title;
-  std::vector<double> bands;         ///< ends of the bands of x that are measured; empty: loading up to each reversal
-  std::vector<ComparisonSpec> rows;  ///< those of one label follow each other
+  std::vector<double> bands;         ///< ends of the bands of x to measure; empty: loading up to each reversal
+  std::vector<ComparisonSpec> rows;  ///< rows with one label are consecutive
 };
 
-/// A value made of what a model derives from a scenario, and what it is held against: what the source prints for it, or
-/// the mean of rows of a file.
+/// A value made of the parameters that a model derives from a scenario, and its reference: the number printed in the
+/// source, or the mean over rows of a file.
 struct ValueSpec {
   std::string label;
   std::optional<CheckedScenario> scenario;  ///< absent only with a fault
@@ -107,14 +108,14 @@ struct Definition {
   std::string title;
   std::string source;
   std::string format;                               ///< svg, pdf, png
-  std::optional<AdhesionMapSettings> adhesion_map;  ///< its panels come before the others
+  std::optional<AdhesionMapSettings> adhesion_map;  ///< its panels come first
   std::vector<PanelSpec> panels;
   std::vector<TableSpec> tables;
-  std::vector<ValueTableSpec> value_tables;  ///< instead of `tables`: both would be written to the same files
+  std::vector<ValueTableSpec> value_tables;  ///< alternative to `tables`: both would be written to the same files
 };
 
-/// Reads and checks a definition with its scenarios and files, which are sought from the definition's folder. What
-/// comes back is only meaningful if nothing was added to `faults`.
+/// Reads and checks a definition with its scenarios and files, whose paths are relative to the definition's folder. The
+/// result is only meaningful if nothing was added to `faults`.
 [[nodiscard]] Definition read_definition(const std::filesystem::path& file, FaultList& faults);
 
 }  // namespace monograin

@@ -62,7 +62,7 @@ KeySpec overrides_key(std::string_view meaning) {
   return {.name = "set", .meaning = meaning, .kind = Kind::texts, .example = "[\"material.yield_stress=20 MPa\"]"};
 }
 
-/// Axes and what is done to runs, which may be given once for all panels, and for all curves of a panel.
+/// Appends the keys of axes and runs, which may be given once for all panels, or for all curves of a panel.
 void append_shared_keys(Keys& keys) {
   keys.push_back(table_key("vary", "one curve for each value of a key", "{ key = \"...\", values = [...] }"));
   keys.push_back({.name = "against",

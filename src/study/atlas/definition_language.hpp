@@ -11,7 +11,7 @@ namespace monograin::definition {
 
 using Keys = std::vector<KeySpec>;
 
-/// Words in the order of the enumerators they stand for.
+/// Words in the order of their enumerators.
 inline constexpr std::array<std::string_view, 6> k_styles{"phases", "solid",       "dashed",
                                                           "dotted", "dash-dotted", "points"};
 inline constexpr std::array<std::string_view, 3> k_rows{"all", "load", "unload"};
@@ -26,35 +26,35 @@ inline constexpr std::size_t k_default_measures = 10;
 inline constexpr const char* k_example_x = "\"axial.displacement / R0\"";
 inline constexpr const char* k_example_y = "\"axial.force / (E * R0^2)\"";
 
-/// The definition as a whole.
+/// Keys of the definition as a whole.
 [[nodiscard]] Keys root_keys();
-/// A panel.
+/// Keys of a panel.
 [[nodiscard]] Keys panel_keys();
-/// Curves of a panel, and the curve of a comparison.
+/// Keys of the curves of a panel, and of the curve of a comparison.
 [[nodiscard]] Keys curve_keys();
-/// What a key of the scenario is varied over.
+/// Keys of `vary`, which gives a curve for each value of a scenario's key.
 [[nodiscard]] Keys vary_keys();
-/// What a key of the scenario runs through within one curve.
+/// Keys of `sweep`, in which a scenario's key passes a range within one curve.
 [[nodiscard]] Keys sweep_keys();
-/// The range of t in a formula.
+/// Keys of the range of t in a formula.
 [[nodiscard]] Keys parameter_keys();
-/// The part of the abscissa to which a law was fitted.
+/// Keys of the part of the abscissa to which a law was fitted.
 [[nodiscard]] Keys fitted_keys();
-/// Points of a panel, and those of a comparison.
+/// Keys of the points of a panel, and of those of a comparison.
 [[nodiscard]] Keys points_keys();
-/// The phase diagrams of adhesion.
+/// Keys of the phase diagrams of adhesion.
 [[nodiscard]] Keys adhesion_map_keys();
-/// A table of comparisons.
+/// Keys of a table of comparisons.
 [[nodiscard]] Keys comparison_table_keys();
-/// One row of such a table.
+/// Keys of one row of a table of comparisons.
 [[nodiscard]] Keys comparison_keys();
-/// A quantity that every row of such a table is asked for.
+/// Keys of a quantity that every row of a table of comparisons has.
 [[nodiscard]] Keys quantity_keys();
-/// A table of values.
+/// Keys of a table of values.
 [[nodiscard]] Keys value_table_keys();
-/// One row of such a table.
+/// Keys of one row of a table of values.
 [[nodiscard]] Keys value_keys();
-/// What such a value is held against.
+/// Keys of the file with which a value is compared.
 [[nodiscard]] Keys reference_keys();
 
 }  // namespace monograin::definition

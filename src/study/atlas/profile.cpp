@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double k_same_instant = 1e-9;  // relative
+constexpr double k_same_instant = 1e-9;  // relative difference of instants that is round-off
 
-/// Keeps the profiles at the one output point asked for.
+/// Keeps the profiles at one output point.
 class ProfileSink final : public HistorySink {
  public:
   ProfileSink(HybridSystem& system, double instant) : system_(system), instant_(instant) {
@@ -40,7 +40,7 @@ class ProfileSink final : public HistorySink {
   }
 
   void append(RowSide side) override {
-    // The start of the run is an output point too. One that falls on a corner bears the corner's time.
+    // The start of the run is an output point, too. An output point at a corner of the program has the corner's time.
     const bool is_asked_for = std::abs(time_ - instant_) <= k_same_instant * instant_;
     if (side != RowSide::output || has_come_ || !is_asked_for) return;
     has_come_ = true;
@@ -138,7 +138,7 @@ fs::path draw_profiles(const Table& profiles, const fs::path& output) {
     highest = std::max(highest, std::ranges::max(load));
     lowest = std::min(lowest, std::ranges::min(load));
     add(pressure, "", Style::solid, std::move(load));
-    // From the middle of the relaxed surface; in contact the loaded one is flat.
+    // Heights are counted from the middle of the relaxed surface; the loaded surface is flat in contact.
     std::vector<double> relaxed = of_class(profiles, c, "relaxed_height", -1.0 / length);
     std::vector<double> loaded = of_class(profiles, c, "displacement", -1.0 / length);
     std::ranges::transform(relaxed, loaded, loaded.begin(), std::plus<>());

@@ -16,7 +16,7 @@
 namespace monograin {
 namespace {
 
-constexpr double k_same = 1e-9;  // spread over the largest magnitude of values that are the same
+constexpr double k_same = 1e-9;  // spread of equal values, over their largest magnitude
 constexpr double k_thousand = 1e3;
 
 std::vector<std::size_t> rows_that_count(const Calibration& calibration) {
@@ -37,18 +37,18 @@ std::pair<double, double> range_of(const Calibration& calibration) {
   return range;
 }
 
-/// A change of the data, as a clause says it.
+/// A change of the data, with a clause that describes it.
 struct Suspicion {
   std::string clause;
   Calibration changed;
-  std::optional<std::size_t> offset{};  ///< place of a parameter that is a sought offset
+  std::optional<std::size_t> offset{};  ///< index of a parameter that is a sought offset
 };
 
 void scale(MeasuredQuantity& quantity, double factor) {
   for (double& value : quantity.values) value *= factor;
 }
 
-/// The unit a thousand times larger or smaller; empty where there is none.
+/// Name of the unit that is larger or smaller by a factor; empty if there is none.
 std::string_view other_unit(const MeasuredQuantity& quantity, double factor) {
   const auto dimension = calibration::dimension_of(quantity.si);
   if (!dimension) return {};
@@ -87,7 +87,7 @@ void add_signs(const Calibration& calibration, std::vector<Suspicion>& suspicion
   }
 }
 
-/// The first touch anywhere within the displacements measured, where neither it nor their column is in doubt.
+/// Adds the suspicion that first touch lies elsewhere within the measured displacements, unless the offset is free.
 void add_offset(const Calibration& calibration, std::vector<Suspicion>& suspicions) {
   const MeasuredQuantity& moved = calibration.machine_moves_x() ? calibration.x : calibration.y;
   const bool is_free = std::ranges::any_of(
@@ -106,7 +106,7 @@ void add_offset(const Calibration& calibration, std::vector<Suspicion>& suspicio
   suspicions.push_back(std::move(suspicion));
 }
 
-/// "R^2", or what it becomes where rows count differently.
+/// Name of the measure of the fit: "R^2", or a longer one if rows count differently.
 std::string measure_of(const Calibration& calibration) {
   const bool is_plain = calibration.weighting == "absolute" && calibration.loss.kind == Loss::linear;
   return is_plain ? "R^2" : "R^2 with the weights and the loss of the fit";

@@ -1,4 +1,4 @@
-/// Fits that are not to be trusted, and what may be wrong with their data.
+/// Bad fits, and what may be wrong with their data.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace monograin {
 
-/// Whether y is the same, to round-off, in all of several rows that take part.
+/// True if several rows count and all of them have one y, to round-off.
 [[nodiscard]] bool is_constant(const Calibration& calibration);
 
 /// 1 - cost / (cost of the constant that fits best, with the same weights and loss); nan where y is constant.
@@ -24,11 +24,11 @@ struct TrialFit {
 using FitTrial = std::function<TrialFit(const Calibration&)>;
 
 /// Finds a change of the data that makes the fit good: units of x or y a thousand times larger or smaller, other signs,
-/// a first touch elsewhere. Each is tried alone.
-/// @return a clause without capital and full stop; empty where nothing makes it explain k_least_explained
+/// a first touch elsewhere. Tries each change alone.
+/// @return a clause without capital and full stop; empty if no change makes the fit explain k_least_explained
 [[nodiscard]] std::string likely_cause(const Calibration& calibration, const FitTrial& fit);
 
-/// Why the fit is bad, with the likely cause; empty where it is good.
+/// Warnings that a fit is bad, with the likely cause; empty if it is good.
 [[nodiscard]] std::vector<std::string> warnings_of(const Calibration& calibration, const CalibrationResult& result,
                                                    const FitTrial& fit);
 

@@ -19,18 +19,18 @@
 namespace monograin {
 namespace {
 
-constexpr std::size_t k_curve_points = 400;  // of the curve between the data
-constexpr int k_most_rounds = 50;            // of fits and the noise they leave
-constexpr int k_most_better = 3;             // better fits that intervals come upon
+constexpr std::size_t k_curve_points = 400;  // points of a fitted curve, about, if the data have fewer
+constexpr int k_most_rounds = 50;            // repetitions of fit and estimate of its noise
+constexpr int k_most_better = 3;             // better fits that the search for intervals may find
 constexpr double k_margin_of_rounding = 1e3;
 constexpr double k_bad_condition = 1e3;  // a correlation of 1 - 2e-6
 constexpr std::size_t k_bootstrap_samples = 400;
 constexpr std::uint64_t k_seed = 20260101;
 constexpr double k_same_weight = 1e-9;
-constexpr std::size_t k_dense = 800;    // rows: more of them are thinned while the fit is sought
-constexpr std::size_t k_thinned = 400;  // about so many rows are left
+constexpr std::size_t k_dense = 800;    // rows; a search with more of them first thins the data
+constexpr std::size_t k_thinned = 400;  // approximate number of rows that are left
 
-/// Into how many parts a curve's pieces are divided, so that it is smooth.
+/// Number of parts into which each piece of a curve is divided, so that the curve is smooth.
 std::size_t parts_of(std::span<const double> x) { return std::max<std::size_t>(1, k_curve_points / x.size()); }
 
 /// x with further values in between.
@@ -45,7 +45,7 @@ std::vector<double> refined(std::span<const double> x, std::size_t parts) {
   return result;
 }
 
-/// A curve's share of values that are kept row by row.
+/// Values of one curve, out of values that are stored row by row.
 template <class T>
 std::span<T> rows_of(std::vector<T>& values, const MeasuredCurve& curve) {
   return std::span(values).subspan(curve.begin, curve.end - curve.begin);
@@ -53,7 +53,7 @@ std::span<T> rows_of(std::vector<T>& values, const MeasuredCurve& curve) {
 
 class Fit {
  public:
-  /// @param prior_weight  factor of the priors' residuals, where it is known
+  /// @param prior_weight  factor of the priors' residuals, if it is known
   Fit(const Calibration& calibration, const LeastSquaresProblem::Progress& progress, double prior_weight = 1.0)
       : calibration_(calibration),
         procedures_(model_fits(calibration)),
@@ -91,8 +91,8 @@ class Fit {
   Fit(const Fit&) = delete;
   Fit& operator=(const Fit&) = delete;
 
-  /// The best fit; nothing where no parameters that were tried have a response. Where the noise is not known, priors
-  /// count beside the one that the data's residuals show.
+  /// The best fit; none if no parameters that were tried have a response. If the noise is not known, the priors are
+  /// weighted by the noise that the data's residuals show.
   [[nodiscard]] std::optional<LeastSquaresSolution> search() {
     if (priors_.empty() || calibration_.knows_noise()) return search_once();
     prior_weight_ = 0.0;
@@ -111,7 +111,7 @@ class Fit {
     return solution;
   }
 
-  /// Many rows are thinned while a fit is sought.
+  /// One search with fixed weights. For many rows, the search begins with a fit to thinned data.
   [[nodiscard]] std::optional<LeastSquaresSolution> search_once() {
     if (calibration_.x.values.size() <= k_dense) return minimise(problem_);
     const Calibration thin = thinned(calibration_, k_thinned);
@@ -126,21 +126,21 @@ class Fit {
     return solution;
   }
 
-  /// How much the best fit explains.
+  /// Share of the data that the best fit explains.
   TrialFit explain() {
     const auto solution = search();
     if (!solution) return {k_nan, {}};
     return {explained_share(calibration_, cost_of_data(*solution)), solution->parameters};
   }
 
-  /// The best fit in every row; nothing where there is none.
+  /// Response of the best fit in every row; none if there is no fit.
   std::optional<std::vector<double>> respond() {
     const auto solution = search();
     if (!solution || failing(solution->parameters) < responses_.size()) return std::nullopt;
     return response_;
   }
 
-  /// @param trial  for the cause where there is no fit
+  /// @param trial  finds the cause if there is no fit
   CalibrationResult run(const FitTrial& trial) {
     auto solution = search();
     if (!solution) no_response(trial);
@@ -164,7 +164,7 @@ class Fit {
   }
 
  private:
-  /// Further places to begin at, where the user has not given one.
+  /// Sets further starting values, where the user has given none.
   void begin_at(const std::map<std::string, double>& starts) {
     for (std::size_t k = 0; k < problem_.parameters.size(); ++k) {
       BoundedParameter& parameter = problem_.parameters[k];
@@ -174,7 +174,7 @@ class Fit {
     }
   }
 
-  /// Runs all curves. @return the first that cannot be followed; their number where all can
+  /// Runs all curves. @return the index of the first one that cannot be followed; their number if there is none
   std::size_t failing(std::span<const double> parameters) {
     for (std::size_t c = 0; c < responses_.size(); ++c) {
       if (!responses_[c](parameters, rows_of(response_, calibration_.curves[c]))) return c;
@@ -182,12 +182,12 @@ class Fit {
     return responses_.size();
   }
 
-  /// No place that was drawn has a response: says what happens in the middle of the bounds.
+  /// Throws because no drawn parameters have a response. Reports what happens in the middle of the bounds.
   [[noreturn]] void no_response(const FitTrial& trial) {
     std::vector<double> middle;
     for (const FreeParameter& parameter : calibration_.free)
       middle.push_back(std::midpoint(parameter.lower, parameter.upper));
-    // Where the middle can be followed, the corners could not.
+    // If the middle can be followed, only the corners could not: reports the first curve.
     const std::size_t failed = failing(middle) % responses_.size();
     const Replay& replay = responses_[failed].replay();
     const MeasuredCurve& curve = calibration_.curves[failed];
@@ -202,7 +202,7 @@ class Fit {
 
   // --- intervals
 
-  /// Errors and intervals; goes on to a better fit where the search for them comes upon one.
+  /// Finds errors and intervals. If that search finds a better fit, continues from there.
   /// @return derivatives of the response in all rows
   Eigen::MatrixXd find_intervals(CalibrationResult& result) {
     for (int round = 0;; ++round) {
@@ -240,7 +240,7 @@ class Fit {
     return std::nullopt;
   }
 
-  /// Whether residuals are as small as rounding.
+  /// True if the residuals are round-off.
   [[nodiscard]] bool is_exact(const CalibrationResult& result) const {
     double squares = 0.0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -299,7 +299,7 @@ class Fit {
     result.solution.evaluations += found.evaluations;
     if (found.better) return found.better;
     result.intervals = std::move(found.intervals);
-    // Errors and bands of a covariance at a kink are those of one of its sides.
+    // At a kink, the covariance's errors and bands are those of one side: they are rescaled to the intervals.
     for (std::size_t k = 0; is_kinked_ && k < result.intervals.size(); ++k) {
       const Interval& interval = result.intervals[k];
       if (interval.is_cut_below || interval.is_cut_above || !std::isfinite(interval.upper - interval.lower)) continue;
@@ -334,7 +334,7 @@ class Fit {
     }
   }
 
-  /// Derivatives of the response in all rows, also in those that do not count.
+  /// Derivatives of the response in all rows, including those that do not count.
   [[nodiscard]] Eigen::MatrixXd response_jacobian(std::span<const double> parameters) {
     LeastSquaresProblem problem = problem_;
     problem.residual_count = response_.size();
@@ -346,14 +346,14 @@ class Fit {
     return residual_jacobian(problem, parameters);
   }
 
-  /// Sum of rho without the priors.
+  /// Sum of rho over the data, without the priors.
   [[nodiscard]] double cost_of_data(const LeastSquaresSolution& solution) const {
     double cost = 0.0;
     for (std::size_t i = 0; i < rows_.size(); ++i) cost += problem_.loss.rho(solution.residuals[i]);
     return cost;
   }
 
-  /// The Jacobian of the residuals.
+  /// Jacobian of the weighted residuals.
   [[nodiscard]] Eigen::MatrixXd weighted(const Eigen::MatrixXd& gradients, std::span<const double> parameters) const {
     const auto count = static_cast<Eigen::Index>(problem_.residual_count);
     Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(count, gradients.cols());
@@ -386,7 +386,7 @@ class Fit {
     return band;
   }
 
-  /// The fit to one curve between the data, too.
+  /// The fit to one curve, with points between those of the data.
   [[nodiscard]] FittedCurve curve_through(const MeasuredCurve& measured, const CalibrationResult& result) {
     const std::vector<double> data_x = x_of(calibration_, measured);
     const std::size_t parts = parts_of(data_x);
@@ -437,11 +437,11 @@ class Fit {
 
   const Calibration& calibration_;
   ModelFits procedures_;
-  std::vector<Response> responses_;  ///< of the curves
-  std::vector<double> response_;     ///< in every row
-  std::vector<std::size_t> rows_;    ///< that take part
-  std::vector<std::size_t> priors_;  ///< parameters whose priors are residuals
-  bool is_kinked_ = false;           ///< the sum of squares, near its minimum
+  std::vector<Response> responses_;  ///< one for each curve
+  std::vector<double> response_;     ///< in every row of the last run
+  std::vector<std::size_t> rows_;    ///< rows that count
+  std::vector<std::size_t> priors_;  ///< indices of the parameters whose priors are residuals
+  bool is_kinked_ = false;           ///< the sum of squares has a kink near its minimum
   double prior_weight_;              ///< standard deviation of weighted residuals
   LeastSquaresProblem problem_;
 };
@@ -451,7 +451,7 @@ class Fit {
 CalibrationResult calibrate(const Calibration& calibration, const LeastSquaresProblem::Progress& progress) {
   const FitTrial trial = [&progress](const Calibration& changed) {
     return Fit(changed,
-               [&progress](double /*done*/) {  // a caller stops a search in its progress
+               [&progress](double /*done*/) {  // progress may throw, which stops the search
                  if (progress) progress(1.0);
                })
         .explain();

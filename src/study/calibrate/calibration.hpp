@@ -1,4 +1,4 @@
-/// Calibration: numbers of a scenario fitted to measured data, with what is known of their uncertainty.
+/// Calibration: fit of a scenario's numbers to measured data, with their uncertainty.
 #pragma once
 
 #include <array>
@@ -24,15 +24,15 @@
 
 namespace monograin {
 
-/// A number of the scenario that is sought.
+/// A free number of the scenario, which the fit determines.
 struct FreeParameter : BoundedParameter {
   NumberKey key;
-  std::string unit;          ///< that of its lower bound as given, which it is shown in; empty for a pure number
+  std::string unit;          ///< unit of its lower bound as given, in which it is shown; empty for a pure number
   double unit_factor = 1.0;  ///< one unit in SI
   std::optional<Prior> prior{};
 };
 
-/// What a column of the data holds.
+/// Measured quantity in a column of the data.
 struct MeasuredQuantity {
   std::string observable;    ///< as in a history: "axial.force"
   std::string unit;          ///< as given; values are SI
@@ -41,27 +41,27 @@ struct MeasuredQuantity {
   std::vector<double> values;
 };
 
-/// One of the measured curves: rows of the data, and the scenario that follows them.
+/// One of the measured curves: rows of the data, and the scenario that reproduces them.
 struct MeasuredCurve {
-  std::size_t begin = 0;  ///< its rows among all
+  std::size_t begin = 0;  ///< index of its first row among all rows
   std::size_t end = 0;
   std::string file;
   std::string text;
   TableLayout layout;
   std::array<std::size_t, 2> columns{};  ///< of x and y in the file, from 1
-  std::vector<std::size_t> left_out;     ///< lines of the rows without a number in one of the columns
-  Machine machine;                       ///< as given, without what is free
+  std::vector<std::size_t> left_out;     ///< lines in which one of the columns has no number
+  Machine machine;                       ///< as given, without its free numbers
   std::vector<std::string> overrides;    ///< of the scenario, for this curve
-  CheckedScenario scenario;              ///< with them; has variants where the radius is free
+  CheckedScenario scenario;              ///< with these overrides; has variants if the radius is free
   std::string driven;                    ///< observable that x holds
   Step::Kind control = Step::Kind::displacement;
   double start = 0.0;  ///< of x, before the first step [SI]
 };
 
-/// How intervals are found.
+/// Method by which intervals are found.
 enum class IntervalMethod { automatic, covariance, profile, bootstrap };
 
-/// A calibration file with all that it names, checked. The rows of its curves follow one another.
+/// A checked calibration file with everything that it names. The rows of its curves are consecutive.
 struct Calibration {
   std::string name;  ///< of the file, without folder and extension
   std::string file;
@@ -73,25 +73,25 @@ struct Calibration {
   MeasuredQuantity x;
   MeasuredQuantity y;
   std::string weighting;           ///< absolute, relative, column, area; noise
-  std::vector<double> weights;     ///< factors of y's residuals [1/SI], >= 0; 0: a row that only drives
+  std::vector<double> weights;     ///< factors of y's residuals [1/SI], >= 0; 0: a row that only drives the scenario
   std::vector<std::size_t> lines;  ///< of the rows in their data file
   std::vector<FreeParameter> free;
   LossFunction loss;
   double confidence = 0.95;
   IntervalMethod intervals = IntervalMethod::automatic;
-  std::vector<std::string> notes;  ///< what was found in the data's files and may not be what was meant
+  std::vector<std::string> notes;  ///< observations about the data's files that may be mistakes
 
-  /// The machine of a curve with these values of the free parameters.
+  /// Machine of a curve, with given values of the free parameters.
   [[nodiscard]] Machine machine_of(const MeasuredCurve& curve, std::span<const double> parameters) const;
-  /// Whether the size of the noise is given, and weights are one over standard deviations.
+  /// True if the size of the noise is given, so that weights are one over standard deviations.
   [[nodiscard]] bool knows_noise() const noexcept;
-  /// Whether the machine adds to the displacement of any curve, or may.
+  /// True if the machine adds, or may add, to the displacement of any curve.
   [[nodiscard]] bool has_machine() const noexcept;
-  /// Which of the quantities the machine adds to: the displacement.
+  /// True if the machine adds to x rather than to y: the quantity that is a displacement.
   [[nodiscard]] bool machine_moves_x() const noexcept { return x.observable.ends_with(".displacement"); }
-  /// Rows that take part in the fit.
+  /// Number of rows that count in the fit.
   [[nodiscard]] std::size_t counted() const noexcept;
-  /// The curve that a row is of.
+  /// The curve to which a row belongs.
   [[nodiscard]] const MeasuredCurve& curve_of(std::size_t row) const noexcept;
 };
 
@@ -102,75 +102,76 @@ struct Calibration {
 /// @throws ScenarioError with all faults of all three
 [[nodiscard]] Calibration read_calibration(const std::filesystem::path& file);
 
-/// A curve of the fitted scenario, with its band.
+/// The fitted scenario's response to one measured curve, with its confidence band.
 struct FittedCurve {
   std::vector<double> x;
   std::vector<double> y;
-  std::vector<double> band;  ///< half its width; nan where there is none
+  std::vector<double> band;  ///< half the band's width; nan if there is none
 };
 
 struct CalibrationResult {
   LeastSquaresSolution solution;
   Uncertainty uncertainty;
-  std::vector<Interval> intervals;                     ///< of the parameters; nan where there is none
-  IntervalMethod method = IntervalMethod::covariance;  ///< by which they were found
-  std::string method_reason;                           ///< a clause
-  std::optional<ResidualTests> residual_tests;         ///< none for few rows, or where the fit is exact
-  ModelFits procedures;               ///< of the model's own, and this fit by their measures; empty: it has none
-  FittedCurve fit;                    ///< at the data
-  std::vector<FittedCurve> curves;    ///< in between, too: one for each measured curve
-  std::size_t points = 0;             ///< rows that take part
-  std::size_t program_steps = 0;      ///< of the loading made from the data
-  double sum_of_squares = 0.0;        ///< of weighted residuals; chi^2 where the noise is known
-  double rms = 0.0;                   ///< of residuals [SI of y], over all rows that take part
-  double largest = 0.0;               ///< of their magnitudes
-  std::size_t largest_at = 0;         ///< its row
-  double r_squared = 0.0;             ///< 1 - sum (y - fit)^2 / sum (y - mean)^2, unweighted; nan where y is constant
-  double explained = 0.0;             ///< 1 - cost / (cost of the best constant); nan where y is constant
-  std::vector<double> particle;       ///< displacement at the particle in every row; empty: the machine adds nothing
-  std::vector<std::string> notes;     ///< what the user should know
-  std::vector<std::string> warnings;  ///< why the fit is not to be trusted, and the likely cause
+  std::vector<Interval> intervals;                     ///< of the parameters; nan if there is none
+  IntervalMethod method = IntervalMethod::covariance;  ///< method by which the intervals were found
+  std::string method_reason;                           ///< why this method: a clause
+  std::optional<ResidualTests> residual_tests;         ///< none for few rows, and for an exact fit
+  ModelFits procedures;               ///< fits by the model's own procedures, and this fit by their measures; empty if
+                                      ///< the model has none
+  FittedCurve fit;                    ///< at the rows of the data
+  std::vector<FittedCurve> curves;    ///< one for each measured curve, with points in between
+  std::size_t points = 0;             ///< rows that count
+  std::size_t program_steps = 0;      ///< steps of the loading made from the data
+  double sum_of_squares = 0.0;        ///< of weighted residuals; chi^2 if the noise is known
+  double rms = 0.0;                   ///< of residuals [SI of y], over all rows that count
+  double largest = 0.0;               ///< largest magnitude of a residual
+  std::size_t largest_at = 0;         ///< row of the largest residual
+  double r_squared = 0.0;             ///< 1 - sum (y - fit)^2 / sum (y - mean)^2, unweighted; nan if y is constant
+  double explained = 0.0;             ///< 1 - cost / (cost of the best constant); nan if y is constant
+  std::vector<double> particle;       ///< displacement at the particle in every row; empty if the machine adds nothing
+  std::vector<std::string> notes;     ///< notes for the user
+  std::vector<std::string> warnings;  ///< why the fit is not to be trusted, with the likely cause
 };
 
-/// A fit that explains less of the data than this is bad, and warned of. It is R^2 where the loss is linear and the
+/// Share of the data below which a fit is bad and causes a warning. The share is R^2 if the loss is linear and the
 /// weights are equal.
 inline constexpr double k_least_explained = 0.9;
 
-/// Size of a file of data [byte].
+/// Largest size of a file of data [byte].
 inline constexpr std::size_t k_largest_data = 16U * 1024U * 1024U;
 
-/// Share of the rows that may lack a number in x, y or the weights.
+/// Largest share of the rows without a number in x, y or the weights.
 inline constexpr double k_most_missing = 0.1;
 
-/// Fits, and looks for the cause of a bad fit in the units, signs and the first touch. @throws ScenarioError where the
-/// scenario cannot follow the data with any of the parameters tried
+/// Fits, and searches for the cause of a bad fit in units, signs and first touch. @throws ScenarioError if the scenario
+/// cannot follow the data with any of the parameters tried
 [[nodiscard]] CalibrationResult calibrate(const Calibration& calibration,
                                           const LeastSquaresProblem::Progress& progress = {});
 
-/// Response of the best fit in every row, without its uncertainty and without a search for causes where it is bad.
-/// @return nothing where the scenario cannot follow the data with any of the parameters tried
+/// Response of the best fit in every row. Computes no uncertainty, and does not search for the cause of a bad fit.
+/// @return none if the scenario cannot follow the data with any of the parameters tried
 [[nodiscard]] std::optional<std::vector<double>> best_response(const Calibration& calibration);
 
-/// The scenario with the fitted numbers, to 17 digits, and its own loading; all else as its author wrote it.
+/// The scenario's text with the fitted numbers, to 17 digits, and its own loading; the rest as its author wrote it.
 [[nodiscard]] std::string fitted_scenario_text(const Calibration& calibration, const CalibrationResult& result);
 
-/// Parameters, intervals, correlations and residuals, for a reader.
+/// Parameters, intervals, correlations and residuals as text for the terminal.
 [[nodiscard]] std::string calibration_text(const Calibration& calibration, const CalibrationResult& result);
 
-/// Data, fit, residuals, confidence band and weights, row by row: what fit.csv holds.
+/// Content of fit.csv: data, fit, residuals, confidence band and weights, row by row.
 [[nodiscard]] Table fit_table(const Calibration& calibration, const CalibrationResult& result);
 
-/// Parameters, covariance, statistics and data: what calibration.json holds. Numbers that are undefined are null.
+/// Content of calibration.json: parameters, covariance, statistics and data. Undefined numbers are null.
 [[nodiscard]] std::string calibration_json(const Calibration& calibration, const CalibrationResult& result);
 
-/// The file whose presence tells that a folder holds a calibration.
+/// File that marks a folder as one of a calibration.
 inline constexpr const char* k_calibration_marker = "calibration.json";
 
-/// Writes fit.csv, fitted.toml with the tables it names, calibration.json and figure.svg with its script and data, all
+/// Writes fit.csv, fitted.toml with the tables it names, calibration.json and figure.svg with its script and data; all
 /// of them or none.
 /// @param folder      made with k_calibration_marker
-/// @param has_report  report.md and report.pdf, too
-/// @return why there is no figure; empty: there is
+/// @param has_report  true: writes report.md and report.pdf, too
+/// @return why there is no figure; empty: there is one
 /// @throws std::runtime_error naming what could not be written
 [[nodiscard]] std::string write_calibration(const Calibration& calibration, const CalibrationResult& result,
                                             StagedFolder& folder, bool has_report = false);

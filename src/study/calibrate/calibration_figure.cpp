@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "contact_radius" as it begins a label.
+/// Label of an axis, with the observable's last part and the unit: "Contact radius [mm]".
 std::string label_of(const MeasuredQuantity& quantity) {
   std::string name = quantity.observable.substr(quantity.observable.rfind('.') + 1);
   std::ranges::replace(name, '_', ' ');
@@ -34,7 +34,7 @@ std::vector<double> in_unit(const std::vector<double>& values, const MeasuredQua
   return result;
 }
 
-/// The name of a curve, by its overrides or its file.
+/// Name of a curve: its overrides, else its file.
 std::string name_of(const MeasuredCurve& curve) {
   return curve.overrides.empty() ? fs::path(curve.file).stem().string()
                                  : fmt::format("{}", fmt::join(curve.overrides, ", "));
@@ -96,7 +96,7 @@ figure::Chart chart_of(const Calibration& calibration, const CalibrationResult& 
   return {{std::move(curves), std::move(rest)}};
 }
 
-/// Data, the fits of all models over them, and below what is left.
+/// Figure with the data and the fits of all models over them, and the residuals below.
 figure::Chart chart_of(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results) {
   using Style = figure::ChartSeries::Style;
   const Calibration& first = calibrations.front();

@@ -1,4 +1,4 @@
-/// Figures of calibrations: data, fits and what is left.
+/// Figures of calibrations: data, fits and residuals.
 #pragma once
 
 #include <filesystem>
@@ -9,17 +9,17 @@
 
 namespace monograin {
 
-/// Draws figure.svg with its script and data. @return why there is no figure; empty: there is
+/// Draws figure.svg with its script and data. @return why there is no figure; empty: there is one
 [[nodiscard]] std::string draw_calibration(const Calibration& calibration, const CalibrationResult& result,
                                            const std::filesystem::path& folder);
 
-/// Draws the fits of several models over their common data. @return why there is no figure; empty: there is
+/// Draws the fits of several models over their common data. @return why there is no figure; empty: there is one
 [[nodiscard]] std::string draw_comparison(std::span<const Calibration> calibrations,
                                           std::span<const CalibrationResult> results,
                                           const std::filesystem::path& figure);
 
-/// Draws report.pdf, a page with the figure and the lines of the report, with script and data beside it.
-/// @return why there is none; empty: there is one
+/// Draws report.pdf, a page with the figure and the lines of the report; script and data lie beside it.
+/// @return why there is no report; empty: there is one
 [[nodiscard]] std::string draw_report(const Calibration& calibration, const CalibrationResult& result,
                                       const std::filesystem::path& folder);
 

@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace calibration;
 
-constexpr std::size_t k_most_zeros = 20;  // that are reported one by one
+constexpr std::size_t k_most_zeros = 20;  // of weights, that are reported one by one
 
 class CalibrationReader {
  public:
@@ -79,7 +79,7 @@ class CalibrationReader {
     return true;
   }
 
-  /// The data tell one program, which all walls that move are to follow.
+  /// Checks the walls: the data give one program, which all moving walls have to follow.
   void check_walls(const Section& root) {
     for (const WallSpec& wall : made_.scenario.loading.walls) {
       if (wall.is_fixed || wall.steps.empty()) continue;
@@ -92,7 +92,7 @@ class CalibrationReader {
     check_lateral(made_.scenario, root.value_place("scenario"));
   }
 
-  /// The data stand in for all steps, and tell of one direction only.
+  /// Checks the steps: the data replace all of them, and give one direction only.
   void check_lateral(const CheckedScenario& scenario, const SourceLocation& where) {
     const bool has_lateral =
         std::ranges::any_of(scenario.loading.steps, [](const Step& step) { return step.lateral.has_value(); });
@@ -211,7 +211,7 @@ class CalibrationReader {
     whole.insert(whole.end(), part.begin(), part.end());
   }
 
-  /// A column of one more curve; residuals can only be put together if all are of one quantity.
+  /// Takes a column of a further curve. Residuals can be combined only if all curves measure one quantity.
   void add_quantity(const MeasuredQuantity& added, const ColumnSpec& spec, MeasuredQuantity& quantity) {
     if (made_.curves.empty()) {
       quantity = added;
@@ -223,7 +223,7 @@ class CalibrationReader {
     }
   }
 
-  /// The scenario with the curve's overrides, and what can be measured in it.
+  /// Takes the scenario with the curve's overrides, and the quantities that can be measured in it.
   void take_scenario(const Section& data, MeasuredCurve& curve) {
     if (!has_scenario_) return;
     try {
@@ -240,7 +240,7 @@ class CalibrationReader {
     }
   }
 
-  /// The column in SI; without an observable where something is wrong with it, or with the scenario.
+  /// A column in SI; without an observable if the column or the scenario has a fault.
   [[nodiscard]] MeasuredQuantity quantity(const ColumnSpec& spec, const MeasuredColumn& column) {
     MeasuredQuantity result;
     if (column.number == 0 || !has_scenario_ || measurable_.drives.empty()) return result;
@@ -312,7 +312,7 @@ class CalibrationReader {
     return std::ranges::find(made_.free, path, [](const auto& free) { return free.key.path; }) != made_.free.end();
   }
 
-  /// Displacements count from first touch, whatever the gap before it.
+  /// Displacements count from first touch, whatever the gap before it: no fitted gap can belong to the driven wall.
   void check_lengths(const Section& root) {
     for (MeasuredCurve& curve : made_.curves) {
       if (is_free(k_radius_key)) curve.scenario.variants = named_scenario_.variants(curve.overrides);
@@ -329,7 +329,8 @@ class CalibrationReader {
 
   // --- the machine
 
-  /// The machine adds to a displacement, under the force beside it: that both are there shows when all is read.
+  /// Checks that there is a displacement to which the machine adds, and a force that deflects it. Both are known only
+  /// when everything is read.
   void check_machine(const Section& root) {
     const auto is_deflecting = [](const MeasuredCurve& curve) {
       return curve.machine.compliance > 0.0 || !curve.machine.forces.empty();
@@ -360,7 +361,7 @@ class CalibrationReader {
     }
   }
 
-  // --- what was found
+  // --- notes
 
   void note_reading(const MeasuredCurve& curve, const std::vector<ColumnSpec>& specs,
                     const std::array<const MeasuredQuantity*, 2>& quantities,
@@ -434,14 +435,14 @@ class CalibrationReader {
     return weights;
   }
 
-  /// One over the standard deviations.
-  /// @param column  with the deviations; null: `noise` gives the parts of them
+  /// Weights from the noise: one over the standard deviations.
+  /// @param column  with the deviations; null: `noise` gives their parts
   [[nodiscard]] std::vector<double> weights_by_noise(const Section& data, const ColumnSpec* column,
                                                      const MeasuredData& measured, const MeasuredQuantity& y,
                                                      const std::string& file) {
     const std::size_t before = faults_.size();
     const NoiseParts noise = noise_in(reading_, data, dimension_of(y.si).value_or(Dimension::none));
-    double factor = 0.0;  // of the column
+    double factor = 0.0;  // unit of the column
     if (column != nullptr) {
       MeasuredQuantity quantity{.observable = {}, .unit = measured.columns[2].unit, .si = y.si, .values = {}};
       factor = unit_factor(quantity, *column).value_or(0.0);
@@ -461,7 +462,7 @@ class CalibrationReader {
     return weights;
   }
 
-  /// The roots of the trapezoidal rule's weights, along the path of x; 1 on the mean.
+  /// Square roots of the trapezoidal rule's weights along the path of x; 1 on the mean.
   static void weigh_by_path(const std::vector<double>& x, std::vector<double>& weights) {
     double path = 0.0;
     for (std::size_t row = 1; row < x.size(); ++row) path += std::abs(x[row] - x[row - 1]);

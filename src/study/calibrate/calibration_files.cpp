@@ -1,4 +1,4 @@
-// The files of a calibration: tables, a figure, a report and a scenario.
+// Files of a calibration: tables, a figure, a report and a scenario.
 
 #include <fmt/format.h>
 
@@ -82,7 +82,7 @@ Json procedures_json(const ModelFits& procedures) {
   return fits;
 }
 
-/// One curve, or a list of them, as the calibration's file has it.
+/// The measured curves: one object, or a list of them, as in the calibration file.
 Json data_json(const Calibration& calibration) {
   Json list = Json::array();
   for (const MeasuredCurve& curve : calibration.curves) {
@@ -117,7 +117,7 @@ Json residual_tests_json(const CalibrationResult& result) {
           {"are_independent", tests.are_independent()}};
 }
 
-/// Numbers that are undefined become null.
+/// The content of calibration.json. Undefined numbers become null.
 Json to_json(const Calibration& calibration, const CalibrationResult& result) {
   const LeastSquaresSolution& solution = result.solution;
   const Uncertainty& uncertainty = result.uncertainty;
@@ -179,7 +179,7 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
           {"text", calibration.text}};
 }
 
-/// Files that options name lie beside the fitted scenario, under the option's name.
+/// Name of a table that an option refers to. It lies beside the fitted scenario, under the option's name.
 std::string table_name(const std::string& option) { return option + ".csv"; }
 
 }  // namespace

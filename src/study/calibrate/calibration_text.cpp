@@ -55,7 +55,7 @@ std::vector<TextRow> correlation_rows(const Calibration& calibration, const Cali
   return rows;
 }
 
-/// Priors, and how far the fit is from them.
+/// Rows of the priors, with the distance of the fit from each.
 std::vector<TextRow> prior_rows(const Calibration& calibration, const CalibrationResult& result) {
   std::vector<TextRow> rows;
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
@@ -70,7 +70,7 @@ std::vector<TextRow> prior_rows(const Calibration& calibration, const Calibratio
   return rows;
 }
 
-/// The model's own procedures, and this fit by their measures.
+/// Rows of the model's own procedures, and of this fit by their measures.
 std::vector<TextRow> procedure_rows(const ModelFits& procedures) {
   std::vector<TextRow> rows{{"procedure"}};
   rows.front().insert(rows.front().end(), procedures.keys.begin(), procedures.keys.end());
@@ -121,7 +121,7 @@ struct TitledTable {
   bool has_headings = true;
 };
 
-/// All that was found, in the order in which it is read.
+/// All results as tables, in the order in which they are read.
 std::vector<TitledTable> tables_of(const Calibration& calibration, const CalibrationResult& result) {
   std::vector<TitledTable> tables{{"Parameters", parameter_rows(calibration, result)}};
   if (calibration.free.size() > 1 && has_errors(result)) {
@@ -147,7 +147,7 @@ std::string list_of(const std::string& title, const std::vector<std::string>& en
   return text;
 }
 
-/// Where the numbers come from: files, rows, what lies between machine and particle.
+/// Origin of the numbers: files, rows, and the machine between sensor and particle.
 std::vector<std::string> data_lines(const Calibration& calibration) {
   std::vector<std::string> lines;
   for (const MeasuredCurve& curve : calibration.curves) {
@@ -167,7 +167,7 @@ std::vector<std::string> data_lines(const Calibration& calibration) {
 
 constexpr std::size_t k_line_length = 116;  // of a report's page
 
-/// Appends a text, its lines cut between words where they are too long.
+/// Appends a text, broken between words into lines that fit.
 void append_wrapped(std::vector<std::string>& lines, std::string_view text, std::string_view indent = "") {
   std::string line;
   bool has_word = false;
@@ -213,7 +213,7 @@ std::string_view word_of(Bound bound) {
   return "";
 }
 
-/// A number that a reader may compare with others.
+/// A number to six digits; a dash if it is undefined.
 std::string shown_number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; }
 
 std::string with_unit(double value, const std::string& unit) {

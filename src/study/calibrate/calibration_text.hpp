@@ -9,19 +9,19 @@
 
 namespace monograin {
 
-/// "lower", "upper", or nothing.
+/// Name of a bound: "lower", "upper", or empty.
 [[nodiscard]] std::string_view word_of(LeastSquaresSolution::Bound bound);
 
-/// A number that a reader may compare with others; a dash where there is none.
+/// A number to six digits, for comparison with others; a dash if it is undefined.
 [[nodiscard]] std::string shown_number(double value);
 [[nodiscard]] std::string with_unit(double value, const std::string& unit);
 
 /// A report in Markdown: data, figure, parameters with intervals, residuals, warnings, sources.
-/// @param has_figure  whether figure.svg lies beside it
+/// @param has_figure  true if figure.svg lies beside the report
 [[nodiscard]] std::string calibration_report(const Calibration& calibration, const CalibrationResult& result,
                                              bool has_figure);
 
-/// The report as lines of text, above a figure of the fit and below it.
+/// Lines of the report, above a figure of the fit and below it.
 struct ReportLines {
   std::vector<std::string> head;
   std::vector<std::string> foot;

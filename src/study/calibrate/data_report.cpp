@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Reads a table again in the same manner.
+/// Format with which a table is read again as before.
 TableFormat format_as(const TableLayout& layout) {
   TableFormat format{.separator = layout.separator, .decimal = layout.decimal};
   format.skip = std::max<std::size_t>(layout.heading_line > 0 ? layout.heading_line : layout.first_line, 1) - 1;
@@ -71,7 +71,7 @@ std::vector<DataBranch> branches_of(const std::vector<double>& x) {
   return branches;
 }
 
-/// The first column of numbers in units of the dimension.
+/// Number of the first numeric column with a unit of the dimension.
 std::optional<std::size_t> column_of(const TableLayout& layout, Dimension dimension) {
   for (std::size_t k = 0; k < layout.units.size(); ++k) {
     if (layout.is_numeric[k] && is_unit_of(layout.units[k], dimension)) return k + 1;
@@ -110,13 +110,13 @@ std::string label_of(const DataAxis& axis) {
   return is_bare ? name : fmt::format("{} [{}]", name, figure::verbatim_text(axis.unit));
 }
 
-/// "axial.displacement, 1 mm = 0.001 m".
+/// Meaning of a column: "axial.displacement, 1 mm = 0.001 m".
 std::string meaning_of(const MeasuredQuantity& quantity) {
   if (quantity.unit_factor == 1.0) return quantity.observable;
   return fmt::format("{}, 1 {} = {:g} {}", quantity.observable, quantity.unit, quantity.unit_factor, quantity.si);
 }
 
-/// All branches of loading, or all of unloading; nan stands between them, so that they are not joined.
+/// Curve of all loading branches, or of all unloading ones; nan between them breaks the line.
 figure::ChartSeries branches_of(const DataReport& report, bool is_loading) {
   using Style = figure::ChartSeries::Style;
   figure::ChartSeries series{.legend = is_loading ? "loading" : "unloading",
@@ -284,7 +284,7 @@ std::string data_text(const DataReport& report) {
 
 figure::Chart data_chart(const std::vector<DataReport>& reports) {
   figure::ChartPanel panel{.x = {.label = label_of(reports.front().x)}, .y = {.label = label_of(reports.front().y)}};
-  const bool has_several = reports.size() > 1;  // then each has a colour of its own
+  const bool has_several = reports.size() > 1;  // each report then has a colour of its own
   for (std::size_t c = 0; c < reports.size(); ++c) {
     const std::string suffix =
         has_several ? ": " + figure::verbatim_text(fs::path(reports[c].file).stem().string()) : std::string();

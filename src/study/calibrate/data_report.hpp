@@ -1,4 +1,4 @@
-/// Report of a file of measured data as it was read, to be seen before anything is fitted.
+/// Report on a file of measured data as it was read, before any fit.
 #pragma once
 
 #include <cstddef>
@@ -23,18 +23,18 @@ struct ColumnSummary {
   double highest = 0.0;
 };
 
-/// A way of x from one turning point to the next.
+/// Path of x from one turning point to the next.
 struct DataBranch {
   std::size_t begin = 0;   ///< rows
-  std::size_t end = 0;     ///< the last one, in which the next way begins
+  std::size_t end = 0;     ///< the last row, in which the next branch begins
   bool is_loading = true;  ///< |x| grows
 };
 
-/// x over y as they stand in the file.
+/// x or y as in the file.
 struct DataAxis {
   std::size_t number = 0;  ///< of the column, from 1
   std::string name;        ///< heading, or "column 2"
-  std::string unit;        ///< in which the values are
+  std::string unit;        ///< unit of the values
   std::vector<double> values;
 };
 
@@ -44,14 +44,14 @@ struct DataReport {
   std::vector<ColumnSummary> columns;
   DataAxis x;
   DataAxis y;
-  std::vector<std::size_t> lines;  ///< of the rows with x and y
+  std::vector<std::size_t> lines;  ///< line numbers of the rows with x and y
   std::size_t left_out = 0;        ///< rows without x or y
   std::vector<DataBranch> branches;
-  std::vector<std::string> remarks;  ///< what a calibration makes of x and y
+  std::vector<std::string> remarks;  ///< how a calibration interprets x and y
 };
 
-/// Which columns are x and y: a heading or a number; empty: the first length and the first force, else the first two
-/// columns of numbers.
+/// The columns to use as x and y: a heading or a number. Empty: the first length and the first force, else the first
+/// two columns of numbers.
 struct DataChoice {
   std::string x;
   std::string y;
@@ -60,13 +60,13 @@ struct DataChoice {
 /// Reads a table of measured data. @throws ScenarioError with its faults
 [[nodiscard]] DataReport report_of_file(const std::filesystem::path& file, const DataChoice& choice = {});
 
-/// Those of a calibration's curves, with the x and y that it takes.
+/// Reports on the data of a calibration's curves, with the x and y that the calibration uses.
 [[nodiscard]] std::vector<DataReport> reports_of(const Calibration& calibration);
 
-/// The report for a reader: how the file is written, its columns, and the ways of loading and unloading.
+/// The report as text: how the file is written, its columns, and the branches of loading and unloading.
 [[nodiscard]] std::string data_text(const DataReport& report);
 
-/// y over x, loading and unloading apart, with the turning points.
+/// Chart of y over x, with separate loading and unloading, and the turning points.
 [[nodiscard]] figure::Chart data_chart(const std::vector<DataReport>& reports);
 
 /// Draws data_chart. @param output  svg, pdf or png; its script and data lie beside it

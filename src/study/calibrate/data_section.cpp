@@ -25,7 +25,7 @@ constexpr std::array k_separators{SeparatorWord{"comma", ','}, SeparatorWord{"se
                                   SeparatorWord{",", ','},     SeparatorWord{";", ';'},
                                   SeparatorWord{"\t", '\t'},   SeparatorWord{" ", ' '}};
 
-/// How a key is written that may be a name, a number, a list or a table.
+/// Kind of a key that may be a name, a number, a list or a table, as it is written; `otherwise` if it is absent.
 KeySpec::Kind kind_of(const toml::table& table, std::string_view key, KeySpec::Kind otherwise) {
   const toml::node* node = table.get(key);
   if (node == nullptr) return otherwise;

@@ -1,5 +1,5 @@
-/// The table [data] of a calibration file: how it is written, which columns it names, and what lies between machine and
-/// particle. For readers of TOML files: includes the library.
+/// The table [data] of a calibration file: how the data are written, which columns it names, and the machine between
+/// sensor and particle. For readers of TOML files: includes the library.
 #pragma once
 
 #include <toml++/toml.h>
@@ -16,23 +16,23 @@
 
 namespace monograin::calibration {
 
-/// How its keys are written that may be names, numbers, lists or tables.
+/// Kinds of the keys that may be names, numbers, lists or tables, as they are written in a table.
 [[nodiscard]] DataKinds kinds_of(const toml::table& data);
 
-/// How the measured file is written, as far as the user says.
+/// Format of the measured file, as far as the user gives it.
 [[nodiscard]] TableFormat format_of(Reading& reading, const Section& data, const DataKinds& kinds);
 
-/// A column as the file names it.
+/// A column by which the file names it, with its quantity and unit.
 struct ColumnSpec {
   ColumnRequest request;
-  std::string quantity;  ///< empty: that of the heading
-  std::string unit;      ///< empty: that of the heading
+  std::string quantity;  ///< empty: that of the column's heading
+  std::string unit;      ///< empty: that of the column's heading
   SourceLocation quantity_at;
   SourceLocation unit_at;
 };
 [[nodiscard]] ColumnSpec column_spec(Reading& reading, const Section& data, std::string_view key, KeySpec::Kind kind);
 
-/// The column of standard deviations of y that `noise` names; none where it has none.
+/// The column of standard deviations of y that `noise` names; none if it names none.
 [[nodiscard]] std::optional<ColumnSpec> noise_column_in(const Section& data);
 
 /// The two parts of a standard deviation of y, whose squares add.
@@ -40,13 +40,13 @@ struct NoiseParts {
   double absolute = 0.0;  ///< [SI of y]
   double relative = 0.0;  ///< over |y|
 };
-/// Reads the parts that `noise` gives, and reports its faults. @param of_y  dimension of y
+/// Reads the parts that `noise` gives, and reports faults in them. @param of_y  dimension of y
 [[nodiscard]] NoiseParts noise_in(Reading& reading, const Section& data, Dimension of_y);
 
-/// A compliance written with its unit; a fault where it is none.
+/// Reads a compliance written with its unit, and reports a fault if the text is no compliance.
 [[nodiscard]] ParsedCompliance compliance_in(Reading& reading, const Section& section, std::string_view key);
 
-/// Offset and compliance. @param folder  where a table of deflections is sought
+/// Reads the machine: offset, compliance and deflections. @param folder  to which the path of a table is relative
 [[nodiscard]] Machine machine_in(Reading& reading, const Section& data, KeySpec::Kind kind,
                                  const std::filesystem::path& folder);
 

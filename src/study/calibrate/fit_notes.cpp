@@ -15,12 +15,12 @@ namespace {
 
 using Notes = std::vector<std::string>;
 
-constexpr double k_improbable = 1e-3;        // share of cases in which a test is wrong
-constexpr double k_far_from_prior = 3.0;     // standard deviations
+constexpr double k_improbable = 1e-3;        // probability below which a test counts as failed
+constexpr double k_far_from_prior = 3.0;     // in standard deviations
 constexpr double k_high_correlation = 0.95;  // of two parameters
-constexpr double k_poor = 0.1;               // relative standard error
+constexpr double k_poor = 0.1;               // relative standard error from which a parameter is determined poorly
 
-/// Says where the residuals do not have the size of the noise.
+/// Notes residuals that do not have the size of the given noise.
 void note_chi_squared(const CalibrationResult& result, Notes& notes) {
   const auto degrees = static_cast<double>(result.uncertainty.degrees_of_freedom);
   if (degrees == 0.0) return;
@@ -40,7 +40,7 @@ void note_chi_squared(const CalibrationResult& result, Notes& notes) {
   }
 }
 
-/// Says which priors the data contradict.
+/// Notes priors that the data contradict.
 void note_priors(const Calibration& calibration, const CalibrationResult& result, Notes& notes) {
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
     const FreeParameter& parameter = calibration.free[k];
@@ -54,7 +54,7 @@ void note_priors(const Calibration& calibration, const CalibrationResult& result
   }
 }
 
-/// Says what it means where residuals are not independent.
+/// Notes residuals that are not independent, and what that means.
 void note_residual_tests(const CalibrationResult& result, Notes& notes) {
   if (!result.residual_tests || result.residual_tests->are_independent()) return;
   const ResidualTests& tests = *result.residual_tests;
@@ -81,15 +81,15 @@ void note_table_ends(const Calibration& calibration, const MeasuredCurve& curve,
       curve.machine.forces.back(), largest));
 }
 
-/// Pairs of parameters of which the data tell little more than a combination.
+/// Notes pairs of parameters of which the data determine little more than a combination.
 void note_correlations(const Calibration& calibration, const CalibrationResult& result, Notes& notes) {
   for (std::size_t i = 0; i < calibration.free.size(); ++i) {
     for (std::size_t j = i + 1; j < calibration.free.size(); ++j) {
       const double correlation = result.uncertainty.correlation(i, j);
       if (!(std::abs(correlation) > k_high_correlation)) continue;
-      // The one of which the data know less.
+      // The note names the parameter that the data determine less well.
       const auto relative = [&](std::size_t k) {
-        if (calibration.free[k].key.path == calibration::k_offset) return 0.0;  // zero is a value as others
+        if (calibration.free[k].key.path == calibration::k_offset) return 0.0;  // zero is an ordinary offset
         return result.uncertainty.standard_error(k) / std::abs(result.solution.parameters[k]);
       };
       const std::size_t poor = relative(i) > relative(j) ? i : j;

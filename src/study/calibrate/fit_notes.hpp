@@ -1,4 +1,4 @@
-/// Remarks on a fit that its user should know.
+/// Notes on a fit for its user.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace monograin {
 
-/// Notes parameters that the data do not determine, bounds that were reached, noise of another size, priors that are
-/// contradicted, residuals that are no noise, trial runs that failed.
-/// @param result  with all but its notes and warnings
+/// Notes on parameters that the data do not determine, bounds that were reached, noise of another size than given,
+/// priors that the data contradict, residuals that are not independent, and trial runs that failed.
+/// @param result  complete but for its notes and warnings
 [[nodiscard]] std::vector<std::string> notes_of(const Calibration& calibration, const CalibrationResult& result);
 
 }  // namespace monograin

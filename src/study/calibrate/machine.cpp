@@ -13,16 +13,17 @@ namespace monograin {
 namespace {
 
 constexpr int k_most_runs = 80;
-constexpr int k_secant_runs = 10;      // from here on brackets are halved, where secants go back and forth about a jump
-constexpr double k_least_slope = 0.1;  // of the shown displacement over that of the particle: 1 for a rigid machine
+constexpr int k_secant_runs = 10;      // after these runs brackets are halved, because secants may jump back and forth
+                                       // about a jump
+constexpr double k_least_slope = 0.1;  // of the shown displacement over the particle's; 1 for a rigid machine
 constexpr double k_least_step = 1e3 * std::numeric_limits<double>::epsilon();  // of a secant, over the largest x
 
-/// The last trials of one displacement that were too small and too large.
+/// The last trials of one displacement that showed too little and too much.
 class Bracket {
  public:
   struct Trial {
     double particle = 0.0;
-    double error = 0.0;  ///< of the displacement shown
+    double error = 0.0;  ///< of the displacement shown by the machine
     double force = 0.0;
   };
 
@@ -30,8 +31,8 @@ class Bracket {
   [[nodiscard]] bool is_valid() const { return low_ && high_ && low_->particle < high_->particle; }
   [[nodiscard]] bool is_within(double width) const { return is_valid() && high_->particle - low_->particle <= width; }
   [[nodiscard]] double middle() const { return std::midpoint(low_->particle, high_->particle); }
-  /// The middle of a jump of the force. What balances the machine lies in the jump, too, but follows the machine's
-  /// line: its derivatives would be those of the machine, and hold only within the jump.
+  /// The middle of a jump of the force. The force that balances the machine lies in the jump, too, but follows the
+  /// machine's line: its derivatives would be those of the machine, and hold only within the jump.
   [[nodiscard]] double force() const { return std::midpoint(low_->force, high_->force); }
 
  private:
@@ -47,7 +48,7 @@ void keep_order(std::span<const double> x, std::vector<double>& particle) {
   }
 }
 
-/// Seeks the displacements of the particle that the machine shows as x: by secants, then between brackets.
+/// Searches for the displacements of the particle at which the machine shows x: by secants, then between brackets.
 class SeriesSearch {
  public:
   SeriesSearch(const Machine& machine, std::span<const double> x, double tolerance)
@@ -60,7 +61,7 @@ class SeriesSearch {
     for (const double value : x) largest_ = std::max(largest_, std::abs(value));
   }
 
-  /// Takes the forces of a trial. Returns whether all displacements are found, and puts forces in the middle of jumps.
+  /// Takes the forces of a trial, and puts those in a jump into its middle. @return true if all displacements are found
   bool take(std::span<const double> particle, std::span<double> forces, bool has_brackets) {
     bool is_done = true;
     for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -120,7 +121,7 @@ class SeriesSearch {
   double largest_ = 0.0;
   std::vector<double> slopes_;
   std::vector<Bracket> brackets_;
-  std::vector<double> errors_;  ///< of the displacements shown
+  std::vector<double> errors_;  ///< of the displacements shown by the machine
   std::vector<double> before_, errors_before_;
 };
 

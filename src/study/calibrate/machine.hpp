@@ -1,5 +1,4 @@
-/// The testing machine between the sensor of displacement and the particle: where it touches, and how far its frame
-/// gives way.
+/// The testing machine between displacement sensor and particle: its first touch, and its frame's deflection.
 #pragma once
 
 #include <functional>
@@ -19,25 +18,25 @@ struct Machine {
   std::vector<double> deflections{};  ///< [m]
 
   [[nodiscard]] bool is_rigid() const noexcept { return offset == 0.0 && compliance == 0.0 && forces.empty(); }
-  /// Displacement [m] that the machine adds to that of the particle under this force. The table is continued by its
-  /// first and last pieces.
+  /// Displacement [m] that the machine adds to that of the particle under a force. Beyond its ends, a table of
+  /// deflections is continued by its first and last pieces.
   [[nodiscard]] double addition(double force) const noexcept;
 };
 
-/// Forces of a particle that is driven through displacements; false where it cannot follow.
+/// Computes the forces of a particle that is driven through displacements; false if it cannot follow them.
 using ForcesOf = std::function<bool(const std::vector<double>& particle, std::span<double> forces)>;
 
-/// Finds the displacements at the particle that the machine shows as x, machine and particle in series: the particle's
-/// own force deflects the frame, not the one that was measured. Its error then stays out of the displacements, where it
-/// would be an error of the regressors, and turn the particle back and forth.
+/// Finds the displacements at the particle for which the machine in series with it shows x. The frame is deflected by
+/// the particle's computed force, not by the measured one, whose error would enter the displacements: an error in the
+/// regressors that also turns the particle back and forth.
 ///
-/// Each displacement is found by secants, all of them with one run of the particle. As long as the particle does not
-/// soften more than the frame, its displacements rise and fall with x. Where its force jumps and the machine's
-/// line goes through the jump, the force is the middle of the jump.
+/// Finds all displacements by secants, with one run of the particle for each iteration. They rise and fall with x as
+/// long as the particle does not soften more than the frame. Where the particle's force jumps and the machine's line
+/// passes through the jump, the force is the middle of the jump.
 /// @param tolerance  of the displacements [m]
 /// @param particle   first guess, and result
-/// @param forces     those of the result
-/// @return false where the particle cannot follow, or nothing was found
+/// @param forces     at the result
+/// @return false if the particle cannot follow, or the search fails
 [[nodiscard]] bool put_in_series(const Machine& machine, std::span<const double> x, const ForcesOf& forces_of,
                                  double tolerance, std::vector<double>& particle, std::span<double> forces);
 
@@ -48,7 +47,7 @@ struct ParsedCompliance {
   double unit_factor = 1.0;       ///< one unit in m/N
 };
 
-/// Nothing in `value` where the text is no number with a unit of length over a unit of force.
+/// Parses a compliance; `value` is empty if the text is no number with a unit of length over a unit of force.
 [[nodiscard]] ParsedCompliance parse_compliance(std::string_view text);
 
 }  // namespace monograin

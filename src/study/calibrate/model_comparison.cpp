@@ -18,7 +18,7 @@
 namespace monograin {
 namespace {
 
-// A difference of criteria below which the data do not decide (Kass and Raftery (1995)).
+// Difference of criteria below which the data do not decide between models (Kass and Raftery (1995)).
 constexpr double k_undecided = 2.0;
 
 /// Rows of the data that are left out together.
@@ -32,7 +32,7 @@ struct Parts {
   bool are_cycles = false;
 };
 
-/// Cycles begin where x begins to rise.
+/// Parts of the data. A cycle begins where x begins to rise.
 Parts parts_of(const Calibration& calibration) {
   std::vector<Part> cycles;
   std::vector<Part> stretches;
@@ -40,7 +40,7 @@ Parts parts_of(const Calibration& calibration) {
     const auto x = std::span(calibration.x.values).subspan(curve.begin, curve.end - curve.begin);
     const std::vector<std::size_t> turns = turning_points(x);
     for (std::size_t k = 0; k + 1 < turns.size(); ++k) {
-      // A turn belongs to the stretch that leads there.
+      // A turning point belongs to the stretch that ends there.
       const Part stretch{curve.begin + (k == 0 ? 0 : turns[k] + 1), curve.begin + turns[k + 1] + 1};
       stretches.push_back(stretch);
       if (k == 0 || x[turns[k + 1]] > x[turns[k]]) {
@@ -55,7 +55,7 @@ Parts parts_of(const Calibration& calibration) {
   return {};
 }
 
-/// Sum of squares of what a part differs from a fit to the others; nothing where there is no such fit.
+/// Sum of the squared differences of a part from a fit to the others; none if there is no such fit.
 std::optional<double> squares_of_prediction(const Calibration& calibration, const Part& part) {
   Calibration others = calibration;
   std::fill(others.weights.begin() + static_cast<std::ptrdiff_t>(part.begin),
@@ -157,7 +157,7 @@ ModelComparison compare_models(std::span<const Calibration> calibrations, std::s
     const auto n = static_cast<double>(results[k].points);
     const double squares = results[k].sum_of_squares;
     const bool is_known = calibration.knows_noise();
-    // The size of the noise is a parameter, too, where it is estimated.
+    // If the noise is estimated, its size is a parameter, too.
     const auto parameters = static_cast<double>(calibration.free.size()) + (is_known ? 0.0 : 1.0);
     const double misfit = is_known ? squares : n * std::log(squares / n);
     double of_predictions = 0.0;

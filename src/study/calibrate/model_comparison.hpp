@@ -1,4 +1,4 @@
-/// Fits of several models, or of one with other free parameters, to common data: which one the data speak for.
+/// Comparison of fits of several models, or of one with different free parameters, to common data.
 #pragma once
 
 #include <cstddef>
@@ -15,39 +15,40 @@ namespace monograin {
 /// Criteria and predictions of one of the fits.
 struct RankedFit {
   std::size_t parameters = 0;
-  double aic = 0.0;         ///< Akaike (1974), of n ln(S/n), or of chi^2 where the noise is known; less is better
+  double aic = 0.0;         ///< Akaike (1974), of n ln(S/n), or of chi^2 if the noise is known; less is better
   double bic = 0.0;         ///< Schwarz (1978), of the same
-  double prediction = 0.0;  ///< rms of what each part of the data differs from a fit to the others [SI of y]; or nan
+  double prediction = 0.0;  ///< rms difference of each part of the data from a fit to the others [SI of y]; or nan
 };
 
 struct ModelComparison {
-  std::vector<RankedFit> fits;  ///< as the calibrations are
-  std::size_t parts = 0;        ///< that were left out in turn; 0: the data cannot be taken apart
-  bool are_cycles = false;      ///< parts are cycles of loading and unloading, otherwise stretches between two turns
+  std::vector<RankedFit> fits;  ///< in the order of the calibrations
+  std::size_t parts = 0;        ///< parts that were left out in turn; 0: the data cannot be divided
+  bool are_cycles = false;      ///< parts are cycles of loading and unloading; else stretches between turns
 };
 
-/// @throws std::runtime_error with the reason why fits cannot be compared: other rows, other weights, a robust loss
+/// @throws std::runtime_error if fits cannot be compared: different rows, different weights, a robust loss
 void check_comparable(std::span<const Calibration> calibrations);
 
-/// Leaves the cycles of the data out in turn, fits to the others, and predicts them; stretches between two turns where
-/// there is one cycle. A part without which a model cannot be fitted makes its prediction nan.
-/// @param results    of calibrate(), as the calibrations are
-/// @param progress  takes the share that is done
+/// Leaves each cycle of the data out in turn, fits the models to the others, and predicts the one left out. If there is
+/// only one cycle, uses stretches between two turning points. If a model cannot be fitted without a part, its
+/// prediction is nan.
+/// @param results    of calibrate(), in the order of the calibrations
+/// @param progress  receives the finished share
 /// @throws std::runtime_error as check_comparable()
 [[nodiscard]] ModelComparison compare_models(std::span<const Calibration> calibrations,
                                              std::span<const CalibrationResult> results,
                                              const std::function<void(double)>& progress = {});
 
-/// For the reader: a line for each fit, the best by the BIC first, and what to make of it.
+/// The comparison as text: a line for each fit, the best by the BIC first, and a conclusion.
 [[nodiscard]] std::string comparison_text(std::span<const Calibration> calibrations,
                                           std::span<const CalibrationResult> results,
                                           const ModelComparison& comparison);
 
-/// The file that tells the folder of a comparison.
+/// File that marks a folder as one of a comparison.
 inline constexpr const char* k_comparison_marker = "comparison.csv";
 
 /// Writes comparison.csv and comparison.svg with its script and data.
-/// @return why there is no figure; empty: there is
+/// @return why there is no figure; empty: there is one
 [[nodiscard]] std::string write_comparison(std::span<const Calibration> calibrations,
                                            std::span<const CalibrationResult> results,
                                            const ModelComparison& comparison, StagedFolder& folder);

@@ -28,8 +28,7 @@ const CurveProcedure* procedure_of(const Calibration& calibration) {
   return find_model(calibration.scenario.model)->curve_procedure;
 }
 
-/// Whether the data are one curve, of forces over displacements of one contact, with a radius, units and a machine that
-/// are not fitted.
+/// True if the data are forces over displacements of one contact, and the fit has fixed radius, units and machine.
 bool is_force_curve(const Calibration& calibration) {
   return calibration.curves.size() == 1 && calibration.curves.front().control == Step::Kind::displacement &&
          calibration.y.observable.ends_with(".force") && class_of(calibration.x) == class_of(calibration.y) &&
@@ -39,7 +38,7 @@ bool is_force_curve(const Calibration& calibration) {
                               [&](std::string_view key) { return is_free(calibration, key); });
 }
 
-/// Rows that count, displacements over R0 and forces over the procedure's unit.
+/// The rows that count, as displacements over R0 and forces over the procedure's unit.
 XyCurve normalised(const Calibration& calibration) {
   const double radius = calibration.scenario.radius;
   const double force_unit = procedure_of(calibration)->force_unit(model_input(calibration.scenario));

@@ -1,4 +1,4 @@
-/// Fits that a model brings along: procedures that know its equations, and find where a general search should begin.
+/// Fits by procedures of a model, which use its equations and find where a general search should begin.
 #pragma once
 
 #include <map>
@@ -14,14 +14,14 @@ struct Calibration;
 struct ModelFits {
   std::vector<std::string> keys;         ///< of the parameters, as of `--set`
   std::vector<ProcedureFit> fits;        ///< to the first loading
-  std::map<std::string, double> starts;  ///< by key: where to begin [SI]; also of keys that only unloading tells
+  std::map<std::string, double> starts;  ///< by key: starting value [SI]; also of keys that only unloading determines
 };
 
-/// Those of the calibration's model; none where it has no procedure for these parameters and
-/// data: its keys are free, and displacements of a wall drive its forces.
+/// Fits by the procedure of the calibration's model. There are some only if the model has a procedure, all keys of the
+/// procedure are free, and the data are forces over displacements of a wall.
 [[nodiscard]] ModelFits model_fits(const Calibration& calibration);
 
-/// What the fitted parameters are by the same measures, as a further fit; to be called where there are others.
+/// The fitted parameters with the measures of the model's procedures. Call it only if `fits` contains fits.
 [[nodiscard]] ProcedureFit measured_fit(const Calibration& calibration, const ModelFits& fits,
                                         const std::vector<double>& parameters);
 

@@ -23,9 +23,9 @@
 namespace monograin::calibration {
 namespace {
 
-constexpr double k_ratio_for_log = 100.0;  // of bounds: from here on their parameter is sought in its logarithm
+constexpr double k_ratio_for_log = 100.0;  // of bounds; from this ratio on the logarithm of the parameter is sought
 
-/// Keys of a scenario that cannot be free, or are written so that TOML takes them apart.
+/// Keys of a table that are no free numbers of the scenario, or that TOML splits because they lack quotes.
 std::vector<ForeignKey> foreign_keys(const toml::table* table, const std::vector<NumberKey>& numbers) {
   std::vector<ForeignKey> foreign;
   for (const auto& [key, node] : *table) {
@@ -47,7 +47,7 @@ std::vector<ForeignKey> foreign_keys(const toml::table* table, const std::vector
   return foreign;
 }
 
-/// The unit of a bound, which is a bare number where it is in SI.
+/// Sets the unit of a parameter to that of a bound; a bare number is in SI.
 void set_unit(FreeParameter& parameter, const toml::node& bound, double initial_radius) {
   const Dimension dimension = parameter.key.dimension;
   parameter.unit = dimension_info(dimension).si;
@@ -62,10 +62,10 @@ void set_unit(FreeParameter& parameter, const toml::node& bound, double initial_
   }
 }
 
-/// Whether a number can be put into the scenario's text, so that what has been fitted can be run.
+/// Checks that the scenario's text can take a number, so that the fitted scenario can be run.
 void check_place(Reading& reading, const Section& free, const ScenarioText& scenario, const FreeParameter& parameter) {
   const std::string& path = parameter.key.path;
-  if (path.starts_with(k_data)) return;  // no number of the scenario
+  if (path.starts_with(k_data)) return;  // a number of the machine is not in the scenario
   try {
     const std::string text =
         with_values(scenario.text, {{path, fmt::format("{:e}", parameter.start.value_or(parameter.lower))}});
@@ -118,7 +118,7 @@ std::optional<FreeParameter> read_bounds(Reading& reading, const Section& free, 
   if (parameter.is_logarithmic && *from <= 0.0) {
     reading.faults.add(bounds.value_place("scale"), "scale = \"log\" needs bounds above zero");
   }
-  // A bound of zero may be written without a unit.
+  // A bound of zero may lack a unit; the upper bound then gives it.
   const bool is_bare_zero = number.path.starts_with(k_data) && !origin.table->get("from")->is_string();
   set_unit(parameter, *origin.table->get(is_bare_zero ? "to" : "from"), reading.initial_radius);
   check_place(reading, free, scenario, parameter);
@@ -243,7 +243,7 @@ std::vector<FreeParameter> free_in(Reading& reading, const Section& root, const 
   for (const NumberKey& number : numbers) {
     if (free.has(number.path)) found.emplace_back(free.key_place(number.path), &number);
   }
-  // In the order of the file, not of the model.
+  // The parameters are in the order of the file, not of the model.
   std::ranges::sort(found, {}, [](const auto& entry) { return std::pair(entry.first.line, entry.first.column); });
   if (found.size() > k_most_parameters) {
     reading.faults.add(found[k_most_parameters].first,

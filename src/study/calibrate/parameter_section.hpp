@@ -9,17 +9,17 @@
 
 namespace monograin::calibration {
 
-/// The scenario whose numbers are free, with the text that they are put into.
+/// The scenario whose numbers are free, with the text into which fitted numbers are put.
 struct ScenarioText {
   const CheckedScenario& checked;
   const std::string& text;
   const std::string& file;
 };
 
-/// The free parameters, in the order of the file; faults where a bound is missing or the scenario has no place for it.
+/// The free parameters in the file's order. Reports missing bounds, and numbers that the scenario cannot take.
 [[nodiscard]] std::vector<FreeParameter> free_in(Reading& reading, const Section& root, const ScenarioText& scenario);
 
-/// Gives parameters what `[prior]` says of them; a uniform distribution tightens their bounds.
+/// Adds the priors of `[prior]` to the parameters; a uniform distribution tightens their bounds.
 void read_priors(Reading& reading, const Section& root, const CheckedScenario& scenario,
                  std::vector<FreeParameter>& free);
 

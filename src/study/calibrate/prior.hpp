@@ -1,4 +1,4 @@
-/// Priors: the knowledge of a parameter before there are data.
+/// Priors: knowledge of a parameter before the data.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace monograin {
 
-/// A distribution of one parameter. Normal: of the parameter; lognormal: of its natural logarithm; uniform: none but
-/// within bounds.
+/// Distribution of one parameter. Normal: the parameter itself is normal; lognormal: its natural logarithm; uniform:
+/// all values between the bounds are equal.
 struct Prior {
   enum class Kind { normal, lognormal, uniform };
   Kind kind = Kind::normal;
@@ -19,14 +19,14 @@ struct Prior {
   [[nodiscard]] double deviation(double value) const noexcept;
   /// Derivative of the deviation with respect to the value.
   [[nodiscard]] double slope(double value) const noexcept;
-  /// Whether it adds to the sum of squares; a uniform one bounds the search alone.
+  /// True if the prior adds to the sum of squares; a uniform prior only bounds the search.
   [[nodiscard]] bool is_residual() const noexcept { return kind != Kind::uniform; }
 };
 
-/// "normal", "lognormal", "uniform".
+/// Name of a kind: "normal", "lognormal", "uniform".
 [[nodiscard]] std::string_view word_of(Prior::Kind kind) noexcept;
 
-/// The prior for a reader, its values in units of the parameter: "normal 1.2 +- 0.1 GPa".
+/// Text that describes a prior, with values in units of the parameter: "normal 1.2 +- 0.1 GPa".
 /// @param unit_factor  one unit in SI
 [[nodiscard]] std::string describe(const Prior& prior, const std::string& unit, double unit_factor);
 

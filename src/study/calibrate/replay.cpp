@@ -14,13 +14,13 @@
 namespace monograin {
 namespace {
 
-constexpr double k_no_change = 1e-12;  // of the largest value; the engine resolves 1e-13 of a step
+constexpr double k_no_change = 1e-12;  // over the largest value; the engine resolves 1e-13 of a step
 
-constexpr double k_same_force = 1e-6;  // as prescribed, of the largest
+constexpr double k_same_force = 1e-6;  // deviation from a prescribed force that counts as none, over the largest
 
 constexpr std::size_t k_no_class = std::numeric_limits<std::size_t>::max();
 
-/// Class of the wall that a column is of; as many as there are: none.
+/// Index of the contact class to which a column belongs; the number of classes if there is none.
 std::size_t class_of(const Scene& scene, std::string_view column) {
   const std::string_view name = column.substr(0, column.rfind('.'));
   const auto named = std::ranges::find(scene.classes, name, &ContactClass::name);
@@ -30,8 +30,8 @@ std::size_t class_of(const Scene& scene, std::string_view column) {
   return static_cast<std::size_t>(holding - scene.walls.begin());
 }
 
-/// Place of a column among the observables. Gaps decide which walls symmetry makes one class: a wall whose gap is
-/// another one's has its columns under that one's name.
+/// Index of a column among the observables. Gaps determine which walls are one class by symmetry: if a wall joins
+/// another one's class, its columns have that class's name.
 std::size_t place_of(const Scene& scene, std::string_view column) {
   const std::span<const Observable> all = scene.system->observables();
   auto found = std::ranges::find(all, column, &Observable::name);
@@ -81,7 +81,7 @@ DataProgram program_through(std::span<const double> values, Step::Kind kind, dou
   double largest = std::abs(start);
   for (const double value : values) largest = std::max(largest, std::abs(value));
 
-  std::vector<double> passed{start};  // the values at the instants, the start's first
+  std::vector<double> passed{start};  // values at the instants, beginning with the start's
   for (const double value : values) {
     if (std::abs(value - passed.back()) > k_no_change * largest) passed.push_back(value);
     program.rows.push_back(passed.size() - 1);
@@ -144,8 +144,7 @@ void Replay::follow(std::vector<double> values) {
   scenario_.output.times = std::move(program.times);
   rows_ = std::move(program.rows);
   resolution_ = 0.0;
-  // What else is prescribed is that of the program whatever happens; a force is not borne where a contact has been
-  // lost.
+  // Prescribed quantities follow the program exactly, except a force on a contact that has been lost.
   for (const double value : values_) resolution_ = std::max(resolution_, k_same_force * std::abs(value));
   if (columns_.control != Step::Kind::force) resolution_ = std::numeric_limits<double>::infinity();
 }
@@ -170,7 +169,7 @@ bool Replay::set(std::string_view path, double value) {
   return true;
 }
 
-/// The scene. A gap that has moved moves the place where displacements begin.
+/// Makes the scene. A changed gap changes the displacement from which the program begins.
 Scene Replay::scene_from_start() {
   Scene scene = make_scene(scenario_);
   const std::size_t c = columns_.control == Step::Kind::displacement ? class_of(scene, columns_.driven) : k_no_class;
@@ -189,7 +188,7 @@ bool Replay::run(std::span<double> response) {
     problem_ = drive(scene, integrator_, tolerances, scenario_.output, sink).message;
   } catch (const std::domain_error& error) {
     problem_ = error.what();
-  } catch (const std::invalid_argument& error) {  // constants for which the model has no law
+  } catch (const std::invalid_argument& error) {  // the model has no law for these constants
     problem_ = error.what();
   }
   for (std::size_t i = 0; i < rows_.size(); ++i) {

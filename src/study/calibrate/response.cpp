@@ -12,8 +12,8 @@
 namespace monograin {
 namespace {
 
-constexpr double k_direct_noise = 1e-13;  // of a response without time integration
-constexpr double k_series_noise = 1e-12;  // of a response in series with a machine
+constexpr double k_direct_noise = 1e-13;  // relative error of a response without time integration
+constexpr double k_series_noise = 1e-12;  // relative error of a response in series with a machine
 
 }  // namespace
 
@@ -46,7 +46,7 @@ Response::Response(const Calibration& calibration, const MeasuredCurve& curve, s
 
 bool Response::operator()(std::span<const double> parameters, std::span<double> response) {
   problem_.clear();
-  for (const bool is_radius : {true, false}) {  // lengths in R0 follow the radius, unless they are free, too
+  for (const bool is_radius : {true, false}) {  // the radius comes first: lengths in R0 follow it
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       const std::string& path = calibration_.free[k].key.path;
       if (path.starts_with(calibration::k_data) || (path == k_radius_key) != is_radius) continue;
@@ -66,7 +66,7 @@ bool Response::operator()(std::span<const double> parameters, std::span<double> 
   return true;
 }
 
-/// The machine shows the sum of its displacement and the particle's.
+/// Finds the response if x is the sum of the displacements of the machine and the particle.
 bool Response::run_in_series(const Machine& machine, std::span<double> response) {
   is_moved_ = true;
   particle_ = x_;

@@ -1,4 +1,4 @@
-/// Responses of measured curves to the parameters of a fit, the machine between them and the particle.
+/// Responses of measured curves to the parameters of a fit, including the machine between sensor and particle.
 #pragma once
 
 #include <span>
@@ -14,23 +14,23 @@ namespace monograin {
 /// Relative error of the responses.
 [[nodiscard]] double noise_of(const Calibration& calibration);
 
-/// Measured values of one of the curves.
+/// Measured x of one curve; y_of() gives its y.
 [[nodiscard]] std::vector<double> x_of(const Calibration& calibration, const MeasuredCurve& curve);
 [[nodiscard]] std::vector<double> y_of(const Calibration& calibration, const MeasuredCurve& curve);
 
-/// The response of one curve's scenario as the residuals of a problem, with the parameters of a fit.
+/// Response of one curve's scenario to the parameters of a fit, for the residuals of a least-squares problem.
 class Response {
  public:
-  /// @param x, y  what was measured
+  /// @param x, y  measured values
   Response(const Calibration& calibration, const MeasuredCurve& curve, std::vector<double> x, std::vector<double> y);
 
-  /// @return whether there is a response
+  /// @return true if there is a response
   bool operator()(std::span<const double> parameters, std::span<double> response);
 
-  /// Displacements at the particle in the last run, where x or y is a displacement.
+  /// Displacements at the particle in the last run, if x or y is a displacement.
   [[nodiscard]] const std::vector<double>& particle() const noexcept { return particle_; }
   [[nodiscard]] const Replay& replay() const noexcept { return replay_; }
-  /// Why there was no response.
+  /// Reason why there was no response.
   [[nodiscard]] const std::string& problem() const noexcept { return problem_.empty() ? replay_.problem() : problem_; }
 
  private:
@@ -43,7 +43,7 @@ class Response {
   std::vector<double> y_;
   double noise_;  ///< relative error of a response
   std::vector<double> particle_;
-  bool is_moved_ = false;  ///< the replay follows other values than x
+  bool is_moved_ = false;  ///< the replay follows values other than x
   std::string problem_;
 };
 

@@ -8,8 +8,8 @@ namespace monograin {
 
 using TextRow = std::vector<std::string>;
 
-/// Rows with their cells below each other, the first column to the left and the others to the right. Rows may be
-/// shorter than the first one.
+/// Aligns the cells of rows in columns, the first one on the left and the others on the right. Rows may be shorter than
+/// the first one.
 [[nodiscard]] std::string aligned(const std::vector<TextRow>& rows);
 
 }  // namespace monograin

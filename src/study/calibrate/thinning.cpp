@@ -8,7 +8,7 @@
 namespace monograin {
 namespace {
 
-/// Rows of one curve: the first of each stretch of `stride` rows between two turns that goes on, and the turns.
+/// Rows of one curve to keep: the turning points, and every `stride`-th row between them that advances in x.
 std::vector<std::size_t> rows_to_keep(std::span<const double> x, std::size_t stride) {
   std::vector<std::size_t> kept;
   const std::vector<std::size_t> turns = turning_points(x);

@@ -1,4 +1,4 @@
-/// Fewer rows of many, for a search that only has to come near its minimum.
+/// Thinning of data for a search that only has to come near its minimum.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,9 @@
 
 namespace monograin {
 
-/// The calibration with about `rows` rows of its data: those in which x turns and others evenly between them, without
-/// the noise of x on the path.
-/// @param rows  fewer than there are
+/// The calibration with about `rows` rows of its data: the turning points of x, and others evenly between them. Noise
+/// of x does not add to the path.
+/// @param rows  less than the number of rows
 [[nodiscard]] Calibration thinned(const Calibration& calibration, std::size_t rows);
 
 }  // namespace monograin

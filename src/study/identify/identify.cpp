@@ -15,9 +15,10 @@ namespace {
 
 constexpr double k_infinite = std::numeric_limits<double>::infinity();
 constexpr double k_undefined = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_fixed_instant = 1e-9;  // change of an instant with the relative change of a number, over the time
-constexpr double k_direct_error = 1e-13;  // of runs whose states are solved for
-constexpr double k_integrated_error = 1e-10;  // of runs that are integrated
+constexpr double k_fixed_instant = 1e-9;      // change of an instant with the relative change of a number, over the
+                                              // duration, below which the instant is fixed
+constexpr double k_direct_error = 1e-13;      // relative error of runs whose states are solved for
+constexpr double k_integrated_error = 1e-10;  // relative error of runs that are integrated
 constexpr double k_level = 0.95;
 
 std::string derivative_name(std::string_view column, std::string_view key) {
@@ -31,7 +32,7 @@ std::vector<double> measured_instants(double duration, int points) {
   return instants;
 }
 
-/// Says which rows of a history stay at their instants when a free number changes.
+/// Finds the rows of a history that stay at their instants when a free number changes.
 class Instants {
  public:
   Instants(const ExperimentPlan& plan, const Table& history) : plan_(plan), history_(history) {

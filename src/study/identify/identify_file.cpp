@@ -126,7 +126,7 @@ class PlanReader {
   }
 
  private:
-  /// Takes the values of the free numbers from the scenario; a fault where a history cannot be differentiated by one.
+  /// Takes the values of the free numbers from the scenario; a fault if one of them cannot differentiate a history.
   void take_values(const Section& root) {
     const Section::Origin free = root.table("free", "[free]");
     for (const FreeParameter& parameter : made_.free) {
@@ -200,7 +200,7 @@ class PlanReader {
     return take_lengths(program.scenario, place);
   }
 
-  /// A testing machine prescribes lengths, and displacements from first touch, whatever radius and gap are.
+  /// Checks lengths: a testing machine prescribes displacements from first touch, whatever the radius and the gap are.
   /// @return false, with a fault, where the steps follow a radius that is free or the first driven wall's gap is free
   bool take_lengths(const CheckedScenario& scenario, const SourceLocation& place) {
     const auto is_free = [this](std::string_view path) { return std::ranges::find(paths_, path) != paths_.end(); };

@@ -14,7 +14,7 @@
 namespace monograin::sweep {
 namespace {
 
-/// Ascending numbers from 0 to 100; what comes after a fault is left out.
+/// Reads the percentiles, ascending numbers from 0 to 100. Entries after a fault are left out.
 std::vector<double> percentiles_in(Reading& reading, const Section& section) {
   std::vector<double> percentiles;
   const std::vector<std::string> texts = section.texts("percentiles");

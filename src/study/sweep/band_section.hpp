@@ -11,7 +11,7 @@
 
 namespace monograin::sweep {
 
-/// The request, with the places of its columns in the file.
+/// A request for bands, with the positions of its columns in the file.
 struct PlacedBands {
   BandRequest request;
   std::vector<std::pair<std::string, SourceLocation>> columns;
@@ -19,7 +19,7 @@ struct PlacedBands {
 
 [[nodiscard]] PlacedBands bands_in(Reading& reading, const Section& root);
 
-/// Asks whether histories of a scenario have the columns: before the first run, which may be one of many long ones.
+/// Reports columns that histories of a scenario lack. Called before the first run, because there may be many long ones.
 void check_columns(const PlacedBands& bands, const CheckedScenario& scenario, FaultList& faults);
 
 }  // namespace monograin::sweep

@@ -23,12 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Least share of the runs with a history that reach an abscissa. Those that are missing where contacts are lost or
-// limits reached may all lie on one side: percentiles of the rest would not be those of the sweep.
+// Least share of the runs with a history that have to reach an abscissa. Runs that miss it because contacts are lost or
+// limits reached may all lie on one side, so that the percentiles of the rest would be biased.
 constexpr double k_least_share = 0.95;
 constexpr unsigned k_band_colour = 0x9FC5E8;
 
-/// Where a column of a history is.
+/// Index of a numeric column of a history.
 [[nodiscard]] std::size_t place_of(const Table& history, const std::string& name) {
   const auto found = history.find(name);
   if (found && !history.columns()[*found].holds_words()) return *found;
@@ -56,15 +56,15 @@ struct Stretch {
   return stretches;
 }
 
-/// The columns of a history that bands are made of.
+/// Columns of a history from which bands are made.
 struct RunCurves {
   std::map<std::size_t, Stretch> stretches;  ///< by step
   std::vector<double> x;
   std::vector<std::vector<double>> y;  ///< in the order of the request
 };
 
-/// All histories of the sweep. A run that was refused has none.
-/// @param bands  gets the columns of the first one
+/// Histories of all runs; a run that was refused has none.
+/// @param bands  receives the columns of the first history
 [[nodiscard]] std::vector<RunCurves> read_curves(const Sweep& sweep, const fs::path& folder, HistoryBands& bands) {
   std::vector<RunCurves> curves;
   for (std::size_t run = 1; run <= sweep.runs.size(); ++run) {
@@ -84,13 +84,13 @@ struct RunCurves {
   return curves;
 }
 
-/// The two rows between which a stretch first comes by an abscissa, and how far between them.
+/// Position at which a stretch first passes an abscissa: between a row and the next, at a share of the distance.
 struct Crossing {
   std::size_t row = 0;
   double share = 0.0;
 };
 
-/// Crossings in the order of the abscissae; none from where the stretch does not reach.
+/// Crossings in the order of the abscissae; none for an abscissa that the stretch does not reach.
 [[nodiscard]] std::vector<std::optional<Crossing>> crossings(std::span<const double> x, const Stretch& stretch,
                                                              std::span<const double> abscissae) {
   std::vector<std::optional<Crossing>> found(abscissae.size());
@@ -173,7 +173,7 @@ struct Abscissae {
                                                                          : fmt::format("{} [{}]", name, column.unit));
 }
 
-/// The outermost percentiles as an area, those between them as lines, the middle one drawn through.
+/// Draws the outermost percentiles as an area, the others as dashed lines, and the median as a solid line.
 [[nodiscard]] figure::ChartPanel panel_of(const Sweep& sweep, const HistoryBands& bands, std::size_t y) {
   using Style = figure::ChartSeries::Style;
   const std::vector<double>& percentiles = sweep.bands->percentiles;
@@ -203,7 +203,7 @@ struct Abscissae {
 /// Values of one step in all runs, by y and abscissa.
 using StepValues = std::vector<std::vector<std::vector<double>>>;
 
-/// Adds the values of a run between its rows, and counts the run where it comes by an abscissa.
+/// Adds the interpolated values of a run, and counts the run at each abscissa that it passes.
 void add_run(const RunCurves& run, const Stretch& stretch, StepBands& bands, StepValues& values) {
   const auto found = crossings(run.x, stretch, bands.x);
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -216,7 +216,7 @@ void add_run(const RunCurves& run, const Stretch& stretch, StepBands& bands, Ste
   }
 }
 
-/// nan where too few runs have a value.
+/// Sets the percentiles; nan where too few runs have a value.
 void find_percentiles(StepBands& bands, StepValues& values, std::span<const double> percentiles, std::size_t runs) {
   bands.percentiles.assign(values.size(), std::vector(percentiles.size(), std::vector(bands.x.size(), k_nan)));
   for (std::size_t k = 0; k < values.size(); ++k) {

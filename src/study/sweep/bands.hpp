@@ -1,4 +1,4 @@
-/// Percentile bands of a sweep's histories: how far inputs that are not known exactly spread the curves.
+/// Percentile bands of a sweep's histories: the spread of curves due to uncertain inputs.
 #pragma once
 
 #include <cstddef>
@@ -26,10 +26,10 @@ struct HistoryBands {
   std::vector<StepBands> steps;
 };
 
-/// Interpolates the histories of all runs at common abscissae, step by step, since a history that goes forth and back
+/// Interpolates the histories of all runs at common abscissae, step by step, because a history that goes back and forth
 /// has several y over one x. Abscissae go from the first to the last x that any run has in the step.
-/// @param folder  where the sweep has been run, with its histories
-/// @throws std::runtime_error for a column that a history does not have, and which there are; where no run has a
+/// @param folder  of a sweep that has been run, with its histories
+/// @throws std::runtime_error naming a column that a history does not have, and those that it has; and if no run has a
 /// history
 [[nodiscard]] HistoryBands bands_of(const Sweep& sweep, const std::filesystem::path& folder);
 

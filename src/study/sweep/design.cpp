@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t k_candidates_per_run = 25;
 constexpr std::size_t k_least_candidates = 1500;
-// Clustering takes the square of the number of points in time and memory, so that more are split first.
+// Largest number of points to cluster at once, which takes its square in time and memory; larger sets are cut first.
 constexpr std::size_t k_most_clustered_at_once = 1500;
 constexpr std::size_t k_most_draws_per_candidate = 1000;
 constexpr int k_most_enlargements = 8;
@@ -45,7 +45,7 @@ void shuffle(std::vector<std::size_t>& values, Dice& dice) {
   return candidates;
 }
 
-/// Candidates in the cube and how they fall into clusters.
+/// Candidates in the cube, and their clusters.
 class Candidates {
  public:
   Candidates(std::vector<double> coordinates, std::size_t factors)
@@ -56,8 +56,8 @@ class Candidates {
   }
   [[nodiscard]] std::size_t size() const noexcept { return coordinates_.size() / factors_; }
 
-  /// So many clusters of all candidates. Large sets are first cut across their widest side into parts that are given
-  /// clusters in proportion; within a part the clustering is Ward's.
+  /// Divides all candidates into `count` clusters. Large sets are first cut across their widest side into parts, which
+  /// get clusters in proportion; within a part the clustering is Ward's.
   [[nodiscard]] std::vector<Members> clusters(std::size_t count) const {
     Members all(size());
     std::iota(all.begin(), all.end(), std::size_t{0});
@@ -71,7 +71,7 @@ class Candidates {
     return result;
   }
 
-  /// Ward's clusters of these candidates; as many as there are candidates, where that is fewer.
+  /// Ward's clusters of some candidates: `count` of them, or as many as there are candidates.
   [[nodiscard]] std::vector<Members> ward(const Members& members, std::size_t count) const {
     count = std::min(count, members.size());
     if (count == 1) return {members};
@@ -150,7 +150,7 @@ class Candidates {
   std::size_t factors_;
 };
 
-/// The points of a design that is being improved, ordered by their levels, with what each contributes to the criterion.
+/// Points of a design that is being improved, ordered by their levels, with the contribution of each to the criterion.
 class Arrangement {
  public:
   Arrangement(std::size_t points, std::size_t factors, std::size_t level_count)
@@ -163,8 +163,8 @@ class Arrangement {
         Eigen::Map<const Eigen::ArrayXd>(point.data(), static_cast<Eigen::Index>(point.size())).transpose();
   }
 
-  /// Sum over all points j but the one at `place` of 1 / [ prod_l (x_l - x_jl)^2 (I(v != v_j) + 1/k)^2 ], where v is
-  /// the level of that place; infinite as soon as it is above `bound`.
+  /// Contribution of a point x at an index to the criterion: sum over all other points j of 1 / [ prod_l (x_l - x_jl)^2
+  /// (I(v != v_j) + 1/k)^2 ], where v is the level of that index; infinite as soon as it is above `bound`.
   [[nodiscard]] double crowding(std::size_t place, std::span<const double> x, double bound) const {
     const auto own = static_cast<Eigen::Index>(place);
     const double same = static_cast<double>(level_count_ * level_count_);
@@ -203,8 +203,8 @@ class Arrangement {
   Eigen::Index per_level_;
 };
 
-/// The sub-clusters that the points are taken from, one for each place of the arrangement: those of the first level,
-/// then those of the second, and so on.
+/// Sub-clusters from which the points are taken, one for each index of the arrangement: those of the first level, then
+/// those of the second, and so on.
 [[nodiscard]] std::vector<Members> allotted_clusters(const std::vector<std::vector<Members>>& sub_clusters,
                                                      std::size_t level_count, Dice& dice) {
   const std::size_t primary_count = sub_clusters.size();
@@ -218,8 +218,8 @@ class Arrangement {
   return allotted;
 }
 
-/// Replaces each point by the best candidate of its own cluster, over and over, until none is better than what is
-/// there. The criterion falls with every replacement, so this ends.
+/// Replaces each point by the best candidate of its own cluster, until no candidate is better. Every replacement lowers
+/// the criterion, so that this ends.
 [[nodiscard]] std::vector<std::size_t> improved(const Candidates& candidates, const std::vector<Members>& clusters,
                                                 std::size_t factors, std::size_t level_count) {
   Arrangement arrangement(clusters.size(), factors, level_count);
@@ -277,7 +277,7 @@ Design maxpro_design(const DesignSpace& space, std::size_t runs, std::uint64_t s
     for (const Members& cluster : candidates.clusters(runs / levels)) {
       sub_clusters.push_back(candidates.ward(cluster, levels));
     }
-    // A cluster with fewer points than levels: there are too few candidates.
+    // A cluster with fewer points than levels shows that there are too few candidates.
     const auto is_short = [&](const std::vector<Members>& clusters) { return clusters.size() < levels; };
     if (std::ranges::any_of(sub_clusters, is_short)) {
       if (enlargement < k_most_enlargements) continue;

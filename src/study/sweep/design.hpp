@@ -38,14 +38,14 @@ struct DesignSpace {
   std::function<bool(std::span<const double>)> contains;  ///< which points are allowed; empty: all
 };
 
-/// Fast flexible filling: uniform candidates are clustered, every level gets one point in each primary cluster, and
-/// each point is the candidate of its own sub-cluster that makes the criterion smallest.
-///
-/// The same arguments give the same design. Time grows as the square of the number of runs: a tenth of a second for 60,
+/// Fast flexible filling: the function clusters uniform candidates, gives every level one point in each primary
+/// cluster, and chooses for each point the candidate of its own sub-cluster that makes the criterion smallest.
+/// A design depends on the arguments alone. Time grows as the square of the number of runs: a tenth of a second for 60,
+/// half a minute for 10,000; memory grows in proportion to it.
 /// half a minute for 10,000; memory grows as the number itself.
-/// @param runs  how many points, a positive multiple of the number of levels
-/// @throws std::invalid_argument  where it is not
-/// @throws std::domain_error      where hardly any point is allowed
+/// @param runs  number of points, a positive multiple of the number of levels
+/// @throws std::invalid_argument  for another number of runs
+/// @throws std::domain_error      if hardly any point of the space is allowed
 /// Source: Lekivetz, Jones (2015), Quality and Reliability Engineering International 31, 829-837.
 [[nodiscard]] Design maxpro_design(const DesignSpace& space, std::size_t runs, std::uint64_t seed);
 

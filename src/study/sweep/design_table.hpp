@@ -9,7 +9,7 @@
 
 namespace monograin {
 
-/// The cells of a CSV file as they are written, with their places.
+/// Cells of a CSV file as they are written, with their positions.
 struct DesignTable {
   struct Cell {
     std::string text;
@@ -19,8 +19,8 @@ struct DesignTable {
   std::vector<std::vector<Cell>> rows;  ///< each as long as the headings
 };
 
-/// Lines that begin with '#' and blank lines do not count; quotes have no meaning. Rows of another length than the
-/// headings, and a table without rows, are added to `faults`.
+/// Parses a table. Blank lines and lines that begin with '#' do not count; quotes have no meaning. Adds a fault for
+/// each row of another length than the headings, and for a table without rows.
 [[nodiscard]] DesignTable parse_design_table(std::string_view text, const std::string& origin, FaultList& faults);
 
 /// A heading's key and unit: `material.yield_stress[MPa]`. An index at the end, as in `a.normal[2]`, is no unit.

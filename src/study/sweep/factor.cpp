@@ -24,7 +24,7 @@ using Kind = KeySpec::Kind;
 constexpr double k_most_points = 1e6;
 constexpr std::array<std::string_view, 2> k_scales{"linear", "log"};
 
-/// The keys that say over what a key is varied.
+/// Keys of the table that gives the values of a varied key.
 std::vector<KeySpec> level_keys(const KeySpec& varied) {
   const auto bound = [&](std::string_view name, std::string_view meaning) {
     return KeySpec{.name = name,
@@ -60,7 +60,7 @@ std::vector<KeySpec> level_keys(const KeySpec& varied) {
   };
 }
 
-/// Whether a quantity is given in initial radii: it cannot be read without them.
+/// True if a quantity is given in initial radii, without which it cannot be read.
 [[nodiscard]] bool is_in_radii(std::string_view text, Dimension dimension) {
   return !parse_quantity(text, dimension, std::nullopt).value && parse_quantity(text, dimension, 1.0).value;
 }
@@ -304,7 +304,7 @@ ReadValue read_value(const KeySpec& spec, const std::string& text, const std::st
     case Kind::integer:
       return read_number(spec, text, unit);
     case Kind::choice:
-      // What is reserved is refused run by run: another model or configuration may have it.
+      // A reserved choice is accepted here and refused run by run: another model or configuration may have it.
       if (std::ranges::find(spec.choices, text) == spec.choices.end() &&
           std::ranges::find(spec.reserved, text) == spec.reserved.end()) {
         return {{}, fmt::format("expected {}{}", expectation(spec), did_you_mean(text, spec.choices))};
@@ -323,7 +323,7 @@ ReadValue read_value(const KeySpec& spec, const std::string& text, const std::st
     case Kind::texts:
     case Kind::table:
     case Kind::tables:
-      // It will be a cell of the results, where nothing is quoted.
+      // The text becomes a cell of the results, where nothing is quoted.
       if (text.empty() || text.find_first_of(",\"\r\n") != std::string::npos) {
         return {{}, "expected a text without commas, quotes and line breaks"};
       }

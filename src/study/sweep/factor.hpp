@@ -16,11 +16,11 @@ namespace monograin {
 
 inline constexpr std::string_view k_example_range = "{ from = 0.2, to = 0.48 }";
 
-/// A value of a key, before it is known how long the unit R0 is.
+/// Value of a key that may be given in R0, whose length is not known yet.
 struct FactorValue {
   double number = 0.0;       ///< in SI, or in initial radii
   bool is_in_radii = false;  ///< the number counts initial radii
-  std::string word{};        ///< of a key that is no number
+  std::string word{};        ///< value of a key that is no number
 
   bool operator==(const FactorValue&) const = default;
   auto operator<=>(const FactorValue&) const = default;
@@ -33,13 +33,13 @@ struct FactorRange {
   bool is_logarithmic = false;
   int points = 2;  ///< of a grid
 
-  /// The value at a share of the way, from 0 to 1; the ends are met exactly.
+  /// The value at a share of the range, from 0 to 1; the ends are met exactly.
   [[nodiscard]] FactorValue at(double share) const;
-  /// The share of the way at which a number is.
+  /// The share of the range at which a number lies.
   [[nodiscard]] double share_of(double number) const;
 };
 
-/// Values that lie as a probability distribution says.
+/// Values distributed by a probability distribution.
 struct FactorDistribution {
   enum class Shape { normal, lognormal, triangular };
 
@@ -48,12 +48,11 @@ struct FactorDistribution {
   std::array<double, 3> parameters{};
   bool is_in_radii = false;
 
-  /// The value that a share of all are below. @param share  between 0 and 1
+  /// The quantile of a share. @param share  between 0 and 1
   [[nodiscard]] FactorValue at(double share) const;
 };
 
-/// A key with what it is varied over: a range, a distribution, a list of values, or none of them where a table gives
-/// the values.
+/// A key with a range, a distribution or a list of values; with none of them if a table gives the values.
 struct Factor {
   std::string key;  ///< path as of `--set`
   KeySpec spec;
@@ -62,40 +61,40 @@ struct Factor {
   std::optional<FactorDistribution> distribution;
   std::vector<FactorValue> values;
 
-  /// The value at a share, between 0 and 1, of what it is varied over.
+  /// The value at a share, between 0 and 1, of the range, the distribution or the list.
   [[nodiscard]] FactorValue at(double share) const;
 
   [[nodiscard]] bool is_number() const noexcept;
   [[nodiscard]] bool is_toggle() const noexcept;
-  /// SI, "-" of a pure number, empty of words.
+  /// Unit of the values: SI, "-" for a pure number, empty for words.
   [[nodiscard]] std::string unit() const;
-  /// Whether the range or the list, where there is one, has the value.
+  /// True if the range or the list contains the value, or if there is neither.
   [[nodiscard]] bool admits(const FactorValue& value) const;
 };
 
-/// Whether a key has a single value that can be another in every run.
+/// True if keys of a kind have a single value, which may differ between runs.
 [[nodiscard]] bool can_be_varied(KeySpec::Kind kind) noexcept;
 
 struct ReadValue {
   std::optional<FactorValue> value;
-  std::string problem;  ///< where there is no value: what is expected
+  std::string problem;  ///< if there is no value: what is expected instead
 };
 
-/// Reads a value as it is written in a list or a table. What is out of range is read nevertheless.
+/// Reads a value as it is written in a list or a table; also a value out of range.
 /// @param unit  of a bare number; empty: SI
 [[nodiscard]] ReadValue read_value(const KeySpec& spec, const std::string& text, const std::string& unit);
 
-/// What is wrong with the unit in a column's heading; empty: nothing. No unit is SI.
+/// Problem with the unit in a column's heading; empty: none. No unit means SI.
 [[nodiscard]] std::string unit_problem(const KeySpec& spec, const std::string& unit);
 
-/// A design asks one of these of its factors.
+/// Levels that a design needs of its factors.
 enum class Levels {
   points,  ///< a grid: ranges are divided
   whole,   ///< ranges as they are
-  shares,  ///< shares of anything: distributions, too
+  shares,  ///< shares of a range, a list or a distribution
 };
 
-/// Fills what the factor is varied over from `{ from, to, points, scale }`, `{ mean, std }`, `{ lognormal }`,
+/// Sets the values over which a factor is varied from `{ from, to, points, scale }`, `{ mean, std }`, `{ lognormal }`,
 /// `{ triangular }` or `{ values }`.
 void read_levels(Reading& reading, const toml::table& table, const SourceLocation& place, Levels levels,
                  Factor& factor);

@@ -11,9 +11,9 @@ namespace monograin {
 namespace {
 
 constexpr std::size_t k_resamples = 500;
-constexpr double k_rounding = 1e-12;  // share of a mean by which results that are the same may differ
+constexpr double k_rounding = 1e-12;  // relative difference from the mean within which results are equal
 
-/// Groups of `size` results that are all there, one after another.
+/// Groups of `size` consecutive results without a missing one, joined together.
 [[nodiscard]] std::vector<double> whole_groups(std::span<const double> results, std::size_t size) {
   std::vector<double> whole;
   for (std::size_t begin = 0; begin + size <= results.size(); begin += size) {
@@ -32,8 +32,7 @@ constexpr double k_rounding = 1e-12;  // share of a mean by which results that a
   return {value, quantile(values, tail), quantile(values, 1.0 - tail)};
 }
 
-/// Calls estimate(samples, values) with all samples, then with resamples of them; the k-th value makes the k-th
-/// estimate.
+/// Calls estimate(samples, values) with all samples, then with resamples; the k-th value makes the k-th estimate.
 template <class Function>
 [[nodiscard]] std::vector<Estimate> bootstrapped(std::size_t samples, std::size_t count, double confidence,
                                                  Function&& estimate) {

@@ -1,4 +1,4 @@
-/// How much of a result's spread is due to which factor: Sobol indices and elementary effects.
+/// Sobol indices and elementary effects: how much of a result's spread each factor causes.
 #pragma once
 
 #include <cstddef>
@@ -16,32 +16,32 @@ struct Estimate {
   double upper = 0.0;
 };
 
-/// Shares of the variance of a result: of each factor by itself, and with all that it does together with others.
+/// Shares of a result's variance: that of each factor by itself, and that of each factor with all its interactions.
 struct SobolIndices {
   std::vector<Estimate> first;
   std::vector<Estimate> total;
-  std::size_t samples = 0;  ///< that count: all of whose points have a value
+  std::size_t samples = 0;  ///< samples that count, because all of their points have a value
 };
 
-/// The estimates of Saltelli et al. (2010, table 2) for the first order and of Jansen (1999) for the total one; nan
-/// where the result is the same at all points. Intervals are percentiles of 500 resamples of the samples.
-/// @param results     at the points of saltelli_design; nan where there is none
+/// Estimates the first order by Saltelli et al. (2010, table 2) and the total one by Jansen (1999); nan if the result
+/// is equal at all points. Intervals are percentiles of 500 resamples of the samples.
+/// @param results     at the points of saltelli_design; nan for a missing one
 /// @param confidence  level of the two-sided intervals, between 0 and 1
 [[nodiscard]] SobolIndices sobol_indices(std::span<const double> results, std::size_t factors, double confidence);
 
-/// Elementary effects, in units of the result over the whole range of the factor: a difference over the change of the
-/// coordinate.
+/// Elementary effects: differences of the result over the change of a factor's coordinate, in units of the result over
+/// the factor's whole range.
 struct MorrisEffects {
   std::vector<Estimate> mean_size;  ///< mean of the absolute effects (mu*)
   std::vector<double> mean;         ///< mu
   std::vector<double> spread;       ///< standard deviation (sigma): it is large where the factor acts with others, or
                                     ///< not in proportion
-  std::size_t samples = 0;          ///< trajectories that count: all of whose points have a value
+  std::size_t samples = 0;          ///< trajectories that count, because all of their points have a value
 };
 
 /// Sources: Morris (1991); Campolongo, Cariboni, Saltelli (2007) for mu*.
 /// @param design   of morris_design
-/// @param results  at its points; nan where there is none
+/// @param results  at its points; nan for a missing one
 [[nodiscard]] MorrisEffects morris_effects(const Design& design, std::span<const double> results, double confidence);
 
 }  // namespace monograin

@@ -16,7 +16,7 @@
 namespace monograin {
 namespace {
 
-// Smallest pivot of a correlation whose numbers are not functions of each other.
+// Smallest pivot of a correlation; below it the numbers are functions of each other.
 constexpr double k_least_pivot = 1e-6;
 
 }  // namespace

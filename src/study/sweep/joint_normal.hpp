@@ -1,4 +1,4 @@
-/// Numbers that a calibration has found, as inputs of a sweep: normal, and correlated by its covariance.
+/// Parameters found by a calibration as inputs of a sweep: normal, and correlated by their covariance.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,19 +17,18 @@ struct JointNormal {
   std::vector<double> standard_errors;  ///< [SI], > 0
   Eigen::MatrixXd factor;               ///< lower triangle L, L L^T the correlation
 
-  /// Gives independent shares, one for each key, the correlation: each keeps its uniform distribution (Gaussian
-  /// copula).
+  /// Correlates independent shares, one for each key; each share keeps its uniform distribution (Gaussian copula).
   /// @param shares  between 0 and 1
   void correlate(std::span<double> shares) const;
 };
 
-/// Text of the result of a calibration. @param path  of its calibration.json, or of the folder with that
+/// Text of the result of a calibration. @param path  of its calibration.json, or of the folder that contains it
 /// @throws std::runtime_error with what is wrong
 [[nodiscard]] std::string text_of_calibration(std::filesystem::path path);
 
-/// Reads what `monograin calibrate` writes. Numbers of the machine are left out.
+/// Reads the result that `monograin calibrate` writes, without the numbers of the machine.
 /// @param text  of a calibration.json
-/// @throws std::runtime_error with what is wrong: another file, a number that the data do not determine, numbers that
+/// @throws std::runtime_error with the problem: another file, a number that the data do not determine, or numbers that
 /// depend on each other
 [[nodiscard]] JointNormal read_joint_normal(std::string_view text);
 

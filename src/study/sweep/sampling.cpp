@@ -15,17 +15,17 @@ namespace {
 
 constexpr std::size_t k_morris_levels = 4;
 
-/// Numbers of a seed that are the same with every standard library.
+/// Random numbers of a seed, equal with every standard library.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : generator_(seed) {}
 
-  /// In the open interval from 0 to 1.
+  /// A number in the open interval from 0 to 1.
   [[nodiscard]] double share() {
     constexpr int k_digits = std::numeric_limits<double>::digits - 1;
     return std::ldexp(static_cast<double>(generator_() >> (64 - k_digits)) + 0.5, -k_digits);
   }
-  /// Below a small number.
+  /// An integer below a small number.
   [[nodiscard]] std::size_t below(std::size_t count) {
     return static_cast<std::size_t>(share() * static_cast<double>(count));
   }
@@ -37,7 +37,7 @@ class Draw {
   std::mt19937_64 generator_;
 };
 
-/// Inside the cube, where a distribution has a value.
+/// Moves a share inside the open interval, where every distribution has a value.
 [[nodiscard]] double inside(double share) {
   constexpr double k_edge = std::numeric_limits<double>::epsilon();
   return std::clamp(share, k_edge, 1.0 - k_edge);

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 [[nodiscard]] bool is_morris(const Sweep& sweep) { return sweep.design == "morris"; }
 
-/// One value for each run.
+/// Values of a formula, one for each run.
 [[nodiscard]] std::vector<double> values_of(const std::string& formula, const Table& results) {
   std::vector<std::string_view> names;
   for (const Column& column : results.columns()) {
@@ -47,13 +47,13 @@ namespace fs = std::filesystem;
 }
 
 [[nodiscard]] std::string with_interval(const Estimate& estimate) {
-  // No zero has a sign.
+  // Adding 0.0 turns a negative zero into a positive one.
   const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3 + 0.0; };
   return fmt::format("{:.3f} [{:.3f}, {:.3f}]", rounded(estimate.value), rounded(estimate.lower),
                      rounded(estimate.upper));
 }
 
-/// The factor's name without its tables where that says enough.
+/// The last part of the factor's key, if no other factor has the same; else the whole key.
 [[nodiscard]] std::string short_name(const Sweep& sweep, std::size_t factor) {
   const auto last_part = [](const std::string& key) { return key.substr(key.rfind('.') + 1); };
   const std::string name = last_part(sweep.factors[factor].key);
@@ -64,7 +64,7 @@ namespace fs = std::filesystem;
 
 using Style = figure::ChartSeries::Style;
 
-/// First-order indices beside total ones, each with its interval; a colour for each factor.
+/// Panel of first-order and total indices, each with its interval; a colour for each factor.
 [[nodiscard]] figure::ChartPanel index_panel(const Sweep& sweep, const ResultSensitivity& found) {
   figure::ChartPanel panel{.x = {.label = "Index", .lowest = 0.5, .highest = 2.5, .names = {"first order", "total"}},
                            .y = {.label = "Share of the variance"},
@@ -105,7 +105,7 @@ using Style = figure::ChartSeries::Style;
   return panel;
 }
 
-/// A row for each result and factor.
+/// Sensitivities as a table with a row for each result and factor.
 [[nodiscard]] Table sensitivity_table(const Sweep& sweep, const std::vector<ResultSensitivity>& found) {
   std::vector<std::string> results;
   std::vector<std::string> keys;

@@ -1,4 +1,4 @@
-/// Sensitivities by a sweep of design "saltelli" or "morris": which factor the spread of its results is due to.
+/// Sensitivities from a sweep of design "saltelli" or "morris": which factors cause the spread of its results.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace monograin {
 
-/// One result with its indices or its effects, as the design has it; the other member is empty.
+/// One result with its indices or its effects, depending on the design; the other member is empty.
 struct ResultSensitivity {
   std::string result;  ///< its formula
   SobolIndices sobol{};
@@ -19,21 +19,21 @@ struct ResultSensitivity {
   [[nodiscard]] std::size_t samples() const noexcept { return sobol.samples + morris.samples; }
 };
 
-/// @param folder      where the sweep has been run, with its results
+/// @param folder      of a sweep that has been run, with its results
 /// @param confidence  level of the two-sided intervals, between 0 and 1
-/// @throws std::runtime_error for a formula that the columns cannot answer, and what to do
-/// @throws std::invalid_argument where the design of the sweep says nothing of sensitivities
+/// @throws std::runtime_error for a formula that the columns cannot answer, with a remedy
+/// @throws std::invalid_argument if the design of the sweep gives no sensitivities
 [[nodiscard]] std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const std::filesystem::path& folder,
                                                               double confidence);
 
-/// How many samples the design has.
+/// Number of samples in the sweep's design.
 [[nodiscard]] std::size_t sample_count(const Sweep& sweep);
 
-/// For the reader.
+/// Sensitivities as text for the terminal.
 [[nodiscard]] std::string sensitivity_text(const Sweep& sweep, const std::vector<ResultSensitivity>& found);
 
-/// Writes sensitivity.csv, with a row for each result and factor, and sensitivity.svg: the indices with their
-/// intervals, a panel for each result; of elementary effects their spread over their mean size.
+/// Writes sensitivity.csv, with a row for each result and factor, and sensitivity.svg, with a panel for each result:
+/// indices with their intervals, or the spread of elementary effects over their mean size.
 /// @return why there is no figure; empty: there is one
 [[nodiscard]] std::string write_sensitivities(const Sweep& sweep, const std::vector<ResultSensitivity>& found,
                                               const std::filesystem::path& folder);

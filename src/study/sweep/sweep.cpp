@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 constexpr const char* k_results = "results.csv";
 constexpr const char* k_journal_extension = ".journal";
 constexpr std::string_view k_program_line = "# program: monograin ";
-constexpr std::size_t k_part = std::size_t{1} << 20U;  // of the results, that is written at once
+constexpr std::size_t k_part = std::size_t{1} << 20U;  // bytes of the results that are written at once
 constexpr const char* k_digest_line = "# sweep_digest: ";
 
 // --- one run
@@ -43,7 +43,7 @@ struct Outcome {
   std::string columns;
 };
 
-/// A text that can be a cell.
+/// Replaces the characters that a cell cannot contain.
 [[nodiscard]] std::string plain(std::string text) {
   for (char& c : text) {
     if (c == ',') c = ';';
@@ -53,10 +53,10 @@ struct Outcome {
   return text;
 }
 
-/// Columns that count rows say nothing of a whole run.
+/// True for columns that count rows, whose final and largest values say nothing about a run.
 [[nodiscard]] bool is_counter(const Column& column) { return column.name == "step" || column.name == "row"; }
 
-/// The largest value of a column; undefined ones do not count.
+/// Largest value of a column, without undefined values.
 [[nodiscard]] double largest(const Table& history, std::size_t column) {
   double result = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t row = 0; row < history.row_count(); ++row) result = std::fmax(result, history.at(row, column));
@@ -69,7 +69,7 @@ struct Headings {
   std::string text;
 };
 
-/// Final values come before largest ones.
+/// Headings of the results of one history: final values, then largest ones.
 [[nodiscard]] std::string headings_of(const std::vector<Column>& columns) {
   std::vector<std::string> headings;
   for (const Column& column : columns) {
@@ -81,8 +81,8 @@ struct Headings {
   return fmt::format("{}", fmt::join(headings, ","));
 }
 
-/// Final and largest values of a history's columns.
-/// @param headings  those of the last history, which most often are those of this one
+/// Collects the final and largest values of a history's columns.
+/// @param headings  cache: those of the last history, whose columns are mostly the same
 void summarise(const Table& history, Headings& headings, Outcome& outcome) {
   if (history.row_count() == 0) return;
   const std::vector<Column>& columns = history.columns();
@@ -176,7 +176,7 @@ void prepare(const fs::path& folder) {
   prepare_folder(folder);
 }
 
-/// Held by the process that makes results.csv of a folder's journals, so that no two do.
+/// Lock of the process that merges a folder's journals into results.csv, so that no two do.
 class FolderLock {
  public:
   explicit FolderLock(const fs::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
@@ -210,14 +210,14 @@ class Rows {
     return static_cast<std::size_t>(std::ranges::count(places_, true, &Place::is_there));
   }
 
-  /// Writes the results, all runs being there.
+  /// Writes the results. All runs have to be finished.
   void write(const TextSink& sink) {
     const std::vector<std::string> columns = all_columns();
     sink(fmt::format("{}{}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\nrun", k_program_line, version(),
                      sweep_.name, k_digest_line, sweep_.digest, sweep_.design, sweep_.scenario_name));
     for (const SweepFactor& factor : sweep_.factors) sink(',' + factor.heading());
     sink(fmt::format(",status,reason{}{}\n", columns.empty() ? "" : ",", fmt::join(columns, ",")));
-    std::unordered_map<std::string, std::vector<std::size_t>> targets;  // of each layout's cells
+    std::unordered_map<std::string, std::vector<std::size_t>> targets;  // columns of each layout's cells
     std::vector<std::string_view> cells;
     std::string text;
     for (std::size_t run = 0; run < places_.size(); ++run) {
@@ -265,7 +265,7 @@ class Rows {
     return cells;
   }
 
-  /// The columns of all runs, those of earlier runs first, final values before largest ones.
+  /// Columns of all runs in the order of the runs, final values before largest ones.
   [[nodiscard]] std::vector<std::string> all_columns() {
     std::vector<std::string> columns;
     const std::string* last = nullptr;
@@ -321,7 +321,7 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
     outcome.runs_now = runs.size();
   }
   const FolderLock lock(options.folder);
-  if (has_results(sweep, options.folder)) return outcome;  // another shard was the last
+  if (has_results(sweep, options.folder)) return outcome;  // another shard has written them
   Rows rows(sweep, options.folder);
   outcome.runs_missing = sweep.runs.size() - rows.count();
   if (outcome.runs_missing > 0) return outcome;

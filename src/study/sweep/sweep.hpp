@@ -1,4 +1,4 @@
-/// Runs sweeps: on all cores, over many processes, and on where they were stopped.
+/// Runs sweeps: on all cores, in several processes, and from where an interrupted sweep stopped.
 #pragma once
 
 #include <cstddef>
@@ -23,19 +23,20 @@ struct SweepOptions {
   std::function<void(std::size_t done, std::size_t of)> progress;
 };
 
-/// How far a sweep has come.
+/// Progress of a sweep.
 struct SweepOutcome {
-  std::size_t runs_before = 0;   ///< of the whole sweep, that were there already
+  std::size_t runs_before = 0;   ///< runs of the whole sweep that were finished before
   std::size_t runs_now = 0;      ///< done by this call
-  std::size_t runs_missing = 0;  ///< left to other shards; 0: results.csv stands
+  std::size_t runs_missing = 0;  ///< left to other shards; 0: results.csv is complete
 };
 
-/// Runs what is left of a sweep, or of its shard, and writes results.csv when all runs of the sweep are there.
+/// Runs the missing runs of a sweep, or of its shard, and writes results.csv once all runs of the sweep are finished.
 ///
-/// Finished runs are kept in journals, one for each shard: NAME.journal in the folder. A run that any of them holds is
-/// not done again; when together they hold all runs, they become results.csv, the same byte by byte whatever the number
-/// of threads, shards and interruptions, and are removed. A run that is refused, stops or fails is a row with a reason.
-/// @throws std::runtime_error where the folder holds something else, or cannot be written
+/// Finished runs are kept in journals, one for each shard: NAME.journal in the folder. A run that any journal holds is
+/// not repeated. When the journals together hold all runs, they become results.csv and are removed. The file does not
+/// depend on the number of threads, shards and interruptions. A run that is refused, stops or fails is a row with a
+/// reason.
+/// @throws std::runtime_error if the folder holds something else, or cannot be written
 [[nodiscard]] SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options);
 
 }  // namespace monograin

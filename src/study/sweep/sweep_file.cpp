@@ -34,7 +34,7 @@ namespace fs = std::filesystem;
 using Kind = KeySpec::Kind;
 
 constexpr double k_most_maxpro_runs = 1e5;
-/// The file as far as it decides on the runs: without what is asked of their results, comments and layout.
+/// Text of the part of the file that determines the runs: without the evaluation of results, comments and layout.
 [[nodiscard]] std::string text_of_runs(const toml::table& tree) {
   toml::table runs = tree;
   runs.erase("results");
@@ -59,7 +59,7 @@ class SweepReader {
     design_ = root.text("design");
     check_keys_of_design(root, keys);
     read_scenario_of(root, tree, text);
-    if (!scenario_) faults_.throw_if_any();  // nobody knows which keys there are
+    if (!scenario_) faults_.throw_if_any();  // without a scenario the keys are not known
     read_radius();
 
     read_factors(root);
@@ -156,14 +156,14 @@ class SweepReader {
     }
   }
 
-  /// The key's spec in the language of the scenario's model, or of one that it is varied over.
+  /// The key's spec in the language of the scenario's model, or of a model in the sweep.
   [[nodiscard]] KeyAnswer find_spec(const std::string& key) const {
     KeyAnswer answer = key_at(key, scenario_tree_, scenario_tree_["model"].value_or(std::string()));
     for (const std::string& model : models_) {
       KeyAnswer other = key_at(key, scenario_tree_, model);
       if (!other.spec) continue;
       if (answer.spec) {
-        // What one model accepts need not be refused for another.
+        // A choice that one model accepts must not be refused because another lacks it.
         answer.spec->choices.insert(answer.spec->choices.end(), other.spec->choices.begin(), other.spec->choices.end());
       } else {
         answer = std::move(other);
@@ -172,10 +172,10 @@ class SweepReader {
     return answer;
   }
 
-  /// A factor for the key, or a fault at its place.
+  /// A factor for the key, or none and a fault at its position.
   [[nodiscard]] std::optional<Factor> make_factor(const std::string& key, const SourceLocation& where) {
     KeyAnswer answer = find_spec(key);
-    // A pair is varied as the single number that may stand for it.
+    // A pair is varied as the single number that may replace it.
     if (answer.spec && answer.spec->kind == KeySpec::Kind::pair) answer.spec->kind = KeySpec::Kind::quantity;
     if (answer.spec && !can_be_varied(answer.spec->kind)) {
       const bool is_table = answer.spec->kind == Kind::table;
@@ -218,7 +218,7 @@ class SweepReader {
     }
   }
 
-  /// Numbers that a calibration has found are varied, too, together.
+  /// Adds the numbers of a calibration as factors that are varied jointly.
   void read_calibrated(const Section& root) {
     const SourceLocation where = root.value_place("calibration");
     const std::string named = fmt::format("calibration = \"{}\"", shown(root.text("calibration")));
@@ -249,7 +249,7 @@ class SweepReader {
     return design_ == "table" || design_ == "maxpro" ? Levels::whole : Levels::shares;
   }
 
-  /// The models that the sweep goes over, whose languages all count.
+  /// Reads the models over which the sweep varies; the languages of all of them count.
   void read_models(const Section::Origin& vary) {
     if (const toml::array* models = (*vary.table)["model"]["values"].as_array()) {
       for (const toml::node& model : *models) models_.push_back(model.value_or(std::string()));
@@ -283,7 +283,7 @@ class SweepReader {
     }
   }
 
-  /// Whether all names in the constraints are keys that have a number; a fault for each that is not.
+  /// Reports names in the constraints that are not keys with a number.
   void check_constraint_names(bool takes_lists) {
     if (!are_keys_known_) return;  // a name may be a key that is misspelt in [vary]
     std::vector<std::string_view> names;
@@ -305,7 +305,7 @@ class SweepReader {
     }
   }
 
-  /// The first constraint that a run breaks, or nullptr.
+  /// First constraint that a run breaks, or nullptr.
   [[nodiscard]] const std::string* broken_constraint(const std::vector<SweepValue>& run) const {
     const Constraint::Lookup lookup = [&](std::string_view name) -> std::optional<double> {
       for (std::size_t f = 0; f < factors_.size(); ++f) {
@@ -323,7 +323,7 @@ class SweepReader {
 
   // --- the runs
 
-  /// The values of a run in SI, which needs its radius.
+  /// Values of a run in SI, which needs the run's radius.
   [[nodiscard]] std::vector<SweepValue> resolved(const std::vector<FactorValue>& values) const {
     double radius = base_radius_;
     for (std::size_t f = 0; f < factors_.size(); ++f) {
@@ -457,10 +457,10 @@ class SweepReader {
       }
     }
     if (runs_.size() == 0) faults_.add(constraints_.front().where, "no point of the design meets the constraints");
-    if (left_out_ > 0) points_ = {};  // those that are left fill another space
+    if (left_out_ > 0) points_ = {};  // the remaining points fill another space
   }
 
-  /// The values of a point of the cube at a level of the product of all lists.
+  /// Values at a point of the cube, and at a level of the product of all lists.
   [[nodiscard]] std::vector<FactorValue> values_at(std::span<const double> point, std::size_t level) const {
     std::vector<FactorValue> values(factors_.size());
     std::size_t axis = point.size();
@@ -502,7 +502,7 @@ class SweepReader {
     if (faults_.size() == 0) points_ = points_of(table.rows.size());
   }
 
-  /// Puts the factors into the order of the columns; those that [vary] tells of keep what it says.
+  /// Puts the factors into the order of the columns; factors in [vary] keep their ranges and lists.
   std::vector<std::string> take_columns(const DesignTable& table) {
     for (const DesignTable::Cell& cell : table.headings) {
       if (cell.text.starts_with("model") && parse_design_heading(cell.text).key == "model") {
@@ -560,8 +560,8 @@ class SweepReader {
     runs_.add(run);
   }
 
-  /// The table's rows in the cube: numbers between the ends that [vary] gives, else between their own smallest and
-  /// largest; words and listed values as levels.
+  /// The table's rows as points of the cube. A number is scaled between the ends that [vary] gives, else between its
+  /// own smallest and largest value; words and listed values are levels.
   [[nodiscard]] Design points_of(std::size_t rows) const {
     Design design{.factors = 0, .level_count = 0, .coordinates = {}, .levels = {}};
     std::vector<std::optional<FactorRange>> ranges;
@@ -595,8 +595,8 @@ class SweepReader {
 
   // --- runs against the scenario
 
-  /// Refuses a sweep whose scenario is itself at fault: whatever a run sets, the scenario's own text has a fault. The
-  /// first run that is accepted tells which files the scenario names, which decide on the results too.
+  /// Reports the faults of the scenario itself, which occur whatever values a run sets. The first accepted run shows
+  /// which files the scenario names; they determine the results, too.
   void check_runs() {
     const std::vector<SweepFactor> factors = sweep_factors();
     std::optional<std::vector<Fault>> own;
@@ -644,21 +644,21 @@ class SweepReader {
   FaultList faults_;
   Reading reading_;
   std::string design_;
-  std::string digested_;  ///< the texts that decide on the results
+  std::string digested_;  ///< texts that determine the results
   toml::table scenario_tree_;
   std::optional<ScenarioTemplate> scenario_;
   std::string scenario_name_;
   fs::path scenario_folder_;
-  std::vector<std::string> models_;  ///< that the sweep goes over
+  std::vector<std::string> models_;  ///< models over which the sweep varies
   std::vector<Factor> factors_;
-  bool are_keys_known_ = true;  ///< every key in [vary] is one
+  bool are_keys_known_ = true;  ///< every key in [vary] exists
   std::vector<PlacedConstraint> constraints_;
-  std::vector<std::vector<FactorValue>> raw_;  ///< of a table
+  std::vector<std::vector<FactorValue>> raw_;  ///< values of a table
   SweepRuns runs_;
   std::optional<sweep::PlacedBands> bands_;
   std::optional<JointNormal> joint_;
-  std::size_t first_calibrated_ = 0;  ///< factor: those from here on are numbers of the calibration
-  double base_radius_ = 1.0;  ///< the scenario's own [m]; where it has none that can be read, its check will tell
+  std::size_t first_calibrated_ = 0;  ///< index of the first factor that is a number of the calibration
+  double base_radius_ = 1.0;  ///< the scenario's own [m]; if it cannot be read, the scenario's check reports that
   std::size_t left_out_ = 0;
   Design points_;
 };

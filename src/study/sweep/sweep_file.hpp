@@ -12,7 +12,7 @@
 
 namespace monograin {
 
-/// Which percentiles of the histories are asked for.
+/// Percentiles of the histories that a sweep file requests.
 struct BandRequest {
   std::string x;                                     ///< column of the histories
   std::vector<std::string> y;                        ///< columns
@@ -32,20 +32,21 @@ struct Sweep {
   bool keeps_histories = false;
   std::vector<std::string> results;  ///< formulas for which indices are estimated
   std::optional<BandRequest> bands{};
-  std::string digest;  ///< of all that decides on the results: sweep, scenario, tables, program version
+  std::string digest;  ///< of everything that determines the results: sweep, scenario, tables, program version
 };
 
-/// Reads and checks a sweep file with its scenario and table, which are sought from its folder, and makes its runs.
+/// Reads and checks a sweep file with its scenario and table, and makes its runs. Paths are relative to the file's
+/// folder.
 ///
-/// A run that the language refuses, such as one with a Poisson's ratio of 0.6, is no fault of the file.
+/// A run that the language refuses, for example with a Poisson's ratio of 0.6, is no fault of the file.
 /// @throws ScenarioError with every fault found
 [[nodiscard]] Sweep read_sweep(const std::filesystem::path& file);
 
-/// The scenario of a run.
+/// Scenario of a run.
 /// @throws ScenarioError with every fault of the scenario with these values
 [[nodiscard]] CheckedScenario scenario_of(const Sweep& sweep, std::size_t run);
 
-/// The runs as a CSV table that `design = "table"` reads back, bit by bit.
+/// Runs as a CSV table, which `design = "table"` reads back bit by bit.
 [[nodiscard]] std::string design_text(const Sweep& sweep);
 
 }  // namespace monograin

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a line is about, before its first comma.
+// Kinds of lines, which stand before the first comma.
 constexpr std::string_view k_journal = "monograin-sweep";
 constexpr std::string_view k_columns = "columns";
 constexpr std::string_view k_row = "row";
@@ -33,14 +33,14 @@ constexpr std::size_t k_digest_length = 16;
   return fmt::format("{:016x}", XXH3_64bits(payload.data(), payload.size()));
 }
 
-/// The content of a line without its digest, or nothing where the line is not as it was written.
+/// Content of a line without its digest; none if the line was not written completely.
 [[nodiscard]] std::optional<std::string_view> payload_of(std::string_view line) {
   if (line.size() <= k_digest_length || line[k_digest_length] != ' ') return std::nullopt;
   const std::string_view payload = line.substr(k_digest_length + 1);
   return line.substr(0, k_digest_length) == line_digest(payload) ? std::optional(payload) : std::nullopt;
 }
 
-/// Takes what is before the next comma off the text.
+/// Removes the first cell, up to the next comma, from the text and returns it.
 std::string_view take_cell(std::string_view& text) {
   const std::size_t comma = std::min(text.find(','), text.size());
   const std::string_view cell = text.substr(0, comma);

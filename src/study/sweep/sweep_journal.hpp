@@ -1,4 +1,4 @@
-/// The finished runs of a sweep that is under way, kept so that a killed sweep goes on where it was.
+/// Journal of the finished runs of a sweep, from which an interrupted sweep continues.
 #pragma once
 
 #include <cstddef>
@@ -11,20 +11,20 @@
 
 namespace monograin {
 
-/// What one run has come to. Texts are as in the results: cells with commas between them, nothing quoted.
+/// Result of one run. Texts are as in the results: cells with commas between them, nothing quoted.
 struct SweepRow {
   std::size_t run = 0;     ///< from 1
   std::string status;      ///< complete, stopped, failed, refused
   std::string reason;      ///< why it is not complete
-  std::size_t layout = 0;  ///< which columns the cells belong to
+  std::size_t layout = 0;  ///< index of the columns that the cells belong to
   std::string cells;
 };
 
-/// A journal as it is found: where its rows are, which themselves stay in the file.
+/// An existing journal: the positions of its rows, which themselves stay in the file.
 class SweepRecord {
  public:
-  /// Reads a journal up to its first line that is not whole.
-  /// @throws std::runtime_error where it is the journal of another sweep, or none at all, saying what to do
+  /// Reads a journal up to its first incomplete line.
+  /// @throws std::runtime_error for the journal of another sweep, and for another file, with a remedy
   SweepRecord(const std::filesystem::path& file, const std::string& digest);
 
   struct Place {
@@ -34,7 +34,7 @@ class SweepRecord {
   [[nodiscard]] const std::vector<Place>& rows() const noexcept { return rows_; }
   /// Headings of columns.
   [[nodiscard]] const std::vector<std::string>& layouts() const noexcept { return layouts_; }
-  /// Bytes of whole lines; what follows was cut off in writing.
+  /// Number of bytes in complete lines; the rest of the file was cut off during writing.
   [[nodiscard]] std::uint64_t length() const noexcept { return length_; }
 
   /// @throws std::runtime_error where it cannot be read
@@ -48,18 +48,18 @@ class SweepRecord {
   std::uint64_t length_ = 0;
 };
 
-/// A journal that rows are appended to. Every line begins with its own digest, so that a torn one is known. A row that
-/// append() has returned from outlives the process.
+/// A journal to which rows are appended. Every line begins with its own digest, by which an incomplete line is
+/// recognized. When append() has returned, the row survives the end of the process.
 class SweepJournal {
  public:
-  /// Begins a journal or goes on with one, without its torn end.
-  /// @throws std::runtime_error as SweepRecord does, and where another process is at work on it
+  /// Begins a journal or continues one, without its incomplete end.
+  /// @throws std::runtime_error as SweepRecord, and if another process uses the journal
   SweepJournal(std::filesystem::path file, const std::string& digest);
   ~SweepJournal();
   SweepJournal(const SweepJournal&) = delete;
   SweepJournal& operator=(const SweepJournal&) = delete;
 
-  /// @param columns  headings of the row's cells; its layout does not count
+  /// @param columns  headings of the row's cells; row.layout is ignored
   /// @throws std::runtime_error where the row cannot be written
   void append(const SweepRow& row, const std::string& columns);
 

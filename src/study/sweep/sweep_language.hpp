@@ -1,4 +1,4 @@
-/// The keys of a sweep file, and which designs they go with.
+/// Keys of a sweep file, and the designs that use them.
 #pragma once
 
 #include <array>
@@ -21,10 +21,10 @@ inline constexpr std::string_view k_index_designs = "saltelli, morris";
 
 [[nodiscard]] bool is_one_of(std::string_view design, std::string_view listed);
 
-/// The sweep as a whole. @param contains_scenario  whether the scenario stands in the file itself
+/// Keys of the sweep as a whole. @param contains_scenario  true if the scenario stands in the file itself
 [[nodiscard]] std::vector<KeySpec> root_keys(bool contains_scenario);
 
-/// The percentile bands of histories.
+/// Keys of the percentile bands of histories.
 [[nodiscard]] std::vector<KeySpec> band_keys();
 
 }  // namespace monograin::sweep

@@ -1,4 +1,4 @@
-/// Runs of a sweep: what each sets the varied keys to.
+/// Runs of a sweep: the values to which each run sets the varied keys.
 #pragma once
 
 #include <cstddef>
@@ -18,15 +18,15 @@ struct SweepFactor {
   std::string unit;        ///< SI, "-" of a pure number; empty: its values are words
   bool is_toggle = false;  ///< its words are true and false
 
-  /// As in the results: "material.yield_stress[Pa]".
+  /// Heading of the column in the results: "material.yield_stress[Pa]".
   [[nodiscard]] std::string heading() const { return Column{key, unit, {}}.heading(); }
 };
 
 /// The value of a key in one run: a number in SI, or a word.
 using SweepValue = std::variant<double, std::string>;
 
-/// Runs in the order of the design, each with a value for every factor. Of a million of them only numbers are kept:
-/// words stand in a list.
+/// Runs in the order of the design, each with a value for every factor. Only numbers are stored for each run, which may
+/// be one of a million; words are stored in a list.
 class SweepRuns {
  public:
   void add(const std::vector<SweepValue>& values);
@@ -38,15 +38,15 @@ class SweepRuns {
 
  private:
   std::size_t size_ = 0;
-  std::vector<double> cells_;                    ///< run by run: numbers, and places in the factor's words
-  std::vector<std::vector<std::string>> words_;  ///< of each factor; empty: it has numbers
+  std::vector<double> cells_;                    ///< run by run: numbers, or indices of the factor's words
+  std::vector<std::vector<std::string>> words_;  ///< words of each factor; empty: it has numbers
 };
 
 /// A value as a cell of a CSV file.
 [[nodiscard]] std::string cell_of(const SweepValue& value);
 
-/// The scenario with these values, one for each factor.
-/// @throws ScenarioError with every fault of the scenario with them
+/// The scenario with given values, one for each factor.
+/// @throws ScenarioError with every fault of the scenario with these values
 [[nodiscard]] CheckedScenario scenario_with(const ScenarioTemplate& scenario, std::span<const SweepFactor> factors,
                                             std::span<const SweepValue> values);
 

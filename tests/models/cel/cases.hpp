@@ -47,7 +47,7 @@ inline CheckedScenario cel_walls(double modulus_over_yield, double poisson_ratio
   return between(cel_scenario(Configuration::walls, modulus_over_yield, poisson_ratio, {}), std::move(walls));
 }
 
-/// A run by an integrator of a scenario file, "auto" included.
+/// A run by an integrator as a scenario file names it, including "auto".
 inline TestRun run_by(const CheckedScenario& scenario, const std::string& integrator, const Tolerances& tolerances = {},
                       bool merges_walls = true) {
   TestRun result{make_scene(scenario, merges_walls), {}};
@@ -63,7 +63,7 @@ struct FlowEvent {
   std::size_t wall = 0;
 };
 
-/// A curve computed elsewhere, with the scenario that its header states and one output point for each row.
+/// A reference curve computed by another program, with the scenario of its header and one output point for each row.
 struct ReferenceCurve {
   Table table;
   CheckedScenario scenario;
@@ -119,8 +119,8 @@ inline std::string class_of(const TestRun& run, std::size_t wall) {
   throw std::out_of_range("no class has wall " + std::to_string(wall));
 }
 
-/// Largest error of a run against a curve, each over the largest magnitude of its kind; infinity where rows are
-/// missing.
+/// Largest error of a run against a curve for each kind of column, over the largest magnitude of that kind; infinity if
+/// rows are missing.
 struct CurveError {
   double force = 0.0, area = 0.0, energy = 0.0, core = 0.0, centre = 0.0;
   double event_time = 0.0;  ///< over the length of the run

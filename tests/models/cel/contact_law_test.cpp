@@ -1,4 +1,4 @@
-// One contact of an elastic-plastic particle by itself: values computed elsewhere, derivatives, limits.
+// One contact of an elastic-plastic particle by itself: independently computed values, derivatives, limits.
 
 #include "cel/contact_law.hpp"
 
@@ -32,7 +32,7 @@ const std::vector<Material>& materials() {
   return all;
 }
 
-/// Dents over a_Y: just grown, in the middle of each part of the law, and large.
+/// Dent radii over a_Y: just grown, in the middle of each part of the law, and large.
 constexpr double k_growths[] = {1.001, 1.05, 1.3, 2.0, 4.0};
 
 /// Dents of a material that are no larger than the particle.
@@ -44,7 +44,7 @@ std::vector<double> dents_of(const Material& material) {
   return dents;
 }
 
-/// A place of a contact: support distance of the core under it and coverage factor.
+/// Surroundings of a contact: support distance of the core under it, and coverage factor.
 struct Surroundings {
   double l, m;
 };
@@ -57,7 +57,7 @@ std::vector<double> displacements_of(const Material& material, const Dent& dent,
   return {1e-6 * limit, 0.03 * limit, 0.4 * limit, limit, 1.1 * limit};
 }
 
-/// Calls a check for every material, dent, place and elastic displacement.
+/// Calls a check for every material, dent, surroundings and elastic displacement.
 template <class Check>
 void for_all_contacts(const Check& check) {
   for (const Material& material : materials()) {
@@ -76,19 +76,19 @@ void for_all_contacts(const Check& check) {
   }
 }
 
-/// Expects a derivative to be that of a function, by differences over a small share of the length over which that one
+/// Compares a derivative with differences of its function over a small share of the length over which the function
 /// changes.
 template <class Function>
 void expect_derivative(double derivative, const Function& function, double x, double length, const char* name) {
   constexpr double share = 5e-3;
-  // Truncation, and a few eps of the function over the share; x is known to that of its length but for its rounding.
+  // Truncation error, and a few eps of the function over the share; x has the round-off of its own magnitude.
   const double tolerance = 4e-12 + 8.0 * k_epsilon / share * (x / length);
   const double difference = central_difference(function, x, share * length);
   EXPECT_LE(std::abs(derivative - difference), tolerance * (std::abs(derivative) + std::abs(function(x)) / length))
       << name << ": derivative = " << derivative << ", difference = " << difference << ", x = " << x;
 }
 
-// --- values computed elsewhere
+// --- independently computed values
 
 TEST(CelContactReference, IsMetWithItsComplexStepDerivatives) {
   const Table table = reference("point_values");
@@ -99,8 +99,7 @@ TEST(CelContactReference, IsMetWithItsComplexStepDerivatives) {
     const Dent dent = dent_of(material, value("zeta"));
     const Contact at_limit = contact_under(material, dent, 1.0, 1.0, contact_at(material, dent, 1.0, 1.0, 0.0).H);
     const auto expect = [&](std::string_view column, double actual) {
-      // Next to yield x = xi - xi_Y has lost six digits
-      // to the numbers that it is the difference of; h, and derivatives, take that over.
+      // Next to yield the difference x = xi - xi_Y has lost six digits, which h and the derivatives inherit.
       const double lost = value("xi") / (value("xi") - material.xi_Y);
       EXPECT_LE(relative_error(actual, value(column)), std::max(1e-12, 4.0 * k_epsilon * lost))
           << column << " of row " << row << ": " << actual << " instead of " << value(column);
@@ -144,12 +143,12 @@ TEST(CelInfluenceReference, IsMetBySelfTermAndNeighbours) {
 TEST(CelDent, OfAFreshSurfaceIsNone) {
   for (const Material& material : materials()) {
     const Dent dent = dent_of(material, material.a_Y);
-    // Johnson's parameter is at yield but for rounding.
+    // Johnson's parameter has its value at yield, up to round-off.
     EXPECT_NEAR(dent.h, 0.0, 1e-16 * material.a_Y * material.a_Y);
     EXPECT_LE(relative_error(dent.p, k::pY), 4 * k_epsilon);
     EXPECT_LE(relative_error(dent.q, 1.0 / 3.0), 4 * k_epsilon);
     EXPECT_LE(relative_error(dent.root_Gam, 1.0), 4 * k_epsilon);
-    // The indentation grows at once: by the term of the fourth power, and by rounding in the other one.
+    // The indentation grows at once, by its fourth-power term; the other term adds round-off only.
     const double rounding = 1e-14 * material.a_Y;
     EXPECT_LE(std::abs(dent.h_zeta - 2.0 * k::k1 * std::pow(material.a_Y, 3)), rounding);
   }
@@ -166,7 +165,7 @@ TEST(CelContact, OfAFreshSurfaceIsHertzs) {
       EXPECT_LE(relative_error(std::sqrt(contact.area), hertz_contact_radius(1.0, u)), tolerance) << u;
       EXPECT_LE(relative_error(contact.stored, hertz_energy(material.Es, 1.0, u)), tolerance) << u;
     }
-    // The limit force is met where the dent of the fresh surface is.
+    // The limit force is reached where the dent is that of the fresh surface.
     const Contact at_yield = contact_at(material, dent, 1.0, 1.0, material.a_Y * material.a_Y);
     EXPECT_LE(std::abs(at_yield.F_over_H - 1.0), 16 * k_epsilon);
   }
@@ -187,7 +186,7 @@ TEST(CelContact, GoesOnFromHertzAtYieldWithoutAKink) {
     EXPECT_LE(difference_at(1e-4), 6.0 * std::pow(1e-4, 1.5));
     EXPECT_LE(difference_at(1e-6), 6.0 * std::pow(1e-6, 1.5));
     const Contact at_yield = contact_at(material, dent_of(material, material.a_Y), 1.0, 1.0, 0.0);
-    // The slope goes with the root of the excess over yield, which is the root of its rounding.
+    // The slope goes like the square root of the excess over yield, which here is round-off.
     EXPECT_LE(relative_error(at_yield.H_by.zeta, 4.0 * material.Es * material.a_Y * material.a_Y), 5e-8);
   }
 }
@@ -209,7 +208,7 @@ TEST(CelDent, GrowsInAllThatItSays) {
 }
 
 TEST(CelDent, OfAHalfSpaceHasTheFullyPlasticPressure) {
-  // Small against the particle, large against the elastic strain.
+  // A displacement that is small against the particle and large against the elastic strain.
   const Material material(1e-12, 0.3);
   const Dent dent = dent_of(material, 1e-4);
   EXPECT_NEAR(dent.p, k::pinf, 3e-3);
@@ -235,7 +234,7 @@ TEST(CelDent, HasTheDerivativesOfItsQuantities) {
   }
 }
 
-/// Expects the slopes of a quantity of a contact, made from a dent, its surroundings and its own coordinate.
+/// Compares the slopes of a quantity of a contact with respect to its dent, its surroundings and its own coordinate.
 template <class Make>
 void expect_slopes(const Make& make, double Contact::*value, const Slopes& by, const Material& material,
                    const Dent& dent, const Surroundings& at, double coordinate, const char* name) {
@@ -353,7 +352,7 @@ TEST(CelAdvance, IsSmoothFromShrinkingToBulging) {
 }
 
 TEST(CelAdvance, IsAsFarAsTheCoreShrinksAndFurtherThanItBulges) {
-  // Far from the change of slope, but for its width.
+  // Far from the change of slope the result differs only by its width.
   EXPECT_NEAR(advance_of(-0.5).c_l, -1.0, 1e-4);
   EXPECT_NEAR(advance_of(0.5).c_l, -k::chi, 1e-4);
   EXPECT_EQ(advance_of(0.0).c_l, -0.5 * (1.0 + k::chi));

@@ -27,7 +27,7 @@ double uniform(Generator& generator, double from, double to) {
   return std::uniform_real_distribution(from, to)(generator);
 }
 
-/// Walls at angles that their influence allows, none with an opposite of the same class.
+/// Walls at angles that their influence allows; no class contains two opposite walls.
 std::vector<ContactClass> single_walls(const std::vector<Vector3d>& normals) {
   std::vector<ContactClass> classes;
   for (const Vector3d& normal : normals)
@@ -54,7 +54,7 @@ std::vector<Matrix3d> spreads_of(std::span<const ContactClass> classes) {
   return spreads;
 }
 
-/// A core of unit determinant that walls could have made: a polynomial of what they load it by.
+/// A core of unit determinant that walls could have produced: a polynomial of their load tensor.
 Matrix3d random_core(Generator& generator, std::span<const ContactClass> classes) {
   Matrix3d C = Matrix3d::Identity();
   for (int n = 0; n < 2; ++n) {
@@ -66,8 +66,8 @@ Matrix3d random_core(Generator& generator, std::span<const ContactClass> classes
   return C / std::cbrt(C.determinant());
 }
 
-/// A material, walls, and a state that need not solve the equations: forces below the limits, dents, a core that has
-/// flowed, a centre that has moved.
+/// A material, walls, and a state that need not solve the equations: forces below the limits, dents, a deformed core, a
+/// displaced centre.
 struct RandomCase {
   double poisson_ratio;
   Material material;

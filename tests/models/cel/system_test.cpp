@@ -1,4 +1,4 @@
-// Whole runs of the coupled elastic-plastic particle: curves computed elsewhere, limits, symmetries, control.
+// Whole runs of the coupled elastic-plastic particle: independent reference curves, limits, symmetries, control.
 
 #include "cel/system.hpp"
 
@@ -27,7 +27,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// --- curves computed elsewhere
+// --- independent reference curves
 
 /// Largest errors at tight tolerances, over the largest value or the length of the run.
 struct Bounds {
@@ -76,8 +76,8 @@ TEST_P(CelReference, IsMetWithEveryWallAClassOfItsOwnAroundAFreeCentre) {
   expect_met("auto", 1e-10, k_at_default_tolerances, false);
 }
 
-// The reference's influence leaves out terms beyond the 4000th, 6e-9 of it. The area of a contact about to be lost,
-// on a dent, changes steeply with the displacement, and with it feels them most.
+// The reference's influence leaves out terms beyond the 4000th, 6e-9 of it. On a dent, the area of a contact about to
+// be lost changes steeply with the displacement, and is most sensitive to these terms.
 constexpr Bounds k_with_steep_areas{.area = 5e-8, .event_time = 3e-9};
 
 INSTANTIATE_TEST_SUITE_P(
@@ -138,7 +138,7 @@ TEST_P(CelCycle, RetracesItsUnloadingAndRejoinsTheFirstLoading) {
       EXPECT_NEAR(with_cycle[40 + k], with_cycle[40 - k], 1e-9 * scale) << name << " of reloading, point " << k;
       EXPECT_NEAR(with_cycle[60 + k], without[20 + k], 1e-8 * scale) << name << " of loading on, point " << k;
     }
-    // The unloading is not the loading.
+    // Unloading does not retrace loading.
     EXPECT_GT(std::abs(with_cycle[40] - without[18]), 1e-3 * scale) << name;
   }
 }
@@ -152,7 +152,7 @@ double largest_fall(const std::vector<double>& values) {
   return fall;
 }
 
-/// Programs in which every part of the law has a share: loading by turns, loss and return of contacts, free centre.
+/// Programs that use every part of the law: loading by turns, loss and return of contacts, free centre.
 std::vector<CheckedScenario> eventful_scenarios() {
   const std::vector<Vector3d> axial{{0, 0, 1}, {0, 0, -1}};
   return {
@@ -171,8 +171,8 @@ TEST(CelSystem, NeverForgetsFlowOrGivesBackWhatItDissipates) {
     SCOPED_TRACE(describe(scenario));
     const TestRun now = run_by(scenario, "auto", relative(1e-10));
     ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
-    // Where some contacts flow for the first time and others do not yet, the law itself gives back a little: with three
-    // walls 1.8e-8 of the last work, as computed elsewhere, too.
+    // Where some contacts flow for the first time and others do not yet, the law itself returns some work: with three
+    // walls 1.8e-8 of the last work, also in the independent computation.
     EXPECT_GE(lost_dissipation(now), -1e-7);
     EXPECT_GE(least_dissipation(now), -1e-7);
     EXPECT_GT(now.last("dissipation"), 0.2 * now.last("work"));
@@ -257,7 +257,7 @@ TEST(CelSystem, DoesNotFeelAWallThatNeverTouches) {
 }
 
 TEST(CelSystem, SharesTheTravelOfOneWallBetweenTwo) {
-  // A punch on a particle that lies on an anvil does to it what two walls do that go half as far.
+  // A punch on a particle that lies on an anvil has the effect of two walls with half its displacement.
   const std::vector<Vector3d> axial{{0, 0, 1}, {0, 0, -1}};
   const TestRun punch = run_by(with_free_centre(cel_walls(25.0, 0.3, axial, {{0.3, 0.0}, {0.24, 0.0}, {0.5, 0.0}})),
                                "auto", relative(1e-10));
@@ -314,13 +314,13 @@ TEST(CelForceControl, LetsAWallStandWhereItsForceEnds) {
       run_by(cel_scenario(Configuration::simple, 25.0, 0.3, {force_ramp(0.03), force_ramp(0.0), hold()}), "auto");
   ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
   EXPECT_NEAR(now.last("axial.force"), 0.0, 1e-15);
-  // A dent stays.
+  // A dent remains.
   EXPECT_GT(now.last("axial.displacement"), 0.01);
   EXPECT_NEAR(now.last("stored_energy"), 0.0, 1e-10 * now.last("work"));
 }
 
 TEST(CelForceControl, LetsWallsWithoutForceGiveWay) {
-  // Two walls make the particle bulge against others that bear nothing, one of them first in the air.
+  // Two walls make the particle bulge against idle walls, one of which begins with a gap.
   const std::vector<Vector3d> axial{{0, 0, 1}, {0, 0, -1}};
   const std::vector<Vector3d> all{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}};
   const TestRun alone = run_by(with_points(cel_walls(25.0, 0.3, axial, {{0.3, 0.3}}), 6), "auto");
@@ -354,7 +354,7 @@ TEST(CelForceControl, LetsTheCentreGoToWallsWithoutForce) {
 }
 
 TEST(CelForceControl, StandsStillUnderNoForceAfterAnyStep) {
-  // The second step ends in the air; no force then leaves the wall there.
+  // The second step ends without contact; no force then leaves the wall there.
   const TestRun now = run_by(
       with_points(cel_scenario(Configuration::simple, 50.0, 0.3, {ramp(0.2), ramp(0.1), force_ramp(0.0)}), 4), "auto");
   ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
@@ -388,7 +388,7 @@ TEST(CelLimit, IsWhereTheContactsCoverTheSurface) {
 }
 
 TEST(CelLimit, IsNotMetInsideTheFittedRange) {
-  // Two walls to 0.5 R0, a die to 0.47 R0, six walls to 0.19 R0; Poisson's ratio and E/Y to their ends.
+  // Two walls to 0.5 R0, a die to 0.47 R0, six walls to 0.19 R0; Poisson's ratio and E/Y at the ends of their ranges.
   const std::pair<Configuration, double> ranges[] = {
       {Configuration::simple, 0.5}, {Configuration::die, 0.47}, {Configuration::hydrostatic, 0.19}};
   for (const auto& [configuration, end] : ranges) {
@@ -416,7 +416,7 @@ TEST(CelWarning, NamesWhatTheLawIsNotFittedTo) {
   EXPECT_TRUE(warnings(6.25, 0.5).empty());
 }
 
-// --- what a scenario may say
+// --- settings of a scenario
 
 std::string text_with(const std::string& poisson_ratio, const std::string& second_normal) {
   return "model = \"cel\"\n[particle]\nradius = 1\n[material]\nyoungs_modulus = 1\nyield_stress = 0.04\n"

@@ -11,7 +11,7 @@
 namespace monograin::compressible {
 namespace {
 
-// Events nearer than this to a row make its regime a matter of taste (over the run's length).
+// Distance of an event from a row, over the run's length, within which the row may have either regime.
 constexpr double k_near_event = 1e-6;
 
 const std::map<std::string, std::string> k_event_names{
@@ -24,7 +24,7 @@ const std::map<std::string, std::string> k_event_names{
     {"stop", "until-met"},
 };
 
-/// The words `key=value` of a header line.
+/// Pairs `key=value` of a header line.
 std::map<std::string, std::string> fields_of(std::string_view line) {
   std::map<std::string, std::string> fields;
   std::istringstream words{std::string(line)};
@@ -65,7 +65,7 @@ Step back_to(double axial, double rate, double stress) {
   return until(step, Quantity::stress_axial, stress);
 }
 
-/// What the line `path` of each file says.
+/// Configuration and program in the line `path` of a reference file.
 std::pair<Configuration, std::vector<Step>> program_of(const std::string& name) {
   const std::string number = name.substr(0, 4);
   if (number == "mp01") return {Configuration::hydrostatic, {strain(-0.08), back_to(0.0, 0.08, 0.0)}};
@@ -241,7 +241,7 @@ PointErrors errors_against(const PointReference& reference, const RunRecord& run
     const auto our_column = ours.find(column.name);
     if (!our_column || column.name == "step" || column.holds_words()) continue;
     const std::vector<double> values = theirs.column(column.name);
-    // A stress that is prescribed as zero is round-off of the others.
+    // A prescribed zero stress is the round-off of the other stresses.
     const bool is_stress = column.name == "stress_axial" || column.name == "stress_lateral";
     const double scale = column.name == "time" ? length
                          : is_stress           ? std::max(largest(theirs.column("p")), largest(theirs.column("s")))
@@ -274,7 +274,7 @@ PointErrors errors_against(const PointReference& reference, const RunRecord& run
     }
   }
 
-  // What happens at corners of the program the files do not list.
+  // The files do not list events at corners of the program.
   std::vector<std::pair<std::string, double>> actual;
   for (std::size_t i = 0; i < run.events.row_count(); ++i) {
     const std::string name(run.events.word(i, *run.events.find("event")));

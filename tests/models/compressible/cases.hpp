@@ -15,7 +15,7 @@ namespace monograin::compressible {
 
 /// The source's base case (Table 6).
 [[nodiscard]] Parameters base_case();
-/// The same with other ratios of stiffness, shear and tensile strength.
+/// The base case with other ratios of stiffness, shear and tensile strength.
 [[nodiscard]] Parameters base_case(double stiffness_ratio, double shear_ratio, double tensile_ratio);
 /// Lactose DT (Table 4) from relative density 0.5 as a Drucker-Prager cap.
 [[nodiscard]] Parameters lactose(double transition_width);
@@ -57,7 +57,7 @@ struct PointErrors {
 };
 [[nodiscard]] PointErrors errors_against(const PointReference& reference, const RunRecord& run);
 
-/// Whether this integrator can run that scenario.
+/// True if an integrator can run a scenario.
 [[nodiscard]] bool is_offered(std::string_view integrator, const CheckedScenario& scenario);
 
 }  // namespace monograin::compressible

@@ -1,4 +1,4 @@
-// The compressible contact law by itself: limits, joints, derivatives, inverses, work, unloading, its table.
+// The compressible contact law by itself: limits, joints, derivatives, inverses, work, unloading and its table.
 
 #include "compressible/contact_law.hpp"
 
@@ -47,7 +47,7 @@ TEST(CompressibleLoading, HasTheSlopeAndTheForceOfItsDerivatives) {
     for (const double d : {0.01, 0.1, 0.149, 0.151, 0.3, 0.5}) {
       const auto force = [&](double x) { return force_in(k_law, part, x); };
       const auto work = [&](double x) { return work_in(k_law, part, x); };
-      // Truncation 3^7 h^6/140 with h = 1/128 is 4e-12, rounding over h less.
+      // The truncation error 3^7 h^6/140 with h = 1/128 is 4e-12; round-off over h is smaller.
       EXPECT_NEAR(central_difference(force, d, 0.01), slope_in(k_law, part, d), 1e-11 * slope_in(k_law, part, d)) << d;
       EXPECT_NEAR(central_difference(work, d, 0.01), force(d), 1e-11 * force(0.5)) << d;
     }
@@ -73,14 +73,14 @@ TEST(CompressibleLoading, IsInvertedByTheDisplacementUnderAForce) {
     const LoadingLaw law{std::exp(5.0 * share(generator) - 1.0), 0.02 + 0.4 * share(generator),
                          0.1 + 8.0 * share(generator)};
     const double d = 0.5 * share(generator);
-    // A rounding of the force is one of d/f f' in d.
+    // A round-off of the force is amplified by f/(d f') in d.
     const double rounding = 1.0 + loading_force(law, d) / (d * slope_in(law, part_at(law, d), d));
     worst = std::max(worst, relative_error(displacement_under(law, loading_force(law, d)), d) / rounding);
   }
   EXPECT_LT(worst, 8 * k_epsilon);
   EXPECT_EQ(displacement_under(k_law, 0.0), 0.0);
   EXPECT_EQ(displacement_under(k_law, k_law.stiffness * k_law.transition), k_law.transition);
-  // Just beyond the transition not a digit of the distance is lost.
+  // Just beyond the transition the distance keeps all its digits.
   const double excess = 1e-12;
   EXPECT_NEAR(displacement_under(k_law, 0.3 * (1.0 + excess)) - 0.15, excess / 3.0, 2e-16);
 }
@@ -110,7 +110,7 @@ TEST(CompressibleUnloading, BeginsAtTheLoadingLawAndEndsAtItsSeparation) {
   EXPECT_NEAR(unloading_slope(curve, 0.4), 1.3 * curve.force / curve.length, 1e-14 * curve.force / curve.length);
   const double hertz_separation = 0.4 - std::pow(curve.force / k_hertz, 2.0 / 3.0);
   EXPECT_NEAR((0.4 - hertz_separation) / (0.4 - curve.separation()), 1.6, 1e-14);
-  // Odd beyond: a trial step there is as smooth as one before it.
+  // The curve continues as an odd function: a trial step beyond is as smooth as one before.
   const double distance = 1e-3;
   EXPECT_NEAR(unloading_force(curve, curve.separation() - distance),
               -unloading_force(curve, curve.separation() + distance), 1e-13 * curve.force);
@@ -160,7 +160,7 @@ TEST(CompressibleUnloading, DissipatesWhereItIsSteeperThanTheLoading) {
 }
 
 TEST(CompressibleUnloadingTable, IsBilinearAndConstantOutside) {
-  // alpha = 1 + ln(ratio) dm, beta = 2 + ln(ratio) + dm: bilinear itself.
+  // alpha = 1 + ln(ratio) dm and beta = 2 + ln(ratio) + dm are bilinear, so that the interpolation is exact.
   std::vector<UnloadingRow> rows;
   const auto shape = [](double ratio, double dm) {
     return UnloadingShape{1.0 + std::log(ratio) * dm, 2.0 + std::log(ratio) + dm};

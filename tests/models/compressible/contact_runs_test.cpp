@@ -25,7 +25,7 @@ namespace {
 
 using Real = long double;
 
-/// One contact, walked through a program of displacements or forces by eqs. 6 and 9 to 14.
+/// One contact, taken through a program of displacements or forces by eqs. 6 and 9 to 14.
 class Walk {
  public:
   explicit Walk(const CompressibleNumbers& n)
@@ -90,7 +90,7 @@ Expected expected_history(const Walk& walk, Control control, const std::vector<d
     history.displacement.push_back(static_cast<double>(d));
     history.force.push_back(static_cast<double>(control == Control::displacement ? walk.force(d, before) : told));
     history.stored.push_back(static_cast<double>(stored));
-    // What is not stored has been dissipated in loading.
+    // The rest of the work has been dissipated in loading.
     history.work.push_back(static_cast<double>(walk.dissipated(dm) + stored));
   };
   add(0);
@@ -109,7 +109,7 @@ std::vector<Step> steps_of(Control control, const std::vector<double>& targets) 
   return steps;
 }
 
-/// Largest differences over the largest value of each column; work counts for one wall.
+/// Largest differences over the largest value of each column; work is that of one wall.
 struct Errors {
   double displacement = 0.0, force = 0.0, work = 0.0, stored = 0.0;
   [[nodiscard]] double largest() const { return std::max({displacement, force, work, stored}); }
@@ -133,7 +133,7 @@ struct Stored {
   std::vector<double> targets;
 };
 
-/// The numbers behind `name=` in the lines of a header.
+/// Numbers after `name=` in the lines of a header.
 double number_in(std::string_view text, std::string_view name) {
   const std::size_t at = text.find(std::string(name) + "=");
   return at == std::string_view::npos ? -1.0 : std::stod(std::string(text.substr(at + name.size() + 1)));
@@ -210,7 +210,7 @@ TEST_P(StoredHistory, HasItsEventsAtTheirPlaces) {
     const std::size_t name = *now.record.events.find("event");
     for (std::size_t row = 0; row < times.size(); ++row) {
       const std::string word(now.record.events.word(row, name));
-      // Corners of the program: the file does not list what coincides with them.
+      // The file does not list events that coincide with corners of the program.
       if (word != "step-end" && word != "load-reversal") events.emplace_back(word, times[row]);
     }
     std::size_t next = 0;
@@ -229,7 +229,7 @@ TEST_P(StoredHistory, HasItsEventsAtTheirPlaces) {
 }
 
 TEST_P(StoredHistory, AgreesWithTheIndependentEvaluation) {
-  // That evaluation is then trusted with what the files do not have.
+  // The independent evaluation then serves as the reference for columns that the files do not have.
   const Expected expected = expected_history(Walk(stored_.numbers), Control::displacement, stored_.targets, 40);
   EXPECT_LT(difference(expected.force, column("F_over_pi_R0^2_sigma_y0")), 1e-15);
   EXPECT_LT(errors_of(run_it("direct"), expected, "axial", 2.0).largest(), 1e-13);
@@ -240,7 +240,7 @@ INSTANTIATE_TEST_SUITE_P(Compressible, StoredHistory,
                                            "law04_soft_origin_clip"),
                          [](const auto& name) { return name.param.substr(0, 5); });
 
-// --- cases that are in no file
+// --- cases without a reference file
 
 struct Case {
   CompressibleNumbers numbers;
@@ -249,7 +249,7 @@ struct Case {
 };
 
 /// Parameters and a program of loads, unloads and reloads.
-/// @param stretch  1: numbers near those of the source's materials; larger: farther from them
+/// @param stretch  1: numbers near those of the source's materials; larger values: farther from them
 Case random_case(std::mt19937_64& generator, double stretch = 1.0) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   Case made;
@@ -291,7 +291,7 @@ TEST(CompressibleRuns, AreThoseOfTheIndependentEvaluationForWhateverNumbers) {
     const TestRun now = run(scenario_of(made, Configuration::simple));
     ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
     const double error = errors_of(now, expected, "axial", 2.0).largest();
-    // Of the largest value; the inverse of a power law loses the digits of a force next to nothing.
+    // Over the largest value; the inverse of a power law loses the digits of a tiny force.
     EXPECT_LT(error, 1e-12) << i;
     worst["direct"] = std::max(worst["direct"], error);
     if (i >= 60) continue;
@@ -339,7 +339,7 @@ TEST(CompressibleRuns, MeetTheParticleAcrossGapsWithPrescribedDisplacementsAndFo
   for (const char* integrator : k_integrators) {
     const TestRun now = run(scenario, integrator);
     EXPECT_EQ(now.record.status, RunStatus::complete) << now.record.message;
-    // The wall of c is let onto the particle at once by its force.
+    // The force presses the wall of c onto the particle at once.
     EXPECT_EQ(now.events(),
               (std::vector<std::string>{"c:contact-made", "b:contact-made", "a:transition", "c:transition",
                                         "b:transition", "a:load-reversal", "b:load-reversal", "c:load-reversal",
@@ -413,7 +413,7 @@ TEST(CompressibleEvents, StopAtTheTransitionWhereTheSlopeJumps) {
       const auto changes = regime_changes(now, "axial");
       EXPECT_EQ(changes.size(), 1U) << integrator;
       for (const std::size_t k : changes) {
-        // At the place itself to the integrator's accuracy before, and exactly after.
+        // The row before the event has the integrator's accuracy; the row after it is exact.
         EXPECT_NEAR(d[k - 1], numbers.delta_t, 1e-8) << integrator;
         EXPECT_NEAR(d[k], numbers.delta_t, 1e-15) << integrator;
         EXPECT_NEAR(force[k], force[k - 1], 1e-8) << integrator;
@@ -512,7 +512,7 @@ TEST(CompressibleEnergies, AreNotLostOnTheWayOfAnUnloadingAndBack) {
 class Tolerance : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Tolerance, MeansSomething) {
-  // A program under a force has an unknown displacement; one under a displacement only the work.
+  // Under a force the displacement is an unknown; under a displacement only the work is.
   const CompressibleNumbers numbers{
       .k = 3.9, .delta_t = 0.11, .a = 3.65, .stiffness_ratio = 100, .nu0 = 0.3, .alpha = 1.3, .beta = 1.6};
   const std::vector<std::pair<Control, std::vector<double>>> programs{{Control::displacement, {0.3, 0.2, 0.45, 0.43}},
@@ -558,7 +558,7 @@ TEST(CompressibleEnds, StopAtHalfTheRadius) {
       EXPECT_NEAR(now.last("axial.displacement"), 0.5, 1e-8) << integrator;
       EXPECT_NE(now.record.message.find("half the radius"), std::string::npos) << now.record.message;
     }
-    // Up to there and back is allowed; on from there is not.
+    // A program may reach the end and go back, but not go further.
     const TestRun there = run(compressible_scenario(Configuration::simple, {}, path({0.5, 0.4, 0.5})), integrator);
     EXPECT_EQ(there.record.status, RunStatus::complete) << there.record.message;
     EXPECT_FALSE(there.has_event("limit"));
@@ -579,7 +579,7 @@ TEST(CompressibleWarnings, TellOfClippedAndOfFlatUnloadings) {
   EXPECT_NE(clipped.front().find("such unloadings = 2"), std::string::npos) << clipped.front();
   const CompressibleNumbers steep{
       .k = 2.0, .delta_t = 0.1, .a = 12.0, .stiffness_ratio = 4.0, .nu0 = 0.3, .alpha = 1.0, .beta = 0.2};
-  // Also where nothing is unloaded: the energy that is stored would be given back on such a way.
+  // The warning also comes without unloading: an unloading would return the stored energy.
   for (const std::vector<double>& targets : {std::vector{0.4, 0.3}, std::vector{0.4}}) {
     const auto flat = warnings_of(steep, targets);
     bool found = false;
@@ -616,7 +616,7 @@ TEST(CompressibleWarnings, TellOfNumbersThatStandInAndOfExtrapolation) {
 }
 
 TEST(CompressibleRuns, ScaleWithRadiusAndYieldPressure) {
-  // Base case of the source, in units, against the same without.
+  // The source's base case in SI units, compared with the dimensionless one.
   const CheckedScenario scenario = granule("stiffness_ratio = 100\nshear_ratio = 1\n", "alpha = 1.3\nbeta = 1.6\n");
   const CompressibleNumbers numbers{.k = 3.8993577505742754,
                                     .delta_t = 0.1131952,

@@ -1,5 +1,5 @@
-// The runs against a second implementation that shares nothing with the first: the printed formulas in long double,
-// differentiated by a complex step, marched by an explicit method of eighth order with fixed steps.
+// Runs against an independent implementation: the printed formulas in long double, differentiated by a complex step,
+// integrated by an explicit method of eighth order with fixed steps.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ struct Law {
 
 enum class Piece { tension, shear, arc, cap };
 
-/// Table 2; `q` by the side of s.
+/// Yield function and potential of Table 2; `q` has the sign of `side`.
 template <class T>
 T f_of(const Parameters& m, Piece piece, Real side, T p, T s, T phi, bool is_potential) {
   using std::sqrt;
@@ -78,7 +78,7 @@ class Marcher {
  public:
   explicit Marcher(const Parameters& m) : m_(m) {}
 
-  /// Along a straight piece of the way of strains.
+  /// Integrates along a straight part of the strain path.
   void go(Real axial, Real lateral, int steps) {
     from_ = to_;
     to_ = {axial, lateral};
@@ -175,7 +175,7 @@ class Marcher {
 
   [[nodiscard]] Real loading() const { return slopes(y_, 0).N; }
 
-  /// Bisection of the elastic part of the way.
+  /// Finds the yield point on the elastic part of the path by bisection.
   bool find_yield() {
     const auto yields = [this](Real x) {
       const auto [p, s] = stress_at(y_, x);
@@ -185,7 +185,7 @@ class Marcher {
       if (piece == Piece::arc && std::abs(s) < at.shear / 2) return false;
       return f_of<Real>(m_, piece, side, p, s, y_[0], false) > 0;
     };
-    // From inside (a point on the surface that unloads may be out by a rounding error).
+    // The search starts inside: a point on the surface that unloads may be outside by round-off.
     Real inside = 1e-9L;
     Real outside = 1;
     if (!yields(1)) return false;
@@ -213,7 +213,7 @@ struct Case {
   std::vector<std::array<double, 2>> corners;  ///< axial and lateral strain
 };
 
-/// Materials and paths that no stored history has.
+/// Materials and paths that no reference file has.
 std::vector<Case> cases() {
   Parameters fujicalin = base_case();
   fujicalin.stiffness_ratio = 36.0;
@@ -361,8 +361,9 @@ TEST(ClosedForm, FirstYieldOfTheBaseCase) {
   EXPECT_NEAR(bar.at_event("yield", "stress_axial"), -0.99889061438090, 1e-13);
 }
 
-/// g^p of compression at constant lateral stress c: the stress is a function of the place b = (p + pi3)/A on the cap,
-/// and g^p the integral of g_s/g_p over phi, taken over ln(-b), in which it has no singularity at the critical state.
+/// g^p of compression at constant lateral stress c. The stress is a function of the position b = (p + pi3)/A on the
+/// cap, and g^p is the integral of g_s/g_p over phi, taken over ln(-b), in which it has no singularity at the critical
+/// state.
 double plastic_deviator_to(const Parameters& m, double c, double b_start, double b_end, double first_guess) {
   const auto phi_at = [&](double b) {
     double phi = first_guess;

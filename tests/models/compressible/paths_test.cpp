@@ -1,4 +1,4 @@
-// What holds along every path, whatever the integrator.
+// Properties that hold along every path, with every integrator.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ struct RandomPoint {
   }
 };
 
-/// A material within the source's range and some corners of strain.
+/// A random material within the source's range, and corners of a strain program.
 RandomPoint random_point(std::mt19937& random) {
   const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
   RandomPoint result;
@@ -101,7 +101,7 @@ TEST(RandomStrainPaths, StayOnTheSurfaceAndDissipate) {
     if (result.record.status == RunStatus::stopped) {
       ++stopped;
       const std::string end = result.events().back();
-      // The arc of dpc may come to have no place, which has no event of its own.
+      // The arc of dpc may cease to exist, which has no event of its own.
       const bool has_no_arc = end == "limit" && result.record.limit == Limit::cap_arc_too_wide;
       EXPECT_TRUE(k_ends.contains(end) || has_no_arc) << i << ": " << result.record.message;
     }
@@ -141,7 +141,7 @@ TEST(RandomStrainPaths, StayOnTheSurfaceAndDissipate) {
   EXPECT_LT(stopped, 500);
 }
 
-// Stiffening stores part of the plastic work: without that the balance does not close.
+// Stiffening stores part of the plastic work, without which the balance does not close.
 TEST(MaterialPoint, WorkIsStoredOrDissipated) {
   for (const Parameters& m : {base_case(), lactose(0.03), von_mises(3.0)}) {
     CheckedScenario scenario =
@@ -229,7 +229,7 @@ TEST(MaterialPoint, ElasticCyclesClose) {
   }
 }
 
-/// A double cap whose bar comes to a critical state, pi3 = Gamma/3, as it densifies.
+/// A double cap whose bar reaches a critical state, pi3 = Gamma/3, as it densifies.
 Parameters with_critical_state() {
   Parameters m = base_case();
   m.zeta = 5.0;
@@ -240,7 +240,7 @@ Parameters with_critical_state() {
 const double k_critical_density = 0.7 + std::log(0.7 + 1.0 / 3.0) / 5.0;
 const double k_critical_strength = 0.7 + 1.0 / 3.0;
 
-// The pressure comes to the end of the cap without crossing it, and the volume stands still.
+// The pressure tends to the end of the cap without crossing it, and the volume becomes stationary.
 TEST(MaterialPoint, TendsToTheCriticalStateWithoutAnEvent) {
   for (const YieldModel model : {YieldModel::vmdc, YieldModel::dpc}) {
     for (const double width : {0.0, 0.03}) {
@@ -254,7 +254,7 @@ TEST(MaterialPoint, TendsToTheCriticalStateWithoutAnEvent) {
         EXPECT_EQ(result.events().front(), "yield");
         EXPECT_LE(result.events().size(), 2u) << integrator;
         const Properties at = properties_at(m, result.last("phi"));
-        // After a strain of 1.5 it is still so far away, whatever the integrator.
+        // After a strain of 1.5 the pressure is still this far away, with every integrator.
         EXPECT_NEAR(result.last("p"), -at.cap_centre.value, 2e-6) << integrator;
         if (model != YieldModel::vmdc) continue;
         EXPECT_EQ(result.events(), (std::vector<std::string>{"yield"})) << integrator;
@@ -277,8 +277,8 @@ TEST(MaterialPoint, HoldsWithoutUnloading) {
   }
 }
 
-// The stress follows the normal of a surface that is thin against the elastic strains of the program: the methods for
-// stiff equations do not mind, explicit ones are told.
+// The stress follows the normal of a surface that is thin against the elastic strains of the program, which makes the
+// equations stiff. Methods for stiff equations need few steps nevertheless.
 TEST(MaterialPoint, IsStiffInTension) {
   Parameters m = base_case();
   m.tensile_ratio = 0.003;
@@ -325,7 +325,7 @@ TEST(MaterialPoint, LosesUniquenessAtTheCriticalStress) {
   }
 }
 
-// A bar of this Drucker-Prager cap would grow longer by yielding in compression.
+// A bar of this Drucker-Prager cap would lengthen by yielding in compression.
 TEST(MaterialPoint, LosesUniquenessWhereFlowWorksAgainstTheProgram) {
   const TestRun result = run(point(lactose(0.03), Configuration::simple, {strain(-0.1)}), "cvode-bdf");
   EXPECT_EQ(result.record.status, RunStatus::stopped);
@@ -394,7 +394,7 @@ TEST(MaterialPoint, StopsWhereRoundingOfStrainsWouldBeItsStress) {
   const double ratio = std::max(start.bulk_modulus.value, 3.0 * start.shear_modulus.value);
   const double phi = std::log(1e10 / ratio) / (m.xi - m.eta);
   const CheckedScenario scenario = point(m, Configuration::simple, {strain(-1.0)});
-  // Not ida, for which the material is too stiff before.
+  // Without ida, for which the material is too stiff before.
   for (const char* integrator : {"direct", "cvode-adams", "cvode-bdf"}) {
     const TestRun result = run(scenario, integrator);
     EXPECT_EQ(result.record.status, RunStatus::stopped) << integrator;
@@ -447,8 +447,8 @@ TEST(MaterialPoint, ConvergesWithTheToleranceOverEveryPath) {
     const TestRun exact = run(scenario, "cvode-bdf", relative(1e-13));
     ASSERT_EQ(exact.record.status, RunStatus::complete) << c.name << ": " << exact.record.message;
     for (const std::string integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
-      // Stiff, next to the tensile strength: Adams' method takes 13,000 steps or more than the 200,000 it may take, as
-      // the tolerance has it.
+      // Stiff, next to the tensile strength: depending on the tolerance, Adams' method takes 13,000 steps, or more than
+      // the allowed 200,000.
       if (integrator == "cvode-adams" && c.configuration == Configuration::strain_path) continue;
       std::cout << c.name << ", configuration " << static_cast<int>(c.configuration) << ", " << integrator << ':';
       std::vector<double> errors;
@@ -469,7 +469,7 @@ TEST(MaterialPoint, ConvergesWithTheToleranceOverEveryPath) {
 
 TEST(MaterialPoint, CurvesBetweenImplicitStepsConvergeWithTheTolerance) {
   for (const Smooth& c : smooth_cases()) {
-    // Stiff: as many steps as that takes, ten thousands.
+    // Stiff: ten thousands of steps.
     if (c.configuration == Configuration::strain_path) continue;
     const CheckedScenario scenario = with_points(point(c.parameters, c.configuration, c.steps), 40);
     const TestRun exact = run(scenario, "cvode-bdf", relative(1e-13));

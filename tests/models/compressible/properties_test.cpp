@@ -55,8 +55,8 @@ TEST(CompressibleProperties, AreTheGivenOnesAtTheReferenceDensity) {
   EXPECT_DOUBLE_EQ(at.cap_centre.value, 1.0 - m.eps0 * m.shear_ratio);
 }
 
-// Strengths that grow with one exponent keep the surface's shape if the axis ratio is constant as well (corrected: the
-// source leaves the last condition out).
+// Strengths that grow with one exponent preserve the surface's shape if the axis ratio is constant as well (corrected:
+// the source omits the last condition).
 TEST(CompressibleProperties, MakeSelfSimilarSurfacesOnlyWithAConstantAxisRatio) {
   Parameters m = base_case();
   const auto shape = [&](double phi) {

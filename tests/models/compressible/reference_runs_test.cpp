@@ -38,7 +38,7 @@ TEST_P(ReferencePoint, IsMetAtTightTolerances) {
   }
 }
 
-// Where one equation gives the state; the files themselves are good to 1e-12.
+// Scenarios in which one equation gives the state; the files themselves are accurate to 1e-12.
 TEST_P(ReferencePoint, IsMetByTheDirectForm) { expect_within(1e-12, 1e-12, {}, "direct"); }
 
 INSTANTIATE_TEST_SUITE_P(Files, ReferencePoint, ::testing::ValuesIn(k_reference_points),

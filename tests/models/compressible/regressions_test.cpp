@@ -53,7 +53,7 @@ TEST(CompressibleRegressions, AreThoseOfTheCorrectedCoefficients) {
 }
 
 TEST(CompressibleRegressions, GiveTheParametersOfTheReferenceHistories) {
-  // Headers of law01, law02, law04.
+  // Values in the headers of law01, law02 and law04.
   const Values base = values_at(100.0, 1.0);
   EXPECT_LT(relative_error(base.k, 3.8993577505742754), 4 * k_epsilon);
   EXPECT_LT(relative_error(base.delta_t, 0.1131952), 4 * k_epsilon);

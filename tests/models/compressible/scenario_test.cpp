@@ -1,4 +1,4 @@
-// Material points as a user writes them.
+// Scenario files of material points.
 
 #include <gtest/gtest.h>
 

@@ -20,7 +20,7 @@ const std::vector<Parameters>& materials() {
   return all;
 }
 
-/// q on the surface at a pressure where a segment's formula holds.
+/// q on the surface at a pressure within a segment.
 double strength_at(const Parameters& m, const Properties& at, Segment segment, double p) {
   const double reach = 4.0 * at.shear_strength.value;
   double inside = 0.0;
@@ -40,7 +40,7 @@ std::vector<Segment> segments_of(const Parameters& m) {
   return {Segment::shear, Segment::cap};
 }
 
-/// A pressure inside a segment; `share` goes from its tensile to its compressive end.
+/// A pressure inside a segment; a `share` from 0 to 1 leads from its tensile to its compressive end.
 double pressure_in(const Parameters& m, const Properties& at, Segment segment, double share) {
   const double centre = at.cap_centre.value;
   const bool has_arc = m.model == YieldModel::dpc && m.transition_width > 0.0;
@@ -158,7 +158,7 @@ TEST(YieldSurface, SegmentsMeetWithOneValueAndTangent) {
   }
 }
 
-// Over the whole gradient: of the double cap it is continuous, of dpc it jumps by known factors.
+// The whole gradient of the double cap is continuous; that of dpc jumps by known factors.
 TEST(YieldSurface, GradientsJumpWhereTheSourceSays) {
   const Parameters m = lactose(0.03);
   const Properties at = properties_at(m, 0.05);
@@ -224,7 +224,7 @@ TEST(YieldSurface, RelationsOfTheCapAreThePrintedOnes) {
   EXPECT_NEAR(cap.cohesion.value + centre * cap.friction_slope.value, at.shear_strength.value, 1e-14);
 }
 
-// Below the arc's centre the printed formula would call a state without any deviator yielded (corrected).
+// Below the arc's centre the printed formula would count a state without deviator as yielded (corrected).
 TEST(YieldSurface, IsNegativeAllOverTheInside) {
   for (const Parameters& m : materials()) {
     const Properties at = properties_at(m, 0.05);

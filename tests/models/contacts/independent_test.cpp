@@ -1,5 +1,5 @@
-// The base of laws whose contacts depend on their own wall alone, seen with two laws of a few lines: a linear
-// spring, and one that is stiffer under unloading.
+// The base of laws whose contacts depend on their own wall alone, tested with small laws: a linear spring, one that is
+// stiffer under unloading, and others.
 
 #include <gtest/gtest.h>
 
@@ -37,8 +37,8 @@ struct Spring {
   [[nodiscard]] int regime(Branch, bool touches) const { return touches ? 1 : 0; }
 };
 
-/// The law of Walton and Braun: F = d under loading; under unloading stiffer by a ratio, from the largest displacement.
-/// It hardens at a knee, and ends.
+/// The law of Walton and Braun: F = d under loading; unloading from the largest displacement is stiffer by a ratio. The
+/// law hardens at a knee, and ends.
 struct Hysteretic {
   struct Branch {
     bool is_past_knee = false;
@@ -85,8 +85,8 @@ struct HystereticInClosedForm : Hysteretic {
   }
 };
 
-/// F = d^(3/2) with a displacement that is integrated under a force, and without unloading. Lateral walls of a die show
-/// a tenth of its force, and yield where it is at 0.1.
+/// F = d^(3/2), without unloading; under a force, its displacement is integrated. Lateral walls of a die show a tenth
+/// of its force, and yield at a force of 0.1.
 struct Powerful {
   struct Branch {
     bool has_yielded = false;
@@ -224,7 +224,7 @@ TEST(IndependentContacts, EndAtTheLimitOfTheLaw) {
       EXPECT_EQ(now.events(), (Names{"axial:knee", "axial:limit"})) << form;
       EXPECT_NEAR(now.last("axial.displacement"), k_end, 1e-13) << form;
     }
-    // Up to there and back is allowed; on from there is not.
+    // A program may reach the end and go back, but not go further.
     const TestRun there = run_law<Hysteretic>(pair_of_walls(path({k_end, 0.7, k_end})), form);
     EXPECT_EQ(there.record.status, RunStatus::complete) << there.record.message;
     const TestRun on = run_law<Hysteretic>(pair_of_walls(path({k_end, 0.9})), form);
@@ -282,7 +282,7 @@ TEST(IndependentContacts, EndTheRunWhereALawHasNoUnloading) {
   const TestRun now = run_law<Powerful>(scenario, "direct");
   EXPECT_EQ(now.record.limit, Limit::no_unloading_law);
   EXPECT_NE(now.record.message.find("nothing helps"), std::string::npos) << now.record.message;
-  // The last row shows all walls where the step would have begun.
+  // The last row has all walls where the step would have begun.
   EXPECT_EQ(now.last("a.displacement"), 0.2);
   EXPECT_EQ(now.last("b.displacement"), 0.3);
 }

@@ -58,7 +58,7 @@ TEST(Hertz, SlopeIsTwiceTheModulusTimesTheContactRadius) {
   // Sneddon's relation for any axisymmetric elastic contact.
   for (const double overlap : {1e-9, 1e-3, 0.2}) {
     const double slope = central_difference([](double x) { return hertz_force(1.7, 0.3, x); }, overlap, 5e-3 * overlap);
-    // Rounding over the relative step: 2 eps / 2.5e-3 at worst; truncation is 2e-15.
+    // Round-off over the relative step: 2 eps / 2.5e-3 at worst; truncation is 2e-15.
     EXPECT_LE(relative_error(slope, 2.0 * 1.7 * hertz_contact_radius(0.3, overlap)), 800 * k_epsilon)
         << "delta = " << overlap;
   }

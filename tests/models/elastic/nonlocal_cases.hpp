@@ -71,7 +71,7 @@ inline std::vector<ContactClass> wall_set(std::string_view name) {
   return oblique_die();
 }
 
-/// Every wall a class of its own, in the order of the classes.
+/// Classes of one wall each, in the order of the given classes.
 inline std::vector<ContactClass> single_walls(std::span<const ContactClass> classes) {
   std::vector<ContactClass> walls;
   for (const ContactClass& group : classes) {
@@ -87,7 +87,7 @@ inline std::vector<ContactClass> turned(std::vector<ContactClass> classes, const
   return classes;
 }
 
-/// Displacements, or forces, that stay.
+/// Constant displacements, or forces.
 inline std::vector<Ramp> held(std::span<const double> values, Control control = Control::displacement) {
   std::vector<Ramp> ramps;
   for (const double value : values) ramps.push_back({.start = value, .end = value, .control = control});

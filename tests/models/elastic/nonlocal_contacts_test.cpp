@@ -50,8 +50,8 @@ struct ClassColumns {
         contact_radius(table, name + ".a_over_R"),
         closed_radius(table, name + ".a_prime_eq14_over_R") {}
 
-  // Largest errors found: 7.1e-14, 2.1e-14, 2.4e-14 of the maximum, next to the limit, where rounding grows with
-  // 1/margin. Of the radius by eq. 8, 7.7e-13 where an edge passes the middle of another contact.
+  // Largest errors found: 7.1e-14, 2.1e-14, 2.4e-14 of the maximum, next to the limit, where round-off grows with
+  // 1/margin. The radius by eq. 8 has 7.7e-13 where an edge passes the middle of another contact.
   void expect(std::size_t row, Contacts& contacts, std::size_t index, std::span<const double> y) const {
     const ContactState state = states_of(contacts, y)[index];
     force.expect(row, state.force / pi, 1e-12);
@@ -208,7 +208,7 @@ TEST(NonlocalCurveUnderForce, AgreesWithThirtyDigits) {
 
 // --- the branch
 
-/// Newton's method in s without any of the safeguards.
+/// Newton's method in s without safeguards.
 std::vector<double> plain_newton(Contacts& contacts, std::span<const Ramp> ramps, std::vector<double> y) {
   Eigen::VectorXd residual(static_cast<Eigen::Index>(y.size()));
   Eigen::MatrixXd jacobian;
@@ -224,7 +224,7 @@ std::vector<double> plain_newton(Contacts& contacts, std::span<const Ramp> ramps
 }
 
 TEST(NonlocalBranch, IsThePhysicalOneFromAColdStart) {
-  // The same contact radius everywhere is a fair guess for a compressed particle, and leads to the wrong branch.
+  // Equal contact radii are a plausible guess for a compressed particle, but lead to the wrong branch.
   const double displacement = 0.4;
   Contacts contacts({k_rubber, Terms::four}, die(), Centre::fixed);
   const auto ramps = compression(2, displacement);
@@ -236,11 +236,11 @@ TEST(NonlocalBranch, IsThePhysicalOneFromAColdStart) {
   EXPECT_LT(contacts.margin(wrong), -0.1);
   EXPECT_GT(states_of(contacts, wrong)[0].force, 1.5 * states_of(contacts, y)[0].force);
 
-  // By small steps.
+  // The solution along the branch, by small steps.
   std::vector<double> followed{0.0, 0.0};
   for (int i = 1; i <= 1000; ++i) contacts.solve(ramps, 1e-3 * i, followed);
   for (std::size_t j = 0; j < 2; ++j) EXPECT_NEAR(y[j], followed[j], 1e-15);
-  // From the same guess, which is beyond the limit itself, and from one below it.
+  // From two guesses, one beyond the limit and one below it.
   std::vector<double> guess{0.5, 0.5};
   EXPECT_THROW(contacts.solve(ramps, 1.0, guess), std::domain_error);
   EXPECT_EQ(guess, (std::vector{0.5, 0.5}));
@@ -298,11 +298,12 @@ TEST(NonlocalBranch, IsFollowedInPiecesWhereWallsPushEachOtherOff) {
                     std::vector<ContactClass>{{"first", {Eigen::Vector3d::UnitZ()}},
                                               {"second", {Eigen::Vector3d(std::sin(angle), 0.0, std::cos(angle))}}},
                     Centre::fixed);
-  // From where either of two equal contacts may open, the mode in which one grows and the other shrinks is free.
+  // At the point where either of two equal contacts may open, the mode in which one grows and the other shrinks is
+  // free.
   const double square = 4.0 * contacts.branch_reach(0, 0.0);
   EXPECT_NEAR(contacts.margin(std::vector{square, square}), 0.0, 1e-12);
   EXPECT_NEAR(contacts.branch_reach(1, -100.0 * square), 50.0 * square, 1e-12);
-  // Walls far from each other lift none.
+  // Walls far from each other do not lift each other.
   EXPECT_EQ(Contacts({k_rubber, Terms::four}, die(), Centre::fixed).branch_reach(0, 0.0),
             std::numeric_limits<double>::infinity());
 }
@@ -321,7 +322,7 @@ TEST(NonlocalBranch, DoesNotGoOnBeyondItsLimit) {
     EXPECT_TRUE(contains(message, "limit of applicability") && contains(message, "(margin = ")) << message;
     EXPECT_EQ(y, before);
   }
-  // The same under force control, where Newton's method has no trouble to pass it.
+  // Under force control Newton's method passes the limit easily.
   const double force = states_of(contacts, y)[0].force;
   std::vector<Ramp> ramps(2);
   ramps[0] = {.start = 0.0, .end = 1.1 * force, .control = Control::force};
@@ -386,7 +387,7 @@ TEST(NonlocalEquations, HaveTheJacobianOfTheirResidual) {
                 return residual[i];
               },
               y[k], std::max(1e-2 * std::abs(y[k]), 1e-6));
-          // Rounding of numbers up to 1 over the step.
+          // Round-off of numbers up to 1, over the step.
           EXPECT_NEAR(jacobian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)), derivative, 1e-9)
               << scene.name << ", " << i << ", " << k;
         }
@@ -459,7 +460,7 @@ TEST(NonlocalRates, LetAFreeCentreFollowFromFirstTouch) {
   EXPECT_NEAR(rates[0], 0.05, 1e-16);
   EXPECT_NEAR(rates[1], 0.05, 1e-16);
   EXPECT_NEAR(rates[2] * along, -0.05, 1e-16);
-  // A wall that leaves does not take the particle with it.
+  // A retreating wall does not take the particle with it.
   contacts.rates(std::vector<Ramp>{{0.0, -0.1}, {0.0, 0.0}}, std::vector{0.0, 0.0, 0.0}, rates);
   EXPECT_EQ(rates, (std::vector{-0.1, 0.0, 0.0}));
 }
@@ -473,7 +474,7 @@ TEST(NonlocalRates, EndWhereAForceDrivesAFreeCentreThatNothingHolds) {
                          return 0;
                        }),
                        "no contact holds the free centre"));
-  // The other wall does once it touches, and a force that stays drives nothing.
+  // The other wall supports the centre once it touches, and a constant force drives nothing.
   EXPECT_NO_THROW(contacts.rates(ramps, std::vector{0.0, 0.0, 0.0}, rates));
   const std::vector<Ramp> constant{{0.1, 0.1, Control::force}, {-0.01, 0.2, Control::displacement}};
   EXPECT_NO_THROW(contacts.rates(constant, std::vector{0.01, -0.01, 0.0}, rates));
@@ -664,7 +665,7 @@ TEST(NonlocalSymmetry, ItDoesNotMatterWhichOfTwoWallsMoves) {
 }
 
 TEST(NonlocalSymmetry, AFreeCentreIsFoundAmongAnyWalls) {
-  // Six walls, no two of them closer than 50 degrees. From some sets the particle escapes.
+  // Six walls, no two of them closer than 50 degrees. The particle escapes from some of these sets.
   std::mt19937_64 generator(3);
   std::normal_distribution<double> coordinate;
   std::uniform_real_distribution<double> displacement(-0.005, 0.04);
@@ -701,7 +702,7 @@ TEST(NonlocalSymmetry, AFreeCentreIsFoundAmongAnyWalls) {
 }
 
 TEST(NonlocalSymmetry, AWallThatStaysOpenChangesNothing) {
-  // Pushed off by the axial contact, 28 degrees away.
+  // The axial contact, 28 degrees away, pushes the surface off this wall.
   Contacts with({k_rubber, Terms::four}, oblique_die(62.0), Centre::fixed);
   Contacts without({k_rubber, Terms::four}, die(), Centre::fixed);
   std::vector<double> y(4, 0.0);
@@ -816,7 +817,7 @@ TEST(NonlocalRefusal, NamesForcesThatPull) {
 }
 
 TEST(NonlocalRefusal, NamesACentreThatNothingHolds) {
-  // Three walls on one side.
+  // All three walls are on one side of the particle.
   std::vector<ContactClass> bowl;
   for (const double degrees : {0.0, 120.0, 240.0})
     bowl.push_back(

@@ -37,7 +37,7 @@ TEST(NonlocalInfluence, PushesCloseNeighboursAway) {
   }
 }
 
-/// Coefficients of 4 pi times the inward displacement, without the half-space's and the logarithm's.
+/// Coefficients of 4 pi times the inward displacement, without those of the half-space and of the logarithm.
 double rest_of_mode(double nu, double n) {
   const double alpha = 4.0 * (1.0 - nu * nu);
   const double beta = alpha * (1.0 - 2.0 * nu) * (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu));
@@ -83,7 +83,7 @@ TEST(NonlocalInfluenceOfTheSphere, HasASelfTermThatIsTheSumOfItsModes) {
       sum += rest_of_mode(nu, n);
       if (n == k_last / 2) half = sum;
     }
-    // The tail falls as 1/n; what the difference leaves of it as 1/n^2.
+    // The tail falls like 1/n, its part in the difference like 1/n^2.
     EXPECT_NEAR(sphere_self_influence(nu), -(2.0 * sum - half) / (4.0 * pi), 1e-9) << "nu = " << nu;
   }
 }
@@ -206,7 +206,7 @@ TEST(NonlocalRadius, IsContinuousByTheClosedForm) {
       const double critical = pi - 16.0 * pi / ((1.0 + nu) * (1.0 + 2.0 * nu)) * pole_radius_influence(nu, x);
       EXPECT_NEAR(radius_influence(RadiusRule::closed, nu, critical - 1e-14, x), 0.0, 1e-14);
       EXPECT_NEAR(radius_influence(RadiusRule::closed, nu, critical + 1e-14, x), 0.0, 1e-14);
-      // A kink, not an extremum: it has both signs around it.
+      // The function has a kink, not an extremum: it has both signs around it.
       EXPECT_LT(radius_influence(RadiusRule::closed, nu, critical - 1e-3, x), 0.0);
       EXPECT_GT(radius_influence(RadiusRule::closed, nu, critical + 1e-3, x), 0.0);
     }

@@ -66,7 +66,7 @@ TEST_P(NonlocalLaw, HasTheStiffnessOfAFlatPunch) {
 TEST_P(NonlocalLaw, IsInvertedByApproachAndForce) {
   for (const double s : k_squares) {
     const LocalContact contact = law.at(s);
-    // Rounding of g and F, and that it takes to change them by as much.
+    // Round-off of g and F, and of the inverse.
     EXPECT_LE(relative_error(law.signed_square(contact.approach), s), 8 * k_epsilon) << "s = " << s;
     EXPECT_LE(relative_error(law.signed_square_under(contact.force), s), 8 * k_epsilon) << "s = " << s;
   }
@@ -145,7 +145,7 @@ TEST(NonlocalLawOfFourTerms, HasThePrintedPressure) {
 }
 
 TEST(NonlocalLawOfAllTerms, HasTheClosedForm) {
-  // Where the closed form still has its digits in extended precision: loss 0.75/s.
+  // In this range the closed form in extended precision keeps its digits: it loses 0.75/s.
   const LocalLaw law(Terms::all);
   for (const double s : {1e-3, 0.05, 0.0999, 0.1001, 0.5, 0.999}) {
     const long double square = s;
@@ -157,7 +157,7 @@ TEST(NonlocalLawOfAllTerms, HasTheClosedForm) {
 }
 
 TEST(NonlocalLawOfAllTerms, IsWhatFewerTermsTendTo) {
-  // The first term left out is of order a^(2 terms): 1/(2n-1) a^(2n) in g, over a sum of at least a^2.
+  // The first omitted term is of order a^(2 terms): 1/(2n-1) a^(2n) in g, over a sum of at least a^2.
   const LocalLaw law(Terms::all);
   for (const double s : {1e-2, 0.1, 0.3}) {
     for (int terms = 1; terms <= 4; ++terms) {

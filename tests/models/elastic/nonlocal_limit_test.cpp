@@ -66,7 +66,7 @@ TEST(NonlocalLimit, HasAClosedFormForEqualContacts) {
         const auto found = limit_of_step(contacts, compression(1, 2.0 * displacement), 1.0, y);
         ASSERT_TRUE(found.has_value());
         EXPECT_LE(relative_error(*found, 0.5), 1e-14);
-        // The path turns back there: its length is known to rounding of the margin.
+        // At the limit the path turns back: its arc length has the round-off of the margin.
         EXPECT_LE(relative_error(std::sqrt(y[0]), radius), 1e-13);
       }
     }
@@ -111,13 +111,14 @@ TEST(NonlocalLimit, IsTheSameUnderForceControl) {
   std::vector<double> y{0.0, 0.0};
   const auto found = limit_of_step(contacts, ramps, 1.0, y);
   ASSERT_TRUE(found.has_value());
-  // Here the force is a coordinate like any other, and has the errors of the margin.
+  // Under force control the force is a regular coordinate, and has the error of the margin.
   EXPECT_NEAR(*found, 0.5, 1e-13);
   EXPECT_NEAR(states_of(contacts, y)[0].displacement, 0.45965445411161659, 1e-14);
 }
 
 TEST(NonlocalLimit, CountsModesThatBreakTheSymmetry) {
-  // Two pairs of close walls: of neighbours that push each other away one wins before all turn back together.
+  // Two pairs of close walls, which push each other away: one wall of a pair prevails before the symmetric mode turns
+  // back.
   const double half = 8.0 * k_degree;
   const double c = std::cos(half);
   const double s = std::sin(half);

@@ -1,5 +1,5 @@
-// Whole runs of the nonlocal sphere: curves and events computed elsewhere with 30 digits, in all forms; symmetries;
-// random wall sets.
+// Whole runs of the nonlocal sphere: independent curves and events with 30 digits, in all forms; symmetries; random
+// wall sets.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ Table reference(const std::string& file) {
   return read_csv(MONOGRAIN_SOURCE_DIR "/tests/models/elastic/reference/nonlocal/" + file + ".csv");
 }
 
-/// The preset that a reference file is about.
+/// The preset to which a reference file belongs.
 CheckedScenario preset_of(const std::string& name, double poisson_ratio, std::vector<Step> steps) {
   if (name.starts_with("simple")) return nonlocal_scenario(Configuration::simple, poisson_ratio, std::move(steps));
   if (name.starts_with("hydrostatic")) {
@@ -101,7 +101,7 @@ struct ColumnPair {
   double factor;
 };
 
-/// The columns of a reference table that a run has too.
+/// Columns that a reference table and a run have in common.
 std::vector<ColumnPair> columns_of(const Table& table, const TestRun& run, const std::string& radius_column) {
   std::vector<ColumnPair> pairs{{"stored_energy_over_ER3", "stored_energy", 1.0}, {"margin", "margin", 1.0}};
   for (const ContactClass& c : run.scene.classes) {
@@ -130,7 +130,7 @@ double error_of(const TestRun& run, const Table& table, const std::string& radiu
     EXPECT_GE(actual.size(), expected.size()) << run_name << ": " << run.record.message;
     if (actual.size() < expected.size()) return 1.0;
     const std::size_t shift = actual.size() - expected.size();
-    // A column that is zero but for rounding (a centre that symmetry holds) is measured in radii.
+    // A column that is zero by symmetry, up to round-off, is measured in radii.
     const double largest_value = largest(expected) < 1e-12 ? 1.0 : largest(expected);
     for (std::size_t k = 0; k < expected.size(); ++k) {
       worst = std::max(worst, std::abs(actual[k + shift] - factor * expected[k]) / (std::abs(factor) * largest_value));
@@ -250,7 +250,7 @@ TEST(NonlocalEvents, StopWhereAContactIsAsWideAsTheParticleOrWallsMeet) {
 }
 
 TEST(NonlocalEvents, AWallThatIsNeverPressedChangesNothing) {
-  // 62 degrees from the lateral walls the surface is pushed away from an oblique wall that touches it.
+  // 62 degrees from the lateral walls the surface moves away from an oblique wall that touches it.
   const TestRun die = run(nonlocal_scenario(Configuration::die, 0.48, {ramp(0.4)}));
   const TestRun more =
       run(oblique(nonlocal_scenario(Configuration::oblique_die, 0.48, {ramp(0.4)}), 62.0 * pi / 180.0));
@@ -259,7 +259,7 @@ TEST(NonlocalEvents, AWallThatIsNeverPressedChangesNothing) {
   EXPECT_EQ(die.events(), more.events());
 }
 
-// --- what an elastic particle does
+// --- properties of an elastic particle
 
 TEST(NonlocalRuns, UnloadingRetracesLoadingAndTheWorkIsStored) {
   for (const char* integrator : k_integrators) {
@@ -331,7 +331,7 @@ TEST(NonlocalRuns, LeaveADisplacementThatOfTheWallItself) {
 }
 
 TEST(NonlocalRuns, OfOneTermWithoutCouplingAreHertzian) {
-  // A single driven wall under a fixed centre feels no other.
+  // With a fixed centre, a single driven wall is independent of the others.
   CheckedScenario one = between(nonlocal_scenario(Configuration::walls, 0.3, {}),
                                 {wall("a", {0, 0, 1}, {ramp(0.1)}), wall("b", {0, 0, -1}, {}, 0.5)});
   const TestRun now = run(with(one, "terms", "1"));
@@ -342,7 +342,7 @@ TEST(NonlocalRuns, DoNotDependOnTheDirectionOfTheWalls) {
   const Eigen::Matrix3d turn = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized().toRotationMatrix();
   for (const bool is_free : {false, true}) {
     const auto walls = [&](const Eigen::Matrix3d& rotation) {
-      // A free centre has a definite place only where the lateral walls are pressed from the start.
+      // A free centre has a definite position only if the lateral walls are pressed from the start.
       const double gap = is_free ? 0.0 : 0.01;
       const double slant = is_free ? 0.0 : 0.3;
       CheckedScenario scenario =
@@ -435,7 +435,7 @@ TEST(NonlocalRandomWalls, EndCompleteOrAtANamedLimitAndGiveEverythingBack) {
       continue;
     }
     ++complete;
-    // The third step leads to where the first one ended.
+    // The third step returns to the end of the first one.
     for (const ContactClass& c : now.scene.classes) {
       const auto force = now.outputs(c.name + ".force");
       ASSERT_EQ(force.size(), 16u);

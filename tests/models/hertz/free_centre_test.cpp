@@ -1,4 +1,4 @@
-// Runs of a Hertz particle with a free centre: loose, pushed, squeezed, and let go again.
+// Runs of a Hertz particle with a free centre: loose, pushed, squeezed, and released.
 
 #include <gtest/gtest.h>
 
@@ -102,7 +102,7 @@ TEST(HertzCell, EndsAlikeTurnedAndInAnotherOrder) {
 }
 
 TEST(HertzCell, TakesASphereThatIsSqueezedBeyondItsHold) {
-  // Three walls of which none opposes another let the particle go where the fourth one is.
+  // Three walls, none of which opposes another, let the particle move to the fourth one.
   const TestRun result = run(cell({wall("a", {1, 0, -0.2}, path({0.05})), wall("b", {-1, 0.1, -0.2}),
                                    wall("c", {0, -1, -0.2}), wall("lid", {0, 0, 1}, {}, 0.3)}));
   ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;

@@ -27,7 +27,7 @@ constexpr double k_modulus = 1.3;
 constexpr double k_rounding = 16 * k_epsilon;  // a formula of some ten operations without cancellation
 constexpr double k_shares[] = {0.003, 0.03, 0.3, 0.7, 0.97};
 
-// --- the contacts the law is tested on
+// --- contacts on which the law is tested
 
 /// An adhesive contact below its largest overlap: its frame over radius, largest overlap and overlap.
 struct Bond {
@@ -48,7 +48,7 @@ struct Bond {
   }
   [[nodiscard]] PeelState peel(double a) const { return peel_state(indenter(), modulus, surface_energy, a); }
   [[nodiscard]] double stretch(double a) const { return critical_stretch(modulus, surface_energy, a); }
-  /// Contact radius at a share of the way from the critical one to where the profile ends, or to its tenfold.
+  /// Contact radius between the critical one and the end of the profile, or ten times the critical one.
   [[nodiscard]] double between(double share) const {
     const Indenter shape = indenter();
     const double last = shape.profile == ElasticProfile::parabola
@@ -76,7 +76,7 @@ struct Bond {
 
 std::ostream& operator<<(std::ostream& out, const Bond& bond) { return out << bond.name; }
 
-/// How strong the surface energy is: (pi/2) (dg/E*) (B/A)^2 / b, the cube of the critical radius over the half width
+/// Surface energy of a given strength: (pi/2) (dg/E*) (B/A)^2 / b, the cube of the critical radius over the half width
 /// while that is small.
 double surface_energy_of(double strength, const Indenter& indenter, double modulus) {
   const double flatness = 2.0 * indenter.half_width / indenter.height;
@@ -181,7 +181,7 @@ TEST(MdrAdhesionOfTheEllipse, ApproachesJkrWithTheSquareOfTheCriticalRadius) {
     const auto difference = [&, control = control, limit = limit](int decade) {
       return ellipse_pull_off(1.0, std::pow(10.0, -decade), control) - limit;
     };
-    // Relative 4e-10 at the last decade, where rounding is 1e-6 of it.
+    // At the last decade the relative difference is 4e-10, and round-off 1e-6 of it.
     for (int decade = 3; decade < 13; ++decade) {
       const double order = std::log10(difference(decade) / difference(decade + 1));
       // a_c^2 goes with dg^(2/3); the next term is smaller by another a_c^2.
@@ -200,7 +200,7 @@ TEST(MdrAdhesionCriticalRadius, IsWhereTheProfileIsAsSteepAsTheStretchTimesXi) {
       const double step = 0.005 * room;
       const double g = central_difference([&](double x) { return profile_height(indenter, x); }, a, step);
       const double dl = central_difference([&](double x) { return bond.stretch(x); }, a, step);
-      // The steps' rounding over the steps; near the end of the profile also that of a over its distance from there.
+      // Round-off over the step; near the end of the profile also the round-off of a over its distance from the end.
       const double tolerance = 1e-12 + 1000.0 * k_epsilon * indenter.half_width / room;
       EXPECT_LE(relative_error(g, xi * dl), tolerance)
           << bond << ", xi = " << xi << ", a/b = " << a / indenter.half_width;
@@ -217,7 +217,7 @@ TEST(MdrAdhesionCriticalRadius, IsTheRootOfTheCubic) {
       const double flatness = 2.0 * b / indenter.height;
       const double k = xi * xi * pi * bond.surface_energy / (2.0 * bond.modulus) * flatness * flatness;
       const double square = indenter.profile == ElasticProfile::parabola ? b * b : (b - a) * (b + a);
-      // The root is as sharp as rounding of a makes b - a.
+      // The root is as accurate as the round-off of a leaves b - a.
       EXPECT_LE(relative_error(a * a * a, k * square), k_rounding * (1.0 + a / std::max(b - a, k_epsilon * b)))
           << bond << ", xi = " << xi;
       EXPECT_GT(a, 0.0) << bond;
@@ -247,8 +247,8 @@ TEST(MdrAdhesionCriticalRadius, IsWhereTheEdgesForceOrDisplacementIsLeast) {
 
 // --- equilibrium of the edge
 
-/// A radius that has come back from what an edge has there: exact to rounding of that over its slope, and at the
-/// critical state, where the slope is zero, to the square root of it.
+/// Expects a radius computed back from a function of the edge. It is exact to the function's round-off over its slope;
+/// at the critical state, where the slope is zero, to the square root of that round-off.
 void expect_same_edge(const Bond& bond, double a, double back, double scale, double slope, double bend) {
   const double rounding = 8.0 * k_epsilon * scale;
   const double by_slope = rounding / std::max(slope, 1e-300);
@@ -266,7 +266,7 @@ TEST(MdrPeelAtDisplacement, BringsBackTheEdge) {
       const PeelState state = bond.peel(a);
       const PeelState back =
           peel_at_displacement(indenter, bond.modulus, bond.surface_energy, critical, state.displacement_1d);
-      // The displacement itself comes back to rounding, however flat or steep it is at the edge.
+      // The displacement comes back to round-off, however flat or steep it is at the edge.
       EXPECT_LE(std::abs(back.displacement_1d - state.displacement_1d), 8.0 * k_epsilon * bond.length_scale(a))
           << bond << ", share = " << share;
       EXPECT_GE(back.contact_radius, critical * (1.0 - 2.0 * k_epsilon)) << bond << ", share = " << share;
@@ -326,7 +326,7 @@ TEST(MdrFreeContactRadius, IsWhereTheProfileIsAsHighAsTheDisplacement) {
     const Indenter indenter = bond.indenter();
     for (const double share : {1e-12, 1e-6, 0.01, 0.5, 0.999}) {
       const double d = share * 0.5 * indenter.height;
-      // Near the end of the profile rounding of a is magnified.
+      // Near the end of the profile the round-off of a is magnified.
       EXPECT_LE(relative_error(profile_height(indenter, free_contact_radius(indenter, d)), d),
                 k_rounding / (1.0 - share))
           << bond << ", share = " << share;
@@ -364,7 +364,7 @@ TEST(MdrStickingContact, HasTheDerivativesOfItsForce) {
         EXPECT_EQ(contact.contact_radius, a);
         const double scale = bond.force_scale(a);
         const double length = bond.length_scale(a) / bond.frame(overlap).by_overlap;
-        // Rounding of the displacement, which is a difference of overlaps, magnified by the slope.
+        // Round-off of the displacement, a difference of overlaps, magnified by the slope.
         const double noise = scale + contact.by_overlap * (std::abs(overlap) + bond.overlap_max);
         expect_derivative(
             contact.by_overlap, [&](double x) { return bond.sticking(bond.radius, bond.overlap_max, x, a).force; },
@@ -394,7 +394,7 @@ TEST(MdrPeelingContact, HasTheDerivativesOfItsForce) {
       const double overlap = bond.overlap_at(state.displacement_1d);
       const Contact contact = bond.peeling(bond.radius, bond.overlap_max, overlap);
       const double opening = bond.frame(overlap).by_overlap;
-      // As far as to the critical state and to the end of the profile.
+      // Distances to the critical state and to the end of the profile.
       const Indenter indenter = bond.indenter();
       double room = state.displacement_1d - critical.displacement_1d;
       if (indenter.profile == ElasticProfile::ellipse) {
@@ -411,7 +411,7 @@ TEST(MdrPeelingContact, HasTheDerivativesOfItsForce) {
       expect_derivative(
           softening, [&](double x) { return bond.peeling(bond.radius, bond.overlap_max, x).by_overlap; }, overlap,
           room / opening, noise_of_stiffness);
-      // What of that one unit of the others uses up: the displacement and the profile there.
+      // The share of that room which a unit of the other variables uses up: the displacement and the profile there.
       const auto length_of = [&](const Frame::Change& change, double length) {
         const double speed =
             std::abs(change.displacement) + std::max(indenter.height, profile_height(indenter, a)) *
@@ -493,7 +493,7 @@ TEST(MdrStickingContact, GoesOverIntoPeelingWithoutAJump) {
       const double overlap = bond.overlap_at(state.displacement_1d);
       const Contact stuck = bond.sticking(bond.radius, bond.overlap_max, overlap, a);
       const Contact peels = bond.peeling(bond.radius, bond.overlap_max, overlap);
-      // Rounding of the overlap over the slope; at the critical share also over the edge's slope.
+      // Round-off of the overlap over the slope; at the critical share also over the edge's slope.
       const double rounding =
           k_rounding * (bond.force_scale(a) + std::abs(peels.by_overlap) * (std::abs(overlap) + bond.overlap_max));
       EXPECT_NEAR(stuck.force, peels.force, rounding) << bond << ", share = " << share;
@@ -527,7 +527,7 @@ TEST(MdrStickingContact, GoesOverIntoTheContactWithoutAdhesionWithoutAJump) {
         }
       }
       SCOPED_TRACE(::testing::Message() << bond << ", share = " << share);
-      // Rounding of the overlap, a difference of large ones, over what it is measured in.
+      // Round-off of the overlap, a difference of large ones, over its unit.
       const double distance = profile_height(indenter, a) / bond.frame(overlap).by_overlap;
       const double rounding = k_rounding * (1.0 + (std::abs(overlap) + bond.overlap_max) / distance);
       EXPECT_LE(relative_error(stuck.force, free.force), 2.0 * rounding);
@@ -556,7 +556,7 @@ TEST(MdrAdhesiveEnergy, HasTheForceForDerivativeWhileTheEdgeSticks) {
         const double overlap = bond.overlap_at(profile_height(bond.indenter(), a) - part * bond.stretch(a));
         const double force = bond.sticking(bond.radius, bond.overlap_max, overlap, a).force;
         const double length = bond.length_scale(a) / bond.frame(overlap).by_overlap;
-        // Large shares of the way, as the energy is quadratic in the overlap.
+        // Large steps suffice, because the energy is quadratic in the overlap.
         const double difference = central_difference([&](double x) { return bond.energy(x, a); }, overlap, length);
         EXPECT_NEAR(force, difference,
                     1e-13 * (bond.force_scale(a) * (1.0 + (std::abs(overlap) + bond.overlap_max) / length)));
@@ -592,7 +592,7 @@ TEST(MdrAdhesiveEnergy, ChangesByTheWorkOfThePeelingForce) {
       const double a = bond.between(share);
       const double high = bond.energy(bond.overlap_at(bond.peel(a).displacement_1d), a);
       const double low = bond.energy(bond.overlap_at(bond.peel(last).displacement_1d), last);
-      // Magnitudes of what the energies are differences of.
+      // Magnitudes of the terms whose differences are the energies.
       const double opening = bond.frame(0.0).by_overlap;
       const double scale = bond.force_scale(a) * bond.length_scale(a) / opening;
       EXPECT_NEAR(high - low, peeling_work(bond, last, a),
@@ -629,7 +629,7 @@ TEST(MdrAdhesiveEnergy, OfThePeelingSpringsFallsByTheSurfaceThatOpens) {
       const double room = indenter.profile == ElasticProfile::parabola ? a : std::min(a, indenter.half_width - a);
       const double difference = central_difference(springs, a, 0.01 * room);
       const double expected = 2.0 * pi * a * bond.surface_energy;
-      // A hundredth of the room: rounding of the springs' terms over it; and of the edge's displacement.
+      // The step is a hundredth of the room: round-off of the springs' terms over it, and of the edge's displacement.
       const double scale = bond.force_scale(a) * bond.length_scale(a) / room +
                            bond.force_scale(a) * frame.by_overlap * bond.overlap_max / a;
       EXPECT_NEAR(difference, expected, 1e-12 * expected + 1e-13 * scale) << bond << ", share = " << share;
@@ -715,8 +715,8 @@ TEST(MdrAdhesion, IsHomogeneous) {
           const double a = bond.between(share);
           const PeelState unit = bond.peel(a);
           const PeelState state = peel_at_displacement(scaled, modulus, dg, a_c, length * unit.displacement_1d);
-          // Near pull-off the edge moves with the square root of rounding; the force with the edge's slope is steeper
-          // than that of the displacement by this much.
+          // Near pull-off the edge moves with the square root of round-off; this factor is the slope of the force over
+          // that of the displacement there.
           EXPECT_NEAR(state.force / (stress * length * length), unit.force, 1e-11 * bond.force_scale(a))
               << bond << ", share = " << share << ", length = " << length << ", stress = " << stress;
         }

@@ -41,7 +41,7 @@ TEST(MdrAdhesionFits, AreThePrintedPowers) {
 }
 
 TEST(MdrAdhesionFits, HaveADepthThatVanishesAtBothEnds) {
-  // The middle and both ends of the parabola; continuous at the ends.
+  // The middle and both ends of the parabola, where the function is continuous.
   constexpr double yield = 0.02;
   const auto depth = [](double x) { return peak_depth_over_initial_radius(x + yield + 0.15, yield, 10.0); };
   EXPECT_LE(relative_error(depth(0.18), 0.1025 * std::pow(10.0, -1.175)), k_rounding);

@@ -1,4 +1,4 @@
-/// The edge of one adhesive contact as an automaton: where it follows, sticks, peels and pulls off.
+/// The edge of one adhesive contact as an automaton: it follows, sticks, peels and pulls off.
 
 #include "mdr/adhesive_edge.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr Adhesion k_adhesion{1.0, 1e-5};
 
-/// One-dimensional space of a contact, by its overlap, which is 0 where it touches without adhesion.
+/// One-dimensional space of a contact, given by its overlap, which is 0 where it touches without adhesion.
 struct Space {
   const char* name;
   UnloadingShape dent{};  ///< of an elastic contact: no height
@@ -31,10 +31,10 @@ AdhesiveEdge stuck_at(double radius) { return {Edge::sticking, radius}; }
 
 PullOff pull_off_in(const Space& space) { return pull_off_of(space.at(0.0).indenter, k_adhesion); }
 
-/// Radius of an edge that stuck well outside its critical radius.
+/// Radius of an edge that sticks well outside its critical radius.
 double wide_radius(const Space& space) { return 1.5 * pull_off_in(space).by_force.contact_radius; }
 
-/// Overlap at which a function of it is zero, which rises with the overlap.
+/// Root of a function that increases with the overlap.
 template <class Function>
 double root(Function&& function, double low, double high) {
   for (int k = 0; k < 200; ++k) {
@@ -92,7 +92,7 @@ TEST(MdrAdhesiveEdge, DoesNotPeelWithinItsCriticalRadius) {
       EXPECT_FALSE(stuck_at(critical.contact_radius).torn(critical)) << space.name;
       EXPECT_TRUE(stuck_at(1.001 * critical.contact_radius).torn(critical)) << space.name;
     }
-    // A force is unstable before a displacement is.
+    // Force control becomes unstable before displacement control.
     EXPECT_GT(limits.by_force.contact_radius, limits.by_displacement.contact_radius) << space.name;
   }
 }
@@ -164,7 +164,7 @@ TEST(MdrAdhesiveEdge, IsSetBackByRoundOffAlone) {
     const AdhesiveEdge moved = edge.set_back(indenter, 1e-14);
     EXPECT_LT(moved.radius, edge.radius) << space.name;
     EXPECT_GE(moved.radius, edge.radius * (1.0 - 1e-8)) << space.name;
-    // So moved, it is no longer past the displacement at which it would peel.
+    // After the move, the edge is no longer past the displacement at which it would peel.
     const Frame frame = space.at(overlap_of_peeling(space, edge));
     EXPECT_GT(peel_guard(moved, frame, k_adhesion), peel_guard(edge, frame, k_adhesion)) << space.name;
     EXPECT_EQ(edge.set_back(indenter, 1e-3).radius, edge.radius) << space.name;

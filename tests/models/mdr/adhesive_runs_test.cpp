@@ -1,4 +1,4 @@
-// Whole runs of adhesive particles: pull-off, hysteresis of the edge, energy, and what must not change a curve.
+// Whole runs of adhesive particles: pull-off, hysteresis of the edge, energy, and invariance of curves.
 
 #include <algorithm>
 #include <cmath>
@@ -87,7 +87,7 @@ TEST(MdrForceExtremum, ComesWithEveryWithdrawalOfAPlasticContact) {
     const Words events = result.events();
     EXPECT_EQ(std::ranges::count(events, "axial:force-extremum"), 2) << integrator;
     EXPECT_EQ(std::ranges::count(events, "axial:pull-off"), 2) << integrator;
-    // No row of the withdrawal lies below.
+    // No row of the retraction has a lower force.
     const auto force = result.column("axial.force");
     const auto step = result.column("step");
     double least = 0.0;
@@ -98,7 +98,7 @@ TEST(MdrForceExtremum, ComesWithEveryWithdrawalOfAPlasticContact) {
 
 TEST(MdrForceExtremum, IsNoneWhereTheForceStays) {
   const double depth = 0.75 * std::cbrt(pi * 1e-5 / k_modulus * (pi * 1e-5 / k_modulus));
-  // Held between the greatest tension and pull-off; and driven back from there.
+  // One program holds between the greatest tension and pull-off, the other drives back from there.
   const std::vector<Step> held{ramp(0.005), ramp(-0.99 * depth), hold(), hold()};
   for (const std::string_view integrator : integrator_names()) {
     if (integrator == "explicit") continue;
@@ -136,7 +136,7 @@ TEST_P(MdrPullOff, FollowsTheGreatestTensionWhichIsThatOfJkr) {
     const double displacement = a * a - std::sqrt(2.0 * pi * a * dg / k_modulus);
     EXPECT_LE(relative_error(result.at_event("force-extremum", "axial.force"), -1.5 * pi * dg), 1e-10) << "dg = " << dg;
     EXPECT_LE(relative_error(result.at_event("force-extremum", "axial.displacement"), displacement), 1e-7);
-    // Nothing jumps there, and no row lies below.
+    // Nothing jumps at the extremum, and no row has a lower force.
     EXPECT_EQ(before_event(result, "force-extremum", "axial.force"), result.at_event("force-extremum", "axial.force"));
     const auto force = result.column("axial.force");
     EXPECT_EQ(*std::ranges::min_element(force), result.at_event("force-extremum", "axial.force"));
@@ -183,7 +183,7 @@ TEST_P(MdrPullOff, EndsAStepThatAsksForIt) {
   EXPECT_TRUE(result.has_event("until-met"));
   EXPECT_EQ(result.time_of("until-met"), result.time_of("pull-off"));
   EXPECT_LT(result.time_of("pull-off"), 2.0);
-  // The next step begins there and then.
+  // The next step begins at once.
   EXPECT_DOUBLE_EQ(result.column("time").back(), result.time_of("pull-off") + 1.0);
   EXPECT_GT(result.last("axial.force"), 0.0);
 }
@@ -217,9 +217,9 @@ INSTANTIATE_TEST_SUITE_P(AllForms, MdrPullOff, ::testing::ValuesIn(k_integrators
 
 TEST(MdrAdhesiveContact, AdheresAgainOnlyWhenItIsPressedAgain) {
   for (const char* integrator : k_integrators) {
-    // Off, back to just short of first touch, away again, into contact, off.
+    // The wall leaves, returns to just short of first touch, leaves again, makes contact, and leaves.
     const TestRun result = run(jkr(path({0.005, -0.01, -1e-6, -0.01, 0.002, -0.01})), integrator);
-    // The second time it stays below its largest overlap, so that only the edge is turned.
+    // The second contact stays below its largest overlap, so that only the edge turns.
     EXPECT_EQ(result.events(),
               (Words{"axial:load-reversal", "axial:stick", "axial:peel", "axial:force-extremum", "axial:pull-off",
                      "axial:contact-made", "axial:stick", "axial:peel", "axial:force-extremum", "axial:pull-off"}))
@@ -292,8 +292,8 @@ TEST(MdrAdhesiveContact, SticksPeelsAndFollowsInTurn) {
 }
 
 TEST(MdrAdhesiveContact, TurnsItsEdgeOnceWhereTheRadiusGoesOnGrowing) {
-  // The rule of the seed lets the radius grow on unloading, too. The growing indenter goes on pressing the springs at
-  // the edge for a moment: the edge is turned a little after the wall, where the spring's displacement has no slope.
+  // The rule of the seed lets the radius grow on unloading, too. The growing indenter presses the springs at the edge
+  // for a moment longer: the edge turns a little after the wall, where the spring's displacement has no slope.
   for (const double modulus_over_yield : {25.0, 50.0, 100.0, 200.0}) {
     for (const double poisson_ratio : {0.0, 0.2}) {
       const CheckedScenario scenario =
@@ -312,7 +312,7 @@ TEST(MdrAdhesiveContact, TurnsItsEdgeOnceWhereTheRadiusGoesOnGrowing) {
 }
 
 TEST(MdrAdhesiveContact, ComesBackToWhereItHasPeeledFrom) {
-  // From a peeling edge in and out again: the edge sticks, so that the same place has the same force.
+  // The wall goes from a peeling edge in and out again: the edge sticks, so that equal positions have equal forces.
   const TestRun result =
       run(adhering(mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.05, 0.035, 0.038, 0.035, 0.038})), 1e-4));
   std::vector<double> forces;
@@ -350,7 +350,7 @@ TEST(MdrAdhesiveContact, HasTheRadiusBetweenThatWithoutAdhesionAndThatInEquilibr
   EXPECT_GT(sticking, 100);
 }
 
-// --- what must not change a curve
+// --- invariance of curves
 
 TEST(MdrAdhesiveInvariance, OutputPointsDoNotMatter) {
   for (const char* integrator : k_integrators) {
@@ -421,7 +421,7 @@ TEST(MdrAdhesiveInvariance, UnitsDoNotMatter) {
             std::pair("work", force * length), std::pair("dissipation", force * length)}) {
         std::vector<double> values = scaled.outputs(column);
         for (double& value : values) value /= scale;
-        // Rounding of the scaled input, amplified by the steep unloading branch.
+        // Round-off of the scaled input, amplified by the steep unloading branch.
         EXPECT_LE(difference(values, unit.outputs(column)), 1e-12)
             << column << ", lengths x " << length << ", stresses x " << stress;
       }
@@ -441,7 +441,7 @@ TEST(MdrAdhesiveInvariance, MergingOfWallsDoesNotMatter) {
   }
 }
 
-/// Pull-offs, one after another.
+/// Pull-offs in their order.
 Words torn_off(const TestRun& result) {
   Words events = result.events();
   std::erase_if(events, [](const std::string& event) { return !event.ends_with(":pull-off"); });
@@ -523,7 +523,7 @@ TEST(MdrAdhesiveEnergyBalance, DissipationNeverFallsWhereOnlyPlasticFlowGrows) {
     for (const char* integrator : k_integrators) {
       const TestRun result = run(with(scenario, "radius_rule", "yielded"), integrator);
       ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
-      // Rounding with the direct solution, else the error of the integrated work.
+      // Round-off with the direct solution, else the error of the integrated work.
       const double tolerance = std::string(integrator) == "direct" ? 1e-13 : 2e-7;
       EXPECT_GE(lost_dissipation(result), -tolerance) << integrator << ", " << describe(scenario);
     }
@@ -531,7 +531,8 @@ TEST(MdrAdhesiveEnergyBalance, DissipationNeverFallsWhereOnlyPlasticFlowGrows) {
 }
 
 TEST(MdrAdhesiveEnergyBalance, AClosedCycleDissipatesItsArea) {
-  // At a held radius: down to a peeling edge, and back to the largest overlap; and the same through pull-off.
+  // At a held radius, the wall retracts to a peeling edge and returns to the largest overlap; then it does so through
+  // pull-off.
   for (const double least : {0.035, 0.0}) {
     const TestRun result = run(
         with_points(adhering(mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.05, least, 0.05})), 1e-4), 4000));

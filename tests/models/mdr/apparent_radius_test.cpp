@@ -1,4 +1,4 @@
-/// The volume balance of an MDR particle, the rules of its growth, and where contact caps meet.
+/// The volume balance of an MDR particle, the rules of its growth, and the impingement of contact caps.
 
 #include "mdr/apparent_radius.hpp"
 
@@ -18,7 +18,7 @@ using Normals = std::vector<Eigen::Vector3d>;
 
 const Normals k_opposite{{1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}};
 
-/// Balance of n walls that press elastically.
+/// Volume balance of n walls that press elastically.
 VolumeBalance balance(double n, double displacement, double r, double bulk_compliance, double rate = 1.0) {
   const double overlap = displacement + r;
   const Contact contact = elastic_contact(ElasticProfile::ellipse, 1.0, 1.0 + r, overlap);
@@ -116,7 +116,8 @@ TEST(MdrGrowthDrive, IsTheDemandOverItsMagnitudes) {
 }
 
 TEST(MdrGrowthDrive, AtFirstTouchIsThatOfWhatVanishesLast) {
-  // Elastic volume, of a compressible particle alone, outlasts the caps: lost where walls come, given back as they go.
+  // The elastic volume, which only a compressible particle has, outlasts the caps: lost on approach, regained on
+  // retreat.
   EXPECT_EQ(growth_drive(0.0, 0.0, false, true), -1.0);
   EXPECT_EQ(growth_drive(0.0, 0.0, true, true), 1.0);
   EXPECT_EQ(growth_drive(0.0, 0.0, false, false), 1.0);

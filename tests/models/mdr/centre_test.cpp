@@ -69,7 +69,7 @@ bool has_algebraic_unknowns(const Scene& scene) {
 }
 
 TEST(FreeCentre, GivesEachContactOfAPairHalfTheDisplacement) {
-  // Loading and reloading beyond, with a loss of contact in between.
+  // Loading, unloading with a loss of contact, and reloading beyond.
   const std::vector<double> displacements{0.5, 0.3, 0.6};
   std::vector<double> halves;
   for (const double d : displacements) halves.push_back(0.5 * d);
@@ -118,7 +118,7 @@ TEST(FreeCentre, BalancesTheForcesInEveryRow) {
     for (const char* integrator : k_integrators) {
       const TestRun result = run(scenario, integrator);
       ASSERT_EQ(result.record.status, RunStatus::complete) << integrator << ": " << result.record.message;
-      // IDA solves for the balance to its tolerance; 3e-10 measured at rtol 1e-8. The others go on to rounding.
+      // IDA solves for the balance to its tolerance, 3e-10 measured at rtol 1e-8; the others to round-off.
       EXPECT_LE(net_force(result), std::string_view(integrator) == "ida" ? 1e-9 : 4e-15)
           << integrator << ", " << describe(scenario);
     }
@@ -187,7 +187,7 @@ TEST(FreeCentre, ThatNothingHoldsIsCarriedByTheWallThatPushesIt) {
 }
 
 TEST(FreeCentre, ThatIsLooseIsCarriedToTheOtherWallAndSqueezedThere) {
-  // Also one that comes loose later: both walls leave it where it is, and the lower one comes back.
+  // A particle that comes loose, too: both walls leave it where it is, and the lower one returns.
   const TestRun expected = run(press(mdr_particle(), {0.1}));
   const CheckedScenario gap =
       between(mdr_particle(), {wall("top", {0, 0, 1}, path({0.2})), wall("bottom", {0, 0, -1}, {}, 0.1)});
@@ -205,7 +205,7 @@ TEST(FreeCentre, ThatIsLooseIsCarriedToTheOtherWallAndSqueezedThere) {
   }
 }
 
-/// Largest difference between a wall's overlap and what its displacement, the centre and the growing radius make of it.
+/// Largest difference of a wall's overlap from the sum of its displacement, the centre's and the radius's growth.
 double misplacement(const TestRun& result) {
   const std::vector<double> x[] = {result.column("centre_x"), result.column("centre_y"), result.column("centre_z")};
   const bool grows = result.record.history.find("apparent_radius").has_value();

@@ -270,7 +270,7 @@ TEST(MdrContactBranch, WithAStuckEdgeBearsWhatItBoreWhereItStuck) {
     const Contact before = c.branch.contact(c.law, k_growth, overlap);
     const ContactBranch stuck = c.branch.with_edge({Edge::sticking, before.contact_radius});
     EXPECT_LE(relative_error(stuck.contact(c.law, k_growth, overlap).force, before.force), 1e-9) << c.name;
-    // Drawn back, it bears less than the contact that follows.
+    // After a retreat, a contact whose edge sticks carries less than one whose edge follows.
     const double less = overlap - 0.05 * (overlap - c.branch.touching_overlap(c.law, k_growth));
     EXPECT_LT(stuck.contact(c.law, k_growth, less).force, c.branch.contact(c.law, k_growth, less).force) << c.name;
     const double force = stuck.contact(c.law, k_growth, less).force;

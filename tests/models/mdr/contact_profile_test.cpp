@@ -24,7 +24,7 @@ namespace {
 using std::numbers::pi;
 using Wide = boost::multiprecision::cpp_bin_float_50;
 
-/// A contact of every kind, with its force.
+/// A contact of each kind, with its force.
 struct Case {
   std::string name;
   ContactProfile profile;
@@ -78,7 +78,7 @@ std::vector<Case> cases() {
   return result;
 }
 
-/// Largest force that the springs of a contact would bear without its pulled edge, and of the pull alone.
+/// Largest force of a contact's springs without the pulled edge, and of the pull alone.
 double force_scale(const ContactProfile& profile) {
   const double edge = profile.displacement_1d - profile_height(profile.indenter, profile.contact_radius);
   return free_force(profile.indenter, profile.composite_modulus, profile.contact_radius) +

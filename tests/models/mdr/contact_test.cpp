@@ -42,7 +42,7 @@ TEST_P(MdrYieldOverlapTable, MatchesPrintedDigits) {
       << "E/Y = " << row.modulus_over_yield;
 }
 
-// 40-digit roots for nu = 0.3, as many digits as were printed.
+// 40-digit roots for nu = 0.3, rounded to the printed digits.
 INSTANTIATE_TEST_SUITE_P(Mdr, MdrYieldOverlapTable,
                          ::testing::Values(YieldRow{"soft", 6.25, 0.273671768452174, 1e-15},
                                            YieldRow{"EY12p5", 12.5, 0.120974619957, 1e-12},
@@ -87,7 +87,7 @@ TEST(MdrYieldOverlap, FallsWithTheModulus) {
 
 // --- auxiliary functions
 
-/// Against 50 digits, closely around the switch-over from the series to the closed form and over the whole range.
+/// Compares with 50 digits, closely around the change from the series to the closed form and over the whole range.
 template <class Function, class Reference>
 void expect_full_accuracy(Function&& function, Reference&& reference, double switch_over) {
   constexpr double tolerance = 4 * k_epsilon;  // largest errors found: phi 1.5 eps, psi 2.6 eps
@@ -124,7 +124,7 @@ TEST(MdrPsi, IsTwoThirdsAtARightAngle) { EXPECT_LE(relative_error(psi(0.5 * pi),
 TEST(MdrPsi, HasTheDerivativeSineTimesPhi) {
   for (const double theta : {1e-3, 0.1, 0.45, 0.6, 0.9, 1.1, 1.5}) {
     const double derivative = central_difference(psi, theta, 5e-3 * theta);
-    // Rounding over the relative step: 2 eps / 2.5e-3.
+    // Round-off over the relative step: 2 eps / 2.5e-3.
     EXPECT_LE(relative_error(derivative, std::sin(theta) * phi(theta)), 800 * k_epsilon) << "theta = " << theta;
   }
 }
@@ -273,7 +273,7 @@ TEST(MdrUnloading, StartsFromThePlasticContact) {
 TEST(MdrUnloading, HasNoForceWhereTheContactIsOpen) {
   for (const Dent& dent : dents()) {
     const double opening = dent.overlap_at(1.0);
-    // One rounding of the overlap on either side.
+    // One round-off of the overlap on either side.
     const double hair = 2.0 * k_epsilon * dent.overlap_max;
     for (const double overlap : {opening - hair, opening - 0.1, -1.0}) {
       const Contact open = dent.unloading(dent.grain.radius, dent.overlap_max, overlap);
@@ -293,7 +293,7 @@ TEST(MdrUnloading, GoesOnAboveTheLargestOverlapAsTheMirrorImage) {
       return unloading_contact(shape, dent.material.composite_modulus, dent.overlap_max - u * shape.recovery);
     };
     for (const double u : {1e-6, 0.01, 0.3}) {
-      // Rounding of the overlap, magnified to one of u.
+      // Round-off of the overlap, magnified to that of u.
       const double tolerance = k_rounding + 4.0 * k_epsilon * dent.overlap_max / shape.recovery;
       EXPECT_LE(relative_error(at(u).force + at(-u).force, 2.0 * at(0.0).force), tolerance) << dent << ", u = " << u;
       EXPECT_LE(relative_error(at(-u).contact_radius, at(u).contact_radius), tolerance) << dent << ", u = " << u;
@@ -309,7 +309,7 @@ TEST(MdrUnloading, KeepsItsForceBeyondTheMirrorImage) {
     const auto at = [&](double u) { return unloading_contact(shape, dent.material.composite_modulus, overlap(u)); };
     for (const double u : {-1.0, -1.5, -1e6}) {
       EXPECT_LE(relative_error(at(u).force, 2.0 * at(0.0).force), tolerance) << dent << ", u = " << u;
-      // Its square root has the rounding of u where the image ends.
+      // The square root of the area has the root of u's round-off at the end of the image.
       EXPECT_LE(at(u).contact_radius, 2.0 * std::sqrt(tolerance) * shape.contact_radius_max) << dent << ", u = " << u;
       EXPECT_LE(relative_error(unloading_energy(shape, overlap(u - 0.5)) - unloading_energy(shape, overlap(u)),
                                0.5 * shape.recovery * at(u).force),
@@ -371,7 +371,7 @@ TEST(MdrMaterial, MayBeIncompressible) {
   }
 }
 
-/// A unit of length and one of stress, powers of two: every operation scales without a new rounding.
+/// A unit of length and one of stress, powers of two: every operation scales without further round-off.
 struct Units {
   double length, stress;
 

@@ -10,7 +10,8 @@
 namespace monograin::mdr::derivatives_test {
 namespace {
 
-/// Compares a derivative with differences of its function over a small share of the length over which that one changes.
+/// Compares a derivative with differences of its function over a small share of the length over which the function
+/// changes.
 template <class Function>
 void expect_derivative(double derivative, Function&& function, double x, double length) {
   constexpr double share = 5e-3;       // truncation below 1e-13
@@ -40,7 +41,7 @@ TEST(MdrDerivatives, OfTheElasticContactAreExact) {
   }
 }
 
-/// A dent with the lengths of its largest overlap and radius over which its contact area goes to zero.
+/// A dent, with the lengths of its largest overlap and radius over which its contact area vanishes.
 struct ScaledDent : Dent {
   double area = std::pow(shape().contact_radius_max, 2);
   double overlap_length = area / (2.0 * grain.radius);

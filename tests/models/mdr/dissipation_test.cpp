@@ -1,4 +1,4 @@
-// Energy balance of whole runs: where the model dissipates, where it creates energy, and that the user is told.
+// Energy balance of whole runs: where the model dissipates, where it creates energy, and that it warns the user.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ TEST(MdrDissipation, NeverDecreasesWithTheYieldedRule) {
     for (const double poisson_ratio : {0.0, 0.3, 0.45}) {
       for (const CheckedScenario& scenario : programs(modulus_over_yield, poisson_ratio)) {
         const TestRun result = run(with(scenario, "radius_rule", "yielded"));
-        // Each row's work is off by its rounding; 2e-15 measured over all scenes.
+        // The work of each row has round-off; 2e-15 measured over all scenes.
         EXPECT_GE(lost_dissipation(result), -1e-14) << describe(scenario);
         EXPECT_FALSE(warns_of_created_energy(result)) << describe(scenario);
       }
@@ -63,7 +63,7 @@ TEST(MdrDissipation, BalancesWorkAndStoredEnergyInEveryRow) {
 }
 
 TEST(MdrWork, IsTheAreaUnderTheForces) {
-  // The one check of the work that does not trust the integrators: forces and displacements of the history itself.
+  // Integrates the history's own forces over its displacements: the only check of the work without the integrators.
   const TestRun result = run(with_points(mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.2, 0.35})), 4000));
   const auto force = result.column("axial.force");
   const auto displacement = result.column("axial.displacement");
@@ -121,7 +121,7 @@ TEST(MdrGrowthBeforeYieldOfAPair, CreatesAShareOfTheWorkAtYield) {
                                 AtYieldRow{12.5, -0.051, 5e-4}, AtYieldRow{6.25, -0.166, 5e-4}}) {
     const CheckedScenario scenario = mdr_scenario(Configuration::simple, row.modulus_over_yield, 0.3, path({0.4}));
     const TestRun result = run_finely(scenario);
-    // Least just before yield, where part of the stored energy is set free.
+    // The dissipation is least just before yield, which sets part of the stored energy free.
     const auto dissipation = result.column("dissipation");
     const double work = result.at_event("yield", "work");
     EXPECT_NEAR(*std::ranges::min_element(dissipation) / work, row.dissipation_over_work, row.printed)

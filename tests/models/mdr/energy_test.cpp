@@ -60,7 +60,7 @@ TEST(MdrUnloadingEnergy, IsTheWorkOfTheForceSinceTheContactOpened) {
     for (const double u : {0.0, 0.3, 0.7}) {
       const double overlap = dent.overlap_at(u);
       const double work = integrator.integrate([&](double x) { return unloading_force(dent, x); }, opening, overlap);
-      // Rounding of the overlaps, magnified to one of the travel from the opening.
+      // Round-off of the overlaps, magnified to that of the distance from the opening.
       const double tolerance = k_quadrature + 8.0 * k_epsilon * dent.overlap_max / (overlap - opening);
       EXPECT_LE(relative_error(unloading_energy(dent.shape(), overlap), work), tolerance) << dent << ", u = " << u;
     }

@@ -1,4 +1,4 @@
-// Walls whose force is prescribed: alone, beside walls whose displacement is, in turns, and with a free centre.
+// Walls under force control: alone, beside walls under displacement control, in turns with it, and with a free centre.
 
 #include <algorithm>
 #include <cmath>
@@ -81,15 +81,16 @@ TEST_P(MdrForceControl, MeetsThePrescribedForceInEveryRow) {
       const TestRun result =
           run(with(with(simple(force_path(targets)), "elastic_profile", profile), "radius_rule", rule), GetParam());
       ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
-      // Rounding of the overlap over the stiffness of the unloading branch. The wall is solved for at its radius, so
-      // that errors of an integrator do not show.
+      // Round-off of the overlap over the stiffness of the unloading branch. The wall is solved for at its radius, so
+      // that an integrator's errors do not show.
       EXPECT_LE(distance_from_program(result, "axial", targets), 1e-12) << profile << ", " << rule;
     }
   }
 }
 
 TEST_P(MdrForceControl, GivesWayAtOnceWhereItYields) {
-  // The ellipse yields into a contact that bears some tenths of a per cent more at once, so the wall goes back.
+  // At yield the ellipse becomes a contact that carries some tenths of a per cent more at once, so that the wall
+  // retreats.
   const TestRun result = run(with_points(simple(force_path({0.02})), 2000), GetParam());
   const auto side = result.column("row");
   const auto force = result.column("axial.force");
@@ -107,7 +108,7 @@ TEST_P(MdrForceControl, GivesWayAtOnceWhereItYields) {
 }
 
 TEST_P(MdrForceControl, GoesAlongTheCurveOfDisplacementControl) {
-  // Twenty places on a loading, an unloading and a reloading branch.
+  // Twenty positions on a loading, an unloading and a reloading branch.
   std::vector<double> places;
   for (int i = 1; i <= 8; ++i) places.push_back(0.01 * i);
   for (int i = 1; i <= 5; ++i) places.push_back(0.08 - 0.001 * i);
@@ -141,7 +142,7 @@ TEST_P(MdrForceControl, ClosesItsCycles) {
   for (const std::size_t top : {2U, 4U, 6U}) {
     EXPECT_LE(relative_error(place[top], place[0]), 1e-13);
     EXPECT_EQ(radius[top], radius[0]);
-    // Nothing is dissipated below the largest overlap; an integrated work is exact to some ten rtol.
+    // No energy is dissipated below the largest overlap; an integrated work is exact to some ten rtol.
     EXPECT_NEAR(dissipation[top], dissipation[0], (std::string(GetParam()) == "direct" ? 1e-13 : 2e-6) * work);
   }
   EXPECT_LE(relative_error(place[3], place[1]), 1e-13);
@@ -164,7 +165,7 @@ TEST_P(MdrForceControl, LosesTheContactUnderTension) {
     EXPECT_EQ(forces[i], 0.0) << "t = " << times[i];
     EXPECT_EQ(places[i], place) << "t = " << times[i] << ", row " << rows[i];
   }
-  // The lost wall has lost its tension, too: the next ramp starts from zero, at once.
+  // The lost wall has lost its tension, too: the next ramp starts from zero at once.
   EXPECT_EQ(result.time_of("dent-touched"), 2.0);
   EXPECT_NEAR(at_step_ends(result, "axial.force")[2], 0.01, 1e-14);
   EXPECT_NEAR(result.time_of("reload"), 3.5, 1e-9);
@@ -224,7 +225,7 @@ TEST_P(MdrForceControl, EndsAStepAtAnyQuantity) {
         Row{Quantity::apparent_radius, "apparent_radius", 1.0005}}) {
     const TestRun result = run(simple({until(force_ramp(0.03), row.quantity, row.value), ramp(0.07)}), GetParam());
     ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
-    // An event is as exact as the integrated radius.
+    // An event is as accurate as the integrated radius.
     EXPECT_LE(relative_error(result.at_event("until-met", row.column), row.value), 1e-7) << row.column;
     EXPECT_LT(result.time_of("until-met"), 1.0) << row.column;
     EXPECT_NEAR(result.last("axial.displacement"), 0.07, 1e-16) << row.column;
@@ -341,7 +342,7 @@ TEST(MdrMixedControl, AHeldForceGivesWayToTheGrowingParticle) {
       const auto place = at_step_ends(result, "x+.displacement");
       const auto radius = at_step_ends(result, "apparent_radius");
       EXPECT_GT(radius[1], radius[0]) << integrator << ", " << rule;
-      // Outwards, by more than the growth: the contact is larger at the same overlap.
+      // The wall moves outwards by more than the growth: the contact is larger at an equal overlap.
       EXPECT_LT(place[1], place[0] - (radius[1] - radius[0])) << integrator << ", " << rule;
     }
   }
@@ -376,7 +377,7 @@ TEST(MdrMixedControl, MergingOfWallsDoesNotMatter) {
       ASSERT_EQ(merged.record.status, RunStatus::complete) << merged.record.message;
       ASSERT_EQ(single.record.status, RunStatus::complete) << single.record.message;
       EXPECT_GT(single.scene.classes.size(), merged.scene.classes.size());
-      // Rounding with the direct solution; else steps differ with the number of unknowns.
+      // Round-off with the direct solution; otherwise steps differ with the number of unknowns.
       const double tolerance = std::string(integrator) == "direct" ? 1e-12 : 1e-6;
       for (const char* column : {"apparent_radius", "work", "dissipation"})
         EXPECT_LE(difference(single.outputs(column), merged.outputs(column)), tolerance)
@@ -467,7 +468,7 @@ TEST_P(MdrFreeCentreUnderForce, IsPressedFromBothSidesAlike) {
   }
   for (const char* column : {"apparent_radius", "stored_energy", "work", "dissipation"})
     EXPECT_LE(difference(pressed.outputs(column), symmetric.outputs(column)), 1e-6) << column;
-  // The centre goes as far as the fixed wall is pressed in.
+  // The centre moves by as much as the fixed wall is pressed in.
   const auto centre = pressed.outputs("centre_z");
   const auto fixed = pressed.outputs("z-.overlap");
   const auto radius = pressed.outputs("apparent_radius");
@@ -475,7 +476,7 @@ TEST_P(MdrFreeCentreUnderForce, IsPressedFromBothSidesAlike) {
 }
 
 TEST_P(MdrFreeCentreUnderForce, DoesTheWorkOfTheWallsWhileTheRadiusIsHeld) {
-  // Without growth, too: elastic only.
+  // Elastic contacts only, and therefore no growth.
   const TestRun pressed = run(against_a_fixed_wall(force_path({0.003, 0.001})), GetParam());
   const TestRun symmetric = run(simple(force_path({0.003, 0.001})));
   ASSERT_EQ(pressed.record.status, RunStatus::complete) << pressed.record.message;
@@ -485,7 +486,7 @@ TEST_P(MdrFreeCentreUnderForce, DoesTheWorkOfTheWallsWhileTheRadiusIsHeld) {
 }
 
 TEST_P(MdrFreeCentreUnderForce, IsPressedOnWhereBothWallsHaveLostIt) {
-  // The fixed wall has lost the particle, too, but it lies there still.
+  // The particle has lost the fixed wall, too, but still lies at it.
   const TestRun result = run(against_a_fixed_wall({force_ramp(0.02), ramp(0.0), force_ramp(0.01)}), GetParam());
   ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
   EXPECT_TRUE(result.has_event("contact-lost"));
@@ -496,7 +497,7 @@ TEST_P(MdrFreeCentreUnderForce, IsPressedOnWhereBothWallsHaveLostIt) {
 }
 
 TEST_P(MdrFreeCentreUnderForce, IsRefusedWhereNothingHoldsItAgainstAForce) {
-  // Both walls have gone away, and where it lies between them is not known.
+  // Both walls have gone away, and the particle's position between them is undetermined.
   CheckedScenario scenario = against_a_fixed_wall({force_ramp(0.02), ramp(0.0), force_ramp(0.01)});
   scenario.loading.walls[1] = wall("z-", -Eigen::Vector3d::UnitZ(), {hold(), ramp(-0.05), hold()});
   const TestRun result = run(scenario, GetParam());

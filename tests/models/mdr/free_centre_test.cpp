@@ -1,4 +1,4 @@
-/// A free centre moves by the loads of its contacts.
+/// The loads of its contacts move a free centre.
 
 #include "mdr/free_centre.hpp"
 
@@ -22,7 +22,7 @@ std::vector<ContactClass> walls(const std::vector<Vector>& normals) {
 
 const std::vector<Vector> k_cross{{1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}};
 
-/// Loads of linear springs of a stiffness each, pressed by a displacement of the centre towards their walls.
+/// Loads of linear springs with given stiffnesses, after a displacement of the centre towards their walls.
 void press(FreeCentre& centre, const std::vector<double>& stiffness, const std::vector<double>& forces,
            const CentreVector& displacement) {
   centre.clear();

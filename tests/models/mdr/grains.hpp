@@ -1,4 +1,4 @@
-/// The materials and sizes over which the contact law is tested, and a yielded contact of each.
+/// Materials and sizes on which the contact law is tested, and a yielded contact of each.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ inline std::ostream& operator<<(std::ostream& out, const Grain& grain) {
   return result;
 }
 
-/// A contact that has yielded and has then been driven on to its largest overlap.
+/// A contact that has yielded and then been driven to its largest overlap.
 struct Dent {
   Grain grain;
   double overlap_max;
@@ -58,7 +58,7 @@ inline std::ostream& operator<<(std::ostream& out, const Dent& dent) {
   return out << dent.grain << ", largest overlap = " << dent.overlap_max;
 }
 
-/// Of every grain one contact that has just yielded and a deep one.
+/// Two contacts of every grain: one that has just yielded, and a deep one.
 [[nodiscard]] inline std::vector<Dent> dents() {
   std::vector<Dent> result;
   for (const Grain& grain : grains()) {

@@ -1,4 +1,4 @@
-// What the guards say of themselves.
+// Properties that guards state about themselves.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace monograin::guards_test {
 namespace {
 
-/// A system at the end of a run, which goes on.
+/// A system at the end of a run, which can go on.
 class Onward {
  public:
   explicit Onward(const CheckedScenario& scenario) : run_(run(scenario)), y_(system().unknowns().size()) {

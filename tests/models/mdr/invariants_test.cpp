@@ -1,4 +1,4 @@
-// What must not change a curve of the MDR model, and what must hold along every curve.
+// Changes that must not affect a curve of the MDR model, and properties of every curve.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 // A die that is loaded, unloaded until its axial walls separate, and loaded beyond: every regime and most events.
 CheckedScenario die_cycle() { return mdr_scenario(Configuration::die, 20.0, 0.3, path({0.3, 0.2, 0.35})); }
 
-// Three pairs of walls one after another; the second and third load while the ones before go back a little.
+// Three pairs of walls one after another; while the second and the third load, the pairs before retreat a little.
 CheckedScenario triaxial_sequence() {
   const std::vector<std::vector<double>> programs{
       {0.20, 0.195, 0.19, 0.22}, {0.0, 0.20, 0.19, 0.22}, {0.0, 0.0, 0.20, 0.22}};
@@ -48,7 +48,7 @@ TEST(MdrInvariance, RateDoesNotMatter) {
     for (const double duration : {1e-9, 1e9}) {
       CheckedScenario scenario = die_cycle();
       for (Step& step : scenario.loading.steps) step.duration = duration;
-      // Bit for bit: within a step nothing but the output column knows of seconds.
+      // Bit for bit: within a step only the output column depends on seconds.
       expect_same_table(run(scenario, integrator).record.history, normal.record.history, 1);
     }
   }
@@ -72,7 +72,7 @@ TEST(MdrInvariance, UnitsDoNotMatter) {
             std::pair("stored_energy", force * length)}) {
         std::vector<double> values = scaled.outputs(column);
         for (double& value : values) value /= scale;
-        // Rounding of the scaled input, amplified by the steep unloading branch (factor 8.5) and the lateral overlaps.
+        // Round-off of the scaled input, amplified by the steep unloading branch (factor 8.5) and the lateral overlaps.
         EXPECT_LE(difference(values, unit.outputs(column)), 1e-13)
             << column << ", lengths x " << length << ", stresses x " << stress;
       }
@@ -90,8 +90,8 @@ TEST(MdrInvariance, RotationOfTheWallsDoesNotMatter) {
     const TestRun expected = run(original);
     const TestRun rotated = run(between(original, walls));
     EXPECT_EQ(rotated.scene.classes.size(), expected.scene.classes.size());
-    // Normals enter the angles between caps only, which end pieces and so move guesses: R is a root found but for
-    // rounding.
+    // Normals enter only the angles between caps. These end pieces and so change guesses, and R is a root up to
+    // round-off.
     EXPECT_LE(difference(rotated, expected), 16 * k_epsilon);
   }
 }
@@ -147,7 +147,8 @@ TEST(MdrInvariance, UnloadingAndReloadingIsAClosedLoopWhileTheRadiusRests) {
     const auto work = result.outputs("work");
     const std::size_t top = 50;
     for (std::size_t k = 1; k <= 50; ++k) {
-      // A displacement of one rounding error over a steep branch: 8.5 times the slope of the primary branch of order 1.
+      // A displacement of one round-off on a steep branch: 8.5 times the slope of the primary branch, which is of order
+      // 1.
       EXPECT_NEAR(force[top + 50 + k], force[top + 50 - k], 20 * k_epsilon * force[top]) << rule << ", row " << k;
     }
     EXPECT_NEAR(work[top + 100], work[top], 20 * k_epsilon * work[top]) << rule;

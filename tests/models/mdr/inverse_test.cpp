@@ -1,4 +1,4 @@
-// The overlap that bears a force, on each branch of a contact.
+// The overlap under a force, on each branch of a contact.
 
 #include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
@@ -23,7 +23,7 @@ using Wide = boost::multiprecision::cpp_bin_float_50;
 constexpr double k_modulus = 1.3;
 constexpr double k_rounding = 8 * k_epsilon;
 
-/// By how much a relative error of the force is magnified in the overlap.
+/// Amplification of a relative error of the force in the overlap.
 double condition(const Contact& contact, double overlap) { return contact.force / (contact.by_overlap * overlap); }
 
 // --- phi
@@ -149,7 +149,8 @@ TEST(MdrUnloadingOverlap, BearsTheForceBelowTheLargestOverlapAndSomewhatAbove) {
       const double overlap = dent.overlap_at(u);
       const Contact contact = unloading_contact(shape, dent.material.composite_modulus, overlap);
       const double back = unloading_overlap(shape, contact.force);
-      // Rounding of the overlap itself, and of the way from the opening over its condition (largest at the maximum).
+      // Round-off of the overlap itself, and of the distance from the opening over its condition (largest at the
+      // maximum).
       const double rounding = k_epsilon * dent.overlap_max + k_rounding * contact.force / contact.by_overlap;
       EXPECT_NEAR(back, overlap, 2.0 * rounding) << dent << ", u = " << u;
     }

@@ -1,4 +1,5 @@
-// Against an independent implementation of the model: single-particle curves of LAMMPS (see the headers of the files).
+// Comparison with an independent implementation of the model: single-particle curves of LAMMPS (see the files'
+// headers).
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@
 namespace monograin::lammps_test {
 namespace {
 
-/// A curve over the path of the walls, row by row at ever larger path lengths.
+/// A curve over the path length of the walls, which grows from row to row.
 struct PeerCurve {
   Table table;
   std::vector<double> path_lengths;
@@ -26,7 +27,7 @@ PeerCurve load(const std::string& name) {
   return curve;
 }
 
-/// Ramps at unit speed, so that time is the length of the path.
+/// Ramps at unit speed, so that time equals path length.
 std::vector<Step> at_unit_speed(const std::vector<double>& displacements) {
   std::vector<Step> steps;
   double from = 0.0;

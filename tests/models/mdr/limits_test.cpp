@@ -1,4 +1,4 @@
-// Where the MDR model ends, and how a run says so.
+// Limits of the MDR model, and how a run reports them.
 
 #include <gtest/gtest.h>
 
@@ -39,8 +39,8 @@ TEST(MdrCaps, IntersectWhereTheTableSays) {
   EXPECT_NEAR(run(hydrostatic_to(0.2026)).at_event("caps-intersect", "axial.displacement"), 0.202502982795, k_printed);
 }
 
-/// Two rigid walls whose normals are `angle` apart, and one from the other side, against a particle of R0 = 1 that
-/// yields too late to grow before their caps meet.
+/// Two rigid walls whose normals are `angle` apart and one from the other side, against a particle of R0 = 1. The
+/// particle yields too late to grow before the caps of the walls meet.
 CheckedScenario walls_apart_by(double angle, double displacement) {
   return parse_scenario(fmt::format(R"(model = "mdr"
 particle = {{ radius = 1 }}
@@ -121,7 +121,7 @@ TEST(MdrSingularGrowth, StopsAtOneStateUnderEveryControl) {
       ASSERT_EQ(expected.events().back(), "singular-growth") << rule;
       const double force = expected.last("axial.force");
       for (const char* integrator : k_integrators) {
-        // Twice what the particle bears there.
+        // Twice the force that the particle carries there.
         const TestRun result = run(pressed_by(force_ramp(2.0 * force)), integrator);
         EXPECT_EQ(result.record.status, RunStatus::stopped) << integrator << ", " << rule;
         EXPECT_EQ(result.events().back(), "singular-growth") << integrator << ", " << rule;
@@ -134,7 +134,7 @@ TEST(MdrSingularGrowth, StopsAtOneStateUnderEveryControl) {
 }
 
 TEST(MdrForce, NeverTakesWallsBackWhileItGrows) {
-  // Beyond the end of the free surface they would go back, and the particle would do two thirds of its work again.
+  // Beyond the end of the free surface the walls would retreat, and the particle would return two thirds of its work.
   const TestRun result = run(with(mdr_scenario(Configuration::die, 100.0, 0.3, {force_ramp(0.07)}), "elastic_profile",
                                   "parabola"));  // the ellipse gives way at yield
   const std::vector<double> displacement = result.column("axial.displacement");

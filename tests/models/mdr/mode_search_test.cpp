@@ -118,7 +118,7 @@ TEST(MdrModeSearch, EndsWhereTheWallHasReachedTheCentre) {
 }
 
 TEST(MdrModeSearch, ShowsTheModeThatItTriedLastWhereThereIsNone) {
-  // A force beyond the greatest that a plastic contact bears.
+  // A force above the largest that a plastic contact can carry.
   Particle before = particle(0.0, 50.0, Control::force);
   before.set_branch(0, before.branch(0).yielded(before.law(), 0.0));
   ModeSearch search(before);

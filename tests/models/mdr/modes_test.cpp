@@ -1,5 +1,5 @@
-// When the apparent radius grows, what the largest overlap does meanwhile, and that all forms of the equations agree on
-// it.
+// Growth of the apparent radius, the largest overlap during growth, and agreement of all forms of the equations about
+// both.
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@ namespace {
 
 constexpr const char* k_radius_rules[] = {"gated", "yielded", "seed"};
 
-/// One pair is driven in and back a little; then a second pair makes R grow while the first one goes on retreating; at
-/// last both go on. All touch from the start.
+/// One pair of walls advances and retreats a little. A second pair then makes R grow while the first one retreats
+/// further. At last both advance. All walls touch from the start.
 CheckedScenario one_pair_retreats(double modulus_over_yield, double poisson_ratio) {
   const auto first = path({0.20, 0.198, 0.197, 0.25});
   const auto second = path({0.0, 0.0, 0.20, 0.25});
@@ -30,7 +30,7 @@ std::vector<double> radii_at_step_ends(const TestRun& result, std::size_t points
 }
 
 TEST(MdrRadius, NeverShrinks) {
-  // IDA solves even a radius at rest anew at every step, to its tolerance; 5e-11 measured at rtol 1e-8.
+  // IDA solves even for a constant radius anew at every step, to its tolerance; 5e-11 measured at rtol 1e-8.
   const auto largest_drop = [](const char* integrator) { return std::string_view(integrator) == "ida" ? 2e-10 : 0.0; };
   for (const char* rule : k_radius_rules) {
     const CheckedScenario scenarios[] = {
@@ -114,7 +114,7 @@ TEST(MdrRadius, GrowsFromFirstTouchWhereTheMaterialIsIncompressible) {
 }
 
 TEST(MdrRadius, StartsToGrowInTheSameInstantInAllFormsWhereItStartsEarly) {
-  // Almost incompressible: growth begins 1e-4 and less into the step, where its guard has just left zero.
+  // Almost incompressible: growth begins within 1e-4 of the step, where its guard has just left zero.
   for (const double poisson_ratio : {0.45, 0.48, 0.49}) {
     for (const char* rule : {"gated", "seed"}) {
       const CheckedScenario scenario =
@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(AllRules, MdrForms,
                          });
 
 TEST(MdrForms, AgreeWhereGrowthStartsAlmostAtFirstTouch) {
-  // Near nu = 0.5 the demand for growth leaves zero downwards and is back after 3e-8 of the step.
+  // Near nu = 0.5 the drive of growth falls below zero and returns after 3e-8 of the step.
   for (const Configuration configuration : {Configuration::simple, Configuration::die, Configuration::hydrostatic}) {
     const CheckedScenario scenario = mdr_scenario(configuration, 10.7, 0.4999, path({0.15, 0.12, 0.16}));
     const TestRun direct = run(scenario);
@@ -210,7 +210,7 @@ TEST(MdrForms, AgreeWhereGrowthStartsAlmostAtFirstTouch) {
 }
 
 TEST(MdrForms, AgreeWhereAStiffContactUnloadsWhileTheRadiusGrows) {
-  // A piece of the direct solution is a hundred times as long as the unloading branch; Newton's method leaves it at
+  // A piece of the direct solution is a hundred times as long as the unloading branch, which Newton's method leaves at
   // first.
   const CheckedScenario scenario =
       with(mdr_scenario(Configuration::hydrostatic, 15694.0, -0.5, path({0.172, 0.098, 0.102})), "radius_rule", "seed");

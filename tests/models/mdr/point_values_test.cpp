@@ -105,7 +105,7 @@ TEST(MdrPointValues, UnloadingContactIsMet) {
     const UnloadingShape shape = shape_of(row);
     expect_shape(row, shape);
     const double u = unloading_fraction(shape, row["delta_over_R0"]);
-    // The file's decimal overlaps are not doubles: rounding them moves u by up to eps times their ratio to the
+    // The file's decimal overlaps are not doubles: their round-off moves u by up to eps times their ratio to the
     // recovery, and the force by 2.3 times as much (E/Y = 1e5: 7e-12).
     const double tolerance = k_rounding + 2.5 * k_epsilon * shape.overlap_max / shape.recovery;
     row.expect("delta_1D_over_R0", 0.5 * shape.height * (1.0 - u), tolerance);

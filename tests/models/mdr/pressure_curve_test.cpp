@@ -31,7 +31,7 @@ struct Samples {
 /// Rises, rests, falls steeply, falls gently; unequal intervals.
 const Samples k_bumpy{{0.0, 1e-4, 0.01, 0.1, 0.12, 0.2, 0.5}, {1.0, 1.4, 2.2, 2.6, 2.6, 1.3, 1.2}};
 
-/// The exponential in so many equal intervals up to x = 0.8.
+/// The exponential, sampled in a number of equal intervals up to x = 0.8.
 Samples dense_exponential(int intervals) {
   Samples samples;
   for (int i = 0; i <= intervals; ++i) {
@@ -45,7 +45,7 @@ std::shared_ptr<const PressureCurve> shared(const Samples& samples) {
   return std::make_shared<const PressureCurve>(samples.x, samples.p);
 }
 
-/// Places inside all intervals of a curve.
+/// Positions inside all intervals of a curve.
 std::vector<double> inner_places(const PressureCurve& curve) {
   std::vector<double> places;
   const auto knots = curve.knots();

@@ -1,4 +1,4 @@
-// Random scenes of the MDR model: what holds in every scene, whatever its walls, its programs and its material.
+// Random scenes of the MDR model: properties that hold for all walls, programs and materials.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,7 +34,7 @@ Eigen::Vector3d direction(Dice& dice) {
   return {rho * std::cos(angle), rho * std::sin(angle), z};
 }
 
-// Where a wall goes at most: soft and well confined scenes meet their limits on the way.
+// Largest displacement of a wall; soft and well confined scenes meet their limits before.
 constexpr double k_deepest = 0.35;
 constexpr double k_least_angle = 40.0 * std::numbers::pi / 180.0;
 
@@ -49,7 +49,7 @@ std::vector<Step> random_program(Dice& dice, std::size_t steps, double yield_str
       const double largest = yield_stress * dice.one_of<double>({0.1, 0.5, 1.0, 2.0});
       const double force = dice.uniform(0.0, largest);
       const bool pulls = dice.happens(0.2);
-      // Beside pull-off, at 4.7 dg R under force.
+      // Loads beside pull-off, which is at 4.7 dg R under force.
       const double tension = surface_energy > 0.0 ? dice.uniform(0.0, 7.0) * surface_energy : 0.3 * force;
       program.push_back(force_ramp(pulls ? -tension : force));
     } else if (what < 0.45) {
@@ -111,7 +111,7 @@ std::string option(const CheckedScenario& scenario, const std::string& name) {
   return std::get<std::string>(scenario.options.at(name));
 }
 
-// --- what is asked of a run
+// --- checks of a run
 
 /// Scenes that break a rule, each with its seed.
 class Breaches {
@@ -124,7 +124,7 @@ class Breaches {
   std::vector<std::string> lines_;
 };
 
-/// Where a run may end: the limits of the model, as its messages name them.
+/// Limits of the model at which a run may end, in the words of its messages.
 constexpr std::array<std::string_view, 9> k_limits{
     "the free surface of the particle is used up",
     "singular growth of the apparent radius",
@@ -137,7 +137,7 @@ constexpr std::array<std::string_view, 9> k_limits{
     "overlap above twice the apparent radius",
 };
 
-/// How a run has ended: complete, the limit it has met, or what should not be.
+/// End of a run: complete, the limit that it met, or a failure.
 std::string end_of(const TestRun& result) {
   if (result.record.status == RunStatus::complete) return "complete";
   const std::string& message = result.record.message;
@@ -147,7 +147,7 @@ std::string end_of(const TestRun& result) {
   return std::string(*found);
 }
 
-/// The first place in a table that holds no number.
+/// First position in a table without a number.
 std::string place_without_number(const Table& table) {
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     for (std::size_t c = 0; c < table.columns().size(); ++c) {
@@ -157,7 +157,7 @@ std::string place_without_number(const Table& table) {
   return {};
 }
 
-/// Whether an event of that name stands at that time; of any class, or of that one.
+/// True if there is an event with a name at a time; of any class, or of a given one.
 bool has_event_at(const TestRun& result, std::string_view name, double time, std::string_view contact_class = {}) {
   const Table& table = result.record.events;
   for (std::size_t i = 0; i < table.row_count(); ++i) {
@@ -168,7 +168,7 @@ bool has_event_at(const TestRun& result, std::string_view name, double time, std
   return false;
 }
 
-/// Largest distance of work = stored energy + dissipation, over the largest of them.
+/// Largest deviation from work = stored energy + dissipation, over the largest of these.
 double energy_gap(const TestRun& result) {
   const auto work = result.column("work");
   const auto stored = result.column("stored_energy");
@@ -187,7 +187,7 @@ struct Shrinking {
   double elsewhere = 0.0;
 };
 
-/// By how much the apparent radius goes down from one row to the next.
+/// Decreases of the apparent radius from one row to the next.
 Shrinking shrinking(const TestRun& result) {
   const auto times = result.column("time");
   const auto radius = result.column("apparent_radius");
@@ -207,7 +207,7 @@ struct Losses {
   double elsewhere = 0.0;  ///< largest decrease from one row to another
 };
 
-/// How the dissipation falls, over the largest energy, as long as the caps of the contacts stay apart.
+/// Decreases of the dissipation, over the largest energy, while the caps of the contacts are apart.
 Losses losses(const TestRun& result) {
   const auto times = result.column("time");
   const auto dissipation = result.column("dissipation");
@@ -226,7 +226,7 @@ Losses losses(const TestRun& result) {
   return losses;
 }
 
-/// Largest distance of a closed contact's force from its program, over the largest force it prescribes.
+/// Largest deviation of a closed contact's force from its program, over the largest prescribed force.
 double distance_from_program(const TestRun& result) {
   const Table& table = result.record.history;
   const auto times = result.column("time");
@@ -254,14 +254,14 @@ double distance_from_program(const TestRun& result) {
     for (std::size_t row = 0; row < times.size(); ++row) {
       const auto step = static_cast<std::size_t>(steps[row]) - 1;
       if (row == 0 || steps[row] != steps[row - 1]) {
-        // A ramp of the force starts from the force there is; a wall that is lost bears none.
+        // A ramp of the force starts from the present force; a lost wall carries none.
         if (is_by_force && row > 0) start = is_closed(row - 1) ? end : 0.0;
         if (!is_by_force) start = row > 0 ? forces[row - 1] : 0.0;
         if (program[step].kind != Step::Kind::hold) is_by_force = program[step].kind == Step::Kind::force;
         end = program[step].kind == Step::Kind::force ? program[step].target : start;
       }
       if (!is_by_force || !is_closed(row)) continue;
-      // Just after a yield the force has jumped, and its wall has not given way yet.
+      // Just after a yield the force has jumped, and its wall has not yet moved on.
       if (rows[row] == 1.0 && has_event_at(result, "yield", times[row], name)) continue;
       const double expected = std::lerp(start, end, times[row] - static_cast<double>(step));
       const double distance = std::abs(forces[row] - expected) / scale;
@@ -273,7 +273,7 @@ double distance_from_program(const TestRun& result) {
 
 // --- scenes solved at every instant
 
-/// Holds a measured value of one scene against the most it may be.
+/// Compares a measured value of one scene with its largest allowed value.
 void check(std::uint64_t seed, const char* what, double value, double most, Breaches& breaches) {
   if (!(value <= most)) breaches.add(seed, fmt::format("{} {:.3g}, above {:.3g}", what, value, most));
 }
@@ -285,11 +285,11 @@ void check_rules(std::uint64_t seed, const CheckedScenario& scenario, const Test
   const std::string place = place_without_number(result.record.history);
   if (!place.empty()) breaches.add(seed, "no number in " + place);
   expect_at_most("energy gap", energy_gap(result), 1e-15);  // 3.3e-16: one rounding
-  // 1.1e-12: rounding of the overlap on a steep unloading branch.
+  // 1.1e-12: round-off of the overlap on a steep unloading branch.
   expect_at_most("distance from the prescribed force", distance_from_program(result), 1e-11);
 
-  // With the ellipse the force jumps up at a yield. Under force the wall then gives way, and the radius, which keeps
-  // the volume, follows it: by 2.6e-4 R0 at most for E/Y from 10 on and by 1.6e-3 R0 below, where yield comes late.
+  // With the ellipse the force jumps up at yield. Under force control the wall then retreats, and the radius follows to
+  // keep the volume: by 2.6e-4 R0 at most for E/Y from 10 on, and by 1.6e-3 R0 below, where yield comes late.
   const bool jumps = option(scenario, "elastic_profile") == "ellipse";
   const bool is_soft = scenario.material.at("yield_stress") > 0.1;
   const Shrinking shrunk = shrinking(result);
@@ -300,10 +300,10 @@ void check_rules(std::uint64_t seed, const CheckedScenario& scenario, const Test
   if (option(scenario, "radius_rule") != "yielded") return;
   const Losses lost = losses(result);
   expect_at_most("dissipation below zero", -lost.least, 1e-14);  // 2e-15: rounding of the work
-  // 5e-13: where a wall passes from force to displacement, the rounding of its force enters the work.
+  // 5e-13: where a wall changes from force to displacement control, the round-off of its force enters the work.
   expect_at_most("loss of dissipation", -lost.elsewhere, 1e-12);
-  // A yield turns surface energy lost for good into such as can be got back: 2.6e-4. Where a wall under force gives way
-  // it takes work back: 1.6e-5. Elsewhere the law loses up to 1.6e-8 where E/Y is above 150.
+  // A yield turns lost surface energy into recoverable energy: 2.6e-4. A wall under force that retreats takes work
+  // back: 1.6e-5. Elsewhere the law loses up to 1.6e-8 where E/Y is above 150.
   const bool adheres = scenario.material.at("surface_energy") > 0.0;
   expect_at_most("loss of dissipation at a yield", -lost.at_yield, adheres ? 5e-4 : jumps ? 2e-5 : 2e-8);
 }
@@ -331,10 +331,10 @@ TEST(MdrRandomScenes, KeepTheRulesOfTheModel) {
   std::string summary;
   for (const auto& [end, count] : ends) summary += fmt::format("{} scenes: {}\n", count, end);
   std::cout << summary;
-  // Regimes that do not settle, solvers that give up, exceptions, unknown messages: none.
+  // No scene may have a regime search without an end, a solver that fails, an exception, or an unknown message.
   EXPECT_EQ(failures.count(), 0U) << failures.text();
   EXPECT_EQ(breaches.count(), 0U) << breaches.text();
-  // Nearly all have to go through: 1804 of 2000 are complete, 193 use up the free surface, 3 lose half the volume.
+  // Nearly all scenes have to be complete: of 2000, 1804 are, 193 use up the free surface, 3 lose half the volume.
   EXPECT_GE(ends["complete"], 1790) << summary;
 }
 
@@ -345,7 +345,7 @@ struct Distance {
   double work = 0.0;   ///< over the largest work
 };
 
-/// How far two runs are apart at the output points that both have.
+/// Distance of two runs at their common output points.
 Distance distance(const TestRun& actual, const TestRun& expected) {
   const auto largest_difference = [](const std::vector<double>& a, const std::vector<double>& b) {
     double worst = 0.0;
@@ -394,7 +394,7 @@ TEST(MdrRandomScenes, AllFormsAgree) {
         const Distance apart = distance(other, direct);
         // The integrated work is exact to ten rtol; the low order of BDF adds steps, and 1.93e-7 is measured.
         const double most_work = (std::string_view(integrator) == "cvode-adams" ? 10.0 : 20.0) * k_rtol;
-        // Of runs that go on until the radius runs away, errors grow without bound: 1.7e-6.
+        // In runs that continue until the radius runs away, errors grow without bound: 1.7e-6.
         const double most = direct.record.status == RunStatus::complete ? 1e-6 : 1e-5;
         check(seed, fmt::format("{}, work", integrator).c_str(), apart.work, most_work, distances);
         check(seed, fmt::format("{}, state", integrator).c_str(), apart.state, most, distances);
@@ -406,9 +406,8 @@ TEST(MdrRandomScenes, AllFormsAgree) {
   }
   EXPECT_EQ(other_ends.count(), 0U) << other_ends.text();
   EXPECT_EQ(distances.count(), 0U) << distances.text();
-  // Seeds 131, 153, 401 and 411: where growth stops or starts within 1e-9 of a step of another change (the exactness of
-  // a located event), there is one more change in between with one form than with the other. No number tells them
-  // apart.
+  // Seeds 131, 153, 401 and 411: growth stops or starts within 1e-9 of a step, the accuracy of a located event, of
+  // another change. One form then has one more change in between than the other; the numbers agree.
   std::cout << fmt::format("{} scenes with other events\n{}", other_events.count(), other_events.text());
   EXPECT_LE(other_events.count(), 4U) << other_events.text();
 }

@@ -10,7 +10,7 @@
 
 namespace monograin::mdr {
 
-/// Nine columns of a file, one value for every material and displacement; lengths over R0, energies over E R0.
+/// Nine columns of a file, with a value for every material and displacement; lengths over R0, energies over E R0.
 struct ReferenceWindows {
   std::vector<double> modulus_over_yield, displacement, yielded, radius, contact_radius, height, peak_radius;
   std::vector<double> least, greatest;  ///< surface energy

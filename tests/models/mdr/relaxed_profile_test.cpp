@@ -61,7 +61,7 @@ TEST(MdrRelaxedProfile, MeetsTheReferenceOfAConcaveConvexProfile) {
   for (const std::size_t count : {5, 20, 200}) {
     const RelaxedProfile profile = bowl(count).profile();
     for (std::size_t i = 0; i < radii.size(); ++i) {
-      // The last radius of the reference is the profile's end, but for rounding.
+      // The last radius of the reference is the profile's end up to round-off.
       const double a = std::min(radii[i], profile.largest_radius());
       const PeelState state = peel_state(profile, 1.0, k_surface_energy, a);
       EXPECT_NEAR(profile.image(a), image[i], 1e-14) << "a = " << a << ", samples: " << count;
@@ -116,7 +116,7 @@ TEST(MdrRelaxedProfile, IsExactForEvenPolynomialsOfDegreeSix) {
   Samples samples{{0.0, 0.11, 0.17, 0.4, 0.43, 0.8, 1.0}, {}};
   for (const double r : samples.radii) samples.heights.push_back(height(r) - 3.0);
   const RelaxedProfile profile = samples.profile();
-  // What the rounding of heights of size 3 makes of a slope in r^2 between the closest samples.
+  // The round-off of heights of size 3 in a slope in r^2 between the closest samples.
   constexpr double tolerance = 3.0 * k_epsilon / (0.11 * 0.11);
   for (const double x : {0.0, 0.05, 0.11, 0.3, 0.41, 0.9, 1.0}) {
     EXPECT_NEAR(profile.image(x), image(x), 2.0 * tolerance) << "x = " << x;
@@ -126,7 +126,7 @@ TEST(MdrRelaxedProfile, IsExactForEvenPolynomialsOfDegreeSix) {
 }
 
 TEST(MdrRelaxedProfile, ConvergesToTheEllipseWithTheFourthPowerOfTheDistance) {
-  // A = 0.3, b = 1; the contact ends before the ellipse does, where its slope is not bounded.
+  // A = 0.3, b = 1; the contact ends before the ellipse, at whose end the slope is unbounded.
   const Indenter ellipse{ElasticProfile::ellipse, 0.3, 1.0};
   const auto height = [](double r) { return 0.15 * (1.0 - 2.0 / pi * boost::math::ellint_2(r)); };
   constexpr double largest_radius = 0.8;
@@ -145,7 +145,7 @@ TEST(MdrRelaxedProfile, ConvergesToTheEllipseWithTheFourthPowerOfTheDistance) {
   const double middle = error(81);
   const double fine = error(321);
   EXPECT_LT(coarse, 1e-5);
-  // Each time a quarter of the distance: 256 of fourth, 64 of third order.
+  // Each time a quarter of the distance: 256 for fourth order, 64 for third.
   EXPECT_GT(coarse / middle, 150.0) << coarse << ", " << middle;
   EXPECT_GT(middle / fine, 150.0) << middle << ", " << fine;
 
@@ -168,7 +168,7 @@ TEST(MdrRelaxedProfile, PeelsAlongStableStatesDownToPullOff) {
     EXPECT_EQ(curve.back().force, end.force);
     for (std::size_t i = 1; i < curve.size(); ++i) {
       EXPECT_LT(curve[i].contact_radius, curve[i - 1].contact_radius);
-      // What is prescribed falls: the edge is stable under it.
+      // The prescribed quantity falls: the edge is stable under it.
       if (control == Control::displacement)
         EXPECT_LT(curve[i].displacement_1d, curve[i - 1].displacement_1d) << "state " << i;
       else
@@ -190,7 +190,7 @@ TEST(MdrRelaxedProfile, PullsOffAsJkrForTheParabola) {
 }
 
 TEST(MdrRelaxedProfile, DoesNotDependOnTheUnits) {
-  // Powers of two, and squares of the length far outside of what a double holds to the fourth power.
+  // The units are powers of two, and lengths are so small that their fourth power underflows.
   constexpr double length = 0x1p-200;
   constexpr double stress = 0x1p30;
   Samples small = bowl(30);
@@ -234,7 +234,7 @@ TEST(MdrRelaxedProfile, EndsWithItsSamples) {
     EXPECT_THROW(static_cast<void>(profile.image_area(x)), std::domain_error) << x;
     EXPECT_THROW(static_cast<void>(peel_state(profile, 1.0, 0.0, x)), std::domain_error) << x;
   }
-  // So strong an adhesion that the edge is unstable from the beginning.
+  // The adhesion is so strong that the edge is unstable from the beginning.
   try {
     static_cast<void>(critical_radius(profile, 1.0, 10.0, Control::displacement));
     ADD_FAILURE() << "no error";

@@ -73,7 +73,7 @@ TEST(MdrTransforms, GiveTheProfileOfAnEllipse) {
 }
 
 TEST(MdrTransforms, AreInverseToEachOther) {
-  // Neither a power nor a conic.
+  // A profile that is neither a power nor a conic.
   const auto profile = [](double r) { return 2.0 * std::sinh(0.5 * r) * std::sinh(0.5 * r); };
   const auto slope = [](double r) { return std::sinh(r); };
   const auto image = [&](double x) { return profile_1d(slope, x); };
@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(MdrTransforms, TakePressuresOfTheRadiusAlone) {
-  // Bounded ones lose nothing by it, an unbounded one the digits of the distance to the edge.
+  // Bounded pressures lose no accuracy, an unbounded one loses the digits of the distance to the edge.
   const auto error = [](auto&& pressure, double expected) {
     return relative_error(line_load_1d(pressure, k_a, 0.3), expected);
   };
@@ -179,7 +179,7 @@ TEST_P(MdrDisplacementTransform, GivesTheSurfaceInsideAndOutside) {
   }
 }
 
-// R = 1; the closed forms cancel far outside, where series stand in for them.
+// R = 1; far outside the closed forms cancel, and series replace them.
 double hertz_surface(double r) {
   if (r <= k_a) return k_a * k_a - 0.5 * r * r;
   const double s = k_a / r;

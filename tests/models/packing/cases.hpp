@@ -39,7 +39,7 @@ inline std::ostream& operator<<(std::ostream& out, const Parameters& p) {
   return out;
 }
 
-/// A reference file and what it was computed with.
+/// A reference file, with the parameters of its computation.
 struct Curve {
   const char* file;
   Parameters parameters;
@@ -55,8 +55,8 @@ inline std::vector<Curve> curves() {
           {"pack02_consistent_coupling_H1", consistent}, {"pack03_continuous_jamming_H1", continuous}};
 }
 
-/// The equations as they are printed, with 50 digits: the general form of the plastic packing, moduli one by one,
-/// stress positive in compression.
+/// The equations as printed, with 50 digits: the general form of the plastic packing, all moduli separately, stress
+/// positive in compression.
 struct Printed {
   Parameters p;
 
@@ -108,7 +108,7 @@ struct Printed {
   }
 };
 
-/// Sets anywhere in the domain, the three marks of jamming in any order.
+/// Random parameters over the whole domain, with the three marks of jamming in any order.
 inline std::vector<Parameters> random_parameters(int count) {
   std::mt19937 random(4);
   const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };

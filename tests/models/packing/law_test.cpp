@@ -40,7 +40,7 @@ TEST_P(PackingCurve, IsThatOfTheReference) {
     coordination.push_back(coordination_number(law, phi));
     share.push_back(plastic_fraction(law, phi));
   }
-  // The modulus has its nearest pole at x = 1.04 (nu = 0.45): ten roundings of x at Phi = 1.
+  // The modulus has its nearest pole at x = 1.04 (nu = 0.45): ten round-offs of x at Phi = 1.
   const double bound = 1e-13;
   EXPECT_LT(largest_error(table.column("M_eff"), modulus, k_mega), bound);
   EXPECT_LT(largest_error(table.column("elastic_excess_strain"), strain, 1.0), bound);
@@ -53,7 +53,7 @@ TEST_P(PackingCurve, IsThatOfTheReference) {
 INSTANTIATE_TEST_SUITE_P(Packing, PackingCurve, ::testing::ValuesIn(curves()),
                          [](const auto& curve) { return std::string(curve.param.file); });
 
-/// A column that holds words where it is not a number.
+/// Hardening modulus in a row; none if the column has a word there.
 std::optional<double> hardening_of(const Table& table, std::size_t row) {
   const std::size_t column = *table.find("H");
   if (!table.columns()[column].holds_words()) return table.at(row, column);
@@ -103,12 +103,12 @@ TEST(PackingLaw, IsWhatIsPrintedForAnyParameters) {
         ASSERT_EQ(p.coupling, Coupling::consistent) << p;  // the other denominators have no zero
         break;
       }
-      // Where x or ln Phi + c2 begin, a rounding of Phi is all of them.
+      // Near the zero of x or of ln Phi + c2, these have no more digits than the round-off of Phi leaves.
       const double x = 1.0 - (1.0 - phi) / p.critical_porosity;
       const double span = std::log(phi) + p.strain_offset;
       if (k == 0 || x < 1e-6 || span < 1e-6) continue;
       const Precise at = phi;
-      // Poles of 3 - r and of 1 - m within a rounding are the law's own.
+      // Poles of 3 - r and of 1 - m within the round-off of Phi belong to the law.
       const double room = 3.0 - 2.0 * (1.0 + p.poisson_ratio) * std::pow(x, p.stretch_exponent - p.shear_exponent);
       const double give = std::log(phi) / s.strain + p.strain_offset / s.strain;
       const double scale = (1.0 + p.shear_exponent / x + 1.0 / room) / give / std::min(1.0, span);
@@ -227,7 +227,7 @@ TEST(PackingLaw, ScalesWithItsStresses) {
 }
 
 TEST(PackingBranch, EndsWhereTheStrainIsGreatest) {
-  // By Newton's method with 30 digits.
+  // Expected values by Newton's method with 30 digits.
   const Law law = make_law(published());
   const Branch branch = growing_branch(law, Measure::strain);
   EXPECT_EQ(branch.begin, 0.8);

@@ -17,7 +17,7 @@ namespace {
 
 std::string option(const char* key, double value) { return fmt::format("{} = {:.17g}\n", key, value); }
 
-/// A scenario with these parameters.
+/// A scenario with given parameters.
 CheckedScenario scenario_of(const Parameters& p, std::vector<Step> steps,
                             std::optional<double> initial = std::nullopt) {
   std::string text = "model = \"packing\"\n[material]\n";
@@ -52,8 +52,8 @@ Step to_strain(double target) { return to(Step::Kind::strain, target); }
 
 constexpr Tolerances k_default{};
 
-/// Largest error of the columns over the rows of a run, against the printed equations at the packing fraction that is
-/// prescribed, each over its largest magnitude.
+/// Largest error of the columns over the rows of a run, each over its largest magnitude. The reference is the printed
+/// equations at the prescribed packing fraction.
 double error_of(const TestRun& run, const Parameters& p) {
   const Printed printed{p};
   const auto phi = run.outputs("packing_fraction");
@@ -111,12 +111,12 @@ class PackingRun : public ::testing::TestWithParam<Curve> {
       const auto values = run.outputs(column);
       auto reference = table_.column(expected);
       reference.resize(rows_);
-      // Under stress the run begins before the first row, with none.
+      // Under stress control the run begins before the first row, at zero stress.
       ASSERT_LE(rows_, values.size()) << column;
       const std::size_t skipped = values.size() - rows_;
       EXPECT_LE(skipped, 1U) << column;
       const double scale = *std::ranges::max_element(reference);
-      // With the consistent coupling two packings next to jamming have one strain, and one stress.
+      // With the consistent coupling, two packings next to jamming have equal strain and equal stress.
       const bool is_ambiguous = GetParam().parameters.coupling == Coupling::consistent && is_inverse_;
       for (std::size_t k = is_ambiguous ? 1 : 0; k < rows_; ++k) {
         worst = std::max(worst, std::abs(values[k + skipped] / unit - reference[k]) / scale);
@@ -207,7 +207,7 @@ TEST(PackingRuns, FollowThePrintedEquationsForAnyParameters) {
       const bool is_direct = integrator == std::string("direct");
       const TestRun run_ = run(scenario_of(written, {to_fraction(end)}), integrator);
       ASSERT_EQ(run_.record.status, RunStatus::complete) << run_.record.message << "\n" << p;
-      // Next to jamming a rounding of Phi is one of all that begins there.
+      // Next to jamming the round-off of Phi is large against everything that begins there.
       EXPECT_LT(error_of(run_, p), is_direct ? 1e-11 : 1e-6) << integrator << ": " << p;
       if (is_direct) continue;
       const TestRun tight = run(scenario_of(written, {to_fraction(end)}), integrator, {.rtol = 1e-11});
@@ -219,7 +219,7 @@ TEST(PackingRuns, FollowThePrintedEquationsForAnyParameters) {
 }
 
 TEST(PackingRuns, ErrAsTheirToleranceSays) {
-  // No event resets the state on the way.
+  // No event resets the state during this program.
   const Parameters p = published();
   const double exact = static_cast<double>(Printed{p}.elastic(Precise(0.99)));
   for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
@@ -268,7 +268,7 @@ TEST(PackingRuns, BeginLooseAndJam) {
         EXPECT_NEAR(history.at(row, *history.find("strain")), 0.0067588272343363 + std::log(phi / 0.8), 1e-14);
       }
     }
-    // The strain from the start on, by which it jams.
+    // Strain from the start to jamming.
     const double to_jamming = std::log(0.8 / 0.7);
     const double begin = 0.0067588272343363 - to_jamming;
     const TestRun by_strain = run(scenario_of(p, {to_strain(0.1)}, 0.7), integrator);
@@ -313,7 +313,7 @@ TEST(PackingRuns, OfElasticParticlesAreReversible) {
         const double expected = phi[k] < 0.8 || stress[k] == 0.0 ? 0.0 : state(make_law(p), phi[k]).stress;
         EXPECT_NEAR(stress[k], expected, bound * 0.9e6) << integrator << ", Phi " << phi[k];
       }
-      // It comes loose on the way back and jams again.
+      // The packing comes loose when it is unloaded, and jams again.
       EXPECT_EQ(run_.events(), (std::vector<std::string>{"jamming", "jamming", "jamming"})) << integrator;
     }
   }
@@ -331,7 +331,7 @@ TEST(PackingRuns, HoldAndEndAtEvents) {
   }
 }
 
-/// A packing whose strain falls from jamming on, as its modulus begins.
+/// A packing whose strain falls at first from jamming on, where its modulus begins.
 Parameters falls_at_first(double coupling_factor) {
   Parameters p = published(0.0);
   p.poisson_ratio = 0.3;
@@ -393,7 +393,7 @@ TEST(PackingEnds, WhereNoPoresAreLeft) {
     const TestRun by_stress = run(scenario_of(published(), {to_stress(14.745021855269548e6)}), integrator);
     EXPECT_EQ(by_stress.record.status, RunStatus::stopped);
     EXPECT_NEAR(by_stress.time_of("full"), 0.5, 1e-12);
-    // A run that ends there has all that was asked of it.
+    // A run whose program ends there is complete.
     const TestRun exact = run(scenario_of(published(1.0), {to_fraction(1.0)}), integrator);
     EXPECT_EQ(exact.record.status, RunStatus::complete);
     EXPECT_EQ(exact.time_of("full"), 1.0);
@@ -413,7 +413,7 @@ TEST(PackingEnds, WhereTheStrainIsGreatest) {
 }
 
 TEST(PackingEnds, WhereTheStressIsGreatest) {
-  // So plastic that the stress falls before it is full.
+  // So plastic that the stress falls before the packing is full.
   Parameters p = published(0.0);
   p.plastic_growth = 8.0;
   p.plasticity->yield_stress = 0.1e6;

@@ -28,17 +28,17 @@ inline Table reference(const std::string& file) {
   return read_csv(MONOGRAIN_SOURCE_DIR "/tests/models/plastic/reference/" + file + ".csv");
 }
 
-/// The number that a header line begins with; a unit may follow.
+/// The number at the beginning of a header line; a unit may follow.
 inline double header_number(const Table& table, std::string_view key) {
   return std::stod(std::string(table.header_value(key)));
 }
 
-/// A word, also where all words of the column are numbers.
+/// A cell as a word, even if all cells of the column are numbers.
 inline std::string word(const Table& table, std::size_t row, std::string_view column) {
   return std::string(table.word(row, table.find(column).value()));
 }
 
-/// A number, also in a column with blank cells; NaN for those.
+/// A cell as a number, even if the column has blank cells, which give NaN.
 inline double number(const Table& table, std::size_t row, std::string_view column) {
   const std::size_t index = table.find(column).value();
   if (!table.columns()[index].holds_words()) return table.at(row, index);
@@ -46,12 +46,12 @@ inline double number(const Table& table, std::size_t row, std::string_view colum
   return cell.empty() ? std::numeric_limits<double>::quiet_NaN() : std::stod(cell);
 }
 
-/// |actual - expected| over |expected| plus a scale, for where `expected` itself may vanish; 0 where both are equal.
+/// actual - expected| over |expected| plus a scale, because `expected` may vanish; 0 if both are equal.
 inline double scaled_error(double actual, double expected, double scale) {
   return actual == expected ? 0.0 : std::abs(actual - expected) / (std::abs(expected) + scale);
 }
 
-/// A regime of a law between its neighbouring boundaries.
+/// A regime of a law with the boundaries beside it.
 struct Stretch {
   Regime regime;
   double begin, end;
@@ -71,7 +71,7 @@ std::vector<Stretch> stretches(const Law& law, Regime first, double end) {
   return list;
 }
 
-/// How far a law is from being once continuously differentiable where its regimes join.
+/// Deviation of a law from a continuous value and slope where its regimes join.
 struct JointError {
   double pressure = 0.0, slope = 0.0, radius = 0.0;
 
@@ -93,7 +93,7 @@ JointError joint_error(const Law& law, const std::vector<Stretch>& list) {
   return error;
 }
 
-/// Uniform in the logarithm.
+/// A random number, uniform in the logarithm.
 template <class Generator>
 double log_uniform(Generator& generator, double lower, double upper) {
   return std::exp(std::uniform_real_distribution(std::log(lower), std::log(upper))(generator));

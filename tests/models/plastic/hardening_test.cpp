@@ -28,7 +28,7 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr std::array k_enclosed{Configuration::die, Configuration::hydrostatic};
 constexpr std::array k_conditions{MinimumCondition::current, MinimumCondition::ideal};
 
-/// All exponents of the source's own calculations.
+/// All exponents of the source's calculations.
 std::vector<double> exponents_of_the_source() {
   std::vector<double> exponents;
   const Table table = reference("table_E1");
@@ -36,7 +36,8 @@ std::vector<double> exponents_of_the_source() {
   return exponents;
 }
 
-/// From no hardening to linear hardening, with both ends and many close to the first, where d5 has an infinite slope.
+/// Random exponents from no hardening to linear hardening, including both ends and many near the first, where d5 has an
+/// infinite slope.
 struct RandomExponents {
   std::mt19937_64 generator{20240612};
   int drawn = 0;
@@ -53,7 +54,7 @@ std::vector<Stretch> stretches_of(const HardeningLaw& law) {
   return stretches(law, Regime::fully_plastic, std::nextafter(law.limit, 0.0));
 }
 
-/// Relative error of the distance to zero porosity by the rounding of both.
+/// Relative error of the distance to zero porosity due to the round-off of both.
 double rounding_of_distance(const HardeningLaw& law, double x) {
   return law.configuration == Configuration::simple ? 0.0 : 0.25 * k_epsilon / (law.zero_porosity - x);
 }
@@ -236,7 +237,7 @@ TEST(HardeningDerivatives, AgreeWithDifferences) {
           const ContactState state = state_in(law, regime, x);
           const auto error = [&](auto member, double derivative) {
             const auto f = [&, branch = regime](double at) { return state_in(law, branch, at).*member; };
-            // Rounding of the differences: of the values over the step.
+            // Round-off of the values over the step of the differences.
             return scaled_error(central_difference(f, x, step), derivative,
                                 state.*member / std::min(x - begin, end - x));
           };
@@ -264,7 +265,7 @@ TEST(HardeningForce, RisesAndIsFiniteEverywhere) {
       const HardeningLaw law = make_hardening(exponent, configuration);
       for (const auto& [regime, begin, end] : stretches_of(law)) {
         for (int k = 0; k < 6; ++k) {
-          // The first ones at the regime's ends, which may be zero porosity and first touch.
+          // The first two positions are at the regime's ends, which may be zero porosity and first touch.
           const double x = k == 0 ? end : k == 1 ? begin + 1e-9 * (end - begin) : uniform(random.generator, begin, end);
           const ContactState state = state_at(law, x);
           ASSERT_EQ(state.regime, regime) << "1/m = " << exponent << ", " << configuration << ", x = " << x;
@@ -296,7 +297,7 @@ TEST(HardeningForce, IsAPowerOfTheApproachForSmallContacts) {
   }
 }
 
-// --- which contact radius decides on the least pressure
+// --- the contact radius that determines the least pressure
 
 TEST(HardeningMinimum, DiffersByAsMuchAsTheTwoContactRadii) {
   // Share by which the pressure late in the enclosed states depends on the reading, computed with 40 digits.
@@ -335,7 +336,7 @@ TEST(HardeningMinimum, IsThatOfTheSameSeriesWithoutHardening) {
   }
 }
 
-// --- contacts that reach each other
+// --- contacts that meet
 
 TEST(HardeningImpingement, IsWhereTheContactReachesTheEdgeOfItsFace) {
   for (const double exponent : exponents_of_the_source()) {

@@ -34,7 +34,7 @@ constexpr LudwikMaterial k_lead{
     .youngs_modulus = 1e4, .yield_stress = 5.0, .hardening = 15.5, .exponent_inverse = 2.857};  // MPa
 constexpr std::array k_fits{HollomonFit::both, HollomonFit::exponent};
 
-/// Root of the mean square of the difference, by an integral over the strain with the stress solved for at each point.
+/// Root mean square of the difference, by an integral over the strain that solves for the stress at each point.
 double difference(const LudwikMaterial& material, double range, double strength, double exponent) {
   const auto stress = [&](double strain) {
     const auto& [modulus, yield, hardening, n] = material;
@@ -48,7 +48,7 @@ double difference(const LudwikMaterial& material, double range, double strength,
     return 0.5 * (lower + upper);
   };
   const auto square = [&](double root) {
-    // In the root of the strain, for the steep beginnings of both laws.
+    // The variable is the root of the strain, because both laws begin steeply.
     const double strain = root * root;
     const double excess = stress(strain) - strength * std::pow(strain, exponent);
     return excess * excess * 2.0 * root;
@@ -86,8 +86,8 @@ TEST(LudwikFit, AgreesWithTheReference) {
 }
 
 TEST(LudwikFit, MeetsThePrintedPairOfLead) {
-  // 20.5 MPa and 4.167 = 1/0.24; with both parameters free for ranges of about 1.4 to 1.7, with the exponent alone
-  // nearly for any.
+  // The source has 20.5 MPa and 4.167 = 1/0.24. With both parameters free, ranges of about 1.4 to 1.7 give them; with
+  // the exponent alone, nearly any range.
   for (const double range : {1.4, 1.4556, 1.7}) {
     const HollomonMaterial found = fit_hollomon(k_lead, range, HollomonFit::both);
     EXPECT_NEAR(found.strength, 20.5, 0.05) << range;
@@ -159,7 +159,7 @@ TEST(LudwikFit, IsExactForIdealPlasticity) {
 }
 
 TEST(LudwikFit, IsExactForElasticMaterials) {
-  // Of which the strain never reaches the yield point.
+  // The strain never reaches the yield point.
   const HollomonMaterial found = fit_hollomon({200.0, 100.0, 15.5, 2.0}, 0.4, HollomonFit::both);
   EXPECT_LE(relative_error(found.strength, 200.0), 1e-14);
   EXPECT_LE(relative_error(found.exponent, 1.0), 1e-14);
@@ -167,8 +167,8 @@ TEST(LudwikFit, IsExactForElasticMaterials) {
 }
 
 TEST(LudwikFit, HasTheClosedFormForLinearHardening) {
-  // sigma = Y + K eps on [0, 1]: int sigma eps^mu = Y/(mu+1) + K/(mu+2), and its logarithmic derivative is -2/(2 mu+1)
-  // over 2.
+  // sigma = Y + K eps on [0, 1]: int sigma eps^mu = Y/(mu+1) + K/(mu+2). The condition is that its logarithmic
+  // derivative is -1/(2 mu+1).
   const double yield = 50.0, hardening = 30.0;
   const HollomonMaterial found = fit_hollomon({k_infinity, yield, hardening, 1.0}, 1.0, HollomonFit::both);
   const double mu = found.exponent;
@@ -210,7 +210,7 @@ TEST(LudwikFit, RefusesMaterialsThatAreNone) {
 }
 
 TEST(LudwikFit, RefusesRangesWithoutABestExponent) {
-  // Still elastic where the power law has its whole strength.
+  // The material is still elastic at strains where the power law has its full strength.
   const std::string message = refusal<std::domain_error>([] {
     return fit_hollomon({1.0, 10.0, 5.0, 2.0}, 0.5, HollomonFit::exponent);
   });

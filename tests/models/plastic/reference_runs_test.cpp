@@ -1,4 +1,4 @@
-// Whole runs of the plastic laws against curves computed elsewhere with 50 digits: all forms, both controls.
+// Whole runs of the plastic laws against independent curves with 50 digits: all forms, both controls.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ class ReferenceCurve : public ::testing::TestWithParam<std::string> {
       strength_ = scenario_.material.at("yield_stress");
     } else {
       scenario_ = hardening_scenario(configuration, 1.0, header_number(table_, "inv_m"), {});
-      // Beyond the margin before the filled cell a run has ended.
+      // A run ends at the margin before the filled cell.
       const auto law = make_hardening(scenario_.material.at("hardening_exponent"), configuration_of(configuration));
       if (configuration != monograin::Configuration::simple) {
         singular_ = law.zero_porosity;
@@ -74,7 +74,7 @@ class ReferenceCurve : public ::testing::TestWithParam<std::string> {
   [[nodiscard]] TestRun run_through(bool by_force, std::string_view integrator) {
     if (by_force) {
       begin_ = 1e-6;  // forces a rounding error of the step from its start are not recorded
-      // Where the force is all but vertical, an integrator's error in the displacement decides when the run ends.
+      // Where the force is almost vertical, an integrator's error in the displacement determines when the run ends.
       if (integrator != std::string_view("direct")) end_ = std::min(end_, singular_ * (1.0 - 1e-6));
     }
     const std::vector<double> heights = by_force ? expected("P_over", strength_) : expected("gamma");
@@ -92,7 +92,7 @@ class ReferenceCurve : public ::testing::TestWithParam<std::string> {
       EXPECT_EQ(actual.size(), reference.size() + 1) << column;
       double worst = 0.0;
       for (std::size_t k = 0; k < std::min(reference.size(), actual.size() - 1); ++k) {
-        // Next to the filled cell the rounding of x is a relative error of x/(x_g - x) roundings in the pressure.
+        // Next to the filled cell a round-off of x is a relative error of x/(x_g - x) times that in the pressure.
         const double rounding = singular_share * k_epsilon * x[k] / (singular_ - x[k]);
         const double over = scale == Scale::own ? std::abs(reference[k]) : largest(reference);
         worst = std::max(worst, std::abs(actual[k + 1] - reference[k]) / over - rounding);
@@ -121,7 +121,7 @@ void expect_below(double bound, const Errors& e, std::string_view what) {
 }
 
 TEST_P(ReferenceCurve, IsMetByDirect) {
-  // Largest errors found: 1e-13, work just above yield; 2e-11, pressure next to zero porosity under a force.
+  // Largest errors: 1e-13 in the work just above yield; 2e-11 in the pressure next to zero porosity under a force.
   expect_below(2e-13, errors_of(run_through(false, "direct"), Scale::own), "displacement");
   expect_below(1e-10, errors_of(run_through(true, "direct"), Scale::own), "force");
 }

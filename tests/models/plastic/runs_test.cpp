@@ -148,7 +148,7 @@ TEST_P(LateralCurve, IsMetByARun) {
   const auto overlap = now.outputs("lateral.overlap");
   ASSERT_EQ(force.size(), x.size() + 1);
   for (std::size_t k = 0; k < x.size(); ++k) {
-    // The row of an output point at an event is that of before.
+    // The row of an output point at an event has the values before it.
     const bool is_onset = x[k] > 0.1 && std::isnan(pressure[k + 1]);
     const auto expect = [&](double actual, std::string_view column, double factor) {
       const double expected = number(table, k, column);
@@ -271,7 +271,7 @@ TEST(SemimechWarnings, SayWhereAWholeRunIsTooStiff) {
 TEST(PlasticUnloading, WarnsOfContactsThatRecoverMoreThanTheyWereCompressed) {
   const double yield = std::get<SemimechLaw>(law_of(steel(Walls::simple, {}))).yield_approach;
   const TestRun small = run(unloading_steel(Walls::simple, {ramp(1.05 * yield), ramp(0.9 * yield)}));
-  // What it recovers more it also gives back as energy.
+  // The excess of the recovery is also returned as energy.
   EXPECT_TRUE(energy_warning(small.record.history, 1.0, "semimech", 0.0));
   ASSERT_EQ(small.record.warnings.size(), 2u);
   EXPECT_TRUE(contains(small.record.warnings.front(), "too stiff")) << small.record.warnings.front();
@@ -299,13 +299,13 @@ TEST(PlasticEnds, StopWhereTheWallsMeetOrTheCellIsFilled) {
 }
 
 TEST(PlasticEnds, StopWhereAProgramGoesBackAfterACondition) {
-  // Which way the second step goes is known only when the first has ended.
+  // The direction of the second step is known only when the first has ended.
   const TestRun now = run(steel(Walls::simple, {until(ramp(0.3), Quantity::displacement, 0.2), ramp(0.1)}));
   EXPECT_EQ(now.record.status, RunStatus::stopped);
   EXPECT_TRUE(contains(now.record.message, "unloading = \"mdr\" adds one")) << now.record.message;
 }
 
-// --- contacts for themselves
+// --- independent contacts
 
 TEST(PlasticSimilarity, WallsMeetTheParticleAcrossTheirGaps) {
   CheckedScenario scenario = between(similarity_scenario(Walls::walls, 1.0, 0.24, {}),
@@ -329,7 +329,7 @@ TEST(PlasticSimilarity, WallsMeetTheParticleAcrossTheirGaps) {
 
 // --- random scenes
 
-/// Admissible materials and programs of either control; with unloading every other time.
+/// Random admissible materials and programs under either control; half of them with unloading.
 CheckedScenario random_scenario(std::mt19937_64& generator) {
   const Walls walls = k_walls[static_cast<std::size_t>(uniform(generator, 0.0, 3.0))];
   const double kind = uniform(generator, 0.0, 3.0);

@@ -42,7 +42,7 @@ namespace monograin {
   return scenario;
 }
 
-/// The same with elastic constants and unloading by the indenter of model mdr.
+/// A scenario with elastic constants, and unloading by the indenter of model mdr.
 [[nodiscard]] inline CheckedScenario unloading(CheckedScenario scenario, double youngs_modulus, double poisson_ratio) {
   scenario.material["youngs_modulus"] = youngs_modulus;
   scenario.material["poisson_ratio"] = poisson_ratio;

@@ -46,7 +46,7 @@ Steel steel_of(const Table& table, std::size_t row) {
   return {number(table, row, "E"), number(table, row, "nu"), number(table, row, "sigma_y")};
 }
 
-/// All materials of the source's own calculations.
+/// All materials of the source's calculations.
 std::vector<Steel> steels_of_the_source() {
   const Table table = reference("table_A1");
   std::vector<Steel> steels;
@@ -54,8 +54,8 @@ std::vector<Steel> steels_of_the_source() {
   return steels;
 }
 
-/// From the least lambda to far beyond the calibrated range. Below a Poisson's ratio of 0 the elastic loss of volume
-/// may exceed the whole for soft materials, so that there is no law.
+/// Random materials from the least lambda to far beyond the calibrated range. Below a Poisson's ratio of 0 there may be
+/// no law, because the elastic loss of volume of a soft material may exceed the whole volume.
 struct RandomSteels {
   std::mt19937_64 generator{20240611};
 
@@ -154,7 +154,7 @@ TEST(SemimechParameters, LoseTheZeroSlopeAtTheMaximumBelowTheLeastModulus) {
 }
 
 TEST(SemimechParameters, KeepTheDigitsOfEarlyInflexions) {
-  // With r - 1 = 1.9e-13 and a negative shift the inflexion point is at -(r - 1)/(2 tan s) to first order, the small
+  // With r - 1 = 1.9e-13 and a negative shift, the inflexion point is at -(r - 1)/(2 tan s) to first order: a small
   // difference of two numbers of order 1.
   const PressureFall fall = make_semimech({1e40, 1e40}, Configuration::hydrostatic).fall;
   ASSERT_LT(fall.shift, 0.0);
@@ -195,13 +195,13 @@ TEST_P(SemimechCurve, AgreesWithFiftyDigits) {
       EXPECT_LE(scaled_error(actual, expected, scale), tolerance)
           << column << " at x = " << x << ": " << actual << " instead of " << expected;
     };
-    // Rounding of x near zero porosity costs up to zeta eps/4 of the pressure: 3.2e-14 in hydrostatic_09, where it is
-    // the largest error; 3e-15 elsewhere.
+    // The round-off of x near zero porosity costs up to zeta eps/4 of the pressure: 3.2e-14 in hydrostatic_09, where it
+    // is the largest error; 3e-15 elsewhere.
     expect("a_over_R", state.contact_radius, 2e-15);  // largest error found: 6.5e-16
     expect("Hbar", state.pressure, 1e-13);
     expect("P_over_sigma_yR2", state.force, 1e-13);
     expect("W_over_sigma_yR3", work(law, x), 3e-13);  // largest error found: 1.0e-13
-    // At its maximum the pressure has an infinite second derivative: one rounding of x makes the slope jump.
+    // At its maximum the pressure has an infinite second derivative: one round-off of x makes the slope jump.
     if (std::abs(x / law.fall.start - 1.0) < 1e-9) {
       ++without_slope;
     } else {
@@ -312,7 +312,7 @@ TEST(SemimechDerivatives, AgreeWithDifferences) {
           const ContactState state = state_in(law, regime, x);
           const auto error = [&](auto member, double derivative, double scale) {
             const auto f = [&](double at) { return state_in(law, regime, at).*member; };
-            // Rounding of the differences: of the values over the step.
+            // Round-off of the values over the step of the differences.
             return scaled_error(central_difference(f, x, step), derivative, scale);
           };
           const double pressure_error =
@@ -336,8 +336,8 @@ TEST(SemimechDerivatives, AgreeWithDifferences) {
 }
 
 TEST(SemimechDerivatives, AgreeWithDifferencesOutsideOfTheirRegimes) {
-  // Where trial steps go: on the other side of x_Hmax the fall is a mirror image, and the rise goes on as the nearest
-  // whole power does.
+  // Trial steps may leave their regime: beyond x_Hmax the fall continues as its mirror image, and the rise as the
+  // nearest integer power.
   for (const Steel& steel : steels_of_the_source()) {
     for (const Configuration configuration : k_configurations) {
       const SemimechLaw law = steel.law(configuration);
@@ -413,7 +413,7 @@ TEST(SemimechForce, BecomesThatOfIdealPlasticityWithoutHardeningForStiffMaterial
   }
 }
 
-// --- contacts that reach each other
+// --- contacts that meet
 
 TEST(SemimechImpingement, IsWhereTheContactReachesTheEdgeOfItsFace) {
   RandomSteels random;
@@ -460,7 +460,7 @@ TEST(SemimechInverse, FindsTheApproachAgain) {
         for (const double x : {uniform(random.generator, begin, end), begin + 1e-9 * (end - begin), end}) {
           if (!(x < 1.0)) continue;
           const ContactState state = state_at(law, x);
-          // Rounding of the force over its slope: P/(x P') is below 2.1.
+          // Round-off of the force over its slope: P/(x P') is below 2.1.
           ASSERT_LE(relative_error(approach_under(law, state.force), x), 4e-15)  // largest error found: 2.2e-15
               << steel << ", " << configuration << ", " << regime << ", x = " << x;
         }

@@ -263,7 +263,7 @@ TEST(SimilarityForce, IsAPowerOfTheApproach) {
     for (const double x : {1e-12, 1e-4, 0.1}) {
       const ContactState state = state_at(law, x);
       EXPECT_LE(relative_error(x * state.force_by_approach, (1.0 + 0.5 * exponent) * state.force), 8 * k_epsilon);
-      // Of the corrected radius the fourth power counts little there.
+      // At this x the fourth power in the corrected radius has little effect.
       const double corrected = state_at(make_similarity(exponent, SimilarityRadius::corrected), x).force;
       EXPECT_LE(relative_error(corrected, state.force), 1.5 * 1.43 * x + 1e-15) << "1/m = " << exponent;
       EXPECT_LT(corrected, state.force) << "1/m = " << exponent;
@@ -278,7 +278,7 @@ TEST(SimilarityInverse, FindsTheApproachAgain) {
     for (const SimilarityRadius radius : k_radii) {
       const SimilarityLaw law = make_similarity(exponent, radius);
       const double x = i % 2 == 0 ? uniform(generator, 0.0, 1.0) : log_uniform(generator, 1e-200, 1.0);
-      // The power of the force: its exponent is rounded, which counts times the logarithm.
+      // The exponent of the force's power is rounded, which counts times the logarithm.
       ASSERT_LE(relative_error(approach_under(law, state_at(law, x).force), x), (8.0 - std::log(x)) * k_epsilon)
           << "1/m = " << exponent << ", x = " << x;
     }

@@ -19,7 +19,7 @@ using monograin::Limit;
 using monograin::sentence;
 using monograin::text_of;
 
-// The last one: all before it are counted from 0.
+// The last enumerator; those before it are counted from 0.
 constexpr auto k_last = Limit::unequal_durations;
 
 TEST(Limits, HaveACodeEachThatIsAWordOfLowerCaseLettersAndHyphens) {

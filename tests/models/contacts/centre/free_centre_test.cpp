@@ -1,4 +1,5 @@
-// A free centre is where unilateral contacts balance; where none bears, it stays, or goes as far as walls push it.
+// A free centre is at the equilibrium of its unilateral contacts. Where no contact is loaded, it stays, or walls push
+// it.
 
 #include "contacts/centre/free_centre.hpp"
 
@@ -112,7 +113,7 @@ TEST(CentreSolver, DoesNotDependOnTheGuessNorOnTheOrderOfTheWallsNorOnTheAxes) {
 }
 
 TEST(CentreSolver, IsNotPushedAcrossBigForcesByTheirRoundOff) {
-  // Two walls press a thousand times as deep as what bears across them.
+  // Two walls press a thousand times as deep as the contacts across them.
   const Eigen::Vector3d normal(0.6, 0.48, 0.64);
   const HertzWalls cell({{normal, 0.3}, {-normal, 0.31}, {{0.8, -0.36, -0.48}, 1e-9}, {{-0.8, 0.36, 0.48}, 3e-9}});
   const Eigen::Vector3d centre = cell.centre();
@@ -123,7 +124,7 @@ TEST(CentreSolver, IsNotPushedAcrossBigForcesByTheirRoundOff) {
 TEST(CentreSolver, IsCarriedByTheLeastThatClearsTheWallsThatPushIt) {
   const HertzWalls one({{{0, 0.6, 0.8}, 0.2}, {{0, 0, -1}, -1.0}});
   EXPECT_LE((one.centre() - Eigen::Vector3d(0, -0.12, -0.16)).norm(), 1e-15);
-  // Both push: it goes along the edge between them, as near as that comes.
+  // Both walls push: the centre moves along the edge between them, to the nearest position.
   const HertzWalls wedge({{{1, 0, 0}, 0.1}, {{0, 1, 0}, 0.3}, {{0, 0, -1}, -1.0}});
   EXPECT_LE((wedge.centre() - Eigen::Vector3d(-0.1, -0.3, 0)).norm(), 1e-15);
 }
@@ -177,7 +178,7 @@ TEST(CentreSolver, MovesAtTheRateOfItsPosition) {
 }
 
 TEST(CentreSolver, RolesTellWhatBearsFromWhatPushes) {
-  // The upper walls come down on a loose particle: the first one pushes it, and both bear once it is squeezed.
+  // The upper walls come down on a loose particle: the first one pushes it, and both carry load once it is squeezed.
   const auto roles_at = [](double top, double bottom) {
     const HertzWalls walls({{{0, 0, 1}, top}, {{0, 0, -1}, bottom}, {{1, 0, 0}, -0.5}});
     const HertzWalls then({{{0, 0, 1}, top + 1e-6}, {{0, 0, -1}, bottom}, {{1, 0, 0}, -0.5}});
